@@ -1,0 +1,85 @@
+!> The blocks: shape, moments, motion, stress; carried from step to step
+module dda_block_system
+   use dda_kinds, only : wp
+   use dda_material, only : material_t
+   use dda_simplex, only : area_moments, area_moments_t
+   implicit none
+   private
+
+   public :: block_system_t, new_block_system, n_unknown
+
+   !> Unknowns of a deformable block: u0, v0, r0, ex, ey, gxy
+   integer, parameter :: n_unknown = 6
+
+   !> Blocks as arrays; block b owns the vertices first_vertex(b) to first_vertex(b + 1) - 1
+   type :: block_system_t
+      !> First vertex of each block, and one beyond the last: (n_block + 1)
+      integer, allocatable :: first_vertex(:)
+      !> Corners in the reference shape, counter-clockwise: (2, n_vertex) [m]
+      real(wp), allocatable :: vertex(:, :)
+      !> Area: (n_block) [m2]
+      real(wp), allocatable :: area(:)
+      !> Centre of gravity of the reference shape: (2, n_block) [m]
+      real(wp), allocatable :: centroid(:, :)
+      !> Central second moments Sxx, Syy, Sxy: (3, n_block) [m4]
+      real(wp), allocatable :: second(:, :)
+      !> Mass per volume: (n_block) [kg/m3]
+      real(wp), allocatable :: density(:)
+      !> Weight per volume: (n_block) [N/m3]
+      real(wp), allocatable :: unit_weight(:)
+      !> Number of the block's material: (n_block)
+      integer, allocatable :: material(:)
+      !> Materials
+      type(material_t), allocatable :: materials(:)
+      !> Number of the block in the equations; 0 for a block that cannot move: (n_block)
+      integer, allocatable :: equation(:)
+      !> Sum of all motions: (n_unknown, n_block) [m, m, rad, -, -, -]
+      real(wp), allocatable :: motion(:, :)
+      !> Rates of the unknowns: (n_unknown, n_block) [1/s of the above]
+      real(wp), allocatable :: velocity(:, :)
+      !> Stress sx, sy, txy: (3, n_block) [Pa]
+      real(wp), allocatable :: stress(:, :)
+   end type block_system_t
+
+contains
+
+   !> Blocks at rest and free of stress
+   pure function new_block_system(first_vertex, vertex, fixed, material) result(system)
+      !> First vertex of each block, and one beyond the last: (n_block + 1)
+      integer, intent(in) :: first_vertex(:)
+      !> Corners, counter-clockwise: (2, n_vertex) [m]
+      real(wp), intent(in) :: vertex(:, :)
+      !> Blocks that cannot move: (n_block)
+      logical, intent(in) :: fixed(:)
+      !> The one material of all blocks
+      type(material_t), intent(in) :: material
+      !> The blocks
+      type(block_system_t) :: system
+      type(area_moments_t) :: moments
+      integer :: b, n, movable
+
+      n = size(first_vertex) - 1
+      allocate (system%first_vertex, source=first_vertex)
+      allocate (system%vertex, source=vertex)
+      allocate (system%materials(1))
+      system%materials(1) = material
+      allocate (system%area(n), system%centroid(2, n), system%second(3, n))
+      allocate (system%density(n), system%unit_weight(n), system%material(n), system%equation(n))
+      allocate (system%motion(n_unknown, n), system%velocity(n_unknown, n), system%stress(3, n))
+      system%motion = 0.0_wp
+      system%velocity = 0.0_wp
+      system%stress = 0.0_wp
+      system%material = 1
+      system%density = material%density
+      system%unit_weight = 0.0_wp
+      movable = 0
+      do b = 1, n
+         moments = area_moments(vertex(:, first_vertex(b):first_vertex(b + 1) - 1))
+         system%area(b) = moments%area
+         system%centroid(:, b) = moments%centroid
+         system%second(:, b) = moments%second
+         if (.not. fixed(b)) movable = movable + 1
+         system%equation(b) = merge(0, movable, fixed(b))
+      end do
+   end function new_block_system
+end module dda_block_system

@@ -1,0 +1,67 @@
+!> Materials of blocks and laws of joints
+module dda_material
+   use dda_constants, only : degree
+   use dda_kinds, only : wp
+   implicit none
+   private
+
+   public :: material_t, joint_law_t, elasticity_matrix, friction_coefficient
+
+   !> What a block is made of
+   type :: material_t
+      !> Mass per volume [kg/m3]
+      real(wp) :: density = 2240.0_wp
+      !> Young's modulus [Pa]
+      real(wp) :: young = 5.0e9_wp
+      !> Poisson's ratio
+      real(wp) :: poisson = 0.2_wp
+      !> Plane strain instead of plane stress
+      logical :: plane_strain = .false.
+   end type material_t
+
+   !> Mohr-Coulomb law of a joint: -N <= tension*length, |T| <= cohesion*length + friction*N
+   type :: joint_law_t
+      !> Coefficient of friction tan(phi)
+      real(wp) :: friction = 0.0_wp
+      !> The joint cannot slide
+      logical :: no_slip = .false.
+      !> Cohesion [Pa]
+      real(wp) :: cohesion = 0.0_wp
+      !> Tensile strength [Pa]
+      real(wp) :: tension = 0.0_wp
+   end type joint_law_t
+
+contains
+
+   !> Hooke's law of the plane: stress (sx, sy, txy) from strain (ex, ey, gxy)
+   pure function elasticity_matrix(material) result(d)
+      !> Material of the block
+      type(material_t), intent(in) :: material
+      !> Symmetric matrix: (3, 3) [Pa]
+      real(wp) :: d(3, 3)
+      real(wp) :: young, poisson
+
+      young = material%young
+      poisson = material%poisson
+      if (material%plane_strain) then
+         young = young/(1.0_wp - poisson**2)
+         poisson = poisson/(1.0_wp - poisson)
+      end if
+      d = 0.0_wp
+      d(1, 1) = young/(1.0_wp - poisson**2)
+      d(2, 2) = d(1, 1)
+      d(1, 2) = poisson*d(1, 1)
+      d(2, 1) = d(1, 2)
+      d(3, 3) = young/(2.0_wp*(1.0_wp + poisson))
+   end function elasticity_matrix
+
+   !> Coefficient of friction of a friction angle
+   elemental function friction_coefficient(friction_deg) result(coefficient)
+      !> Angle of friction, 0 <= angle < 90 [deg]
+      real(wp), intent(in) :: friction_deg
+      !> tan(phi)
+      real(wp) :: coefficient
+
+      coefficient = tan(friction_deg*degree)
+   end function friction_coefficient
+end module dda_material

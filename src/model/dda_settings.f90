@@ -1,0 +1,46 @@
+!> What a run is told once
+module dda_settings
+   use dda_kinds, only : wp
+   implicit none
+   private
+
+   public :: settings_t, flow_rule, flow_rule_enum
+
+   !> How a sliding joint moves
+   type :: flow_rule_enum
+      !> Along the normal of its friction cone: sliding opens the joint. Convex; no structure that
+      !> falls under this rule can stand under any other
+      integer :: associated = 1
+      !> Along the joint: Coulomb friction without dilatancy
+      integer :: coulomb = 2
+   end type flow_rule_enum
+
+   !> Names of the flow rules
+   type(flow_rule_enum), parameter :: flow_rule = flow_rule_enum()
+
+   !> Settings of an analysis; never changed while it runs
+   type :: settings_t
+      !> Velocities are kept from step to step; otherwise every step starts at rest
+      logical :: dynamic = .false.
+      !> Unknowns of a block: 6, or 3 for rigid blocks
+      integer :: n_dof = 6
+      !> Sliding of the joints, one of flow_rule
+      integer :: flow = 1
+      !> Contact stiffness over the stiffness of the block across the joint
+      real(wp) :: penalty_ratio = 100.0_wp
+      !> Most steps of a run
+      integer :: max_steps = 400
+      !> Most changes of state in one step before Newton's method takes over
+      integer :: max_changes = 400
+      !> Length of the first static step or of every dynamic one; 0 to choose it [s]
+      real(wp) :: time_step = 0.0_wp
+      !> Largest motion of a corner in a step over the size of the smallest block
+      real(wp) :: max_displacement_ratio = 0.05_wp
+      !> Motion of a corner that means collapse; 0 for a test without a length [m]
+      real(wp) :: collapse_displacement = 0.0_wp
+      !> Body force per unit of weight: direction of gravity and the horizontal coefficient: (2)
+      real(wp) :: load_direction(2) = [0.0_wp, -1.0_wp]
+      !> Remaining acceleration over that of the loads below which a structure is at rest
+      real(wp) :: rest_tolerance = 1.0e-11_wp
+   end type settings_t
+end module dda_settings
