@@ -1,0 +1,65 @@
+!> The contacts of a system and what they carry from step to step (Shi: df04 to df07)
+module dda_contact_detection
+   use dda_block_system, only : block_system_t
+   use dda_contact_types, only : edge_to_edge_joint, joint_t
+   use dda_friction_cone, only : joint_face_t
+   use dda_joint_springs, only : joint_springs_t, new_joint_springs
+   use dda_kinds, only : wp
+   use dda_material, only : joint_law_t
+   implicit none
+   private
+
+   public :: contacts_t, find_contacts
+
+   !> Joints with their springs, states and forces
+   type :: contacts_t
+      !> The joints: (n_joint)
+      type(joint_t), allocatable :: joint(:)
+      !> Their springs
+      type(joint_springs_t) :: springs
+      !> Face of the friction cone that each joint's force lies on: (n_joint)
+      type(joint_face_t), allocatable :: face(:)
+      !> Trial force N1, N2, T of the springs: (3, n_joint) [N/m]
+      real(wp), allocatable :: trial(:, :)
+      !> Force N1, N2, T: (3, n_joint) [N/m]
+      real(wp), allocatable :: force(:, :)
+      !> Opening at the two contacts and slip since the beginning: (3, n_joint) [m]
+      real(wp), allocatable :: gap(:, :)
+      !> Opening at the two contacts and slip in the last step: (3, n_joint) [m]
+      real(wp), allocatable :: increment(:, :)
+      !> Contacts whose cohesion and tensile strength are spent: (2, n_joint)
+      logical, allocatable :: broken(:, :)
+   end type contacts_t
+
+contains
+
+   !> Joints of the pairs of edges that lie together in the reference shape, closed and free of force
+   pure subroutine find_contacts(system, edge_pair, law, penalty_ratio, n_dof, contacts)
+      !> The blocks
+      type(block_system_t), intent(in) :: system
+      !> Block and edge, block and edge of each joint: (4, n_joint)
+      integer, intent(in) :: edge_pair(:, :)
+      !> Law of each joint: (n_joint)
+      type(joint_law_t), intent(in) :: law(:)
+      !> Contact stiffness over the stiffness of the block across the joint
+      real(wp), intent(in) :: penalty_ratio
+      !> Unknowns of one block
+      integer, intent(in) :: n_dof
+      !> The contacts
+      type(contacts_t), intent(out) :: contacts
+      integer :: j, n
+
+      n = size(edge_pair, 2)
+      allocate (contacts%joint(n), contacts%face(n), contacts%broken(2, n))
+      allocate (contacts%trial(3, n), contacts%force(3, n), contacts%gap(3, n), contacts%increment(3, n))
+      do j = 1, n
+         contacts%joint(j) = edge_to_edge_joint(system, edge_pair(:, j), law(j))
+      end do
+      call new_joint_springs(system, contacts%joint, penalty_ratio, n_dof, contacts%springs)
+      contacts%broken = .false.
+      contacts%trial = 0.0_wp
+      contacts%force = 0.0_wp
+      contacts%gap = 0.0_wp
+      contacts%increment = 0.0_wp
+   end subroutine find_contacts
+end module dda_contact_detection

@@ -1,0 +1,118 @@
+!> The contact force of a joint as a projection: open, sliding and locked are faces of its cone
+!>
+!> A joint carries two normal forces N1, N2 at its corners and one shear force T. Admissible are
+!>
+!>    N1 >= 0,  N2 >= 0,  |T| <= limit + friction*(N1 + N2)
+!>
+!> With a penalty, the force is the admissible one nearest to the trial force (N1, N2, T) that the
+!> springs would carry if they could not fail.
+module dda_friction_cone
+   use dda_kinds, only : wp
+   implicit none
+   private
+
+   public :: joint_face_t, cone_t, project, apply_face, contact_state, contact_state_enum
+
+   !> Face of the cone on which the force of a joint lies
+   type :: joint_face_t
+      !> Corners that are open: (2)
+      logical :: open(2) = .false.
+      !> Direction of the shear force at the Coulomb limit: -1 or 1; 0 while the joint is stuck
+      integer :: slip = 0
+   end type joint_face_t
+
+   !> Bounds of the joint force
+   type :: cone_t
+      !> Coefficient of friction; 0 where the limit alone bounds the shear force
+      real(wp) :: friction = 0.0_wp
+      !> Shear force that the joint carries without normal force [N/m]
+      real(wp) :: limit = 0.0_wp
+   end type cone_t
+
+   !> Shi's states of a contact
+   type :: contact_state_enum
+      !> Apart: no spring
+      integer :: open = 0
+      !> Closed, at the Coulomb limit: normal spring and friction force
+      integer :: sliding = 1
+      !> Closed and stuck: normal and shear spring
+      integer :: locked = 2
+   end type contact_state_enum
+
+   !> Names of the contact states
+   type(contact_state_enum), parameter :: contact_state = contact_state_enum()
+
+contains
+
+   !> The admissible force nearest to a trial force, and the face that it lies on
+   pure subroutine project(cone, trial, force, face)
+      !> Bounds of the force
+      type(cone_t), intent(in) :: cone
+      !> Trial force N1, N2, T: (3) [N/m]
+      real(wp), intent(in) :: trial(3)
+      !> Admissible force: (3) [N/m]
+      real(wp), intent(out) :: force(3)
+      !> Its face
+      type(joint_face_t), intent(out) :: face
+      real(wp) :: excess
+
+      force(1:2) = max(trial(1:2), 0.0_wp)
+      force(3) = trial(3)
+      face%open = trial(1:2) < 0.0_wp
+      excess = abs(trial(3)) - cone%limit - cone%friction*(force(1) + force(2))
+      if (.not. excess > 0.0_wp) return
+      call return_to_limit(cone, trial, force, face)
+   end subroutine project
+
+   !> Projection where the trial shear force is beyond the limit: find the multiplier of
+   !> |T| - multiplier = limit + friction*sum(max(N + friction*multiplier, 0)),
+   !> which falls piecewise linearly, so that trying none, one and both corners open finds it
+   pure subroutine return_to_limit(cone, trial, force, face)
+      !> Bounds of the force
+      type(cone_t), intent(in) :: cone
+      !> Trial force beyond the limit: (3) [N/m]
+      real(wp), intent(in) :: trial(3)
+      !> Admissible force: (3) [N/m]
+      real(wp), intent(out) :: force(3)
+      !> Its face
+      type(joint_face_t), intent(out) :: face
+      real(wp) :: mu, multiplier, excess, high, low
+
+      mu = cone%friction
+      high = maxval(trial(1:2))
+      low = minval(trial(1:2))
+      excess = abs(trial(3)) - cone%limit
+      multiplier = (excess - mu*(high + low))/(1.0_wp + 2.0_wp*mu**2)
+      if (low + mu*multiplier < 0.0_wp) multiplier = (excess - mu*high)/(1.0_wp + mu**2)
+      if (high + mu*multiplier < 0.0_wp) multiplier = excess
+      face%slip = merge(1, -1, trial(3) > 0.0_wp)
+      face%open = trial(1:2) + mu*multiplier < 0.0_wp
+      force(1:2) = max(trial(1:2) + mu*multiplier, 0.0_wp)
+      force(3) = real(face%slip, wp)*(abs(trial(3)) - multiplier)
+   end subroutine return_to_limit
+
+   !> A face as an affine map: force = tangent*trial + constant as long as the face is held
+   pure subroutine apply_face(cone, face, tangent, constant)
+      !> Bounds of the force
+      type(cone_t), intent(in) :: cone
+      !> The face
+      type(joint_face_t), intent(in) :: face
+      !> Projector onto the face's directions: symmetric (3, 3)
+      real(wp), intent(out) :: tangent(3, 3)
+      !> Force of the face's point nearest to zero: (3) [N/m]
+      real(wp), intent(out) :: constant(3)
+      real(wp) :: normal(3), square
+
+      tangent = 0.0_wp
+      constant = 0.0_wp
+      if (.not. face%open(1)) tangent(1, 1) = 1.0_wp
+      if (.not. face%open(2)) tangent(2, 2) = 1.0_wp
+      tangent(3, 3) = 1.0_wp
+      if (face%slip == 0) return
+      normal = [-cone%friction*tangent(1, 1), -cone%friction*tangent(2, 2), real(face%slip, wp)]
+      square = dot_product(normal, normal)
+      constant = normal*(cone%limit/square)
+      normal = normal/sqrt(square)
+      tangent = tangent - spread(normal, 2, 3)*spread(normal, 1, 3)
+   end subroutine apply_face
+end module dda_friction_cone

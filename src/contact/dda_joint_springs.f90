@@ -1,0 +1,128 @@
+!> The springs of the joints as rows of a matrix (Shi: df18, df22)
+!>
+!> A row carries the unknowns of the two blocks to a relative displacement of the joint: the
+!> openings at its two contacts and its slip. One row for each, one stiffness for all three.
+module dda_joint_springs
+   use dda_block_system, only : block_system_t
+   use dda_contact_types, only : joint_t
+   use dda_deformation, only : displacement_matrix
+   use dda_friction_cone, only : cone_t
+   use dda_kinds, only : wp
+   implicit none
+   private
+
+   public :: joint_springs_t, new_joint_springs, mohr_coulomb
+
+   !> Springs of all joints, as the solver wants them
+   type :: joint_springs_t
+      !> Equations of the two blocks, 0 for a fixed one: (2, n_joint)
+      integer, allocatable :: equation(:, :)
+      !> Rows (opening 1, opening 2, slip) for the unknowns of the two blocks:
+      !> (n_dof, 3, 2, n_joint)
+      real(wp), allocatable :: row(:, :, :, :)
+      !> Stiffness: (n_joint) [N/m per metre depth]
+      real(wp), allocatable :: stiffness(:)
+      !> Bounds of the joint force: (n_joint)
+      type(cone_t), allocatable :: cone(:)
+      !> Tension that the contacts carry, by which the cone is moved, and a zero: (3, n_joint) [N/m]
+      real(wp), allocatable :: shift(:, :)
+   end type joint_springs_t
+
+contains
+
+   !> Springs of all joints
+   pure subroutine new_joint_springs(system, joint, penalty_ratio, n_dof, springs)
+      !> The blocks
+      type(block_system_t), intent(in) :: system
+      !> The joints: (n_joint)
+      type(joint_t), intent(in) :: joint(:)
+      !> Contact stiffness over the stiffness of the block across the joint
+      real(wp), intent(in) :: penalty_ratio
+      !> Unknowns of one block
+      integer, intent(in) :: n_dof
+      !> The springs
+      type(joint_springs_t), intent(out) :: springs
+      integer :: j, n
+
+      n = size(joint)
+      allocate (springs%equation(2, n), springs%row(n_dof, 3, 2, n), springs%stiffness(n))
+      allocate (springs%cone(n), springs%shift(3, n))
+      do j = 1, n
+         springs%equation(:, j) = system%equation(joint(j)%block)
+         springs%row(:, :, 1, j) = -joint_rows(joint(j), system%centroid(:, joint(j)%block(1)), n_dof)
+         springs%row(:, :, 2, j) = joint_rows(joint(j), system%centroid(:, joint(j)%block(2)), n_dof)
+         springs%stiffness(j) = penalty_ratio*block_stiffness(system, joint(j))
+         call mohr_coulomb(joint(j), [.false., .false.], springs%cone(j), springs%shift(:, j))
+      end do
+   end subroutine new_joint_springs
+
+   !> What the joint sees of one block's unknowns
+   pure function joint_rows(joint, centroid, n_dof) result(row)
+      !> The joint
+      type(joint_t), intent(in) :: joint
+      !> Centre of gravity of the block: (2) [m]
+      real(wp), intent(in) :: centroid(2)
+      !> Unknowns of the block
+      integer, intent(in) :: n_dof
+      !> Displacement along the normal at both contacts, along the edge halfway: (n_dof, 3)
+      real(wp) :: row(n_dof, 3)
+      real(wp) :: first(2, 6), second(2, 6)
+
+      first = displacement_matrix(joint%contact(1)%point, centroid)
+      second = displacement_matrix(joint%contact(joint%n_contact)%point, centroid)
+      row(:, 1) = joint%normal(1)*first(1, :n_dof) + joint%normal(2)*first(2, :n_dof)
+      row(:, 2) = 0.0_wp
+      if (joint%n_contact == 2) row(:, 2) = joint%normal(1)*second(1, :n_dof) &
+         & + joint%normal(2)*second(2, :n_dof)
+      first = (first + second)/2.0_wp
+      row(:, 3) = joint%tangent(1)*first(1, :n_dof) + joint%tangent(2)*first(2, :n_dof)
+   end function joint_rows
+
+   !> Stiffness E t/l of the softer of the movable blocks at a joint: t the joint's length, l the
+   !> block's size across it
+   pure function block_stiffness(system, joint) result(stiffness)
+      !> The blocks
+      type(block_system_t), intent(in) :: system
+      !> The joint
+      type(joint_t), intent(in) :: joint
+      !> The stiffness [N/m per metre depth]
+      real(wp) :: stiffness
+      real(wp) :: young, size_across
+      integer :: side
+
+      stiffness = huge(stiffness)
+      do side = 1, 2
+         associate (b => joint%block(side))
+            if (system%equation(b) == 0) cycle
+            young = system%materials(system%material(b))%young
+            size_across = system%area(b)/joint%length
+            stiffness = min(stiffness, young*joint%length/size_across)
+         end associate
+      end do
+   end function block_stiffness
+
+   !> Bounds of a joint's force and the tension that its contacts carry. The tension is at most that
+   !> at the apex of the Mohr-Coulomb cone; a broken contact has neither cohesion nor tension
+   pure subroutine mohr_coulomb(joint, broken, cone, shift)
+      !> The joint
+      type(joint_t), intent(in) :: joint
+      !> Contacts whose cohesion and tensile strength are spent: (2)
+      logical, intent(in) :: broken(2)
+      !> Bounds of the force, with the cone moved by the tension
+      type(cone_t), intent(out) :: cone
+      !> Tension of each contact and a zero for the shear force: (3) [N/m]
+      real(wp), intent(out) :: shift(3)
+      real(wp) :: whole(2), cohesion
+
+      whole = merge(0.0_wp, joint%contact%length, broken)
+      shift = [joint%law%tension*whole, 0.0_wp]
+      if (joint%law%no_slip) then
+         cone%limit = huge(1.0_wp)
+         return
+      end if
+      cone%friction = joint%law%friction
+      cohesion = joint%law%cohesion*sum(whole)
+      if (cone%friction*sum(shift) > cohesion) shift = shift*(cohesion/(cone%friction*sum(shift)))
+      cone%limit = max(0.0_wp, cohesion - cone%friction*sum(shift))
+   end subroutine mohr_coulomb
+end module dda_joint_springs

@@ -1,0 +1,195 @@
+!> The equations of one step: blocks first, then the springs of the joints (Shi: df10 to df18)
+module dda_assembly
+   use dda_block_matrix, only : block_matrix_t, set_pattern
+   use dda_block_solve, only : band_factor_t, factorise, substitute
+   use dda_block_system, only : block_system_t
+   use dda_elasticity, only : elastic_matrix, stress_load
+   use dda_friction_cone, only : apply_face, cone_t, joint_face_t
+   use dda_inertia, only : mass_matrix
+   use dda_joint_springs, only : joint_springs_t
+   use dda_kinds, only : wp
+   use dda_loads, only : body_load
+   use dda_settings, only : settings_t
+   implicit none
+   private
+
+   public :: equations_t, new_equations, assemble_blocks, solve_faces, relative_displacement
+
+   !> Matrix, loads and factor; the pattern and the mass are made once, the numbers at each solution
+   type :: equations_t
+      !> Matrix with the springs of the present faces
+      type(block_matrix_t) :: matrix
+      !> Its factor
+      type(band_factor_t) :: factor
+      !> Entry of the matrix that couples the blocks of a joint, 0 if one is fixed: (n_joint)
+      integer, allocatable :: entry(:)
+      !> Mass: (n_dof, n_dof, n_equation)
+      real(wp), allocatable :: mass(:, :, :)
+      !> Elastic stiffness of the blocks: (n_dof, n_dof, n_equation)
+      real(wp), allocatable :: elastic(:, :, :)
+      !> Matrix of the blocks without springs: elastic + 2*mass/dt**2: (n_dof, n_dof, n_equation)
+      real(wp), allocatable :: base(:, :, :)
+      !> Loads from outside: (n_dof, n_equation)
+      real(wp), allocatable :: weight(:, :)
+      !> Loads of this step without springs: (n_dof, n_equation)
+      real(wp), allocatable :: load(:, :)
+      !> Factorisations so far
+      integer :: factorisations = 0
+   end type equations_t
+
+contains
+
+   !> Equations of a system at rest: pattern, mass, stiffness and weight
+   pure subroutine new_equations(system, springs, settings, equations)
+      !> The blocks
+      type(block_system_t), intent(in) :: system
+      !> The springs of the joints
+      type(joint_springs_t), intent(in) :: springs
+      !> Settings of the run
+      type(settings_t), intent(in) :: settings
+      !> The equations
+      type(equations_t), intent(out) :: equations
+      real(wp) :: full(6, 6), load(6)
+      logical :: couples(size(springs%equation, 2))
+      integer :: b, e, j, n, nd, pair(2, size(springs%equation, 2))
+
+      nd = settings%n_dof
+      n = maxval(system%equation)
+      couples = all(springs%equation > 0, dim=1)
+      allocate (equations%entry(size(couples)))
+      equations%entry = 0
+      e = 0
+      do j = 1, size(couples)
+         if (.not. couples(j)) cycle
+         e = e + 1
+         equations%entry(j) = e
+         pair(:, e) = springs%equation(:, j)
+      end do
+      call set_pattern(equations%matrix, nd, n, pair(:, :e))
+      allocate (equations%mass(nd, nd, n), equations%elastic(nd, nd, n), equations%base(nd, nd, n))
+      allocate (equations%weight(nd, n), equations%load(nd, n))
+      do b = 1, size(system%equation)
+         e = system%equation(b)
+         if (e == 0) cycle
+         full = mass_matrix(system%density(b), system%area(b), system%second(:, b))
+         equations%mass(:, :, e) = full(:nd, :nd)
+         full = elastic_matrix(system%materials(system%material(b)), system%area(b))
+         equations%elastic(:, :, e) = full(:nd, :nd)
+         load = body_load(system%unit_weight(b)*settings%load_direction, system%area(b))
+         equations%weight(:, e) = load(:nd)
+      end do
+   end subroutine new_equations
+
+   !> Block part of matrix and load of one step of length dt
+   pure subroutine assemble_blocks(system, settings, dt, equations)
+      !> The blocks
+      type(block_system_t), intent(in) :: system
+      !> Settings of the run
+      type(settings_t), intent(in) :: settings
+      !> Length of the step [s]
+      real(wp), intent(in) :: dt
+      !> Receives base and load
+      type(equations_t), intent(inout) :: equations
+      real(wp) :: stress(6)
+      integer :: b, e, nd
+
+      nd = settings%n_dof
+      equations%base = equations%elastic + (2.0_wp/dt**2)*equations%mass
+      do b = 1, size(system%equation)
+         e = system%equation(b)
+         if (e == 0) cycle
+         stress = stress_load(system%stress(:, b), system%area(b))
+         equations%load(:, e) = equations%weight(:, e) + stress(:nd)
+         if (settings%dynamic) equations%load(:, e) = equations%load(:, e) &
+            & + (2.0_wp/dt)*matmul(equations%mass(:, :, e), system%velocity(:nd, b))
+      end do
+   end subroutine assemble_blocks
+
+   !> Motion of all blocks if every joint keeps to its face
+   pure subroutine solve_faces(equations, springs, cone, face, trial, motion)
+      !> Blocks assembled; matrix and factor are made anew
+      type(equations_t), intent(inout) :: equations
+      !> The springs of the joints
+      type(joint_springs_t), intent(in) :: springs
+      !> Bounds of the joint forces: (n_joint)
+      type(cone_t), intent(in) :: cone(:)
+      !> Faces: (n_joint)
+      type(joint_face_t), intent(in) :: face(:)
+      !> Trial forces before the motion: (3, n_joint) [N/m]
+      real(wp), intent(in) :: trial(:, :)
+      !> The motion: (n_dof, n_equation); unchanged if the factor is not usable
+      real(wp), intent(inout) :: motion(:, :)
+      real(wp) :: load(size(motion, 1), size(motion, 2))
+      integer :: j
+
+      load = equations%load
+      equations%matrix%diagonal = equations%base
+      do j = 1, size(face)
+         call add_joint(springs, cone(j), face(j), trial(:, j), j, equations, load)
+      end do
+      call factorise(equations%matrix, equations%factor)
+      equations%factorisations = equations%factorisations + 1
+      if (.not. equations%factor%usable) return
+      motion = load
+      call substitute(equations%factor, motion)
+   end subroutine solve_faces
+
+   !> Add the springs of one joint: stiffness p R P R', load R (P z + c)
+   pure subroutine add_joint(springs, cone, face, trial, j, equations, load)
+      !> The springs of the joints
+      type(joint_springs_t), intent(in) :: springs
+      !> Bounds of the joint's force
+      type(cone_t), intent(in) :: cone
+      !> Its face
+      type(joint_face_t), intent(in) :: face
+      !> Its trial force before the motion: (3) [N/m]
+      real(wp), intent(in) :: trial(3)
+      !> Number of the joint
+      integer, intent(in) :: j
+      !> Receives the stiffness
+      type(equations_t), intent(inout) :: equations
+      !> Receives the load: (n_dof, n_equation)
+      real(wp), intent(inout) :: load(:, :)
+      real(wp) :: tangent(3, 3), constant(3), stiff(size(load, 1), 3, 2)
+      integer :: e, later, side, sooner
+
+      call apply_face(cone, face, tangent, constant)
+      constant = constant + matmul(tangent, trial + springs%shift(:, j)) - springs%shift(:, j)
+      do side = 1, 2
+         e = springs%equation(side, j)
+         if (e == 0) cycle
+         associate (row => springs%row(:, :, side, j))
+            stiff(:, :, side) = springs%stiffness(j)*matmul(row, tangent)
+            equations%matrix%diagonal(:, :, e) = equations%matrix%diagonal(:, :, e) &
+               & + matmul(stiff(:, :, side), transpose(row))
+            load(:, e) = load(:, e) + matmul(row, constant)
+         end associate
+      end do
+      e = equations%entry(j)
+      if (e == 0) return
+      later = merge(1, 2, equations%matrix%pair(1, e) == springs%equation(1, j))
+      sooner = 3 - later
+      equations%matrix%coupling(:, :, e) = &
+         & matmul(stiff(:, :, later), transpose(springs%row(:, :, sooner, j)))
+   end subroutine add_joint
+
+   !> Openings and slips of the joints by a motion of the blocks
+   pure function relative_displacement(springs, motion) result(increment)
+      !> The springs of the joints
+      type(joint_springs_t), intent(in) :: springs
+      !> The motion: (n_dof, n_equation)
+      real(wp), intent(in) :: motion(:, :)
+      !> Opening at the two contacts and slip: (3, n_joint) [m]
+      real(wp) :: increment(3, size(springs%equation, 2))
+      integer :: e, j, side
+
+      increment = 0.0_wp
+      do j = 1, size(springs%equation, 2)
+         do side = 1, 2
+            e = springs%equation(side, j)
+            if (e == 0) cycle
+            increment(:, j) = increment(:, j) + matmul(motion(:, e), springs%row(:, :, side, j))
+         end do
+      end do
+   end function relative_displacement
+end module dda_assembly

@@ -1,0 +1,84 @@
+!> Does a structure stand under Coulomb friction: the decision that searches are made of
+!>
+!> The convex problem, in which sliding opens the joint, comes first: what falls there falls under
+!> every flow rule. What stands there without sliding stands. What slides before it comes to rest is
+!> run again under Coulomb friction.
+module dda_decision
+   use dda_block_system, only : block_system_t
+   use dda_contact_detection, only : contacts_t
+   use dda_forward, only : outcome_t, run_to_verdict
+   use dda_settings, only : flow_rule, settings_t
+   use dda_verdict, only : verdict
+   implicit none
+   private
+
+   public :: decision_t, decide, follow_coulomb
+
+   !> A decided structure
+   type :: decision_t
+      !> How the run ended; its counts are those of all runs
+      type(outcome_t) :: outcome
+      !> Blocks at the end
+      type(block_system_t) :: system
+      !> Contacts at the end
+      type(contacts_t) :: contacts
+      !> Flow rule of the run that gave them, one of flow_rule
+      integer :: flow = 1
+   end type decision_t
+
+contains
+
+   !> Decide a static structure, or run a dynamic one
+   pure subroutine decide(settings, system, contacts, decision)
+      !> Settings of the run
+      type(settings_t), intent(in) :: settings
+      !> The blocks at the beginning
+      type(block_system_t), intent(in) :: system
+      !> The contacts at the beginning
+      type(contacts_t), intent(in) :: contacts
+      !> The decision
+      type(decision_t), intent(out) :: decision
+      type(settings_t) :: convex
+
+      if (settings%dynamic) then
+         call follow_coulomb(settings, system, contacts, decision)
+         return
+      end if
+      convex = settings
+      convex%flow = flow_rule%associated
+      decision%flow = convex%flow
+      decision%system = system
+      decision%contacts = contacts
+      call run_to_verdict(convex, decision%system, decision%contacts, decision%outcome)
+      if (decision%outcome%verdict /= verdict%stable) return
+      if (any(decision%contacts%face%slip /= 0)) &
+         & call follow_coulomb(settings, system, contacts, decision)
+   end subroutine decide
+
+   !> Run a structure under Coulomb friction from its beginning
+   pure subroutine follow_coulomb(settings, system, contacts, decision)
+      !> Settings of the run
+      type(settings_t), intent(in) :: settings
+      !> The blocks at the beginning
+      type(block_system_t), intent(in) :: system
+      !> The contacts at the beginning
+      type(contacts_t), intent(in) :: contacts
+      !> The decision; the counts of the run are added to those that it has
+      type(decision_t), intent(inout) :: decision
+      type(settings_t) :: coulomb
+      type(outcome_t) :: before
+
+      before = decision%outcome
+      coulomb = settings
+      coulomb%flow = flow_rule%coulomb
+      decision%flow = coulomb%flow
+      decision%system = system
+      decision%contacts = contacts
+      call run_to_verdict(coulomb, decision%system, decision%contacts, decision%outcome)
+      associate (outcome => decision%outcome)
+         outcome%steps = outcome%steps + before%steps
+         outcome%passes = outcome%passes + before%passes
+         outcome%factorisations = outcome%factorisations + before%factorisations
+      end associate
+   end subroutine follow_coulomb
+end module dda_decision

@@ -1,0 +1,161 @@
+!> Forward analysis: one step as a transaction, and a run of steps to a verdict (Shi: df)
+module dda_forward
+   use dda_assembly, only : assemble_blocks, equations_t, new_equations
+   use dda_block_system, only : block_system_t
+   use dda_block_update, only : update_blocks, update_contacts
+   use dda_contact_detection, only : contacts_t
+   use dda_error, only : error_t, fatal_error
+   use dda_friction, only : iterate_friction
+   use dda_kinds, only : wp
+   use dda_open_close, only : iterate_open_close, step_state_t
+   use dda_settings, only : flow_rule, settings_t
+   use dda_step_context, only : march_t, step_context_t
+   use dda_step_interval, only : first_interval, next_interval
+   use dda_verdict, only : judge_verdict, measure_step, verdict
+   implicit none
+   private
+
+   public :: outcome_t, run_to_verdict, advance
+
+   !> How a run ended
+   type :: outcome_t
+      !> One of verdict
+      integer :: verdict = 0
+      !> Why the verdict is undecided; unallocated otherwise
+      character(len=:), allocatable :: reason
+      !> Acceleration of the last step over that of the loads
+      real(wp) :: acceleration_ratio = 0.0_wp
+      !> Length of a step in which free fall is the elastic motion [s]
+      real(wp) :: elastic_time = 0.0_wp
+      !> Motion of the last step: (n_dof, n_equation)
+      real(wp), allocatable :: motion(:, :)
+      !> Accepted steps
+      integer :: steps = 0
+      !> Passes of the open-close loop
+      integer :: passes = 0
+      !> Factorisations
+      integer :: factorisations = 0
+   end type outcome_t
+
+   !> Most cuts of one step's length
+   integer, parameter :: max_retries = 20
+   !> By what a step that did not settle is cut
+   real(wp), parameter :: cut = 0.3_wp
+
+contains
+
+   !> Run a static analysis to its verdict, a dynamic one to its last step
+   pure subroutine run_to_verdict(settings, system, contacts, outcome)
+      !> Settings of the run
+      type(settings_t), intent(in) :: settings
+      !> The blocks: at the beginning in, at the end out
+      type(block_system_t), intent(inout) :: system
+      !> The contacts: at the beginning in, at the end out
+      type(contacts_t), intent(inout) :: contacts
+      !> How it ended
+      type(outcome_t), intent(out) :: outcome
+      type(equations_t) :: equations
+      type(step_context_t) :: step
+      type(march_t) :: march
+      type(error_t), allocatable :: error
+
+      call new_equations(system, contacts%springs, settings, equations)
+      call begin_step(contacts, size(equations%weight, 1), size(equations%weight, 2), step%state)
+      call first_interval(system, contacts%springs, settings, equations, step%state, march, error)
+      do while (.not. allocated(error))
+         if (march%steps == settings%max_steps) exit
+         call advance(settings, system, contacts, equations, march, step, error)
+         if (allocated(error)) exit
+         outcome%verdict = verdict%undecided
+         if (step%whole .and. .not. settings%dynamic) &
+            & outcome%verdict = judge_verdict(system, march, step, settings)
+         if (outcome%verdict /= verdict%undecided) exit
+         march%last_acceleration = step%acceleration
+         call next_interval(settings, march)
+      end do
+      outcome%steps = march%steps
+      outcome%passes = march%passes
+      outcome%factorisations = equations%factorisations
+      if (march%free_acceleration > 0.0_wp) then
+         outcome%acceleration_ratio = step%acceleration/march%free_acceleration
+         outcome%elastic_time = sqrt(2.0_wp*march%elastic_motion/march%free_acceleration)
+      end if
+      call move_alloc(step%state%motion, outcome%motion)
+      if (allocated(error)) then
+         outcome%verdict = verdict%undecided
+         outcome%reason = error%message
+      else if (settings%dynamic) then
+         outcome%verdict = verdict%completed
+      else if (outcome%verdict == verdict%undecided) then
+         outcome%reason = "all steps are spent and neither rest nor collapse is proven"
+      end if
+   end subroutine run_to_verdict
+
+   !> One step: blocks and contacts change only when it is accepted
+   pure subroutine advance(settings, system, contacts, equations, march, step, error)
+      !> Settings of the run
+      type(settings_t), intent(in) :: settings
+      !> The blocks
+      type(block_system_t), intent(inout) :: system
+      !> The contacts
+      type(contacts_t), intent(inout) :: contacts
+      !> The equations
+      type(equations_t), intent(inout) :: equations
+      !> What is carried from step to step
+      type(march_t), intent(inout) :: march
+      !> The step
+      type(step_context_t), intent(inout) :: step
+      !> Allocated if no step, however short, settles
+      type(error_t), allocatable, intent(inout) :: error
+      integer :: retry
+      logical :: breaks
+
+      do retry = 0, max_retries
+         step%dt = march%dt
+         call begin_step(contacts, size(equations%weight, 1), size(equations%weight, 2), step%state)
+         call assemble_blocks(system, settings, step%dt, equations)
+         if (settings%flow == flow_rule%associated) then
+            call iterate_open_close(equations, contacts%springs, settings%max_changes, step%state)
+         else
+            call iterate_friction(equations, contacts%springs, settings%max_changes, step%state)
+         end if
+         march%passes = march%passes + step%state%passes
+         step%accepted = step%state%settled
+         if (step%accepted) exit
+         march%dt = cut*march%dt
+      end do
+      if (.not. step%accepted) then
+         call fatal_error(error, "the open-close loop settles at no length of the step")
+         return
+      end if
+      call measure_step(system, contacts%springs, equations, contacts%force, step)
+      call update_contacts(step, settings, contacts, breaks)
+      call update_blocks(step, settings, system)
+      step%whole = .not. breaks
+      march%steps = march%steps + 1
+   end subroutine advance
+
+   !> The state that a step starts from: the joints as they are, no motion
+   pure subroutine begin_step(contacts, n_dof, n_equation, state)
+      !> The contacts
+      type(contacts_t), intent(in) :: contacts
+      !> Unknowns of one block
+      integer, intent(in) :: n_dof
+      !> Number of movable blocks
+      integer, intent(in) :: n_equation
+      !> The state
+      type(step_state_t), intent(inout) :: state
+      integer :: n
+
+      n = size(contacts%joint)
+      if (.not. allocated(state%motion)) then
+         allocate (state%motion(n_dof, n_equation), state%increment(3, n), state%start(3, n))
+         allocate (state%trial(3, n), state%force(3, n), state%face(n), state%cone(n))
+      end if
+      state%motion = 0.0_wp
+      state%start = contacts%trial
+      state%face = contacts%face
+      state%cone = contacts%springs%cone
+      state%passes = 0
+   end subroutine begin_step
+end module dda_forward

@@ -1,0 +1,138 @@
+!> Coulomb friction without dilatancy: the shear force is bounded by friction times a normal force
+!> that has converged, never by one that has not
+module dda_friction
+   use dda_assembly, only : equations_t
+   use dda_friction_cone, only : cone_t
+   use dda_joint_springs, only : joint_springs_t
+   use dda_kinds, only : wp
+   use dda_open_close, only : iterate_open_close, step_state_t
+   implicit none
+   private
+
+   public :: iterate_friction
+
+   !> Most corrections of the bounds in one step
+   integer, parameter :: max_corrections = 200
+   !> Corrections remembered by the acceleration
+   integer, parameter :: memory = 6
+
+   interface
+      !> LAPACK: least squares of a system that may lack rank
+      pure subroutine dgelsy(m, n, nrhs, a, lda, b, ldb, jpvt, rcond, rank, work, lwork, info)
+         import :: wp
+         !> Rows
+         integer, intent(in) :: m
+         !> Columns
+         integer, intent(in) :: n
+         !> Right-hand sides
+         integer, intent(in) :: nrhs
+         !> Rows of the array a
+         integer, intent(in) :: lda
+         !> Rows of the array b
+         integer, intent(in) :: ldb
+         !> Size of the work space
+         integer, intent(in) :: lwork
+         !> Matrix, overwritten: (lda, n)
+         real(wp), intent(inout) :: a(lda, *)
+         !> Right-hand sides in, solutions out: (ldb, nrhs)
+         real(wp), intent(inout) :: b(ldb, *)
+         !> Pivots: (n)
+         integer, intent(inout) :: jpvt(*)
+         !> Columns below this share of the largest are left out
+         real(wp), intent(in) :: rcond
+         !> Rank found
+         integer, intent(out) :: rank
+         !> Work space: (lwork)
+         real(wp), intent(out) :: work(*)
+         !> 0 if all is well
+         integer, intent(out) :: info
+      end subroutine dgelsy
+   end interface
+
+contains
+
+   !> Find the motion and the states of one step under Coulomb friction. First no joint may slide; if
+   !> a shear force is then too large, all shear forces are bounded by friction times the normal
+   !> forces of the pass before, until these no longer change
+   pure subroutine iterate_friction(equations, springs, max_changes, state)
+      !> Blocks assembled; matrix and factor are made anew
+      type(equations_t), intent(inout) :: equations
+      !> The springs of the joints
+      type(joint_springs_t), intent(in) :: springs
+      !> Most changes of faces before Newton's method takes over
+      integer, intent(in) :: max_changes
+      !> Faces to begin with in, motion and joints out
+      type(step_state_t), intent(inout) :: state
+      real(wp) :: bound(size(springs%stiffness)), change(size(springs%stiffness))
+      real(wp) :: bounds(size(springs%stiffness), memory + 1)
+      real(wp) :: changes(size(springs%stiffness), memory + 1)
+      real(wp) :: tolerance
+      integer :: correction, kept
+
+      tolerance = 1.0e-11_wp*sum(abs(equations%weight(1:2, :)))
+      state%cone = cone_t(friction=0.0_wp, limit=huge(1.0_wp))
+      state%face%slip = 0
+      call iterate_open_close(equations, springs, max_changes, state)
+      if (.not. state%settled) return
+      bound = coulomb_bound(springs, state)
+      if (all(abs(state%force(3, :)) <= bound + tolerance)) return
+      kept = 0
+      do correction = 1, max_corrections
+         state%cone%limit = bound
+         call iterate_open_close(equations, springs, max_changes, state)
+         if (.not. state%settled) return
+         change = merge(coulomb_bound(springs, state) - bound, 0.0_wp, &
+            & springs%cone%limit < huge(1.0_wp))
+         if (maxval(abs(change)) <= tolerance) return
+         if (kept == memory + 1) then
+            bounds(:, :memory) = bounds(:, 2:)
+            changes(:, :memory) = changes(:, 2:)
+            kept = memory
+         end if
+         kept = kept + 1
+         bounds(:, kept) = bound
+         changes(:, kept) = change
+         bound = max(0.0_wp, accelerated(bounds(:, :kept), changes(:, :kept)))
+      end do
+      state%settled = .false.
+   end subroutine iterate_friction
+
+   !> Anderson's acceleration of a fixed-point iteration: the mixture of the remembered points whose
+   !> mixed change is least, moved by that change
+   pure function accelerated(points, changes) result(next)
+      !> Points, the newest last: (n, kept)
+      real(wp), intent(in) :: points(:, :)
+      !> How the iteration would change each of them: (n, kept)
+      real(wp), intent(in) :: changes(:, :)
+      !> The point to try next: (n)
+      real(wp) :: next(size(points, 1))
+      real(wp) :: a(size(points, 1), size(points, 2) - 1), b(max(size(points, 1), size(points, 2)))
+      real(wp) :: work(20*size(points, 2) + size(points, 1) + 64)
+      integer :: pivot(size(points, 2)), k, n, rank, info
+
+      n = size(points, 1)
+      k = size(points, 2)
+      next = points(:, k) + changes(:, k)
+      if (k == 1) return
+      a = spread(changes(:, k), 2, k - 1) - changes(:, :k - 1)
+      b(:n) = changes(:, k)
+      pivot = 0
+      call dgelsy(n, k - 1, 1, a, n, b, size(b), pivot, 1.0e-10_wp, rank, work, size(work), info)
+      if (info /= 0) return
+      next = next - matmul(spread(points(:, k) + changes(:, k), 2, k - 1) &
+         & - points(:, :k - 1) - changes(:, :k - 1), b(:k - 1))
+   end function accelerated
+
+   !> Largest shear forces that the joints carry with the normal forces that they have
+   pure function coulomb_bound(springs, state) result(bound)
+      !> The springs of the joints
+      type(joint_springs_t), intent(in) :: springs
+      !> The step, for the normal forces
+      type(step_state_t), intent(in) :: state
+      !> The bounds: (n_joint) [N/m]
+      real(wp) :: bound(size(springs%stiffness))
+
+      bound = springs%cone%limit + springs%cone%friction &
+         & *sum(state%force(1:2, :) + springs%shift(1:2, :), dim=1)
+   end function coulomb_bound
+end module dda_friction

@@ -1,0 +1,289 @@
+!> The open-close loop: an active-set method on the faces of the friction cones (Shi: df18 to df22)
+!>
+!> One step minimises a convex, piecewise quadratic energy. With the faces fixed the minimum is a
+!> linear system; the joint whose force disagrees most with its face then changes its face, as the
+!> simplex method pivots. Should a set of faces come again, Newton's method with an exact line search
+!> takes over, which must end.
+module dda_open_close
+   use, intrinsic :: iso_fortran_env, only : int64
+   use dda_assembly, only : equations_t, relative_displacement, solve_faces
+   use dda_friction_cone, only : apply_face, cone_t, joint_face_t, project
+   use dda_joint_springs, only : joint_springs_t
+   use dda_kinds, only : wp
+   implicit none
+   private
+
+   public :: step_state_t, iterate_open_close, joint_forces
+
+   !> What the loop works on: the motion of the step and the joints at its end
+   type :: step_state_t
+      !> Motion of the blocks: (n_dof, n_equation)
+      real(wp), allocatable :: motion(:, :)
+      !> Opening at the two contacts and slip of each joint: (3, n_joint) [m]
+      real(wp), allocatable :: increment(:, :)
+      !> Trial forces at the beginning of the step: (3, n_joint) [N/m]
+      real(wp), allocatable :: start(:, :)
+      !> Trial forces at its end: (3, n_joint) [N/m]
+      real(wp), allocatable :: trial(:, :)
+      !> Admissible forces at its end: (3, n_joint) [N/m]
+      real(wp), allocatable :: force(:, :)
+      !> Faces that they lie on: (n_joint)
+      type(joint_face_t), allocatable :: face(:)
+      !> Bounds of the forces: (n_joint)
+      type(cone_t), allocatable :: cone(:)
+      !> Passes of the loop so far
+      integer :: passes = 0
+      !> Whether every joint's force agrees with its face
+      logical :: settled = .false.
+   end type step_state_t
+
+   !> Joints whose disagreement is as large as the largest but for rounding change together, which
+   !> keeps the mirror images of a symmetric scene alike
+   real(wp), parameter :: tie = 1.0e-6_wp
+
+contains
+
+   !> Find the motion and the faces of one step
+   pure subroutine iterate_open_close(equations, springs, max_changes, state)
+      !> Blocks assembled; matrix and factor are made anew
+      type(equations_t), intent(inout) :: equations
+      !> The springs of the joints
+      type(joint_springs_t), intent(in) :: springs
+      !> Most changes of faces before Newton's method takes over
+      integer, intent(in) :: max_changes
+      !> Faces to begin with in, motion and joints out
+      type(step_state_t), intent(inout) :: state
+      type(joint_face_t) :: wanted(size(state%face))
+      real(wp) :: gap(size(state%face))
+      real(wp) :: best(size(state%motion, 1), size(state%motion, 2)), least
+      integer(int64) :: seen(max_changes + 1)
+      integer :: change
+      logical :: came_again
+
+      state%settled = .false.
+      best = 0.0_wp
+      least = huge(least)
+      do change = 1, max_changes + 1
+         seen(change) = hash(state%face)
+         came_again = any(seen(:change - 1) == seen(change))
+         if (came_again) exit
+         call solve_faces(equations, springs, state%cone, state%face, state%start, state%motion)
+         state%passes = state%passes + 1
+         if (.not. equations%factor%usable) return
+         call disagreement(springs, state, gap, wanted)
+         state%settled = maxval(gap) <= force_noise(equations, springs, state)
+         if (state%settled) exit
+         if (maxval(gap) < least) then
+            least = maxval(gap)
+            best = state%motion
+         end if
+         where (gap >= (1.0_wp - tie)*maxval(gap)) state%face = wanted
+      end do
+      if (.not. state%settled) then
+         state%motion = best
+         call iterate_newton(equations, springs, max_changes, state)
+      end if
+      if (state%settled) call joint_forces(springs, state)
+   end subroutine iterate_open_close
+
+   !> Force that rounding alone can make: of all loads, and of the penalty on the largest motion
+   pure function force_noise(equations, springs, state) result(noise)
+      !> The equations, for the loads
+      type(equations_t), intent(in) :: equations
+      !> The springs, for the penalty
+      type(joint_springs_t), intent(in) :: springs
+      !> The step, for the motion
+      type(step_state_t), intent(in) :: state
+      !> The force [N/m]
+      real(wp) :: noise
+
+      noise = 1.0e-13_wp*sum(abs(equations%weight(1:2, :))) &
+         & + 8.0_wp*epsilon(1.0_wp)*maxval(springs%stiffness)*maxval(abs(state%motion(1:2, :)))
+   end function force_noise
+
+   !> How far the force that each joint's face gives is from the admissible one, beyond rounding
+   pure subroutine disagreement(springs, state, gap, wanted)
+      !> The springs of the joints
+      type(joint_springs_t), intent(in) :: springs
+      !> The step; its increments and trial forces are set
+      type(step_state_t), intent(inout) :: state
+      !> Length of the difference: (n_joint) [N/m]
+      real(wp), intent(out) :: gap(:)
+      !> Face that each joint ought to have: (n_joint)
+      type(joint_face_t), intent(out) :: wanted(:)
+      real(wp) :: admissible(3), constant(3), shift(3), tangent(3, 3)
+      integer :: j
+
+      state%increment = relative_displacement(springs, state%motion)
+      do j = 1, size(gap)
+         shift = springs%shift(:, j)
+         state%trial(:, j) = state%start(:, j) - springs%stiffness(j)*state%increment(:, j)
+         call project(state%cone(j), state%trial(:, j) + shift, admissible, wanted(j))
+         call apply_face(state%cone(j), state%face(j), tangent, constant)
+         gap(j) = norm2(matmul(tangent, state%trial(:, j) + shift) + constant - admissible) &
+            & - 16.0_wp*epsilon(1.0_wp)*maxval(abs(state%trial(:, j)))
+      end do
+   end subroutine disagreement
+
+   !> Admissible forces and faces of the joints after a motion
+   pure subroutine joint_forces(springs, state)
+      !> The springs of the joints
+      type(joint_springs_t), intent(in) :: springs
+      !> The step; everything but the motion is set
+      type(step_state_t), intent(inout) :: state
+      real(wp) :: shift(3)
+      integer :: j
+
+      state%increment = relative_displacement(springs, state%motion)
+      do j = 1, size(state%face)
+         shift = springs%shift(:, j)
+         state%trial(:, j) = state%start(:, j) - springs%stiffness(j)*state%increment(:, j)
+         call project(state%cone(j), state%trial(:, j) + shift, state%force(:, j), state%face(j))
+         state%force(:, j) = state%force(:, j) - shift
+      end do
+   end subroutine joint_forces
+
+   !> Newton's method on the step's energy from the motion of the state; each direction is followed
+   !> to the lowest point
+   pure subroutine iterate_newton(equations, springs, max_passes, state)
+      !> Blocks assembled; matrix and factor are made anew
+      type(equations_t), intent(inout) :: equations
+      !> The springs of the joints
+      type(joint_springs_t), intent(in) :: springs
+      !> Most passes
+      integer, intent(in) :: max_passes
+      !> The step
+      type(step_state_t), intent(inout) :: state
+      type(joint_face_t) :: wanted(size(state%face))
+      real(wp) :: gap(size(state%face))
+      real(wp) :: from(size(state%motion, 1), size(state%motion, 2))
+      integer :: pass
+      logical :: moves
+
+      from = state%motion
+      do pass = 1, max_passes
+         state%motion = from
+         call joint_forces(springs, state)
+         call solve_faces(equations, springs, state%cone, state%face, state%start, state%motion)
+         state%passes = state%passes + 1
+         if (.not. equations%factor%usable) return
+         call disagreement(springs, state, gap, wanted)
+         moves = maxval(springs%stiffness)*maxval(abs(state%motion - from)) > epsilon(1.0_wp) &
+            & *maxval(abs(state%trial))
+         state%settled = maxval(gap) <= force_noise(equations, springs, state) .or. .not. moves
+         if (state%settled) return
+         from = from + lowest_point(equations, springs, state, from)*(state%motion - from)
+      end do
+   end subroutine iterate_newton
+
+   !> How far to go from one motion towards another for the least energy. The slope of the energy
+   !> rises piecewise linearly, so its zero is found by bracketing and false position
+   pure function lowest_point(equations, springs, state, from) result(factor)
+      !> The equations of the step
+      type(equations_t), intent(in) :: equations
+      !> The springs of the joints
+      type(joint_springs_t), intent(in) :: springs
+      !> The step; its motion is where the direction points to
+      type(step_state_t), intent(in) :: state
+      !> Where the direction starts: (n_dof, n_equation)
+      real(wp), intent(in) :: from(:, :)
+      !> 1 is the whole way
+      real(wp) :: factor
+      real(wp) :: direction(size(from, 1), size(from, 2))
+      real(wp) :: start(3, size(state%face)), rate(3, size(state%face))
+      real(wp) :: slope_at_zero, curvature, low, high, slope_low, slope_high, slope
+      integer :: e, pass
+
+      direction = state%motion - from
+      start = relative_displacement(springs, from)
+      rate = relative_displacement(springs, direction)
+      slope_at_zero = 0.0_wp
+      curvature = 0.0_wp
+      do e = 1, size(from, 2)
+         slope_at_zero = slope_at_zero + dot_product(direction(:, e), &
+            & matmul(equations%base(:, :, e), from(:, e)) - equations%load(:, e))
+         curvature = curvature + dot_product(direction(:, e), &
+            & matmul(equations%base(:, :, e), direction(:, e)))
+      end do
+      low = 0.0_wp
+      slope_low = slope_of(low)
+      high = 1.0_wp
+      slope_high = slope_of(high)
+      do while (slope_high < 0.0_wp .and. high < 1.0e6_wp)
+         low = high
+         slope_low = slope_high
+         high = 2.0_wp*high
+         slope_high = slope_of(high)
+      end do
+      factor = high
+      do pass = 1, 60
+         if (.not. slope_high > slope_low) exit
+         factor = low - slope_low*(high - low)/(slope_high - slope_low)
+         if (mod(pass, 3) == 0) factor = (low + high)/2.0_wp
+         slope = slope_of(factor)
+         if (slope < 0.0_wp) then
+            low = factor
+            slope_low = slope
+         else
+            high = factor
+            slope_high = slope
+         end if
+         if (high - low <= 1.0e-14_wp*high) exit
+         if (abs(slope) <= 1.0e-15_wp*abs(slope_at_zero)) exit
+      end do
+
+   contains
+
+      !> Slope of the energy along the direction
+      pure function slope_of(way) result(slope)
+         !> How far along the direction
+         real(wp), intent(in) :: way
+         !> The slope
+         real(wp) :: slope
+         type(joint_face_t) :: face
+         real(wp) :: force(3), shift(3)
+         integer :: j
+
+         slope = slope_at_zero + way*curvature
+         do j = 1, size(rate, 2)
+            shift = springs%shift(:, j)
+            call project(state%cone(j), shift + state%start(:, j) &
+               & - springs%stiffness(j)*(start(:, j) + way*rate(:, j)), force, face)
+            slope = slope - dot_product(force - shift, rate(:, j))
+         end do
+      end function slope_of
+   end function lowest_point
+
+   !> A number that tells sets of faces apart
+   pure function hash(face) result(number)
+      !> Faces: (n_joint)
+      type(joint_face_t), intent(in) :: face(:)
+      !> The number
+      integer(int64) :: number
+      integer(int64) :: code
+      integer :: j
+
+      number = 0_int64
+      do j = 1, size(face)
+         code = face(j)%slip + 1
+         if (face(j)%open(1)) code = code + 3
+         if (face(j)%open(2)) code = code + 6
+         number = ieor(ishft(number, 7) + ishft(number, -57), mixed(12_int64*j + code))
+      end do
+
+   contains
+
+      !> A number spread over all bits by shifts, which cannot overflow
+      pure function mixed(code)
+         !> Number to spread
+         integer(int64), intent(in) :: code
+         !> The spread number
+         integer(int64) :: mixed
+
+         mixed = ieor(code, ishft(code, 21))
+         mixed = ieor(mixed, ishft(mixed, -35))
+         mixed = ieor(mixed, ishft(mixed, 4))
+         mixed = ieor(mixed, ishft(mixed, 41))
+      end function mixed
+   end function hash
+end module dda_open_close

@@ -1,0 +1,47 @@
+!> What one step finds out; made new for each step
+module dda_step_context
+   use dda_kinds, only : wp
+   use dda_open_close, only : step_state_t
+   implicit none
+   private
+
+   public :: step_context_t, march_t
+
+   !> One step
+   type :: step_context_t
+      !> Length of the step [s]
+      real(wp) :: dt = 0.0_wp
+      !> Motion of the blocks and states of the joints
+      type(step_state_t) :: state
+      !> Whether the step counts
+      logical :: accepted = .false.
+      !> Whether no contact broke in it, so that its end is one of equilibrium
+      logical :: whole = .true.
+      !> Largest acceleration of a point [m/s2]
+      real(wp) :: acceleration = 0.0_wp
+      !> Work of the loads [J/m]
+      real(wp) :: work = 0.0_wp
+      !> Twice the kinetic energy that the work was turned into [J/m]
+      real(wp) :: kinetic = 0.0_wp
+      !> Growth of the energy stored in blocks and springs [J/m]
+      real(wp) :: stored = 0.0_wp
+   end type step_context_t
+
+   !> What is carried from step to step beside blocks and contacts
+   type :: march_t
+      !> Steps accepted so far
+      integer :: steps = 0
+      !> Length of the next step [s]
+      real(wp) :: dt = 0.0_wp
+      !> Longest step that leaves the matrix well enough conditioned [s]
+      real(wp) :: longest = 0.0_wp
+      !> Largest motion if every joint were glued: the scale of elastic motion [m]
+      real(wp) :: elastic_motion = 0.0_wp
+      !> Acceleration that the loads would give to free blocks [m/s2]
+      real(wp) :: free_acceleration = 0.0_wp
+      !> Acceleration in the step before [m/s2]
+      real(wp) :: last_acceleration = 0.0_wp
+      !> Passes of the open-close loop so far
+      integer :: passes = 0
+   end type march_t
+end module dda_step_context

@@ -1,0 +1,124 @@
+!> Does it stand, does it fall, or is it not known yet
+module dda_verdict
+   use dda_assembly, only : equations_t
+   use dda_block_system, only : block_system_t
+   use dda_deformation, only : displacement_matrix
+   use dda_joint_springs, only : joint_springs_t
+   use dda_kinds, only : wp
+   use dda_settings, only : settings_t
+   use dda_step_context, only : march_t, step_context_t
+   use dda_step_interval, only : largest_motion
+   implicit none
+   private
+
+   public :: verdict, verdict_enum, measure_step, judge_verdict, largest_displacement
+
+   !> Answers of an analysis
+   type :: verdict_enum
+      !> Not known
+      integer :: undecided = 0
+      !> At rest under the full load
+      integer :: stable = 1
+      !> A mechanism that gains speed without end
+      integer :: collapsed = 2
+      !> A dynamic run that reached its end
+      integer :: completed = 3
+      !> A search that closed its bracket
+      integer :: found = 4
+   end type verdict_enum
+
+   !> Names of the verdicts
+   type(verdict_enum), parameter :: verdict = verdict_enum()
+
+contains
+
+   !> Energies and acceleration of a settled step
+   pure subroutine measure_step(system, springs, equations, force_before, step)
+      !> The blocks before the step
+      type(block_system_t), intent(in) :: system
+      !> The springs of the joints
+      type(joint_springs_t), intent(in) :: springs
+      !> The equations of the step
+      type(equations_t), intent(in) :: equations
+      !> Joint forces before the step: (3, n_joint) [N/m]
+      real(wp), intent(in) :: force_before(:, :)
+      !> The step; its measures are set
+      type(step_context_t), intent(inout) :: step
+      real(wp) :: stiff(size(equations%weight, 1))
+      integer :: b, e, nd
+
+      nd = size(equations%weight, 1)
+      associate (motion => step%state%motion)
+         step%acceleration = 2.0_wp*largest_motion(system, motion)/step%dt**2
+         step%work = sum(equations%weight*motion)
+         step%kinetic = 0.0_wp
+         step%stored = 0.5_wp*sum(sum(step%state%force**2 - force_before**2, dim=1)/springs%stiffness)
+         do b = 1, size(system%equation)
+            e = system%equation(b)
+            if (e == 0) cycle
+            stiff = matmul(equations%mass(:, :, e), motion(:, e))
+            step%kinetic = step%kinetic + dot_product(motion(:, e), stiff)*2.0_wp/step%dt**2
+            if (nd < 6) cycle
+            stiff = matmul(equations%elastic(:, :, e), motion(:, e))
+            step%stored = step%stored + dot_product(motion(:, e), stiff)/2.0_wp &
+               & + system%area(b)*dot_product(motion(4:6, e), system%stress(:, b))
+         end do
+      end associate
+   end subroutine measure_step
+
+   !> Judge a static run by its last two steps.
+   !> It stands if the joint forces balance the full load but for a residue that would accelerate no
+   !> point noticeably. It falls if the blocks have fallen far beyond any elastic motion, and the
+   !> loads' work turns into speed alone, or acceleration is steady while no energy is stored; or,
+   !> where a displacement that means collapse is set, if a corner has moved as far
+   pure function judge_verdict(system, march, step, settings) result(answer)
+      !> The blocks after the step
+      type(block_system_t), intent(in) :: system
+      !> The march, with the acceleration of the step before
+      type(march_t), intent(in) :: march
+      !> The last step, measured
+      type(step_context_t), intent(in) :: step
+      !> Settings of the run
+      type(settings_t), intent(in) :: settings
+      !> One of verdict
+      integer :: answer
+      logical :: at_rest, far_beyond_elastic, all_work_is_speed, steady, most_work_is_speed
+      logical :: stores_nothing
+
+      at_rest = step%acceleration <= settings%rest_tolerance*march%free_acceleration
+      far_beyond_elastic = march%free_acceleration*step%dt**2/2.0_wp >= 100.0_wp*march%elastic_motion
+      all_work_is_speed = step%kinetic > 0.999_wp*step%work
+      most_work_is_speed = step%kinetic > 0.9_wp*step%work
+      steady = abs(step%acceleration - march%last_acceleration) < 0.01_wp*march%last_acceleration
+      stores_nothing = abs(step%stored) < 1.0e-3_wp*abs(step%work)
+      answer = verdict%undecided
+      if (at_rest) then
+         answer = verdict%stable
+      else if (settings%collapse_displacement > 0.0_wp) then
+         if (largest_displacement(system) > settings%collapse_displacement) &
+            & answer = verdict%collapsed
+      else if (march%steps >= 2 .and. far_beyond_elastic) then
+         if (all_work_is_speed .or. steady .and. (most_work_is_speed .or. stores_nothing)) &
+            & answer = verdict%collapsed
+      end if
+   end function judge_verdict
+
+   !> Farthest that a corner has moved since the beginning
+   pure function largest_displacement(system) result(largest)
+      !> The blocks
+      type(block_system_t), intent(in) :: system
+      !> The displacement [m]
+      real(wp) :: largest
+      real(wp) :: t(2, 6)
+      integer :: b, v
+
+      largest = 0.0_wp
+      do b = 1, size(system%equation)
+         if (system%equation(b) == 0) cycle
+         do v = system%first_vertex(b), system%first_vertex(b + 1) - 1
+            t = displacement_matrix(system%vertex(:, v), system%centroid(:, b))
+            largest = max(largest, norm2(matmul(t, system%motion(:, b))))
+         end do
+      end do
+   end function largest_displacement
+end module dda_verdict
