@@ -1,0 +1,256 @@
+!> Results as CSV: one row a case, one row a joint (Shi: df27)
+module dda_write_results
+   use dda_error, only : error_t, fatal_error
+   use dda_kinds, only : wp
+   use dda_text, only : to_text
+   implicit none
+   private
+
+   public :: result_row_t, joint_row_t, number_t, some_number
+   public :: open_table, append_line, results_header, results_line, joints_header, joint_line
+
+   !> A number that may be unknown
+   type :: number_t
+      !> Whether it is known
+      logical :: known = .false.
+      !> The number
+      real(wp) :: value = 0.0_wp
+   end type number_t
+
+   !> One row of results.csv
+   type :: result_row_t
+      !> Name of the deck
+      character(len=:), allocatable :: deck
+      !> Number of the case, from 1
+      integer :: number = 0
+      !> Values of the swept parameters that have no column of their own: (n)
+      character(len=:), allocatable :: swept
+      !> Movable blocks
+      integer :: blocks = 0
+      !> Angle from the crown to a springing [deg]
+      type(number_t) :: half_angle_deg
+      !> Thickness over radius
+      type(number_t) :: thickness_ratio
+      !> Friction angle [deg]
+      type(number_t) :: friction_deg
+      !> static or dynamic
+      character(len=10) :: mode = ""
+      !> reference or current
+      character(len=10) :: geometry = ""
+      !> Answer of the case in a word
+      character(len=10) :: verdict = ""
+      !> Middle of the bracket
+      type(number_t) :: critical
+      !> Its lower end
+      type(number_t) :: critical_low
+      !> Its upper end
+      type(number_t) :: critical_high
+      !> low or high: the end that falls
+      character(len=4) :: collapses_at = ""
+      !> The exact value
+      type(number_t) :: exact
+      !> (critical - exact)/exact
+      type(number_t) :: relative_error
+      !> rotational, mixed, sliding or none
+      character(len=10) :: collapse_mode = ""
+      !> Slip over slip and opening
+      type(number_t) :: sliding_share
+      !> Hinges at the intrados [deg]: (n)
+      real(wp), allocatable :: intrados_hinge_deg(:)
+      !> Hinges at the extrados [deg]: (n)
+      real(wp), allocatable :: extrados_hinge_deg(:)
+      !> intrados, extrados or none
+      character(len=8) :: springing_hinge = ""
+      !> Time steps
+      integer :: steps = 0
+      !> Passes of the open-close loop
+      integer :: open_close_iterations = 0
+      !> Factorisations
+      integer :: factorisations = 0
+      !> Wall time of the case [s]
+      real(wp) :: seconds = 0.0_wp
+   end type result_row_t
+
+   !> One row of joints.csv
+   type :: joint_row_t
+      !> Number of the case, from 1
+      integer :: number = 0
+      !> Number of the joint, from 1 at the left springing
+      integer :: joint = 0
+      !> Angle from the crown, positive to the right [deg]
+      real(wp) :: angle_deg = 0.0_wp
+      !> Corner at the intrados: (2) [m]
+      real(wp) :: intrados(2) = 0.0_wp
+      !> Corner at the extrados: (2) [m]
+      real(wp) :: extrados(2) = 0.0_wp
+      !> Force on the joint, compression positive [N/m]
+      real(wp) :: normal_force = 0.0_wp
+      !> Force along the joint on its right block, towards the extrados [N/m]
+      real(wp) :: shear_force = 0.0_wp
+      !> Place of the thrust: 1 at the intrados, -1 at the extrados; unknown without normal force
+      type(number_t) :: eccentricity_ratio
+      !> Opening at the intrados [m]
+      real(wp) :: opening_intrados = 0.0_wp
+      !> Opening at the extrados [m]
+      real(wp) :: opening_extrados = 0.0_wp
+      !> Motion of the right block along the joint, towards the extrados [m]
+      real(wp) :: slip = 0.0_wp
+      !> What the joint does, in a word
+      character(len=14) :: state = ""
+   end type joint_row_t
+
+contains
+
+   !> A known number
+   elemental function some_number(value) result(number)
+      !> The value
+      real(wp), intent(in) :: value
+      !> The number
+      type(number_t) :: number
+
+      number = number_t(.true., value)
+   end function some_number
+
+   !> Begin a table with its header
+   subroutine open_table(file, header, unit, error)
+      !> Name of the file; one that exists is replaced
+      character(len=*), intent(in) :: file
+      !> First line
+      character(len=*), intent(in) :: header
+      !> Unit that the table was opened on
+      integer, intent(out) :: unit
+      !> Allocated if the file cannot be written
+      type(error_t), allocatable, intent(out) :: error
+      character(len=200) :: message
+      integer :: stat
+
+      open (newunit=unit, file=file, status="replace", action="write", access="stream", &
+         & form="formatted", iostat=stat, iomsg=message)
+      if (stat /= 0) then
+         call fatal_error(error, "this file cannot be written: "//trim(message), file)
+         return
+      end if
+      call append_line(unit, file, header, error)
+   end subroutine open_table
+
+   !> Write one line of a table so that it survives the end of the program
+   subroutine append_line(unit, file, line, error)
+      !> Unit of the table
+      integer, intent(in) :: unit
+      !> Name of the file, for the message
+      character(len=*), intent(in) :: file
+      !> The line
+      character(len=*), intent(in) :: line
+      !> Allocated if it cannot be written
+      type(error_t), allocatable, intent(out) :: error
+      character(len=200) :: message
+      integer :: stat
+
+      write (unit, "(a)", iostat=stat, iomsg=message) line
+      if (stat == 0) flush (unit, iostat=stat, iomsg=message)
+      if (stat /= 0) call fatal_error(error, "a result cannot be written: "//trim(message), file)
+   end subroutine append_line
+
+   !> Names of the columns of results.csv
+   pure function results_header(swept) result(line)
+      !> Names of the swept parameters that have no column of their own, each with a comma behind it
+      character(len=*), intent(in) :: swept
+      !> The line
+      character(len=:), allocatable :: line
+
+      line = "deck,case,"//swept//"blocks,half_angle_deg,thickness_ratio,friction_deg,mode," &
+         & //"geometry,verdict,critical,critical_low,critical_high,collapses_at,exact," &
+         & //"relative_error,collapse_mode,sliding_share,intrados_hinge_deg,extrados_hinge_deg," &
+         & //"springing_hinge,steps,open_close_iterations,factorisations,seconds"
+   end function results_header
+
+   !> One row of results.csv
+   pure function results_line(row) result(line)
+      !> The row
+      type(result_row_t), intent(in) :: row
+      !> The line
+      character(len=:), allocatable :: line
+
+      line = quoted(row%deck)//","//to_text(row%number)//","//row%swept &
+         & //to_text(row%blocks)//","//number_text(row%half_angle_deg)//"," &
+         & //number_text(row%thickness_ratio)//","//number_text(row%friction_deg)//"," &
+         & //trim(row%mode)//","//trim(row%geometry)//","//trim(row%verdict)//"," &
+         & //number_text(row%critical)//","//number_text(row%critical_low)//"," &
+         & //number_text(row%critical_high)//","//trim(row%collapses_at)//"," &
+         & //number_text(row%exact)//","//number_text(row%relative_error)//"," &
+         & //trim(row%collapse_mode)//","//number_text(row%sliding_share)//"," &
+         & //joined(row%intrados_hinge_deg)//","//joined(row%extrados_hinge_deg)//"," &
+         & //trim(row%springing_hinge)//","//to_text(row%steps)//"," &
+         & //to_text(row%open_close_iterations)//","//to_text(row%factorisations)//"," &
+         & //to_text(row%seconds)
+   end function results_line
+
+   !> Names of the columns of joints.csv
+   pure function joints_header() result(line)
+      !> The line
+      character(len=:), allocatable :: line
+
+      line = "case,joint,angle_deg,x_intrados,y_intrados,x_extrados,y_extrados,normal_force," &
+         & //"shear_force,eccentricity_ratio,opening_intrados,opening_extrados,slip,state"
+   end function joints_header
+
+   !> One row of joints.csv
+   pure function joint_line(row) result(line)
+      !> The row
+      type(joint_row_t), intent(in) :: row
+      !> The line
+      character(len=:), allocatable :: line
+
+      line = to_text(row%number)//","//to_text(row%joint)//","//to_text(row%angle_deg)//"," &
+         & //to_text(row%intrados(1))//","//to_text(row%intrados(2))//"," &
+         & //to_text(row%extrados(1))//","//to_text(row%extrados(2))//"," &
+         & //to_text(row%normal_force)//","//to_text(row%shear_force)//"," &
+         & //number_text(row%eccentricity_ratio)//","//to_text(row%opening_intrados)//"," &
+         & //to_text(row%opening_extrados)//","//to_text(row%slip)//","//trim(row%state)
+   end function joint_line
+
+   !> A number as text, nothing if it is unknown
+   pure function number_text(number) result(text)
+      !> The number
+      type(number_t), intent(in) :: number
+      !> The text
+      character(len=:), allocatable :: text
+
+      text = ""
+      if (number%known) text = to_text(number%value)
+   end function number_text
+
+   !> Angles joined by semicolons, without the last digits that only rounding makes
+   pure function joined(angles) result(text)
+      !> The angles: (:) [deg]
+      real(wp), intent(in), allocatable :: angles(:)
+      !> The text
+      character(len=:), allocatable :: text
+      integer :: i
+
+      text = ""
+      if (.not. allocated(angles)) return
+      do i = 1, size(angles)
+         if (i > 1) text = text//";"
+         text = text//to_text(anint(angles(i)*1.0e9_wp)/1.0e9_wp)
+      end do
+   end function joined
+
+   !> A text as a field of CSV, in quotes where it needs them
+   pure function quoted(text) result(field)
+      !> Any text
+      character(len=*), intent(in) :: text
+      !> The field
+      character(len=:), allocatable :: field
+      integer :: i
+
+      field = text
+      if (scan(text, ",;"""//achar(10)//achar(13)) == 0) return
+      field = ""
+      do i = 1, len(text)
+         if (text(i:i) == """") field = field//""""
+         field = field//text(i:i)
+      end do
+      field = """"//field//""""
+   end function quoted
+end module dda_write_results

@@ -1,0 +1,216 @@
+!> From a deck to scenes: the arch that a deck describes, ready to run, and its exact critical value
+module dda_arch_scene
+   use couplet_heyman_discrete, only : discrete_critical, discrete_solution_t, discrete_status
+   use dda_arch, only : arch_blocks, arch_shape_t, equal_joints, facet_count
+   use dda_block_system, only : block_system_t
+   use dda_constants, only : degree, pi
+   use dda_contact_detection, only : find_contacts
+   use dda_deck, only : deck_t, flag_of, integer_of, is_given, list_of, parameter_t, real_of, word_of
+   use dda_deck_set, only : put_number
+   use dda_error, only : error_t
+   use dda_kinds, only : wp
+   use dda_material, only : friction_coefficient, joint_law_t, material_t
+   use dda_scene, only : family_t, scene_t
+   use dda_settings, only : settings_t
+   implicit none
+   private
+
+   public :: arch_family_t, arch_scene, half_joints_deg, exact_thickness, search_start
+
+   !> Friction angles from here on mean that no joint slides [deg]
+   real(wp), parameter :: no_slip_deg = 89.9_wp
+
+   !> The scenes of one deck whose searched parameter varies
+   type, extends(family_t) :: arch_family_t
+      !> The deck of one case
+      type(deck_t) :: deck
+      !> The parameter
+      type(parameter_t) :: parameter
+   contains
+      !> Make the scene of one value
+      procedure :: build => build_arch_scene
+   end type arch_family_t
+
+contains
+
+   !> Make the scene of one value of the parameter
+   pure subroutine build_arch_scene(family, value, scene, error)
+      !> The family
+      class(arch_family_t), intent(in) :: family
+      !> Value of its parameter
+      real(wp), intent(in) :: value
+      !> The scene
+      type(scene_t), intent(out) :: scene
+      !> Allocated if the parameter cannot have the value
+      type(error_t), allocatable, intent(out) :: error
+      type(deck_t) :: deck
+
+      deck = family%deck
+      call put_number(deck, family%parameter, value, deck%value(family%parameter%key)%place, error)
+      if (.not. allocated(error)) call arch_scene(deck, scene)
+   end subroutine build_arch_scene
+
+   !> The scene that the deck of one case describes
+   pure subroutine arch_scene(deck, scene)
+      !> The deck, checked
+      type(deck_t), intent(in) :: deck
+      !> The scene
+      type(scene_t), intent(out) :: scene
+      type(material_t) :: material
+      type(joint_law_t), allocatable :: law(:)
+      integer, allocatable :: edge_pair(:, :)
+      real(wp), allocatable :: half(:)
+      integer :: j, n
+
+      material%density = real_of(deck, "material", "density")
+      material%young = real_of(deck, "material", "young")
+      material%poisson = real_of(deck, "material", "poisson")
+      material%plane_strain = word_of(deck, "material", "plane") == "strain"
+      call arch_blocks(arch_shape(deck), material, scene%system, edge_pair)
+      scene%system%unit_weight = unit_weight(deck)
+      scene%settings = settings_of(deck)
+      n = size(edge_pair, 2)
+      allocate (law(n), source=joint_law(deck))
+      if (word_of(deck, "arch", "springing") == "no-slip") law([1, n])%no_slip = .true.
+      call find_contacts(scene%system, edge_pair, law, scene%settings%penalty_ratio, &
+         & scene%settings%n_dof, scene%contacts)
+      allocate (half, source=half_joints_deg(deck))
+      allocate (scene%joint_angle_deg(n))
+      do j = 1, size(half)
+         scene%joint_angle_deg(size(half) + 1 - j) = -half(j)
+         scene%joint_angle_deg(n - size(half) + j) = half(j)
+      end do
+   end subroutine arch_scene
+
+   !> The law of the joints
+   pure function joint_law(deck) result(law)
+      !> The deck
+      type(deck_t), intent(in) :: deck
+      !> The law
+      type(joint_law_t) :: law
+      real(wp) :: friction_deg
+
+      friction_deg = real_of(deck, "joint", "friction_deg")
+      law%no_slip = friction_deg >= no_slip_deg
+      if (.not. law%no_slip) law%friction = friction_coefficient(friction_deg)
+      law%cohesion = real_of(deck, "joint", "cohesion")
+      law%tension = real_of(deck, "joint", "tension")
+   end function joint_law
+
+   !> Joints of one half of the arch, from the crown
+   pure function half_joints_deg(deck) result(joints)
+      !> The deck
+      type(deck_t), intent(in) :: deck
+      !> Angles from the crown: (n) [deg]
+      real(wp), allocatable :: joints(:)
+
+      if (is_given(deck, "arch", "joints_deg")) then
+         joints = list_of(deck, "arch", "joints_deg")
+      else
+         joints = equal_joints(integer_of(deck, "arch", "voussoirs"), &
+            & real_of(deck, "arch", "half_angle_deg"))
+      end if
+   end function half_joints_deg
+
+   !> The shape of the arch
+   pure function arch_shape(deck) result(shape)
+      !> The deck
+      type(deck_t), intent(in) :: deck
+      !> The shape
+      type(arch_shape_t) :: shape
+      real(wp), allocatable :: joints(:), span(:)
+      real(wp) :: facet
+      integer :: crown
+
+      allocate (joints, source=half_joints_deg(deck))
+      shape%radius = real_of(deck, "arch", "radius")
+      shape%thickness_ratio = real_of(deck, "arch", "thickness_ratio")
+      allocate (shape%joint_angle, source=joints*degree)
+      facet = 0.0_wp
+      if (is_given(deck, "arch", "facet_deg")) facet = real_of(deck, "arch", "facet_deg")
+      crown = merge(1, 0, joints(1) > 0.0_wp)
+      allocate (span(size(joints) - 1 + crown))
+      span(1) = 2.0_wp*joints(1)
+      span(1 + crown:) = joints(2:) - joints(:size(joints) - 1)
+      allocate (shape%facets, source=facet_count(span, facet))
+   end function arch_shape
+
+   !> Weight per volume [N/m3]
+   pure real(wp) function unit_weight(deck)
+      !> The deck
+      type(deck_t), intent(in) :: deck
+
+      unit_weight = real_of(deck, "material", "density")*real_of(deck, "load", "gravity")
+      if (is_given(deck, "material", "unit_weight")) &
+         & unit_weight = real_of(deck, "material", "unit_weight")
+   end function unit_weight
+
+   !> Settings of the runs. The acceleration that counts as rest follows the tolerance of the search
+   !> and the arch: a shallow arch that lacks the same share of its thickness accelerates less
+   pure function settings_of(deck) result(settings)
+      !> The deck
+      type(deck_t), intent(in) :: deck
+      !> The settings
+      type(settings_t) :: settings
+      real(wp) :: half_angle, direction
+
+      half_angle = degree*real_of(deck, "arch", "half_angle_deg")
+      direction = degree*real_of(deck, "load", "gravity_direction_deg")
+      settings%dynamic = word_of(deck, "analysis", "mode") == "dynamic"
+      settings%penalty_ratio = real_of(deck, "analysis", "penalty_ratio")
+      settings%max_steps = integer_of(deck, "analysis", "steps")
+      settings%max_changes = integer_of(deck, "analysis", "open_close_limit")
+      if (is_given(deck, "analysis", "time_step")) &
+         & settings%time_step = real_of(deck, "analysis", "time_step")
+      if (is_given(deck, "analysis", "collapse_displacement")) &
+         & settings%collapse_displacement = real_of(deck, "analysis", "collapse_displacement")
+      settings%max_displacement_ratio = real_of(deck, "analysis", "max_displacement_ratio")
+      settings%load_direction = [cos(direction), sin(direction)]
+      ! the four main directions, free of rounding, so that a symmetric arch stays symmetric
+      where (abs(settings%load_direction) < epsilon(1.0_wp)) settings%load_direction = 0.0_wp
+      settings%load_direction(1) = settings%load_direction(1) &
+         & + real_of(deck, "load", "horizontal_coefficient")
+      settings%rest_tolerance = max(2.0e-14_wp, 1.0e-3_wp &
+         & *min(1.0_wp, half_angle**2/2.0_wp)*real_of(deck, "search", "tolerance"))
+   end function settings_of
+
+   !> Exact critical thickness ratio of the very same polygons by limit analysis
+   pure subroutine exact_thickness(deck, eta, known)
+      !> The deck of one case
+      type(deck_t), intent(in) :: deck
+      !> The ratio
+      real(wp), intent(out) :: eta
+      !> Whether there is one and it is known
+      logical, intent(out) :: known
+      type(arch_shape_t) :: shape
+      type(discrete_solution_t) :: solution
+      real(wp) :: friction
+      logical :: own_weight, no_strength
+
+      eta = 0.0_wp
+      own_weight = unit_weight(deck) > 0.0_wp &
+         & .and. .not. abs(real_of(deck, "load", "gravity_direction_deg") + 90.0_wp) > 0.0_wp &
+         & .and. .not. abs(real_of(deck, "load", "horizontal_coefficient")) > 0.0_wp
+      no_strength = .not. (real_of(deck, "joint", "cohesion") > 0.0_wp &
+         & .or. real_of(deck, "joint", "tension") > 0.0_wp)
+      known = own_weight .and. no_strength
+      if (.not. known) return
+      friction = real_of(deck, "joint", "friction_deg")
+      friction = merge(pi, friction*degree, friction >= no_slip_deg)
+      shape = arch_shape(deck)
+      call discrete_critical(shape%joint_angle, shape%facets, friction, &
+         & word_of(deck, "arch", "springing") == "no-slip", solution)
+      known = solution%status == discrete_status%found
+      if (known) eta = solution%eta
+   end subroutine exact_thickness
+
+   !> Where a search for the thickness ratio begins: well below what a shallow arch needs
+   pure real(wp) function search_start(deck)
+      !> The deck of one case
+      type(deck_t), intent(in) :: deck
+      real(wp) :: half_angle
+
+      half_angle = degree*real_of(deck, "arch", "half_angle_deg")
+      search_start = min(0.4_wp, 0.3_wp*half_angle**4/48.0_wp)
+   end function search_start
+end module dda_arch_scene

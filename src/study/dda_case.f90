@@ -1,0 +1,267 @@
+!> One case of a deck: computed, and told as rows of the result tables
+module dda_case
+   use, intrinsic :: iso_fortran_env, only : int64
+   use dda_arch_scene, only : arch_family_t, arch_scene, exact_thickness, search_start
+   use dda_contact_detection, only : contacts_t
+   use dda_critical, only : critical_t, find_critical, search_t
+   use dda_decision, only : decide, decision_t
+   use dda_deck, only : deck_t, flag_of, has_group, is_given, parameter_t, real_of, text_of, word_of
+   use dda_deck_check, only : search_bracket
+   use dda_deck_parameter, only : find_parameter, parameter_name
+   use dda_error, only : error_t
+   use dda_kinds, only : wp
+   use dda_mechanism, only : follow_collapse, mechanism_of, mechanism_t
+   use dda_scene, only : scene_t
+   use dda_verdict, only : verdict
+   use dda_write_results, only : joint_row_t, number_t, result_row_t, some_number
+   implicit none
+   private
+
+   public :: run_case, verdict_name
+
+contains
+
+   !> Compute one case
+   subroutine run_case(deck, row, joint_row, remark)
+      !> The deck with the values of the case
+      type(deck_t), intent(in) :: deck
+      !> Its row; the fields deck, number and swept are left to the caller
+      type(result_row_t), intent(out) :: row
+      !> Rows of the joints: (n_joint), or (0) if there is nothing to tell
+      type(joint_row_t), allocatable, intent(out) :: joint_row(:)
+      !> What the user should know beside the row; empty if nothing
+      character(len=:), allocatable, intent(out) :: remark
+      integer(int64) :: start, finish, rate
+
+      call system_clock(start, rate)
+      remark = ""
+      call describe(deck, row)
+      allocate (joint_row(0))
+      if (has_group(deck, "search")) then
+         call run_search(deck, row, joint_row, remark)
+      else
+         call run_decision(deck, row, joint_row, remark)
+      end if
+      call system_clock(finish)
+      row%seconds = real(finish - start, wp)/real(rate, wp)
+   end subroutine run_case
+
+   !> Fill the columns that are known before anything is computed
+   pure subroutine describe(deck, row)
+      !> The deck of the case
+      type(deck_t), intent(in) :: deck
+      !> The row
+      type(result_row_t), intent(inout) :: row
+      character(len=:), allocatable :: searched
+      real(wp) :: exact
+      logical :: known
+
+      searched = searched_name(deck)
+      row%mode = word_of(deck, "analysis", "mode")
+      row%geometry = word_of(deck, "analysis", "geometry")
+      row%half_angle_deg = given_number(deck, "arch", "half_angle_deg", searched)
+      row%thickness_ratio = given_number(deck, "arch", "thickness_ratio", searched)
+      row%friction_deg = given_number(deck, "joint", "friction_deg", searched)
+      row%collapse_mode = "none"
+      row%springing_hinge = "none"
+      if (searched /= "" .and. searched /= "thickness_ratio") return
+      call exact_thickness(deck, exact, known)
+      if (known) row%exact = some_number(exact)
+   end subroutine describe
+
+   !> Name of the searched parameter, empty if nothing is searched
+   pure function searched_name(deck) result(name)
+      !> The deck of the case
+      type(deck_t), intent(in) :: deck
+      !> Name of a key
+      character(len=:), allocatable :: name
+      type(parameter_t) :: parameter
+      character(len=:), allocatable :: problem
+
+      name = ""
+      if (.not. has_group(deck, "search")) return
+      call find_parameter(text_of(deck, "search", "parameter"), parameter, problem)
+      name = trim(parameter_name(parameter))
+   end function searched_name
+
+   !> A number of the deck, unknown if it is searched
+   pure function given_number(deck, group, key, searched) result(number)
+      !> The deck of the case
+      type(deck_t), intent(in) :: deck
+      !> Group of the key
+      character(len=*), intent(in) :: group
+      !> The key
+      character(len=*), intent(in) :: key
+      !> Name of the searched parameter
+      character(len=*), intent(in) :: searched
+      !> The number
+      type(number_t) :: number
+
+      if (key /= searched) number = some_number(real_of(deck, group, key))
+   end function given_number
+
+   !> Decide a case that searches nothing
+   pure subroutine run_decision(deck, row, joint_row, remark)
+      !> The deck of the case
+      type(deck_t), intent(in) :: deck
+      !> Its row
+      type(result_row_t), intent(inout) :: row
+      !> Rows of the joints
+      type(joint_row_t), allocatable, intent(inout) :: joint_row(:)
+      !> Why the verdict is undecided
+      character(len=:), allocatable, intent(inout) :: remark
+      type(scene_t) :: scene
+      type(decision_t) :: decision
+
+      call arch_scene(deck, scene)
+      call decide(scene%settings, scene%system, scene%contacts, decision)
+      row%blocks = maxval(scene%system%equation)
+      row%verdict = verdict_name(decision%outcome%verdict)
+      if (allocated(decision%outcome%reason)) remark = decision%outcome%reason
+      if (decision%outcome%verdict == verdict%collapsed) then
+         call follow_collapse(scene, decision)
+         call tell_mechanism(decision%contacts, scene%joint_angle_deg, row)
+      end if
+      row%steps = decision%outcome%steps
+      row%open_close_iterations = decision%outcome%passes
+      row%factorisations = decision%outcome%factorisations
+      joint_row = joint_rows(decision%contacts, scene%joint_angle_deg)
+   end subroutine run_decision
+
+   !> Search the critical value of a case
+   pure subroutine run_search(deck, row, joint_row, remark)
+      !> The deck of the case
+      type(deck_t), intent(in) :: deck
+      !> Its row
+      type(result_row_t), intent(inout) :: row
+      !> Rows of the joints: of the decision nearest to critical that stands, else of that which falls
+      type(joint_row_t), allocatable, intent(inout) :: joint_row(:)
+      !> Why the verdict is undecided
+      character(len=:), allocatable, intent(inout) :: remark
+      type(arch_family_t) :: family
+      type(search_t) :: search
+      type(critical_t) :: critical
+      type(scene_t) :: scene
+      type(error_t), allocatable :: error
+
+      call prepare_search(deck, family, search)
+      call find_critical(family, search, critical)
+      row%verdict = verdict_name(critical%verdict)
+      if (allocated(critical%reason) .and. critical%verdict == verdict%undecided) &
+         & remark = critical%reason
+      if (critical%verdict == verdict%found) call tell_bracket(critical, row)
+      if (allocated(critical%fallen)) then
+         call family%build(critical%falls, scene, error)
+         call follow_collapse(scene, critical%fallen)
+         call tell_mechanism(critical%fallen%contacts, scene%joint_angle_deg, row)
+         joint_row = joint_rows(critical%fallen%contacts, scene%joint_angle_deg)
+      end if
+      if (allocated(critical%standing)) then
+         call family%build(critical%stands, scene, error)
+         joint_row = joint_rows(critical%standing%contacts, scene%joint_angle_deg)
+      end if
+      row%blocks = size(joint_row) - 1
+      row%steps = critical%steps
+      row%open_close_iterations = critical%passes
+      row%factorisations = critical%factorisations
+   end subroutine run_search
+
+   !> What a deck asks to be searched
+   pure subroutine prepare_search(deck, family, search)
+      !> The deck of the case
+      type(deck_t), intent(in) :: deck
+      !> Its scenes
+      type(arch_family_t), intent(out) :: family
+      !> The search
+      type(search_t), intent(out) :: search
+      character(len=:), allocatable :: problem
+
+      family%deck = deck
+      call find_parameter(text_of(deck, "search", "parameter"), family%parameter, problem)
+      call search_bracket(deck, search%low, search%high)
+      search%tolerance = real_of(deck, "search", "tolerance")
+      search%start = search%low
+      if (searched_name(deck) /= "thickness_ratio") return
+      search%start = search_start(deck)
+      if (.not. is_given(deck, "search", "low")) search%low = 1.0e-5_wp*search%start
+      if (.not. is_given(deck, "search", "high")) search%high = 1.99_wp
+      search%start = min(max(search%start, search%low), search%high)
+   end subroutine prepare_search
+
+   !> Fill the columns of a closed bracket
+   pure subroutine tell_bracket(critical, row)
+      !> What was found
+      type(critical_t), intent(in) :: critical
+      !> The row
+      type(result_row_t), intent(inout) :: row
+
+      row%critical_low = some_number(min(critical%falls, critical%stands))
+      row%critical_high = some_number(max(critical%falls, critical%stands))
+      row%critical = some_number((critical%falls + critical%stands)/2.0_wp)
+      row%collapses_at = merge("low ", "high", critical%falls < critical%stands)
+      if (row%exact%known) row%relative_error = &
+         & some_number((row%critical%value - row%exact%value)/row%exact%value)
+   end subroutine tell_bracket
+
+   !> Fill the columns of a collapse
+   pure subroutine tell_mechanism(contacts, joint_angle_deg, row)
+      !> Contacts at the end of the collapse
+      type(contacts_t), intent(in) :: contacts
+      !> Angle of each joint from the crown: (n_joint) [deg]
+      real(wp), intent(in) :: joint_angle_deg(:)
+      !> The row
+      type(result_row_t), intent(inout) :: row
+      type(mechanism_t) :: mechanism
+
+      call mechanism_of(contacts, joint_angle_deg, mechanism)
+      row%collapse_mode = mechanism%mode
+      row%sliding_share = some_number(mechanism%sliding_share)
+      row%intrados_hinge_deg = mechanism%intrados_deg
+      row%extrados_hinge_deg = mechanism%extrados_deg
+      row%springing_hinge = mechanism%springing
+   end subroutine tell_mechanism
+
+   !> Rows of all joints
+   pure function joint_rows(contacts, joint_angle_deg) result(row)
+      !> The contacts
+      type(contacts_t), intent(in) :: contacts
+      !> Angle of each joint from the crown: (n_joint) [deg]
+      real(wp), intent(in) :: joint_angle_deg(:)
+      !> The rows, without the number of the case: (n_joint)
+      type(joint_row_t) :: row(size(joint_angle_deg))
+      integer :: j
+
+      do j = 1, size(row)
+         row(j)%joint = j
+         row(j)%angle_deg = joint_angle_deg(j)
+         row(j)%intrados = contacts%joint(j)%contact(1)%point
+         row(j)%extrados = contacts%joint(j)%contact(2)%point
+         row(j)%normal_force = sum(contacts%force(1:2, j))
+         row(j)%shear_force = contacts%force(3, j)
+         if (row(j)%normal_force > 0.0_wp) row(j)%eccentricity_ratio = some_number( &
+            & (contacts%force(1, j) - contacts%force(2, j))/row(j)%normal_force)
+         row(j)%opening_intrados = contacts%gap(1, j)
+         row(j)%opening_extrados = contacts%gap(2, j)
+         row(j)%slip = contacts%gap(3, j)
+         row(j)%state = "locked"
+         if (contacts%face(j)%open(2)) row(j)%state = "hinge_intrados"
+         if (contacts%face(j)%open(1)) row(j)%state = "hinge_extrados"
+         if (contacts%face(j)%slip /= 0) row(j)%state = "sliding"
+         if (all(contacts%face(j)%open)) row(j)%state = "open"
+      end do
+   end function joint_rows
+
+   !> A verdict in a word
+   pure function verdict_name(answer) result(name)
+      !> One of verdict
+      integer, intent(in) :: answer
+      !> The word
+      character(len=10) :: name
+
+      name = "undecided"
+      if (answer == verdict%stable) name = "stable"
+      if (answer == verdict%collapsed) name = "collapsed"
+      if (answer == verdict%completed) name = "completed"
+      if (answer == verdict%found) name = "found"
+   end function verdict_name
+end module dda_case

@@ -1,0 +1,114 @@
+!> The power of the loads on a mechanism whose joints keep to their faces, as a smooth function of
+!> the parameter of a search: its zero is where the mechanism stops
+module dda_frozen_mechanism
+   use dda_assembly, only : assemble_blocks, equations_t, new_equations, solve_faces
+   use dda_block_solve, only : substitute
+   use dda_block_system, only : block_system_t
+   use dda_friction_cone, only : joint_face_t
+   use dda_joint_springs, only : joint_springs_t, new_joint_springs
+   use dda_kinds, only : wp
+   use dda_scene, only : scene_t
+   use dda_settings, only : settings_t
+   implicit none
+   private
+
+   public :: frozen_mechanism_t, mechanism_power
+
+   !> A collapse to be traced from one value of the parameter to another
+   type :: frozen_mechanism_t
+      !> Faces of the joints in its last step: (n_joint)
+      type(joint_face_t), allocatable :: face(:)
+      !> Motion of its last step without strains: (3, n_equation)
+      real(wp), allocatable :: motion(:, :)
+      !> Length of a step long enough that elastic motion hides nothing, and short enough that rounding
+      !> leaves the power smooth [s]
+      real(wp) :: dt = 0.0_wp
+   end type frozen_mechanism_t
+
+contains
+
+   !> Power of the loads on the mechanism. The structure with faces held moves under its loads; two
+   !> more solutions with its own inertia as the load leave of that motion the mechanism alone, which
+   !> is then measured by the mechanism's motion at the value where it was found
+   pure subroutine mechanism_power(mechanism, scene, power, noise, usable)
+      !> The mechanism
+      type(frozen_mechanism_t), intent(in) :: mechanism
+      !> Scene of the value wanted
+      type(scene_t), intent(in) :: scene
+      !> Power: positive where the mechanism moves by itself
+      real(wp), intent(out) :: power
+      !> What the rounding of the corners' coordinates alone makes of it
+      real(wp), intent(out) :: noise
+      !> Whether the power could be found
+      logical, intent(out) :: usable
+      type(equations_t) :: equations
+      type(joint_springs_t) :: springs
+      type(settings_t) :: settings
+      real(wp), allocatable :: motion(:, :)
+      real(wp) :: scale, trial(3, size(mechanism%face))
+      integer :: b, e, pass
+
+      power = 0.0_wp
+      noise = 0.0_wp
+      settings = scene%settings
+      settings%n_dof = 3
+      call new_joint_springs(scene%system, scene%contacts%joint, settings%penalty_ratio, &
+         & settings%n_dof, springs)
+      call new_equations(scene%system, springs, settings, equations)
+      usable = all(shape(equations%weight) == shape(mechanism%motion))
+      if (.not. usable) return
+      allocate (motion, source=mechanism%motion)
+      call assemble_blocks(scene%system, settings, mechanism%dt, equations)
+      trial = 0.0_wp
+      call solve_faces(equations, springs, springs%cone, mechanism%face, trial, motion)
+      usable = equations%factor%usable
+      if (.not. usable) return
+      do pass = 1, 2
+         call weigh(equations, mechanism%dt, motion)
+         call substitute(equations%factor, motion)
+      end do
+      call weigh(equations, mechanism%dt, motion)
+      power = sum(motion*mechanism%motion)
+      motion = mechanism%motion
+      call weigh(equations, mechanism%dt, motion)
+      scale = sum(motion*mechanism%motion)
+      power = power/scale
+      do b = 1, size(scene%system%equation)
+         e = scene%system%equation(b)
+         if (e > 0) noise = noise + area_rounding(scene%system, b) &
+            & *abs(dot_product(equations%weight(:, e), mechanism%motion(:, e)))
+      end do
+      noise = noise/scale
+   end subroutine mechanism_power
+
+   !> Multiply a motion by the inertia
+   pure subroutine weigh(equations, dt, motion)
+      !> The equations, for the mass
+      type(equations_t), intent(in) :: equations
+      !> Length of the step [s]
+      real(wp), intent(in) :: dt
+      !> Motion in, inertia force out: (n_dof, n_equation)
+      real(wp), intent(inout) :: motion(:, :)
+      integer :: e
+
+      do e = 1, size(motion, 2)
+         motion(:, e) = (2.0_wp/dt**2)*matmul(equations%mass(:, :, e), motion(:, e))
+      end do
+   end subroutine weigh
+
+   !> Relative error of a block's area by the rounding of its corners' coordinates
+   pure function area_rounding(system, block) result(error)
+      !> The blocks
+      type(block_system_t), intent(in) :: system
+      !> Number of the block
+      integer, intent(in) :: block
+      !> The relative error
+      real(wp) :: error
+
+      associate (vertex => system%vertex(:, &
+         & system%first_vertex(block):system%first_vertex(block + 1) - 1))
+         error = epsilon(1.0_wp)*maxval(abs(vertex)) &
+            & *sum(norm2(vertex - cshift(vertex, 1, dim=2), dim=1))/system%area(block)
+      end associate
+   end function area_rounding
+end module dda_frozen_mechanism

@@ -1,0 +1,137 @@
+!> How a structure falls: hinges, sliding share and mode of its last step
+module dda_mechanism
+   use dda_contact_detection, only : contacts_t
+   use dda_decision, only : decision_t, follow_coulomb
+   use dda_kinds, only : wp
+   use dda_scene, only : scene_t
+   use dda_settings, only : flow_rule
+   use dda_verdict, only : verdict
+   implicit none
+   private
+
+   public :: mechanism_t, mechanism_of, follow_collapse, joint_role, joint_role_enum, role_of_joint
+
+   !> What a joint does in a mechanism
+   type :: joint_role_enum
+      !> Both corners closed and stuck
+      integer :: locked = 0
+      !> Both corners open
+      integer :: open = 1
+      !> At the Coulomb limit
+      integer :: sliding = 2
+      !> Turns about its first corner: in an arch the intrados
+      integer :: hinge_first = 3
+      !> Turns about its second corner: in an arch the extrados
+      integer :: hinge_second = 4
+   end type joint_role_enum
+
+   !> Names of the roles
+   type(joint_role_enum), parameter :: joint_role = joint_role_enum()
+
+   !> A collapse mechanism
+   type :: mechanism_t
+      !> rotational, mixed or sliding; none if nothing moves
+      character(len=10) :: mode = "none"
+      !> Slip over slip and opening
+      real(wp) :: sliding_share = 0.0_wp
+      !> Hinges at the intrados, as angles from the crown, each once: (n) [deg]
+      real(wp), allocatable :: intrados_deg(:)
+      !> Hinges at the extrados, likewise: (n) [deg]
+      real(wp), allocatable :: extrados_deg(:)
+      !> intrados, extrados or none: where the springings turn
+      character(len=8) :: springing = "none"
+   end type mechanism_t
+
+   !> An opening below this share of the largest is elastic
+   real(wp), parameter :: elastic_share = 1.0e-4_wp
+   !> Sliding shares below this one count as none, and those above its complement as all
+   real(wp), parameter :: little = 1.0e-3_wp
+
+contains
+
+   !> Follow a collapse under Coulomb friction where joints slide in it, for its motion to be that of
+   !> joints that do not open by sliding
+   pure subroutine follow_collapse(scene, decision)
+      !> The scene that fell
+      type(scene_t), intent(in) :: scene
+      !> Its decision; becomes that of the run under Coulomb friction if that one falls too
+      type(decision_t), intent(inout) :: decision
+      type(decision_t) :: other
+
+      if (decision%flow == flow_rule%coulomb) return
+      if (.not. any(decision%contacts%face%slip /= 0)) return
+      call follow_coulomb(scene%settings, scene%system, scene%contacts, other)
+      if (other%outcome%verdict == verdict%collapsed) decision = other
+   end subroutine follow_collapse
+
+   !> The mechanism of the last step of a collapse
+   pure subroutine mechanism_of(contacts, joint_angle_deg, mechanism)
+      !> Contacts at the end of the collapse
+      type(contacts_t), intent(in) :: contacts
+      !> Angle of each joint from the crown: (n_joint) [deg]
+      real(wp), intent(in) :: joint_angle_deg(:)
+      !> The mechanism
+      type(mechanism_t), intent(out) :: mechanism
+      integer :: role(size(contacts%face)), n
+      real(wp) :: opening, slip
+
+      role = role_of_joint(contacts)
+      n = size(role)
+      slip = sum(abs(contacts%increment(3, :)))
+      opening = sum(max(0.0_wp, contacts%increment(1, :)), mask=contacts%face%open(1)) &
+         & + sum(max(0.0_wp, contacts%increment(2, :)), mask=contacts%face%open(2))
+      allocate (mechanism%intrados_deg, &
+         & source=each_once(abs(pack(joint_angle_deg, role == joint_role%hinge_first))))
+      allocate (mechanism%extrados_deg, &
+         & source=each_once(abs(pack(joint_angle_deg, role == joint_role%hinge_second))))
+      if (any(role([1, n]) == joint_role%hinge_first)) mechanism%springing = "intrados"
+      if (any(role([1, n]) == joint_role%hinge_second)) mechanism%springing = "extrados"
+      if (.not. slip + opening > 0.0_wp) return
+      mechanism%sliding_share = slip/(slip + opening)
+      mechanism%mode = "mixed"
+      if (mechanism%sliding_share < little) mechanism%mode = "rotational"
+      if (mechanism%sliding_share > 1.0_wp - little) mechanism%mode = "sliding"
+   end subroutine mechanism_of
+
+   !> What every joint does in the last step; openings that are small beside the largest are elastic
+   pure function role_of_joint(contacts) result(role)
+      !> Contacts at the end of a step
+      type(contacts_t), intent(in) :: contacts
+      !> One of joint_role each: (n_joint)
+      integer :: role(size(contacts%face))
+      real(wp) :: least
+      logical :: opens(2)
+      integer :: j
+
+      least = elastic_share*maxval(contacts%increment(1:2, :))
+      do j = 1, size(role)
+         opens = contacts%face(j)%open .and. contacts%increment(1:2, j) > least
+         role(j) = joint_role%locked
+         if (contacts%face(j)%slip /= 0) role(j) = joint_role%sliding
+         if (opens(2) .and. .not. opens(1)) role(j) = joint_role%hinge_first
+         if (opens(1) .and. .not. opens(2)) role(j) = joint_role%hinge_second
+         if (all(opens)) role(j) = joint_role%open
+      end do
+   end function role_of_joint
+
+   !> Numbers in rising order without repetition; equal but for rounding counts as equal
+   pure function each_once(numbers) result(once)
+      !> Any numbers: (:)
+      real(wp), intent(in) :: numbers(:)
+      !> The numbers: (:)
+      real(wp), allocatable :: once(:)
+      real(wp) :: sorted(size(numbers)), smallest
+      integer :: n
+
+      n = 0
+      smallest = -huge(smallest)
+      do while (any(numbers > smallest))
+         smallest = minval(numbers, mask=numbers > smallest)
+         n = n + 1
+         sorted(n) = smallest
+         smallest = smallest + 1.0e-9_wp
+      end do
+      allocate (once(n))
+      once = sorted(:n)
+   end function each_once
+end module dda_mechanism

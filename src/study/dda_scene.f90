@@ -1,0 +1,46 @@
+!> A scene ready to run, and families of scenes that differ by one number
+module dda_scene
+   use dda_block_system, only : block_system_t
+   use dda_contact_detection, only : contacts_t
+   use dda_error, only : error_t
+   use dda_kinds, only : wp
+   use dda_settings, only : settings_t
+   implicit none
+   private
+
+   public :: scene_t, family_t
+
+   !> Blocks and contacts at the beginning, and how to run them
+   type :: scene_t
+      !> Settings of the run
+      type(settings_t) :: settings
+      !> Blocks at the beginning
+      type(block_system_t) :: system
+      !> Contacts at the beginning
+      type(contacts_t) :: contacts
+      !> Angle of each joint from the crown, positive to the right; only for arches: (n_joint) [deg]
+      real(wp), allocatable :: joint_angle_deg(:)
+   end type scene_t
+
+   !> Scenes that differ by the value of one parameter
+   type, abstract :: family_t
+   contains
+      !> Make the scene of one value
+      procedure(build_scene), deferred :: build
+   end type family_t
+
+   abstract interface
+      !> Make the scene of one value
+      pure subroutine build_scene(family, value, scene, error)
+         import :: error_t, family_t, scene_t, wp
+         !> The family
+         class(family_t), intent(in) :: family
+         !> Value of its parameter
+         real(wp), intent(in) :: value
+         !> The scene
+         type(scene_t), intent(out) :: scene
+         !> Allocated if no scene has this value
+         type(error_t), allocatable, intent(out) :: error
+      end subroutine build_scene
+   end interface
+end module dda_scene
