@@ -1,0 +1,32 @@
+!> The command dda
+program dda
+   use, intrinsic :: iso_fortran_env, only : error_unit, output_unit
+   use dda_check, only : check_decks
+   use dda_command_line, only : command_t, read_command
+   use dda_error, only : error_t
+   use dda_help, only : print_help, version
+   use dda_process, only : exit_status, leave
+   use dda_run, only : run_decks
+   implicit none
+   type(command_t) :: command
+   type(error_t), allocatable :: error
+   integer :: status
+
+   status = exit_status%success
+   call read_command(command, error)
+   if (allocated(error)) then
+      write (error_unit, "(a)") "dda: error: "//error%message
+      call leave(exit_status%bad_input)
+   end if
+   select case (command%verb)
+   case ("run")
+      call run_decks(command, status)
+   case ("check")
+      call check_decks(command, status)
+   case ("version")
+      write (output_unit, "(a)") "dda "//version
+   case default
+      call print_help(command, status)
+   end select
+   call leave(status)
+end program dda

@@ -1,0 +1,97 @@
+!> dda check: read and check decks, say what would be computed
+module dda_check
+   use, intrinsic :: iso_fortran_env, only : error_unit, output_unit
+   use dda_arch_scene, only : arch_scene
+   use dda_command_line, only : command_t
+   use dda_deck, only : deck_t, has_group, is_given, text_of, word_of
+   use dda_deck_sweep, only : case_deck, n_cases, swept_names
+   use dda_error, only : error_line, error_t
+   use dda_process, only : exit_status
+   use dda_read_deck, only : read_deck
+   use dda_scene, only : scene_t
+   use dda_text, only : to_text
+   implicit none
+   private
+
+   public :: check_decks
+
+contains
+
+   !> Check all decks of the command line
+   subroutine check_decks(command, status)
+      !> What the user asked for
+      type(command_t), intent(in) :: command
+      !> Exit status of the program
+      integer, intent(out) :: status
+      type(deck_t) :: deck
+      type(error_t), allocatable :: error
+      integer :: i
+
+      status = exit_status%success
+      do i = 1, size(command%name)
+         call read_deck(trim(command%name(i)), command%setting, deck, error)
+         if (allocated(error)) then
+            write (error_unit, "(a)") error_line(error)
+            status = exit_status%bad_input
+         else if (.not. command%quiet) then
+            call print_plan(trim(command%name(i)), deck)
+         end if
+      end do
+   end subroutine check_decks
+
+   !> Print what a deck's cases are made of
+   subroutine print_plan(name, deck)
+      !> Name of the deck
+      character(len=*), intent(in) :: name
+      !> The deck, checked
+      type(deck_t), intent(in) :: deck
+      type(deck_t) :: first
+      type(scene_t) :: scene
+      type(error_t), allocatable :: error
+      character(len=:), allocatable :: swept
+      integer :: s, blocks
+
+      call case_deck(deck, 1, first, error)
+      call arch_scene(first, scene)
+      blocks = maxval(scene%system%equation)
+      swept = ""
+      associate (names => swept_names(deck))
+         do s = 1, size(names)
+            swept = swept//" "//trim(names(s))
+         end do
+      end associate
+      write (output_unit, "(a)") name//": "//text_of(deck, "scene", "title")
+      call tell("cases", to_text(n_cases(deck)))
+      if (swept /= "") call tell("swept", swept(2:))
+      if (has_group(deck, "search")) then
+         call tell("searched", text_of(deck, "search", "parameter"))
+      else
+         call tell("searched", "nothing: each case is decided as it is")
+      end if
+      write (output_unit, "(a)") "   the first case:"
+      call tell("blocks", to_text(blocks)//" that move, "//to_text(size(scene%system%equation) &
+         & - blocks)//" fixed springings")
+      call tell("joints", to_text(size(scene%contacts%joint))//" of two normal springs and one "// &
+         & "shear spring; fixed pairs, for the blocks do not move apart in reference geometry")
+      call tell("unknowns", to_text(scene%settings%n_dof)//" a block, " &
+         & //to_text(scene%settings%n_dof*blocks)//" in all")
+      if (scene%settings%dynamic) then
+         call tell("velocities", "kept: mode is dynamic")
+      else
+         call tell("velocities", "none: every step starts at rest, mode is static")
+      end if
+      call tell("strength", merge("friction alone           ", "cohesion or tension given", &
+         & all(scene%contacts%springs%shift <= 0.0) .and. &
+         & all(scene%contacts%joint%law%cohesion <= 0.0)))
+   end subroutine print_plan
+
+   !> Print one line of the plan
+   subroutine tell(what, how)
+      !> Part of the scene
+      character(len=*), intent(in) :: what
+      !> What it is, and why
+      character(len=*), intent(in) :: how
+
+      write (output_unit, "(3x, a12, a)") [character(len=12) :: what], trim(how)
+   end subroutine tell
+end module dda_check

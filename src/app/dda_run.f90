@@ -1,0 +1,279 @@
+!> dda run: decks to results
+module dda_run
+   use, intrinsic :: iso_fortran_env, only : error_unit, int64, output_unit
+   use dda_case, only : run_case
+   use dda_command_line, only : command_t
+   use dda_deck, only : deck_t, flag_of
+   use dda_deck_sweep, only : case_deck, n_cases, swept_names, swept_texts
+   use dda_error, only : error_line, error_t, fatal_error
+   use dda_kinds, only : wp
+   use dda_process, only : error_is_terminal, exit_status, make_folder, worst_status
+   use dda_progress, only : clear_progress, progress_t, report_progress
+   use dda_read_deck, only : read_deck
+   use dda_summary, only : print_row, print_total
+   use dda_text, only : to_text
+   use dda_write_results, only : append_line, joint_line, joint_row_t, joints_header, open_table, &
+      & result_row_t, results_header, results_line
+   implicit none
+   private
+
+   public :: run_decks, deck_stem
+
+   !> Where the results of one deck go
+   type :: tables_t
+      !> Name of the folder
+      character(len=:), allocatable :: folder
+      !> Units of results.csv, joints.csv and log.txt
+      integer :: results = 0, joints = 0, log = 0
+      !> Whether joints.csv is wanted
+      logical :: has_joints = .false.
+   end type tables_t
+
+   !> Columns of results.csv that a swept parameter shares
+   character(len=*), parameter :: own_column(*) = [character(len=16) :: "half_angle_deg", &
+      & "thickness_ratio", "friction_deg", "mode", "geometry"]
+
+contains
+
+   !> Run all decks of the command line; a bad deck does not keep the others from running
+   subroutine run_decks(command, status)
+      !> What the user asked for
+      type(command_t), intent(in) :: command
+      !> Exit status of the program
+      integer, intent(out) :: status
+      type(deck_t), allocatable :: deck(:)
+      type(error_t), allocatable :: error
+      logical :: good(size(command%name))
+      integer :: i, deck_status
+
+      allocate (deck(size(command%name)))
+      status = exit_status%success
+      do i = 1, size(deck)
+         call read_deck(trim(command%name(i)), command%setting, deck(i), error)
+         if (.not. allocated(error)) call check_folder(command, i, error)
+         good(i) = .not. allocated(error)
+         if (good(i)) cycle
+         write (error_unit, "(a)") error_line(error)
+         status = exit_status%bad_input
+      end do
+      do i = 1, size(deck)
+         if (.not. good(i)) cycle
+         call run_deck(command, trim(command%name(i)), deck(i), deck_status)
+         status = worst_status(status, deck_status)
+      end do
+   end subroutine run_decks
+
+   !> No two decks may write into the same folder
+   subroutine check_folder(command, number, error)
+      !> What the user asked for
+      type(command_t), intent(in) :: command
+      !> Number of the deck
+      integer, intent(in) :: number
+      !> Allocated if an earlier deck writes where this one would
+      type(error_t), allocatable, intent(inout) :: error
+      integer :: i
+
+      do i = 1, number - 1
+         if (folder_of(command, trim(command%name(i))) &
+            & /= folder_of(command, trim(command%name(number)))) cycle
+         call fatal_error(error, "a deck with a folder of its own is wanted, "// &
+            & trim(command%name(i))//" writes to the same one", trim(command%name(number)), 1)
+         return
+      end do
+   end subroutine check_folder
+
+   !> Folder that a deck's results go to
+   pure function folder_of(command, name) result(folder)
+      !> What the user asked for
+      type(command_t), intent(in) :: command
+      !> Name of the deck
+      character(len=*), intent(in) :: name
+      !> Name of the folder
+      character(len=:), allocatable :: folder
+
+      folder = deck_stem(name)
+      if (.not. allocated(command%out)) return
+      if (size(command%name) == 1) then
+         folder = command%out
+      else
+         folder = command%out//"/"//folder
+      end if
+   end function folder_of
+
+   !> Name of a deck without its folder and its ending
+   pure function deck_stem(name) result(stem)
+      !> Name of the file
+      character(len=*), intent(in) :: name
+      !> The stem
+      character(len=:), allocatable :: stem
+      integer :: dot
+
+      stem = name(index(name, "/", back=.true.) + 1:)
+      dot = index(stem, ".", back=.true.)
+      if (dot > 1) stem = stem(:dot - 1)
+   end function deck_stem
+
+   !> Run all cases of one deck
+   subroutine run_deck(command, name, deck, status)
+      !> What the user asked for
+      type(command_t), intent(in) :: command
+      !> Name of the deck
+      character(len=*), intent(in) :: name
+      !> The deck, checked
+      type(deck_t), intent(in) :: deck
+      !> Exit status of this deck
+      integer, intent(out) :: status
+      type(tables_t) :: tables
+      type(progress_t) :: progress
+      type(error_t), allocatable :: error
+      integer :: count(3), number, total
+
+      total = n_cases(deck)
+      count = 0
+      tables%folder = folder_of(command, name)
+      tables%has_joints = flag_of(deck, "output", "joints")
+      call open_tables(deck, tables, error)
+      progress%shown = .not. command%quiet .and. error_is_terminal()
+      progress%total = total
+      call system_clock(progress%start)
+      !$omp parallel do num_threads(command%jobs) schedule(dynamic) default(none) &
+      !$omp shared(total, deck, name, command, tables, progress, count, error)
+      do number = 1, total
+         call compute_case(command, name, deck, number, total, tables, progress, count, error)
+      end do
+      !$omp end parallel do
+      call clear_progress(progress)
+      status = exit_status%success
+      if (count(2) > 0) status = exit_status%undecided
+      if (allocated(error)) then
+         status = exit_status%not_written
+         write (error_unit, "(a)") error_line(error)
+         if (count(3) > 0) write (error_unit, "(a)") to_text(count(3))//" of " &
+            & //to_text(total)//" cases are safe in "//tables%folder//"/results.csv"
+      else if (.not. command%quiet) then
+         call print_total(name, tables%folder, count)
+      end if
+   end subroutine run_deck
+
+   !> Compute one case and write it down; nothing is computed after a failure to write
+   subroutine compute_case(command, name, deck, number, total, tables, progress, count, error)
+      !> What the user asked for
+      type(command_t), intent(in) :: command
+      !> Name of the deck
+      character(len=*), intent(in) :: name
+      !> The deck with its sweeps
+      type(deck_t), intent(in) :: deck
+      !> Number of the case
+      integer, intent(in) :: number
+      !> Number of cases
+      integer, intent(in) :: total
+      !> Where the results go
+      type(tables_t), intent(in) :: tables
+      !> What was told so far
+      type(progress_t), intent(inout) :: progress
+      !> Cases decided, undecided, written: (3)
+      integer, intent(inout) :: count(3)
+      !> Failure to write
+      type(error_t), allocatable, intent(inout) :: error
+      type(deck_t) :: this
+      type(error_t), allocatable :: problem
+      type(result_row_t) :: row
+      type(joint_row_t), allocatable :: joint_row(:)
+      character(len=:), allocatable :: remark
+      logical :: failed
+
+      !$omp critical (results)
+      failed = allocated(error)
+      !$omp end critical (results)
+      if (failed) return
+      call case_deck(deck, number, this, problem)
+      call run_case(this, row, joint_row, remark)
+      row%deck = deck_stem(name)
+      row%number = number
+      row%swept = swept_fields(deck, number)
+      joint_row%number = number
+      !$omp critical (results)
+      if (.not. allocated(error)) call write_case(tables, row, joint_row, remark, error)
+      if (.not. allocated(error)) then
+         count(3) = count(3) + 1
+         count(merge(2, 1, row%verdict == "undecided")) = &
+            & count(merge(2, 1, row%verdict == "undecided")) + 1
+         call clear_progress(progress)
+         if (.not. command%quiet) call print_row(row, remark, total, count(3))
+         call report_progress(progress)
+      end if
+      !$omp end critical (results)
+   end subroutine compute_case
+
+   !> Make the folder and begin the tables
+   subroutine open_tables(deck, tables, error)
+      !> The deck
+      type(deck_t), intent(in) :: deck
+      !> The tables; their units are set
+      type(tables_t), intent(inout) :: tables
+      !> Allocated if they cannot be written
+      type(error_t), allocatable, intent(out) :: error
+      character(len=:), allocatable :: names
+      integer :: s
+
+      names = ""
+      associate (swept => swept_names(deck))
+         do s = 1, size(swept)
+            if (all(own_column /= swept(s))) names = names//trim(swept(s))//","
+         end do
+      end associate
+      call make_folder(tables%folder)
+      call open_table(tables%folder//"/results.csv", results_header(names), tables%results, error)
+      if (.not. allocated(error)) &
+         & call open_table(tables%folder//"/log.txt", "case verdict remark", tables%log, error)
+      if (.not. allocated(error) .and. tables%has_joints) &
+         & call open_table(tables%folder//"/joints.csv", joints_header(), tables%joints, error)
+   end subroutine open_tables
+
+   !> Values of the swept parameters that have no column of their own, each with a comma behind it
+   function swept_fields(deck, number) result(fields)
+      !> The deck
+      type(deck_t), intent(in) :: deck
+      !> Number of the case
+      integer, intent(in) :: number
+      !> The fields
+      character(len=:), allocatable :: fields
+      integer :: s
+
+      fields = ""
+      associate (swept => swept_names(deck), texts => swept_texts(deck, number))
+         do s = 1, size(swept)
+            if (all(own_column /= swept(s))) fields = fields//trim(texts(s))//","
+         end do
+      end associate
+   end function swept_fields
+
+   !> Write the rows of one case: the joints first, so that a case with a row is whole
+   subroutine write_case(tables, row, joint_row, remark, error)
+      !> The tables
+      type(tables_t), intent(in) :: tables
+      !> Row of the case
+      type(result_row_t), intent(in) :: row
+      !> Rows of its joints
+      type(joint_row_t), intent(in) :: joint_row(:)
+      !> What goes to the log
+      character(len=*), intent(in) :: remark
+      !> Allocated if they cannot be written
+      type(error_t), allocatable, intent(inout) :: error
+      character(len=:), allocatable :: lines
+      integer :: j
+
+      if (tables%has_joints .and. size(joint_row) > 0) then
+         lines = joint_line(joint_row(1))
+         do j = 2, size(joint_row)
+            lines = lines//new_line("a")//joint_line(joint_row(j))
+         end do
+         call append_line(tables%joints, tables%folder//"/joints.csv", lines, error)
+         if (allocated(error)) return
+      end if
+      call append_line(tables%log, tables%folder//"/log.txt", to_text(row%number)//" " &
+         & //trim(trim(row%verdict)//" "//remark), error)
+      if (allocated(error)) return
+      call append_line(tables%results, tables%folder//"/results.csv", results_line(row), error)
+   end subroutine write_case
+end module dda_run

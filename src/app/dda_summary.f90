@@ -1,0 +1,71 @@
+!> What a run prints: a line a case, and a last line
+module dda_summary
+   use, intrinsic :: iso_fortran_env, only : output_unit
+   use dda_text, only : to_text
+   use dda_write_results, only : number_t, result_row_t
+   implicit none
+   private
+
+   public :: print_row, print_total
+
+   !> Most cases that are printed one by one
+   integer, parameter :: max_rows = 100
+
+contains
+
+   !> Print one case; of long runs only those that are undecided
+   subroutine print_row(row, remark, total, printed)
+      !> Its row
+      type(result_row_t), intent(in) :: row
+      !> What the user should know beside the row
+      character(len=*), intent(in) :: remark
+      !> Number of cases
+      integer, intent(in) :: total
+      !> Cases computed so far, this one among them
+      integer, intent(in) :: printed
+      character(len=:), allocatable :: hinges
+      integer :: i
+
+      if (total > max_rows .and. row%verdict /= "undecided") return
+      if (printed == 1) write (output_unit, "(a6, 2x, a6, 2x, a10, 2x, a14, 2x, a14, 2x, a9, 2x, &
+         &a10, 2x, a)") "case", "blocks", "verdict   ", "critical", "exact", "error", &
+         & "mode      ", "intrados hinge [deg]"
+      hinges = ""
+      if (allocated(row%intrados_hinge_deg)) then
+         do i = 1, size(row%intrados_hinge_deg)
+            hinges = hinges//" "//to_text(anint(row%intrados_hinge_deg(i)*1.0e6)/1.0e6)
+         end do
+      end if
+      write (output_unit, "(i6, 2x, i6, 2x, a10, 2x, a14, 2x, a14, 2x, a9, 2x, a10, 1x, a)") &
+         & row%number, row%blocks, row%verdict, fixed(row%critical, "(f14.10)"), &
+         & fixed(row%exact, "(f14.10)"), fixed(row%relative_error, "(es9.1)"), row%collapse_mode, &
+         & hinges
+      if (remark /= "") write (output_unit, "(8x, a)") remark
+   end subroutine print_row
+
+   !> Print the last line
+   subroutine print_total(name, folder, count)
+      !> Name of the deck
+      character(len=*), intent(in) :: name
+      !> Where the results are
+      character(len=*), intent(in) :: folder
+      !> Cases decided, undecided, written: (3)
+      integer, intent(in) :: count(3)
+
+      write (output_unit, "(a)") name//": "//to_text(count(1))//" decided, "//to_text(count(2)) &
+         & //" undecided; results in "//folder//"/results.csv"
+   end subroutine print_total
+
+   !> A number in a column of fixed width, blank if it is unknown
+   pure function fixed(number, form) result(text)
+      !> The number
+      type(number_t), intent(in) :: number
+      !> Format of one number
+      character(len=*), intent(in) :: form
+      !> The column
+      character(len=14) :: text
+
+      text = ""
+      if (number%known) write (text, form) number%value
+   end function fixed
+end module dda_summary

@@ -1,0 +1,85 @@
+"""Critical thickness of many arches against an independent limit analysis at 60 digits."""
+
+from __future__ import annotations
+
+import csv
+from pathlib import Path
+
+import pytest
+from dda_command import run_dda
+
+DATA = Path(__file__).parent.parent / "data" / "arch_exact.csv"
+
+
+def exact_cases() -> list[dict[str, str]]:
+    """Rows of the oracle's table."""
+    with DATA.open() as lines:
+        return list(csv.DictReader(line for line in lines if not line.startswith("#")))
+
+
+def deck_of(case: dict[str, str]) -> str:
+    """Deck that searches the critical thickness of one row."""
+    if case["joints_deg"]:
+        shape = f"joints_deg = {case['joints_deg'].replace(' ', ', ')}"
+    else:
+        shape = f"half_angle_deg = {case['half_angle_deg']}\n voussoirs = {case['voussoirs']}"
+    facet = f"facet_deg = {case['facet_deg']}" if case["facet_deg"] else ""
+    return (
+        f"&arch\n {shape}\n {facet}\n springing = '{case['springing']}'\n/\n"
+        f"&joint friction_deg = {case['friction_deg']} /\n"
+        "&search parameter = 'thickness_ratio' /\n&output joints = .false. /\n"
+    )
+
+
+@pytest.fixture(scope="module")
+def results(tmp_path_factory: pytest.TempPathFactory) -> dict[str, dict[str, str]]:
+    """Row of results.csv of every case, all decks in one run."""
+    folder = tmp_path_factory.mktemp("arch_exact")
+    decks = []
+    for case in exact_cases():
+        deck = folder / f"{case['case']}.nml"
+        deck.write_text(deck_of(case))
+        decks.append(deck)
+    run_dda("run", *decks, "--out", folder / "out", "--quiet")
+    rows = {}
+    for deck in decks:
+        with (folder / "out" / deck.stem / "results.csv").open() as lines:
+            (rows[deck.stem],) = csv.DictReader(lines)
+    return rows
+
+
+def tolerance(case: dict[str, str]) -> float:
+    """Largest relative error: 1e-8, and 1e-7 for half angles below 20 degrees."""
+    return 1e-8 if float(case["half_angle_deg"]) >= 20.0 else 1e-7
+
+
+CASES = [pytest.param(case, id=case["case"]) for case in exact_cases()]
+
+
+@pytest.mark.parametrize("case", CASES)
+def test_critical_thickness_is_that_of_limit_analysis(
+    case: dict[str, str], results: dict[str, dict[str, str]]
+) -> None:
+    row = results[case["case"]]
+    if case["status"] == "none_stable":
+        assert row["verdict"] == "collapsed"
+        assert row["critical"] == row["exact"] == ""
+    elif case["status"] == "always_stable":
+        assert row["verdict"] == "stable"
+        assert row["critical"] == row["exact"] == ""
+    elif float(case["half_angle_deg"]) < 5.0:
+        pytest.skip("below 5 degrees no accuracy is promised")
+    else:
+        exact = float(case["eta_exact"])
+        assert row["verdict"] == "found"
+        assert abs(float(row["critical"]) - exact) <= tolerance(case) * exact
+        assert float(row["critical_low"]) < exact < float(row["critical_high"])
+
+
+@pytest.mark.parametrize("case", CASES)
+def test_exact_value_beside_it_agrees_with_the_oracle(
+    case: dict[str, str], results: dict[str, dict[str, str]]
+) -> None:
+    if case["status"] == "found":
+        exact = float(case["eta_exact"])
+        assert abs(float(results[case["case"]]["exact"]) - exact) <= 1e-12 * exact
