@@ -1,0 +1,282 @@
+!> A deck in memory: a value for every key of the registry, and where each one came from
+module dda_deck
+   use, intrinsic :: ieee_arithmetic, only : ieee_value, ieee_quiet_nan
+   use dda_kinds, only : wp
+   use dda_error, only : error_t, fatal_error
+   use dda_text, only : read_number
+   use dda_deck_keys, only : deck_key, deck_group, key_kind, key_index, group_index, word_length
+   implicit none
+   private
+
+   public :: deck_t, deck_value_t, deck_sweep_t, deck_place_t, parameter_t, new_deck
+   public :: real_of, integer_of, word_of, text_of, flag_of, list_of
+   public :: is_given, has_group, line_of, place_of, deck_error
+
+   !> Where a value was written
+   type :: deck_place_t
+      !> Line of the deck, or number of the --set; 0 for a default
+      integer :: line = 0
+      !> Whether it came from a --set
+      logical :: from_command = .false.
+   end type deck_place_t
+
+   !> A key, or one item of its list
+   type :: parameter_t
+      !> Place in the registry
+      integer :: key = 0
+      !> Item of a list, counted from 1; 0 for a single value
+      integer :: item = 0
+   end type parameter_t
+
+   !> Value of one key
+   type :: deck_value_t
+      !> Whether the deck, a --set or a sweep gives it
+      logical :: given = .false.
+      !> Where
+      type(deck_place_t) :: place
+      !> Number, whole numbers too
+      real(wp) :: number = 0.0_wp
+      !> Flag
+      logical :: flag = .false.
+      !> Text, words too; unallocated where the key takes none
+      character(len=:), allocatable :: text
+      !> List of numbers; unallocated where the key takes none: (n)
+      real(wp), allocatable :: numbers(:)
+      !> List of words; unallocated where the key takes none: (n)
+      character(len=word_length), allocatable :: texts(:)
+   end type deck_value_t
+
+   !> One &sweep
+   type :: deck_sweep_t
+      !> What it varies
+      type(parameter_t) :: parameter
+      !> Where the values were written
+      type(deck_place_t) :: place
+      !> Whether it advances together with the sweep before it
+      logical :: linked = .false.
+      !> Numbers that the parameter takes; empty if it takes words: (n)
+      real(wp), allocatable :: numbers(:)
+      !> Words that the parameter takes; empty if it takes numbers: (n)
+      character(len=word_length), allocatable :: texts(:)
+   end type deck_sweep_t
+
+   !> A deck
+   type :: deck_t
+      !> Name of the file
+      character(len=:), allocatable :: file
+      !> Values, in the order of the registry: (0:n), 0 stands for a key that does not exist
+      type(deck_value_t), allocatable :: value(:)
+      !> Where each group begins, line 0 if it is not there: (n)
+      type(deck_place_t), allocatable :: group(:)
+      !> The sweeps in their order: (n)
+      type(deck_sweep_t), allocatable :: sweep(:)
+   end type deck_t
+
+contains
+
+   !> A deck of defaults
+   pure subroutine new_deck(deck, file)
+      !> The deck
+      type(deck_t), intent(out) :: deck
+      !> Name that errors will show
+      character(len=*), intent(in) :: file
+      integer :: i
+
+      deck%file = file
+      allocate (deck%value(0:size(deck_key)), deck%group(size(deck_group)), deck%sweep(0))
+      deck%value(0)%number = ieee_value(1.0_wp, ieee_quiet_nan)
+      do i = 0, size(deck_key)
+         call put_default(deck%value(i), i)
+      end do
+   end subroutine new_deck
+
+   !> Give a value its default
+   pure subroutine put_default(value, i)
+      !> The value
+      type(deck_value_t), intent(inout) :: value
+      !> Place of its key in the registry
+      integer, intent(in) :: i
+      character(len=:), allocatable :: default
+      logical :: ok
+
+      if (i == 0) return
+      default = trim(deck_key(i)%default)
+      select case (deck_key(i)%kind)
+      case (key_kind%number, key_kind%whole)
+         call read_number(default, value%number, ok)
+      case (key_kind%word, key_kind%text)
+         value%text = ""
+         if (len(default) > 2) value%text = default(2:len(default) - 1)
+      case (key_kind%flag)
+         value%flag = default == ".true."
+      case (key_kind%numbers)
+         allocate (value%numbers(0))
+      case (key_kind%texts)
+         allocate (value%texts(0))
+      end select
+   end subroutine put_default
+
+   !> A number of the deck
+   pure function real_of(deck, group, key) result(value)
+      !> The deck
+      type(deck_t), intent(in) :: deck
+      !> Name of the group
+      character(len=*), intent(in) :: group
+      !> Name of the key
+      character(len=*), intent(in) :: key
+      !> The number in the unit of the registry; 0 without value and default, NaN for no such key
+      real(wp) :: value
+
+      value = deck%value(key_index(group, key))%number
+   end function real_of
+
+   !> A whole number of the deck
+   pure function integer_of(deck, group, key) result(value)
+      !> The deck
+      type(deck_t), intent(in) :: deck
+      !> Name of the group
+      character(len=*), intent(in) :: group
+      !> Name of the key
+      character(len=*), intent(in) :: key
+      !> The number; 0 without value and default
+      integer :: value
+
+      value = nint(deck%value(key_index(group, key))%number)
+   end function integer_of
+
+   !> A word of the deck
+   pure function word_of(deck, group, key) result(value)
+      !> The deck
+      type(deck_t), intent(in) :: deck
+      !> Name of the group
+      character(len=*), intent(in) :: group
+      !> Name of the key
+      character(len=*), intent(in) :: key
+      !> The word, lower case
+      character(len=:), allocatable :: value
+
+      value = text_of(deck, group, key)
+   end function word_of
+
+   !> A text of the deck
+   pure function text_of(deck, group, key) result(value)
+      !> The deck
+      type(deck_t), intent(in) :: deck
+      !> Name of the group
+      character(len=*), intent(in) :: group
+      !> Name of the key
+      character(len=*), intent(in) :: key
+      !> The text as it was written, blanks at its end cut
+      character(len=:), allocatable :: value
+
+      associate (held => deck%value(key_index(group, key)))
+         value = ""
+         if (allocated(held%text)) value = held%text
+      end associate
+   end function text_of
+
+   !> A flag of the deck
+   pure function flag_of(deck, group, key) result(value)
+      !> The deck
+      type(deck_t), intent(in) :: deck
+      !> Name of the group
+      character(len=*), intent(in) :: group
+      !> Name of the key
+      character(len=*), intent(in) :: key
+      !> The flag
+      logical :: value
+
+      value = deck%value(key_index(group, key))%flag
+   end function flag_of
+
+   !> A list of numbers of the deck
+   pure function list_of(deck, group, key) result(value)
+      !> The deck
+      type(deck_t), intent(in) :: deck
+      !> Name of the group
+      character(len=*), intent(in) :: group
+      !> Name of the key
+      character(len=*), intent(in) :: key
+      !> The numbers in the unit of the registry; none if the key is not given: (n)
+      real(wp), allocatable :: value(:)
+
+      associate (held => deck%value(key_index(group, key)))
+         allocate (value(0))
+         if (allocated(held%numbers)) value = held%numbers
+      end associate
+   end function list_of
+
+   !> Whether the deck, a --set or a sweep gives a key
+   pure function is_given(deck, group, key) result(given)
+      !> The deck
+      type(deck_t), intent(in) :: deck
+      !> Name of the group
+      character(len=*), intent(in) :: group
+      !> Name of the key
+      character(len=*), intent(in) :: key
+      !> The answer; no for a key that follows from others
+      logical :: given
+
+      given = deck%value(key_index(group, key))%given
+   end function is_given
+
+   !> Whether a group is there: in the deck, or because a --set names one of its keys
+   pure function has_group(deck, group) result(yes)
+      !> The deck
+      type(deck_t), intent(in) :: deck
+      !> Name of the group
+      character(len=*), intent(in) :: group
+      !> The answer
+      logical :: yes
+      integer :: i
+
+      i = group_index(group)
+      yes = .false.
+      if (i > 0) yes = deck%group(i)%line > 0
+   end function has_group
+
+   !> Line where a key was given
+   pure function line_of(deck, group, key) result(line)
+      !> The deck
+      type(deck_t), intent(in) :: deck
+      !> Name of the group
+      character(len=*), intent(in) :: group
+      !> Name of the key
+      character(len=*), intent(in) :: key
+      !> Line of the deck, or number of the --set; 0 for a default
+      integer :: line
+
+      line = deck%value(key_index(group, key))%place%line
+   end function line_of
+
+   !> Where a key was given, or else its group
+   pure function place_of(deck, key) result(place)
+      !> The deck
+      type(deck_t), intent(in) :: deck
+      !> Place of the key in the registry
+      integer, intent(in) :: key
+      !> The place; line 0 if neither was given
+      type(deck_place_t) :: place
+
+      place = deck%value(key)%place
+      if (place%line == 0) place = deck%group(group_index(deck_key(key)%group))
+   end function place_of
+
+   !> Make an error that names the deck and the line, or --set and its number
+   pure subroutine deck_error(error, message, deck, place)
+      !> The failure
+      type(error_t), allocatable, intent(out) :: error
+      !> What was wanted and what was found
+      character(len=*), intent(in) :: message
+      !> The deck
+      type(deck_t), intent(in) :: deck
+      !> Where it was found
+      type(deck_place_t), intent(in) :: place
+
+      if (place%from_command) then
+         call fatal_error(error, message, file="--set", line=place%line)
+      else
+         call fatal_error(error, message, file=deck%file, line=max(place%line, 1))
+      end if
+   end subroutine deck_error
+end module dda_deck

@@ -1,0 +1,200 @@
+!> Check what a deck searches and sweeps, then every case, before anything is computed
+module dda_deck_check
+   use dda_kinds, only : wp
+   use dda_error, only : error_t
+   use dda_text, only : to_text
+   use dda_deck_keys, only : key_t, deck_key, key_kind, key_index
+   use dda_deck_words, only : full_name
+   use dda_deck, only : deck_t, deck_place_t, parameter_t, deck_error, &
+      integer_of, word_of, text_of, is_given, has_group, place_of
+   use dda_deck_parameter, only : find_parameter, parameter_name
+   use dda_deck_sweep, only : n_cases, set_case
+   use dda_deck_check_case, only : check_case, bracket_of
+   implicit none
+   private
+
+   public :: check_deck, search_bracket
+
+contains
+
+   !> Check a deck and all cases of its sweeps, before anything is computed
+   pure subroutine check_deck(deck, error)
+      !> The deck
+      type(deck_t), intent(in) :: deck
+      !> The first thing that is wrong
+      type(error_t), allocatable, intent(out) :: error
+      type(parameter_t) :: searched
+      integer :: s
+
+      call check_search(deck, searched, error)
+      do s = 1, size(deck%sweep)
+         if (.not. allocated(error)) call check_sweep(deck, s, searched, error)
+      end do
+      if (.not. allocated(error)) call check_cases(deck, searched, error)
+   end subroutine check_deck
+
+   !> Where a search begins and ends
+   pure subroutine search_bracket(deck, low, high)
+      !> A deck with &search that was checked
+      type(deck_t), intent(in) :: deck
+      !> search%low, or else the parameter's own lower end, which may be no value it can take
+      real(wp), intent(out) :: low
+      !> search%high, or else the parameter's own upper end, likewise
+      real(wp), intent(out) :: high
+      type(parameter_t) :: searched
+      character(len=:), allocatable :: problem
+
+      call find_parameter(text_of(deck, "search", "parameter"), searched, problem)
+      call bracket_of(deck, searched, low, high)
+   end subroutine search_bracket
+
+   !> Check what is searched
+   pure subroutine check_search(deck, searched, error)
+      !> The deck
+      type(deck_t), intent(in) :: deck
+      !> The parameter; key 0 if the deck has no &search
+      type(parameter_t), intent(out) :: searched
+      !> No real-valued key, or one that the search cannot vary
+      type(error_t), allocatable, intent(out) :: error
+      character(len=:), allocatable :: problem
+      type(deck_place_t) :: place
+      type(key_t) :: key
+
+      if (.not. has_group(deck, "search")) return
+      place = place_of(deck, key_index("search", "parameter"))
+      call find_parameter(text_of(deck, "search", "parameter"), searched, problem)
+      if (len(problem) == 0) then
+         key = deck_key(searched%key)
+         if (key%group == "search" .or. &
+            .not. any(key%kind == [key_kind%number, key_kind%numbers])) then
+            problem = "wanted a key with real values such as thickness_ratio, found "// &
+               full_name(key)
+         end if
+      end if
+      if (len(problem) > 0) then
+         call deck_error(error, "search%parameter: "//problem, deck, place)
+      else
+         call check_varied(deck, searched, "searched", place, error)
+      end if
+   end subroutine check_search
+
+   !> Check one sweep against those before it and against the search
+   pure subroutine check_sweep(deck, s, searched, error)
+      !> The deck
+      type(deck_t), intent(in) :: deck
+      !> Number of the sweep
+      integer, intent(in) :: s
+      !> What is searched; key 0 if nothing is
+      type(parameter_t), intent(in) :: searched
+      !> The same parameter twice, or a link to nothing of the same length
+      type(error_t), allocatable, intent(out) :: error
+      character(len=:), allocatable :: name, problem
+      integer :: other
+
+      associate (sweep => deck%sweep(s))
+         name = parameter_name(sweep%parameter)
+         problem = ""
+         if (same(sweep%parameter, searched)) problem = name//" is both swept and searched"
+         if (deck_key(sweep%parameter%key)%group == "search" .and. searched%key == 0) &
+            problem = name//" is swept, but the deck has no &search"
+         do other = 1, s - 1
+            if (same(sweep%parameter, deck%sweep(other)%parameter)) problem = name// &
+               " is swept twice: first in line "//to_text(deck%sweep(other)%place%line)
+         end do
+         if (sweep%linked) call check_link(deck, s, problem)
+         if (len(problem) > 0) then
+            call deck_error(error, problem, deck, sweep%place)
+         else
+            call check_varied(deck, sweep%parameter, "swept", sweep%place, error)
+         end if
+      end associate
+   end subroutine check_sweep
+
+   !> Check that a linked sweep is as long as the one before it
+   pure subroutine check_link(deck, s, problem)
+      !> The deck
+      type(deck_t), intent(in) :: deck
+      !> Number of the sweep
+      integer, intent(in) :: s
+      !> What is wrong; left as it was if nothing is
+      character(len=:), allocatable, intent(inout) :: problem
+      integer :: here, before
+
+      if (s == 1) then
+         problem = "the first &sweep cannot be linked: there is none before it"
+         return
+      end if
+      here = size(deck%sweep(s)%numbers) + size(deck%sweep(s)%texts)
+      before = size(deck%sweep(s - 1)%numbers) + size(deck%sweep(s - 1)%texts)
+      if (here /= before) problem = "a linked &sweep wants as many values as the one before, "// &
+         to_text(before)//", found "//to_text(here)
+   end subroutine check_link
+
+   !> Check that varying a parameter has an effect and does not undo a --set
+   pure subroutine check_varied(deck, parameter, how, place, error)
+      !> The deck
+      type(deck_t), intent(in) :: deck
+      !> The parameter
+      type(parameter_t), intent(in) :: parameter
+      !> swept or searched
+      character(len=*), intent(in) :: how
+      !> Where it is
+      type(deck_place_t), intent(in) :: place
+      !> No effect, or a --set without effect
+      type(error_t), allocatable, intent(out) :: error
+      logical :: is_weight
+
+      is_weight = parameter%key == key_index("material", "density") .or. &
+         parameter%key == key_index("load", "gravity")
+      if (deck%value(parameter%key)%place%from_command .and. parameter%item == 0) then
+         call deck_error(error, full_name(deck_key(parameter%key))//" cannot be set: it is "// &
+            how//" in line "//to_text(place%line)//" of "//deck%file, deck, &
+            deck%value(parameter%key)%place)
+      else if (is_weight .and. is_given(deck, "material", "unit_weight") .and. &
+         word_of(deck, "analysis", "mode") == "static") then
+         call deck_error(error, full_name(deck_key(parameter%key))//" is "//how// &
+            ", but it has no effect: material%unit_weight is given", deck, place)
+      end if
+   end subroutine check_varied
+
+   !> Whether two parameters are the same
+   pure function same(a, b) result(yes)
+      !> First parameter
+      type(parameter_t), intent(in) :: a
+      !> Second parameter
+      type(parameter_t), intent(in) :: b
+      !> The answer
+      logical :: yes
+
+      yes = a%key == b%key .and. a%item == b%item
+   end function same
+
+   !> Check every case of the sweeps
+   pure subroutine check_cases(deck, searched, error)
+      !> The deck
+      type(deck_t), intent(in) :: deck
+      !> What is searched; key 0 if nothing is
+      type(parameter_t), intent(in) :: searched
+      !> The first thing that is wrong, with the number of the case
+      type(error_t), allocatable, intent(out) :: error
+      type(deck_t) :: work
+      integer :: number, n
+
+      n = n_cases(deck)
+      if (n > integer_of(deck, "output", "max_cases")) then
+         call deck_error(error, "wanted at most "// &
+            to_text(integer_of(deck, "output", "max_cases"))// &
+            " cases (output%max_cases), found "//to_text(n)//" or more", deck, &
+            deck%sweep(size(deck%sweep))%place)
+         return
+      end if
+      work = deck
+      do number = 1, n
+         call set_case(work, number, error)
+         if (.not. allocated(error)) call check_case(work, searched, error)
+         if (.not. allocated(error)) cycle
+         if (n > 1) error%message = error%message//" (case "//to_text(number)//")"
+         return
+      end do
+   end subroutine check_cases
+end module dda_deck_check

@@ -1,0 +1,211 @@
+!> What the keys of one case must be to one another
+module dda_deck_check_case
+   use dda_kinds, only : wp
+   use dda_error, only : error_t
+   use dda_text, only : to_text
+   use dda_deck_keys, only : deck_key, key_index, group_index
+   use dda_deck, only : deck_t, deck_place_t, parameter_t, deck_error, &
+      real_of, word_of, is_given, place_of
+   use dda_deck_parameter, only : parameter_name
+   use dda_deck_set, only : put_number, number_problem
+   implicit none
+   private
+
+   public :: check_case, bracket_of
+
+   !> Joints closer than this are one joint [deg]
+   real(wp), parameter :: same_angle = 1.0e-9_wp
+
+contains
+
+   !> Check what the keys of one case must be to one another
+   pure subroutine check_case(deck, searched, error)
+      !> The deck of the case
+      type(deck_t), intent(in) :: deck
+      !> What is searched; key 0 if nothing is
+      type(parameter_t), intent(in) :: searched
+      !> The first thing that is wrong
+      type(error_t), allocatable, intent(out) :: error
+      logical :: is_static, has_weight
+
+      is_static = word_of(deck, "analysis", "mode") == "static"
+      has_weight = real_of(deck, "load", "gravity") > 0.0_wp .or. &
+         is_given(deck, "material", "unit_weight")
+      if (is_static .and. .not. has_weight) then
+         call deck_error(error, "a static analysis wants a weight: load%gravity is 0 and "// &
+            "material%unit_weight is not given", deck, &
+            deck%value(key_index("load", "gravity"))%place)
+      else if (searched%key > 0 .and. .not. is_static .and. &
+         .not. is_given(deck, "analysis", "collapse_displacement")) then
+         call deck_error(error, "a search with mode = 'dynamic' wants "// &
+            "analysis%collapse_displacement [m]", deck, place_of(deck, key_index("search", &
+            "parameter")))
+      else
+         call check_shape(deck, error)
+         if (allocated(error) .or. searched%key == 0) return
+         call check_bracket(deck, searched, error)
+      end if
+   end subroutine check_case
+
+   !> Check the joints of the arch
+   pure subroutine check_shape(deck, error)
+      !> The deck of one case
+      type(deck_t), intent(in) :: deck
+      !> Joints that make no arch
+      type(error_t), allocatable, intent(out) :: error
+      real(wp) :: span
+
+      if (is_given(deck, "arch", "joints_deg")) then
+         call check_joints(deck, error)
+         return
+      end if
+      span = 2.0_wp*real_of(deck, "arch", "half_angle_deg")/real_of(deck, "arch", "voussoirs")
+      if (span < 180.0_wp .or. is_given(deck, "arch", "facet_deg")) return
+      call deck_error(error, "one chord a voussoir wants voussoirs of less than 180 degrees, "// &
+         "found "//to_text(span)//": give facet_deg or more voussoirs", deck, &
+         later(deck, "half_angle_deg", "voussoirs"))
+   end subroutine check_shape
+
+   !> Check joints_deg, and what is given beside it
+   pure subroutine check_joints(deck, error)
+      !> The deck of one case
+      type(deck_t), intent(in) :: deck
+      !> Joints that do not begin at 0, do not increase or contradict other keys
+      type(error_t), allocatable, intent(out) :: error
+      character(len=:), allocatable :: problem
+      type(deck_place_t) :: place
+      integer :: n, i
+
+      place = deck%value(key_index("arch", "joints_deg"))%place
+      problem = ""
+      associate (joints => deck%value(key_index("arch", "joints_deg"))%numbers)
+         n = size(joints)
+         if (n < 2) then
+            problem = "wants two angles or more, found "//to_text(n)
+         else if (abs(joints(1)) > 0.0_wp) then
+            problem = "wants 0 first (the crown), found "//to_text(joints(1))
+         else if (is_given(deck, "arch", "voussoirs")) then
+            problem = "and arch%voussoirs exclude one another"
+            place = later(deck, "joints_deg", "voussoirs")
+         end if
+         do i = 2, n
+            if (len(problem) > 0) exit
+            if (joints(i) > joints(i - 1) + same_angle) cycle
+            problem = "wants increasing angles [deg], found "//to_text(joints(i - 1))// &
+               " before "//to_text(joints(i))
+         end do
+      end associate
+      if (len(problem) > 0) then
+         call deck_error(error, "arch%joints_deg "//problem, deck, place)
+      else
+         call check_half_angle(deck, error)
+      end if
+   end subroutine check_joints
+
+   !> Check that half_angle_deg, where given, is where the joints end
+   pure subroutine check_half_angle(deck, error)
+      !> The deck of one case, with two angles in joints_deg or more
+      type(deck_t), intent(in) :: deck
+      !> The two differ
+      type(error_t), allocatable, intent(out) :: error
+      real(wp) :: half_angle, last
+
+      if (.not. is_given(deck, "arch", "half_angle_deg")) return
+      half_angle = real_of(deck, "arch", "half_angle_deg")
+      associate (joints => deck%value(key_index("arch", "joints_deg"))%numbers)
+         last = joints(size(joints))
+      end associate
+      if (.not. abs(last - half_angle) > same_angle) return
+      call deck_error(error, "arch%joints_deg ends at "//to_text(last)// &
+         ", but arch%half_angle_deg is "//to_text(half_angle), deck, &
+         later(deck, "joints_deg", "half_angle_deg"))
+   end subroutine check_half_angle
+
+   !> Where the later one of two keys of &arch was given; a --set is later than the deck
+   pure function later(deck, a, b) result(place)
+      !> The deck
+      type(deck_t), intent(in) :: deck
+      !> Name of the first key
+      character(len=*), intent(in) :: a
+      !> Name of the second key
+      character(len=*), intent(in) :: b
+      !> The place
+      type(deck_place_t) :: place
+      type(deck_place_t) :: other
+      logical :: other_is_later
+
+      place = deck%value(key_index("arch", a))%place
+      other = deck%value(key_index("arch", b))%place
+      other_is_later = other%line > place%line .and. .not. place%from_command
+      if (other%from_command .or. other_is_later) place = other
+      if (place%line == 0) place = deck%group(group_index("arch"))
+   end function later
+
+   !> Check the two ends of the search
+   pure subroutine check_bracket(deck, searched, error)
+      !> The deck of one case
+      type(deck_t), intent(in) :: deck
+      !> What is searched
+      type(parameter_t), intent(in) :: searched
+      !> An end that is missing, out of range, or on the wrong side
+      type(error_t), allocatable, intent(out) :: error
+      real(wp) :: low, high
+
+      call bracket_of(deck, searched, low, high)
+      if (.not. low > -huge(low) .or. .not. high < huge(high)) then
+         call deck_error(error, "a search for "//parameter_name(searched)// &
+            " wants search%low and search%high", deck, &
+            place_of(deck, key_index("search", "parameter")))
+      else if (.not. low < high) then
+         call deck_error(error, "wanted search%low below search%high, found "//to_text(low)// &
+            " and "//to_text(high), deck, place_of(deck, key_index("search", &
+            trim(merge("high", "low ", is_given(deck, "search", "high"))))))
+      else
+         call check_end(deck, searched, "low", error)
+         if (.not. allocated(error)) call check_end(deck, searched, "high", error)
+      end if
+   end subroutine check_bracket
+
+   !> Check that the parameter can take one end of the search
+   pure subroutine check_end(deck, searched, name, error)
+      !> The deck of one case
+      type(deck_t), intent(in) :: deck
+      !> What is searched
+      type(parameter_t), intent(in) :: searched
+      !> low or high
+      character(len=*), intent(in) :: name
+      !> Out of range, or an arch that cannot be
+      type(error_t), allocatable, intent(out) :: error
+      character(len=:), allocatable :: problem
+      type(deck_t) :: trial
+
+      if (.not. is_given(deck, "search", name)) return
+      problem = number_problem(searched%key, real_of(deck, "search", name))
+      if (len(problem) > 0) then
+         call deck_error(error, "search%"//name//": "//problem, deck, &
+            deck%value(key_index("search", name))%place)
+      else if (deck_key(searched%key)%group == "arch") then
+         trial = deck
+         call put_number(trial, searched, real_of(deck, "search", name), &
+            deck%value(key_index("search", name))%place, error)
+         if (.not. allocated(error)) call check_shape(trial, error)
+      end if
+   end subroutine check_end
+
+   !> Where the search for a parameter begins and ends
+   pure subroutine bracket_of(deck, searched, low, high)
+      !> The deck
+      type(deck_t), intent(in) :: deck
+      !> The parameter
+      type(parameter_t), intent(in) :: searched
+      !> Lower end; -huge if there is none
+      real(wp), intent(out) :: low
+      !> Upper end; huge if there is none
+      real(wp), intent(out) :: high
+
+      low = deck_key(searched%key)%search_low
+      high = deck_key(searched%key)%search_high
+      if (is_given(deck, "search", "low")) low = real_of(deck, "search", "low")
+      if (is_given(deck, "search", "high")) high = real_of(deck, "search", "high")
+   end subroutine bracket_of
+end module dda_deck_check_case

@@ -1,0 +1,278 @@
+!> The registry: every group and key that a deck may hold
+!>
+!> A new key is one entry here and its paragraph in docs/input.md. Reading, range checks, --set,
+!> sweeps, searches and the printed help follow from the entry.
+module dda_deck_keys
+   use dda_kinds, only : wp
+   implicit none
+   private
+
+   public :: key_t, key_kind, group_t, deck_key, deck_group, key_index, group_index
+   public :: name_length, word_length, max_items
+
+   !> Longest name of a key [characters]
+   integer, parameter :: name_length = 32
+   !> Longest word of a list of words [characters]
+   integer, parameter :: word_length = 64
+   !> Most items that a list may have
+   integer, parameter :: max_items = 100000
+
+   !> What kind of value a key takes
+   type :: key_kind_enum
+      !> One real number
+      integer :: number = 1
+      !> One whole number
+      integer :: whole = 2
+      !> One of the words of the entry
+      integer :: word = 3
+      !> Any text on one line
+      integer :: text = 4
+      !> .true. or .false.
+      integer :: flag = 5
+      !> A list of real numbers
+      integer :: numbers = 6
+      !> A list of words
+      integer :: texts = 7
+      !> Known, but refused: a later version of the program reads it
+      integer :: later = 8
+   end type key_kind_enum
+
+   !> The kinds of value by name
+   type(key_kind_enum), parameter :: key_kind = key_kind_enum()
+
+   !> One key of a deck
+   type :: key_t
+      !> Group that the key belongs to
+      character(len=16) :: group = ""
+      !> Name of the key
+      character(len=name_length) :: name = ""
+      !> One of key_kind
+      integer :: kind = key_kind%number
+      !> Unit of the value; empty if it has none
+      character(len=8) :: unit = ""
+      !> Default as one would write it in a deck; empty if there is none
+      character(len=24) :: default = ""
+      !> What happens without the key where it has no default
+      character(len=56) :: without = ""
+      !> Smallest value that is allowed
+      real(wp) :: at_least = -huge(1.0_wp)
+      !> Largest value that is allowed
+      real(wp) :: at_most = huge(1.0_wp)
+      !> Bound that the value must exceed
+      real(wp) :: above = -huge(1.0_wp)
+      !> Bound that the value must stay below
+      real(wp) :: below = huge(1.0_wp)
+      !> Words that are allowed, separated by blanks
+      character(len=40) :: words = ""
+      !> Words that a later version of the program allows, separated by blanks
+      character(len=40) :: later = ""
+      !> Whether &sweep may name the key; &search may, if it is also a real number
+      logical :: varies = .true.
+      !> Lower end of a search that gives none
+      real(wp) :: search_low = -huge(1.0_wp)
+      !> Upper end of a search that gives none
+      real(wp) :: search_high = huge(1.0_wp)
+      !> What the key means, in one sentence
+      character(len=100) :: meaning = ""
+   end type key_t
+
+   !> One group of a deck
+   type :: group_t
+      !> Name of the group
+      character(len=16) :: name = ""
+      !> What the group describes
+      character(len=72) :: meaning = ""
+   end type group_t
+
+   !> All groups, in the order of the contract
+   type(group_t), parameter :: deck_group(*) = [ &
+      group_t("scene", "what is studied"), &
+      group_t("arch", "the shape of a circular arch, crown up, centre at the origin"), &
+      group_t("material", "the blocks' material"), &
+      group_t("joint", "the Mohr-Coulomb law of the joints"), &
+      group_t("load", "what acts on the blocks"), &
+      group_t("analysis", "how a single case is computed"), &
+      group_t("search", "looks for the critical value of one parameter"), &
+      group_t("sweep", "runs one case a value; up to 8 such groups"), &
+      group_t("output", "what is written")]
+
+   !> Keys of &scene
+   type(key_t), parameter :: scene_keys(*) = [ &
+      key_t(group="scene", name="title", kind=key_kind%text, default="''", varies=.false., &
+            meaning="One line that says what the deck is about."), &
+      key_t(group="scene", name="kind", kind=key_kind%word, default="'arch'", words="arch", &
+            later="lines blocks", varies=.false., &
+            meaning="What the blocks are made from: an arch generated from the keys of &arch."), &
+      key_t(group="scene", name="geometry", kind=key_kind%later, varies=.false., &
+            meaning="File of lines or blocks; for kinds of scene that a later version reads."), &
+      key_t(group="scene", name="analysis", kind=key_kind%later, varies=.false., &
+            meaning="File of the analysis; for kinds of scene that a later version reads.")]
+
+   !> Keys of &arch
+   type(key_t), parameter :: arch_keys(*) = [ &
+      key_t(group="arch", name="radius", unit="m", default="10.0", &
+            at_least=1.0e-9_wp, at_most=1.0e9_wp, &
+            meaning="Radius of the circle half way between intrados and extrados."), &
+      key_t(group="arch", name="thickness_ratio", default="0.15", &
+            at_least=1.0e-15_wp, below=2.0_wp, search_low=0.0_wp, search_high=2.0_wp, &
+            meaning="Thickness of the ring over the radius of its middle circle."), &
+      key_t(group="arch", name="half_angle_deg", unit="deg", default="90.0", &
+            at_least=1.0e-6_wp, below=180.0_wp, search_low=0.0_wp, search_high=180.0_wp, &
+            meaning="Angle from the crown to a springing; follows from joints_deg if given."), &
+      key_t(group="arch", name="voussoirs", kind=key_kind%whole, default="36", &
+            at_least=1.0_wp, at_most=1.0e6_wp, &
+            meaning="Number of equal voussoirs; an odd number leaves no joint at the crown."), &
+      key_t(group="arch", name="joints_deg", kind=key_kind%numbers, unit="deg", &
+            without="equal voussoirs", at_least=0.0_wp, below=180.0_wp, &
+            meaning="Joints of one half from the crown, 0 first, the springing last; mirrored."), &
+      key_t(group="arch", name="facet_deg", unit="deg", without="one chord a voussoir", &
+            at_least=1.0e-3_wp, below=180.0_wp, &
+            meaning="Largest angle of one chord of a voussoir's intrados or extrados."), &
+      key_t(group="arch", name="springing", kind=key_kind%word, default="'frictional'", &
+            words="frictional no-slip", &
+            meaning="Whether the two springing joints obey friction or cannot slide.")]
+
+   !> Keys of &material
+   type(key_t), parameter :: material_keys(*) = [ &
+      key_t(group="material", name="density", unit="kg/m3", default="2240.0", &
+            at_least=1.0e-12_wp, at_most=1.0e30_wp, meaning="Mass per volume."), &
+      key_t(group="material", name="unit_weight", unit="N/m3", without="density times gravity", &
+            at_least=1.0e-12_wp, at_most=1.0e30_wp, &
+            meaning="Weight per volume; where given, density times gravity is not used."), &
+      key_t(group="material", name="young", unit="Pa", default="5e9", &
+            at_least=1.0e-12_wp, at_most=1.0e30_wp, meaning="Young's modulus of the blocks."), &
+      key_t(group="material", name="poisson", default="0.2", above=-1.0_wp, below=0.5_wp, &
+            meaning="Poisson's ratio of the blocks."), &
+      key_t(group="material", name="plane", kind=key_kind%word, default="'stress'", &
+            words="stress strain", meaning="Plane stress or plane strain.")]
+
+   !> Keys of &joint
+   type(key_t), parameter :: joint_keys(*) = [ &
+      key_t(group="joint", name="friction_deg", unit="deg", default="50.0", &
+            at_least=0.0_wp, at_most=90.0_wp, search_low=0.0_wp, search_high=90.0_wp, &
+            meaning="Friction angle; 89.9 and more means that no joint can slide."), &
+      key_t(group="joint", name="cohesion", unit="Pa", default="0.0", &
+            at_least=0.0_wp, at_most=1.0e30_wp, meaning="Shear strength without normal force."), &
+      key_t(group="joint", name="tension", unit="Pa", default="0.0", &
+            at_least=0.0_wp, at_most=1.0e30_wp, meaning="Tensile strength.")]
+
+   !> Keys of &load
+   type(key_t), parameter :: load_keys(*) = [ &
+      key_t(group="load", name="gravity", unit="m/s2", default="9.81", &
+            at_least=0.0_wp, at_most=1.0e12_wp, meaning="Acceleration of gravity."), &
+      key_t(group="load", name="gravity_direction_deg", unit="deg", default="-90.0", &
+            at_least=-360.0_wp, at_most=360.0_wp, &
+            meaning="Direction in which the weight acts, anticlockwise from +x; -90 is down."), &
+      key_t(group="load", name="horizontal_coefficient", default="0.0", &
+            at_least=-1.0e6_wp, at_most=1.0e6_wp, search_low=0.0_wp, search_high=1.0_wp, &
+            meaning="Force towards +x on each block, as a multiple of its weight.")]
+
+   !> Keys of &analysis
+   type(key_t), parameter :: analysis_keys(*) = [ &
+      key_t(group="analysis", name="mode", kind=key_kind%word, default="'static'", &
+            words="static dynamic", later="limerick", &
+            meaning="Whether the velocity is put to zero at each step or carried on."), &
+      key_t(group="analysis", name="geometry", kind=key_kind%word, default="'reference'", &
+            words="reference current", &
+            meaning="Small displacements on the undeformed shape, or blocks that move."), &
+      key_t(group="analysis", name="steps", kind=key_kind%whole, default="400", &
+            at_least=1.0_wp, at_most=1.0e9_wp, &
+            meaning="Most time steps of one run; a static run left open by them is undecided."), &
+      key_t(group="analysis", name="max_displacement_ratio", default="0.05", &
+            at_least=1.0e-12_wp, at_most=1.0_wp, &
+            meaning="Largest vertex displacement of a step over the size of the smallest block."), &
+      key_t(group="analysis", name="time_step", unit="s", without="chosen by the program", &
+            at_least=1.0e-15_wp, at_most=1.0e15_wp, &
+            meaning="First time step of a static run, every step of a dynamic one."), &
+      key_t(group="analysis", name="penalty_ratio", default="100.0", &
+            at_least=1.0e-6_wp, at_most=1.0e12_wp, &
+            meaning="Normal stiffness of a contact over the block's own across the joint."), &
+      key_t(group="analysis", name="collapse_displacement", unit="m", &
+            without="a test without a length", at_least=1.0e-15_wp, at_most=1.0e15_wp, &
+            meaning="Largest vertex displacement that means collapse."), &
+      key_t(group="analysis", name="open_close_limit", kind=key_kind%whole, default="400", &
+            at_least=1.0_wp, at_most=1.0e9_wp, &
+            meaning="Most open-close changes of a step before the line search takes over.")]
+
+   !> Keys of &search
+   type(key_t), parameter :: search_keys(*) = [ &
+      key_t(group="search", name="parameter", kind=key_kind%text, &
+            default="'thickness_ratio'", varies=.false., &
+            meaning="Name of the real-valued key whose critical value is wanted."), &
+      key_t(group="search", name="low", without="the parameter's own lower end", &
+            at_least=-1.0e30_wp, at_most=1.0e30_wp, &
+            meaning="Where the search begins, in the parameter's unit."), &
+      key_t(group="search", name="high", without="the parameter's own upper end", &
+            at_least=-1.0e30_wp, at_most=1.0e30_wp, &
+            meaning="Where the search ends, in the parameter's unit."), &
+      key_t(group="search", name="tolerance", default="1e-8", above=0.0_wp, below=1.0_wp, &
+            meaning="Width of the bracket that ends the search, relative to the critical value.")]
+
+   !> Keys of &sweep
+   type(key_t), parameter :: sweep_keys(*) = [ &
+      key_t(group="sweep", name="parameter", kind=key_kind%text, varies=.false., &
+            without="must be given", &
+            meaning="Name of the key that takes one value after the other."), &
+      key_t(group="sweep", name="values", kind=key_kind%numbers, varies=.false., &
+            without="texts, or first, last, count", &
+            meaning="The numbers it takes."), &
+      key_t(group="sweep", name="texts", kind=key_kind%texts, varies=.false., &
+            without="values, or first, last, count", &
+            meaning="The words it takes."), &
+      key_t(group="sweep", name="first", varies=.false., without="values or texts", &
+            at_least=-1.0e30_wp, at_most=1.0e30_wp, &
+            meaning="First of count evenly spaced numbers."), &
+      key_t(group="sweep", name="last", varies=.false., without="values or texts", &
+            at_least=-1.0e30_wp, at_most=1.0e30_wp, &
+            meaning="Last of count evenly spaced numbers."), &
+      key_t(group="sweep", name="count", kind=key_kind%whole, varies=.false., &
+            without="values or texts", at_least=1.0_wp, at_most=1.0e7_wp, &
+            meaning="How many numbers from first to last, both included."), &
+      key_t(group="sweep", name="linked", kind=key_kind%flag, default=".false.", &
+            varies=.false., &
+            meaning="Advance together with the &sweep before, instead of multiplying the cases.")]
+
+   !> Keys of &output
+   type(key_t), parameter :: output_keys(*) = [ &
+      key_t(group="output", name="vtu", kind=key_kind%flag, default=".true.", varies=.false., &
+            meaning="Write the blocks of each case for ParaView."), &
+      key_t(group="output", name="joints", kind=key_kind%flag, default=".true.", varies=.false., &
+            meaning="Write forces, openings and states of the joints to joints.csv."), &
+      key_t(group="output", name="frames", kind=key_kind%later, varies=.false., &
+            meaning="Pictures of chosen steps; a later version writes them."), &
+      key_t(group="output", name="max_cases", kind=key_kind%whole, default="100000", &
+            varies=.false., at_least=1.0_wp, at_most=1.0e7_wp, &
+            meaning="Most cases that the &sweep groups may make; more is an error.")]
+
+   !> All keys, group by group
+   type(key_t), parameter :: deck_key(*) = [scene_keys, arch_keys, material_keys, joint_keys, &
+      load_keys, analysis_keys, search_keys, sweep_keys, output_keys]
+
+contains
+
+   !> Place of a key in the registry
+   pure function key_index(group, name) result(i)
+      !> Name of the group, lower case
+      character(len=*), intent(in) :: group
+      !> Name of the key, lower case
+      character(len=*), intent(in) :: name
+      !> Place in deck_key, counted from 1; 0 if there is no such key
+      integer :: i
+
+      do i = size(deck_key), 1, -1
+         if (deck_key(i)%name == name .and. deck_key(i)%group == group) return
+      end do
+   end function key_index
+
+   !> Place of a group in the registry
+   pure function group_index(name) result(i)
+      !> Name of the group, lower case
+      character(len=*), intent(in) :: name
+      !> Place in deck_group, counted from 1; 0 if there is no such group
+      integer :: i
+
+      do i = size(deck_group), 1, -1
+         if (deck_group(i)%name == name) return
+      end do
+   end function group_index
+end module dda_deck_keys

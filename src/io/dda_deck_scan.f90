@@ -1,0 +1,274 @@
+!> Namelist text into tokens with line numbers: the grammar of a deck, not its meaning
+module dda_deck_scan
+   use dda_error, only : error_t, fatal_error
+   use dda_text, only : to_text, lower_case, read_integer
+   use dda_deck_keys, only : max_items
+   use dda_deck_token, only : deck_scan_t, token_kind, token_text, shown, &
+      start, add_token, skip_blanks, word_end, starts_with
+   implicit none
+   private
+
+   public :: scan_deck, scan_values
+
+   !> Longest text in quotes [characters]
+   integer, parameter :: max_text = 1000
+   !> Characters of a name
+   character(len=37), parameter :: name_letters = "abcdefghijklmnopqrstuvwxyz0123456789_"
+
+contains
+
+   !> Cut a deck into tokens
+   pure subroutine scan_deck(text, scan, error)
+      !> Text of the deck, lines ended by line feeds
+      character(len=*), intent(in) :: text
+      !> The tokens
+      type(deck_scan_t), intent(out) :: scan
+      !> What the grammar does not allow, with its line
+      type(error_t), allocatable, intent(out) :: error
+
+      call start(text, scan)
+      do
+         call skip_blanks(scan)
+         if (scan%position > len(scan%text)) exit
+         if (scan%open_group == 0) then
+            call scan_group(scan, error)
+         else
+            call scan_item(scan, error)
+         end if
+         if (allocated(error)) return
+      end do
+      if (scan%open_group > 0) then
+         call not_closed(scan, "the end of the file", error)
+      else if (scan%n == 0) then
+         call fatal_error(error, "wanted at least one group such as &arch, found none", line=1)
+      end if
+   end subroutine scan_deck
+
+   !> Cut the value of a --set into tokens: one value, or several parted by commas or blanks
+   pure subroutine scan_values(text, scan, error)
+      !> Text after the equals sign
+      character(len=*), intent(in) :: text
+      !> The tokens, values all of them
+      type(deck_scan_t), intent(out) :: scan
+      !> What the grammar does not allow
+      type(error_t), allocatable, intent(out) :: error
+      integer :: i
+
+      call start(text, scan)
+      do
+         call skip_blanks(scan)
+         if (scan%position > len(scan%text)) exit
+         call scan_item(scan, error)
+         if (allocated(error)) return
+      end do
+      do i = 1, scan%n
+         if (scan%token(i)%kind == token_kind%key .or. scan%token(i)%kind == token_kind%close) then
+            call fatal_error(error, "wanted values, found '"//shown(text)//"'")
+            return
+         end if
+      end do
+   end subroutine scan_values
+
+   !> Scan the head of a group: & and a name
+   pure subroutine scan_group(scan, error)
+      !> Scanner between two groups
+      type(deck_scan_t), intent(inout) :: scan
+      !> Text between groups, or an ampersand without a name
+      type(error_t), allocatable, intent(out) :: error
+      integer :: first, last
+
+      first = scan%position
+      last = word_end(scan)
+      if (scan%text(first:first) /= "&") then
+         call fatal_error(error, "wanted a group such as &arch, found text between groups: '"// &
+            shown(scan%text(first:max(first, last)))//"'", line=scan%line)
+      else if (last == first .or. &
+         verify(lower_case(scan%text(first + 1:last)), name_letters) > 0) then
+         call fatal_error(error, "wanted the name of a group after '&', found '"// &
+            shown(scan%text(first + 1:last))//"'", line=scan%line)
+      else
+         call add_token(scan, token_kind%group, first + 1, last, 1, error)
+         scan%open_group = scan%n
+         scan%after_comma = .false.
+         scan%position = last + 1
+      end if
+   end subroutine scan_group
+
+   !> Scan what stands at the scanner's place inside a group
+   pure subroutine scan_item(scan, error)
+      !> Scanner inside a group, at a character that is not blank
+      type(deck_scan_t), intent(inout) :: scan
+      !> What the grammar does not allow
+      type(error_t), allocatable, intent(out) :: error
+
+      select case (scan%text(scan%position:scan%position))
+      case ("/")
+         call close_group(scan, 1, error)
+      case ("&")
+         call scan_ampersand(scan, error)
+      case (",")
+         call scan_comma(scan, error)
+      case ("=")
+         call fatal_error(error, "wanted a key before '='", line=scan%line)
+      case ("'", """")
+         call scan_quoted(scan, 1, error)
+      case default
+         call scan_word(scan, error)
+      end select
+   end subroutine scan_item
+
+   !> End the open group
+   pure subroutine close_group(scan, width, error)
+      !> Scanner at the end of a group
+      type(deck_scan_t), intent(inout) :: scan
+      !> Number of characters of the end
+      integer, intent(in) :: width
+      !> Too many tokens
+      type(error_t), allocatable, intent(out) :: error
+
+      call add_token(scan, token_kind%close, scan%position, scan%position, 1, error)
+      scan%position = scan%position + width
+      scan%open_group = 0
+   end subroutine close_group
+
+   !> Scan an ampersand inside a group: &end, or a group that lacks its slash
+   pure subroutine scan_ampersand(scan, error)
+      !> Scanner at the ampersand
+      type(deck_scan_t), intent(inout) :: scan
+      !> The group is not closed
+      type(error_t), allocatable, intent(out) :: error
+      integer :: last
+
+      last = word_end(scan)
+      if (lower_case(scan%text(scan%position:last)) == "&end") then
+         call close_group(scan, 4, error)
+      else
+         call not_closed(scan, "'"//shown(scan%text(scan%position:last))//"' in line "// &
+            to_text(scan%line), error)
+      end if
+   end subroutine scan_ampersand
+
+   !> Scan a comma: the second one in a row leaves an empty value
+   pure subroutine scan_comma(scan, error)
+      !> Scanner at the comma
+      type(deck_scan_t), intent(inout) :: scan
+      !> Too many tokens
+      type(error_t), allocatable, intent(out) :: error
+      logical :: has_value
+
+      has_value = scan%n > 0 .and. .not. scan%after_comma
+      if (has_value) has_value = scan%token(scan%n)%kind == token_kind%word .or. &
+         scan%token(scan%n)%kind == token_kind%quoted
+      if (.not. has_value) then
+         call add_token(scan, token_kind%nothing, scan%position, scan%position - 1, 1, error)
+      end if
+      scan%position = scan%position + 1
+      scan%after_comma = .true.
+   end subroutine scan_comma
+
+   !> Scan a text in quotes
+   pure subroutine scan_quoted(scan, count, error)
+      !> Scanner at the opening quote
+      type(deck_scan_t), intent(inout) :: scan
+      !> Repeat count
+      integer, intent(in) :: count
+      !> No closing quote on the line
+      type(error_t), allocatable, intent(out) :: error
+      character(len=1) :: quote
+      integer :: first, last
+
+      quote = scan%text(scan%position:scan%position)
+      first = scan%position + 1
+      last = first
+      do
+         if (last > len(scan%text) .or. last - first > max_text) exit
+         if (scan%text(last:last) == achar(10)) exit
+         if (scan%text(last:last) /= quote) then
+            last = last + 1
+         else if (starts_with(scan%text(last:), quote//quote)) then
+            last = last + 2
+         else
+            call add_token(scan, token_kind%quoted, first, last - 1, count, error)
+            scan%position = last + 1
+            return
+         end if
+      end do
+      last = min(last - 1, len(scan%text))
+      call fatal_error(error, "wanted a closing quote on the same line after at most "// &
+         to_text(max_text)//" characters, found '"//shown(scan%text(first:last))//"'", &
+         line=scan%line)
+   end subroutine scan_quoted
+
+   !> Scan a word without quotes: a key if an equals sign follows, else a value
+   pure subroutine scan_word(scan, error)
+      !> Scanner at the first letter
+      type(deck_scan_t), intent(inout) :: scan
+      !> A repeat count that makes no sense
+      type(error_t), allocatable, intent(out) :: error
+      integer :: first, last, star, count, line
+
+      first = scan%position
+      last = word_end(scan)
+      line = scan%line
+      star = index(scan%text(first:last), "*")
+      count = 1
+      if (star > 0) call repeat_count(scan, first, star, count, error)
+      if (allocated(error)) return
+      scan%position = last + 1
+      if (star > 0) first = first + star
+      if (first > last .and. scan%position <= len(scan%text)) then
+         if (scan%text(scan%position:scan%position) == "'" .or. &
+            scan%text(scan%position:scan%position) == """") then
+            call scan_quoted(scan, count, error)
+            return
+         end if
+      end if
+      call skip_blanks(scan)
+      if (star == 0 .and. starts_with(scan%text(scan%position:), "=")) then
+         call add_token(scan, token_kind%key, first, last, 1, error)
+         scan%position = scan%position + 1
+      else
+         call add_token(scan, token_kind%word, first, last, count, error)
+      end if
+      scan%token(scan%n)%line = line
+   end subroutine scan_word
+
+   !> Read the repeat count r of r*c
+   pure subroutine repeat_count(scan, first, star, count, error)
+      !> Scanner at the word
+      type(deck_scan_t), intent(in) :: scan
+      !> First character of the word
+      integer, intent(in) :: first
+      !> Place of the star in the word
+      integer, intent(in) :: star
+      !> The repeat count
+      integer, intent(out) :: count
+      !> No whole number, or one out of range
+      type(error_t), allocatable, intent(out) :: error
+      logical :: ok
+
+      call read_integer(scan%text(first:first + star - 2), count, ok)
+      if (ok) ok = count >= 1 .and. count <= max_items
+      if (ok) return
+      call fatal_error(error, "wanted a repeat count from 1 to "//to_text(max_items)// &
+         " before '*', found '"//shown(scan%text(first:first + star - 2))//"'", line=scan%line)
+   end subroutine repeat_count
+
+   !> The error of a group without its slash
+   pure subroutine not_closed(scan, found, error)
+      !> Scanner where the end was missed
+      type(deck_scan_t), intent(in) :: scan
+      !> What was found instead of the slash
+      character(len=*), intent(in) :: found
+      !> The failure, at the line of the group
+      type(error_t), allocatable, intent(out) :: error
+
+      if (scan%open_group == 0) then
+         call fatal_error(error, "wanted values, found "//found)
+      else
+         call fatal_error(error, "wanted '/' at the end of &"// &
+            token_text(scan, scan%open_group)//", found "//found, &
+            line=scan%token(scan%open_group)%line)
+      end if
+   end subroutine not_closed
+end module dda_deck_scan

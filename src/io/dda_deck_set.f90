@@ -1,0 +1,266 @@
+!> Put values into a deck: each one is checked against the registry first
+module dda_deck_set
+   use dda_kinds, only : wp
+   use dda_error, only : error_t
+   use dda_text, only : to_text, lower_case
+   use dda_deck_keys, only : key_t, deck_key, key_kind, key_index
+   use dda_deck_words, only : wanted, quoted_words, full_name
+   use dda_deck_token, only : shown
+   use dda_deck, only : deck_t, deck_place_t, parameter_t, deck_error
+   use dda_deck_parameter, only : find_parameter
+   implicit none
+   private
+
+   public :: set_number, set_text, put_number, put_numbers, put_text
+   public :: number_problem, text_problem, is_numeric
+
+contains
+
+   !> Give a parameter a number by name
+   pure subroutine set_number(deck, name, value, error)
+      !> The deck
+      type(deck_t), intent(inout) :: deck
+      !> Name of a key that may vary: friction_deg, joints_deg(2), arch%radius
+      character(len=*), intent(in) :: name
+      !> The number in the unit of the registry
+      real(wp), intent(in) :: value
+      !> No such key, or out of its range
+      type(error_t), allocatable, intent(out) :: error
+      type(parameter_t) :: parameter
+      character(len=:), allocatable :: problem
+
+      call find_parameter(name, parameter, problem)
+      if (len(problem) > 0) then
+         call deck_error(error, problem, deck, deck_place_t())
+      else
+         call put_number(deck, parameter, value, deck_place_t(), error)
+      end if
+   end subroutine set_number
+
+   !> Give a parameter a word by name
+   pure subroutine set_text(deck, name, value, error)
+      !> The deck
+      type(deck_t), intent(inout) :: deck
+      !> Name of a key that may vary: springing, analysis%geometry
+      character(len=*), intent(in) :: name
+      !> The word
+      character(len=*), intent(in) :: value
+      !> No such key, or a word that it does not know
+      type(error_t), allocatable, intent(out) :: error
+      type(parameter_t) :: parameter
+      character(len=:), allocatable :: problem
+
+      call find_parameter(name, parameter, problem)
+      if (len(problem) > 0) then
+         call deck_error(error, problem, deck, deck_place_t())
+      else
+         call put_text(deck, parameter, value, deck_place_t(), error)
+      end if
+   end subroutine set_text
+
+   !> Put a number into a key or into one item of its list
+   pure subroutine put_number(deck, parameter, value, place, error)
+      !> The deck
+      type(deck_t), intent(inout) :: deck
+      !> The key, with the item if it is a list
+      type(parameter_t), intent(in) :: parameter
+      !> The number in the unit of the registry
+      real(wp), intent(in) :: value
+      !> Where it was written
+      type(deck_place_t), intent(in) :: place
+      !> Not a number's key, out of range, or an item that the list lacks
+      type(error_t), allocatable, intent(out) :: error
+      character(len=:), allocatable :: problem
+      integer :: n
+
+      problem = number_problem(parameter%key, value)
+      associate (held => deck%value(parameter%key))
+         n = 0
+         if (allocated(held%numbers)) n = size(held%numbers)
+         if (parameter%item > n) problem = full_name(deck_key(parameter%key))// &
+            " has no item "//to_text(parameter%item)//": its list has "//to_text(n)
+         if (len(problem) > 0) then
+            call deck_error(error, problem, deck, place)
+            return
+         end if
+         if (parameter%item > 0) then
+            held%numbers(parameter%item) = value
+         else
+            held%number = value
+         end if
+         held%given = .true.
+         held%place = place
+      end associate
+      if (parameter%item > 0) call follow_joints(deck)
+   end subroutine put_number
+
+   !> Put a list of numbers into a key
+   pure subroutine put_numbers(deck, key, values, place, error)
+      !> The deck
+      type(deck_t), intent(inout) :: deck
+      !> Place of the key in the registry
+      integer, intent(in) :: key
+      !> The numbers in the unit of the registry: (n)
+      real(wp), intent(in) :: values(:)
+      !> Where they were written
+      type(deck_place_t), intent(in) :: place
+      !> One of them is out of range
+      type(error_t), allocatable, intent(out) :: error
+      character(len=:), allocatable :: problem
+      integer :: i
+
+      do i = 1, size(values)
+         problem = number_problem(key, values(i))
+         if (len(problem) == 0) cycle
+         call deck_error(error, problem, deck, place)
+         return
+      end do
+      deck%value(key)%numbers = values
+      deck%value(key)%given = .true.
+      deck%value(key)%place = place
+      call follow_joints(deck)
+   end subroutine put_numbers
+
+   !> Put a text, a word or the text of a flag into a key
+   pure subroutine put_text(deck, parameter, text, place, error)
+      !> The deck
+      type(deck_t), intent(inout) :: deck
+      !> The key
+      type(parameter_t), intent(in) :: parameter
+      !> The text
+      character(len=*), intent(in) :: text
+      !> Where it was written
+      type(deck_place_t), intent(in) :: place
+      !> Not a text's key, or a word that it does not know
+      type(error_t), allocatable, intent(out) :: error
+      character(len=:), allocatable :: problem
+      logical :: unused
+
+      problem = text_problem(parameter%key, text)
+      if (len(problem) > 0) then
+         call deck_error(error, problem, deck, place)
+         return
+      end if
+      associate (held => deck%value(parameter%key))
+         select case (deck_key(parameter%key)%kind)
+         case (key_kind%flag)
+            call read_flag(text, held%flag, unused)
+         case (key_kind%word)
+            held%text = lower_case(trim(text))
+         case default
+            held%text = trim(text)
+         end select
+         held%given = .true.
+         held%place = place
+      end associate
+   end subroutine put_text
+
+   !> Why a number cannot be the value of a key
+   pure function number_problem(key, value) result(problem)
+      !> Place of the key in the registry
+      integer, intent(in) :: key
+      !> The number
+      real(wp), intent(in) :: value
+      !> What was wanted and what was found; empty if the number will do
+      character(len=:), allocatable :: problem
+      logical :: fits
+
+      problem = ""
+      fits = is_numeric(key)
+      if (fits) fits = value >= deck_key(key)%at_least .and. value <= deck_key(key)%at_most &
+         .and. value > deck_key(key)%above .and. value < deck_key(key)%below
+      if (fits .and. deck_key(key)%kind == key_kind%whole) then
+         fits = .not. abs(value - anint(value)) > 0.0_wp
+      end if
+      if (fits) return
+      problem = full_name(deck_key(key))//" wants "//wanted(deck_key(key))//", found "// &
+         to_text(value)
+   end function number_problem
+
+   !> Why a text cannot be the value of a key
+   pure function text_problem(key, text) result(problem)
+      !> Place of the key in the registry
+      integer, intent(in) :: key
+      !> The text
+      character(len=*), intent(in) :: text
+      !> What was wanted and what was found; empty if the text will do
+      character(len=:), allocatable :: problem
+      type(key_t) :: entry
+      logical :: fits, flag
+
+      problem = ""
+      entry = deck_key(key)
+      select case (entry%kind)
+      case (key_kind%word)
+         fits = has_word(entry%words, text)
+         if (has_word(entry%later, text)) problem = full_name(entry)//" = "// &
+            quoted_words(lower_case(trim(text)))//" is not yet there: this version takes "// &
+            quoted_words(entry%words)
+      case (key_kind%flag)
+         call read_flag(text, flag, fits)
+      case default
+         fits = entry%kind == key_kind%text
+      end select
+      if (.not. fits .and. len(problem) == 0) problem = full_name(entry)//" wants "// &
+         wanted(entry)//", found '"//shown(trim(text))//"'"
+   end function text_problem
+
+   !> Whether a list of words holds a word, whatever its case
+   pure function has_word(words, text) result(yes)
+      !> Words parted by one blank
+      character(len=*), intent(in) :: words
+      !> The word
+      character(len=*), intent(in) :: text
+      !> The answer
+      logical :: yes
+
+      yes = len_trim(text) > 0 .and. index(trim(text), " ") == 0
+      if (yes) yes = index(" "//words//" ", " "//lower_case(trim(text))//" ") > 0
+   end function has_word
+
+   !> Read .true., .false., T, F and what is like them
+   pure subroutine read_flag(text, flag, ok)
+      !> The text
+      character(len=*), intent(in) :: text
+      !> The flag; left as it was if the text is none
+      logical, intent(inout) :: flag
+      !> Whether the text is a flag
+      logical, intent(out) :: ok
+
+      ok = .true.
+      select case (lower_case(text))
+      case (".true.", "true", "t", ".t.")
+         flag = .true.
+      case (".false.", "false", "f", ".f.")
+         flag = .false.
+      case default
+         ok = .false.
+      end select
+   end subroutine read_flag
+
+   !> Whether a key takes numbers
+   pure function is_numeric(key) result(yes)
+      !> Place of the key in the registry
+      integer, intent(in) :: key
+      !> The answer
+      logical :: yes
+
+      yes = any(deck_key(key)%kind == [key_kind%number, key_kind%whole, key_kind%numbers])
+   end function is_numeric
+
+   !> Half angle and number of voussoirs follow joints_deg where they are not given
+   pure subroutine follow_joints(deck)
+      !> The deck
+      type(deck_t), intent(inout) :: deck
+      integer :: n
+
+      associate (joints => deck%value(key_index("arch", "joints_deg")), &
+         angle => deck%value(key_index("arch", "half_angle_deg")), &
+         voussoirs => deck%value(key_index("arch", "voussoirs")))
+         n = size(joints%numbers)
+         if (n == 0) return
+         if (.not. angle%given) angle%number = joints%numbers(n)
+         if (.not. voussoirs%given) voussoirs%number = real(2*(n - 1), wp)
+      end associate
+   end subroutine follow_joints
+end module dda_deck_set

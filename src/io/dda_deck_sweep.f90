@@ -1,0 +1,299 @@
+!> Sweeps into cases: the last &sweep runs fastest, a linked one goes with the one before it
+module dda_deck_sweep
+   use dda_kinds, only : wp
+   use dda_error, only : error_t
+   use dda_text, only : to_text, lower_case
+   use dda_deck_keys, only : deck_key, key_index, word_length
+   use dda_deck_words, only : wanted, full_name
+   use dda_deck, only : deck_t, deck_value_t, deck_sweep_t, deck_place_t, parameter_t, &
+      deck_error, real_of, integer_of, text_of, flag_of, is_given, place_of
+   use dda_deck_parameter, only : find_parameter, parameter_name
+   use dda_deck_set, only : put_number, put_text, number_problem, text_problem, is_numeric
+   implicit none
+   private
+
+   public :: add_sweep, n_cases, case_deck, set_case, swept_names, swept_texts, max_sweeps
+
+   !> Most &sweep groups of a deck
+   integer, parameter :: max_sweeps = 8
+
+contains
+
+   !> Turn the keys of the &sweep that was just read into the next sweep of the deck
+   pure subroutine add_sweep(deck, place, error)
+      !> The deck; the keys of &sweep are put back to their defaults
+      type(deck_t), intent(inout) :: deck
+      !> Where the group begins
+      type(deck_place_t), intent(in) :: place
+      !> Keys that do not go together, or a value that the parameter cannot take
+      type(error_t), allocatable, intent(out) :: error
+      type(deck_sweep_t) :: sweep
+      character(len=:), allocatable :: problem
+      integer :: i
+
+      sweep%place = place
+      if (size(deck%sweep) == max_sweeps) then
+         call deck_error(error, "wanted at most "//to_text(max_sweeps)//" &sweep groups", &
+            deck, place)
+         return
+      end if
+      if (.not. is_given(deck, "sweep", "parameter")) then
+         call deck_error(error, "wanted sweep%parameter, the name of a key", deck, place)
+         return
+      end if
+      call find_parameter(text_of(deck, "sweep", "parameter"), sweep%parameter, problem)
+      if (len(problem) > 0) then
+         call deck_error(error, "sweep%parameter: "//problem, deck, &
+            place_of(deck, key_index("sweep", "parameter")))
+         return
+      end if
+      sweep%linked = flag_of(deck, "sweep", "linked")
+      call take_values(deck, sweep, error)
+      if (.not. allocated(error)) call check_values(deck, sweep, error)
+      if (allocated(error)) return
+      call append(deck%sweep, sweep)
+      do i = 1, size(deck_key)
+         if (deck_key(i)%group == "sweep") call forget(deck%value(i))
+      end do
+   end subroutine add_sweep
+
+   !> Append a sweep to a list of sweeps
+   pure subroutine append(list, sweep)
+      !> The list: (n), then (n + 1)
+      type(deck_sweep_t), allocatable, intent(inout) :: list(:)
+      !> The sweep
+      type(deck_sweep_t), intent(in) :: sweep
+      type(deck_sweep_t), allocatable :: longer(:)
+      integer :: n
+
+      n = size(list)
+      allocate (longer(n + 1))
+      longer(:n) = list
+      longer(n + 1) = sweep
+      call move_alloc(longer, list)
+   end subroutine append
+
+   !> Put a key of &sweep back to its default, ready for the next &sweep
+   pure subroutine forget(value)
+      !> The value
+      type(deck_value_t), intent(inout) :: value
+
+      value%given = .false.
+      value%place = deck_place_t()
+      value%flag = .false.
+      value%number = 0.0_wp
+   end subroutine forget
+
+   !> Take the values of a sweep from exactly one of: values, texts, (first, last, count)
+   pure subroutine take_values(deck, sweep, error)
+      !> The deck, the keys of &sweep filled
+      type(deck_t), intent(in) :: deck
+      !> The sweep
+      type(deck_sweep_t), intent(inout) :: sweep
+      !> None of them or more than one
+      type(error_t), allocatable, intent(out) :: error
+      logical :: has_values, has_texts, has_any, has_all
+      integer :: i, s
+
+      has_values = is_given(deck, "sweep", "values")
+      has_texts = is_given(deck, "sweep", "texts")
+      has_any = is_given(deck, "sweep", "first") .or. is_given(deck, "sweep", "last") .or. &
+         is_given(deck, "sweep", "count")
+      has_all = is_given(deck, "sweep", "first") .and. is_given(deck, "sweep", "last") .and. &
+         is_given(deck, "sweep", "count")
+      if (count([has_values, has_texts, has_any]) /= 1 .or. (has_any .neqv. has_all)) then
+         call deck_error(error, "wanted exactly one of: values, texts, or first with last "// &
+            "and count", deck, sweep%place)
+         return
+      end if
+      allocate (sweep%numbers(0), sweep%texts(0))
+      if (has_values) then
+         i = key_index("sweep", "values")
+         sweep%numbers = deck%value(i)%numbers
+      else if (has_texts) then
+         i = key_index("sweep", "texts")
+         sweep%texts = deck%value(i)%texts
+         do s = 1, size(sweep%texts)
+            sweep%texts(s) = lower_case(sweep%texts(s))
+         end do
+      else
+         i = key_index("sweep", "first")
+         call space_evenly(deck, sweep, error)
+      end if
+      sweep%place = deck%value(i)%place
+   end subroutine take_values
+
+   !> Values from first to last in equal steps
+   pure subroutine space_evenly(deck, sweep, error)
+      !> The deck, the keys of &sweep filled
+      type(deck_t), intent(in) :: deck
+      !> The sweep
+      type(deck_sweep_t), intent(inout) :: sweep
+      !> One value for two ends
+      type(error_t), allocatable, intent(out) :: error
+      real(wp) :: first, last
+      integer :: n, i
+
+      first = real_of(deck, "sweep", "first")
+      last = real_of(deck, "sweep", "last")
+      n = integer_of(deck, "sweep", "count")
+      if (n == 1 .and. abs(last - first) > 0.0_wp) then
+         call deck_error(error, "sweep%count = 1 wants the same first and last", deck, &
+            place_of(deck, key_index("sweep", "count")))
+      else
+         sweep%numbers = [(first + (last - first)*real(i - 1, wp)/real(max(n - 1, 1), wp), &
+            i=1, n)]
+         sweep%numbers(n) = last
+      end if
+   end subroutine space_evenly
+
+   !> Whether the parameter of a sweep can take all of its values
+   pure subroutine check_values(deck, sweep, error)
+      !> The deck
+      type(deck_t), intent(in) :: deck
+      !> The sweep
+      type(deck_sweep_t), intent(in) :: sweep
+      !> Words for numbers, numbers for words, or a value out of range
+      type(error_t), allocatable, intent(out) :: error
+      character(len=:), allocatable :: problem
+      integer :: i
+
+      problem = ""
+      associate (key => sweep%parameter%key)
+         if (is_numeric(key) .neqv. size(sweep%numbers) > 0) problem = "wanted "// &
+            trim(merge("values", "texts ", is_numeric(key)))//": "// &
+            full_name(deck_key(key))//" wants "//wanted(deck_key(key))
+         do i = 1, size(sweep%numbers)
+            if (len(problem) == 0) problem = number_problem(key, sweep%numbers(i))
+         end do
+         do i = 1, size(sweep%texts)
+            if (len(problem) == 0) problem = text_problem(key, sweep%texts(i))
+         end do
+      end associate
+      if (len(problem) > 0) call deck_error(error, problem, deck, sweep%place)
+   end subroutine check_values
+
+   !> Number of values of a sweep
+   pure function n_values(sweep) result(n)
+      !> The sweep
+      type(deck_sweep_t), intent(in) :: sweep
+      !> How many
+      integer :: n
+
+      n = size(sweep%numbers) + size(sweep%texts)
+   end function n_values
+
+   !> Number of cases of a deck
+   pure function n_cases(deck) result(n)
+      !> The deck
+      type(deck_t), intent(in) :: deck
+      !> Product over the sweeps that are not linked; 1 without a sweep; at most huge(1)
+      integer :: n
+      integer :: s
+
+      n = 1
+      do s = 1, size(deck%sweep)
+         if (deck%sweep(s)%linked) cycle
+         if (n > huge(1)/max(n_values(deck%sweep(s)), 1)) then
+            n = huge(1)
+         else
+            n = n*n_values(deck%sweep(s))
+         end if
+      end do
+   end function n_cases
+
+   !> Which value each sweep has in a case
+   pure function positions(deck, number) result(position)
+      !> The deck
+      type(deck_t), intent(in) :: deck
+      !> Number of the case, from 1 to n_cases
+      integer, intent(in) :: number
+      !> Place of the value in each sweep: (n)
+      integer :: position(size(deck%sweep))
+      integer :: s, rest
+
+      rest = number - 1
+      do s = size(deck%sweep), 1, -1
+         if (deck%sweep(s)%linked) cycle
+         position(s) = mod(rest, n_values(deck%sweep(s))) + 1
+         rest = rest/n_values(deck%sweep(s))
+      end do
+      do s = 2, size(deck%sweep)
+         if (deck%sweep(s)%linked) position(s) = position(s - 1)
+      end do
+   end function positions
+
+   !> Put the swept values of a case into a deck
+   pure subroutine set_case(deck, number, error)
+      !> The deck; it may hold the values of another case
+      type(deck_t), intent(inout) :: deck
+      !> Number of the case, from 1 to n_cases
+      integer, intent(in) :: number
+      !> An item of a list that is not there; never for a deck that was checked
+      type(error_t), allocatable, intent(out) :: error
+      integer :: position(size(deck%sweep)), s
+
+      position = positions(deck, number)
+      do s = 1, size(deck%sweep)
+         associate (sweep => deck%sweep(s))
+            if (size(sweep%numbers) > 0) then
+               call put_number(deck, sweep%parameter, sweep%numbers(position(s)), &
+                  sweep%place, error)
+            else
+               call put_text(deck, sweep%parameter, sweep%texts(position(s)), sweep%place, error)
+            end if
+         end associate
+         if (allocated(error)) return
+      end do
+   end subroutine set_case
+
+   !> The deck of one case
+   pure subroutine case_deck(deck, number, result, error)
+      !> The deck with its sweeps
+      type(deck_t), intent(in) :: deck
+      !> Number of the case, from 1 to n_cases
+      integer, intent(in) :: number
+      !> The same deck with the swept values of the case
+      type(deck_t), intent(out) :: result
+      !> As in set_case
+      type(error_t), allocatable, intent(out) :: error
+
+      result = deck
+      call set_case(result, number, error)
+   end subroutine case_deck
+
+   !> Names of the swept parameters
+   pure function swept_names(deck) result(names)
+      !> The deck
+      type(deck_t), intent(in) :: deck
+      !> One name a sweep, such as friction_deg or joints_deg(2): (n)
+      character(len=word_length) :: names(size(deck%sweep))
+      integer :: s
+
+      do s = 1, size(deck%sweep)
+         names(s) = parameter_name(deck%sweep(s)%parameter)
+      end do
+   end function swept_names
+
+   !> Values of the swept parameters in a case, as text
+   pure function swept_texts(deck, number) result(texts)
+      !> The deck
+      type(deck_t), intent(in) :: deck
+      !> Number of the case, from 1 to n_cases
+      integer, intent(in) :: number
+      !> One text a sweep; numbers read back as the same doubles: (n)
+      character(len=word_length) :: texts(size(deck%sweep))
+      integer :: position(size(deck%sweep)), s
+
+      position = positions(deck, number)
+      do s = 1, size(deck%sweep)
+         associate (sweep => deck%sweep(s))
+            if (size(sweep%numbers) > 0) then
+               texts(s) = to_text(sweep%numbers(position(s)))
+            else
+               texts(s) = sweep%texts(position(s))
+            end if
+         end associate
+      end do
+   end function swept_texts
+end module dda_deck_sweep

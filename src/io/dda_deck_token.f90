@@ -1,0 +1,214 @@
+!> Tokens of a deck and the cursor that walks over its text
+!>
+!> Tokens are places in the text, not copies: groups, keys, values and group ends in their order.
+module dda_deck_token
+   use dda_error, only : error_t, fatal_error
+   use dda_text, only : to_text, lower_case
+   implicit none
+   private
+
+   public :: deck_scan_t, token_t, token_kind, token_text, shown
+   public :: start, add_token, skip_blanks, word_end, starts_with
+
+   !> Most tokens of a deck
+   integer, parameter :: max_tokens = 2000000
+   !> Blanks of a namelist: blank, tab, line feed
+   character(len=3), parameter :: blanks = " "//achar(9)//achar(10)
+   !> What ends a word without quotes
+   character(len=9), parameter :: word_ends = blanks//",/=!'"""
+
+   !> What a token is
+   type :: token_kind_enum
+      !> & and the name of a group
+      integer :: group = 1
+      !> Name before an equals sign
+      integer :: key = 2
+      !> Value without quotes
+      integer :: word = 3
+      !> Value in quotes
+      integer :: quoted = 4
+      !> Nothing between two commas
+      integer :: nothing = 5
+      !> Slash that ends a group
+      integer :: close = 6
+   end type token_kind_enum
+
+   !> The kinds of token by name
+   type(token_kind_enum), parameter :: token_kind = token_kind_enum()
+
+   !> One token of a deck
+   type :: token_t
+      !> One of token_kind
+      integer :: kind = 0
+      !> First character in the text; quotes and repeat count left out
+      integer :: first = 1
+      !> Last character in the text
+      integer :: last = 0
+      !> Line of the text, counted from 1
+      integer :: line = 0
+      !> Repeat count r of r*c
+      integer :: count = 1
+   end type token_t
+
+   !> A text and its tokens, and the place of the scanner while it works
+   type :: deck_scan_t
+      !> The text, its lines ended by line feeds
+      character(len=:), allocatable :: text
+      !> Tokens in their order: (n)
+      type(token_t), allocatable :: token(:)
+      !> Number of tokens
+      integer :: n = 0
+      !> Next character to look at
+      integer :: position = 1
+      !> Line of that character
+      integer :: line = 1
+      !> Whether a comma stands before that character with no value between
+      logical :: after_comma = .false.
+      !> Token of the group that is open; 0 between groups
+      integer :: open_group = 0
+   end type deck_scan_t
+
+contains
+
+   !> Text of a token: names in lower case, doubled quotes made single
+   pure function token_text(scan, i) result(text)
+      !> A scanned text
+      type(deck_scan_t), intent(in) :: scan
+      !> Place of the token
+      integer, intent(in) :: i
+      !> Its text
+      character(len=:), allocatable :: text
+      character(len=1) :: quote
+      integer :: at, next
+
+      associate (token => scan%token(i))
+         text = scan%text(token%first:token%last)
+         if (token%kind == token_kind%group .or. token%kind == token_kind%key) then
+            text = lower_case(text)
+         else if (token%kind == token_kind%quoted) then
+            quote = scan%text(token%first - 1:token%first - 1)
+            at = 1
+            do
+               next = index(text(at:), quote)
+               if (next == 0) exit
+               text = text(:at + next - 1)//text(at + next + 1:)
+               at = at + next
+            end do
+         end if
+      end associate
+   end function token_text
+
+   !> Text fit for a message: no control characters, not too long
+   pure function shown(text) result(clean)
+      !> Any text
+      character(len=*), intent(in) :: text
+      !> One line of at most 60 characters; each character that is not ASCII becomes one '?'
+      character(len=:), allocatable :: clean
+      character(len=60) :: buffer
+      integer :: i, n, code
+
+      n = 0
+      do i = 1, len(text)
+         code = ichar(text(i:i))
+         if (code >= 128 .and. code < 192) cycle
+         if (n == len(buffer)) then
+            buffer(n - 2:) = "..."
+            exit
+         end if
+         n = n + 1
+         buffer(n:n) = text(i:i)
+         if (code < 32 .or. code > 126) buffer(n:n) = "?"
+      end do
+      clean = buffer(:n)
+   end function shown
+
+   !> Stand at the beginning of a text
+   pure subroutine start(text, scan)
+      !> The text
+      character(len=*), intent(in) :: text
+      !> Scanner without tokens
+      type(deck_scan_t), intent(out) :: scan
+
+      scan%text = text
+      allocate (scan%token(64))
+   end subroutine start
+
+   !> Append a token at the scanner's line
+   pure subroutine add_token(scan, kind, first, last, count, error)
+      !> Scanner
+      type(deck_scan_t), intent(inout) :: scan
+      !> One of token_kind
+      integer, intent(in) :: kind
+      !> First character
+      integer, intent(in) :: first
+      !> Last character
+      integer, intent(in) :: last
+      !> Repeat count
+      integer, intent(in) :: count
+      !> Too many tokens
+      type(error_t), allocatable, intent(out) :: error
+      type(token_t), allocatable :: longer(:)
+
+      if (scan%n == max_tokens) then
+         call fatal_error(error, "wanted at most "//to_text(max_tokens)// &
+            " groups, keys and values", line=scan%line)
+         return
+      end if
+      if (scan%n == size(scan%token)) then
+         allocate (longer(2*scan%n))
+         longer(:scan%n) = scan%token
+         call move_alloc(longer, scan%token)
+      end if
+      scan%n = scan%n + 1
+      scan%token(scan%n) = token_t(kind, first, last, scan%line, count)
+      scan%after_comma = .false.
+   end subroutine add_token
+
+   !> Go to the next character that is neither blank nor comment
+   pure subroutine skip_blanks(scan)
+      !> Scanner
+      type(deck_scan_t), intent(inout) :: scan
+      integer :: next
+
+      do while (scan%position <= len(scan%text))
+         if (scan%text(scan%position:scan%position) == "!") then
+            next = index(scan%text(scan%position:), achar(10))
+            if (next == 0) next = len(scan%text) - scan%position + 2
+            scan%position = scan%position + next - 1
+         else if (verify(scan%text(scan%position:scan%position), blanks) > 0) then
+            exit
+         else
+            if (scan%text(scan%position:scan%position) == achar(10)) scan%line = scan%line + 1
+            scan%position = scan%position + 1
+         end if
+      end do
+   end subroutine skip_blanks
+
+   !> Last character of the word at the scanner's place
+   pure function word_end(scan) result(last)
+      !> Scanner at the first letter
+      type(deck_scan_t), intent(in) :: scan
+      !> Place of the last letter; one before the scanner's if a word end stands there
+      integer :: last
+
+      last = scan%position
+      do while (last <= len(scan%text))
+         if (index(word_ends, scan%text(last:last)) > 0) exit
+         last = last + 1
+      end do
+      last = last - 1
+   end function word_end
+
+   !> Whether a text begins with another
+   pure function starts_with(text, beginning) result(yes)
+      !> Text to look at
+      character(len=*), intent(in) :: text
+      !> How it should begin
+      character(len=*), intent(in) :: beginning
+      !> The answer
+      logical :: yes
+
+      yes = len(text) >= len(beginning)
+      if (yes) yes = text(:len(beginning)) == beginning
+   end function starts_with
+end module dda_deck_token

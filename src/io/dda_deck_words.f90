@@ -1,0 +1,219 @@
+!> The registry in words: what a key wants, which key was meant, the printed help
+module dda_deck_words
+   use dda_kinds, only : wp
+   use dda_text, only : to_text
+   use dda_deck_keys, only : key_t, key_kind, deck_key, deck_group, word_length
+   implicit none
+   private
+
+   public :: wanted, range_text, quoted_words, full_name, near_group, near_key, deck_help
+
+   !> Longest word that is compared letter by letter [characters]
+   integer, parameter :: longest = 40
+
+contains
+
+   !> What a key takes: kind of value, unit and range
+   pure function wanted(key) result(text)
+      !> Entry of the registry
+      type(key_t), intent(in) :: key
+      !> Words such as: a number [m] from 1e-9 to 1e9
+      character(len=:), allocatable :: text
+
+      select case (key%kind)
+      case (key_kind%number)
+         text = "a number"//unit_text(key)//range_text(key)
+      case (key_kind%whole)
+         text = "a whole number"//unit_text(key)//range_text(key)
+      case (key_kind%numbers)
+         text = "a list of numbers"//unit_text(key)//range_text(key)
+      case (key_kind%word)
+         text = quoted_words(key%words)
+      case (key_kind%texts)
+         text = "a list of words in quotes, each of at most "//to_text(word_length)//" characters"
+      case (key_kind%flag)
+         text = ".true. or .false."
+      case default
+         text = "a text in quotes"
+      end select
+   end function wanted
+
+   !> Unit in brackets
+   pure function unit_text(key) result(text)
+      !> Entry of the registry
+      type(key_t), intent(in) :: key
+      !> The unit after a blank; empty if there is none
+      character(len=:), allocatable :: text
+
+      text = ""
+      if (len_trim(key%unit) > 0) text = " ["//trim(key%unit)//"]"
+   end function unit_text
+
+   !> Range of a number
+   pure function range_text(key) result(text)
+      !> Entry of the registry
+      type(key_t), intent(in) :: key
+      !> The range after a blank, such as: from 0 to 90; empty if all numbers will do
+      character(len=:), allocatable :: text
+      real(wp), parameter :: none = huge(1.0_wp)
+      character(len=:), allocatable :: comma
+
+      text = ""
+      comma = ""
+      if (key%at_least > -none) text = " from "//bound_text(key%at_least)
+      if (key%above > -none) text = " above "//bound_text(key%above)
+      if (len(text) > 0) comma = ","
+      if (key%at_most < none) text = text//" to "//bound_text(key%at_most)
+      if (key%below < none) text = text//comma//" below "//bound_text(key%below)
+   end function range_text
+
+   !> A bound of a range; a one with many zeros as a power of ten
+   pure function bound_text(bound) result(text)
+      !> The bound
+      real(wp), intent(in) :: bound
+      !> Such as: 0.5, 1000 or 1e9
+      character(len=:), allocatable :: text
+      integer :: zeros
+
+      text = to_text(bound)
+      zeros = len(text) - 1
+      if (zeros > 6 .and. text == "1"//repeat("0", zeros)) text = "1e"//to_text(zeros)
+   end function bound_text
+
+   !> A list of words, each in quotes
+   pure function quoted_words(words) result(text)
+      !> Words parted by one blank
+      character(len=*), intent(in) :: words
+      !> Such as: 'stress' or 'strain'
+      character(len=:), allocatable :: text
+      integer :: first, blank
+
+      text = ""
+      first = 1
+      do while (first <= len_trim(words))
+         blank = index(words(first:)//" ", " ")
+         if (len(text) > 0) text = text//" or "
+         text = text//"'"//words(first:first + blank - 2)//"'"
+         first = first + blank
+      end do
+   end function quoted_words
+
+   !> Name of a key with its group
+   pure function full_name(key) result(name)
+      !> Entry of the registry
+      type(key_t), intent(in) :: key
+      !> Such as: arch%radius
+      character(len=:), allocatable :: name
+
+      name = trim(key%group)//"%"//trim(key%name)
+   end function full_name
+
+   !> The group that was meant
+   pure function near_group(name) result(text)
+      !> Name that is no group
+      character(len=*), intent(in) :: name
+      !> Sentence that names the nearest group
+      character(len=:), allocatable :: text
+
+      text = "the nearest known group is &"//nearest_word(name, deck_group%name)
+   end function near_group
+
+   !> The key that was meant
+   pure function near_key(name, group) result(text)
+      !> Name that is no key of the group
+      character(len=*), intent(in) :: name
+      !> Name of the group; empty if any group will do
+      character(len=*), intent(in) :: group
+      !> Sentence that names the group of that key, or the nearest key
+      character(len=:), allocatable :: text
+      logical :: fits(size(deck_key))
+      integer :: i
+
+      do i = 1, size(deck_key)
+         if (deck_key(i)%name /= name) cycle
+         text = "it is a key of &"//trim(deck_key(i)%group)
+         return
+      end do
+      fits = deck_key%group == group .or. (len(group) == 0 .and. deck_key%varies)
+      text = "the nearest known key is "//nearest_word(name, pack(deck_key%name, fits))
+   end function near_key
+
+   !> The word of a list that is nearest to a word, which may be the beginning of one
+   pure function nearest_word(word, list) result(found)
+      !> Word to compare
+      character(len=*), intent(in) :: word
+      !> Words to choose from: (n)
+      character(len=*), intent(in) :: list(:)
+      !> The first of the nearest ones
+      character(len=:), allocatable :: found
+      integer :: i, changes, fewest
+
+      found = ""
+      fewest = huge(1)
+      do i = 1, size(list)
+         changes = min(edit_distance(word, trim(list(i))), 1 + edit_distance(word, &
+            list(i)(:min(len(word), len_trim(list(i))))))
+         if (changes >= fewest) cycle
+         fewest = changes
+         found = trim(list(i))
+      end do
+   end function nearest_word
+
+   !> Fewest letters to insert, delete or replace to turn one word into another (Levenshtein)
+   pure function edit_distance(a, b) result(distance)
+      !> First word; only its beginning counts where it is very long
+      character(len=*), intent(in) :: a
+      !> Second word
+      character(len=*), intent(in) :: b
+      !> Number of changes
+      integer :: distance
+      integer :: row(0:len(b)), diagonal, above, i, j
+
+      row = [(j, j=0, len(b))]
+      do i = 1, min(len(a), longest)
+         diagonal = row(0)
+         row(0) = i
+         do j = 1, len(b)
+            above = row(j)
+            row(j) = min(above + 1, row(j - 1) + 1, diagonal + merge(0, 1, a(i:i) == b(j:j)))
+            diagonal = above
+         end do
+      end do
+      distance = row(len(b))
+   end function edit_distance
+
+   !> All groups and keys with unit, range, default and meaning: what `dda help keys` prints
+   pure function deck_help() result(text)
+      !> Lines, each ended by a line feed
+      character(len=:), allocatable :: text
+      character(len=1), parameter :: lf = achar(10)
+      integer :: g, i
+
+      text = ""
+      do g = 1, size(deck_group)
+         if (g > 1) text = text//lf
+         text = text//"&"//trim(deck_group(g)%name)//"   "//trim(deck_group(g)%meaning)//lf
+         do i = 1, size(deck_key)
+            if (deck_key(i)%group /= deck_group(g)%name) cycle
+            text = text//key_help(deck_key(i), lf)
+         end do
+      end do
+   end function deck_help
+
+   !> Help on one key
+   pure function key_help(key, lf) result(text)
+      !> Entry of the registry
+      type(key_t), intent(in) :: key
+      !> End of a line
+      character(len=*), intent(in) :: lf
+      !> Two or three lines
+      character(len=:), allocatable :: text
+      character(len=*), parameter :: indent = "      "
+
+      text = "   "//trim(key%name)
+      if (len_trim(key%default) > 0) text = text//" = "//trim(key%default)
+      if (len_trim(key%without) > 0) text = text//"   (without it: "//trim(key%without)//")"
+      text = text//lf//indent//trim(key%meaning)//lf
+      if (key%kind /= key_kind%later) text = text//indent//wanted(key)//lf
+   end function key_help
+end module dda_deck_words
