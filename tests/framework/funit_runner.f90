@@ -1,0 +1,147 @@
+!> What runs the tests of a .pf file where pFUnit is not installed: suites, failures, the report
+!>
+!> Types and procedures that the translated tests name are spelt as pFUnit spells them.
+module funit_runner
+   use, intrinsic :: iso_fortran_env, only : output_unit
+   implicit none
+   private
+
+   public :: SourceLocation, TestMethod, TestSuite, anyExceptions
+   public :: tally_t, record_failure, run_suite, close_report
+
+   !> Where an assertion stands
+   type :: SourceLocation
+      !> Name of the .pf file, without its folder
+      character(len=255) :: fileName
+      !> Line of that file, counted from 1
+      integer :: lineNumber
+   end type SourceLocation
+
+   abstract interface
+      !> A test, or what runs before or after it
+      subroutine test_procedure()
+      end subroutine test_procedure
+   end interface
+
+   !> One test with its surroundings
+   type :: TestMethod
+      !> Name of the subroutine
+      character(len=63) :: name
+      !> The test itself
+      procedure(test_procedure), pointer, nopass :: method => null()
+      !> Runs before the test; null if there is none
+      procedure(test_procedure), pointer, nopass :: setUp => null()
+      !> Runs after the test; null if there is none
+      procedure(test_procedure), pointer, nopass :: tearDown => null()
+   end type TestMethod
+
+   !> The tests of one .pf file, in the order of the file
+   type :: TestSuite
+      !> Name of the module, followed by _suite
+      character(len=63) :: name
+      !> The tests
+      type(TestMethod), allocatable :: test(:)
+   contains
+      procedure :: addTest
+   end type TestSuite
+
+   !> What has been run so far
+   type :: tally_t
+      !> Tests that were run
+      integer :: n_test = 0
+      !> Tests with one failure or more
+      integer :: n_failed = 0
+   end type tally_t
+
+   !> Failures of the test that runs now. The one module variable of the runner: an
+   !> assertion of the .pf language has no argument that could carry it.
+   integer, save :: n_failure = 0
+
+contains
+
+   !> Put a test at the end of a suite
+   subroutine addTest(this, test)
+      !> The suite
+      class(TestSuite), intent(inout) :: this
+      !> The test
+      type(TestMethod), intent(in) :: test
+
+      if (.not. allocated(this%test)) allocate (this%test(0))
+      this%test = [this%test, test]
+   end subroutine addTest
+
+   !> Whether an assertion of the running test has failed
+   function anyExceptions() result(yes)
+      !> The answer
+      logical :: yes
+
+      yes = n_failure > 0
+   end function anyExceptions
+
+   !> Report a failed assertion
+   subroutine record_failure(location, headline, lines)
+      !> Where the assertion stands
+      type(SourceLocation), intent(in) :: location
+      !> Which assertion failed
+      character(len=*), intent(in) :: headline
+      !> What was said, expected and found; empty lines are left out
+      character(len=*), intent(in) :: lines(:)
+      integer :: i
+
+      if (n_failure == 0) write (output_unit, "(a)") " FAILED"
+      n_failure = n_failure + 1
+      write (output_unit, "(4x, 3a, i0, 2a)") &
+         "[", trim(location%fileName), ":", location%lineNumber, "] ", headline
+      do i = 1, size(lines)
+         if (lines(i) /= "") write (output_unit, "(8x, a)") trim(lines(i))
+      end do
+   end subroutine record_failure
+
+   !> Run every test of a suite; the name is written first, so that a crash shows whose it was
+   subroutine run_suite(suite, tally)
+      !> The suite
+      type(TestSuite), intent(in) :: suite
+      !> Counts to add to
+      type(tally_t), intent(inout) :: tally
+      integer :: i
+
+      do i = 1, size(suite%test)
+         write (output_unit, "(1x, 3a)", advance="no") &
+            trim(suite%name), ".", trim(suite%test(i)%name)
+         flush (output_unit)
+         call run_test(suite%test(i))
+         tally%n_test = tally%n_test + 1
+         if (anyExceptions()) then
+            tally%n_failed = tally%n_failed + 1
+         else
+            write (output_unit, "(a)") " ok"
+         end if
+      end do
+   end subroutine run_suite
+
+   !> Run one test: after a failed setUp neither the test nor tearDown is run
+   subroutine run_test(test)
+      !> The test
+      type(TestMethod), intent(in) :: test
+
+      n_failure = 0
+      if (associated(test%setUp)) call test%setUp()
+      if (anyExceptions()) return
+      call test%method()
+      if (associated(test%tearDown)) call test%tearDown()
+   end subroutine run_test
+
+   !> Write the closing line; a failure stops the program with code 2
+   subroutine close_report(tally)
+      !> What has been run
+      type(tally_t), intent(in) :: tally
+
+      if (tally%n_failed == 0) then
+         write (output_unit, "(a, i0, a)") " OK  (", tally%n_test, " tests)"
+      else
+         write (output_unit, "(2(a, i0), a)") &
+            " FAILED  (", tally%n_failed, " of ", tally%n_test, " tests)"
+         stop 2
+      end if
+   end subroutine close_report
+end module funit_runner
