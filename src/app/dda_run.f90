@@ -1,12 +1,11 @@
 !> dda run: decks to results
 module dda_run
-   use, intrinsic :: iso_fortran_env, only : error_unit, int64, output_unit
+   use, intrinsic :: iso_fortran_env, only : error_unit
    use dda_case, only : run_case
    use dda_command_line, only : command_t
    use dda_deck, only : deck_t, flag_of
    use dda_deck_sweep, only : case_deck, n_cases, swept_names, swept_texts
    use dda_error, only : error_line, error_t, fatal_error
-   use dda_kinds, only : wp
    use dda_process, only : error_is_terminal, exit_status, make_folder, worst_status
    use dda_progress, only : clear_progress, progress_t, report_progress
    use dda_read_deck, only : read_deck
@@ -133,7 +132,8 @@ contains
       tables%folder = folder_of(command, name)
       tables%has_joints = flag_of(deck, "output", "joints")
       call open_tables(deck, tables, error)
-      progress%shown = .not. command%quiet .and. error_is_terminal()
+      progress%shown = error_is_terminal()
+      if (command%quiet) progress%shown = .false.
       progress%total = total
       call system_clock(progress%start)
       !$omp parallel do num_threads(command%jobs) schedule(dynamic) default(none) &

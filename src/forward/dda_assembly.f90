@@ -6,7 +6,7 @@ module dda_assembly
    use dda_elasticity, only : elastic_matrix, stress_load
    use dda_friction_cone, only : apply_face, cone_t, joint_face_t
    use dda_inertia, only : mass_matrix
-   use dda_joint_springs, only : joint_springs_t
+   use dda_joint_springs, only : joint_springs_t, row_product
    use dda_kinds, only : wp
    use dda_loads, only : body_load
    use dda_settings, only : settings_t
@@ -150,27 +150,38 @@ contains
       type(equations_t), intent(inout) :: equations
       !> Receives the load: (n_dof, n_equation)
       real(wp), intent(inout) :: load(:, :)
-      real(wp) :: tangent(3, 3), constant(3), stiff(size(load, 1), 3, 2)
-      integer :: e, later, side, sooner
+      real(wp) :: tangent(3, 3), constant(3)
+      real(wp) :: stiffness(size(load, 1), size(load, 1), 3), steep(size(load, 1), 3)
+      integer :: e, pair, side
+      logical :: stuck
 
-      call apply_face(cone, face, tangent, constant)
-      constant = constant + matmul(tangent, trial + springs%shift(:, j)) - springs%shift(:, j)
+      stuck = face%slip == 0 .and. .not. any(face%open)
+      constant = trial
+      if (.not. stuck) then
+         call apply_face(cone, face, tangent, constant)
+         constant = constant + matmul(tangent, trial + springs%shift(:, j)) - springs%shift(:, j)
+         do pair = 1, 3
+            steep = springs%stiffness(j)*matmul(springs%row(:, :, merge(2, 1, pair == 2), j), tangent)
+            stiffness(:, :, pair) = row_product(steep, springs%row(:, :, merge(1, 2, pair == 1), j))
+         end do
+      else
+         stiffness = springs%stuck(:, :, :, j)
+      end if
       do side = 1, 2
          e = springs%equation(side, j)
          if (e == 0) cycle
-         associate (row => springs%row(:, :, side, j))
-            stiff(:, :, side) = springs%stiffness(j)*matmul(row, tangent)
-            equations%matrix%diagonal(:, :, e) = equations%matrix%diagonal(:, :, e) &
-               & + matmul(stiff(:, :, side), transpose(row))
-            load(:, e) = load(:, e) + matmul(row, constant)
-         end associate
+         equations%matrix%diagonal(:, :, e) = equations%matrix%diagonal(:, :, e) &
+            & + stiffness(:, :, side)
+         load(:, e) = load(:, e) + springs%row(:, 1, side, j)*constant(1) &
+            & + springs%row(:, 2, side, j)*constant(2) + springs%row(:, 3, side, j)*constant(3)
       end do
       e = equations%entry(j)
       if (e == 0) return
-      later = merge(1, 2, equations%matrix%pair(1, e) == springs%equation(1, j))
-      sooner = 3 - later
-      equations%matrix%coupling(:, :, e) = &
-         & matmul(stiff(:, :, later), transpose(springs%row(:, :, sooner, j)))
+      if (equations%matrix%pair(1, e) == springs%equation(1, j)) then
+         equations%matrix%coupling(:, :, e) = stiffness(:, :, 3)
+      else
+         equations%matrix%coupling(:, :, e) = transpose(stiffness(:, :, 3))
+      end if
    end subroutine add_joint
 
    !> Openings and slips of the joints by a motion of the blocks
@@ -181,14 +192,17 @@ contains
       real(wp), intent(in) :: motion(:, :)
       !> Opening at the two contacts and slip: (3, n_joint) [m]
       real(wp) :: increment(3, size(springs%equation, 2))
-      integer :: e, j, side
+      integer :: e, j, k, side
 
       increment = 0.0_wp
       do j = 1, size(springs%equation, 2)
          do side = 1, 2
             e = springs%equation(side, j)
             if (e == 0) cycle
-            increment(:, j) = increment(:, j) + matmul(motion(:, e), springs%row(:, :, side, j))
+            do k = 1, 3
+               increment(k, j) = increment(k, j) &
+                  & + dot_product(motion(:, e), springs%row(:, k, side, j))
+            end do
          end do
       end do
    end function relative_displacement

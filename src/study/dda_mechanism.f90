@@ -42,7 +42,7 @@ module dda_mechanism
       character(len=8) :: springing = "none"
    end type mechanism_t
 
-   !> An opening below this share of the largest is elastic
+   !> An opening below this share of the largest opening or slip is elastic
    real(wp), parameter :: elastic_share = 1.0e-4_wp
    !> Sliding shares below this one count as none, and those above its complement as all
    real(wp), parameter :: little = 1.0e-3_wp
@@ -93,7 +93,7 @@ contains
       if (mechanism%sliding_share > 1.0_wp - little) mechanism%mode = "sliding"
    end subroutine mechanism_of
 
-   !> What every joint does in the last step; openings that are small beside the largest are elastic
+   !> What every joint does in the last step; openings small beside the largest motion are elastic
    pure function role_of_joint(contacts) result(role)
       !> Contacts at the end of a step
       type(contacts_t), intent(in) :: contacts
@@ -103,7 +103,7 @@ contains
       logical :: opens(2)
       integer :: j
 
-      least = elastic_share*maxval(contacts%increment(1:2, :))
+      least = elastic_share*maxval(abs(contacts%increment))
       do j = 1, size(role)
          opens = contacts%face(j)%open .and. contacts%increment(1:2, j) > least
          role(j) = joint_role%locked

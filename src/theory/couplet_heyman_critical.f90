@@ -1,0 +1,299 @@
+!> Critical solutions of the Couplet-Heyman problem: hinge, thickness and thrust at a half angle of embrace
+!>
+!> The least thickness is the top of the equilibrium curve eta(beta), eqs. (14) and (18). In the symbols of
+!> couplet_heyman_curves the two are
+!>     E(eta, beta) = 0   and   a - k(beta)/S = 4 eta m/(4 - eta^2),   a = 2 - A, k(x) = sin x - x cos x.
+!> With eta on the curve the second is solved for beta by Newton's method. As eta is stationary there, the derivative
+!> of k/S alone makes it quadratic. Where A comes near its limit, eta and A are counted from their limits instead, so
+!> that the thrust, which vanishes there with the square of the distance, keeps its digits.
+module couplet_heyman_critical
+   use, intrinsic :: ieee_arithmetic, only : ieee_quiet_nan, ieee_value
+   use, intrinsic :: iso_fortran_env, only : wp => real64
+   use couplet_heyman_curves, only : embrace_difference, settle_cubic
+   use couplet_heyman_equations, only : heyman_thickness, heyman_thrust, springing_thrust
+   use couplet_heyman_kernels, only : arc_excess, arm_excess, embrace_deficit, versine
+   use couplet_heyman_theories, only : limits_of, limits_t, theory, weight_arm, weight_flag
+   implicit none
+   private
+
+   public :: critical_solution, is_embraced
+
+   !> Half angle from which quantities are counted from the limit [rad]
+   real(wp), parameter :: near_the_limit = 2.2_wp
+   !> A relative step this short leaves an error far below the rounding: convergence is quadratic
+   real(wp), parameter :: short_step = 1.0e-9_wp
+   !> Three steps are the rule
+   integer, parameter :: most_steps = 30
+   !> A quarter of a turn [rad]
+   real(wp), parameter :: quarter = 0.5_wp*acos(-1.0_wp)
+
+contains
+
+   !> Whether a theory has a critical solution at a half angle
+   elemental function is_embraced(alpha, which) result(inside)
+      !> Half angle of embrace [rad]
+      real(wp), intent(in) :: alpha
+      !> One of `theory`
+      integer, intent(in) :: which
+      !> 0 < alpha <= alpha_limit; false for a NaN
+      logical :: inside
+
+      type(limits_t) :: limits
+
+      limits = limits_of(which)
+      inside = alpha > 0.0_wp .and. alpha <= limits%alpha_limit
+   end function is_embraced
+
+   !> Critical hinge, thickness and thrust; NaN outside the range of validity
+   elemental subroutine critical_solution(alpha, which, beta, eta, h)
+      !> Half angle of embrace, (0, alpha_limit] [rad]
+      real(wp), intent(in) :: alpha
+      !> One of `theory`
+      integer, intent(in) :: which
+      !> Inner hinge from the crown [rad]
+      real(wp), intent(out) :: beta
+      !> Critical thickness ratio t/r [-]
+      real(wp), intent(out) :: eta
+      !> Horizontal thrust H/(w r) [-]
+      real(wp), intent(out) :: h
+
+      if (.not. is_embraced(alpha, which)) then
+         beta = ieee_value(beta, ieee_quiet_nan)
+         eta = beta
+         h = beta
+      else if (which == theory%heyman) then
+         if (alpha < near_the_limit) call heyman_shallow(alpha, beta, eta, h)
+         if (alpha >= near_the_limit) call heyman_steep(alpha, beta, eta, h)
+      else
+         if (alpha < near_the_limit) call tangent_shallow(alpha, which, beta, eta, h)
+         if (alpha >= near_the_limit) call tangent_steep(alpha, which, limits_of(which), beta, eta, h)
+      end if
+   end subroutine critical_solution
+
+   !> First guess of the inner hinge of CCR and Milankovitch, within 0.3 percent
+   !>
+   !> beta^2 = a (w - w0) (polynomial in w) with w = sqrt(A - A_limit + w0^2): the form has both limits of the
+   !> solution, alpha/sqrt(2) at small angles and the square root of A - A_limit; the coefficients are a fit.
+   elemental function first_guess(deficit, excess, which) result(beta)
+      !> 2 - A
+      real(wp), intent(in) :: deficit
+      !> A - A_limit
+      real(wp), intent(in) :: excess
+      !> One of `theory`, but not Heyman
+      integer, intent(in) :: which
+      !> Inner hinge [rad]
+      real(wp) :: beta
+
+      !> w0^2 of CCR and Milankovitch
+      real(wp), parameter :: bend(2) = [0.0075248_wp, 0.0024009_wp]
+      !> Coefficients of 1 to w^4
+      real(wp), parameter :: fit(5, 2) = reshape([3.86421_wp, -4.71057_wp, 7.06753_wp, -6.76118_wp, 3.00812_wp, &
+                                                  3.62088_wp, -3.67069_wp, 5.27882_wp, -5.40080_wp, 2.67822_wp], [5, 2])
+      real(wp) :: w, rise
+      integer :: i
+
+      i = merge(2, 1, which == theory%milankovitch)
+      w = sqrt(excess + bend(i))
+      rise = excess/(w + sqrt(bend(i)))
+      beta = sqrt(deficit*rise*(fit(1, i) + w*(fit(2, i) + w*(fit(3, i) + w*(fit(4, i) + w*fit(5, i))))))
+   end function first_guess
+
+   !> CCR and Milankovitch at moderate half angles
+   elemental subroutine tangent_shallow(alpha, which, beta, eta, h)
+      !> Half angle of embrace, (0, near_the_limit) [rad]
+      real(wp), intent(in) :: alpha
+      !> One of `theory`
+      integer, intent(in) :: which
+      !> Inner hinge [rad]
+      real(wp), intent(out) :: beta
+      !> Thickness ratio [-]
+      real(wp), intent(out) :: eta
+      !> Thrust [w r]
+      real(wp), intent(out) :: h
+
+      type(limits_t) :: limits
+      real(wp) :: deficit, flag, sine, cosine, q, excess, d, p, ratio, change
+      integer :: step
+
+      limits = limits_of(which)
+      flag = weight_flag(which)
+      deficit = embrace_deficit(alpha)
+      beta = first_guess(deficit, 2.0_wp - limits%embrace_limit - deficit, which)
+      do step = 1, most_steps
+         sine = sin(beta)
+         q = versine(beta)
+         cosine = 1.0_wp - q
+         excess = q*embrace_difference(beta, alpha, 0.0_wp)
+         d = deficit - 1.0_wp - q
+         p = beta*sine + (2.0_wp - q)*(2.0_wp - deficit)
+         eta = 2.0_wp*excess/(sqrt(d*d + p*excess) - d)
+         if (flag > 0.0_wp) call settle_cubic(excess, d, 0.25_wp*p, cosine/12.0_wp, eta)
+         ratio = arm_excess(beta)/sine
+         change = deficit - ratio - 4.0_wp*eta*weight_arm(eta, which)/(4.0_wp - eta*eta)
+         change = change/(beta - ratio*cosine/sine)
+         beta = beta + change
+         if (abs(change) <= short_step*beta) exit
+      end do
+      h = springing_thrust(alpha, eta, which)
+   end subroutine tangent_shallow
+
+   !> CCR and Milankovitch near their limit, in x = A - A_limit and y = eta_limit - eta
+   !>
+   !> With e = eta_limit, E(e) = -(1 - e^2/4) 4 sin(beta/2) k(beta/2) - x (q (1 - e^2/4) + e (1 + e/2)), and the
+   !> condition of tangency is f(e) - f(e - y) - x = k/S with f = 4 eta m/(4 - eta^2). The thrust is h1 of eq. (7).
+   elemental subroutine tangent_steep(alpha, which, limits, beta, eta, h)
+      !> Half angle of embrace, [near_the_limit, alpha_limit] [rad]
+      real(wp), intent(in) :: alpha
+      !> One of `theory`
+      integer, intent(in) :: which
+      !> Its limits
+      type(limits_t), intent(in) :: limits
+      !> Inner hinge [rad]
+      real(wp), intent(out) :: beta
+      !> Thickness ratio [-]
+      real(wp), intent(out) :: eta
+      !> Thrust [w r]
+      real(wp), intent(out) :: h
+
+      real(wp) :: x, y, e, a, flag, sine, cosine, q, p, value, slope, bend, ratio, change
+      integer :: step
+
+      flag = weight_flag(which)
+      e = limits%eta_limit
+      x = embrace_difference(alpha, limits%alpha_limit, limits%alpha_limit_tail)
+      a = limits%embrace_limit + x
+      beta = first_guess(2.0_wp - a, x, which)
+      do step = 1, most_steps
+         sine = sin(beta)
+         q = versine(beta)
+         cosine = 1.0_wp - q
+         p = beta*sine + (2.0_wp - q)*a
+         value = (1.0_wp - 0.25_wp*e*e)*(4.0_wp*sin(0.5_wp*beta)*arm_excess(0.5_wp*beta) + x*q) &
+               + x*e*(1.0_wp + 0.5_wp*e)
+         slope = cosine - a - 0.5_wp*e*p + 0.25_wp*flag*cosine*e*e
+         bend = 0.25_wp*(p - flag*cosine*e)
+         y = 2.0_wp*value/(sqrt(max(slope*slope - 4.0_wp*bend*value, 0.0_wp)) - slope)
+         if (flag > 0.0_wp) call settle_cubic(value, slope, -bend, cosine/12.0_wp, y)
+         ratio = arm_excess(beta)/sine
+         change = (tangency_drop(y, e, flag) - x - ratio)/(beta - ratio*cosine/sine)
+         beta = beta + change
+         if (abs(change) <= short_step*beta) exit
+      end do
+      eta = e - y
+      q = versine(beta)
+      h = y*(2.0_wp + flag*(2.0_wp*e - y)/6.0_wp) - embrace_deficit(beta)*(2.0_wp - eta)
+      h = q*h/(2.0_wp*eta + (2.0_wp - eta)*q)
+   end subroutine tangent_steep
+
+   !> f(e) - f(e - y) with f(eta) = 4 eta m/(4 - eta^2), without a difference of nearly equal numbers
+   elemental function tangency_drop(y, e, flag) result(drop)
+      !> e - eta
+      real(wp), intent(in) :: y
+      !> Thickness ratio at the limit [-]
+      real(wp), intent(in) :: e
+      !> delta_M
+      real(wp), intent(in) :: flag
+      !> The difference
+      real(wp) :: drop
+
+      real(wp) :: numerator, denominator
+
+      numerator = e*(4.0_wp + flag*e*e/3.0_wp)
+      denominator = 4.0_wp - e*e
+      drop = numerator*(2.0_wp*e - y) + denominator*(4.0_wp + flag*(e*e - y*(e - y/3.0_wp)))
+      drop = y*drop/(denominator*(4.0_wp - (e - y)**2))
+   end function tangency_drop
+
+   !> Heyman at moderate half angles: a = k(beta)/S + eta/(2 + eta) with eq. (2), a sum of positive terms
+   elemental subroutine heyman_shallow(alpha, beta, eta, h)
+      !> Half angle of embrace, (0, near_the_limit) [rad]
+      real(wp), intent(in) :: alpha
+      !> Inner hinge [rad]
+      real(wp), intent(out) :: beta
+      !> Thickness ratio [-]
+      real(wp), intent(out) :: eta
+      !> Thrust [w r]
+      real(wp), intent(out) :: h
+
+      real(wp) :: deficit, change
+      integer :: step
+
+      deficit = embrace_deficit(alpha)
+      beta = heyman_guess(alpha)
+      do step = 1, most_steps
+         eta = heyman_thickness(beta)
+         change = (deficit - arm_excess(beta)/sin(beta) - eta/(2.0_wp + eta))/heyman_rate(beta, eta)
+         beta = beta + change
+         if (abs(change) <= short_step*beta) exit
+      end do
+      eta = heyman_thickness(beta)
+      h = heyman_thrust(beta)
+   end subroutine heyman_shallow
+
+   !> Heyman near the limit, in c = pi/2 - beta: A - A_limit = beta tan c + eta_l/(2 + eta_l) - eta/(2 + eta)
+   !>
+   !> With T = tan^2(beta/2) = (1 - sin c)/(1 + sin c),
+   !> (eta_l - eta)/2 = (1 - 2/pi)(1 - T) + T (2 c - pi (1 - cos c))/(pi beta).
+   elemental subroutine heyman_steep(alpha, beta, eta, h)
+      !> Half angle of embrace, [near_the_limit, alpha_limit] [rad]
+      real(wp), intent(in) :: alpha
+      !> Inner hinge [rad]
+      real(wp), intent(out) :: beta
+      !> Thickness ratio [-]
+      real(wp), intent(out) :: eta
+      !> Thrust [w r]
+      real(wp), intent(out) :: h
+
+      type(limits_t) :: limits
+      real(wp) :: excess, c, squared, half_drop, change
+      integer :: step
+      logical :: settled
+
+      limits = limits_of(theory%heyman)
+      excess = embrace_difference(alpha, limits%alpha_limit, limits%alpha_limit_tail)
+      c = quarter - heyman_guess(alpha)
+      settled = .false.
+      do step = 1, most_steps
+         beta = quarter - c
+         squared = (1.0_wp - sin(c))/(1.0_wp + sin(c))
+         half_drop = (1.0_wp - 1.0_wp/quarter)*2.0_wp*sin(c)/(1.0_wp + sin(c)) &
+                   + squared*(c - quarter*versine(c))/(quarter*beta)
+         eta = limits%eta_limit - 2.0_wp*half_drop
+         h = beta*tan(c)
+         change = excess - h - 4.0_wp*half_drop/((2.0_wp + limits%eta_limit)*(2.0_wp + eta))
+         change = change/heyman_rate(beta, eta)
+         if (settled) exit
+         c = c + change
+         settled = abs(change) <= short_step*abs(c)
+      end do
+   end subroutine heyman_steep
+
+   !> First guess of Heyman's inner hinge, a fit within 0.03 percent
+   elemental function heyman_guess(alpha) result(beta)
+      !> Half angle of embrace [rad]
+      real(wp), intent(in) :: alpha
+      !> Inner hinge [rad]
+      real(wp) :: beta
+
+      !> beta/alpha by powers of alpha^2
+      real(wp), parameter :: fit(4) = [0.7070238_wp, -0.0273851_wp, 0.0025932_wp, -0.0001112_wp]
+
+      beta = alpha*(fit(1) + alpha**2*(fit(2) + alpha**2*(fit(3) + alpha**2*fit(4))))
+   end function heyman_guess
+
+   !> -dA/d beta along Heyman's solution: (k/S)' + 2 eta'/(2 + eta)^2
+   elemental function heyman_rate(beta, eta) result(rate)
+      !> Inner hinge [rad]
+      real(wp), intent(in) :: beta
+      !> Thickness ratio there, eq. (2) [-]
+      real(wp), intent(in) :: eta
+      !> Positive everywhere
+      real(wp) :: rate
+
+      real(wp) :: eta_rate
+
+      eta_rate = eta*(versine(beta)/arc_excess(beta) - 1.0_wp/beta + 2.0_wp/sin(beta))
+      rate = beta - arm_excess(beta)*cos(beta)/sin(beta)**2 + 2.0_wp*eta_rate/(2.0_wp + eta)**2
+   end function heyman_rate
+
+end module couplet_heyman_critical

@@ -1,0 +1,278 @@
+!> Exact critical thickness of a circular arch of polygon voussoirs, by limit analysis
+!>
+!> One half of a symmetric arch under its own weight has two unknowns, the thrust H at the crown and the moment Q of
+!> that thrust about the centre. At a joint of angle t, with W the weight and S the moment of all that lies above,
+!>     N = H cos t + W sin t,   T = W cos t - H sin t,   (1 - eta/2) N <= Q + S <= (1 + eta/2) N,   |T| <= tan(phi) N
+!> (radius 1, forces in gamma r^2 eta, so that W does not depend on eta and S = (1 + eta^2/12) M with M independent).
+!> Divided by 1 + eta^2/12 the two bounds widen with eta for all eta < 2: who stands at eta stands at every greater one.
+!> With H = 1 - d and the shape z = W sin t - M - (1 - cos t), the ring is wide enough when the gap
+!>     min_j (d v + z + eta/2 N - eta^2/12 M)_j - max_k (d v + z - eta/2 N - eta^2/12 M)_k,   v = 1 - cos t,
+!> is nowhere negative for some d that no joint's friction forbids. All terms are as small as eta itself, so a shallow
+!> arch keeps its digits. The gap is concave and piecewise linear in d; its largest value over d is zero at the critical
+!> eta. Two or three joints pinch it there. Solved for eta they never lie above the truth, hence a few rounds suffice.
+module couplet_heyman_discrete
+   use, intrinsic :: iso_fortran_env, only : wp => real64
+   use couplet_heyman_pinch, only : pinch_t, widest_gap, solve_pinch
+   use couplet_heyman_ring, only : ring_t, make_ring, limit_thrust
+   implicit none
+   private
+
+   public :: discrete_critical, discrete_critical_equal, equal_voussoir_joints, chords
+   public :: discrete_solution_t, discrete_status, joint_role
+
+   !> Outcome of a critical thickness
+   type :: discrete_status_enum
+      !> The critical thickness ratio lies in (0, 2)
+      integer :: found = 0
+      !> The arch stands at every thickness, however small: eta is 0
+      integer :: stands_always = 1
+      !> No thickness ratio below 2 admits equilibrium: eta is 0
+      integer :: none_admissible = 2
+      !> An argument makes no sense: nothing was computed, eta is 0
+      integer :: bad_input = 3
+      !> The rounds ran out (never seen): eta is the last proposal
+      integer :: unsettled = 4
+   end type discrete_status_enum
+
+   !> The names of the outcomes
+   type(discrete_status_enum), parameter :: discrete_status = discrete_status_enum()
+
+   !> What a joint does at the critical thickness
+   type :: joint_role_enum
+      !> The thrust passes through its intrados corner
+      integer :: intrados_hinge = 1
+      !> The thrust passes through its extrados corner
+      integer :: extrados_hinge = 2
+      !> Its friction is exhausted
+      integer :: slides = 3
+   end type joint_role_enum
+
+   !> The names of the roles
+   type(joint_role_enum), parameter :: joint_role = joint_role_enum()
+
+   !> Critical state of a discrete arch
+   type :: discrete_solution_t
+      !> One of `discrete_status`
+      integer :: status = 3
+      !> Critical thickness ratio t/r [-]
+      real(wp) :: eta = 0.0_wp
+      !> Horizontal thrust there, over gamma r^2 eta [-]
+      real(wp) :: thrust = 0.0_wp
+      !> Number of entries of `joint` and `role` that are used
+      integer :: active = 0
+      !> Joints that bind, as indices of joint_angle: (5)
+      integer :: joint(5) = 0
+      !> What each of them does, one of `joint_role`: (5)
+      integer :: role(5) = 0
+   end type discrete_solution_t
+
+contains
+
+   !> Critical thickness ratio of an arch given by the joints of one half
+   !>
+   !> Above solution%eta the arch has an admissible system of forces, below it none.
+   pure subroutine discrete_critical(joint_angle, facets, friction, springing_no_slip, solution)
+      !> Joints of one half, from the crown to the springing, strictly increasing, in [0, pi): (n) [rad].
+      !> The first is 0 where there is a joint at the crown; otherwise a voussoir straddles the crown
+      real(wp), intent(in) :: joint_angle(:)
+      !> Equal chords of each voussoir, from the crown: (n - 1) with a joint at the crown; (n) without, and then the
+      !> first is the number of chords of the whole voussoir that straddles the crown
+      integer, intent(in) :: facets(:)
+      !> Friction angle of the joints; pi/2 or more means that no joint slides [rad]
+      real(wp), intent(in) :: friction
+      !> Whether the two springing joints cannot slide
+      logical, intent(in) :: springing_no_slip
+      !> Critical state
+      type(discrete_solution_t), intent(out) :: solution
+
+      type(ring_t) :: ring
+
+      solution%status = discrete_status%bad_input
+      if (.not. makes_sense(joint_angle, facets, friction)) return
+      call make_ring(joint_angle, facets, ring)
+      call limit_thrust(joint_angle, friction, springing_no_slip, ring)
+      solution%status = discrete_status%none_admissible
+      if (ring%lowest > ring%highest) return
+      solution%status = discrete_status%stands_always
+      if (size(joint_angle) == 1) return
+      if (size(joint_angle) == 2) then
+         if (stands_as_a_line(ring)) return
+      end if
+      call search_eta(ring, solution)
+   end subroutine discrete_critical
+
+   !> Critical thickness ratio of an arch of equal voussoirs, one chord each
+   pure subroutine discrete_critical_equal(voussoirs, half_angle, friction, springing_no_slip, solution)
+      !> Number of voussoirs of the whole arch, 1 or more; an odd number has no joint at the crown
+      integer, intent(in) :: voussoirs
+      !> Half angle of embrace, in (0, pi) [rad]
+      real(wp), intent(in) :: half_angle
+      !> Friction angle of the joints; pi/2 or more means that no joint slides [rad]
+      real(wp), intent(in) :: friction
+      !> Whether the two springing joints cannot slide
+      logical, intent(in) :: springing_no_slip
+      !> Critical state; joints are counted as in equal_voussoir_joints
+      type(discrete_solution_t), intent(out) :: solution
+
+      integer :: facets((max(voussoirs, 1) + 1)/2)
+
+      facets = 1
+      if (voussoirs < 1) return
+      call discrete_critical(equal_voussoir_joints(voussoirs, half_angle), facets, friction, springing_no_slip, solution)
+   end subroutine discrete_critical_equal
+
+   !> Joint angles of one half of an arch of equal voussoirs, from the crown
+   pure function equal_voussoir_joints(voussoirs, half_angle) result(joint_angle)
+      !> Number of voussoirs of the whole arch, 1 or more
+      integer, intent(in) :: voussoirs
+      !> Half angle of embrace [rad]
+      real(wp), intent(in) :: half_angle
+      !> 0, 2a/n, 4a/n ... a for an even number n; a/n, 3a/n ... a for an odd one: (n/2 + 1 or (n + 1)/2) [rad]
+      real(wp) :: joint_angle((voussoirs + 2)/2)
+
+      integer :: i, last
+
+      last = size(joint_angle)
+      do i = 1, last
+         joint_angle(i) = half_angle*real(voussoirs - 2*(last - i), wp)/real(voussoirs, wp)
+      end do
+   end function equal_voussoir_joints
+
+   !> Number of equal chords of each voussoir when none may span more than a given angle
+   pure function chords(joint_angle, longest) result(facets)
+      !> Joints of one half, from the crown: (n) [rad]
+      real(wp), intent(in) :: joint_angle(:)
+      !> Greatest span of a chord; 0 or less: one chord a voussoir [rad]
+      real(wp), intent(in) :: longest
+      !> As discrete_critical wants them: (n - 1) with a joint at the crown, (n) without
+      integer :: facets(merge(size(joint_angle), size(joint_angle) - 1, joint_angle(1) > 0.0_wp))
+
+      real(wp) :: span
+      integer :: j, above
+
+      above = size(joint_angle) - size(facets)
+      do j = 1, size(facets)
+         span = 2.0_wp*joint_angle(1)
+         if (j + above > 1) span = joint_angle(j + above) - joint_angle(j + above - 1)
+         facets(j) = 1
+         if (longest > 0.0_wp) facets(j) = max(1, ceiling(span/longest - 1.0e-9_wp))
+      end do
+   end function chords
+
+   !> Whether the arguments describe an arch
+   pure function makes_sense(joint_angle, facets, friction) result(sound)
+      !> Joints of one half: (:) [rad]
+      real(wp), intent(in) :: joint_angle(:)
+      !> Chords of each voussoir: (:)
+      integer, intent(in) :: facets(:)
+      !> Friction angle [rad]
+      real(wp), intent(in) :: friction
+      !> Finite, in range, increasing, and of matching sizes
+      logical :: sound
+
+      !> Half a turn [rad]
+      real(wp), parameter :: pi = acos(-1.0_wp)
+      integer :: n
+
+      n = size(joint_angle)
+      sound = n > 0
+      if (.not. sound) return
+      sound = joint_angle(1) >= 0.0_wp .and. joint_angle(n) > 0.0_wp .and. joint_angle(n) < pi .and. friction >= 0.0_wp
+      sound = sound .and. all(joint_angle(2:) > joint_angle(:n - 1)) .and. all(facets > 0)
+      sound = sound .and. size(facets) == merge(n, n - 1, joint_angle(1) > 0.0_wp)
+   end function makes_sense
+
+   !> Whether two joints alone let a thrust pass along the centre line: then no thickness is needed
+   pure function stands_as_a_line(ring) result(stands)
+      !> A ring of two joints
+      type(ring_t), intent(in) :: ring
+      !> The straight thrust between the joints' centres presses on both and slides on neither
+      logical :: stands
+
+      real(wp) :: deficit
+
+      deficit = (ring%form(1) - ring%form(2))/(ring%versine(2) - ring%versine(1))
+      stands = deficit >= ring%lowest .and. deficit <= ring%highest
+      stands = stands .and. all(ring%normal - deficit*ring%cosine >= 0.0_wp)
+   end function stands_as_a_line
+
+   !> Root in eta of the widest gap: the pinching joints propose it, a bracket keeps the proposals honest
+   pure subroutine search_eta(ring, solution)
+      !> Ring of two joints or more
+      type(ring_t), intent(in) :: ring
+      !> Critical state
+      type(discrete_solution_t), intent(out) :: solution
+
+      !> More than ever needed: bisection alone takes 60
+      integer, parameter :: most_rounds = 200
+      real(wp) :: eta, low, high, root
+      logical :: high_stands, solved, stands, unchanged
+      type(pinch_t) :: pinch, proposer
+      integer :: round
+
+      low = 0.0_wp
+      high = 2.0_wp
+      high_stands = .false.
+      eta = merge(high, low, size(ring%form) == 2)
+      do round = 1, most_rounds
+         call widest_gap(ring, eta, pinch)
+         stands = pinch%unbounded .or. pinch%gap >= 0.0_wp
+         solution%status = discrete_status%none_admissible
+         if (eta >= 2.0_wp .and. .not. stands) return
+         if (stands) high = eta
+         if (.not. stands) low = eta
+         high_stands = high_stands .or. stands
+         solved = .false.
+         if (.not. pinch%unbounded) call solve_pinch(ring, eta, pinch, root, solved)
+         if (solved) then
+            unchanged = same_joints(pinch, proposer) .or. abs(root - eta) <= 4.0_wp*epsilon(eta)*eta
+            solution = critical_state(root, pinch)
+            if (unchanged .and. root > 0.0_wp .and. root < 2.0_wp) return
+            solved = root > low .and. root < high
+         end if
+         proposer = pinch_t()
+         if (solved) proposer = pinch
+         eta = merge(0.5_wp*(low + high), high, high_stands)
+         if (solved) eta = root
+      end do
+      solution%status = discrete_status%unsettled
+   end subroutine search_eta
+
+   !> Whether two states are pinched by the same joints
+   pure function same_joints(a, b) result(same)
+      !> One state
+      type(pinch_t), intent(in) :: a
+      !> The other
+      type(pinch_t), intent(in) :: b
+      !> Equal pairs and the same exhausted friction
+      logical :: same
+
+      same = a%sliding == b%sliding .and. all(a%left == b%left) .and. all(a%right == b%right)
+   end function same_joints
+
+   !> Critical state of a ring that has one
+   pure function critical_state(eta, pinch) result(solution)
+      !> Critical thickness ratio [-]
+      real(wp), intent(in) :: eta
+      !> State of the ring there
+      type(pinch_t), intent(in) :: pinch
+      !> Status found, with the thrust and the joints that bind
+      type(discrete_solution_t) :: solution
+
+      integer :: joint(5), role(5)
+      logical :: binds(5)
+
+      joint = [pinch%left(1), pinch%right(1), pinch%left(2), pinch%right(2), pinch%sliding]
+      role(1:2) = joint_role%extrados_hinge
+      role(3:4) = joint_role%intrados_hinge
+      role(5) = joint_role%slides
+      binds = [.true., joint(2) /= joint(1), .true., joint(4) /= joint(3), joint(5) > 0]
+      solution%status = discrete_status%found
+      solution%eta = eta
+      solution%thrust = 1.0_wp - pinch%deficit
+      solution%active = count(binds)
+      solution%joint = pack(joint, binds, spread(0, 1, 5))
+      solution%role = pack(role, binds, spread(0, 1, 5))
+   end function critical_state
+
+end module couplet_heyman_discrete

@@ -1,0 +1,82 @@
+!> Ranges of validity of arguments, and the first element of an array that leaves them
+module couplet_heyman_domain
+   use, intrinsic :: iso_fortran_env, only : wp => real64
+   implicit none
+   private
+
+   public :: blame, is_half_angle, is_thickness, is_joint, is_finite, is_facet
+
+   !> Shortest chord that is taken for one: finer ones change no digit [rad]
+   real(wp), parameter :: shortest_chord = 1.0e-7_wp
+   !> Half a turn [rad]
+   real(wp), parameter :: pi = acos(-1.0_wp)
+
+contains
+
+   !> Name the first element that is not valid, unless another argument has been blamed already
+   pure subroutine blame(argument, valid, fault)
+      !> Place of the argument in the call, from 1
+      integer, intent(in) :: argument
+      !> Whether each of its elements is valid: (:)
+      logical, intent(in) :: valid(:)
+      !> Argument and element, 0 and 0 where all is well so far: (2)
+      integer, intent(inout) :: fault(2)
+
+      if (fault(1) > 0 .or. all(valid)) return
+      fault(1) = argument
+      fault(2) = findloc(valid, .false., dim=1)
+   end subroutine blame
+
+   !> Whether an angle can be the half angle of embrace of an arch at all
+   elemental function is_half_angle(alpha) result(valid)
+      !> Angle [rad]
+      real(wp), intent(in) :: alpha
+      !> 0 < alpha < pi; false for a NaN
+      logical :: valid
+
+      valid = alpha > 0.0_wp .and. alpha < pi
+   end function is_half_angle
+
+   !> Whether a number can be a thickness ratio
+   elemental function is_thickness(eta) result(valid)
+      !> Number
+      real(wp), intent(in) :: eta
+      !> 0 < eta < 2; false for a NaN
+      logical :: valid
+
+      valid = eta > 0.0_wp .and. eta < 2.0_wp
+   end function is_thickness
+
+   !> Whether an angle is that of a joint of one half of an arch
+   elemental function is_joint(beta, alpha) result(valid)
+      !> Angle [rad]
+      real(wp), intent(in) :: beta
+      !> Half angle of embrace [rad]
+      real(wp), intent(in) :: alpha
+      !> 0 <= beta <= alpha; false for a NaN
+      logical :: valid
+
+      valid = beta >= 0.0_wp .and. beta <= alpha
+   end function is_joint
+
+   !> Whether a number is neither infinite nor a NaN
+   elemental function is_finite(x) result(valid)
+      !> Number
+      real(wp), intent(in) :: x
+      !> |x| <= huge
+      logical :: valid
+
+      valid = abs(x) <= huge(x)
+   end function is_finite
+
+   !> Whether a number can limit the span of a chord
+   elemental function is_facet(facet) result(valid)
+      !> Number; 0 stands for no limit [rad]
+      real(wp), intent(in) :: facet
+      !> 0, or finite and not too short; false for a NaN
+      logical :: valid
+
+      valid = abs(facet) <= 0.0_wp .or. (facet >= shortest_chord .and. is_finite(facet))
+   end function is_facet
+
+end module couplet_heyman_domain

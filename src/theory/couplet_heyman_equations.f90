@@ -1,0 +1,163 @@
+!> Equilibrium of a chunk of the arch and tangency of the thrust: eqs. (1) to (13) of the paper
+!>
+!> Lengths are over the mean radius r, forces over w r with w the weight per length of the centre line; beta is the
+!> angle from the crown, S = sin beta, C = cos beta, m = 1 + delta_M eta^2/12. With q = 1 - C, beta S = q A(beta) and
+!> a = 2 - A every difference of the printed forms becomes a sum of terms that are as small as the result.
+!> No range is checked here; outside 0 < eta < 2, 0 <= beta < pi, h >= 0 the results mean nothing.
+module couplet_heyman_equations
+   use, intrinsic :: iso_fortran_env, only : wp => real64
+   use couplet_heyman_kernels, only : arc_excess, arm_excess, embrace_deficit, versine
+   use couplet_heyman_theories, only : theory, tangency_flag, weight_arm, weight_flag
+   implicit none
+   private
+
+   public :: heyman_embrace, heyman_thickness, heyman_thrust
+   public :: chunk_weight, chunk_centre, thrust_through, lower_thrust, springing_thrust, tangent_thrust, eccentricity
+
+contains
+
+   !> Left side of eq. (1), Heyman: the A at which the hinge is at beta
+   elemental function heyman_embrace(beta) result(a)
+      !> Inner hinge, (0, pi/2] [rad]
+      real(wp), intent(in) :: beta
+      !> A = h + 2/(2 + eta) with eqs. (2) and (3), which is eq. (1) without its cancelling factors
+      real(wp) :: a
+
+      real(wp) :: eta
+
+      eta = heyman_thickness(beta)
+      a = 2.0_wp - arm_excess(beta)/sin(beta) - eta/(2.0_wp + eta)
+   end function heyman_embrace
+
+   !> Eq. (2), Heyman: eta = 2 (beta - S)(1 - C)/(beta (1 + C))
+   elemental function heyman_thickness(beta) result(eta)
+      !> Inner hinge, (0, pi/2] [rad]
+      real(wp), intent(in) :: beta
+      !> Thickness ratio [-]
+      real(wp) :: eta
+
+      eta = 2.0_wp*arc_excess(beta)/beta*tan(0.5_wp*beta)**2
+   end function heyman_thickness
+
+   !> Eq. (3), Heyman: h = beta cot beta, the resultant tangent to the intrados
+   elemental function heyman_thrust(beta) result(h)
+      !> Inner hinge, [0, pi/2] [rad]
+      real(wp), intent(in) :: beta
+      !> Horizontal thrust [w r]
+      real(wp) :: h
+
+      h = 1.0_wp
+      if (beta > 0.0_wp) h = beta*cos(beta)/sin(beta)
+   end function heyman_thrust
+
+   !> Eq. (5): weight of the chunk between the crown and beta
+   elemental function chunk_weight(beta) result(weight)
+      !> Angle from the crown [rad]
+      real(wp), intent(in) :: beta
+      !> W1 [w r]
+      real(wp) :: weight
+
+      weight = beta
+   end function chunk_weight
+
+   !> Eq. (5): centre of gravity of the chunk between the crown and beta
+   pure function chunk_centre(beta, eta, which) result(centre)
+      !> Angle from the crown, (0, pi) [rad]
+      real(wp), intent(in) :: beta
+      !> Thickness ratio [-]
+      real(wp), intent(in) :: eta
+      !> One of `theory`
+      integer, intent(in) :: which
+      !> x1 from the crown and y1 from the arch's centre: (2) [r]
+      real(wp) :: centre(2)
+
+      centre = weight_arm(eta, which)*[versine(beta), sin(beta)]/beta
+   end function chunk_centre
+
+   !> Eq. (6): thrust that makes the line of thrust pass through the crown's extrados and a given point of a joint
+   elemental function thrust_through(beta, eccentricity_ratio, eta, which) result(h)
+      !> Angle of the joint, (0, pi) [rad]
+      real(wp), intent(in) :: beta
+      !> 2e/t, from -1 at the extrados to 1 at the intrados
+      real(wp), intent(in) :: eccentricity_ratio
+      !> Thickness ratio [-]
+      real(wp), intent(in) :: eta
+      !> One of `theory`
+      integer, intent(in) :: which
+      !> Horizontal thrust [w r]
+      real(wp) :: h
+
+      real(wp) :: reach, numerator, denominator
+
+      reach = 2.0_wp - eccentricity_ratio*eta
+      numerator = reach*(2.0_wp - embrace_deficit(beta)) - 2.0_wp*weight_arm(eta, which)
+      denominator = eta*(1.0_wp + eccentricity_ratio) + reach*versine(beta)
+      h = versine(beta)*numerator/denominator
+   end function thrust_through
+
+   !> Eq. (7): h1, the lower thrust, through the crown's extrados and the intrados at beta
+   elemental function lower_thrust(beta, eta, which) result(h)
+      !> Inner hinge, (0, pi) [rad]
+      real(wp), intent(in) :: beta
+      !> Thickness ratio [-]
+      real(wp), intent(in) :: eta
+      !> One of `theory`
+      integer, intent(in) :: which
+      !> h1 [w r]
+      real(wp) :: h
+
+      h = thrust_through(beta, 1.0_wp, eta, which)
+   end function lower_thrust
+
+   !> Eq. (8): h2 = A - 2 m/(2 + eta), through the extrados of crown and springing
+   elemental function springing_thrust(alpha, eta, which) result(h)
+      !> Half angle of embrace, (0, pi) [rad]
+      real(wp), intent(in) :: alpha
+      !> Thickness ratio [-]
+      real(wp), intent(in) :: eta
+      !> One of `theory`
+      integer, intent(in) :: which
+      !> h2 = 1 - a + (eta - delta_M eta^2/6)/(2 + eta) [w r]
+      real(wp) :: h
+
+      h = 1.0_wp - embrace_deficit(alpha) + eta*(1.0_wp - weight_flag(which)*eta/6.0_wp)/(2.0_wp + eta)
+   end function springing_thrust
+
+   !> Eq. (12): h_e, the thrust at which the line of thrust touches the intrados at beta; for Heyman eq. (3)
+   elemental function tangent_thrust(beta, eta, which) result(h)
+      !> Inner hinge, [0, pi) [rad]
+      real(wp), intent(in) :: beta
+      !> Thickness ratio, below 2 [-]
+      real(wp), intent(in) :: eta
+      !> One of `theory`
+      integer, intent(in) :: which
+      !> h_e [w r]
+      real(wp) :: h
+
+      h = heyman_thrust(beta)
+      if (which == theory%heyman) return
+      h = h - tangency_flag(which)*eta*(1.0_wp + weight_flag(which)*eta/6.0_wp)/(2.0_wp - eta)
+   end function tangent_thrust
+
+   !> Eq. (10): where the line of thrust through the crown's extrados cuts the joint at beta
+   !>
+   !> 1 + e = q ((2 + eta)(A(beta) - h) - 2 m)/(eta (beta S + h C)): the crown keeps all its digits.
+   elemental function eccentricity(beta, eta, h, which) result(ratio)
+      !> Angle of the joint, [0, pi) [rad]
+      real(wp), intent(in) :: beta
+      !> Thickness ratio [-]
+      real(wp), intent(in) :: eta
+      !> Horizontal thrust, positive where beta is 0 [w r]
+      real(wp), intent(in) :: h
+      !> One of `theory`
+      integer, intent(in) :: which
+      !> 2e/t, -1 at the extrados, 1 at the intrados
+      real(wp) :: ratio
+
+      real(wp) :: drop
+
+      drop = (2.0_wp + eta)*((1.0_wp - h) - embrace_deficit(beta)) + eta*(1.0_wp - weight_flag(which)*eta/6.0_wp)
+      ratio = versine(beta)*drop/(eta*(beta*sin(beta) + h*cos(beta))) - 1.0_wp
+   end function eccentricity
+
+end module couplet_heyman_equations

@@ -1,0 +1,242 @@
+!> Joints of finite friction: from when on the arch collapses by rotation alone, and the thickness it needs below
+!>
+!> The thrust at the joint beta leans by |atan(beta/h) - beta| from the joint's normal, at the springing by
+!> alpha - atan2(alpha, h), and most of all in between at beta_s = sqrt(h (1 - h)) by acos(sqrt h) - beta_s. With
+!> 1 - h = sin^2 x that is beta_s = sin(2x)/2 and x - sin(2x)/2, without a difference of nearly equal numbers.
+!> A smaller thrust spares the springing, a greater one the haunch: where both slide at one thrust, friction has its
+!> least value, mu_mixed, below which no thickness stands. Between it and mu_rotational the sliding joint dictates
+!> the thrust, and the thickness follows from the line of thrust that touches the intrados and passes the extrados
+!> at the crown (when the springing slides) or at the springing (when the haunch does).
+!> Above mu_mixed the thickness is the least that the static theorem allows.
+module couplet_heyman_friction
+   use, intrinsic :: ieee_arithmetic, only : ieee_quiet_nan, ieee_value
+   use, intrinsic :: iso_fortran_env, only : wp => real64
+   use couplet_heyman_critical, only : critical_solution, is_embraced
+   use couplet_heyman_kernels, only : arc_excess, arm_excess, embrace_deficit, versine
+   use couplet_heyman_theories, only : tangency_flag, weight_flag
+   implicit none
+   private
+
+   public :: friction_limits_t, friction_limits, friction_solution
+
+   !> Quadratic convergence takes 4 to 6
+   integer, parameter :: most_steps = 40
+   !> A relative step this short leaves rounding alone
+   real(wp), parameter :: short_step = 1.0e-9_wp
+
+   !> Least friction coefficients of an arch
+   type :: friction_limits_t
+      !> From here on the arch collapses by rotation alone
+      real(wp) :: mu_rotational
+      !> Below here no thickness admits equilibrium
+      real(wp) :: mu_mixed
+      !> Thrust at mu_mixed [w r]
+      real(wp) :: h_mixed
+      !> Joint of the haunch that slides at mu_mixed, from the crown [rad]
+      real(wp) :: beta_slip
+      !> Whether at mu_rotational the springing slides first, rather than the haunch
+      logical :: springing_slides
+   end type friction_limits_t
+
+contains
+
+   !> Friction coefficients at which the mode of collapse changes
+   pure function friction_limits(alpha, which) result(limits)
+      !> Half angle of embrace, (0, alpha_limit] [rad]
+      real(wp), intent(in) :: alpha
+      !> One of `theory`
+      integer, intent(in) :: which
+      !> The limits; NaN outside the range of validity
+      type(friction_limits_t) :: limits
+
+      real(wp) :: x, springing, haunch
+
+      limits%mu_mixed = ieee_value(x, ieee_quiet_nan)
+      limits%mu_rotational = limits%mu_mixed
+      limits%h_mixed = limits%mu_mixed
+      limits%beta_slip = limits%mu_mixed
+      limits%springing_slides = .false.
+      if (.not. is_embraced(alpha, which)) return
+      x = asin(sqrt(rotational_deficit(alpha, which)))
+      springing = springing_lean(alpha, x)
+      haunch = 0.5_wp*arc_excess(2.0_wp*x)
+      limits%springing_slides = springing >= haunch
+      limits%mu_rotational = tan(max(springing, haunch))
+      x = double_slip(alpha, x)
+      limits%mu_mixed = tan(0.5_wp*arc_excess(2.0_wp*x))
+      limits%h_mixed = cos(x)**2
+      limits%beta_slip = 0.5_wp*sin(2.0_wp*x)
+   end function friction_limits
+
+   !> Least thickness, with its hinge and thrust, at a friction coefficient; NaN below mu_mixed
+   elemental subroutine friction_solution(mu, alpha, which, beta, eta, h)
+      !> Friction coefficient of the joints
+      real(wp), intent(in) :: mu
+      !> Half angle of embrace, (0, alpha_limit] [rad]
+      real(wp), intent(in) :: alpha
+      !> One of `theory`
+      integer, intent(in) :: which
+      !> Inner hinge [rad]
+      real(wp), intent(out) :: beta
+      !> Thickness ratio [-]
+      real(wp), intent(out) :: eta
+      !> Thrust [w r]
+      real(wp), intent(out) :: h
+
+      type(friction_limits_t) :: limits
+      real(wp) :: deficit
+
+      limits = friction_limits(alpha, which)
+      call critical_solution(alpha, which, beta, eta, h)
+      if (mu >= limits%mu_rotational) return
+      if (.not. mu >= limits%mu_mixed) then
+         beta = ieee_value(beta, ieee_quiet_nan)
+         eta = beta
+         h = beta
+         return
+      end if
+      if (limits%springing_slides) then
+         deficit = (arm_excess(alpha) - mu*(cos(alpha) + alpha*sin(alpha)))/(sin(alpha) - mu*cos(alpha))
+      else
+         deficit = haunch_deficit(mu)
+      end if
+      h = 1.0_wp - deficit
+      call mixed_hinge(alpha, deficit, limits%springing_slides, which, beta, eta)
+   end subroutine friction_solution
+
+   !> 1 - h of the rotational mode, exact to the last digits also for shallow arches
+   elemental function rotational_deficit(alpha, which) result(deficit)
+      !> Half angle of embrace [rad]
+      real(wp), intent(in) :: alpha
+      !> One of `theory`
+      integer, intent(in) :: which
+      !> 1 - h
+      real(wp) :: deficit
+
+      real(wp) :: beta, eta, h
+
+      call critical_solution(alpha, which, beta, eta, h)
+      deficit = 1.0_wp - h
+      if (h > 0.5_wp) deficit = embrace_deficit(alpha) - eta*(1.0_wp - weight_flag(which)*eta/6.0_wp)/(2.0_wp + eta)
+      if (h > 0.5_wp .and. tangency_flag(which) <= 0.0_wp) deficit = arm_excess(beta)/sin(beta)
+   end function rotational_deficit
+
+   !> Lean of the thrust at the springing: alpha - atan2(alpha, h)
+   elemental function springing_lean(alpha, x) result(lean)
+      !> Half angle of embrace [rad]
+      real(wp), intent(in) :: alpha
+      !> asin(sqrt(1 - h)) [rad]
+      real(wp), intent(in) :: x
+      !> Towards the outside of the arch positive [rad]
+      real(wp) :: lean
+
+      lean = atan2(arm_excess(alpha) - sin(x)**2*sin(alpha), cos(x)**2*cos(alpha) + alpha*sin(alpha))
+   end function springing_lean
+
+   !> The thrust at which springing and haunch lean alike
+   elemental function double_slip(alpha, guess) result(x)
+      !> Half angle of embrace [rad]
+      real(wp), intent(in) :: alpha
+      !> Any thrust to start from, as asin(sqrt(1 - h)) [rad]
+      real(wp), intent(in) :: guess
+      !> asin(sqrt(1 - h)) [rad]
+      real(wp) :: x
+
+      real(wp) :: change
+      integer :: step
+
+      x = guess
+      do step = 1, most_steps
+         change = 0.5_wp*arc_excess(2.0_wp*x) - springing_lean(alpha, x)
+         change = change/(versine(2.0_wp*x) + alpha*sin(2.0_wp*x)/(alpha**2 + cos(x)**4))
+         x = x - change
+         if (abs(change) <= short_step*x) exit
+      end do
+   end function double_slip
+
+   !> 1 - h at which the haunch is about to slide
+   elemental function haunch_deficit(mu) result(deficit)
+      !> Friction coefficient
+      real(wp), intent(in) :: mu
+      !> sin^2 x with x - sin(2x)/2 = atan(mu)
+      real(wp) :: deficit
+
+      real(wp) :: x, change
+      integer :: step
+
+      x = 1.0_wp
+      do step = 1, most_steps
+         change = (0.5_wp*arc_excess(2.0_wp*x) - atan(mu))/versine(2.0_wp*x)
+         x = x - change
+         if (abs(change) <= short_step*x) exit
+      end do
+      deficit = sin(x)**2
+   end function haunch_deficit
+
+   !> Hinge and thickness of the line of thrust that a sliding joint dictates: eq. (12) with eq. (7) or its like
+   elemental subroutine mixed_hinge(alpha, deficit, through_crown, which, beta, eta)
+      !> Half angle of embrace [rad]
+      real(wp), intent(in) :: alpha
+      !> 1 - h
+      real(wp), intent(in) :: deficit
+      !> Whether the line passes the extrados at the crown, rather than at the springing
+      logical, intent(in) :: through_crown
+      !> One of `theory`
+      integer, intent(in) :: which
+      !> A first guess of the inner hinge; then the hinge [rad]
+      real(wp), intent(inout) :: beta
+      !> Thickness ratio [-]
+      real(wp), intent(out) :: eta
+
+      real(wp) :: ratio, change
+      integer :: step
+
+      do step = 1, most_steps
+         eta = thickness_at(beta, alpha, deficit, through_crown, which)
+         ratio = arm_excess(beta)/sin(beta)
+         change = deficit - ratio &
+                - tangency_flag(which)*eta*(1.0_wp + weight_flag(which)*eta/6.0_wp)/(2.0_wp - eta)
+         change = change/(beta - ratio*cos(beta)/sin(beta))
+         beta = beta + change
+         if (abs(change) <= short_step*beta) exit
+      end do
+      eta = thickness_at(beta, alpha, deficit, through_crown, which)
+   end subroutine mixed_hinge
+
+   !> Thickness ratio at which the line of thrust passes the intrados at beta and one extrados point
+   !>
+   !> Twice the moment of the forces between the two points: with v(x) = 1 - h - a(x), N(x) = h + q(x)(1 + v(x)),
+   !> 2 q v(beta) = eta (2 h + q (1 + v)) + delta_M q eta^2/6 from the crown, and
+   !> 2 (q v(beta) - q v(alpha)) = eta (N(alpha) + N(beta)) - delta_M (q(alpha) - q(beta)) eta^2/6 from the springing.
+   elemental function thickness_at(beta, alpha, deficit, through_crown, which) result(eta)
+      !> Inner hinge [rad]
+      real(wp), intent(in) :: beta
+      !> Half angle of embrace [rad]
+      real(wp), intent(in) :: alpha
+      !> 1 - h
+      real(wp), intent(in) :: deficit
+      !> Whether the other point is the crown's, rather than the springing's
+      logical, intent(in) :: through_crown
+      !> One of `theory`
+      integer, intent(in) :: which
+      !> Thickness ratio [-]
+      real(wp) :: eta
+
+      real(wp) :: q, v, q_end, v_end, h, rise, width, bend
+
+      h = 1.0_wp - deficit
+      q = versine(beta)
+      v = deficit - embrace_deficit(beta)
+      q_end = 0.0_wp
+      v_end = 0.0_wp
+      if (.not. through_crown) then
+         q_end = versine(alpha)
+         v_end = deficit - embrace_deficit(alpha)
+      end if
+      rise = 2.0_wp*(q*v - q_end*v_end)
+      width = 2.0_wp*h + q*(1.0_wp + v) + q_end*(1.0_wp + v_end)
+      bend = weight_flag(which)*(q - q_end)/6.0_wp
+      eta = 2.0_wp*rise/(width + sqrt(width**2 + 4.0_wp*bend*rise))
+   end function thickness_at
+
+end module couplet_heyman_friction

@@ -1,0 +1,249 @@
+!> Where a ring pinches the thrust: the widest gap at one thickness, and the thickness at which that gap closes
+!>
+!> Symbols as in couplet_heyman_discrete. The gap of a pair of joints (j, k) is the room between the extrados of j and
+!> the intrados of k; the gap of the ring is that of its narrowest pair.
+module couplet_heyman_pinch
+   use, intrinsic :: iso_fortran_env, only : wp => real64
+   use couplet_heyman_ring, only : ring_t
+   implicit none
+   private
+
+   public :: pinch_t, widest_gap, solve_pinch
+
+   !> Where the gap is widest at one eta, and the joints that keep it from being wider
+   type :: pinch_t
+      !> Deficit of the thrust there
+      real(wp) :: deficit = 0.0_wp
+      !> The gap there
+      real(wp) :: gap = 0.0_wp
+      !> Whether the gap grows for ever with the thrust: a straight thrust fits in the ring
+      logical :: unbounded = .false.
+      !> Extrados and intrados joint that close the gap towards smaller deficits: (2)
+      integer :: left(2) = 0
+      !> Extrados and intrados joint that close it towards greater deficits; equal to left at a sliding joint: (2)
+      integer :: right(2) = 0
+      !> Joint whose friction holds the deficit; 0 if none
+      integer :: sliding = 0
+   end type pinch_t
+
+contains
+
+   !> Largest gap over all deficits: tangents from both sides meet at the peak of a concave polygon
+   pure subroutine widest_gap(ring, eta, pinch)
+      !> The ring
+      type(ring_t), intent(in) :: ring
+      !> Thickness ratio [-]
+      real(wp), intent(in) :: eta
+      !> Where the gap is widest, and the joints that make it so
+      type(pinch_t), intent(out) :: pinch
+
+      integer :: pair(2), last
+      real(wp) :: peak, previous_peak, slope
+      logical :: too_low, too_high, rises_for_ever, falls_for_ever
+
+      last = size(ring%form)
+      pinch%left = [last, 1]
+      pinch%right = [1, last]
+      falls_for_ever = gap_slope(ring, eta, pinch%left) <= 0.0_wp
+      rises_for_ever = gap_slope(ring, eta, pinch%right) >= 0.0_wp
+      pinch%unbounded = (falls_for_ever .and. ring%lowest_joint == 0) .or. (rises_for_ever .and. ring%highest_joint == 0)
+      if (pinch%unbounded) return
+      previous_peak = huge(peak)
+      do
+         call meet(ring, eta, pinch%left, pinch%right, pinch%deficit, peak)
+         too_low = pinch%deficit < ring%lowest .or. falls_for_ever
+         too_high = pinch%deficit > ring%highest .or. rises_for_ever
+         if (too_low) pinch%deficit = ring%lowest
+         if (too_high) pinch%deficit = ring%highest
+         call narrowest_pair(ring, eta, pinch%deficit, pair, pinch%gap)
+         slope = gap_slope(ring, eta, pair)
+         if ((too_low .and. slope <= 0.0_wp) .or. (too_high .and. slope >= 0.0_wp)) then
+            pinch%left = pair
+            pinch%right = pair
+            pinch%sliding = merge(ring%lowest_joint, ring%highest_joint, too_low)
+            return
+         end if
+         if (all(pair == pinch%left) .or. all(pair == pinch%right)) return
+         if (.not. (too_low .or. too_high)) then
+            if (pinch%gap >= peak .or. peak >= previous_peak) return
+            previous_peak = peak
+         end if
+         if (slope > 0.0_wp) pinch%left = pair
+         if (slope <= 0.0_wp) pinch%right = pair
+      end do
+   end subroutine widest_gap
+
+   !> The joints that leave the least room for the thrust at one deficit
+   pure subroutine narrowest_pair(ring, eta, deficit, pair, gap)
+      !> The ring
+      type(ring_t), intent(in) :: ring
+      !> Thickness ratio [-]
+      real(wp), intent(in) :: eta
+      !> 1 - H
+      real(wp), intent(in) :: deficit
+      !> Lowest extrados and highest intrados joint: (2)
+      integer, intent(out) :: pair(2)
+      !> Room between them
+      real(wp), intent(out) :: gap
+
+      real(wp) :: roof, floor, centre, reach
+      integer :: j
+
+      roof = huge(roof)
+      floor = -huge(floor)
+      pair = 1
+      do j = 1, size(ring%form)
+         centre = deficit*ring%versine(j) + ring%form(j) - eta*eta/12.0_wp*ring%moment(j)
+         reach = 0.5_wp*eta*(ring%normal(j) - deficit*ring%cosine(j))
+         if (centre + reach < roof) then
+            roof = centre + reach
+            pair(1) = j
+         end if
+         if (centre - reach > floor) then
+            floor = centre - reach
+            pair(2) = j
+         end if
+      end do
+      gap = roof - floor
+   end subroutine narrowest_pair
+
+   !> Gap between the extrados of one joint and the intrados of another
+   pure function pair_gap(ring, eta, deficit, pair) result(gap)
+      !> The ring
+      type(ring_t), intent(in) :: ring
+      !> Thickness ratio [-]
+      real(wp), intent(in) :: eta
+      !> 1 - H
+      real(wp), intent(in) :: deficit
+      !> Extrados and intrados joint: (2)
+      integer, intent(in) :: pair(2)
+      !> Room between them
+      real(wp) :: gap
+
+      associate (j => pair(1), k => pair(2))
+         gap = deficit*(ring%versine(j) - ring%versine(k)) + (ring%form(j) - ring%form(k)) &
+             + 0.5_wp*eta*(ring%normal(j) + ring%normal(k) - deficit*(ring%cosine(j) + ring%cosine(k))) &
+             - eta*eta/12.0_wp*(ring%moment(j) - ring%moment(k))
+      end associate
+   end function pair_gap
+
+   !> Derivative of a pair's gap by the deficit
+   pure function gap_slope(ring, eta, pair) result(slope)
+      !> The ring
+      type(ring_t), intent(in) :: ring
+      !> Thickness ratio [-]
+      real(wp), intent(in) :: eta
+      !> Extrados and intrados joint: (2)
+      integer, intent(in) :: pair(2)
+      !> d gap/d deficit
+      real(wp) :: slope
+
+      associate (j => pair(1), k => pair(2))
+         slope = ring%versine(j) - ring%versine(k) - 0.5_wp*eta*(ring%cosine(j) + ring%cosine(k))
+      end associate
+   end function gap_slope
+
+   !> Derivative of a pair's gap by eta
+   pure function gap_growth(ring, eta, deficit, pair) result(growth)
+      !> The ring
+      type(ring_t), intent(in) :: ring
+      !> Thickness ratio [-]
+      real(wp), intent(in) :: eta
+      !> 1 - H
+      real(wp), intent(in) :: deficit
+      !> Extrados and intrados joint: (2)
+      integer, intent(in) :: pair(2)
+      !> d gap/d eta
+      real(wp) :: growth
+
+      associate (j => pair(1), k => pair(2))
+         growth = 0.5_wp*(ring%normal(j) + ring%normal(k) - deficit*(ring%cosine(j) + ring%cosine(k))) &
+                - eta/6.0_wp*(ring%moment(j) - ring%moment(k))
+      end associate
+   end function gap_growth
+
+   !> Where the gaps of two pairs are equal
+   pure subroutine meet(ring, eta, left, right, deficit, gap)
+      !> The ring
+      type(ring_t), intent(in) :: ring
+      !> Thickness ratio [-]
+      real(wp), intent(in) :: eta
+      !> Pair whose gap grows with the deficit: (2)
+      integer, intent(in) :: left(2)
+      !> Pair whose gap shrinks with it: (2)
+      integer, intent(in) :: right(2)
+      !> 1 - H at the meeting
+      real(wp), intent(out) :: deficit
+      !> Both gaps there
+      real(wp), intent(out) :: gap
+
+      deficit = (pair_gap(ring, eta, 0.0_wp, right) - pair_gap(ring, eta, 0.0_wp, left)) &
+              /(gap_slope(ring, eta, left) - gap_slope(ring, eta, right))
+      gap = pair_gap(ring, eta, deficit, left)
+   end subroutine meet
+
+   !> Thickness ratio at which the pinching joints just let the thrust through: Newton's method in eta and deficit
+   pure subroutine solve_pinch(ring, start, pinch, eta, solved)
+      !> The ring
+      type(ring_t), intent(in) :: ring
+      !> Thickness ratio at which the pinch was found [-]
+      real(wp), intent(in) :: start
+      !> The joints; its deficit is carried along
+      type(pinch_t), intent(inout) :: pinch
+      !> Thickness ratio at which their gaps vanish [-]
+      real(wp), intent(out) :: eta
+      !> Whether the iteration has come to rest
+      logical, intent(out) :: solved
+
+      !> Quadratic convergence takes 3 to 8
+      integer, parameter :: most_steps = 60
+      !> A relative step this short leaves rounding alone to the next one
+      real(wp), parameter :: last_but_one = 1.0e-8_wp
+      real(wp) :: eta_step, deficit_step
+      integer :: step
+
+      eta = start
+      solved = .false.
+      do step = 1, most_steps
+         call newton_step(ring, eta, pinch, eta_step, deficit_step)
+         if (.not. abs(eta + eta_step) < 4.0_wp) return
+         eta = eta + eta_step
+         pinch%deficit = pinch%deficit + deficit_step
+         if (solved) return
+         solved = abs(eta_step) <= last_but_one*abs(eta)
+      end do
+      solved = .false.
+   end subroutine solve_pinch
+
+   !> Step towards the vanishing of both gaps, or of one where friction holds the deficit
+   pure subroutine newton_step(ring, eta, pinch, eta_step, deficit_step)
+      !> The ring
+      type(ring_t), intent(in) :: ring
+      !> Thickness ratio [-]
+      real(wp), intent(in) :: eta
+      !> The joints and the deficit
+      type(pinch_t), intent(in) :: pinch
+      !> Change of eta; huge where there is none
+      real(wp), intent(out) :: eta_step
+      !> Change of the deficit
+      real(wp), intent(out) :: deficit_step
+
+      real(wp) :: gap(2), growth(2), slope(2), determinant
+
+      gap = [pair_gap(ring, eta, pinch%deficit, pinch%left), pair_gap(ring, eta, pinch%deficit, pinch%right)]
+      growth = [gap_growth(ring, eta, pinch%deficit, pinch%left), gap_growth(ring, eta, pinch%deficit, pinch%right)]
+      slope = [gap_slope(ring, eta, pinch%left), gap_slope(ring, eta, pinch%right)]
+      if (pinch%sliding > 0) then
+         gap(1) = 0.0_wp
+         growth(1) = 0.0_wp
+         slope(1) = 1.0_wp
+      end if
+      eta_step = huge(eta_step)
+      deficit_step = 0.0_wp
+      determinant = growth(1)*slope(2) - growth(2)*slope(1)
+      if (abs(determinant) <= epsilon(determinant)*(abs(growth(1)*slope(2)) + abs(growth(2)*slope(1)))) return
+      eta_step = (gap(2)*slope(1) - gap(1)*slope(2))/determinant
+      deficit_step = (gap(1)*growth(2) - gap(2)*growth(1))/determinant
+   end subroutine newton_step
+
+end module couplet_heyman_pinch

@@ -1,0 +1,323 @@
+!> Eqs. (14) to (27) term by term as the paper prints them, and the critical solutions they give
+!>
+!> For comparison and for checks: shallow arches lose their digits here (docs/theory.md has the table), which
+!> couplet_heyman_curves and couplet_heyman_critical avoid. A is eq. (9), S = sin beta, C = cos beta.
+module couplet_heyman_printed
+   use, intrinsic :: ieee_arithmetic, only : ieee_quiet_nan, ieee_value
+   use, intrinsic :: iso_fortran_env, only : wp => real64
+   use couplet_heyman_critical, only : is_embraced
+   use couplet_heyman_theories, only : theory, weight_flag
+   implicit none
+   private
+
+   public :: equilibrium_polynomial, stationary_polynomial, growth_polynomial, crown_polynomial
+   public :: embrace_polynomial, embrace_cubic, embrace_quadratic, thickness_polynomial, heyman_quotient
+   public :: singular_embrace, singular_polynomial, printed_thickness, printed_critical
+
+contains
+
+   !> Eq. (1), left side: beta cot beta times a quotient; equals A for Heyman's hinge
+   elemental function heyman_quotient(beta) result(a)
+      !> Inner hinge, (0, pi/2) [rad]
+      real(wp), intent(in) :: beta
+      !> A
+      real(wp) :: a
+
+      real(wp) :: s, c, common
+
+      s = sin(beta)
+      c = cos(beta)
+      common = 2.0_wp*beta*c + s*c**2
+      a = beta*c/s*(common + s)/(common - s*c)
+   end function heyman_quotient
+
+   !> Eq. (14): vanishes on the equilibrium curve
+   elemental function equilibrium_polynomial(eta, beta, a, which) result(value)
+      !> Thickness ratio [-]
+      real(wp), intent(in) :: eta
+      !> Inner hinge [rad]
+      real(wp), intent(in) :: beta
+      !> A, eq. (9)
+      real(wp), intent(in) :: a
+      !> One of `theory`
+      integer, intent(in) :: which
+      !> Value of the polynomial
+      real(wp) :: value
+
+      real(wp) :: s, c
+
+      s = sin(beta)
+      c = cos(beta)
+      value = weight_flag(which)*c*eta**3 - 3.0_wp*(beta*s + (1.0_wp + c)*a)*eta**2 &
+            + 12.0_wp*(c - a)*eta + 12.0_wp*(beta*s - (1.0_wp - c)*a)
+   end function equilibrium_polynomial
+
+   !> Eq. (18): derivative of eq. (14) by beta; vanishes at the least thickness
+   elemental function stationary_polynomial(eta, beta, a, which) result(value)
+      !> Thickness ratio [-]
+      real(wp), intent(in) :: eta
+      !> Inner hinge [rad]
+      real(wp), intent(in) :: beta
+      !> A, eq. (9)
+      real(wp), intent(in) :: a
+      !> One of `theory`
+      integer, intent(in) :: which
+      !> Value of the polynomial
+      real(wp) :: value
+
+      real(wp) :: s, arm
+
+      s = sin(beta)
+      arm = s + beta*cos(beta) - s*a
+      value = -weight_flag(which)*s*eta**3 - 3.0_wp*arm*eta**2 - 12.0_wp*s*eta + 12.0_wp*arm
+   end function stationary_polynomial
+
+   !> Denominator of eq. (19): derivative of eq. (14) by eta
+   elemental function growth_polynomial(eta, beta, a, which) result(value)
+      !> Thickness ratio [-]
+      real(wp), intent(in) :: eta
+      !> Inner hinge [rad]
+      real(wp), intent(in) :: beta
+      !> A, eq. (9)
+      real(wp), intent(in) :: a
+      !> One of `theory`
+      integer, intent(in) :: which
+      !> Value of the polynomial
+      real(wp) :: value
+
+      real(wp) :: s, c
+
+      s = sin(beta)
+      c = cos(beta)
+      value = 3.0_wp*weight_flag(which)*c*eta**2 - 6.0_wp*(beta*s + (1.0_wp + c)*a)*eta + 12.0_wp*(c - a)
+   end function growth_polynomial
+
+   !> Eq. (20): the A at which eq. (19) has no slope
+   elemental function singular_embrace(eta, beta, which) result(a)
+      !> Thickness ratio [-]
+      real(wp), intent(in) :: eta
+      !> Inner hinge [rad]
+      real(wp), intent(in) :: beta
+      !> One of `theory`
+      integer, intent(in) :: which
+      !> A_sing
+      real(wp) :: a
+
+      real(wp) :: c
+
+      c = cos(beta)
+      a = weight_flag(which)*c*eta**2 - 2.0_wp*beta*sin(beta)*eta + 4.0_wp*c
+      a = a/(4.0_wp + 2.0_wp*(1.0_wp + c)*eta)
+   end function singular_embrace
+
+   !> Eq. (21): eq. (27) at A = A_sing
+   elemental function singular_polynomial(eta, which) result(value)
+      !> Thickness ratio [-]
+      real(wp), intent(in) :: eta
+      !> One of `theory`
+      integer, intent(in) :: which
+      !> Value of the quotient, zero at eta = 0 only
+      real(wp) :: value
+
+      real(wp) :: flag
+
+      flag = weight_flag(which)
+      value = -(flag*eta**2 + 4.0_wp*flag*eta - 12.0_wp)*eta**2/(2.0_wp*(1.0_wp + eta))
+   end function singular_polynomial
+
+   !> Eq. (27): eq. (14) at beta = 0
+   elemental function crown_polynomial(eta, a, which) result(value)
+      !> Thickness ratio [-]
+      real(wp), intent(in) :: eta
+      !> A, eq. (9)
+      real(wp), intent(in) :: a
+      !> One of `theory`
+      integer, intent(in) :: which
+      !> Value of the polynomial
+      real(wp) :: value
+
+      value = (weight_flag(which)*eta**2 - 6.0_wp*a*eta + 12.0_wp*(1.0_wp - a))*eta
+   end function crown_polynomial
+
+   !> Eq. (22): eta eliminated; for CCR it has the extraneous root A = -(beta + S C)/S besides those of eq. (24)
+   elemental function embrace_polynomial(beta, a, which) result(value)
+      !> Critical hinge [rad]
+      real(wp), intent(in) :: beta
+      !> A, eq. (9)
+      real(wp), intent(in) :: a
+      !> CCR or Milankovitch of `theory`
+      integer, intent(in) :: which
+      !> Value of the polynomial
+      real(wp) :: value
+
+      real(wp) :: s, c, g, rest, head
+
+      s = sin(beta)
+      c = cos(beta)
+      g = beta + s*c
+      head = 0.5_wp*(3.0_wp + weight_flag(which))
+      rest = 0.5_wp*(1.0_wp - weight_flag(which))*s
+      value = s**2*(3.0_wp*g - head*s)*a**3 + 3.0_wp*((1.0_wp - c)*(beta - s) - rest)*g*s*a**2 &
+            - 3.0_wp*(s + beta*c - rest)*g**2*a + head*g**3
+   end function embrace_polynomial
+
+   !> Eq. (23): eq. (22) for Milankovitch
+   elemental function embrace_cubic(beta, a) result(value)
+      !> Critical hinge [rad]
+      real(wp), intent(in) :: beta
+      !> A, eq. (9)
+      real(wp), intent(in) :: a
+      !> Value of the polynomial
+      real(wp) :: value
+
+      real(wp) :: s, c, g
+
+      s = sin(beta)
+      c = cos(beta)
+      g = beta + s*c
+      value = s**2*(3.0_wp*g - 2.0_wp*s)*a**3 + 3.0_wp*(1.0_wp - c)*(beta - s)*g*s*a**2 &
+            - 3.0_wp*(s + beta*c)*g**2*a + 2.0_wp*g**3
+   end function embrace_cubic
+
+   !> Eq. (24): eq. (22) for CCR without its extraneous factor
+   elemental function embrace_quadratic(beta, a) result(value)
+      !> Critical hinge [rad]
+      real(wp), intent(in) :: beta
+      !> A, eq. (9)
+      real(wp), intent(in) :: a
+      !> Value of the polynomial
+      real(wp) :: value
+
+      real(wp) :: s, c, g
+
+      s = sin(beta)
+      c = cos(beta)
+      g = beta + s*c
+      value = s*(2.0_wp*g - s)*a**2 - 2.0_wp*(s + beta*c)*g*a + g**2
+   end function embrace_quadratic
+
+   !> Eq. (25): A eliminated; for one hinge it has two thicknesses, one on either side of beta_max
+   elemental function thickness_polynomial(eta, beta, which) result(value)
+      !> Critical thickness ratio [-]
+      real(wp), intent(in) :: eta
+      !> Critical hinge [rad]
+      real(wp), intent(in) :: beta
+      !> CCR or Milankovitch of `theory`
+      integer, intent(in) :: which
+      !> Value of the polynomial
+      real(wp) :: value
+
+      real(wp) :: s, c
+
+      s = sin(beta)
+      c = cos(beta)
+      value = weight_flag(which)*s*eta**3 + 3.0_wp*(1.0_wp + c)*(beta + s)*eta**2 &
+            - 12.0_wp*(beta + s*c - s)*eta + 12.0_wp*(1.0_wp - c)*(beta - s)
+   end function thickness_polynomial
+
+   !> Eq. (16): the equilibrium curve of Heyman and CCR in closed form
+   elemental function printed_thickness(beta, a) result(eta)
+      !> Inner hinge [rad]
+      real(wp), intent(in) :: beta
+      !> A, eq. (9)
+      real(wp), intent(in) :: a
+      !> Thickness ratio [-]
+      real(wp) :: eta
+
+      real(wp) :: s, c, radicand
+
+      s = sin(beta)
+      c = cos(beta)
+      radicand = c*(c - (2.0_wp - c*a)*a) + beta*s*(beta*s + 2.0_wp*c*a)
+      eta = 2.0_wp*(c - a + sqrt(radicand))/(beta*s + (1.0_wp + c)*a)
+   end function printed_thickness
+
+   !> Critical solution by the printed forms: bisection on eq. (1), (24) or (23), then (2), (16) or (14), then (3) or (8)
+   elemental subroutine printed_critical(alpha, which, beta, eta, h)
+      !> Half angle of embrace, (0, alpha_limit] [rad]
+      real(wp), intent(in) :: alpha
+      !> One of `theory`
+      integer, intent(in) :: which
+      !> Inner hinge [rad]
+      real(wp), intent(out) :: beta
+      !> Thickness ratio [-]
+      real(wp), intent(out) :: eta
+      !> Thrust [w r]
+      real(wp), intent(out) :: h
+
+      real(wp) :: a, s, c
+
+      beta = ieee_value(beta, ieee_quiet_nan)
+      eta = beta
+      h = beta
+      if (.not. is_embraced(alpha, which)) return
+      a = alpha/tan(0.5_wp*alpha)
+      beta = printed_hinge(alpha, a, which)
+      s = sin(beta)
+      c = cos(beta)
+      if (which == theory%heyman) then
+         eta = 2.0_wp*(beta - s)*(1.0_wp - c)/(beta*(1.0_wp + c))
+         h = beta*c/s
+      else
+         eta = printed_thickness(beta, a)
+         if (which == theory%milankovitch) eta = printed_cubic_root(eta, beta, a)
+         h = a - 2.0_wp/(2.0_wp + eta)*(1.0_wp + weight_flag(which)*eta**2/12.0_wp)
+      end if
+   end subroutine printed_critical
+
+   !> Root in beta of eq. (1), (24) or (23), by bisection to the last bit
+   elemental function printed_hinge(alpha, a, which) result(beta)
+      !> Half angle of embrace [rad]
+      real(wp), intent(in) :: alpha
+      !> A, eq. (9)
+      real(wp), intent(in) :: a
+      !> One of `theory`
+      integer, intent(in) :: which
+      !> Inner hinge [rad]
+      real(wp) :: beta
+
+      !> There is one root below a quarter of a turn [rad]
+      real(wp), parameter :: farthest = 0.5_wp*acos(-1.0_wp)
+      real(wp) :: low, high, value
+
+      low = merge(0.5_wp*alpha, 0.0_wp, which == theory%heyman)
+      high = min(alpha, farthest)
+      do
+         beta = low + 0.5_wp*(high - low)
+         if (beta <= low .or. beta >= high) exit
+         select case (which)
+         case (theory%heyman)
+            value = a - heyman_quotient(beta)
+         case (theory%ccr)
+            value = embrace_quadratic(beta, a)
+         case default
+            value = embrace_cubic(beta, a)
+         end select
+         if (value < 0.0_wp) low = beta
+         if (.not. value < 0.0_wp) high = beta
+      end do
+   end function printed_hinge
+
+   !> Root of the cubic (14) next to that of its quadratic part, by Newton's method
+   elemental function printed_cubic_root(start, beta, a) result(eta)
+      !> Root of eq. (16) [-]
+      real(wp), intent(in) :: start
+      !> Inner hinge [rad]
+      real(wp), intent(in) :: beta
+      !> A, eq. (9)
+      real(wp), intent(in) :: a
+      !> Thickness ratio [-]
+      real(wp) :: eta
+
+      !> Twice what full convergence takes
+      integer, parameter :: steps = 12
+      integer :: i
+
+      eta = start
+      do i = 1, steps
+         eta = eta - equilibrium_polynomial(eta, beta, a, theory%milankovitch) &
+                    /growth_polynomial(eta, beta, a, theory%milankovitch)
+      end do
+   end function printed_cubic_root
+
+end module couplet_heyman_printed

@@ -1,0 +1,155 @@
+!> The ring of joints behind couplet_heyman_discrete: its shape, and the thrusts that friction allows
+!>
+!> Symbols as there: d = 1 - H the deficit of the thrust, v = 1 - cos t, z = W sin t - M - v, N = n - d cos t with
+!> n = cos t + W sin t, and M the moment of the weights over 1 + eta^2/12. Only differences of z and M between joints
+!> matter, so both are counted from the first joint.
+module couplet_heyman_ring
+   use, intrinsic :: iso_fortran_env, only : wp => real64
+   use couplet_heyman_kernels, only : arc_excess, arm_excess, versine
+   implicit none
+   private
+
+   public :: ring_t, make_ring, limit_thrust
+
+   !> One half of an arch, joint by joint; nothing here depends on eta
+   type :: ring_t
+      !> Cosine of the joint's angle: (:)
+      real(wp), allocatable :: cosine(:)
+      !> 1 - cosine: (:)
+      real(wp), allocatable :: versine(:)
+      !> z, the height of the weights' funicular over the circle, small of fourth order: (:)
+      real(wp), allocatable :: form(:)
+      !> M, moment of the weights above the joint: (:)
+      real(wp), allocatable :: moment(:)
+      !> n, normal force at the joint for H = 1: (:)
+      real(wp), allocatable :: normal(:)
+      !> Angle less weight above the joint, t - W: (:)
+      real(wp), allocatable :: lightness(:)
+      !> Deficits that friction allows: from lowest
+      real(wp) :: lowest = -huge(1.0_wp)
+      !> ... to highest
+      real(wp) :: highest = huge(1.0_wp)
+      !> Joint whose friction sets lowest; 0 if none
+      integer :: lowest_joint = 0
+      !> Joint whose friction sets highest; 0 if none
+      integer :: highest_joint = 0
+   end type ring_t
+
+contains
+
+   !> Shape of the ring from its joints; see docs/theory.md for the identity behind the steps of form
+   pure subroutine make_ring(joint_angle, facets, ring)
+      !> Joints of one half, from the crown: (n) [rad]
+      real(wp), intent(in) :: joint_angle(:)
+      !> Equal chords of each voussoir: (n - 1), or (n) where the first straddles the crown
+      integer, intent(in) :: facets(:)
+      !> The ring, free of friction
+      type(ring_t), intent(out) :: ring
+
+      real(wp) :: span, chord, middle, half_sine, chord_loss, lightness_rise, lightness_middle, form_rise, form_carry
+      integer :: n, j, above
+
+      n = size(joint_angle)
+      above = n - size(facets)
+      ring%cosine = cos(joint_angle)
+      ring%versine = versine(joint_angle)
+      allocate (ring%form(n), ring%moment(n), ring%lightness(n))
+      ring%form(1) = 0.0_wp
+      ring%moment(1) = 0.0_wp
+      ring%lightness(1) = 0.0_wp
+      if (above == 0) ring%lightness(1) = 0.5_wp*facets(1)*arc_excess(2.0_wp*joint_angle(1)/facets(1))
+      form_carry = 0.0_wp
+      do j = 2, n
+         span = joint_angle(j) - joint_angle(j - 1)
+         middle = 0.5_wp*(joint_angle(j) + joint_angle(j - 1))
+         chord = span/facets(j - above)
+         half_sine = sin(0.5_wp*span)
+         chord_loss = sin(0.5_wp*chord)**2
+         lightness_rise = facets(j - above)*arc_excess(chord)
+         lightness_middle = ring%lightness(j - 1) + 0.5_wp*lightness_rise
+         form_rise = sin(middle)*(2.0_wp*chord_loss*half_sine - lightness_rise*cos(0.5_wp*span)) &
+                   - 2.0_wp*(half_sine*(arm_excess(middle) + cos(middle)*lightness_middle) &
+                             + arm_excess(0.5_wp*span)*sin(middle))
+         ring%lightness(j) = ring%lightness(j - 1) + lightness_rise
+         ring%moment(j) = ring%moment(j - 1) + 2.0_wp*(1.0_wp - chord_loss)*half_sine*sin(middle)
+         call add_exactly(form_rise, ring%form(j - 1), form_carry, ring%form(j))
+      end do
+      ring%normal = ring%cosine + (joint_angle - ring%lightness)*sin(joint_angle)
+   end subroutine make_ring
+
+   !> One step of a compensated sum: ten thousand voussoirs lose no digit
+   pure subroutine add_exactly(term, before, carry, after)
+      !> What is added
+      real(wp), intent(in) :: term
+      !> Sum before
+      real(wp), intent(in) :: before
+      !> What rounding has left out so far
+      real(wp), intent(inout) :: carry
+      !> Sum after
+      real(wp), intent(out) :: after
+
+      real(wp) :: corrected
+
+      corrected = term + carry
+      after = before + corrected
+      carry = corrected - (after - before)
+   end subroutine add_exactly
+
+   !> Thrusts that friction allows: H sin(t + phi) >= W cos(t + phi) and H sin(t - phi) <= W cos(t - phi) at each joint
+   !>
+   !> A joint at the crown carries no shear, by symmetry.
+   pure subroutine limit_thrust(joint_angle, friction, springing_no_slip, ring)
+      !> Joints of one half, from the crown: (:) [rad]
+      real(wp), intent(in) :: joint_angle(:)
+      !> Friction angle; pi/2 or more means that no joint slides [rad]
+      real(wp), intent(in) :: friction
+      !> Whether the last joint cannot slide
+      logical, intent(in) :: springing_no_slip
+      !> The ring: its limits of the deficit are set
+      type(ring_t), intent(inout) :: ring
+
+      !> A quarter of a turn [rad]
+      real(wp), parameter :: quarter = 0.5_wp*acos(-1.0_wp)
+      integer :: j, last
+
+      if (friction >= quarter) return
+      last = size(joint_angle)
+      if (springing_no_slip) last = last - 1
+      do j = 1, last
+         if (joint_angle(j) <= 0.0_wp) cycle
+         call limit_deficit(joint_angle(j) + friction, ring%lightness(j) + friction, +1, j, ring)
+         call limit_deficit(joint_angle(j) - friction, ring%lightness(j) - friction, -1, j, ring)
+      end do
+   end subroutine limit_thrust
+
+   !> Keep the deficit where side (H sin x - W cos x) >= 0
+   !>
+   !> The deficit at equality is 1 - W cot x = (k(x) + (x - W) cos x)/sin x, a sum of small terms
+   pure subroutine limit_deficit(x, excess, side, joint, ring)
+      !> Angle of the joint, plus or minus that of friction [rad]
+      real(wp), intent(in) :: x
+      !> x - W
+      real(wp), intent(in) :: excess
+      !> +1 or -1: the sense of the inequality
+      integer, intent(in) :: side
+      !> Index of the joint
+      integer, intent(in) :: joint
+      !> The ring: its limits of the deficit are narrowed
+      type(ring_t), intent(inout) :: ring
+
+      real(wp) :: bound
+      logical :: caps_deficit
+
+      if (abs(sin(x)) <= tiny(x)) return
+      bound = (arm_excess(x) + excess*cos(x))/sin(x)
+      caps_deficit = side*sin(x) > 0.0_wp
+      if (caps_deficit .and. bound < ring%highest) then
+         ring%highest = bound
+         ring%highest_joint = joint
+      else if (.not. caps_deficit .and. bound > ring%lowest) then
+         ring%lowest = bound
+         ring%lowest_joint = joint
+      end if
+   end subroutine limit_deficit
+
+end module couplet_heyman_ring

@@ -1,0 +1,213 @@
+!> What Python sees of the three theories: the layer that f2py wraps
+!>
+!> Subroutines with explicit sizes, arrays of one rank and no optional arguments, as f2py wants them. Each takes n
+!> elements at once. `fault` tells the first value outside the range of validity: the place of its argument in the
+!> call, from 1, and its element, from 1; both 0 when all is well, and only then are the results set. `which` is one
+!> of `theory` in couplet_heyman_theories.
+module theory_api
+   use, intrinsic :: iso_fortran_env, only : wp => real64
+   use couplet_heyman, only : critical_solution, curve_slope, equilibrium_thickness, initial_thickness, is_embraced, &
+      limits_of, limits_t, near_limit_solution, printed_critical, small_angle_solution, springing_thrust, thrust_line, &
+      unit_angle
+   use couplet_heyman_domain, only : blame, is_half_angle, is_joint, is_thickness
+   implicit none
+   private
+
+   public :: critical, critical_as_printed, critical_small, critical_near_limit
+   public :: curve, curve_start, slope, line, limit_values
+
+contains
+
+   !> Critical solution by the stable kernels
+   subroutine critical(n, alpha, which, beta, eta, h, fault)
+      !> Number of elements
+      integer, intent(in) :: n
+      !> Half angle of embrace, (0, alpha_limit]: (n) [rad]
+      real(wp), intent(in) :: alpha(n)
+      !> Theory
+      integer, intent(in) :: which
+      !> Inner hinge: (n) [rad]
+      real(wp), intent(out) :: beta(n)
+      !> Thickness ratio: (n) [-]
+      real(wp), intent(out) :: eta(n)
+      !> Thrust: (n) [w r]
+      real(wp), intent(out) :: h(n)
+      !> First fault: (2)
+      integer, intent(out) :: fault(2)
+
+      call critical_solution(alpha, which, beta, eta, h)
+      fault = 0
+      call blame(1, is_embraced(alpha, which), fault)
+   end subroutine critical
+
+   !> Critical solution by eqs. (1), (23), (24) and (16) or (14) as printed
+   subroutine critical_as_printed(n, alpha, which, beta, eta, h, fault)
+      !> Number of elements
+      integer, intent(in) :: n
+      !> Half angle of embrace, (0, alpha_limit]: (n) [rad]
+      real(wp), intent(in) :: alpha(n)
+      !> Theory
+      integer, intent(in) :: which
+      !> Inner hinge: (n) [rad]
+      real(wp), intent(out) :: beta(n)
+      !> Thickness ratio: (n) [-]
+      real(wp), intent(out) :: eta(n)
+      !> Thrust: (n) [w r]
+      real(wp), intent(out) :: h(n)
+      !> First fault: (2)
+      integer, intent(out) :: fault(2)
+
+      call printed_critical(alpha, which, beta, eta, h)
+      fault = 0
+      call blame(1, is_embraced(alpha, which), fault)
+   end subroutine critical_as_printed
+
+   !> Critical solution by its power series at small half angles
+   subroutine critical_small(n, alpha, which, beta, eta, h, fault)
+      !> Number of elements
+      integer, intent(in) :: n
+      !> Half angle of embrace, (0, alpha_limit]: (n) [rad]
+      real(wp), intent(in) :: alpha(n)
+      !> Theory
+      integer, intent(in) :: which
+      !> Inner hinge: (n) [rad]
+      real(wp), intent(out) :: beta(n)
+      !> Thickness ratio: (n) [-]
+      real(wp), intent(out) :: eta(n)
+      !> Thrust: (n) [w r]
+      real(wp), intent(out) :: h(n)
+      !> First fault: (2)
+      integer, intent(out) :: fault(2)
+
+      call small_angle_solution(alpha, which, beta, eta, h)
+      fault = 0
+      call blame(1, is_embraced(alpha, which), fault)
+   end subroutine critical_small
+
+   !> Leading terms of the critical solution next to the limit of validity
+   subroutine critical_near_limit(n, distance, which, beta, eta, h, fault)
+      !> Number of elements
+      integer, intent(in) :: n
+      !> alpha_limit - alpha, [0, alpha_limit): (n) [rad]
+      real(wp), intent(in) :: distance(n)
+      !> Theory
+      integer, intent(in) :: which
+      !> Inner hinge: (n) [rad]
+      real(wp), intent(out) :: beta(n)
+      !> Thickness ratio: (n) [-]
+      real(wp), intent(out) :: eta(n)
+      !> Thrust: (n) [w r]
+      real(wp), intent(out) :: h(n)
+      !> First fault: (2)
+      integer, intent(out) :: fault(2)
+
+      type(limits_t) :: limits
+
+      limits = limits_of(which)
+      fault = 0
+      call blame(1, distance >= 0.0_wp .and. distance < limits%alpha_limit, fault)
+      if (all(fault == 0)) call near_limit_solution(distance, which, beta, eta, h)
+   end subroutine critical_near_limit
+
+   !> Eqs. (14) and (16): the equilibrium curve
+   subroutine curve(n, beta, alpha, which, eta, fault)
+      !> Number of elements
+      integer, intent(in) :: n
+      !> Inner hinge, [0, alpha]: (n) [rad]
+      real(wp), intent(in) :: beta(n)
+      !> Half angle of embrace, (0, alpha_limit]: (n) [rad]
+      real(wp), intent(in) :: alpha(n)
+      !> Theory
+      integer, intent(in) :: which
+      !> Thickness ratio: (n) [-]
+      real(wp), intent(out) :: eta(n)
+      !> First fault: (2)
+      integer, intent(out) :: fault(2)
+
+      fault = 0
+      call blame(2, is_embraced(alpha, which), fault)
+      call blame(1, is_joint(beta, alpha), fault)
+      if (all(fault == 0)) eta = equilibrium_thickness(beta, alpha, which)
+   end subroutine curve
+
+   !> Eq. (26): start of the equilibrium curve at the crown
+   subroutine curve_start(n, alpha, which, eta, fault)
+      !> Number of elements
+      integer, intent(in) :: n
+      !> Half angle of embrace, (0, alpha_limit]: (n) [rad]
+      real(wp), intent(in) :: alpha(n)
+      !> Theory
+      integer, intent(in) :: which
+      !> Thickness ratio: (n) [-]
+      real(wp), intent(out) :: eta(n)
+      !> First fault: (2)
+      integer, intent(out) :: fault(2)
+
+      fault = 0
+      call blame(1, is_embraced(alpha, which), fault)
+      if (all(fault == 0)) eta = initial_thickness(alpha, which)
+   end subroutine curve_start
+
+   !> Eq. (19): slope of the equilibrium curve
+   subroutine slope(n, beta, alpha, which, rate, fault)
+      !> Number of elements
+      integer, intent(in) :: n
+      !> Inner hinge, [0, alpha]: (n) [rad]
+      real(wp), intent(in) :: beta(n)
+      !> Half angle of embrace, (0, alpha_limit]: (n) [rad]
+      real(wp), intent(in) :: alpha(n)
+      !> Theory
+      integer, intent(in) :: which
+      !> d eta/d beta: (n) [1/rad]
+      real(wp), intent(out) :: rate(n)
+      !> First fault: (2)
+      integer, intent(out) :: fault(2)
+
+      fault = 0
+      call blame(2, is_embraced(alpha, which), fault)
+      call blame(1, is_joint(beta, alpha), fault)
+      if (all(fault == 0)) rate = curve_slope(beta, alpha, which)
+   end subroutine slope
+
+   !> Eq. (11): the line of thrust through the extrados of crown and springing
+   subroutine line(n, beta, alpha, eta, which, ratio, fault)
+      !> Number of elements
+      integer, intent(in) :: n
+      !> Angle of the joint, [0, alpha]: (n) [rad]
+      real(wp), intent(in) :: beta(n)
+      !> Half angle of embrace, (0, pi): (n) [rad]
+      real(wp), intent(in) :: alpha(n)
+      !> Thickness ratio, (0, 2), with a thrust h2 > 0: (n) [-]
+      real(wp), intent(in) :: eta(n)
+      !> Theory
+      integer, intent(in) :: which
+      !> 2e/t: (n)
+      real(wp), intent(out) :: ratio(n)
+      !> First fault: (2)
+      integer, intent(out) :: fault(2)
+
+      fault = 0
+      call blame(2, is_half_angle(alpha), fault)
+      call blame(1, is_joint(beta, alpha), fault)
+      call blame(3, is_thickness(eta), fault)
+      if (any(fault > 0)) return
+      call blame(3, springing_thrust(alpha, eta, which) > 0.0_wp, fault)
+      if (all(fault == 0)) ratio = thrust_line(beta, alpha, eta, which)
+   end subroutine line
+
+   !> Limits of validity
+   subroutine limit_values(which, values)
+      !> Theory
+      integer, intent(in) :: which
+      !> alpha, A, eta, beta, h at the limit; greatest beta and alpha, A, eta, h there; alpha where A = 1: (11)
+      real(wp), intent(out) :: values(11)
+
+      type(limits_t) :: limits
+
+      limits = limits_of(which)
+      values = [limits%alpha_limit, limits%embrace_limit, limits%eta_limit, limits%beta_limit, 0.0_wp, &
+                limits%beta_max, limits%alpha_beta_max, limits%embrace_beta_max, limits%eta_beta_max, &
+                limits%h_beta_max, unit_angle]
+   end subroutine limit_values
+
+end module theory_api

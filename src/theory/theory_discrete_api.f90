@@ -1,0 +1,174 @@
+!> What Python sees of friction and of arches of voussoirs; conventions as in theory_api
+module theory_discrete_api
+   use, intrinsic :: iso_fortran_env, only : wp => real64
+   use couplet_heyman, only : friction_limits, friction_limits_t, friction_solution, is_embraced
+   use couplet_heyman_discrete, only : chords, discrete_critical, discrete_solution_t, discrete_status, &
+      equal_voussoir_joints
+   use couplet_heyman_domain, only : blame, is_facet, is_half_angle
+   implicit none
+   private
+
+   public :: friction_range, friction_states, discrete_equal, discrete_joints
+
+contains
+
+   !> Friction coefficients at which the mode of collapse changes
+   subroutine friction_range(n, alpha, which, rotational, mixed, h, slip, springing, fault)
+      !> Number of elements
+      integer, intent(in) :: n
+      !> Half angle of embrace, (0, alpha_limit]: (n) [rad]
+      real(wp), intent(in) :: alpha(n)
+      !> Theory
+      integer, intent(in) :: which
+      !> Least coefficient for a collapse by rotation alone: (n)
+      real(wp), intent(out) :: rotational(n)
+      !> Least coefficient for any equilibrium: (n)
+      real(wp), intent(out) :: mixed(n)
+      !> Thrust at the latter: (n) [w r]
+      real(wp), intent(out) :: h(n)
+      !> Joint of the haunch that slides there: (n) [rad]
+      real(wp), intent(out) :: slip(n)
+      !> 1 where the springing slides first, 0 where the haunch does: (n)
+      integer, intent(out) :: springing(n)
+      !> First fault: (2)
+      integer, intent(out) :: fault(2)
+
+      type(friction_limits_t) :: limits
+      integer :: i
+
+      fault = 0
+      call blame(1, is_embraced(alpha, which), fault)
+      if (any(fault > 0)) return
+      do i = 1, n
+         limits = friction_limits(alpha(i), which)
+         rotational(i) = limits%mu_rotational
+         mixed(i) = limits%mu_mixed
+         h(i) = limits%h_mixed
+         slip(i) = limits%beta_slip
+         springing(i) = merge(1, 0, limits%springing_slides)
+      end do
+   end subroutine friction_range
+
+   !> Least thickness at a friction coefficient
+   subroutine friction_states(n, mu, alpha, which, beta, eta, h, fault)
+      !> Number of elements
+      integer, intent(in) :: n
+      !> Friction coefficient, [mu_mixed, infinity]: (n)
+      real(wp), intent(in) :: mu(n)
+      !> Half angle of embrace, (0, alpha_limit]: (n) [rad]
+      real(wp), intent(in) :: alpha(n)
+      !> Theory
+      integer, intent(in) :: which
+      !> Inner hinge: (n) [rad]
+      real(wp), intent(out) :: beta(n)
+      !> Thickness ratio: (n) [-]
+      real(wp), intent(out) :: eta(n)
+      !> Thrust: (n) [w r]
+      real(wp), intent(out) :: h(n)
+      !> First fault: (2)
+      integer, intent(out) :: fault(2)
+
+      fault = 0
+      call blame(2, is_embraced(alpha, which), fault)
+      if (any(fault > 0)) return
+      call friction_solution(mu, alpha, which, beta, eta, h)
+      call blame(1, eta > 0.0_wp, fault)
+   end subroutine friction_states
+
+   !> Exact critical thickness of arches of equal polygon voussoirs
+   subroutine discrete_equal(n, voussoirs, alpha, facet, friction, no_slip, status, eta, h, joint, role, fault)
+      !> Number of arches
+      integer, intent(in) :: n
+      !> Number of voussoirs of the whole arch, 1 to 10 000 000: (n)
+      integer, intent(in) :: voussoirs(n)
+      !> Half angle of embrace, (0, pi): (n) [rad]
+      real(wp), intent(in) :: alpha(n)
+      !> Greatest span of a chord, 0 for one chord a voussoir: (n) [rad]
+      real(wp), intent(in) :: facet(n)
+      !> Friction angle, pi/2 or more for joints that cannot slide: (n) [rad]
+      real(wp), intent(in) :: friction(n)
+      !> Not 0: the springings cannot slide
+      integer, intent(in) :: no_slip
+      !> Outcome, one of discrete_status: (n)
+      integer, intent(out) :: status(n)
+      !> Critical thickness ratio, 0 unless found: (n) [-]
+      real(wp), intent(out) :: eta(n)
+      !> Thrust there: (n) [gamma r^2 eta]
+      real(wp), intent(out) :: h(n)
+      !> Angles of the joints that bind: (5, n) [rad]
+      real(wp), intent(out) :: joint(5, n)
+      !> What each does, one of joint_role, 0 for none: (5, n)
+      integer, intent(out) :: role(5, n)
+      !> First fault: (2)
+      integer, intent(out) :: fault(2)
+
+      integer, parameter :: most_voussoirs = 10000000
+      integer :: i, no_fault(2)
+
+      fault = 0
+      call blame(1, voussoirs >= 1 .and. voussoirs <= most_voussoirs, fault)
+      call blame(2, is_half_angle(alpha), fault)
+      if (any(fault > 0)) return
+      call blame(3, is_facet(facet), fault)
+      call blame(4, friction >= 0.0_wp, fault)
+      if (any(fault > 0)) return
+      do i = 1, n
+         associate (joints => equal_voussoir_joints(voussoirs(i), alpha(i)))
+            call discrete_joints(size(joints), joints, facet(i), friction(i), no_slip, &
+                                 status(i), eta(i), h(i), joint(:, i), role(:, i), no_fault)
+         end associate
+      end do
+   end subroutine discrete_equal
+
+   !> Exact critical thickness of one arch of polygon voussoirs, given by the joints of one half
+   subroutine discrete_joints(n, joints, facet, friction, no_slip, status, eta, h, joint, role, fault)
+      !> Number of joints
+      integer, intent(in) :: n
+      !> Joints from the crown, strictly increasing, in [0, pi): (n) [rad]
+      real(wp), intent(in) :: joints(n)
+      !> Greatest span of a chord, 0 for one chord a voussoir [rad]
+      real(wp), intent(in) :: facet
+      !> Friction angle, pi/2 or more for joints that cannot slide [rad]
+      real(wp), intent(in) :: friction
+      !> Not 0: the springings cannot slide
+      integer, intent(in) :: no_slip
+      !> Outcome, one of discrete_status
+      integer, intent(out) :: status
+      !> Critical thickness ratio, 0 unless found [-]
+      real(wp), intent(out) :: eta
+      !> Thrust there [gamma r^2 eta]
+      real(wp), intent(out) :: h
+      !> Angles of the joints that bind: (5) [rad]
+      real(wp), intent(out) :: joint(5)
+      !> What each does, one of joint_role, 0 for none: (5)
+      integer, intent(out) :: role(5)
+      !> First fault: (2)
+      integer, intent(out) :: fault(2)
+
+      type(discrete_solution_t) :: solution
+      integer :: i
+
+      status = discrete_status%bad_input
+      eta = 0.0_wp
+      h = 0.0_wp
+      joint = 0.0_wp
+      role = 0
+      fault = 0
+      call blame(1, [n > 0], fault)
+      if (any(fault > 0)) return
+      call blame(1, [is_half_angle(joints(1)) .or. (n > 1 .and. abs(joints(1)) <= 0.0_wp), &
+                     is_half_angle(joints(2:)) .and. joints(2:) > joints(:n - 1)], fault)
+      call blame(2, [is_facet(facet)], fault)
+      call blame(3, [friction >= 0.0_wp], fault)
+      if (any(fault > 0)) return
+      call discrete_critical(joints, chords(joints, facet), friction, no_slip /= 0, solution)
+      status = solution%status
+      eta = solution%eta
+      h = solution%thrust
+      role = solution%role
+      do i = 1, solution%active
+         joint(i) = joints(solution%joint(i))
+      end do
+   end subroutine discrete_joints
+
+end module theory_discrete_api
