@@ -10,9 +10,10 @@ module dda_run
    use dda_progress, only : clear_progress, progress_t, report_progress
    use dda_read_deck, only : read_deck
    use dda_summary, only : print_row, print_total
+   use dda_table_file, only : append_line, close_table, open_table, table_file_t
    use dda_text, only : to_text
-   use dda_write_results, only : append_line, joint_line, joint_row_t, joints_header, open_table, &
-      & result_row_t, results_header, results_line
+   use dda_write_results, only : joint_line, joint_row_t, joints_header, result_row_t, &
+      & results_header, results_line
    implicit none
    private
 
@@ -22,8 +23,12 @@ module dda_run
    type :: tables_t
       !> Name of the folder
       character(len=:), allocatable :: folder
-      !> Units of results.csv, joints.csv and log.txt
-      integer :: results = 0, joints = 0, log = 0
+      !> results.csv
+      type(table_file_t) :: results
+      !> joints.csv
+      type(table_file_t) :: joints
+      !> log.txt
+      type(table_file_t) :: log
       !> Whether joints.csv is wanted
       logical :: has_joints = .false.
    end type tables_t
@@ -143,6 +148,9 @@ contains
       end do
       !$omp end parallel do
       call clear_progress(progress)
+      call close_table(tables%results)
+      call close_table(tables%joints)
+      call close_table(tables%log)
       status = exit_status%success
       if (count(2) > 0) status = exit_status%undecided
       if (allocated(error)) then
@@ -268,12 +276,12 @@ contains
          do j = 2, size(joint_row)
             lines = lines//new_line("a")//joint_line(joint_row(j))
          end do
-         call append_line(tables%joints, tables%folder//"/joints.csv", lines, error)
+         call append_line(tables%joints, lines, error)
          if (allocated(error)) return
       end if
-      call append_line(tables%log, tables%folder//"/log.txt", to_text(row%number)//" " &
+      call append_line(tables%log, to_text(row%number)//" " &
          & //trim(trim(row%verdict)//" "//remark), error)
       if (allocated(error)) return
-      call append_line(tables%results, tables%folder//"/results.csv", results_line(row), error)
+      call append_line(tables%results, results_line(row), error)
    end subroutine write_case
 end module dda_run

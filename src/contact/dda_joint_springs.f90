@@ -11,7 +11,7 @@ module dda_joint_springs
    implicit none
    private
 
-   public :: joint_springs_t, new_joint_springs, mohr_coulomb, row_product
+   public :: joint_springs_t, new_joint_springs, mohr_coulomb
 
    !> Springs of all joints, as the solver wants them
    type :: joint_springs_t
@@ -20,9 +20,6 @@ module dda_joint_springs
       !> Rows (opening 1, opening 2, slip) for the unknowns of the two blocks:
       !> (n_dof, 3, 2, n_joint)
       real(wp), allocatable :: row(:, :, :, :)
-      !> Stiffness matrices of the stuck joints, which most are: of the first block, of the second
-      !> one, and between the first (rows) and the second: (n_dof, n_dof, 3, n_joint)
-      real(wp), allocatable :: stuck(:, :, :, :)
       !> Stiffness: (n_joint) [N/m per metre depth]
       real(wp), allocatable :: stiffness(:)
       !> Bounds of the joint force: (n_joint)
@@ -45,39 +42,19 @@ contains
       integer, intent(in) :: n_dof
       !> The springs
       type(joint_springs_t), intent(out) :: springs
-      integer :: j, n, pair
+      integer :: j, n
 
       n = size(joint)
       allocate (springs%equation(2, n), springs%row(n_dof, 3, 2, n), springs%stiffness(n))
-      allocate (springs%cone(n), springs%shift(3, n), springs%stuck(n_dof, n_dof, 3, n))
+      allocate (springs%cone(n), springs%shift(3, n))
       do j = 1, n
          springs%equation(:, j) = system%equation(joint(j)%block)
          springs%row(:, :, 1, j) = -joint_rows(joint(j), system%centroid(:, joint(j)%block(1)), n_dof)
          springs%row(:, :, 2, j) = joint_rows(joint(j), system%centroid(:, joint(j)%block(2)), n_dof)
          springs%stiffness(j) = penalty_ratio*block_stiffness(system, joint(j))
          call mohr_coulomb(joint(j), [.false., .false.], springs%cone(j), springs%shift(:, j))
-         do pair = 1, 3
-            springs%stuck(:, :, pair, j) = springs%stiffness(j)*row_product( &
-               & springs%row(:, :, merge(2, 1, pair == 2), j), &
-               & springs%row(:, :, merge(1, 2, pair == 1), j))
-         end do
       end do
    end subroutine new_joint_springs
-
-   !> Sum of the products of the rows of two blocks
-   pure function row_product(a, b) result(product)
-      !> Rows of one block: (n_dof, 3)
-      real(wp), intent(in) :: a(:, :)
-      !> Rows of the other: (n_dof, 3)
-      real(wp), intent(in) :: b(:, :)
-      !> a b': (n_dof, n_dof)
-      real(wp) :: product(size(a, 1), size(b, 1))
-      integer :: c
-
-      do c = 1, size(b, 1)
-         product(:, c) = a(:, 1)*b(c, 1) + a(:, 2)*b(c, 2) + a(:, 3)*b(c, 3)
-      end do
-   end function row_product
 
    !> What the joint sees of one block's unknowns
    pure function joint_rows(joint, centroid, n_dof) result(row)

@@ -6,7 +6,7 @@ module dda_assembly
    use dda_elasticity, only : elastic_matrix, stress_load
    use dda_friction_cone, only : apply_face, cone_t, joint_face_t
    use dda_inertia, only : mass_matrix
-   use dda_joint_springs, only : joint_springs_t, row_product
+   use dda_joint_springs, only : joint_springs_t
    use dda_kinds, only : wp
    use dda_loads, only : body_load
    use dda_settings, only : settings_t
@@ -23,6 +23,9 @@ module dda_assembly
       type(band_factor_t) :: factor
       !> Entry of the matrix that couples the blocks of a joint, 0 if one is fixed: (n_joint)
       integer, allocatable :: entry(:)
+      !> Stiffness of the stuck joints, which most are: of the first block, of the second one, and
+      !> between the first (rows) and the second: (n_dof, n_dof, 3, n_joint)
+      real(wp), allocatable :: stuck(:, :, :, :)
       !> Mass: (n_dof, n_dof, n_equation)
       real(wp), allocatable :: mass(:, :, :)
       !> Elastic stiffness of the blocks: (n_dof, n_dof, n_equation)
@@ -49,6 +52,8 @@ contains
       type(settings_t), intent(in) :: settings
       !> The equations
       type(equations_t), intent(out) :: equations
+      real(wp), parameter :: identity(3, 3) = reshape([1.0_wp, 0.0_wp, 0.0_wp, 0.0_wp, 1.0_wp, &
+         & 0.0_wp, 0.0_wp, 0.0_wp, 1.0_wp], [3, 3])
       real(wp) :: full(6, 6), load(6)
       logical :: couples(size(springs%equation, 2))
       integer :: b, e, j, n, nd, pair(2, size(springs%equation, 2))
@@ -68,6 +73,10 @@ contains
       call set_pattern(equations%matrix, nd, n, pair(:, :e))
       allocate (equations%mass(nd, nd, n), equations%elastic(nd, nd, n), equations%base(nd, nd, n))
       allocate (equations%weight(nd, n), equations%load(nd, n))
+      allocate (equations%stuck(nd, nd, 3, size(couples)))
+      do j = 1, size(couples)
+         equations%stuck(:, :, :, j) = joint_stiffness(springs, identity, j)
+      end do
       do b = 1, size(system%equation)
          e = system%equation(b)
          if (e == 0) cycle
@@ -150,9 +159,8 @@ contains
       type(equations_t), intent(inout) :: equations
       !> Receives the load: (n_dof, n_equation)
       real(wp), intent(inout) :: load(:, :)
-      real(wp) :: tangent(3, 3), constant(3)
-      real(wp) :: stiffness(size(load, 1), size(load, 1), 3), steep(size(load, 1), 3)
-      integer :: e, pair, side
+      real(wp) :: tangent(3, 3), constant(3), stiffness(size(load, 1), size(load, 1), 3)
+      integer :: e, side
       logical :: stuck
 
       stuck = face%slip == 0 .and. .not. any(face%open)
@@ -160,12 +168,9 @@ contains
       if (.not. stuck) then
          call apply_face(cone, face, tangent, constant)
          constant = constant + matmul(tangent, trial + springs%shift(:, j)) - springs%shift(:, j)
-         do pair = 1, 3
-            steep = springs%stiffness(j)*matmul(springs%row(:, :, merge(2, 1, pair == 2), j), tangent)
-            stiffness(:, :, pair) = row_product(steep, springs%row(:, :, merge(1, 2, pair == 1), j))
-         end do
+         stiffness = joint_stiffness(springs, tangent, j)
       else
-         stiffness = springs%stuck(:, :, :, j)
+         stiffness = equations%stuck(:, :, :, j)
       end if
       do side = 1, 2
          e = springs%equation(side, j)
@@ -183,6 +188,31 @@ contains
          equations%matrix%coupling(:, :, e) = transpose(stiffness(:, :, 3))
       end if
    end subroutine add_joint
+
+   !> Stiffness of one joint: p R P R' of the first block, of the second one, and between them
+   pure function joint_stiffness(springs, tangent, j) result(stiffness)
+      !> The springs of the joints
+      type(joint_springs_t), intent(in) :: springs
+      !> Projector P on the joint's face: (3, 3)
+      real(wp), intent(in) :: tangent(3, 3)
+      !> Number of the joint
+      integer, intent(in) :: j
+      !> The three blocks: (n_dof, n_dof, 3)
+      real(wp) :: stiffness(size(springs%row, 1), size(springs%row, 1), 3)
+      real(wp) :: steep(size(springs%row, 1), 3)
+      integer :: c, pair
+
+      do pair = 1, 3
+         associate (a => springs%row(:, :, merge(2, 1, pair == 2), j), &
+            & b => springs%row(:, :, merge(1, 2, pair == 1), j))
+            steep = springs%stiffness(j)*matmul(a, tangent)
+            do c = 1, size(b, 1)
+               stiffness(:, c, pair) = steep(:, 1)*b(c, 1) + steep(:, 2)*b(c, 2) &
+                  & + steep(:, 3)*b(c, 3)
+            end do
+         end associate
+      end do
+   end function joint_stiffness
 
    !> Openings and slips of the joints by a motion of the blocks
    pure function relative_displacement(springs, motion) result(increment)

@@ -25,6 +25,8 @@ module dda_forward
       character(len=:), allocatable :: reason
       !> Acceleration of the last step over that of the loads
       real(wp) :: acceleration_ratio = 0.0_wp
+      !> Acceleration ratio below which the run would have been at rest
+      real(wp) :: rest_tolerance = 0.0_wp
       !> Length of a step in which free fall is the elastic motion [s]
       real(wp) :: elastic_time = 0.0_wp
       !> Motion of the last step: (n_dof, n_equation)
@@ -73,6 +75,7 @@ contains
          march%last_acceleration = step%acceleration
          call next_interval(settings, march)
       end do
+      outcome%rest_tolerance = settings%rest_tolerance
       outcome%steps = march%steps
       outcome%passes = march%passes
       outcome%factorisations = equations%factorisations

@@ -39,7 +39,10 @@ module dda_open_close
 
    !> Joints whose disagreement is as large as the largest but for rounding change together, which
    !> keeps the mirror images of a symmetric scene alike
-   real(wp), parameter :: tie = 1.0e-6_wp
+   real(wp), parameter :: tie = 1.0e-9_wp
+
+   !> Most passes of Newton's method: where it needs more, a shorter step is cheaper
+   integer, parameter :: max_newton = 40
 
 contains
 
@@ -81,7 +84,7 @@ contains
       end do
       if (.not. state%settled) then
          state%motion = best
-         call iterate_newton(equations, springs, max_changes, state)
+         call iterate_newton(equations, springs, state)
       end if
       if (state%settled) call joint_forces(springs, state)
    end subroutine iterate_open_close
@@ -145,13 +148,11 @@ contains
 
    !> Newton's method on the step's energy from the motion of the state; each direction is followed
    !> to the lowest point
-   pure subroutine iterate_newton(equations, springs, max_passes, state)
+   pure subroutine iterate_newton(equations, springs, state)
       !> Blocks assembled; matrix and factor are made anew
       type(equations_t), intent(inout) :: equations
       !> The springs of the joints
       type(joint_springs_t), intent(in) :: springs
-      !> Most passes
-      integer, intent(in) :: max_passes
       !> The step
       type(step_state_t), intent(inout) :: state
       type(joint_face_t) :: wanted(size(state%face))
@@ -161,7 +162,7 @@ contains
       logical :: moves
 
       from = state%motion
-      do pass = 1, max_passes
+      do pass = 1, max_newton
          state%motion = from
          call joint_forces(springs, state)
          call solve_faces(equations, springs, state%cone, state%face, state%start, state%motion)

@@ -35,11 +35,9 @@ contains
          call deck_error(error, "a static analysis wants a weight: load%gravity is 0 and "// &
             "material%unit_weight is not given", deck, &
             deck%value(key_index("load", "gravity"))%place)
-      else if (searched%key > 0 .and. .not. is_static .and. &
-         .not. is_given(deck, "analysis", "collapse_displacement")) then
-         call deck_error(error, "a search with mode = 'dynamic' wants "// &
-            "analysis%collapse_displacement [m]", deck, place_of(deck, key_index("search", &
-            "parameter")))
+      else if (searched%key > 0 .and. .not. is_static) then
+         call deck_error(error, "a search wants mode = 'static'; a dynamic run ends 'completed', "// &
+            "neither standing nor fallen", deck, place_of(deck, key_index("search", "parameter")))
       else
          call check_shape(deck, error)
          if (allocated(error) .or. searched%key == 0) return

@@ -117,7 +117,7 @@ module dda_deck_keys
             at_least=1.0e-15_wp, below=2.0_wp, search_low=0.0_wp, search_high=2.0_wp, &
             meaning="Thickness of the ring over the radius of its middle circle."), &
       key_t(group="arch", name="half_angle_deg", unit="deg", default="90.0", &
-            at_least=1.0e-6_wp, below=180.0_wp, search_low=0.0_wp, search_high=180.0_wp, &
+            at_least=1.0e-6_wp, below=180.0_wp, search_low=5.0_wp, search_high=175.0_wp, &
             meaning="Angle from the crown to a springing; follows from joints_deg if given."), &
       key_t(group="arch", name="voussoirs", kind=key_kind%whole, default="36", &
             at_least=1.0_wp, at_most=1.0e6_wp, &
@@ -173,7 +173,7 @@ module dda_deck_keys
             words="static dynamic", later="limerick", &
             meaning="Whether the velocity is put to zero at each step or carried on."), &
       key_t(group="analysis", name="geometry", kind=key_kind%word, default="'reference'", &
-            words="reference current", &
+            words="reference", later="current", &
             meaning="Small displacements on the undeformed shape, or blocks that move."), &
       key_t(group="analysis", name="steps", kind=key_kind%whole, default="400", &
             at_least=1.0_wp, at_most=1.0e9_wp, &

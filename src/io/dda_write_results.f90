@@ -1,13 +1,12 @@
 !> Results as CSV: one row a case, one row a joint (Shi: df27)
 module dda_write_results
-   use dda_error, only : error_t, fatal_error
    use dda_kinds, only : wp
    use dda_text, only : to_text
    implicit none
    private
 
    public :: result_row_t, joint_row_t, number_t, some_number
-   public :: open_table, append_line, results_header, results_line, joints_header, joint_line
+   public :: results_header, results_line, joints_header, joint_line
 
    !> A number that may be unknown
    type :: number_t
@@ -110,46 +109,6 @@ contains
 
       number = number_t(.true., value)
    end function some_number
-
-   !> Begin a table with its header
-   subroutine open_table(file, header, unit, error)
-      !> Name of the file; one that exists is replaced
-      character(len=*), intent(in) :: file
-      !> First line
-      character(len=*), intent(in) :: header
-      !> Unit that the table was opened on
-      integer, intent(out) :: unit
-      !> Allocated if the file cannot be written
-      type(error_t), allocatable, intent(out) :: error
-      character(len=200) :: message
-      integer :: stat
-
-      open (newunit=unit, file=file, status="replace", action="write", access="stream", &
-         & form="formatted", iostat=stat, iomsg=message)
-      if (stat /= 0) then
-         call fatal_error(error, "this file cannot be written: "//trim(message), file)
-         return
-      end if
-      call append_line(unit, file, header, error)
-   end subroutine open_table
-
-   !> Write one line of a table so that it survives the end of the program
-   subroutine append_line(unit, file, line, error)
-      !> Unit of the table
-      integer, intent(in) :: unit
-      !> Name of the file, for the message
-      character(len=*), intent(in) :: file
-      !> The line
-      character(len=*), intent(in) :: line
-      !> Allocated if it cannot be written
-      type(error_t), allocatable, intent(out) :: error
-      character(len=200) :: message
-      integer :: stat
-
-      write (unit, "(a)", iostat=stat, iomsg=message) line
-      if (stat == 0) flush (unit, iostat=stat, iomsg=message)
-      if (stat /= 0) call fatal_error(error, "a result cannot be written: "//trim(message), file)
-   end subroutine append_line
 
    !> Names of the columns of results.csv
    pure function results_header(swept) result(line)

@@ -204,13 +204,14 @@ contains
       if (known) eta = solution%eta
    end subroutine exact_thickness
 
-   !> Where a search for the thickness ratio begins: well below what a shallow arch needs
+   !> Where a search for the thickness ratio begins: somewhat below what an arch of many voussoirs
+   !> needs, by the first two terms of its series in the half angle
    pure real(wp) function search_start(deck)
       !> The deck of one case
       type(deck_t), intent(in) :: deck
-      real(wp) :: half_angle
+      real(wp) :: square
 
-      half_angle = degree*real_of(deck, "arch", "half_angle_deg")
-      search_start = min(0.4_wp, 0.3_wp*half_angle**4/48.0_wp)
+      square = (degree*real_of(deck, "arch", "half_angle_deg"))**2
+      search_start = 0.8_wp*square**2/48.0_wp*max(0.3_wp, 1.0_wp - square/10.0_wp)
    end function search_start
 end module dda_arch_scene

@@ -70,6 +70,10 @@ module dda_critical
    !> Most undecided values in a row on the way to a decided one
    integer, parameter :: max_undecided = 6
 
+   !> No bracket is narrower than this share of its value
+   real(wp), parameter :: least_tolerance = 4.0e-13_wp
+   !> Margin over the noise that three samples show
+   real(wp), parameter :: noise_margin = 5.0_wp
    !> Most passes of the secant method
    integer, parameter :: max_passes = 20
    !> Free fall over elastic motion in the step that traces a mechanism
@@ -316,8 +320,49 @@ contains
       end do
       proposal%usable = .true.
       proposal%value = next
-      proposal%half = max(search%tolerance*abs(next)/2.0_wp, abs(noise/coarse_slope))
+      call refine_noise(family, mechanism, next, critical, noise)
+      proposal%half = max(max(search%tolerance, least_tolerance)*abs(next)/2.0_wp, &
+         & abs(noise/coarse_slope), rest_resolution(critical, next))
    end subroutine trace
+
+   !> Rounding in the solution of the equations: what another length of the step makes of the power
+   pure subroutine refine_noise(family, mechanism, value, critical, noise)
+      !> The family
+      class(family_t), intent(in) :: family
+      !> The mechanism
+      type(frozen_mechanism_t), intent(in) :: mechanism
+      !> The value
+      real(wp), intent(in) :: value
+      !> The factorisations are counted
+      type(critical_t), intent(inout) :: critical
+      !> Noise of the power; raised where rounding shows
+      real(wp), intent(inout) :: noise
+      type(frozen_mechanism_t) :: other
+      real(wp) :: power(3), ignored
+      logical :: usable
+      integer :: i
+
+      other = mechanism
+      do i = 1, 3
+         other%dt = mechanism%dt*0.7_wp**(i - 2)
+         call power_at(family, other, value, critical, power(i), ignored, usable)
+         if (.not. usable) return
+      end do
+      noise = max(noise, noise_margin*(maxval(power) - minval(power)))
+   end subroutine refine_noise
+
+   !> How near to its stop a mechanism becomes too slow for a decision to tell it from rest
+   pure real(wp) function rest_resolution(critical, stop)
+      !> What was found so far
+      type(critical_t), intent(in) :: critical
+      !> Value at which the last collapse stops
+      real(wp), intent(in) :: stop
+
+      associate (outcome => critical%fallen%outcome)
+         rest_resolution = 2.0_wp*abs(stop - critical%falls)*outcome%rest_tolerance &
+            & /outcome%acceleration_ratio
+      end associate
+   end function rest_resolution
 
    !> Power of the loads on a frozen mechanism at one value
    pure subroutine power_at(family, mechanism, value, critical, power, noise, usable)

@@ -1,7 +1,8 @@
 !> Critical solutions as power series: at small half angles, and next to the limit of each theory
 !>
-!> Exact rationals, found by eliminating order by order. The small-angle series hold beta to alpha^6 and eta and h to
-!> alpha^8 relative to their leading terms (Heyman's eta to alpha^6); the limit series are leading terms.
+!> Exact rationals, found by eliminating order by order. The small-angle series hold beta to alpha^6
+!> and eta and h to alpha^8 relative to their leading terms (Heyman's eta to alpha^6); the limit
+!> series are leading terms.
 module couplet_heyman_asymptotics
    use, intrinsic :: iso_fortran_env, only : wp => real64
    use couplet_heyman_theories, only : limits_of, limits_t, theory, weight_flag
@@ -58,8 +59,9 @@ contains
 
    !> Leading terms of the critical solution next to the limit of validity
    !>
-   !> CCR: A - A_limit = beta^2/27, eta_limit - eta = beta^2/6, h = beta^4/24. Milankovitch: (2 - sqrt 3) beta^2/12,
-   !> (2 sqrt 3 - 3) beta^2/3, sqrt(3) beta^4/36. Heyman is linear in pi/2 - beta.
+   !> CCR: A - A_limit = beta^2/27, eta_limit - eta = beta^2/6, h = beta^4/24. Milankovitch: (2 -
+   !> sqrt 3) beta^2/12, (2 sqrt 3 - 3) beta^2/3, sqrt(3) beta^4/36. Heyman is linear in pi/2 -
+   !> beta.
    elemental subroutine near_limit_solution(distance, which, beta, eta, h)
       !> alpha_limit - alpha [rad]
       real(wp), intent(in) :: distance

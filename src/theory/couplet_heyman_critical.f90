@@ -1,11 +1,13 @@
-!> Critical solutions of the Couplet-Heyman problem: hinge, thickness and thrust at a half angle of embrace
+!> Critical solutions of the Couplet-Heyman problem: hinge, thickness and thrust at a half angle
 !>
-!> The least thickness is the top of the equilibrium curve eta(beta), eqs. (14) and (18). In the symbols of
-!> couplet_heyman_curves the two are
-!>     E(eta, beta) = 0   and   a - k(beta)/S = 4 eta m/(4 - eta^2),   a = 2 - A, k(x) = sin x - x cos x.
-!> With eta on the curve the second is solved for beta by Newton's method. As eta is stationary there, the derivative
-!> of k/S alone makes it quadratic. Where A comes near its limit, eta and A are counted from their limits instead, so
-!> that the thrust, which vanishes there with the square of the distance, keeps its digits.
+!> The least thickness is the top of the equilibrium curve eta(beta), eqs. (14) and (18). In the
+!> symbols of couplet_heyman_curves the two are
+!>     E(eta, beta) = 0   and   a - k(beta)/S = 4 eta m/(4 - eta^2)
+!> with a = 2 - A and k(x) = sin x - x cos x.
+!> With eta on the curve the second is solved for beta by Newton's method. As eta is stationary
+!> there, the derivative of k/S alone makes it quadratic. Where A comes near its limit, eta and A
+!> are counted from their limits instead, so that the thrust, which vanishes there with the square
+!> of the distance, keeps its digits.
 module couplet_heyman_critical
    use, intrinsic :: ieee_arithmetic, only : ieee_quiet_nan, ieee_value
    use, intrinsic :: iso_fortran_env, only : wp => real64
@@ -66,14 +68,15 @@ contains
          if (alpha >= near_the_limit) call heyman_steep(alpha, beta, eta, h)
       else
          if (alpha < near_the_limit) call tangent_shallow(alpha, which, beta, eta, h)
-         if (alpha >= near_the_limit) call tangent_steep(alpha, which, limits_of(which), beta, eta, h)
+         if (alpha >= near_the_limit) call tangent_steep(alpha, which, beta, eta, h)
       end if
    end subroutine critical_solution
 
    !> First guess of the inner hinge of CCR and Milankovitch, within 0.3 percent
    !>
-   !> beta^2 = a (w - w0) (polynomial in w) with w = sqrt(A - A_limit + w0^2): the form has both limits of the
-   !> solution, alpha/sqrt(2) at small angles and the square root of A - A_limit; the coefficients are a fit.
+   !> beta^2 = a (w - w0) (polynomial in w) with w = sqrt(A - A_limit + w0^2): the form has both
+   !> limits of the solution, alpha/sqrt(2) at small angles and the square root of A - A_limit; the
+   !> coefficients are a fit.
    elemental function first_guess(deficit, excess, which) result(beta)
       !> 2 - A
       real(wp), intent(in) :: deficit
@@ -87,15 +90,17 @@ contains
       !> w0^2 of CCR and Milankovitch
       real(wp), parameter :: bend(2) = [0.0075248_wp, 0.0024009_wp]
       !> Coefficients of 1 to w^4
-      real(wp), parameter :: fit(5, 2) = reshape([3.86421_wp, -4.71057_wp, 7.06753_wp, -6.76118_wp, 3.00812_wp, &
-                                                  3.62088_wp, -3.67069_wp, 5.27882_wp, -5.40080_wp, 2.67822_wp], [5, 2])
-      real(wp) :: w, rise
+      real(wp), parameter :: fit(5, 2) = reshape([ &
+         3.86421_wp, -4.71057_wp, 7.06753_wp, -6.76118_wp, 3.00812_wp, &
+         3.62088_wp, -3.67069_wp, 5.27882_wp, -5.40080_wp, 2.67822_wp], [5, 2])
+      real(wp) :: w, rise, form
       integer :: i
 
       i = merge(2, 1, which == theory%milankovitch)
       w = sqrt(excess + bend(i))
       rise = excess/(w + sqrt(bend(i)))
-      beta = sqrt(deficit*rise*(fit(1, i) + w*(fit(2, i) + w*(fit(3, i) + w*(fit(4, i) + w*fit(5, i))))))
+      form = fit(1, i) + w*(fit(2, i) + w*(fit(3, i) + w*(fit(4, i) + w*fit(5, i))))
+      beta = sqrt(deficit*rise*form)
    end function first_guess
 
    !> CCR and Milankovitch at moderate half angles
@@ -139,15 +144,14 @@ contains
 
    !> CCR and Milankovitch near their limit, in x = A - A_limit and y = eta_limit - eta
    !>
-   !> With e = eta_limit, E(e) = -(1 - e^2/4) 4 sin(beta/2) k(beta/2) - x (q (1 - e^2/4) + e (1 + e/2)), and the
-   !> condition of tangency is f(e) - f(e - y) - x = k/S with f = 4 eta m/(4 - eta^2). The thrust is h1 of eq. (7).
-   elemental subroutine tangent_steep(alpha, which, limits, beta, eta, h)
+   !> With e = eta_limit, E(e) = -(1 - e^2/4) 4 sin(beta/2) k(beta/2) - x (q (1 - e^2/4) + e (1 +
+   !> e/2)), and the condition of tangency is f(e) - f(e - y) - x = k/S with f = 4 eta m/(4 -
+   !> eta^2). The thrust is h1 of eq. (7).
+   elemental subroutine tangent_steep(alpha, which, beta, eta, h)
       !> Half angle of embrace, [near_the_limit, alpha_limit] [rad]
       real(wp), intent(in) :: alpha
       !> One of `theory`
       integer, intent(in) :: which
-      !> Its limits
-      type(limits_t), intent(in) :: limits
       !> Inner hinge [rad]
       real(wp), intent(out) :: beta
       !> Thickness ratio [-]
@@ -155,9 +159,11 @@ contains
       !> Thrust [w r]
       real(wp), intent(out) :: h
 
+      type(limits_t) :: limits
       real(wp) :: x, y, e, a, flag, sine, cosine, q, p, value, slope, bend, ratio, change
       integer :: step
 
+      limits = limits_of(which)
       flag = weight_flag(which)
       e = limits%eta_limit
       x = embrace_difference(alpha, limits%alpha_limit, limits%alpha_limit_tail)
@@ -185,7 +191,8 @@ contains
       h = q*h/(2.0_wp*eta + (2.0_wp - eta)*q)
    end subroutine tangent_steep
 
-   !> f(e) - f(e - y) with f(eta) = 4 eta m/(4 - eta^2), without a difference of nearly equal numbers
+   !> f(e) - f(e - y) with f(eta) = 4 eta m/(4 - eta^2), without a difference of nearly equal
+   !> numbers
    elemental function tangency_drop(y, e, flag) result(drop)
       !> e - eta
       real(wp), intent(in) :: y
@@ -204,7 +211,8 @@ contains
       drop = y*drop/(denominator*(4.0_wp - (e - y)**2))
    end function tangency_drop
 
-   !> Heyman at moderate half angles: a = k(beta)/S + eta/(2 + eta) with eq. (2), a sum of positive terms
+   !> Heyman at moderate half angles: a = k(beta)/S + eta/(2 + eta) with eq. (2), a sum of positive
+   !> terms
    elemental subroutine heyman_shallow(alpha, beta, eta, h)
       !> Half angle of embrace, (0, near_the_limit) [rad]
       real(wp), intent(in) :: alpha
@@ -230,7 +238,8 @@ contains
       h = heyman_thrust(beta)
    end subroutine heyman_shallow
 
-   !> Heyman near the limit, in c = pi/2 - beta: A - A_limit = beta tan c + eta_l/(2 + eta_l) - eta/(2 + eta)
+   !> Heyman near the limit, in c = pi/2 - beta: A - A_limit = beta tan c + eta_l/(2 + eta_l) -
+   !> eta/(2 + eta)
    !>
    !> With T = tan^2(beta/2) = (1 - sin c)/(1 + sin c),
    !> (eta_l - eta)/2 = (1 - 2/pi)(1 - T) + T (2 c - pi (1 - cos c))/(pi beta).

@@ -1,9 +1,11 @@
-!> Equilibrium curve eta(beta) at one half angle, eqs. (14) to (16), (19), (26), and the line of thrust, eq. (11)
+!> Equilibrium curve eta(beta) at one half angle, eqs. (14) to (16), (19), (26), and the line of
+!> thrust, eq. (11)
 !>
 !> Eq. (14) divided by 12 is E = Q + eta (D - eta (P/4 - delta_M C eta/12)) = 0 with
 !>     Q = beta S - (1 - C) A = q (A(beta) - A),   D = C - A = a - 1 - q,   P = beta S + (1 + C) A.
-!> A(beta) - A is a difference of two cotangents and has the exact form (d p(s) - s p(d))/(sin(alpha/2) sin(beta/2)),
-!> s and d half the sum and half the difference of the two angles, p(x) = x - sin x.
+!> A(beta) - A is a difference of two cotangents and has the exact form (d p(s) - s
+!> p(d))/(sin(alpha/2) sin(beta/2)), s and d half the sum and half the difference of the two angles,
+!> p(x) = x - sin x.
 module couplet_heyman_curves
    use, intrinsic :: iso_fortran_env, only : wp => real64
    use couplet_heyman_equations, only : springing_thrust
@@ -41,8 +43,8 @@ contains
 
    !> Eqs. (14) and (16): thickness ratio that equilibrium needs with the inner hinge at beta
    !>
-   !> Heyman and CCR: the positive root of the quadratic, rationalised. Milankovitch: Newton's method on the cubic
-   !> from there. At beta = 0 it is eq. (26).
+   !> Heyman and CCR: the positive root of the quadratic, rationalised. Milankovitch: Newton's
+   !> method on the cubic from there. At beta = 0 it is eq. (26).
    elemental function equilibrium_thickness(beta, alpha, which) result(eta)
       !> Inner hinge, [0, alpha] [rad]
       real(wp), intent(in) :: beta
@@ -136,8 +138,8 @@ contains
 
    !> Eq. (19): slope d eta/d beta of the equilibrium curve
    !>
-   !> -S ((a - k/S)(1 - eta^2/4) - eta m)/(D - eta P/2 + delta_M C eta^2/4) with eta on the curve; 0 at beta = 0,
-   !> except for A = 1, where it tends to 1.
+   !> -S ((a - k/S)(1 - eta^2/4) - eta m)/(D - eta P/2 + delta_M C eta^2/4) with eta on the curve; 0
+   !> at beta = 0, except for A = 1, where it tends to 1.
    elemental function curve_slope(beta, alpha, which) result(slope)
       !> Inner hinge, (0, alpha] [rad]
       real(wp), intent(in) :: beta
@@ -176,12 +178,13 @@ contains
       !> 2e/t, -1 at the extrados, 1 at the intrados
       real(wp) :: ratio
 
-      real(wp) :: excess
+      real(wp) :: excess, normal
 
       ratio = -1.0_wp
       if (beta <= 0.0_wp) return
       excess = versine(beta)*embrace_difference(beta, alpha, 0.0_wp)
-      ratio = (2.0_wp + eta)*excess/(eta*(beta*sin(beta) + springing_thrust(alpha, eta, which)*cos(beta))) - 1.0_wp
+      normal = beta*sin(beta) + springing_thrust(alpha, eta, which)*cos(beta)
+      ratio = (2.0_wp + eta)*excess/(eta*normal) - 1.0_wp
    end function thrust_line
 
 end module couplet_heyman_curves

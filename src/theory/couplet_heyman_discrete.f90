@@ -1,15 +1,19 @@
 !> Exact critical thickness of a circular arch of polygon voussoirs, by limit analysis
 !>
-!> One half of a symmetric arch under its own weight has two unknowns, the thrust H at the crown and the moment Q of
-!> that thrust about the centre. At a joint of angle t, with W the weight and S the moment of all that lies above,
-!>     N = H cos t + W sin t,   T = W cos t - H sin t,   (1 - eta/2) N <= Q + S <= (1 + eta/2) N,   |T| <= tan(phi) N
-!> (radius 1, forces in gamma r^2 eta, so that W does not depend on eta and S = (1 + eta^2/12) M with M independent).
-!> Divided by 1 + eta^2/12 the two bounds widen with eta for all eta < 2: who stands at eta stands at every greater one.
-!> With H = 1 - d and the shape z = W sin t - M - (1 - cos t), the ring is wide enough when the gap
-!>     min_j (d v + z + eta/2 N - eta^2/12 M)_j - max_k (d v + z - eta/2 N - eta^2/12 M)_k,   v = 1 - cos t,
-!> is nowhere negative for some d that no joint's friction forbids. All terms are as small as eta itself, so a shallow
-!> arch keeps its digits. The gap is concave and piecewise linear in d; its largest value over d is zero at the critical
-!> eta. Two or three joints pinch it there. Solved for eta they never lie above the truth, hence a few rounds suffice.
+!> One half of a symmetric arch under its own weight has two unknowns, the thrust H at the crown and
+!> the moment Q of that thrust about the centre. At a joint of angle t, with W the weight and S the
+!> moment of all that lies above,
+!>     N = H cos t + W sin t,   (1 - eta/2) N <= Q + S <= (1 + eta/2) N
+!>     T = W cos t - H sin t,   |T| <= tan(phi) N
+!> (radius 1, forces in gamma r^2 eta, so that W does not depend on eta and S = (1 + eta^2/12) M
+!> with M independent). Divided by 1 + eta^2/12 the two bounds widen with eta for all eta < 2: who
+!> stands at eta stands at every greater one. With H = 1 - d, v = 1 - cos t and the shape
+!> z = W sin t - M - v, the ring is wide enough when the gap
+!>     min_j (d v + z + eta/2 N - eta^2/12 M)_j - max_k (d v + z - eta/2 N - eta^2/12 M)_k
+!> is nowhere negative for some d that no joint's friction forbids. All terms are as small as eta
+!> itself, so a shallow arch keeps its digits. The gap is concave and piecewise linear in d; its
+!> largest value over d is zero at the critical eta. Two or three joints pinch it there. Solved for
+!> eta they never lie above the truth, hence a few rounds suffice.
 module couplet_heyman_discrete
    use, intrinsic :: iso_fortran_env, only : wp => real64
    use couplet_heyman_pinch, only : pinch_t, widest_gap, solve_pinch
@@ -72,11 +76,13 @@ contains
    !>
    !> Above solution%eta the arch has an admissible system of forces, below it none.
    pure subroutine discrete_critical(joint_angle, facets, friction, springing_no_slip, solution)
-      !> Joints of one half, from the crown to the springing, strictly increasing, in [0, pi): (n) [rad].
-      !> The first is 0 where there is a joint at the crown; otherwise a voussoir straddles the crown
+      !> Joints of one half, from the crown to the springing, strictly increasing, in [0, pi): (n)
+      !> [rad]. The first is 0 where there is a joint at the crown; otherwise a voussoir straddles
+      !> the crown
       real(wp), intent(in) :: joint_angle(:)
-      !> Equal chords of each voussoir, from the crown: (n - 1) with a joint at the crown; (n) without, and then the
-      !> first is the number of chords of the whole voussoir that straddles the crown
+      !> Equal chords of each voussoir, from the crown: (n - 1) with a joint at the crown; (n)
+      !> without, and then the first is the number of chords of the whole voussoir that straddles
+      !> the crown
       integer, intent(in) :: facets(:)
       !> Friction angle of the joints; pi/2 or more means that no joint slides [rad]
       real(wp), intent(in) :: friction
@@ -102,7 +108,8 @@ contains
    end subroutine discrete_critical
 
    !> Critical thickness ratio of an arch of equal voussoirs, one chord each
-   pure subroutine discrete_critical_equal(voussoirs, half_angle, friction, springing_no_slip, solution)
+   pure subroutine discrete_critical_equal(voussoirs, half_angle, friction, springing_no_slip, &
+                                           solution)
       !> Number of voussoirs of the whole arch, 1 or more; an odd number has no joint at the crown
       integer, intent(in) :: voussoirs
       !> Half angle of embrace, in (0, pi) [rad]
@@ -118,7 +125,8 @@ contains
 
       facets = 1
       if (voussoirs < 1) return
-      call discrete_critical(equal_voussoir_joints(voussoirs, half_angle), facets, friction, springing_no_slip, solution)
+      call discrete_critical(equal_voussoir_joints(voussoirs, half_angle), facets, friction, &
+                             springing_no_slip, solution)
    end subroutine discrete_critical_equal
 
    !> Joint angles of one half of an arch of equal voussoirs, from the crown
@@ -127,7 +135,8 @@ contains
       integer, intent(in) :: voussoirs
       !> Half angle of embrace [rad]
       real(wp), intent(in) :: half_angle
-      !> 0, 2a/n, 4a/n ... a for an even number n; a/n, 3a/n ... a for an odd one: (n/2 + 1 or (n + 1)/2) [rad]
+      !> 0, 2a/n, 4a/n ... a for an even number n; a/n, 3a/n ... a for an odd one: (n/2 + 1 or (n +
+      !> 1)/2) [rad]
       real(wp) :: joint_angle((voussoirs + 2)/2)
 
       integer :: i, last
@@ -177,8 +186,9 @@ contains
       n = size(joint_angle)
       sound = n > 0
       if (.not. sound) return
-      sound = joint_angle(1) >= 0.0_wp .and. joint_angle(n) > 0.0_wp .and. joint_angle(n) < pi .and. friction >= 0.0_wp
-      sound = sound .and. all(joint_angle(2:) > joint_angle(:n - 1)) .and. all(facets > 0)
+      sound = joint_angle(1) >= 0.0_wp .and. joint_angle(n) > 0.0_wp .and. joint_angle(n) < pi
+      sound = sound .and. all(joint_angle(2:) > joint_angle(:n - 1))
+      sound = sound .and. all(facets > 0) .and. friction >= 0.0_wp
       sound = sound .and. size(facets) == merge(n, n - 1, joint_angle(1) > 0.0_wp)
    end function makes_sense
 
@@ -196,7 +206,8 @@ contains
       stands = stands .and. all(ring%normal - deficit*ring%cosine >= 0.0_wp)
    end function stands_as_a_line
 
-   !> Root in eta of the widest gap: the pinching joints propose it, a bracket keeps the proposals honest
+   !> Root in eta of the widest gap: the pinching joints propose it, a bracket keeps the proposals
+   !> honest
    pure subroutine search_eta(ring, solution)
       !> Ring of two joints or more
       type(ring_t), intent(in) :: ring

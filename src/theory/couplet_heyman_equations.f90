@@ -1,9 +1,10 @@
 !> Equilibrium of a chunk of the arch and tangency of the thrust: eqs. (1) to (13) of the paper
 !>
-!> Lengths are over the mean radius r, forces over w r with w the weight per length of the centre line; beta is the
-!> angle from the crown, S = sin beta, C = cos beta, m = 1 + delta_M eta^2/12. With q = 1 - C, beta S = q A(beta) and
-!> a = 2 - A every difference of the printed forms becomes a sum of terms that are as small as the result.
-!> No range is checked here; outside 0 < eta < 2, 0 <= beta < pi, h >= 0 the results mean nothing.
+!> Lengths are over the mean radius r, forces over w r with w the weight per length of the centre
+!> line; beta is the angle from the crown, S = sin beta, C = cos beta, m = 1 + delta_M eta^2/12.
+!> With q = 1 - C, beta S = q A(beta) and a = 2 - A every difference of the printed forms becomes a
+!> sum of terms that are as small as the result. No range is checked here; outside 0 < eta < 2, 0 <=
+!> beta < pi, h >= 0 the results mean nothing.
 module couplet_heyman_equations
    use, intrinsic :: iso_fortran_env, only : wp => real64
    use couplet_heyman_kernels, only : arc_excess, arm_excess, embrace_deficit, versine
@@ -12,7 +13,8 @@ module couplet_heyman_equations
    private
 
    public :: heyman_embrace, heyman_thickness, heyman_thrust
-   public :: chunk_weight, chunk_centre, thrust_through, lower_thrust, springing_thrust, tangent_thrust, eccentricity
+   public :: chunk_weight, chunk_centre, eccentricity
+   public :: thrust_through, lower_thrust, springing_thrust, tangent_thrust
 
 contains
 
@@ -74,7 +76,8 @@ contains
       centre = weight_arm(eta, which)*[versine(beta), sin(beta)]/beta
    end function chunk_centre
 
-   !> Eq. (6): thrust that makes the line of thrust pass through the crown's extrados and a given point of a joint
+   !> Eq. (6): thrust that makes the line of thrust pass through the crown's extrados and a given
+   !> point of a joint
    elemental function thrust_through(beta, eccentricity_ratio, eta, which) result(h)
       !> Angle of the joint, (0, pi) [rad]
       real(wp), intent(in) :: beta
@@ -120,10 +123,12 @@ contains
       !> h2 = 1 - a + (eta - delta_M eta^2/6)/(2 + eta) [w r]
       real(wp) :: h
 
-      h = 1.0_wp - embrace_deficit(alpha) + eta*(1.0_wp - weight_flag(which)*eta/6.0_wp)/(2.0_wp + eta)
+      h = eta*(1.0_wp - weight_flag(which)*eta/6.0_wp)/(2.0_wp + eta)
+      h = 1.0_wp - embrace_deficit(alpha) + h
    end function springing_thrust
 
-   !> Eq. (12): h_e, the thrust at which the line of thrust touches the intrados at beta; for Heyman eq. (3)
+   !> Eq. (12): h_e, the thrust at which the line of thrust touches the intrados at beta; for Heyman
+   !> eq. (3)
    elemental function tangent_thrust(beta, eta, which) result(h)
       !> Inner hinge, [0, pi) [rad]
       real(wp), intent(in) :: beta
@@ -156,7 +161,8 @@ contains
 
       real(wp) :: drop
 
-      drop = (2.0_wp + eta)*((1.0_wp - h) - embrace_deficit(beta)) + eta*(1.0_wp - weight_flag(which)*eta/6.0_wp)
+      drop = (2.0_wp + eta)*((1.0_wp - h) - embrace_deficit(beta)) &
+           + eta*(1.0_wp - weight_flag(which)*eta/6.0_wp)
       ratio = versine(beta)*drop/(eta*(beta*sin(beta) + h*cos(beta))) - 1.0_wp
    end function eccentricity
 

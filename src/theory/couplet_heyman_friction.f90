@@ -1,13 +1,15 @@
-!> Joints of finite friction: from when on the arch collapses by rotation alone, and the thickness it needs below
+!> Joints of finite friction: from when on the arch collapses by rotation alone, and the thickness
+!> it needs below
 !>
-!> The thrust at the joint beta leans by |atan(beta/h) - beta| from the joint's normal, at the springing by
-!> alpha - atan2(alpha, h), and most of all in between at beta_s = sqrt(h (1 - h)) by acos(sqrt h) - beta_s. With
-!> 1 - h = sin^2 x that is beta_s = sin(2x)/2 and x - sin(2x)/2, without a difference of nearly equal numbers.
-!> A smaller thrust spares the springing, a greater one the haunch: where both slide at one thrust, friction has its
-!> least value, mu_mixed, below which no thickness stands. Between it and mu_rotational the sliding joint dictates
-!> the thrust, and the thickness follows from the line of thrust that touches the intrados and passes the extrados
-!> at the crown (when the springing slides) or at the springing (when the haunch does).
-!> Above mu_mixed the thickness is the least that the static theorem allows.
+!> The thrust at the joint beta leans by |atan(beta/h) - beta| from the joint's normal, at the
+!> springing by alpha - atan2(alpha, h), and most of all in between at beta_s = sqrt(h (1 - h)) by
+!> acos(sqrt h) - beta_s. With 1 - h = sin^2 x that is beta_s = sin(2x)/2 and x - sin(2x)/2, without
+!> a difference of nearly equal numbers. A smaller thrust spares the springing, a greater one the
+!> haunch: where both slide at one thrust, friction has its least value, mu_mixed, below which no
+!> thickness stands. Between it and mu_rotational the sliding joint dictates the thrust, and the
+!> thickness follows from the line of thrust that touches the intrados and passes the extrados at
+!> the crown (when the springing slides) or at the springing (when the haunch does). Above mu_mixed
+!> the thickness is the least that the static theorem allows.
 module couplet_heyman_friction
    use, intrinsic :: ieee_arithmetic, only : ieee_quiet_nan, ieee_value
    use, intrinsic :: iso_fortran_env, only : wp => real64
@@ -96,7 +98,8 @@ contains
          return
       end if
       if (limits%springing_slides) then
-         deficit = (arm_excess(alpha) - mu*(cos(alpha) + alpha*sin(alpha)))/(sin(alpha) - mu*cos(alpha))
+         deficit = arm_excess(alpha) - mu*(cos(alpha) + alpha*sin(alpha))
+         deficit = deficit/(sin(alpha) - mu*cos(alpha))
       else
          deficit = haunch_deficit(mu)
       end if
@@ -116,9 +119,14 @@ contains
       real(wp) :: beta, eta, h
 
       call critical_solution(alpha, which, beta, eta, h)
-      deficit = 1.0_wp - h
-      if (h > 0.5_wp) deficit = embrace_deficit(alpha) - eta*(1.0_wp - weight_flag(which)*eta/6.0_wp)/(2.0_wp + eta)
-      if (h > 0.5_wp .and. tangency_flag(which) <= 0.0_wp) deficit = arm_excess(beta)/sin(beta)
+      if (h < 0.5_wp) then
+         deficit = 1.0_wp - h
+      else if (tangency_flag(which) > 0.0_wp) then
+         deficit = eta*(1.0_wp - weight_flag(which)*eta/6.0_wp)/(2.0_wp + eta)
+         deficit = embrace_deficit(alpha) - deficit
+      else
+         deficit = arm_excess(beta)/sin(beta)
+      end if
    end function rotational_deficit
 
    !> Lean of the thrust at the springing: alpha - atan2(alpha, h)
@@ -130,7 +138,8 @@ contains
       !> Towards the outside of the arch positive [rad]
       real(wp) :: lean
 
-      lean = atan2(arm_excess(alpha) - sin(x)**2*sin(alpha), cos(x)**2*cos(alpha) + alpha*sin(alpha))
+      lean = atan2(arm_excess(alpha) - sin(x)**2*sin(alpha), &
+                   cos(x)**2*cos(alpha) + alpha*sin(alpha))
    end function springing_lean
 
    !> The thrust at which springing and haunch lean alike
@@ -173,7 +182,8 @@ contains
       deficit = sin(x)**2
    end function haunch_deficit
 
-   !> Hinge and thickness of the line of thrust that a sliding joint dictates: eq. (12) with eq. (7) or its like
+   !> Hinge and thickness of the line of thrust that a sliding joint dictates: eq. (12) with eq. (7)
+   !> or its like
    elemental subroutine mixed_hinge(alpha, deficit, through_crown, which, beta, eta)
       !> Half angle of embrace [rad]
       real(wp), intent(in) :: alpha
@@ -205,9 +215,10 @@ contains
 
    !> Thickness ratio at which the line of thrust passes the intrados at beta and one extrados point
    !>
-   !> Twice the moment of the forces between the two points: with v(x) = 1 - h - a(x), N(x) = h + q(x)(1 + v(x)),
-   !> 2 q v(beta) = eta (2 h + q (1 + v)) + delta_M q eta^2/6 from the crown, and
-   !> 2 (q v(beta) - q v(alpha)) = eta (N(alpha) + N(beta)) - delta_M (q(alpha) - q(beta)) eta^2/6 from the springing.
+   !> Twice the moment of the forces between the two points: with v(x) = 1 - h - a(x), N(x) = h +
+   !> q(x)(1 + v(x)), 2 q v(beta) = eta (2 h + q (1 + v)) + delta_M q eta^2/6 from the crown, and 2
+   !> (q v(beta) - q v(alpha)) = eta (N(alpha) + N(beta)) - delta_M (q(alpha) - q(beta)) eta^2/6
+   !> from the springing.
    elemental function thickness_at(beta, alpha, deficit, through_crown, which) result(eta)
       !> Inner hinge [rad]
       real(wp), intent(in) :: beta

@@ -1,8 +1,9 @@
 !> Small functions of an angle that keep every digit where the textbook form cancels
 !>
-!> All theories of the circular arch are written with differences such as x - sin x, 1 - cos x and 2 - x cot(x/2).
-!> Taken literally they lose two digits with every digit by which the angle gets smaller. Here each is summed or
-!> factored so that its relative error stays at a few units in the last place from 0 to pi.
+!> All theories of the circular arch are written with differences such as x - sin x, 1 - cos x and 2
+!> - x cot(x/2). Taken literally they lose two digits with every digit by which the angle gets
+!> smaller. Here each is summed or factored so that its relative error stays at a few units in the
+!> last place from 0 to pi.
 module couplet_heyman_kernels
    use, intrinsic :: iso_fortran_env, only : wp => real64
    implicit none
@@ -61,7 +62,8 @@ contains
       end if
    end function arm_excess
 
-   !> A(x) = x cot(x/2), eq. (9), the group through which the half angle of embrace enters every theory
+   !> A(x) = x cot(x/2), eq. (9), the group through which the half angle of embrace enters every
+   !> theory
    elemental function embrace(x) result(a)
       !> Angle in (-pi, pi); 0 is allowed [rad]
       real(wp), intent(in) :: x

@@ -1,7 +1,8 @@
-!> Where a ring pinches the thrust: the widest gap at one thickness, and the thickness at which that gap closes
+!> Where a ring pinches the thrust: the widest gap at one thickness, and the thickness at which that
+!> gap closes
 !>
-!> Symbols as in couplet_heyman_discrete. The gap of a pair of joints (j, k) is the room between the extrados of j and
-!> the intrados of k; the gap of the ring is that of its narrowest pair.
+!> Symbols as in couplet_heyman_discrete. The gap of a pair of joints (j, k) is the room between the
+!> extrados of j and the intrados of k; the gap of the ring is that of its narrowest pair.
 module couplet_heyman_pinch
    use, intrinsic :: iso_fortran_env, only : wp => real64
    use couplet_heyman_ring, only : ring_t
@@ -20,7 +21,8 @@ module couplet_heyman_pinch
       logical :: unbounded = .false.
       !> Extrados and intrados joint that close the gap towards smaller deficits: (2)
       integer :: left(2) = 0
-      !> Extrados and intrados joint that close it towards greater deficits; equal to left at a sliding joint: (2)
+      !> Extrados and intrados joint that close it towards greater deficits; equal to left at a
+      !> sliding joint: (2)
       integer :: right(2) = 0
       !> Joint whose friction holds the deficit; 0 if none
       integer :: sliding = 0
@@ -46,7 +48,8 @@ contains
       pinch%right = [1, last]
       falls_for_ever = gap_slope(ring, eta, pinch%left) <= 0.0_wp
       rises_for_ever = gap_slope(ring, eta, pinch%right) >= 0.0_wp
-      pinch%unbounded = (falls_for_ever .and. ring%lowest_joint == 0) .or. (rises_for_ever .and. ring%highest_joint == 0)
+      pinch%unbounded = (falls_for_ever .and. ring%lowest_joint == 0) &
+                   .or. (rises_for_ever .and. ring%highest_joint == 0)
       if (pinch%unbounded) return
       previous_peak = huge(peak)
       do
@@ -120,10 +123,12 @@ contains
       !> Room between them
       real(wp) :: gap
 
+      real(wp) :: reach
+
       associate (j => pair(1), k => pair(2))
+         reach = ring%normal(j) + ring%normal(k) - deficit*(ring%cosine(j) + ring%cosine(k))
          gap = deficit*(ring%versine(j) - ring%versine(k)) + (ring%form(j) - ring%form(k)) &
-             + 0.5_wp*eta*(ring%normal(j) + ring%normal(k) - deficit*(ring%cosine(j) + ring%cosine(k))) &
-             - eta*eta/12.0_wp*(ring%moment(j) - ring%moment(k))
+             + 0.5_wp*eta*reach - eta*eta/12.0_wp*(ring%moment(j) - ring%moment(k))
       end associate
    end function pair_gap
 
@@ -157,8 +162,8 @@ contains
       real(wp) :: growth
 
       associate (j => pair(1), k => pair(2))
-         growth = 0.5_wp*(ring%normal(j) + ring%normal(k) - deficit*(ring%cosine(j) + ring%cosine(k))) &
-                - eta/6.0_wp*(ring%moment(j) - ring%moment(k))
+         growth = ring%normal(j) + ring%normal(k) - deficit*(ring%cosine(j) + ring%cosine(k))
+         growth = 0.5_wp*growth - eta/6.0_wp*(ring%moment(j) - ring%moment(k))
       end associate
    end function gap_growth
 
@@ -182,7 +187,8 @@ contains
       gap = pair_gap(ring, eta, deficit, left)
    end subroutine meet
 
-   !> Thickness ratio at which the pinching joints just let the thrust through: Newton's method in eta and deficit
+   !> Thickness ratio at which the pinching joints just let the thrust through: Newton's method in
+   !> eta and deficit
    pure subroutine solve_pinch(ring, start, pinch, eta, solved)
       !> The ring
       type(ring_t), intent(in) :: ring
@@ -228,10 +234,12 @@ contains
       !> Change of the deficit
       real(wp), intent(out) :: deficit_step
 
-      real(wp) :: gap(2), growth(2), slope(2), determinant
+      real(wp) :: gap(2), growth(2), slope(2), determinant, size_of_terms
 
-      gap = [pair_gap(ring, eta, pinch%deficit, pinch%left), pair_gap(ring, eta, pinch%deficit, pinch%right)]
-      growth = [gap_growth(ring, eta, pinch%deficit, pinch%left), gap_growth(ring, eta, pinch%deficit, pinch%right)]
+      gap = [pair_gap(ring, eta, pinch%deficit, pinch%left), &
+             pair_gap(ring, eta, pinch%deficit, pinch%right)]
+      growth = [gap_growth(ring, eta, pinch%deficit, pinch%left), &
+                gap_growth(ring, eta, pinch%deficit, pinch%right)]
       slope = [gap_slope(ring, eta, pinch%left), gap_slope(ring, eta, pinch%right)]
       if (pinch%sliding > 0) then
          gap(1) = 0.0_wp
@@ -241,7 +249,8 @@ contains
       eta_step = huge(eta_step)
       deficit_step = 0.0_wp
       determinant = growth(1)*slope(2) - growth(2)*slope(1)
-      if (abs(determinant) <= epsilon(determinant)*(abs(growth(1)*slope(2)) + abs(growth(2)*slope(1)))) return
+      size_of_terms = abs(growth(1)*slope(2)) + abs(growth(2)*slope(1))
+      if (abs(determinant) <= epsilon(determinant)*size_of_terms) return
       eta_step = (gap(2)*slope(1) - gap(1)*slope(2))/determinant
       deficit_step = (gap(1)*growth(2) - gap(2)*growth(1))/determinant
    end subroutine newton_step

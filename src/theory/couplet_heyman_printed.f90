@@ -1,7 +1,8 @@
 !> Eqs. (14) to (27) term by term as the paper prints them, and the critical solutions they give
 !>
-!> For comparison and for checks: shallow arches lose their digits here (docs/theory.md has the table), which
-!> couplet_heyman_curves and couplet_heyman_critical avoid. A is eq. (9), S = sin beta, C = cos beta.
+!> For comparison and for checks: shallow arches lose their digits here (docs/theory.md has the
+!> table), which couplet_heyman_curves and couplet_heyman_critical avoid. A is eq. (9), S = sin
+!> beta, C = cos beta.
 module couplet_heyman_printed
    use, intrinsic :: ieee_arithmetic, only : ieee_quiet_nan, ieee_value
    use, intrinsic :: iso_fortran_env, only : wp => real64
@@ -11,7 +12,8 @@ module couplet_heyman_printed
    private
 
    public :: equilibrium_polynomial, stationary_polynomial, growth_polynomial, crown_polynomial
-   public :: embrace_polynomial, embrace_cubic, embrace_quadratic, thickness_polynomial, heyman_quotient
+   public :: embrace_polynomial, embrace_cubic, embrace_quadratic, thickness_polynomial
+   public :: heyman_quotient
    public :: singular_embrace, singular_polynomial, printed_thickness, printed_critical
 
 contains
@@ -89,7 +91,8 @@ contains
 
       s = sin(beta)
       c = cos(beta)
-      value = 3.0_wp*weight_flag(which)*c*eta**2 - 6.0_wp*(beta*s + (1.0_wp + c)*a)*eta + 12.0_wp*(c - a)
+      value = 3.0_wp*weight_flag(which)*c*eta**2 - 6.0_wp*(beta*s + (1.0_wp + c)*a)*eta &
+            + 12.0_wp*(c - a)
    end function growth_polynomial
 
    !> Eq. (20): the A at which eq. (19) has no slope
@@ -139,7 +142,8 @@ contains
       value = (weight_flag(which)*eta**2 - 6.0_wp*a*eta + 12.0_wp*(1.0_wp - a))*eta
    end function crown_polynomial
 
-   !> Eq. (22): eta eliminated; for CCR it has the extraneous root A = -(beta + S C)/S besides those of eq. (24)
+   !> Eq. (22): eta eliminated; for CCR it has the extraneous root A = -(beta + S C)/S besides those
+   !> of eq. (24)
    elemental function embrace_polynomial(beta, a, which) result(value)
       !> Critical hinge [rad]
       real(wp), intent(in) :: beta
@@ -232,7 +236,8 @@ contains
       eta = 2.0_wp*(c - a + sqrt(radicand))/(beta*s + (1.0_wp + c)*a)
    end function printed_thickness
 
-   !> Critical solution by the printed forms: bisection on eq. (1), (24) or (23), then (2), (16) or (14), then (3) or (8)
+   !> Critical solution by the printed forms: bisection on eq. (1), (24) or (23), then (2), (16) or
+   !> (14), then (3) or (8)
    elemental subroutine printed_critical(alpha, which, beta, eta, h)
       !> Half angle of embrace, (0, alpha_limit] [rad]
       real(wp), intent(in) :: alpha

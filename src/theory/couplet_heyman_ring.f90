@@ -1,8 +1,9 @@
-!> The ring of joints behind couplet_heyman_discrete: its shape, and the thrusts that friction allows
+!> The ring of joints behind couplet_heyman_discrete: its shape, and the thrusts that friction
+!> allows
 !>
-!> Symbols as there: d = 1 - H the deficit of the thrust, v = 1 - cos t, z = W sin t - M - v, N = n - d cos t with
-!> n = cos t + W sin t, and M the moment of the weights over 1 + eta^2/12. Only differences of z and M between joints
-!> matter, so both are counted from the first joint.
+!> Symbols as there: d = 1 - H the deficit of the thrust, v = 1 - cos t, z = W sin t - M - v, N = n
+!> - d cos t with n = cos t + W sin t, and M the moment of the weights over 1 + eta^2/12. Only
+!> differences of z and M between joints matter, so both are counted from the first joint.
 module couplet_heyman_ring
    use, intrinsic :: iso_fortran_env, only : wp => real64
    use couplet_heyman_kernels, only : arc_excess, arm_excess, versine
@@ -37,7 +38,8 @@ module couplet_heyman_ring
 
 contains
 
-   !> Shape of the ring from its joints; see docs/theory.md for the identity behind the steps of form
+   !> Shape of the ring from its joints; see docs/theory.md for the identity behind the steps of
+   !> form
    pure subroutine make_ring(joint_angle, facets, ring)
       !> Joints of one half, from the crown: (n) [rad]
       real(wp), intent(in) :: joint_angle(:)
@@ -46,7 +48,8 @@ contains
       !> The ring, free of friction
       type(ring_t), intent(out) :: ring
 
-      real(wp) :: span, chord, middle, half_sine, chord_loss, lightness_rise, lightness_middle, form_rise, form_carry
+      real(wp) :: span, chord, middle, half_sine, chord_loss
+      real(wp) :: lightness_rise, lightness_middle, form_rise, form_carry
       integer :: n, j, above
 
       n = size(joint_angle)
@@ -57,7 +60,9 @@ contains
       ring%form(1) = 0.0_wp
       ring%moment(1) = 0.0_wp
       ring%lightness(1) = 0.0_wp
-      if (above == 0) ring%lightness(1) = 0.5_wp*facets(1)*arc_excess(2.0_wp*joint_angle(1)/facets(1))
+      if (above == 0) then
+         ring%lightness(1) = 0.5_wp*facets(1)*arc_excess(2.0_wp*joint_angle(1)/facets(1))
+      end if
       form_carry = 0.0_wp
       do j = 2, n
          span = joint_angle(j) - joint_angle(j - 1)
@@ -95,7 +100,8 @@ contains
       carry = corrected - (after - before)
    end subroutine add_exactly
 
-   !> Thrusts that friction allows: H sin(t + phi) >= W cos(t + phi) and H sin(t - phi) <= W cos(t - phi) at each joint
+   !> Thrusts that friction allows: H sin(t + phi) >= W cos(t + phi) and H sin(t - phi) <= W cos(t -
+   !> phi) at each joint
    !>
    !> A joint at the crown carries no shear, by symmetry.
    pure subroutine limit_thrust(joint_angle, friction, springing_no_slip, ring)

@@ -1,8 +1,9 @@
 !> The three theories of the circular arch, and how far each of them reaches
 !>
-!> They differ in two flags of the equations: delta_M = 1 where the weight of a chunk acts in its true centre of
-!> gravity, at the radius r (1 + eta^2/12), and delta_CCR = 1 where the line of thrust, not the resultant, touches the
-!> intrados. Heyman is (delta_CCR, delta_M) = (0, 0), CCR (1, 0), Milankovitch (1, 1).
+!> They differ in two flags of the equations: delta_M = 1 where the weight of a chunk acts in its
+!> true centre of gravity, at the radius r (1 + eta^2/12), and delta_CCR = 1 where the line of
+!> thrust, not the resultant, touches the intrados. Heyman is (delta_CCR, delta_M) = (0, 0), CCR (1,
+!> 0), Milankovitch (1, 1).
 module couplet_heyman_theories
    use, intrinsic :: iso_fortran_env, only : wp => real64
    implicit none
@@ -15,7 +16,8 @@ module couplet_heyman_theories
    type :: theory_enum
       !> Resultant tangent to the intrados, weight along the centre line
       integer :: heyman = 1
-      !> Line of thrust tangent to the intrados, weight along the centre line (Cocchetti, Colasante, Rizzi)
+      !> Line of thrust tangent to the intrados, weight along the centre line (Cocchetti, Colasante,
+      !> Rizzi)
       integer :: ccr = 2
       !> Line of thrust tangent to the intrados, weight where it is
       integer :: milankovitch = 3
@@ -48,7 +50,8 @@ module couplet_heyman_theories
       real(wp) :: h_beta_max
    end type limits_t
 
-   !> Half angle at which A = 1: eta(beta) starts from 0 up to here, from eta_0 > 0 beyond, eq. (26) [rad]
+   !> Half angle at which A = 1: eta(beta) starts from 0 up to here, from eta_0 > 0 beyond, eq. (26)
+   !> [rad]
    real(wp), parameter :: unit_angle = 2.331122370414422613667835955917121338269_wp
    !> What unit_angle is short of the true angle by [rad]
    real(wp), parameter :: unit_angle_tail = -2.1492054957191997e-16_wp
@@ -62,15 +65,18 @@ module couplet_heyman_theories
       1.0_wp/(2.0_wp - 2.0_wp/pi), 2.0_wp - 4.0_wp/pi, 0.5_wp*pi, 0.5_wp*pi, heyman_limit, &
       1.0_wp/(2.0_wp - 2.0_wp/pi), 2.0_wp - 4.0_wp/pi, 0.0_wp)
 
-   !> CCR: A = 2/3 at the end; beta_max is the root of beta^2 C^2 = 2 S (1 - C) (beta - S), the double root of eq. (24)
-   type(limits_t), parameter :: limits_ccr = limits_t(2.648388899151005411477459039384470488123_wp, &
-      1.8071037322011747e-17_wp, 2.0_wp/3.0_wp, 1.0_wp, 0.0_wp, 1.129085087576186994051896032959304768148_wp, &
+   !> CCR: A = 2/3 at the end; beta_max is the root of beta^2 C^2 = 2 S (1 - C) (beta - S), the
+   !> double root of eq. (24)
+   type(limits_t), parameter :: limits_ccr = limits_t( &
+      2.648388899151005411477459039384470488123_wp, 1.8071037322011747e-17_wp, &
+      2.0_wp/3.0_wp, 1.0_wp, 0.0_wp, 1.129085087576186994051896032959304768148_wp, &
       2.230312828619945767618840353057568904543_wp, 1.092920383385939913716222971351943908588_wp, &
       0.4214141735986856039203466115754708964254_wp, 0.266956770136077484920868551242805036414_wp)
 
    !> Milankovitch: A = sqrt(3) - 1 at the end; beta_max is the double root of eq. (25)
-   type(limits_t), parameter :: limits_milankovitch = limits_t(2.590843443008954904194295853521347980521_wp, &
-      4.3620728650857365e-17_wp, sqrt(3.0_wp) - 1.0_wp, 4.0_wp*sqrt(3.0_wp) - 6.0_wp, 0.0_wp, &
+   type(limits_t), parameter :: limits_milankovitch = limits_t( &
+      2.590843443008954904194295853521347980521_wp, 4.3620728650857365e-17_wp, &
+      sqrt(3.0_wp) - 1.0_wp, 4.0_wp*sqrt(3.0_wp) - 6.0_wp, 0.0_wp, &
       1.119864231443751759677211632949239426283_wp, 2.196404448812123636437088116361977022281_wp, &
       1.122875901494054326467406441955843226411_wp, 0.3975610062458916058061058649064443943728_wp, &
       0.2777076435564898670072228711849933559703_wp)

@@ -1,14 +1,14 @@
 !> What Python sees of the three theories: the layer that f2py wraps
 !>
-!> Subroutines with explicit sizes, arrays of one rank and no optional arguments, as f2py wants them. Each takes n
-!> elements at once. `fault` tells the first value outside the range of validity: the place of its argument in the
-!> call, from 1, and its element, from 1; both 0 when all is well, and only then are the results set. `which` is one
-!> of `theory` in couplet_heyman_theories.
+!> Subroutines with explicit sizes, arrays of one rank and no optional arguments, as f2py wants
+!> them. Each takes n elements at once. `fault` tells the first value outside the range of validity:
+!> the place of its argument in the call, from 1, and its element, from 1; both 0 when all is well,
+!> and only then are the results set. `which` is one of `theory` in couplet_heyman_theories.
 module theory_api
    use, intrinsic :: iso_fortran_env, only : wp => real64
-   use couplet_heyman, only : critical_solution, curve_slope, equilibrium_thickness, initial_thickness, is_embraced, &
-      limits_of, limits_t, near_limit_solution, printed_critical, small_angle_solution, springing_thrust, thrust_line, &
-      unit_angle
+   use couplet_heyman, only : critical_solution, curve_slope, equilibrium_thickness, &
+      initial_thickness, is_embraced, limits_of, limits_t, near_limit_solution, printed_critical, &
+      small_angle_solution, springing_thrust, thrust_line, unit_angle
    use couplet_heyman_domain, only : blame, is_half_angle, is_joint, is_thickness
    implicit none
    private
@@ -199,15 +199,16 @@ contains
    subroutine limit_values(which, values)
       !> Theory
       integer, intent(in) :: which
-      !> alpha, A, eta, beta, h at the limit; greatest beta and alpha, A, eta, h there; alpha where A = 1: (11)
+      !> alpha, A, eta, beta, h at the limit; greatest beta and alpha, A, eta, h there; alpha where
+      !> A = 1: (11)
       real(wp), intent(out) :: values(11)
 
       type(limits_t) :: limits
 
       limits = limits_of(which)
-      values = [limits%alpha_limit, limits%embrace_limit, limits%eta_limit, limits%beta_limit, 0.0_wp, &
-                limits%beta_max, limits%alpha_beta_max, limits%embrace_beta_max, limits%eta_beta_max, &
-                limits%h_beta_max, unit_angle]
+      values = [limits%alpha_limit, limits%embrace_limit, limits%eta_limit, limits%beta_limit, &
+                0.0_wp, limits%beta_max, limits%alpha_beta_max, limits%embrace_beta_max, &
+                limits%eta_beta_max, limits%h_beta_max, unit_angle]
    end subroutine limit_values
 
 end module theory_api

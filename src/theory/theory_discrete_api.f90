@@ -2,8 +2,8 @@
 module theory_discrete_api
    use, intrinsic :: iso_fortran_env, only : wp => real64
    use couplet_heyman, only : friction_limits, friction_limits_t, friction_solution, is_embraced
-   use couplet_heyman_discrete, only : chords, discrete_critical, discrete_solution_t, discrete_status, &
-      equal_voussoir_joints
+   use couplet_heyman_discrete, only : chords, discrete_critical, discrete_solution_t, &
+      discrete_status, equal_voussoir_joints
    use couplet_heyman_domain, only : blame, is_facet, is_half_angle
    implicit none
    private
@@ -76,7 +76,8 @@ contains
    end subroutine friction_states
 
    !> Exact critical thickness of arches of equal polygon voussoirs
-   subroutine discrete_equal(n, voussoirs, alpha, facet, friction, no_slip, status, eta, h, joint, role, fault)
+   subroutine discrete_equal(n, voussoirs, alpha, facet, friction, no_slip, &
+                             status, eta, h, joint, role, fault)
       !> Number of arches
       integer, intent(in) :: n
       !> Number of voussoirs of the whole arch, 1 to 10 000 000: (n)
@@ -121,7 +122,8 @@ contains
    end subroutine discrete_equal
 
    !> Exact critical thickness of one arch of polygon voussoirs, given by the joints of one half
-   subroutine discrete_joints(n, joints, facet, friction, no_slip, status, eta, h, joint, role, fault)
+   subroutine discrete_joints(n, joints, facet, friction, no_slip, &
+                              status, eta, h, joint, role, fault)
       !> Number of joints
       integer, intent(in) :: n
       !> Joints from the crown, strictly increasing, in [0, pi): (n) [rad]
