@@ -5,19 +5,16 @@ module dda_command_line
    implicit none
    private
 
-   public :: command_t, read_command, argument_length
-
-   !> Longest argument that is kept
-   integer, parameter :: argument_length = 4096
+   public :: command_t, read_command
 
    !> What the user asked for
    type :: command_t
       !> run, check, help or version
       character(len=16) :: verb = "help"
       !> Decks to run or check, or the topic of help: (n)
-      character(len=argument_length), allocatable :: name(:)
+      character(len=:), allocatable :: name(:)
       !> --set values: (n)
-      character(len=argument_length), allocatable :: setting(:)
+      character(len=:), allocatable :: setting(:)
       !> Output folder; unallocated if none is named
       character(len=:), allocatable :: out
       !> Cases computed at the same time
@@ -34,10 +31,15 @@ contains
       type(command_t), intent(out) :: command
       !> Allocated if an argument is not understood
       type(error_t), allocatable, intent(out) :: error
-      character(len=argument_length), allocatable :: argument(:)
-      integer :: i
+      character(len=:), allocatable :: argument(:)
+      integer :: i, length, longest
 
-      allocate (argument(command_argument_count()))
+      longest = 16
+      do i = 1, command_argument_count()
+         call get_command_argument(i, length=length)
+         longest = max(longest, length)
+      end do
+      allocate (character(len=longest) :: argument(command_argument_count()))
       do i = 1, size(argument)
          call get_command_argument(i, argument(i))
       end do
@@ -52,34 +54,52 @@ contains
       type(command_t), intent(out) :: command
       !> Allocated if an argument is not understood
       type(error_t), allocatable, intent(out) :: error
+      character(len=:), allocatable :: name(:), setting(:)
       logical :: takes_decks
-      integer :: i
+      integer :: i, names, settings
 
-      allocate (command%name(0), command%setting(0))
-      if (size(argument) == 0) return
-      select case (argument(1))
-      case ("--help", "-h", "help")
-         command%verb = "help"
-      case ("--version")
-         command%verb = "version"
-      case ("run", "check")
-         command%verb = argument(1)(:16)
-      case default
-         call fatal_error(error, "run, check or help is wanted, '"//trim(argument(1))//"' was found")
-         return
-      end select
-      takes_decks = command%verb == "run" .or. command%verb == "check"
+      allocate (character(len=len(argument)) :: name(size(argument) + 1), setting(size(argument)))
+      names = 0
+      settings = 0
+      takes_decks = .false.
+      if (size(argument) > 0) then
+         select case (argument(1))
+         case ("--help", "-h", "help")
+            command%verb = "help"
+         case ("--version")
+            command%verb = "version"
+         case ("run", "check")
+            command%verb = argument(1)(:16)
+            takes_decks = .true.
+         case default
+            call fatal_error(error, "run, check or help is wanted, '"//trim(argument(1)) &
+               & //"' was found")
+         end select
+      end if
       i = 2
       do while (i <= size(argument) .and. .not. allocated(error))
-         if (takes_decks .and. argument(i) (1:1) == "-") then
+         if (takes_decks .and. argument(i) == "--set" .and. i < size(argument)) then
+            settings = settings + 1
+            i = i + 1
+            setting(settings) = argument(i)
+         else if (takes_decks .and. (argument(i) == "--help" .or. argument(i) == "-h")) then
+            names = 1
+            name(1) = command%verb
+            command%verb = "help"
+            exit
+         else if (takes_decks .and. argument(i)(1:1) == "-") then
             call take_option(argument, i, command, error)
          else
-            command%name = [command%name, argument(i)]
+            names = names + 1
+            name(names) = argument(i)
+            if (takes_decks .and. name(names) == "") &
+               & call fatal_error(error, "the name of a deck is wanted, an empty one was found")
          end if
          i = i + 1
       end do
-      if (allocated(error)) return
-      if (takes_decks .and. size(command%name) == 0) &
+      allocate (command%name, source=name(:names))
+      allocate (command%setting, source=setting(:settings))
+      if (takes_decks .and. command%verb /= "help" .and. names == 0 .and. .not. allocated(error)) &
          & call fatal_error(error, "dda "//trim(command%verb)//" wants the name of a deck")
    end subroutine parse_command
 
@@ -93,14 +113,8 @@ contains
       type(command_t), intent(inout) :: command
       !> Allocated if the option is not understood
       type(error_t), allocatable, intent(out) :: error
-      character(len=argument_length) :: value
       logical :: ok
 
-      if (argument(i) == "--help" .or. argument(i) == "-h") then
-         command%name = [command%verb//repeat(" ", argument_length - len(command%verb))]
-         command%verb = "help"
-         return
-      end if
       select case (argument(i))
       case ("--quiet")
          command%quiet = .true.
@@ -115,18 +129,14 @@ contains
             & //"; 'dda help "//trim(command%verb)//"' lists those that exist")
          return
       end select
-      value = argument(i + 1)
       i = i + 1
-      select case (argument(i - 1))
-      case ("--out")
-         command%out = trim(value)
+      if (argument(i - 1) == "--out") then
+         command%out = trim(argument(i))
          if (command%out == "") call fatal_error(error, "--out wants the name of a folder")
-      case ("--set")
-         command%setting = [command%setting, value]
-      case ("--jobs")
-         call read_integer(trim(value), command%jobs, ok)
+      else
+         call read_integer(trim(argument(i)), command%jobs, ok)
          if (.not. ok .or. command%jobs < 1) call fatal_error(error, &
-            & "--jobs wants a number of cases from 1, '"//trim(value)//"' was found")
-      end select
+            & "--jobs wants a number of cases from 1, '"//trim(argument(i))//"' was found")
+      end if
    end subroutine take_option
 end module dda_command_line

@@ -10,7 +10,7 @@ module dda_run
    use dda_progress, only : clear_progress, progress_t, report_progress
    use dda_read_deck, only : read_deck
    use dda_summary, only : print_row, print_total
-   use dda_table_file, only : append_line, close_table, open_table, table_file_t
+   use dda_table_file, only : append_line, close_table, open_table, remove_file, table_file_t
    use dda_text, only : to_text
    use dda_write_results, only : joint_line, joint_row_t, joints_header, result_row_t, &
       & results_header, results_line
@@ -33,6 +33,8 @@ module dda_run
       logical :: has_joints = .false.
    end type tables_t
 
+   !> Most cases at the same time
+   integer, parameter :: max_jobs = 256
    !> Columns of results.csv that a swept parameter shares
    character(len=*), parameter :: own_column(*) = [character(len=16) :: "half_angle_deg", &
       & "thickness_ratio", "friction_deg", "mode", "geometry"]
@@ -54,7 +56,7 @@ contains
       status = exit_status%success
       do i = 1, size(deck)
          call read_deck(trim(command%name(i)), command%setting, deck(i), error)
-         if (.not. allocated(error)) call check_folder(command, i, error)
+         if (.not. allocated(error)) call check_folder(command, i, good(:i - 1), error)
          good(i) = .not. allocated(error)
          if (good(i)) cycle
          write (error_unit, "(a)") error_line(error)
@@ -68,17 +70,19 @@ contains
    end subroutine run_decks
 
    !> No two decks may write into the same folder
-   subroutine check_folder(command, number, error)
+   subroutine check_folder(command, number, good, error)
       !> What the user asked for
       type(command_t), intent(in) :: command
       !> Number of the deck
       integer, intent(in) :: number
+      !> Which of the decks before it will run: (number - 1)
+      logical, intent(in) :: good(:)
       !> Allocated if an earlier deck writes where this one would
       type(error_t), allocatable, intent(inout) :: error
       integer :: i
 
       do i = 1, number - 1
-         if (folder_of(command, trim(command%name(i))) &
+         if (.not. good(i) .or. folder_of(command, trim(command%name(i))) &
             & /= folder_of(command, trim(command%name(number)))) cycle
          call fatal_error(error, "a deck with a folder of its own is wanted, "// &
             & trim(command%name(i))//" writes to the same one", trim(command%name(number)), 1)
@@ -104,7 +108,8 @@ contains
       end if
    end function folder_of
 
-   !> Name of a deck without its folder and its ending
+   !> Name of a deck without its folder and its ending; one that would stay the same, or be a folder
+   !> that exists already, gets an ending
    pure function deck_stem(name) result(stem)
       !> Name of the file
       character(len=*), intent(in) :: name
@@ -114,7 +119,12 @@ contains
 
       stem = name(index(name, "/", back=.true.) + 1:)
       dot = index(stem, ".", back=.true.)
-      if (dot > 1) stem = stem(:dot - 1)
+      if (dot > 1) then
+         stem = stem(:dot - 1)
+      else
+         stem = stem//".results"
+      end if
+      if (verify(stem, ".") == 0) stem = stem//"results"
    end function deck_stem
 
    !> Run all cases of one deck
@@ -141,7 +151,7 @@ contains
       if (command%quiet) progress%shown = .false.
       progress%total = total
       call system_clock(progress%start)
-      !$omp parallel do num_threads(command%jobs) schedule(dynamic) default(none) &
+      !$omp parallel do num_threads(min(command%jobs, total, max_jobs)) schedule(dynamic) default(none) &
       !$omp shared(total, deck, name, command, tables, progress, count, error)
       do number = 1, total
          call compute_case(command, name, deck, number, total, tables, progress, count, error)
@@ -234,8 +244,12 @@ contains
       call open_table(tables%folder//"/results.csv", results_header(names), tables%results, error)
       if (.not. allocated(error)) &
          & call open_table(tables%folder//"/log.txt", "case verdict remark", tables%log, error)
-      if (.not. allocated(error) .and. tables%has_joints) &
-         & call open_table(tables%folder//"/joints.csv", joints_header(), tables%joints, error)
+      if (allocated(error)) return
+      if (tables%has_joints) then
+         call open_table(tables%folder//"/joints.csv", joints_header(), tables%joints, error)
+      else
+         call remove_file(tables%folder//"/joints.csv")
+      end if
    end subroutine open_tables
 
    !> Values of the swept parameters that have no column of their own, each with a comma behind it

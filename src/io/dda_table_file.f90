@@ -7,7 +7,7 @@ module dda_table_file
    implicit none
    private
 
-   public :: table_file_t, open_table, append_line, close_table
+   public :: table_file_t, open_table, append_line, close_table, remove_file
 
    !> An open table
    type :: table_file_t
@@ -53,6 +53,15 @@ module dda_table_file
          !> 0 if all is well
          integer(c_int) :: failed
       end function c_fflush
+
+      !> C: remove a file
+      function c_remove(path) bind(c, name="remove") result(failed)
+         import :: c_char, c_int
+         !> Its name, ended by a null character
+         character(kind=c_char), intent(in) :: path(*)
+         !> 0 if it was removed
+         integer(c_int) :: failed
+      end function c_remove
 
       !> C: close a file
       function c_fclose(handle) bind(c, name="fclose") result(failed)
@@ -113,4 +122,13 @@ contains
       if (c_associated(table%handle)) failed = c_fclose(table%handle)
       table%handle = c_null_ptr
    end subroutine close_table
+
+   !> Remove a file of an earlier run; one that is not there is no failure
+   subroutine remove_file(file)
+      !> Name of the file
+      character(len=*), intent(in) :: file
+      integer(c_int) :: failed
+
+      failed = c_remove(file//c_null_char)
+   end subroutine remove_file
 end module dda_table_file

@@ -184,7 +184,8 @@ contains
       if (searched_name(deck) /= "thickness_ratio") return
       search%start = search_start(deck)
       if (.not. is_given(deck, "search", "low")) search%low = 1.0e-5_wp*search%start
-      if (.not. is_given(deck, "search", "high")) search%high = 1.99_wp
+      search%check_far_end = is_given(deck, "search", "high")
+      if (.not. search%check_far_end) search%high = 1.99_wp
       search%start = min(max(search%start, search%low), search%high)
    end subroutine prepare_search
 

@@ -26,6 +26,8 @@ module dda_critical
       real(wp) :: start = 0.0_wp
       !> Width of the bracket over the critical value
       real(wp) :: tolerance = 1.0e-8_wp
+      !> Whether the end beyond the critical value is decided too; not needed where it is known to stand
+      logical :: check_far_end = .true.
    end type search_t
 
    !> What was found
@@ -72,6 +74,8 @@ module dda_critical
 
    !> No bracket is narrower than this share of its value
    real(wp), parameter :: least_tolerance = 4.0e-13_wp
+   !> A bracket wider than this share of its value is no answer
+   real(wp), parameter :: widest = 1.0e-4_wp
    !> Margin over the noise that three samples show
    real(wp), parameter :: noise_margin = 5.0_wp
    !> Most passes of the secant method
@@ -99,9 +103,15 @@ contains
          if (.not. allocated(critical%reason)) critical%reason = "no value was found that falls"
          return
       end if
+      if (search%check_far_end .and. .not. allocated(critical%standing)) &
+         & call decide_at(family, limit, critical, answer)
       answer = verdict%collapsed
       undecided = 0
       do while (critical%decisions < max_decisions .and. undecided < max_undecided)
+         if (.not. abs(critical%falls - limit) > 0.0_wp) then
+            critical%verdict = verdict%collapsed
+            return
+         end if
          if (answer == verdict%collapsed) call trace(family, search, limit, critical, proposal)
          if (closed(critical, proposal)) then
             critical%verdict = verdict%found
@@ -113,10 +123,6 @@ contains
             proposal%half = 4.0_wp*proposal%half
          else
             undecided = 0
-         end if
-         if (.not. abs(critical%falls - limit) > 0.0_wp) then
-            critical%verdict = verdict%collapsed
-            return
          end if
       end do
       if (.not. allocated(critical%reason)) critical%reason = "too many decisions"
@@ -273,8 +279,11 @@ contains
       !> Where the last collapse stops
       type(proposal_t), intent(in) :: proposal
 
-      closed = allocated(critical%standing)
-      if (closed) closed = abs(critical%stands - critical%falls) <= 2.0001_wp*proposal%half
+      real(wp) :: width
+
+      width = abs(critical%stands - critical%falls)
+      closed = allocated(critical%standing) .and. width <= 2.0001_wp*proposal%half &
+         & .and. width <= widest*abs(critical%stands)
    end function closed
 
    !> Trace the last collapse to where it stops, by the secant method on the power of the loads
