@@ -1,20 +1,23 @@
 !> The command line as a value
 module dda_command_line
    use dda_error, only : error_t, fatal_error
-   use dda_text, only : read_integer
+   use dda_text, only : read_integer, to_text
    implicit none
    private
 
    public :: command_t, read_command
+
+   !> Longest argument that is taken
+   integer, parameter :: longest = 32768
 
    !> What the user asked for
    type :: command_t
       !> run, check, help or version
       character(len=16) :: verb = "help"
       !> Decks to run or check, or the topic of help: (n)
-      character(len=:), allocatable :: name(:)
+      character(len=longest), allocatable :: name(:)
       !> --set values: (n)
-      character(len=:), allocatable :: setting(:)
+      character(len=longest), allocatable :: setting(:)
       !> Output folder; unallocated if none is named
       character(len=:), allocatable :: out
       !> Cases computed at the same time
@@ -31,17 +34,17 @@ contains
       type(command_t), intent(out) :: command
       !> Allocated if an argument is not understood
       type(error_t), allocatable, intent(out) :: error
-      character(len=:), allocatable :: argument(:)
-      integer :: i, length, longest
+      character(len=longest), allocatable :: argument(:)
+      integer :: i, length
 
-      longest = 16
-      do i = 1, command_argument_count()
-         call get_command_argument(i, length=length)
-         longest = max(longest, length)
-      end do
-      allocate (character(len=longest) :: argument(command_argument_count()))
+      allocate (argument(command_argument_count()))
       do i = 1, size(argument)
-         call get_command_argument(i, argument(i))
+         call get_command_argument(i, argument(i), length)
+         if (length > longest) then
+            call fatal_error(error, "an argument of at most "//to_text(longest) &
+               & //" characters is wanted, one of "//to_text(length)//" was found")
+            return
+         end if
       end do
       call parse_command(argument, command, error)
    end subroutine read_command
@@ -54,11 +57,11 @@ contains
       type(command_t), intent(out) :: command
       !> Allocated if an argument is not understood
       type(error_t), allocatable, intent(out) :: error
-      character(len=:), allocatable :: name(:), setting(:)
+      character(len=longest), allocatable :: name(:), setting(:)
       logical :: takes_decks
       integer :: i, names, settings
 
-      allocate (character(len=len(argument)) :: name(size(argument) + 1), setting(size(argument)))
+      allocate (name(size(argument) + 1), setting(size(argument)))
       names = 0
       settings = 0
       takes_decks = .false.
