@@ -24,7 +24,7 @@ contains
 
       status = exit_status%success
       topic = ""
-      if (size(command%name) > 0) topic = command%name(1)
+      if (size(command%name) > 0) topic = command%name(1)(:16)
       select case (topic)
       case ("")
          call print_lines([character(len=96) :: &

@@ -1,7 +1,7 @@
 !> The contacts of a system and what they carry from step to step (Shi: df04 to df07)
 module dda_contact_detection
    use dda_block_system, only : block_system_t
-   use dda_contact_types, only : edge_to_edge_joint, joint_t
+   use dda_contact_types, only : edge_to_edge_joint, joint_t, place_joint
    use dda_friction_cone, only : joint_face_t
    use dda_joint_springs, only : joint_springs_t, new_joint_springs
    use dda_kinds, only : wp
@@ -9,7 +9,7 @@ module dda_contact_detection
    implicit none
    private
 
-   public :: contacts_t, find_contacts
+   public :: contacts_t, find_contacts, follow_contacts
 
    !> Joints with their springs, states and forces
    type :: contacts_t
@@ -27,6 +27,8 @@ module dda_contact_detection
       real(wp), allocatable :: gap(:, :)
       !> Opening at the two contacts and slip in the last step: (3, n_joint) [m]
       real(wp), allocatable :: increment(:, :)
+      !> Slip that is past and done, where blocks move: (n_joint) [m]
+      real(wp), allocatable :: past_slip(:)
       !> Contacts whose cohesion and tensile strength are spent: (2, n_joint)
       logical, allocatable :: broken(:, :)
    end type contacts_t
@@ -50,16 +52,47 @@ contains
       integer :: j, n
 
       n = size(edge_pair, 2)
-      allocate (contacts%joint(n), contacts%face(n), contacts%broken(2, n))
+      allocate (contacts%joint(n), contacts%face(n), contacts%broken(2, n), contacts%past_slip(n))
       allocate (contacts%trial(3, n), contacts%force(3, n), contacts%gap(3, n), contacts%increment(3, n))
       do j = 1, n
          contacts%joint(j) = edge_to_edge_joint(system, edge_pair(:, j), law(j))
       end do
-      call new_joint_springs(system, contacts%joint, penalty_ratio, n_dof, contacts%springs)
+      call new_joint_springs(system, system%centroid, contacts%joint, penalty_ratio, n_dof, contacts%springs)
       contacts%broken = .false.
+      contacts%past_slip = 0.0_wp
       contacts%trial = 0.0_wp
       contacts%force = 0.0_wp
       contacts%gap = 0.0_wp
       contacts%increment = 0.0_wp
    end subroutine find_contacts
+
+   !> Joints where the blocks are now: rows anew, openings measured, and the forces of the step before
+   !> as multipliers, so that the springs only carry what changes
+   pure subroutine follow_contacts(system, penalty_ratio, n_dof, contacts)
+      !> The blocks
+      type(block_system_t), intent(in) :: system
+      !> Contact stiffness over the stiffness of the block across the joint
+      real(wp), intent(in) :: penalty_ratio
+      !> Unknowns of one block
+      integer, intent(in) :: n_dof
+      !> The contacts; what they carry is kept
+      type(contacts_t), intent(inout) :: contacts
+      type(joint_springs_t) :: before
+      real(wp) :: gap(3)
+      integer :: j
+
+      do j = 1, size(contacts%joint)
+         call place_joint(system, system%moved, contacts%joint(j), gap)
+         contacts%gap(:, j) = gap - [0.0_wp, 0.0_wp, contacts%past_slip(j)]
+      end do
+      before = contacts%springs
+      call new_joint_springs(system, system%centroid + system%motion(1:2, :), contacts%joint, &
+         & penalty_ratio, n_dof, contacts%springs)
+      contacts%springs%cone = before%cone
+      contacts%springs%shift = before%shift
+      do j = 1, size(contacts%joint)
+         contacts%trial(:, j) = contacts%force(:, j) &
+            & - contacts%springs%stiffness(j)*contacts%gap(:, j)
+      end do
+   end subroutine follow_contacts
 end module dda_contact_detection

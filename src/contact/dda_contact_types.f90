@@ -8,7 +8,7 @@ module dda_contact_types
    implicit none
    private
 
-   public :: contact_t, joint_t, edge_to_edge_joint, vertex_number
+   public :: contact_t, joint_t, edge_to_edge_joint, place_joint, vertex_number
 
    !> A vertex of one block against an edge of another
    type :: contact_t
@@ -20,8 +20,10 @@ module dda_contact_types
       integer :: edge_block = 0
       !> Number of the edge within its block; edge k runs from vertex k to vertex k + 1
       integer :: edge = 0
-      !> Where they meet in the reference shape: (2) [m]
+      !> Where the vertex is: (2) [m]
       real(wp) :: point(2) = 0.0_wp
+      !> Foot of its perpendicular on the edge: (2) [m]
+      real(wp) :: foot(2) = 0.0_wp
       !> Part of the joint's length that the contact stands for [m]
       real(wp) :: length = 0.0_wp
    end type contact_t
@@ -34,6 +36,8 @@ module dda_contact_types
       type(contact_t) :: contact(2)
       !> Number of contacts, 1 or 2
       integer :: n_contact = 0
+      !> Points of the two blocks where the shear force acts, halfway along the edges: (2, 2) [m]
+      real(wp) :: middle(2, 2) = 0.0_wp
       !> Unit normal of the edge, from the first block to the second: (2)
       real(wp) :: normal(2) = 0.0_wp
       !> Unit vector along the edge: (2)
@@ -71,19 +75,53 @@ contains
       type(joint_law_t), intent(in) :: law
       !> The joint
       type(joint_t) :: joint
-      real(wp) :: start(2), finish(2)
+      real(wp) :: start(2), finish(2), gap(3)
 
       start = system%vertex(:, vertex_number(system, edge_pair(1), edge_pair(2)))
       finish = system%vertex(:, vertex_number(system, edge_pair(1), edge_pair(2) + 1))
       joint%block = edge_pair([1, 3])
       joint%law = law
       joint%length = norm2(finish - start)
+      joint%n_contact = 2
+      joint%contact%vertex_block = edge_pair(3)
+      joint%contact%vertex = edge_pair(4) + [1, 0]
+      joint%contact%edge_block = edge_pair(1)
+      joint%contact%edge = edge_pair(2)
+      joint%contact%length = joint%length/2.0_wp
+      call place_joint(system, system%vertex, joint, gap)
+   end function edge_to_edge_joint
+
+   !> Where a joint is, and how far it is open
+   pure subroutine place_joint(system, vertex, joint, gap)
+      !> The blocks
+      type(block_system_t), intent(in) :: system
+      !> Their corners: (2, n_vertex) [m]
+      real(wp), intent(in) :: vertex(:, :)
+      !> The joint; normal, tangent and points are set
+      type(joint_t), intent(inout) :: joint
+      !> Opening at the two contacts, and how far the second block lies ahead along the edge: (3) [m]
+      real(wp), intent(out) :: gap(3)
+      real(wp) :: start(2), finish(2), corner(2, 2)
+      integer :: k
+
+      associate (edge => joint%contact(1))
+         start = vertex(:, vertex_number(system, edge%edge_block, edge%edge))
+         finish = vertex(:, vertex_number(system, edge%edge_block, edge%edge + 1))
+      end associate
       joint%tangent = along(start, finish)
       joint%normal = right_normal(joint%tangent)
-      joint%n_contact = 2
-      joint%contact(1) = contact_t(edge_pair(3), edge_pair(4) + 1, edge_pair(1), edge_pair(2), &
-         & start, joint%length/2.0_wp)
-      joint%contact(2) = contact_t(edge_pair(3), edge_pair(4), edge_pair(1), edge_pair(2), &
-         & finish, joint%length/2.0_wp)
-   end function edge_to_edge_joint
+      do k = 1, 2
+         associate (contact => joint%contact(k))
+            corner(:, k) = vertex(:, vertex_number(system, contact%vertex_block, contact%vertex))
+            gap(k) = dot_product(joint%normal, corner(:, k) - start)
+            contact%point = corner(:, k)
+            contact%foot = corner(:, k) - gap(k)*joint%normal
+         end associate
+      end do
+      joint%middle(:, 1) = (start + finish)/2.0_wp
+      joint%middle(:, 2) = (corner(:, 1) + corner(:, 2))/2.0_wp
+      gap(3) = dot_product(joint%tangent, joint%middle(:, 2) - joint%middle(:, 1))
+      ! both blocks feel the shear force on the line of the edge: off it, an open joint would turn them
+      joint%middle(:, 2) = joint%middle(:, 1) + gap(3)*joint%tangent
+   end subroutine place_joint
 end module dda_contact_types

@@ -31,9 +31,11 @@ module dda_joint_springs
 contains
 
    !> Springs of all joints
-   pure subroutine new_joint_springs(system, joint, penalty_ratio, n_dof, springs)
+   pure subroutine new_joint_springs(system, centroid, joint, penalty_ratio, n_dof, springs)
       !> The blocks
       type(block_system_t), intent(in) :: system
+      !> Their centres of gravity: (2, n_block) [m]
+      real(wp), intent(in) :: centroid(:, :)
       !> The joints: (n_joint)
       type(joint_t), intent(in) :: joint(:)
       !> Contact stiffness over the stiffness of the block across the joint
@@ -49,33 +51,36 @@ contains
       allocate (springs%cone(n), springs%shift(3, n))
       do j = 1, n
          springs%equation(:, j) = system%equation(joint(j)%block)
-         springs%row(:, :, 1, j) = -joint_rows(joint(j), system%centroid(:, joint(j)%block(1)), n_dof)
-         springs%row(:, :, 2, j) = joint_rows(joint(j), system%centroid(:, joint(j)%block(2)), n_dof)
+         springs%row(:, :, 1, j) = -joint_rows(joint(j), 1, centroid(:, joint(j)%block(1)), n_dof)
+         springs%row(:, :, 2, j) = joint_rows(joint(j), 2, centroid(:, joint(j)%block(2)), n_dof)
          springs%stiffness(j) = penalty_ratio*block_stiffness(system, joint(j))
          call mohr_coulomb(joint(j), [.false., .false.], springs%cone(j), springs%shift(:, j))
       end do
    end subroutine new_joint_springs
 
    !> What the joint sees of one block's unknowns
-   pure function joint_rows(joint, centroid, n_dof) result(row)
+   pure function joint_rows(joint, side, centroid, n_dof) result(row)
       !> The joint
       type(joint_t), intent(in) :: joint
+      !> 1 for the block that owns the edge, 2 for the one that owns the vertices
+      integer, intent(in) :: side
       !> Centre of gravity of the block: (2) [m]
       real(wp), intent(in) :: centroid(2)
       !> Unknowns of the block
       integer, intent(in) :: n_dof
       !> Displacement along the normal at both contacts, along the edge halfway: (n_dof, 3)
       real(wp) :: row(n_dof, 3)
-      real(wp) :: first(2, 6), second(2, 6)
+      real(wp) :: t(2, 6)
+      integer :: k
 
-      first = displacement_matrix(joint%contact(1)%point, centroid)
-      second = displacement_matrix(joint%contact(joint%n_contact)%point, centroid)
-      row(:, 1) = joint%normal(1)*first(1, :n_dof) + joint%normal(2)*first(2, :n_dof)
-      row(:, 2) = 0.0_wp
-      if (joint%n_contact == 2) row(:, 2) = joint%normal(1)*second(1, :n_dof) &
-         & + joint%normal(2)*second(2, :n_dof)
-      first = (first + second)/2.0_wp
-      row(:, 3) = joint%tangent(1)*first(1, :n_dof) + joint%tangent(2)*first(2, :n_dof)
+      row = 0.0_wp
+      do k = 1, joint%n_contact
+         if (side == 1) t = displacement_matrix(joint%contact(k)%foot, centroid)
+         if (side == 2) t = displacement_matrix(joint%contact(k)%point, centroid)
+         row(:, k) = joint%normal(1)*t(1, :n_dof) + joint%normal(2)*t(2, :n_dof)
+      end do
+      t = displacement_matrix(joint%middle(:, side), centroid)
+      row(:, 3) = joint%tangent(1)*t(1, :n_dof) + joint%tangent(2)*t(2, :n_dof)
    end function joint_rows
 
    !> Stiffness E t/l of the softer of the movable blocks at a joint: t the joint's length, l the

@@ -13,7 +13,8 @@ module dda_assembly
    implicit none
    private
 
-   public :: equations_t, new_equations, assemble_blocks, solve_faces, relative_displacement
+   public :: equations_t, new_equations, take_springs, assemble_blocks, solve_faces
+   public :: relative_displacement
 
    !> Matrix, loads and factor; the pattern and the mass are made once, the numbers at each solution
    type :: equations_t
@@ -52,8 +53,6 @@ contains
       type(settings_t), intent(in) :: settings
       !> The equations
       type(equations_t), intent(out) :: equations
-      real(wp), parameter :: identity(3, 3) = reshape([1.0_wp, 0.0_wp, 0.0_wp, 0.0_wp, 1.0_wp, &
-         & 0.0_wp, 0.0_wp, 0.0_wp, 1.0_wp], [3, 3])
       real(wp) :: full(6, 6), load(6)
       logical :: couples(size(springs%equation, 2))
       integer :: b, e, j, n, nd, pair(2, size(springs%equation, 2))
@@ -74,9 +73,7 @@ contains
       allocate (equations%mass(nd, nd, n), equations%elastic(nd, nd, n), equations%base(nd, nd, n))
       allocate (equations%weight(nd, n), equations%load(nd, n))
       allocate (equations%stuck(nd, nd, 3, size(couples)))
-      do j = 1, size(couples)
-         equations%stuck(:, :, :, j) = joint_stiffness(springs, identity, j)
-      end do
+      call take_springs(springs, equations)
       do b = 1, size(system%equation)
          e = system%equation(b)
          if (e == 0) cycle
@@ -88,6 +85,21 @@ contains
          equations%weight(:, e) = load(:nd)
       end do
    end subroutine new_equations
+
+   !> Take over springs whose rows have changed while the coupled pairs have not
+   pure subroutine take_springs(springs, equations)
+      !> The springs of the joints
+      type(joint_springs_t), intent(in) :: springs
+      !> Receives the stiffness of the stuck joints
+      type(equations_t), intent(inout) :: equations
+      real(wp), parameter :: identity(3, 3) = reshape([1.0_wp, 0.0_wp, 0.0_wp, 0.0_wp, 1.0_wp, &
+         & 0.0_wp, 0.0_wp, 0.0_wp, 1.0_wp], [3, 3])
+      integer :: j
+
+      do j = 1, size(equations%entry)
+         equations%stuck(:, :, :, j) = joint_stiffness(springs, identity, j)
+      end do
+   end subroutine take_springs
 
    !> Block part of matrix and load of one step of length dt
    pure subroutine assemble_blocks(system, settings, dt, equations)

@@ -2,6 +2,7 @@
 module dda_block_update
    use dda_block_system, only : block_system_t
    use dda_contact_detection, only : contacts_t
+   use dda_deformation, only : moved_point, turned_tensor
    use dda_joint_springs, only : mohr_coulomb
    use dda_kinds, only : wp
    use dda_material, only : elasticity_matrix
@@ -14,7 +15,8 @@ module dda_block_update
 
 contains
 
-   !> Add the motion of a step; stress follows the strain, velocity the constant acceleration
+   !> Add the motion of a step; stress follows the strain, velocity the constant acceleration. Where
+   !> blocks move, strain is kept in the block's own frame and the corners are built anew from it
    pure subroutine update_blocks(step, settings, system)
       !> The accepted step
       type(step_context_t), intent(in) :: step
@@ -22,22 +24,47 @@ contains
       type(settings_t), intent(in) :: settings
       !> The blocks
       type(block_system_t), intent(inout) :: system
-      real(wp) :: d(3, 3)
+      real(wp) :: d(3, 3), motion(6)
       integer :: b, e, nd
 
       nd = settings%n_dof
       do b = 1, size(system%equation)
          e = system%equation(b)
          if (e == 0) cycle
-         associate (motion => step%state%motion(:, e), velocity => system%velocity(:nd, b))
-            system%motion(:nd, b) = system%motion(:nd, b) + motion
-            if (settings%dynamic) velocity = 2.0_wp*motion/step%dt - velocity
-            if (nd < 6) cycle
-            d = elasticity_matrix(system%materials(system%material(b)))
+         motion = 0.0_wp
+         motion(:nd) = step%state%motion(:, e)
+         if (settings%dynamic) system%velocity(:, b) = 2.0_wp*motion/step%dt - system%velocity(:, b)
+         d = elasticity_matrix(system%materials(system%material(b)))
+         if (settings%current) then
+            call move_block(b, motion, d, system)
+         else
+            system%motion(:, b) = system%motion(:, b) + motion
             system%stress(:, b) = system%stress(:, b) + matmul(d, motion(4:6))
-         end associate
+         end if
       end do
    end subroutine update_blocks
+
+   !> Move one block by a finite motion
+   pure subroutine move_block(block, motion, d, system)
+      !> Number of the block
+      integer, intent(in) :: block
+      !> Its motion in the step; strain in fixed directions: (6)
+      real(wp), intent(in) :: motion(6)
+      !> Hooke's law: (3, 3) [Pa]
+      real(wp), intent(in) :: d(3, 3)
+      !> The blocks
+      type(block_system_t), intent(inout) :: system
+      integer :: v
+
+      associate (total => system%motion(:, block))
+         total(4:6) = total(4:6) + turned_tensor(motion(4:6), total(3), 2.0_wp)
+         total(1:3) = total(1:3) + motion(1:3)
+         system%stress(:, block) = turned_tensor(matmul(d, total(4:6)), -total(3), 1.0_wp)
+         do v = system%first_vertex(block), system%first_vertex(block + 1) - 1
+            system%moved(:, v) = moved_point(system%vertex(:, v), system%centroid(:, block), total)
+         end do
+      end associate
+   end subroutine move_block
 
    !> Keep states, forces and gaps of a step; under Coulomb friction slip is plastic, so that the
    !> springs start anew from the shear force that they could carry
@@ -58,7 +85,12 @@ contains
       contacts%force = step%state%force
       contacts%increment = step%state%increment
       contacts%gap = contacts%gap + step%state%increment
-      if (settings%flow == flow_rule%coulomb) contacts%trial(3, :) = contacts%force(3, :)
+      if (settings%current) then
+         where (contacts%face%slip /= 0) &
+            & contacts%past_slip = contacts%past_slip + contacts%gap(3, :)
+      else if (settings%flow == flow_rule%coulomb) then
+         contacts%trial(3, :) = contacts%force(3, :)
+      end if
       breaks = .false.
       do j = 1, size(contacts%joint)
          associate (law => contacts%joint(j)%law)

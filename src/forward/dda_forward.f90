@@ -1,17 +1,17 @@
 !> Forward analysis: one step as a transaction, and a run of steps to a verdict (Shi: df)
 module dda_forward
-   use dda_assembly, only : assemble_blocks, equations_t, new_equations
+   use dda_assembly, only : assemble_blocks, equations_t, new_equations, take_springs
    use dda_block_system, only : block_system_t
    use dda_block_update, only : update_blocks, update_contacts
-   use dda_contact_detection, only : contacts_t
+   use dda_contact_detection, only : contacts_t, follow_contacts
    use dda_error, only : error_t, fatal_error
-   use dda_friction, only : iterate_friction
    use dda_kinds, only : wp
-   use dda_open_close, only : iterate_open_close, step_state_t
-   use dda_settings, only : flow_rule, settings_t
+   use dda_multipliers, only : settle_joints
+   use dda_open_close, only : step_state_t
+   use dda_settings, only : settings_t
    use dda_step_context, only : march_t, step_context_t
-   use dda_step_interval, only : first_interval, next_interval
-   use dda_verdict, only : judge_verdict, measure_step, verdict
+   use dda_step_interval, only : first_interval, judge_step, next_interval
+   use dda_verdict, only : judge_verdict, largest_displacement, measure_step, verdict
    implicit none
    private
 
@@ -41,8 +41,6 @@ module dda_forward
 
    !> Most cuts of one step's length
    integer, parameter :: max_retries = 20
-   !> By what a step that did not settle is cut
-   real(wp), parameter :: cut = 0.3_wp
 
 contains
 
@@ -69,11 +67,12 @@ contains
          call advance(settings, system, contacts, equations, march, step, error)
          if (allocated(error)) exit
          outcome%verdict = verdict%undecided
+         if (settings%current .or. settings%collapse_displacement > 0.0_wp) &
+            & march%displacement = largest_displacement(system, settings%current)
          if (step%whole .and. .not. settings%dynamic) &
-            & outcome%verdict = judge_verdict(system, march, step, settings)
+            & outcome%verdict = judge_verdict(march, step, settings)
          if (outcome%verdict /= verdict%undecided) exit
-         march%last_acceleration = step%acceleration
-         call next_interval(settings, march)
+         call next_interval(settings, step, march)
       end do
       outcome%rest_tolerance = settings%rest_tolerance
       outcome%steps = march%steps
@@ -113,19 +112,18 @@ contains
       integer :: retry
       logical :: breaks
 
+      if (settings%current) then
+         call follow_contacts(system, settings%penalty_ratio, settings%n_dof, contacts)
+         call take_springs(contacts%springs, equations)
+      end if
       do retry = 0, max_retries
          step%dt = march%dt
          call begin_step(contacts, size(equations%weight, 1), size(equations%weight, 2), step%state)
          call assemble_blocks(system, settings, step%dt, equations)
-         if (settings%flow == flow_rule%associated) then
-            call iterate_open_close(equations, contacts%springs, settings%max_changes, step%state)
-         else
-            call iterate_friction(equations, contacts%springs, settings%max_changes, step%state)
-         end if
+         call settle_joints(settings, equations, contacts%springs, step%state)
          march%passes = march%passes + step%state%passes
-         step%accepted = step%state%settled
+         call judge_step(settings, system, march, step)
          if (step%accepted) exit
-         march%dt = cut*march%dt
       end do
       if (.not. step%accepted) then
          call fatal_error(error, "the open-close loop settles at no length of the step")
@@ -154,8 +152,10 @@ contains
       if (.not. allocated(state%motion)) then
          allocate (state%motion(n_dof, n_equation), state%increment(3, n), state%start(3, n))
          allocate (state%trial(3, n), state%force(3, n), state%face(n), state%cone(n))
+         allocate (state%multiplier(3, n))
       end if
       state%motion = 0.0_wp
+      state%multiplier = contacts%force
       state%start = contacts%trial
       state%face = contacts%face
       state%cone = contacts%springs%cone

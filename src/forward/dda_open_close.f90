@@ -21,6 +21,8 @@ module dda_open_close
       real(wp), allocatable :: motion(:, :)
       !> Opening at the two contacts and slip of each joint: (3, n_joint) [m]
       real(wp), allocatable :: increment(:, :)
+      !> Forces at the beginning of the step: (3, n_joint) [N/m]
+      real(wp), allocatable :: multiplier(:, :)
       !> Trial forces at the beginning of the step: (3, n_joint) [N/m]
       real(wp), allocatable :: start(:, :)
       !> Trial forces at its end: (3, n_joint) [N/m]

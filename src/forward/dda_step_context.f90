@@ -17,6 +17,8 @@ module dda_step_context
       logical :: accepted = .false.
       !> Whether no contact broke in it, so that its end is one of equilibrium
       logical :: whole = .true.
+      !> Largest motion of a point [m]
+      real(wp) :: farthest = 0.0_wp
       !> Largest acceleration of a point [m/s2]
       real(wp) :: acceleration = 0.0_wp
       !> Work of the loads [J/m]
@@ -33,6 +35,10 @@ module dda_step_context
       integer :: steps = 0
       !> Length of the next step [s]
       real(wp) :: dt = 0.0_wp
+      !> Most that a corner may move in a step, where blocks move [m]
+      real(wp) :: allowed_motion = 0.0_wp
+      !> Largest motion of a corner since the beginning [m]
+      real(wp) :: displacement = 0.0_wp
       !> Longest step that leaves the matrix well enough conditioned [s]
       real(wp) :: longest = 0.0_wp
       !> Largest motion if every joint were glued: the scale of elastic motion [m]
@@ -41,6 +47,8 @@ module dda_step_context
       real(wp) :: free_acceleration = 0.0_wp
       !> Acceleration in the step before [m/s2]
       real(wp) :: last_acceleration = 0.0_wp
+      !> Motion of the step before, where blocks move: (n_dof, n_equation)
+      real(wp), allocatable :: last_motion(:, :)
       !> Passes of the open-close loop so far
       integer :: passes = 0
    end type march_t

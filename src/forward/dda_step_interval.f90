@@ -8,16 +8,24 @@ module dda_step_interval
    use dda_kinds, only : wp
    use dda_open_close, only : step_state_t
    use dda_settings, only : settings_t
-   use dda_step_context, only : march_t
+   use dda_step_context, only : march_t, step_context_t
    implicit none
    private
 
-   public :: first_interval, next_interval, largest_motion
+   public :: first_interval, judge_step, next_interval, largest_motion
 
    !> Free fall in the first static step over the elastic motion
    real(wp), parameter :: first_fall = 1.0e6_wp
    !> Growth of the static step
    real(wp), parameter :: growth = 10.0_wp
+   !> Steps whose motions point as far against one another as this cosine rattle
+   real(wp), parameter :: rattling = -0.3_wp
+   !> Rattling below this share of the displacement is no matter
+   real(wp), parameter :: rattle_share = 1.0e-4_wp
+   !> By what a step that did not settle is cut
+   real(wp), parameter :: cut = 0.3_wp
+   !> A step that moves farther than this multiple of what is allowed is rejected
+   real(wp), parameter :: too_far = 2.0_wp
    !> Least ratio of the inertia 2 m/dt**2 to the penalty stiffness: beyond, rounding takes over
    real(wp), parameter :: least_inertia = 1.0e-13_wp
 
@@ -56,6 +64,8 @@ contains
          march%dt = dynamic_step(system, settings, march%free_acceleration)
          return
       end if
+      march%allowed_motion = settings%max_displacement_ratio &
+         & *sqrt(minval(system%area, mask=system%equation > 0))
       march%dt = march%longest
       call assemble_blocks(system, settings, march%dt, equations)
       call solve_faces(equations, springs, glued, closed, state%start, state%motion)
@@ -90,14 +100,58 @@ contains
       if (free_acceleration > 0.0_wp) dt = sqrt(2.0_wp*farthest/free_acceleration)
    end function dynamic_step
 
-   !> Length of the step that follows an accepted one
-   pure subroutine next_interval(settings, march)
+   !> Accept a step, or cut its length for another try: it must have settled and, where blocks move,
+   !> not have moved too far for a linear step (Shi: df24)
+   pure subroutine judge_step(settings, system, march, step)
       !> Settings of the run
       type(settings_t), intent(in) :: settings
+      !> The blocks before the step
+      type(block_system_t), intent(in) :: system
+      !> The march; the length of the next try is set
+      type(march_t), intent(inout) :: march
+      !> The step; whether it is accepted is set
+      type(step_context_t), intent(inout) :: step
+
+      step%accepted = step%state%settled
+      if (.not. step%accepted) then
+         march%dt = cut*march%dt
+         return
+      end if
+      step%farthest = largest_motion(system, step%state%motion)
+      if (.not. settings%current) return
+      step%accepted = step%farthest <= too_far*march%allowed_motion
+      if (.not. step%accepted) &
+         & march%dt = march%dt*0.8_wp*sqrt(too_far*march%allowed_motion/step%farthest)
+   end subroutine judge_step
+
+   !> Length of the step that follows an accepted one. Where blocks move it aims at the motion that a
+   !> step may make, and shrinks where blocks rattle to and fro
+   pure subroutine next_interval(settings, step, march)
+      !> Settings of the run
+      type(settings_t), intent(in) :: settings
+      !> The accepted step
+      type(step_context_t), intent(in) :: step
       !> The march
       type(march_t), intent(inout) :: march
+      real(wp) :: factor, alike
 
-      if (.not. settings%dynamic) march%dt = min(march%longest, growth*march%dt)
+      march%last_acceleration = step%acceleration
+      if (settings%dynamic) return
+      factor = growth
+      if (settings%current) then
+         if (step%farthest > 0.0_wp) factor = min(growth, &
+            & 0.8_wp*sqrt(too_far*march%allowed_motion/step%farthest))
+         if (allocated(march%last_motion)) then
+            alike = sum(march%last_motion*step%state%motion) &
+               & /max(tiny(1.0_wp), norm2(march%last_motion)*norm2(step%state%motion))
+            if (alike < rattling .and. step%farthest > rattle_share*march%displacement) then
+               factor = 0.1_wp
+               march%longest = march%dt
+            end if
+         end if
+         march%last_motion = step%state%motion
+      end if
+      march%dt = min(march%longest, factor*march%dt)
    end subroutine next_interval
 
    !> Largest motion of the points of all blocks: of the centre, and of a point at the radius of

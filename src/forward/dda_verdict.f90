@@ -7,7 +7,6 @@ module dda_verdict
    use dda_kinds, only : wp
    use dda_settings, only : settings_t
    use dda_step_context, only : march_t, step_context_t
-   use dda_step_interval, only : largest_motion
    implicit none
    private
 
@@ -30,6 +29,11 @@ module dda_verdict
    !> Names of the verdicts
    type(verdict_enum), parameter :: verdict = verdict_enum()
 
+   !> Where blocks move, collapse is a displacement of this multiple of the elastic motion
+   real(wp), parameter :: collapse_multiple = 100.0_wp
+   !> Where blocks move, rest is a step of this share of the displacement so far
+   real(wp), parameter :: still = 1.0e-8_wp
+
 contains
 
    !> Energies and acceleration of a settled step
@@ -49,7 +53,7 @@ contains
 
       nd = size(equations%weight, 1)
       associate (motion => step%state%motion)
-         step%acceleration = 2.0_wp*largest_motion(system, motion)/step%dt**2
+         step%acceleration = 2.0_wp*step%farthest/step%dt**2
          step%work = sum(equations%weight*motion)
          step%kinetic = 0.0_wp
          step%stored = 0.5_wp*sum(sum(step%state%force**2 - force_before**2, dim=1)/springs%stiffness)
@@ -71,9 +75,7 @@ contains
    !> point noticeably. It falls if the blocks have fallen far beyond any elastic motion, and the
    !> loads' work turns into speed alone, or acceleration is steady while no energy is stored; or,
    !> where a displacement that means collapse is set, if a corner has moved as far
-   pure function judge_verdict(system, march, step, settings) result(answer)
-      !> The blocks after the step
-      type(block_system_t), intent(in) :: system
+   pure function judge_verdict(march, step, settings) result(answer)
       !> The march, with the acceleration of the step before
       type(march_t), intent(in) :: march
       !> The last step, measured
@@ -84,19 +86,24 @@ contains
       integer :: answer
       logical :: at_rest, far_beyond_elastic, all_work_is_speed, steady, most_work_is_speed
       logical :: stores_nothing
+      real(wp) :: far
 
+      far = settings%collapse_displacement
+      if (settings%current .and. .not. far > 0.0_wp) far = collapse_multiple*march%elastic_motion
       at_rest = step%acceleration <= settings%rest_tolerance*march%free_acceleration
       far_beyond_elastic = march%free_acceleration*step%dt**2/2.0_wp >= 100.0_wp*march%elastic_motion
       all_work_is_speed = step%kinetic > 0.999_wp*step%work
       most_work_is_speed = step%kinetic > 0.9_wp*step%work
       steady = abs(step%acceleration - march%last_acceleration) < 0.01_wp*march%last_acceleration
       stores_nothing = abs(step%stored) < 1.0e-3_wp*abs(step%work)
+      ! where blocks move, a step that comes to rest has only proven the shape it started from
+      if (settings%current) at_rest = at_rest .and. march%steps >= 2 &
+         & .and. step%farthest <= still*march%displacement
       answer = verdict%undecided
       if (at_rest) then
          answer = verdict%stable
-      else if (settings%collapse_displacement > 0.0_wp) then
-         if (largest_displacement(system) > settings%collapse_displacement) &
-            & answer = verdict%collapsed
+      else if (far > 0.0_wp) then
+         if (march%displacement > far .and. march%steps >= 2) answer = verdict%collapsed
       else if (march%steps >= 2 .and. far_beyond_elastic) then
          if (all_work_is_speed .or. steady .and. (most_work_is_speed .or. stores_nothing)) &
             & answer = verdict%collapsed
@@ -104,20 +111,27 @@ contains
    end function judge_verdict
 
    !> Farthest that a corner has moved since the beginning
-   pure function largest_displacement(system) result(largest)
+   pure function largest_displacement(system, current) result(largest)
       !> The blocks
       type(block_system_t), intent(in) :: system
+      !> Whether they move
+      logical, intent(in) :: current
       !> The displacement [m]
       real(wp) :: largest
-      real(wp) :: t(2, 6)
+      real(wp) :: t(2, 6), displacement(2)
       integer :: b, v
 
       largest = 0.0_wp
       do b = 1, size(system%equation)
          if (system%equation(b) == 0) cycle
          do v = system%first_vertex(b), system%first_vertex(b + 1) - 1
-            t = displacement_matrix(system%vertex(:, v), system%centroid(:, b))
-            largest = max(largest, norm2(matmul(t, system%motion(:, b))))
+            if (current) then
+               displacement = system%moved(:, v) - system%vertex(:, v)
+            else
+               t = displacement_matrix(system%vertex(:, v), system%centroid(:, b))
+               displacement = matmul(t, system%motion(:, b))
+            end if
+            largest = max(largest, norm2(displacement))
          end do
       end do
    end function largest_displacement

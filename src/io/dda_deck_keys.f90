@@ -173,7 +173,7 @@ module dda_deck_keys
             words="static dynamic", later="limerick", &
             meaning="Whether the velocity is put to zero at each step or carried on."), &
       key_t(group="analysis", name="geometry", kind=key_kind%word, default="'reference'", &
-            words="reference", later="current", &
+            words="reference current", &
             meaning="Small displacements on the undeformed shape, or blocks that move."), &
       key_t(group="analysis", name="steps", kind=key_kind%whole, default="400", &
             at_least=1.0_wp, at_most=1.0e9_wp, &

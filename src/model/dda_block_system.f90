@@ -33,7 +33,10 @@ module dda_block_system
       type(material_t), allocatable :: materials(:)
       !> Number of the block in the equations; 0 for a block that cannot move: (n_block)
       integer, allocatable :: equation(:)
-      !> Sum of all motions: (n_unknown, n_block) [m, m, rad, -, -, -]
+      !> Corners where the blocks are now: (2, n_vertex) [m]
+      real(wp), allocatable :: moved(:, :)
+      !> Sum of all motions; strains in the frame that turns with the block where blocks move:
+      !> (n_unknown, n_block) [m, m, rad, -, -, -]
       real(wp), allocatable :: motion(:, :)
       !> Rates of the unknowns: (n_unknown, n_block) [1/s of the above]
       real(wp), allocatable :: velocity(:, :)
@@ -61,6 +64,7 @@ contains
       n = size(first_vertex) - 1
       allocate (system%first_vertex, source=first_vertex)
       allocate (system%vertex, source=vertex)
+      allocate (system%moved, source=vertex)
       allocate (system%materials(1))
       system%materials(1) = material
       allocate (system%area(n), system%centroid(2, n), system%second(3, n))

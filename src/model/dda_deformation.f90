@@ -4,7 +4,7 @@ module dda_deformation
    implicit none
    private
 
-   public :: displacement_matrix
+   public :: displacement_matrix, moved_point, turned_tensor
 
 contains
 
@@ -23,4 +23,45 @@ contains
       t(1, :) = [1.0_wp, 0.0_wp, -y, x, 0.0_wp, y/2.0_wp]
       t(2, :) = [0.0_wp, 1.0_wp, x, 0.0_wp, y, x/2.0_wp]
    end function displacement_matrix
+
+   !> Where a point of a block is after a finite motion: strain in the block's own frame, then exact
+   !> rotation, then translation; built from the reference shape, so that no error adds up
+   pure function moved_point(point, centroid, motion) result(now)
+      !> The point in the reference shape: (2) [m]
+      real(wp), intent(in) :: point(2)
+      !> Centre of gravity in the reference shape: (2) [m]
+      real(wp), intent(in) :: centroid(2)
+      !> Translation, rotation, strain ex, ey, gxy: (6) [m, m, rad, -, -, -]
+      real(wp), intent(in) :: motion(6)
+      !> The point now: (2) [m]
+      real(wp) :: now(2)
+      real(wp) :: arm(2), c, s
+
+      arm = point - centroid
+      arm = [arm(1)*(1.0_wp + motion(4)) + arm(2)*motion(6)/2.0_wp, &
+         & arm(2)*(1.0_wp + motion(5)) + arm(1)*motion(6)/2.0_wp]
+      c = cos(motion(3))
+      s = sin(motion(3))
+      now = centroid + motion(1:2) + [c*arm(1) - s*arm(2), s*arm(1) + c*arm(2)]
+   end function moved_point
+
+   !> Components of a symmetric tensor in a frame turned by an angle
+   pure function turned_tensor(tensor, angle, shear_factor) result(turned)
+      !> Components xx, yy, xy: (3)
+      real(wp), intent(in) :: tensor(3)
+      !> Angle of the new frame, anticlockwise [rad]
+      real(wp), intent(in) :: angle
+      !> What the third component is of the tensor's: 1 for stress, 2 for strain with gxy
+      real(wp), intent(in) :: shear_factor
+      !> Components in the new frame: (3)
+      real(wp) :: turned(3)
+      real(wp) :: c, s, shear
+
+      c = cos(angle)
+      s = sin(angle)
+      shear = tensor(3)/shear_factor
+      turned(1) = c*c*tensor(1) + s*s*tensor(2) + 2.0_wp*c*s*shear
+      turned(2) = s*s*tensor(1) + c*c*tensor(2) - 2.0_wp*c*s*shear
+      turned(3) = shear_factor*(c*s*(tensor(2) - tensor(1)) + (c*c - s*s)*shear)
+   end function turned_tensor
 end module dda_deformation

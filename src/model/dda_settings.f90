@@ -22,6 +22,8 @@ module dda_settings
    type :: settings_t
       !> Velocities are kept from step to step; otherwise every step starts at rest
       logical :: dynamic = .false.
+      !> Blocks move and contacts follow them; otherwise all is taken from the undeformed shape
+      logical :: current = .false.
       !> Unknowns of a block: 6, or 3 for rigid blocks
       integer :: n_dof = 6
       !> Sliding of the joints, one of flow_rule

@@ -157,6 +157,7 @@ contains
       half_angle = degree*real_of(deck, "arch", "half_angle_deg")
       direction = degree*real_of(deck, "load", "gravity_direction_deg")
       settings%dynamic = word_of(deck, "analysis", "mode") == "dynamic"
+      settings%current = word_of(deck, "analysis", "geometry") == "current"
       settings%penalty_ratio = real_of(deck, "analysis", "penalty_ratio")
       settings%max_steps = integer_of(deck, "analysis", "steps")
       settings%max_changes = integer_of(deck, "analysis", "open_close_limit")

@@ -44,6 +44,8 @@ module dda_critical
       type(decision_t), allocatable :: fallen
       !> Decision at stands, if there is one
       type(decision_t), allocatable :: standing
+      !> Whether the blocks move
+      logical :: current = .false.
       !> Number of decisions
       integer :: decisions = 0
       !> Steps of all decisions
@@ -63,6 +65,9 @@ module dda_critical
       !> Half the width of the bracket to close around it: of the tolerance, or of what the rounded
       !> coordinates can tell apart
       real(wp) :: half = 0.0_wp
+      !> How far beyond and before it to decide; more than half where the frozen joints, which know
+      !> nothing of moving blocks, only come near
+      real(wp) :: reach = 0.0_wp
    end type proposal_t
 
    !> Most decisions of a search
@@ -76,6 +81,8 @@ module dda_critical
    real(wp), parameter :: least_tolerance = 4.0e-13_wp
    !> A bracket wider than this share of its value is no answer
    real(wp), parameter :: widest = 1.0e-4_wp
+   !> Share of the value by which moving blocks are first looked for beyond frozen ones
+   real(wp), parameter :: first_reach = 1.0e-3_wp
    !> Margin over the noise that three samples show
    real(wp), parameter :: noise_margin = 5.0_wp
    !> Most passes of the secant method
@@ -121,6 +128,7 @@ contains
          if (answer == verdict%undecided) then
             undecided = undecided + 1
             proposal%half = 4.0_wp*proposal%half
+            proposal%reach = 4.0_wp*proposal%reach
          else
             undecided = 0
          end if
@@ -203,6 +211,7 @@ contains
          critical%reason = error%message
          return
       end if
+      critical%current = scene%settings%current
       allocate (decision)
       call decide(scene%settings, scene%system, scene%contacts, decision)
       critical%steps = critical%steps + decision%outcome%steps
@@ -235,17 +244,20 @@ contains
       far = limit
       if (allocated(critical%standing)) far = critical%stands
       toward = sign(1.0_wp, far - critical%falls)
-      beyond = proposal%value + toward*proposal%half
-      before = proposal%value - toward*proposal%half
+      beyond = proposal%value + toward*proposal%reach
+      before = proposal%value - toward*proposal%reach
       if (.not. proposal%usable) then
          value = far
          if (allocated(critical%standing)) value = middle(critical%falls, far)
       else if (inside(beyond)) then
          value = beyond
       else if (.not. allocated(critical%standing)) then
-         value = far
+         value = critical%falls + toward*2.0_wp*abs(critical%falls - proposal%value)
+         if (.not. critical%current .or. .not. inside(value)) value = far
       else if (inside(before)) then
          value = before
+      else if (critical%current) then
+         value = middle(critical%falls, far)
       else
          value = far - 0.1_wp*(far - critical%falls)
       end if
@@ -329,9 +341,15 @@ contains
       end do
       proposal%usable = .true.
       proposal%value = next
+      if (critical%current) then
+         proposal%reach = first_reach*abs(next)
+         proposal%half = max(search%tolerance, least_tolerance)*abs(next)/2.0_wp
+         return
+      end if
       call refine_noise(family, mechanism, next, critical, noise)
       proposal%half = max(max(search%tolerance, least_tolerance)*abs(next)/2.0_wp, &
          & abs(noise/coarse_slope), rest_resolution(critical, next))
+      proposal%reach = proposal%half
    end subroutine trace
 
    !> Rounding in the solution of the equations: what another length of the step makes of the power

@@ -77,7 +77,7 @@ contains
 
       role = role_of_joint(contacts)
       n = size(role)
-      slip = sum(abs(contacts%increment(3, :)))
+      slip = sum(abs(contacts%increment(3, :)), mask=contacts%face%slip /= 0)
       opening = sum(max(0.0_wp, contacts%increment(1, :)), mask=contacts%face%open(1)) &
          & + sum(max(0.0_wp, contacts%increment(2, :)), mask=contacts%face%open(2))
       allocate (mechanism%intrados_deg, &
