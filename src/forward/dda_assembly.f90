@@ -37,6 +37,12 @@ module dda_assembly
       real(wp), allocatable :: weight(:, :)
       !> Loads of this step without springs: (n_dof, n_equation)
       real(wp), allocatable :: load(:, :)
+      !> Faces that the factor was made for: (n_joint)
+      type(joint_face_t), allocatable :: held(:)
+      !> Coefficients of friction that it was made for: (n_joint)
+      real(wp), allocatable :: held_friction(:)
+      !> Whether base or springs have changed since
+      logical :: changed = .true.
       !> Factorisations so far
       integer :: factorisations = 0
    end type equations_t
@@ -60,7 +66,8 @@ contains
       nd = settings%n_dof
       n = maxval(system%equation)
       couples = all(springs%equation > 0, dim=1)
-      allocate (equations%entry(size(couples)))
+      allocate (equations%entry(size(couples)), equations%held(size(couples)))
+      allocate (equations%held_friction(size(couples)))
       equations%entry = 0
       e = 0
       do j = 1, size(couples)
@@ -96,6 +103,7 @@ contains
          & 0.0_wp, 0.0_wp, 0.0_wp, 1.0_wp], [3, 3])
       integer :: j
 
+      equations%changed = .true.
       do j = 1, size(equations%entry)
          equations%stuck(:, :, :, j) = joint_stiffness(springs, identity, j)
       end do
@@ -115,6 +123,7 @@ contains
       integer :: b, e, nd
 
       nd = settings%n_dof
+      equations%changed = .true.
       equations%base = equations%elastic + (2.0_wp/dt**2)*equations%mass
       do b = 1, size(system%equation)
          e = system%equation(b)
@@ -128,7 +137,7 @@ contains
 
    !> Motion of all blocks if every joint keeps to its face
    pure subroutine solve_faces(equations, springs, cone, face, trial, motion)
-      !> Blocks assembled; matrix and factor are made anew
+      !> Blocks assembled; matrix and factor are made anew if they are not those of these faces
       type(equations_t), intent(inout) :: equations
       !> The springs of the joints
       type(joint_springs_t), intent(in) :: springs
@@ -143,20 +152,84 @@ contains
       real(wp) :: load(size(motion, 1), size(motion, 2))
       integer :: j
 
-      load = equations%load
-      equations%matrix%diagonal = equations%base
-      do j = 1, size(face)
-         call add_joint(springs, cone(j), face(j), trial(:, j), j, equations, load)
-      end do
-      call factorise(equations%matrix, equations%factor)
-      equations%factorisations = equations%factorisations + 1
+      if (.not. holds(equations, cone, face)) then
+         equations%matrix%diagonal = equations%base
+         do j = 1, size(face)
+            call add_stiffness(springs, cone(j), face(j), j, equations)
+         end do
+         call factorise(equations%matrix, equations%factor)
+         equations%factorisations = equations%factorisations + 1
+         equations%held = face
+         equations%held_friction = cone%friction
+         equations%changed = .not. equations%factor%usable
+      end if
       if (.not. equations%factor%usable) return
+      load = equations%load
+      do j = 1, size(face)
+         call add_load(springs, cone(j), face(j), trial(:, j), j, load)
+      end do
       motion = load
       call substitute(equations%factor, motion)
    end subroutine solve_faces
 
-   !> Add the springs of one joint: stiffness p R P R', load R (P z + c)
-   pure subroutine add_joint(springs, cone, face, trial, j, equations, load)
+   !> Whether the factor is that of these faces
+   pure logical function holds(equations, cone, face)
+      !> The equations
+      type(equations_t), intent(in) :: equations
+      !> Bounds of the joint forces: (n_joint)
+      type(cone_t), intent(in) :: cone(:)
+      !> Faces: (n_joint)
+      type(joint_face_t), intent(in) :: face(:)
+      integer :: j
+
+      holds = .false.
+      if (equations%changed) return
+      do j = 1, size(face)
+         if (face(j)%slip /= equations%held(j)%slip) return
+         if (any(face(j)%open .neqv. equations%held(j)%open)) return
+         if (abs(cone(j)%friction - equations%held_friction(j)) > 0.0_wp) return
+      end do
+      holds = .true.
+   end function holds
+
+   !> Add the stiffness of one joint: p R P R'
+   pure subroutine add_stiffness(springs, cone, face, j, equations)
+      !> The springs of the joints
+      type(joint_springs_t), intent(in) :: springs
+      !> Bounds of the joint's force
+      type(cone_t), intent(in) :: cone
+      !> Its face
+      type(joint_face_t), intent(in) :: face
+      !> Number of the joint
+      integer, intent(in) :: j
+      !> Receives the stiffness
+      type(equations_t), intent(inout) :: equations
+      real(wp) :: tangent(3, 3), constant(3)
+      real(wp) :: stiffness(equations%matrix%n_dof, equations%matrix%n_dof, 3)
+      integer :: e, side
+
+      if (is_stuck(face)) then
+         stiffness = equations%stuck(:, :, :, j)
+      else
+         call apply_face(cone, face, tangent, constant)
+         stiffness = joint_stiffness(springs, tangent, j)
+      end if
+      do side = 1, 2
+         e = springs%equation(side, j)
+         if (e > 0) equations%matrix%diagonal(:, :, e) = equations%matrix%diagonal(:, :, e) &
+            & + stiffness(:, :, side)
+      end do
+      e = equations%entry(j)
+      if (e == 0) return
+      if (equations%matrix%pair(1, e) == springs%equation(1, j)) then
+         equations%matrix%coupling(:, :, e) = stiffness(:, :, 3)
+      else
+         equations%matrix%coupling(:, :, e) = transpose(stiffness(:, :, 3))
+      end if
+   end subroutine add_stiffness
+
+   !> Add the load of one joint: R (P z + c)
+   pure subroutine add_load(springs, cone, face, trial, j, load)
       !> The springs of the joints
       type(joint_springs_t), intent(in) :: springs
       !> Bounds of the joint's force
@@ -167,39 +240,30 @@ contains
       real(wp), intent(in) :: trial(3)
       !> Number of the joint
       integer, intent(in) :: j
-      !> Receives the stiffness
-      type(equations_t), intent(inout) :: equations
       !> Receives the load: (n_dof, n_equation)
       real(wp), intent(inout) :: load(:, :)
-      real(wp) :: tangent(3, 3), constant(3), stiffness(size(load, 1), size(load, 1), 3)
+      real(wp) :: tangent(3, 3), constant(3)
       integer :: e, side
-      logical :: stuck
 
-      stuck = face%slip == 0 .and. .not. any(face%open)
       constant = trial
-      if (.not. stuck) then
+      if (.not. is_stuck(face)) then
          call apply_face(cone, face, tangent, constant)
          constant = constant + matmul(tangent, trial + springs%shift(:, j)) - springs%shift(:, j)
-         stiffness = joint_stiffness(springs, tangent, j)
-      else
-         stiffness = equations%stuck(:, :, :, j)
       end if
       do side = 1, 2
          e = springs%equation(side, j)
-         if (e == 0) cycle
-         equations%matrix%diagonal(:, :, e) = equations%matrix%diagonal(:, :, e) &
-            & + stiffness(:, :, side)
-         load(:, e) = load(:, e) + springs%row(:, 1, side, j)*constant(1) &
+         if (e > 0) load(:, e) = load(:, e) + springs%row(:, 1, side, j)*constant(1) &
             & + springs%row(:, 2, side, j)*constant(2) + springs%row(:, 3, side, j)*constant(3)
       end do
-      e = equations%entry(j)
-      if (e == 0) return
-      if (equations%matrix%pair(1, e) == springs%equation(1, j)) then
-         equations%matrix%coupling(:, :, e) = stiffness(:, :, 3)
-      else
-         equations%matrix%coupling(:, :, e) = transpose(stiffness(:, :, 3))
-      end if
-   end subroutine add_joint
+   end subroutine add_load
+
+   !> Whether a face is the inside of the cone
+   pure logical function is_stuck(face)
+      !> The face
+      type(joint_face_t), intent(in) :: face
+
+      is_stuck = face%slip == 0 .and. .not. any(face%open)
+   end function is_stuck
 
    !> Stiffness of one joint: p R P R' of the first block, of the second one, and between them
    pure function joint_stiffness(springs, tangent, j) result(stiffness)
