@@ -20,10 +20,12 @@ COLUMNS = (
     "blocks",
     "joint",
     "paper DDA",
-    "dda",
+    "rigid",
+    "elastic",
     "exact polygon",
     "paper error %",
-    "dda error %",
+    "rigid error %",
+    "elastic error %",
     "intrados hinge",
 )
 """Headings of the columns; angles in degrees, errors against the exact polygon."""
@@ -37,11 +39,11 @@ class Row:
     ----------
     half_angle, blocks, joint
         Half angle [deg], number of blocks, imposed joint [deg] (empty where none is imposed).
-    paper, ours, exact
-        Critical thickness ratios: of the paper's DDA, of this program, of limit analysis; None
-        where there is none.
-    error
-        Relative error of this program's value, as it tells it itself.
+    paper, rigid, elastic, exact
+        Critical thickness ratios: of the paper's DDA, of this program in reference and in current
+        geometry, of limit analysis; None where there is none.
+    rigid_error, elastic_error
+        Relative deviations of this program's values, as it tells them itself.
     hinge
         Intrados hinges of the collapse nearest to critical [deg].
     """
@@ -50,9 +52,11 @@ class Row:
     blocks: str
     joint: str
     paper: float
-    ours: float | None
+    rigid: float | None
+    elastic: float | None
     exact: float | None
-    error: float | None
+    rigid_error: float | None
+    elastic_error: float | None
     hinge: str
 
     @property
@@ -67,10 +71,12 @@ class Row:
             self.blocks,
             self.joint,
             f"{self.paper:g}",
-            "undecided" if self.ours is None else f"{self.ours:.10f}",
+            "undecided" if self.rigid is None else f"{self.rigid:.10f}",
+            "undecided" if self.elastic is None else f"{self.elastic:.7f}",
             "" if self.exact is None else f"{self.exact:.10f}",
             percent(self.paper_error, "+.2f"),
-            percent(self.error, "+.1e"),
+            percent(self.rigid_error, "+.1e"),
+            percent(self.elastic_error, "+.3f"),
             self.hinge,
         ]
 
@@ -99,7 +105,8 @@ def join_rows(paper: list[dict[str, str]], results: list[dict[str, str]]) -> lis
     paper
         Rows of one table in the paper's order.
     results
-        Rows of results.csv of the deck of the same table; its cases are in the same order.
+        Rows of results.csv of the deck of the same table; its cases are in the same order, each
+        in reference geometry and then in current geometry.
 
     Returns
     -------
@@ -111,10 +118,14 @@ def join_rows(paper: list[dict[str, str]], results: list[dict[str, str]]) -> lis
         If the rows are not of the same arches.
     """
     by_case = sorted(results, key=lambda row: int(row["case"]))
-    if len(paper) != len(by_case):
-        raise ValueError(f"{len(paper)} rows in the paper, {len(by_case)} in the results")
+    rigid = [row for row in by_case if row["geometry"] == "reference"]
+    elastic = [row for row in by_case if row["geometry"] == "current"]
+    if not len(paper) == len(rigid) == len(elastic):
+        raise ValueError(
+            f"{len(paper)} rows in the paper, {len(rigid)} rigid and {len(elastic)} elastic results"
+        )
     rows = []
-    for printed, row in zip(paper, by_case):
+    for printed, row, moved in zip(paper, rigid, elastic):
         if float(printed["alpha_deg"]) != float(row["half_angle_deg"]):
             raise ValueError(f"half angle {printed['alpha_deg']} against {row['half_angle_deg']}")
         if int(printed["blocks"]) != int(row["blocks"]):
@@ -125,9 +136,11 @@ def join_rows(paper: list[dict[str, str]], results: list[dict[str, str]]) -> lis
                 blocks=row["blocks"],
                 joint=row.get("joints_deg(2)", ""),
                 paper=float(printed["eta_dda"]),
-                ours=number(row["critical"]),
+                rigid=number(row["critical"]),
+                elastic=number(moved["critical"]),
                 exact=number(row["exact"]),
-                error=number(row["relative_error"]),
+                rigid_error=number(row["relative_error"]),
+                elastic_error=number(moved["relative_error"]),
                 hinge=row["intrados_hinge_deg"],
             )
         )

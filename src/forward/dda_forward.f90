@@ -5,6 +5,7 @@ module dda_forward
    use dda_block_update, only : update_blocks, update_contacts
    use dda_contact_detection, only : contacts_t, follow_contacts
    use dda_error, only : error_t, fatal_error
+   use dda_frames, only : album_t, keep_frame
    use dda_kinds, only : wp
    use dda_multipliers, only : settle_joints
    use dda_open_close, only : step_state_t
@@ -45,7 +46,7 @@ module dda_forward
 contains
 
    !> Run a static analysis to its verdict, a dynamic one to its last step
-   pure subroutine run_to_verdict(settings, system, contacts, outcome)
+   pure subroutine run_to_verdict(settings, system, contacts, outcome, album)
       !> Settings of the run
       type(settings_t), intent(in) :: settings
       !> The blocks: at the beginning in, at the end out
@@ -54,6 +55,8 @@ contains
       type(contacts_t), intent(inout) :: contacts
       !> How it ended
       type(outcome_t), intent(out) :: outcome
+      !> Receives pictures of the run where blocks move
+      type(album_t), intent(inout), optional :: album
       type(equations_t) :: equations
       type(step_context_t) :: step
       type(march_t) :: march
@@ -62,6 +65,7 @@ contains
       call new_equations(system, contacts%springs, settings, equations)
       call begin_step(contacts, size(equations%weight, 1), size(equations%weight, 2), step%state)
       call first_interval(system, contacts%springs, settings, equations, step%state, march, error)
+      if (present(album)) call keep_frame(system, contacts, 0, 0.0_wp, 0.0_wp, .false., album)
       do while (.not. allocated(error))
          if (march%steps == settings%max_steps) exit
          call advance(settings, system, contacts, equations, march, step, error)
@@ -71,6 +75,8 @@ contains
             & march%displacement = largest_displacement(system, settings%current)
          if (step%whole .and. .not. settings%dynamic) &
             & outcome%verdict = judge_verdict(march, step, settings)
+         if (present(album)) call keep_frame(system, contacts, march%steps, march%time, &
+            & march%displacement, outcome%verdict /= verdict%undecided, album)
          if (outcome%verdict /= verdict%undecided) exit
          call next_interval(settings, step, march)
       end do
@@ -134,6 +140,7 @@ contains
       call update_blocks(step, settings, system)
       step%whole = .not. breaks
       march%steps = march%steps + 1
+      march%time = march%time + step%dt
    end subroutine advance
 
    !> The state that a step starts from: the joints as they are, no motion

@@ -33,6 +33,8 @@ module dda_step_context
    type :: march_t
       !> Steps accepted so far
       integer :: steps = 0
+      !> Sum of their lengths [s]
+      real(wp) :: time = 0.0_wp
       !> Length of the next step [s]
       real(wp) :: dt = 0.0_wp
       !> Most that a corner may move in a step, where blocks move [m]

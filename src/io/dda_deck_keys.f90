@@ -238,8 +238,9 @@ module dda_deck_keys
             meaning="Write the blocks of each case for ParaView."), &
       key_t(group="output", name="joints", kind=key_kind%flag, default=".true.", varies=.false., &
             meaning="Write forces, openings and states of the joints to joints.csv."), &
-      key_t(group="output", name="frames", kind=key_kind%later, varies=.false., &
-            meaning="Pictures of chosen steps; a later version writes them."), &
+      key_t(group="output", name="frames", kind=key_kind%whole, default="0", varies=.false., &
+            at_least=0.0_wp, at_most=10000.0_wp, &
+            meaning="Pictures of moving blocks; a collapse is then followed a tenth of the radius."), &
       key_t(group="output", name="max_cases", kind=key_kind%whole, default="100000", &
             varies=.false., at_least=1.0_wp, at_most=1.0e7_wp, &
             meaning="Most cases that the &sweep groups may make; more is an error.")]

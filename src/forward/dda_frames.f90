@@ -1,0 +1,88 @@
+!> Pictures of a run: corners, stresses, joint forces and states at chosen steps
+module dda_frames
+   use dda_block_system, only : block_system_t
+   use dda_contact_detection, only : contacts_t
+   use dda_friction_cone, only : joint_face_t
+   use dda_kinds, only : wp
+   implicit none
+   private
+
+   public :: frame_t, album_t, keep_frame
+
+   !> One picture
+   type :: frame_t
+      !> Accepted steps before it
+      integer :: step = 0
+      !> Sum of the lengths of these steps [s]
+      real(wp) :: time = 0.0_wp
+      !> Farthest that a corner has moved [m]
+      real(wp) :: displacement = 0.0_wp
+      !> Corners of all blocks: (2, n_vertex) [m]
+      real(wp), allocatable :: moved(:, :)
+      !> Motion of all blocks: (6, n_block) [m, m, rad, -, -, -]
+      real(wp), allocatable :: motion(:, :)
+      !> Stress sx, sy, txy of all blocks: (3, n_block) [Pa]
+      real(wp), allocatable :: stress(:, :)
+      !> Force N1, N2, T of all joints: (3, n_joint) [N/m]
+      real(wp), allocatable :: force(:, :)
+      !> Openings and slip of all joints: (3, n_joint) [m]
+      real(wp), allocatable :: gap(:, :)
+      !> Faces that the forces lie on: (n_joint)
+      type(joint_face_t), allocatable :: face(:)
+   end type frame_t
+
+   !> The pictures of a run
+   type :: album_t
+      !> Displacement from one picture to the next; 0 to keep none [m]
+      real(wp) :: spacing = 0.0_wp
+      !> Displacement at which the next one is due [m]
+      real(wp) :: due = 0.0_wp
+      !> Pictures kept
+      integer :: n = 0
+      !> The pictures, the first n of them
+      type(frame_t), allocatable :: frame(:)
+   end type album_t
+
+contains
+
+   !> Keep a picture if one is due
+   pure subroutine keep_frame(system, contacts, step, time, displacement, last, album)
+      !> The blocks
+      type(block_system_t), intent(in) :: system
+      !> The contacts
+      type(contacts_t), intent(in) :: contacts
+      !> Accepted steps so far
+      integer, intent(in) :: step
+      !> Sum of their lengths [s]
+      real(wp), intent(in) :: time
+      !> Farthest that a corner has moved [m]
+      real(wp), intent(in) :: displacement
+      !> Whether the run ends here, so that a picture is due anyway
+      logical, intent(in) :: last
+      !> Receives the picture
+      type(album_t), intent(inout) :: album
+      type(frame_t), allocatable :: longer(:)
+
+      if (.not. album%spacing > 0.0_wp) return
+      if (displacement < album%due .and. .not. last) return
+      if (.not. allocated(album%frame)) allocate (album%frame(8))
+      if (album%n == size(album%frame)) then
+         allocate (longer(2*album%n))
+         longer(:album%n) = album%frame
+         call move_alloc(longer, album%frame)
+      end if
+      album%n = album%n + 1
+      album%due = (aint(displacement/album%spacing) + 1.0_wp)*album%spacing
+      associate (frame => album%frame(album%n))
+         frame%step = step
+         frame%time = time
+         frame%displacement = displacement
+         frame%moved = system%moved
+         frame%motion = system%motion
+         frame%stress = system%stress
+         frame%force = contacts%force
+         frame%gap = contacts%gap
+         frame%face = contacts%face
+      end associate
+   end subroutine keep_frame
+end module dda_frames
