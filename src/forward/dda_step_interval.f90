@@ -15,11 +15,16 @@ module dda_step_interval
    public :: first_interval, judge_step, next_interval, largest_motion
 
    !> Free fall in the first static step over the elastic motion
-   real(wp), parameter :: first_fall = 1.0e6_wp
+   real(wp), parameter :: first_fall = 1.0e2_wp
+   !> A step whose acceleration is this share of that of the step before comes to rest at the same
+   !> length; a longer one would only let rounding move what nothing holds
+   real(wp), parameter :: settling = 1.0e-3_wp
    !> Growth of the static step
    real(wp), parameter :: growth = 10.0_wp
    !> Steps whose motions point as far against one another as this cosine rattle
    real(wp), parameter :: rattling = -0.3_wp
+   !> Growth of the step where blocks move: less than the cut after rattling, so that this bears fruit
+   real(wp), parameter :: calm_growth = 3.0_wp
    !> Rattling below this share of the displacement is no matter
    real(wp), parameter :: rattle_share = 1.0e-4_wp
    !> By what a step that did not settle is cut
@@ -59,6 +64,7 @@ contains
          march%free_acceleration = max(march%free_acceleration, &
             & norm2(equations%weight(1:2, e))/equations%mass(1, 1, e))
       end do
+      march%last_acceleration = march%free_acceleration
       march%longest = sqrt(2.0_wp*mean_mass/(least_inertia*maxval(springs%stiffness)))
       if (settings%dynamic) then
          march%dt = dynamic_step(system, settings, march%free_acceleration)
@@ -134,10 +140,12 @@ contains
       !> The march
       type(march_t), intent(inout) :: march
       real(wp) :: factor, alike
+      logical :: settles
 
+      settles = step%acceleration < settling*march%last_acceleration
       march%last_acceleration = step%acceleration
       if (settings%dynamic) return
-      factor = growth
+      factor = merge(1.0_wp, growth, settles)
       if (settings%current) then
          if (step%farthest > 0.0_wp) factor = min(growth, &
             & 0.8_wp*sqrt(too_far*march%allowed_motion/step%farthest))
@@ -146,7 +154,8 @@ contains
                & /max(tiny(1.0_wp), norm2(march%last_motion)*norm2(step%state%motion))
             if (alike < rattling .and. step%farthest > rattle_share*march%displacement) then
                factor = 0.1_wp
-               march%longest = march%dt
+            else
+               factor = min(factor, calm_growth)
             end if
          end if
          march%last_motion = step%state%motion
