@@ -1,0 +1,427 @@
+"""The command dda as a whole: help, exit statuses, folders, names, jobs, repetition."""
+
+from __future__ import annotations
+
+import csv
+import os
+import signal
+import subprocess
+import time
+from pathlib import Path
+
+import pytest
+from dda_command import run_dda
+
+STABLE = "&arch thickness_ratio = 0.12 /\n"
+UNDECIDED = "&arch thickness_ratio = 0.12 /\n&analysis steps = 1 /\n"
+BAD = "&arch\n thickness_ratio = 2 /\n"
+TABLES = ["joints.csv", "log.txt", "results.csv"]
+
+
+def write_decks(folder: Path, **texts: str) -> None:
+    """Write decks into a folder.
+
+    Parameters
+    ----------
+    folder
+        Where they go
+    texts
+        Text of each deck by its name without .nml
+    """
+    for name, text in texts.items():
+        (folder / f"{name}.nml").write_text(text)
+
+
+def rows_of(folder: Path) -> list[dict[str, str]]:
+    """Rows of results.csv in a folder, by case."""
+    with (folder / "results.csv").open(newline="") as lines:
+        return sorted(csv.DictReader(lines), key=lambda row: int(row["case"]))
+
+
+def names_in(folder: Path) -> list[str]:
+    """Sorted names of what a folder holds."""
+    return sorted(path.name for path in folder.iterdir())
+
+
+# help and version
+
+
+@pytest.mark.parametrize("arguments", [[], ["--help"], ["help"]], ids=["none", "--help", "help"])
+def test_help_lists_the_subcommands(arguments: list[str]) -> None:
+    done = run_dda(*arguments)
+    assert done.returncode == 0
+    assert done.stderr == ""
+    for word in ("dda run DECK", "dda check DECK", "--version", "Exit status"):
+        assert word in done.stdout
+
+
+@pytest.mark.parametrize("verb", ["run", "check"])
+def test_help_of_a_subcommand(verb: str) -> None:
+    done = run_dda("help", verb)
+    assert done.returncode == 0
+    assert done.stdout.startswith(f"dda {verb} DECK [DECK ...]")
+    assert run_dda(verb, "--help").stdout == done.stdout
+
+
+@pytest.mark.parametrize("option", ["--out DIR", "--jobs N", "--set group%key=value", "--quiet"])
+def test_help_of_run_names_the_option(option: str) -> None:
+    assert option in run_dda("help", "run").stdout
+
+
+def test_help_of_keys_names_the_keys_of_the_contract() -> None:
+    keys = """&scene title kind geometry analysis
+        &arch radius thickness_ratio half_angle_deg voussoirs joints_deg facet_deg springing
+        &material density unit_weight young poisson plane
+        &joint friction_deg cohesion tension
+        &load gravity gravity_direction_deg horizontal_coefficient
+        &analysis mode geometry steps max_displacement_ratio time_step penalty_ratio
+        collapse_displacement
+        &search parameter low high tolerance
+        &sweep parameter values texts first last count linked
+        &output frames vtu joints"""
+    printed = run_dda("help", "keys").stdout
+    assert [key for key in keys.split() if key not in printed] == []
+
+
+def test_version_is_a_name_and_numbers() -> None:
+    done = run_dda("--version")
+    assert done.returncode == 0
+    name, version = done.stdout.split()
+    assert name == "dda"
+    assert all(part.isdigit() for part in version.split("."))
+
+
+# exit statuses
+
+
+@pytest.mark.parametrize(
+    ("decks", "status"),
+    [
+        (["stable"], 0),
+        (["bad"], 2),
+        (["undecided"], 3),
+        (["blocked"], 4),
+        (["stable", "undecided"], 3),
+        (["undecided", "bad"], 2),
+        (["bad", "undecided", "stable"], 2),
+        (["blocked", "undecided"], 4),
+        (["undecided", "blocked"], 4),
+        (["blocked", "bad"], 4),
+        (["bad", "undecided", "blocked", "stable"], 4),
+    ],
+    ids=lambda value: "-".join(value) if isinstance(value, list) else None,
+)
+def test_first_of_4_2_3_is_the_exit_status(tmp_path: Path, decks: list[str], status: int) -> None:
+    write_decks(tmp_path, stable=STABLE, undecided=UNDECIDED, bad=BAD, blocked=STABLE)
+    (tmp_path / "blocked").write_text("a file where the folder would be")
+    done = run_dda("run", *[f"{deck}.nml" for deck in decks], cwd=tmp_path)
+    assert done.returncode == status
+    for deck in decks:
+        written = (tmp_path / deck / "results.csv").exists()
+        assert written == (deck in ("stable", "undecided"))
+
+
+def test_one_undecided_case_among_many_gives_3(tmp_path: Path) -> None:
+    sweep = "&sweep parameter = 'steps', values = 400, 1, 400 /\n"
+    write_decks(tmp_path, deck=STABLE + sweep)
+    assert run_dda("run", "deck.nml", cwd=tmp_path).returncode == 3
+    verdicts = [row["verdict"] for row in rows_of(tmp_path / "deck")]
+    assert verdicts == ["stable", "undecided", "stable"]
+    assert "steps" in (tmp_path / "deck" / "log.txt").read_text()
+
+
+def test_undecided_search_gives_3_and_no_critical_value(tmp_path: Path) -> None:
+    write_decks(tmp_path, deck="&search /\n&analysis steps = 1 /\n")
+    assert run_dda("run", "deck.nml", cwd=tmp_path).returncode == 3
+    (row,) = rows_of(tmp_path / "deck")
+    assert row["verdict"] == "undecided"
+    assert row["critical"] == row["critical_low"] == row["critical_high"] == ""
+
+
+# results that cannot be written
+
+
+@pytest.mark.parametrize("table", TABLES)
+def test_folder_in_place_of_a_table_gives_4(tmp_path: Path, table: str) -> None:
+    write_decks(tmp_path, deck=STABLE)
+    (tmp_path / "deck" / table).mkdir(parents=True)
+    done = run_dda("run", "deck.nml", cwd=tmp_path)
+    assert done.returncode == 4
+    assert f"deck/{table}" in done.stderr
+
+
+@pytest.mark.parametrize("out", ["file", "file/below", "deck.nml", "/proc/none/below"])
+def test_output_folder_that_cannot_be_made_gives_4(tmp_path: Path, out: str) -> None:
+    write_decks(tmp_path, deck=STABLE)
+    (tmp_path / "file").write_text("kept")
+    done = run_dda("run", "deck.nml", "--out", out, cwd=tmp_path)
+    assert done.returncode == 4
+    assert "error: " in done.stderr
+    assert "case" not in done.stdout
+    assert (tmp_path / "file").read_text() == "kept"
+    assert (tmp_path / "deck.nml").read_text() == STABLE
+
+
+@pytest.mark.skipif(not Path("/dev/full").exists(), reason="no /dev/full here")
+@pytest.mark.parametrize("table", TABLES)
+def test_full_disk_gives_4(tmp_path: Path, table: str) -> None:
+    write_decks(tmp_path, deck=STABLE)
+    (tmp_path / "deck").mkdir()
+    (tmp_path / "deck" / table).symlink_to("/dev/full")
+    done = run_dda("run", "deck.nml", cwd=tmp_path)
+    assert done.returncode == 4
+    assert f"deck/{table}" in done.stderr
+
+
+# where results go
+
+
+def test_default_folder_is_named_as_the_deck_in_the_current_folder(tmp_path: Path) -> None:
+    (tmp_path / "decks").mkdir()
+    (tmp_path / "work").mkdir()
+    write_decks(tmp_path / "decks", arch=STABLE)
+    assert run_dda("run", "../decks/arch.nml", cwd=tmp_path / "work").returncode == 0
+    assert names_in(tmp_path / "work") == ["arch"]
+    assert names_in(tmp_path / "decks") == ["arch.nml"]
+    assert names_in(tmp_path / "work" / "arch") == TABLES
+
+
+def test_only_the_last_ending_is_cut(tmp_path: Path) -> None:
+    (tmp_path / "arch.v1.nml").write_text(STABLE)
+    assert run_dda("run", "arch.v1.nml", cwd=tmp_path).returncode == 0
+    (row,) = rows_of(tmp_path / "arch.v1")
+    assert row["deck"] == "arch.v1"
+
+
+def test_out_of_one_deck_is_the_folder_itself(tmp_path: Path) -> None:
+    write_decks(tmp_path, deck=STABLE)
+    assert run_dda("run", "deck.nml", "--out", "a/b/c", cwd=tmp_path).returncode == 0
+    assert names_in(tmp_path / "a" / "b" / "c") == TABLES
+    assert not (tmp_path / "deck").exists()
+
+
+def test_out_of_several_decks_has_a_folder_for_each(tmp_path: Path) -> None:
+    write_decks(tmp_path, one=STABLE, two=STABLE)
+    done = run_dda("run", "one.nml", "two.nml", "--out", "both", cwd=tmp_path)
+    assert done.returncode == 0
+    assert names_in(tmp_path / "both") == ["one", "two"]
+    assert names_in(tmp_path / "both" / "two") == TABLES
+
+
+def test_out_may_be_absolute_and_end_in_a_slash(tmp_path: Path) -> None:
+    write_decks(tmp_path, deck=STABLE)
+    assert run_dda("run", "deck.nml", "--out", f"{tmp_path}/results/", cwd=tmp_path).returncode == 0
+    assert names_in(tmp_path / "results") == TABLES
+
+
+def test_results_of_an_earlier_run_are_replaced(tmp_path: Path) -> None:
+    sweep = "&sweep parameter = 'radius', values = 5, 10, 20 /\n"
+    write_decks(tmp_path, many=STABLE + sweep, one=STABLE + "&output joints = .false. /\n")
+    assert run_dda("run", "many.nml", "--out", "results", cwd=tmp_path).returncode == 0
+    assert run_dda("run", "one.nml", "--out", "results", cwd=tmp_path).returncode == 0
+    assert len(rows_of(tmp_path / "results")) == 1
+    assert names_in(tmp_path / "results") == ["log.txt", "results.csv"]
+
+
+# names
+
+
+@pytest.mark.parametrize(
+    "name",
+    [
+        "with blanks in it.nml",
+        " leading blank.nml",
+        "Bögen-鱼-🏛.nml",
+        "quote'd \"twice\", and; commas.nml",
+        "semi;colon&ampersand$dollar*star?.nml",
+        "-begins-with-a-dash.nml",
+        "per%cent=equals.nml",
+        "n" * 250 + ".nml",
+        "UPPER.NML",
+        "deck.",
+        "deck.nml.txt",
+    ],
+)
+def test_hostile_names_are_names(tmp_path: Path, name: str) -> None:
+    (tmp_path / name).write_text(STABLE)
+    done = run_dda("run", f"./{name}", cwd=tmp_path)
+    assert done.returncode == 0, done.stderr
+    stem = Path(name).stem if not name.endswith(".") else name[:-1]
+    (row,) = rows_of(tmp_path / stem)
+    assert row["deck"] == stem
+    assert row["verdict"] == "stable"
+
+
+def test_name_with_a_blank_at_its_end_is_a_name(tmp_path: Path) -> None:
+    (tmp_path / "deck.nml ").write_text(STABLE)
+    assert run_dda("check", "deck.nml ", cwd=tmp_path).returncode == 0
+
+
+def test_deep_folders_are_found_and_made(tmp_path: Path) -> None:
+    deep = Path(*["d" * 200] * 8)
+    (tmp_path / deep).mkdir(parents=True)
+    (tmp_path / deep / "deck.nml").write_text(STABLE)
+    done = run_dda("run", deep / "deck.nml", "--out", deep / "results", cwd=tmp_path)
+    assert done.returncode == 0
+    assert names_in(tmp_path / deep / "results") == TABLES
+
+
+def test_deck_without_an_ending_is_left_alone(tmp_path: Path) -> None:
+    (tmp_path / "deck").write_text(STABLE)
+    run_dda("run", "deck", cwd=tmp_path)
+    assert (tmp_path / "deck").read_text() == STABLE
+    assert run_dda("run", "deck", "--out", "results", cwd=tmp_path).returncode == 0
+
+
+@pytest.mark.parametrize("line_end", ["\r\n", "\r"], ids=["windows", "old-mac"])
+def test_line_ends_do_not_change_the_results(tmp_path: Path, line_end: str) -> None:
+    text = "&scene\n title = 'a, b; \"c\"' ! a title\n/\n&arch\n thickness_ratio = 0.12\n/\n"
+    write_decks(tmp_path, unix=text)
+    (tmp_path / "other.nml").write_bytes(text.replace("\n", line_end).encode())
+    assert run_dda("run", "unix.nml", "other.nml", cwd=tmp_path).returncode == 0
+    tables = [(tmp_path / deck / "joints.csv").read_bytes() for deck in ("unix", "other")]
+    assert tables[0] == tables[1]
+
+
+# what is printed
+
+
+def test_quiet_prints_nothing(tmp_path: Path) -> None:
+    write_decks(tmp_path, one=STABLE, two=UNDECIDED)
+    done = run_dda("run", "one.nml", "two.nml", "--quiet", cwd=tmp_path)
+    assert done.returncode == 3
+    assert done.stdout == done.stderr == ""
+
+
+def test_no_progress_where_standard_error_is_no_terminal(tmp_path: Path) -> None:
+    write_decks(tmp_path, deck=STABLE + "&sweep parameter = 'radius', values = 5, 10 /\n")
+    done = run_dda("run", "deck.nml", cwd=tmp_path)
+    assert done.stderr == ""
+    assert "deck/results.csv" in done.stdout
+
+
+def test_options_may_stand_before_the_decks(tmp_path: Path) -> None:
+    write_decks(tmp_path, deck=STABLE)
+    assert run_dda("run", "--quiet", "--out", "o", "deck.nml", cwd=tmp_path).returncode == 0
+    assert names_in(tmp_path / "o") == TABLES
+
+
+# --set
+
+
+@pytest.mark.parametrize(
+    ("setting", "column", "value"),
+    [
+        ("arch%half_angle_deg=60", "half_angle_deg", 60.0),
+        ("ARCH%Half_Angle_deg = 6e1", "half_angle_deg", 60.0),
+        ("arch%voussoirs=12", "blocks", 12.0),
+        ("arch%joints_deg=0,50,100", "half_angle_deg", 100.0),
+        ("arch%joints_deg=0 50 100", "blocks", 4.0),
+        ("joint%friction_deg=45", "friction_deg", 45.0),
+        ("arch%springing=no-slip", "blocks", 36.0),
+        ("arch%springing='no-slip'", "blocks", 36.0),
+        ('scene%title="a, b"', "blocks", 36.0),
+        ("scene%title=a, b", "blocks", 36.0),
+    ],
+)
+def test_set_overrides_the_deck(tmp_path: Path, setting: str, column: str, value: float) -> None:
+    write_decks(tmp_path, deck="&arch thickness_ratio = 0.3 /\n")
+    done = run_dda("run", "deck.nml", "--set", setting, cwd=tmp_path)
+    assert done.returncode == 0, done.stderr
+    (row,) = rows_of(tmp_path / "deck")
+    assert float(row[column]) == value
+
+
+def test_set_may_switch_joints_off(tmp_path: Path) -> None:
+    write_decks(tmp_path, deck=STABLE)
+    setting = "output%joints=.false."
+    assert run_dda("run", "deck.nml", "--set", setting, cwd=tmp_path).returncode == 0
+    assert names_in(tmp_path / "deck") == ["log.txt", "results.csv"]
+
+
+def test_set_of_a_search_key_starts_a_search(tmp_path: Path) -> None:
+    write_decks(tmp_path, deck=STABLE)
+    setting = "search%parameter=thickness_ratio"
+    assert run_dda("run", "deck.nml", "--set", setting, cwd=tmp_path).returncode == 0
+    (row,) = rows_of(tmp_path / "deck")
+    assert row["verdict"] == "found"
+
+
+def test_long_set_is_not_cut(tmp_path: Path) -> None:
+    joints = ",".join(f"{0.18 * number:.10f}" for number in range(501))
+    assert len(joints) > 4096
+    write_decks(tmp_path, deck=STABLE)
+    done = run_dda("run", "deck.nml", "--set", f"arch%joints_deg={joints}", cwd=tmp_path)
+    assert done.returncode in (0, 2)
+    if done.returncode == 0:
+        (row,) = rows_of(tmp_path / "deck")
+        assert row["blocks"] == "1000"
+
+
+# repetition, jobs and a kill
+
+MANY = (
+    "&search /\n"
+    "&sweep parameter = 'half_angle_deg', values = 60, 90, 120 /\n"
+    "&sweep parameter = 'voussoirs', values = 4, 7, 36, 100 /\n"
+)
+
+
+def without_seconds(folder: Path) -> list[dict[str, str]]:
+    """Rows of results.csv by case, wall times left out."""
+    rows = rows_of(folder)
+    for row in rows:
+        del row["seconds"]
+    return rows
+
+
+def sorted_lines(file: Path) -> list[str]:
+    """Lines of a file in order of the alphabet."""
+    return sorted(file.read_text().splitlines())
+
+
+@pytest.mark.parametrize("jobs", ["1", "2", "5"])
+def test_repeated_runs_agree_bit_for_bit(tmp_path: Path, jobs: str) -> None:
+    write_decks(tmp_path, deck=MANY)
+    for out, number in (("first", "1"), ("second", jobs)):
+        done = run_dda("run", "deck.nml", "--out", out, "--jobs", number, cwd=tmp_path)
+        assert done.returncode == 0
+    first, second = tmp_path / "first", tmp_path / "second"
+    assert without_seconds(first) == without_seconds(second)
+    assert sorted_lines(first / "joints.csv") == sorted_lines(second / "joints.csv")
+    assert sorted_lines(first / "log.txt") == sorted_lines(second / "log.txt")
+
+
+def test_one_job_writes_the_cases_in_order(tmp_path: Path) -> None:
+    write_decks(tmp_path, deck=MANY)
+    assert run_dda("run", "deck.nml", cwd=tmp_path).returncode == 0
+    with (tmp_path / "deck" / "results.csv").open() as lines:
+        assert [int(row["case"]) for row in csv.DictReader(lines)] == list(range(1, 13))
+
+
+@pytest.mark.parametrize("jobs", ["64", "100000", "2147483647"])
+def test_more_jobs_than_cases_do_no_harm(tmp_path: Path, jobs: str) -> None:
+    write_decks(tmp_path, deck=STABLE + "&sweep parameter = 'radius', values = 5, 10 /\n")
+    done = run_dda("run", "deck.nml", "--jobs", jobs, cwd=tmp_path)
+    assert done.returncode == 0
+    assert len(rows_of(tmp_path / "deck")) == 2
+
+
+def test_rows_survive_a_kill(tmp_path: Path) -> None:
+    many = "&sweep parameter = 'radius', first = 1, last = 100, count = 50000 /\n"
+    write_decks(tmp_path, deck=STABLE + many + "&output joints = .false. /\n")
+    table = tmp_path / "deck" / "results.csv"
+    with subprocess.Popen(
+        [os.environ["DDA"], "run", "deck.nml", "--quiet"], cwd=tmp_path, stdin=subprocess.DEVNULL
+    ) as process:
+        patience = time.monotonic() + 60.0
+        while not table.exists() or table.stat().st_size < 10000:
+            assert process.poll() is None
+            assert time.monotonic() < patience
+            time.sleep(0.01)
+        process.send_signal(signal.SIGKILL)
+    rows = rows_of(tmp_path / "deck")
+    assert table.read_text().endswith("\n")
+    assert 20 < len(rows) < 50000
+    assert [int(row["case"]) for row in rows] == list(range(1, len(rows) + 1))
+    assert all(row["verdict"] == "stable" and row["seconds"] for row in rows)

@@ -1,0 +1,105 @@
+!> Full matrices and Gaussian elimination: what the banded solver is measured against
+module dense_reference
+   use dda_block_matrix, only : block_matrix_t, set_pattern
+   use dda_kinds, only : wp
+   use random_numbers, only : draw, random_t
+   implicit none
+   private
+
+   public :: full_matrix, full_solution, fill_positive_definite, shuffled
+
+contains
+
+   !> All entries of a block matrix, in the order of the blocks' numbers
+   pure function full_matrix(matrix) result(full)
+      !> The matrix
+      type(block_matrix_t), intent(in) :: matrix
+      !> The same: (n, n)
+      real(wp), allocatable :: full(:, :)
+      integer :: b, e, n, row, column
+
+      n = matrix%n_dof
+      allocate (full(n*size(matrix%place), n*size(matrix%place)))
+      full = 0.0_wp
+      do b = 1, size(matrix%place)
+         row = n*(b - 1)
+         full(row + 1:row + n, row + 1:row + n) = matrix%diagonal(:, :, b)
+      end do
+      do e = 1, size(matrix%pair, 2)
+         row = n*(matrix%pair(1, e) - 1)
+         column = n*(matrix%pair(2, e) - 1)
+         full(row + 1:row + n, column + 1:column + n) = &
+            & full(row + 1:row + n, column + 1:column + n) + matrix%coupling(:, :, e)
+         full(column + 1:column + n, row + 1:row + n) = &
+            & transpose(full(row + 1:row + n, column + 1:column + n))
+      end do
+   end function full_matrix
+
+   !> Gaussian elimination with the largest pivot of each column
+   pure function full_solution(matrix, load) result(x)
+      !> Regular matrix: (n, n)
+      real(wp), intent(in) :: matrix(:, :)
+      !> Right-hand side: (n)
+      real(wp), intent(in) :: load(:)
+      !> Solution: (n)
+      real(wp) :: x(size(load))
+      real(wp) :: a(size(load), size(load) + 1), row(size(load) + 1)
+      integer :: i, k, n, pivot
+
+      n = size(load)
+      a(:, :n) = matrix
+      a(:, n + 1) = load
+      do k = 1, n
+         pivot = k - 1 + maxloc(abs(a(k:, k)), dim=1)
+         row = a(pivot, :)
+         a(pivot, :) = a(k, :)
+         a(k, :) = row
+         do i = k + 1, n
+            a(i, k:) = a(i, k:) - (a(i, k)/a(k, k))*a(k, k:)
+         end do
+      end do
+      do k = n, 1, -1
+         x(k) = (a(k, n + 1) - dot_product(a(k, k + 1:n), x(k + 1:)))/a(k, k)
+      end do
+   end function full_solution
+
+   !> Random numbers for a matrix: couplings between -1 and 1, diagonals that outweigh them
+   pure subroutine fill_positive_definite(random, n_dof, n_block, pair, matrix)
+      !> Where the numbers come from
+      type(random_t), intent(inout) :: random
+      !> Unknowns of one block
+      integer, intent(in) :: n_dof
+      !> Number of blocks
+      integer, intent(in) :: n_block
+      !> Coupled blocks: (2, n_entry)
+      integer, intent(in) :: pair(:, :)
+      !> The matrix
+      type(block_matrix_t), intent(out) :: matrix
+      integer :: b, c, e
+
+      call set_pattern(matrix, n_dof, n_block, pair)
+      do e = 1, size(pair, 2)
+         call draw(random, matrix%coupling(:, :, e))
+      end do
+      do b = 1, n_block
+         call draw(random, matrix%diagonal(:, :, b))
+         matrix%diagonal(:, :, b) = matrix%diagonal(:, :, b) + transpose(matrix%diagonal(:, :, b))
+         do c = 1, n_dof
+            matrix%diagonal(c, c, b) = 3.0_wp*real(n_dof*(1 + count(pair == b)), wp)
+         end do
+      end do
+   end subroutine fill_positive_definite
+
+   !> The numbers 1 to n in disorder
+   pure subroutine shuffled(random, number)
+      !> Where the disorder comes from
+      type(random_t), intent(inout) :: random
+      !> The numbers: (n)
+      integer, intent(out) :: number(:)
+      real(wp) :: key(size(number))
+      integer :: i
+
+      call draw(random, key)
+      number = [(count(key <= key(i)), i=1, size(number))]
+   end subroutine shuffled
+end module dense_reference

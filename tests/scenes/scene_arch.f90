@@ -1,0 +1,98 @@
+!> A circular arch of equal voussoirs under its own weight, whose thickness or push is varied
+module scene_arch
+   use dda_arch, only : arch_blocks, arch_shape_t, equal_joints, facet_count
+   use dda_constants, only : degree, pi
+   use dda_contact_detection, only : find_contacts
+   use dda_error, only : error_t
+   use dda_kinds, only : wp
+   use dda_material, only : joint_law_t, material_t
+   use dda_scene, only : family_t, scene_t
+   use dda_settings, only : settings_t
+   implicit none
+   private
+
+   public :: arch_thickness_t, arch_push_t
+
+   !> The arch; the value of the family is its thickness over its radius
+   type, extends(family_t) :: arch_thickness_t
+      !> Number of voussoirs
+      integer :: voussoirs = 36
+      !> From the crown to a springing [rad]
+      real(wp) :: half_angle = pi/2.0_wp
+      !> Halfway through the thickness [m]
+      real(wp) :: radius = 10.0_wp
+      !> Largest angle of a chord; 0 for one chord a voussoir [deg]
+      real(wp) :: facet_deg = 0.0_wp
+      !> Weight per volume [N/m3]
+      real(wp) :: unit_weight = 22000.0_wp
+      !> Law of all joints
+      type(joint_law_t) :: law = joint_law_t(no_slip=.true.)
+      !> Material of the voussoirs
+      type(material_t) :: material
+      !> Settings of the run
+      type(settings_t) :: settings
+   contains
+      !> Make the scene of one thickness
+      procedure :: build => build_arch
+   end type arch_thickness_t
+
+   !> The same of one thickness; the value of the family is the horizontal force over the weight
+   type, extends(family_t) :: arch_push_t
+      !> The arch
+      type(arch_thickness_t) :: arch
+      !> Its thickness over its radius
+      real(wp) :: thickness_ratio = 0.15_wp
+   contains
+      !> Make the scene of one push
+      procedure :: build => build_pushed_arch
+   end type arch_push_t
+
+contains
+
+   !> Make the scene of one thickness
+   pure subroutine build_arch(family, value, scene, error)
+      !> The arch
+      class(arch_thickness_t), intent(in) :: family
+      !> Thickness over radius
+      real(wp), intent(in) :: value
+      !> The scene
+      type(scene_t), intent(out) :: scene
+      !> Never allocated
+      type(error_t), allocatable, intent(out) :: error
+      type(arch_shape_t) :: shape
+      type(joint_law_t), allocatable :: law(:)
+      integer, allocatable :: edge_pair(:, :)
+      integer :: chords, j
+
+      shape%radius = family%radius
+      shape%thickness_ratio = value
+      shape%joint_angle = equal_joints(family%voussoirs, family%half_angle)
+      chords = facet_count(2.0_wp*family%half_angle/(degree*real(family%voussoirs, wp)), &
+         & family%facet_deg)
+      shape%facets = [(chords, j=1, (family%voussoirs + 1)/2)]
+      call arch_blocks(shape, family%material, scene%system, edge_pair)
+      scene%system%unit_weight = family%unit_weight
+      scene%settings = family%settings
+      allocate (law(size(edge_pair, 2)), source=family%law)
+      call find_contacts(scene%system, edge_pair, law, scene%settings%penalty_ratio, &
+         & scene%settings%n_dof, scene%contacts)
+      scene%joint_angle_deg = [(family%half_angle/degree &
+         & *real(2*j - family%voussoirs, wp)/real(family%voussoirs, wp), j=0, family%voussoirs)]
+      if (allocated(error)) deallocate (error)
+   end subroutine build_arch
+
+   !> Make the scene of one push
+   pure subroutine build_pushed_arch(family, value, scene, error)
+      !> The arch
+      class(arch_push_t), intent(in) :: family
+      !> Horizontal force over weight, to the right
+      real(wp), intent(in) :: value
+      !> The scene
+      type(scene_t), intent(out) :: scene
+      !> Never allocated
+      type(error_t), allocatable, intent(out) :: error
+
+      call family%arch%build(family%thickness_ratio, scene, error)
+      scene%settings%load_direction(1) = scene%settings%load_direction(1) + value
+   end subroutine build_pushed_arch
+end module scene_arch

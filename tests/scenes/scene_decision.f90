@@ -1,0 +1,58 @@
+!> Decisions of scenes, in one word
+module scene_decision
+   use dda_decision, only : decide, decision_t
+   use dda_error, only : error_t
+   use dda_kinds, only : wp
+   use dda_scene, only : family_t, scene_t
+   use scene_model, only : model_t, scene_of
+   implicit none
+   private
+
+   public :: decision_at, decision_of, verdicts_around
+
+contains
+
+   !> Decision of a family's scene
+   pure function decision_at(family, value) result(decision)
+      !> The family
+      class(family_t), intent(in) :: family
+      !> Value of its parameter
+      real(wp), intent(in) :: value
+      !> The decision
+      type(decision_t) :: decision
+      type(scene_t) :: scene
+      type(error_t), allocatable :: error
+
+      call family%build(value, scene, error)
+      call decide(scene%settings, scene%system, scene%contacts, decision)
+   end function decision_at
+
+   !> Verdicts of a family just below and just above a value
+   pure function verdicts_around(family, value, margin) result(answer)
+      !> The family
+      class(family_t), intent(in) :: family
+      !> Value of its parameter
+      real(wp), intent(in) :: value
+      !> How far below and above
+      real(wp), intent(in) :: margin
+      !> One of verdict each: (2)
+      integer :: answer(2)
+      type(decision_t) :: below, above
+
+      below = decision_at(family, value - margin)
+      above = decision_at(family, value + margin)
+      answer = [below%outcome%verdict, above%outcome%verdict]
+   end function verdicts_around
+
+   !> Decision of a model
+   pure function decision_of(model) result(decision)
+      !> The model
+      type(model_t), intent(in) :: model
+      !> The decision
+      type(decision_t) :: decision
+      type(scene_t) :: scene
+
+      scene = scene_of(model)
+      call decide(scene%settings, scene%system, scene%contacts, decision)
+   end function decision_of
+end module scene_decision

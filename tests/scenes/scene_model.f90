@@ -1,0 +1,110 @@
+!> Blocks and joints put together one by one, and the scene that they make
+module scene_model
+   use dda_block_system, only : new_block_system
+   use dda_contact_detection, only : find_contacts
+   use dda_kinds, only : wp
+   use dda_material, only : joint_law_t, material_t
+   use dda_scene, only : scene_t
+   use dda_settings, only : settings_t
+   implicit none
+   private
+
+   public :: model_t, add_block, add_joint, scene_of, rectangle, turned
+
+   !> What a scene is made of
+   type :: model_t
+      !> Material of all blocks
+      type(material_t) :: material
+      !> Weight per volume of all blocks [N/m3]
+      real(wp) :: unit_weight = 25000.0_wp
+      !> Settings of the run
+      type(settings_t) :: settings
+      !> Corners of all blocks: (2, n_vertex) [m]
+      real(wp), allocatable :: vertex(:, :)
+      !> First vertex of each block, and one beyond the last: (n_block + 1)
+      integer, allocatable :: first_vertex(:)
+      !> Blocks that cannot move: (n_block)
+      logical, allocatable :: fixed(:)
+      !> Block and edge, block and edge of each joint: (4, n_joint)
+      integer, allocatable :: edge_pair(:, :)
+      !> Law of each joint: (n_joint)
+      type(joint_law_t), allocatable :: law(:)
+   end type model_t
+
+contains
+
+   !> Add a block
+   pure subroutine add_block(model, vertex, fixed)
+      !> Receives the block as its last
+      type(model_t), intent(inout) :: model
+      !> Corners, counter-clockwise: (2, n) [m]
+      real(wp), intent(in) :: vertex(:, :)
+      !> Whether the block cannot move; it can if this is left out
+      logical, intent(in), optional :: fixed
+      logical :: held
+
+      held = .false.
+      if (present(fixed)) held = fixed
+      if (.not. allocated(model%vertex)) allocate (model%vertex(2, 0), model%fixed(0))
+      if (.not. allocated(model%first_vertex)) model%first_vertex = [1]
+      model%vertex = reshape([model%vertex, vertex], [2, size(model%vertex, 2) + size(vertex, 2)])
+      model%first_vertex = [model%first_vertex, size(model%vertex, 2) + 1]
+      model%fixed = [model%fixed, held]
+   end subroutine add_block
+
+   !> Add a joint of two edges that lie together
+   pure subroutine add_joint(model, edge_pair, law)
+      !> Receives the joint as its last
+      type(model_t), intent(inout) :: model
+      !> Block and edge, block and edge: (4)
+      integer, intent(in) :: edge_pair(4)
+      !> Law of the joint
+      type(joint_law_t), intent(in) :: law
+
+      if (.not. allocated(model%law)) allocate (model%edge_pair(4, 0), model%law(0))
+      model%edge_pair = reshape([model%edge_pair, edge_pair], [4, size(model%edge_pair, 2) + 1])
+      model%law = [model%law, law]
+   end subroutine add_joint
+
+   !> The scene of a model
+   pure function scene_of(model) result(scene)
+      !> The model, with a block and a joint or more
+      type(model_t), intent(in) :: model
+      !> The scene
+      type(scene_t) :: scene
+
+      scene%settings = model%settings
+      scene%system = new_block_system(model%first_vertex, model%vertex, model%fixed, model%material)
+      scene%system%unit_weight = model%unit_weight
+      call find_contacts(scene%system, model%edge_pair, model%law, scene%settings%penalty_ratio, &
+         & scene%settings%n_dof, scene%contacts)
+   end function scene_of
+
+   !> A rectangle whose edges 1 to 4 are bottom, right, top and left
+   pure function rectangle(corner, width, height) result(vertex)
+      !> Lower left corner: (2) [m]
+      real(wp), intent(in) :: corner(2)
+      !> From left to right [m]
+      real(wp), intent(in) :: width
+      !> From bottom to top [m]
+      real(wp), intent(in) :: height
+      !> Corners: (2, 4) [m]
+      real(wp) :: vertex(2, 4)
+
+      vertex = reshape([corner, corner + [width, 0.0_wp], corner + [width, height], &
+         & corner + [0.0_wp, height]], [2, 4])
+   end function rectangle
+
+   !> Points turned about the origin
+   pure function turned(vertex, angle) result(other)
+      !> Points: (2, n) [m]
+      real(wp), intent(in) :: vertex(:, :)
+      !> Counter-clockwise [rad]
+      real(wp), intent(in) :: angle
+      !> The points: (2, n) [m]
+      real(wp) :: other(2, size(vertex, 2))
+
+      other(1, :) = cos(angle)*vertex(1, :) - sin(angle)*vertex(2, :)
+      other(2, :) = sin(angle)*vertex(1, :) + cos(angle)*vertex(2, :)
+   end function turned
+end module scene_model
