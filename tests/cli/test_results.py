@@ -194,17 +194,15 @@ def test_exact_stands_beside_a_run_without_search(tmp_path: Path) -> None:
     assert float(row["exact"]) == pytest.approx(0.1074241383203705, rel=1e-12)
 
 
-def test_current_geometry_is_not_reference_geometry_renamed(tmp_path: Path) -> None:
-    text = "&material young = 5e6 /\n&analysis geometry = 'current' /\n&search /\n"
-    (tmp_path / "deck.nml").write_text(text)
-    done = run_dda("run", "deck.nml", "--quiet", cwd=tmp_path)
-    if done.returncode == 2:
-        assert done.stderr.startswith("deck.nml:2: error: ")
-        assert not (tmp_path / "deck").exists()
-    else:
-        _, (row,) = read_table(tmp_path / "deck" / "results.csv")
-        assert row["geometry"] == "current"
-        assert float(row["relative_error"]) > 1e-4
+def test_current_geometry_has_the_elastic_shift(tmp_path: Path) -> None:
+    text = """&analysis geometry = 'current' /
+        &search /
+        &sweep parameter = 'young', values = 5e9, 5e10 /"""
+    rows = run_deck(tmp_path, text)
+    assert [row["geometry"] for row in rows] == ["current"] * 2
+    shift = [float(row["relative_error"]) for row in rows]
+    assert shift[0] == pytest.approx(5.4e-4, rel=0.1)
+    assert shift[0] / shift[1] == pytest.approx(10.0, rel=0.01)
 
 
 # searches

@@ -1,0 +1,105 @@
+"""dda check: reads everything, prints the scene plan, computes and writes nothing."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+from dda_command import run_dda
+
+PAPER = Path(__file__).parents[2] / "input" / "paper"
+
+
+def check(folder: Path, text: str, *options: str) -> str:
+    """What dda check prints about a good deck.
+
+    Parameters
+    ----------
+    folder
+        Where deck.nml goes; checked to hold nothing else afterwards
+    text
+        The deck
+    options
+        Options of the command
+
+    Returns
+    -------
+    str
+        The plan, blanks and line ends turned into single blanks
+    """
+    (folder / "deck.nml").write_text(text)
+    done = run_dda("check", "deck.nml", *options, cwd=folder)
+    assert done.returncode == 0, done.stderr
+    assert done.stderr == ""
+    assert [path.name for path in folder.iterdir()] == ["deck.nml"]
+    return " ".join(done.stdout.split())
+
+
+def test_plan_names_the_deck_and_its_title(tmp_path: Path) -> None:
+    plan = check(tmp_path, "&scene title = 'One, two; \"three\"' /\n")
+    assert plan.startswith("deck.nml: One, two; \"three\" ")
+
+
+@pytest.mark.parametrize(
+    ("text", "wanted"),
+    [
+        ("&arch /\n", ["cases 1", "blocks 36", "joints 37"]),
+        ("&arch voussoirs = 7 /\n", ["blocks 7", "joints 8"]),
+        ("&arch joints_deg = 0, 54.5, 90 /\n", ["blocks 4", "joints 5"]),
+        ("&search /\n", ["searched thickness_ratio"]),
+        ("&search parameter = 'friction_deg' /\n", ["searched friction_deg"]),
+        ("&arch thickness_ratio = 0.1 /\n", ["searched nothing"]),
+        (
+            "&sweep parameter='voussoirs', values=6, 12, 18 /\n"
+            "&sweep parameter='radius', first=1, last=2, count=5 /\n",
+            ["cases 15", "swept voussoirs radius", "blocks 6"],
+        ),
+        (
+            "&sweep parameter='half_angle_deg', values=60, 90 /\n"
+            "&sweep parameter='voussoirs', values=12, 18, linked=.true. /\n",
+            ["cases 2", "swept half_angle_deg voussoirs", "blocks 12"],
+        ),
+    ],
+)
+def test_plan_says_what_would_be_computed(tmp_path: Path, text: str, wanted: list[str]) -> None:
+    plan = check(tmp_path, text)
+    assert [words for words in wanted if words not in plan] == []
+
+
+def test_plan_of_one_hundred_thousand_cases_is_quick(tmp_path: Path) -> None:
+    text = "&sweep parameter = 'radius', first = 1, last = 2, count = 100000 /\n"
+    assert "cases 100000" in check(tmp_path, text)
+
+
+def test_more_cases_may_be_allowed(tmp_path: Path) -> None:
+    text = "&sweep parameter = 'radius', first = 1, last = 2, count = 100001 /\n"
+    assert "cases 100001" in check(tmp_path, text + "&output max_cases = 200000 /\n")
+
+
+def test_set_changes_the_plan(tmp_path: Path) -> None:
+    assert "blocks 9" in check(tmp_path, "&arch /\n", "--set", "arch%voussoirs=9")
+
+
+def test_quiet_check_prints_nothing(tmp_path: Path) -> None:
+    assert check(tmp_path, "&arch /\n", "--quiet") == ""
+
+
+def test_every_deck_is_checked(tmp_path: Path) -> None:
+    (tmp_path / "good.nml").write_text("&arch /\n")
+    (tmp_path / "bad.nml").write_text("&arch\n radius = -1 /\n")
+    done = run_dda("check", "bad.nml", "good.nml", "missing.nml", cwd=tmp_path)
+    assert done.returncode == 2
+    assert "good.nml:" in done.stdout
+    lines = done.stderr.splitlines()
+    assert [line.split(" ")[0] for line in lines] == ["bad.nml:2:", "missing.nml:1:"]
+
+
+@pytest.mark.parametrize(
+    ("table", "arches"), [("table1", 8), ("table2", 20), ("table3", 15), ("table4", 10)]
+)
+def test_decks_of_the_paper_are_good(tmp_path: Path, table: str, arches: int) -> None:
+    done = run_dda("check", PAPER / f"{table}.nml", cwd=tmp_path)
+    assert done.returncode == 0, done.stderr
+    words = done.stdout.split()
+    assert int(words[words.index("cases") + 1]) % arches == 0
+    assert not list(tmp_path.iterdir())
