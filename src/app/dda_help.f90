@@ -20,11 +20,11 @@ contains
       type(command_t), intent(in) :: command
       !> Exit status of the program
       integer, intent(out) :: status
-      character(len=16) :: topic
+      character(len=:), allocatable :: topic
 
       status = exit_status%success
       topic = ""
-      if (size(command%name) > 0) topic = command%name(1)(:16)
+      if (size(command%name) > 0) topic = trim(command%name(1))
       select case (topic)
       case ("")
          call print_lines([character(len=96) :: &
@@ -57,7 +57,7 @@ contains
          write (output_unit, "(a)", advance="no") deck_help()
       case default
          write (error_unit, "(a)") "dda: error: help on run, check or keys is wanted, '" &
-            & //trim(topic)//"' was found"
+            & //topic//"' was found"
          status = exit_status%bad_input
       end select
    end subroutine print_help

@@ -1,4 +1,4 @@
-"""Bad input: one line FILE:LINE: error: ..., exit status 2, nothing computed, the other decks run."""
+"""Bad input: one line FILE:LINE: error: ..., status 2, nothing computed, other decks run."""
 
 from __future__ import annotations
 

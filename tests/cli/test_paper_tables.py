@@ -49,7 +49,7 @@ def key_of(table: str, row: Row) -> Key:
 
 KEYS = [key_of(row["table"], row) for row in EXACT]
 each_arch = pytest.mark.parametrize(
-    ("key", "exact"), zip(KEYS, EXACT), ids=["-".join(map(str, key)) for key in KEYS]
+    ("key", "exact"), list(zip(KEYS, EXACT)), ids=["-".join(map(str, key)) for key in KEYS]
 )
 
 

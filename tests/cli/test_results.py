@@ -485,10 +485,12 @@ def test_arch_of_an_odd_number_turns_beside_the_crown(
 
 def read_joints(folder: Path) -> list[dict[str, float | str]]:
     """Rows of joints.csv; what is no number stays text."""
-    text = ("state",)
     rows = read_table(folder / "deck" / "joints.csv")[1]
     return [
-        {name: value if name in text or value == "" else float(value) for name, value in row.items()}
+        {
+            name: value if name == "state" or value == "" else float(value)
+            for name, value in row.items()
+        }
         for row in rows
     ]
 
