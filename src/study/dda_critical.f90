@@ -256,7 +256,7 @@ contains
          if (.not. critical%current .or. .not. inside(value)) value = far
       else if (inside(before)) then
          value = before
-      else if (critical%current) then
+      else if (critical%current .or. abs(far - critical%falls) > 0.3_wp*abs(far)) then
          value = middle(critical%falls, far)
       else
          value = far - 0.1_wp*(far - critical%falls)

@@ -235,19 +235,24 @@ def test_bracket_is_closed_and_holds_the_truth(
     assert relative_error == pytest.approx((critical - exact) / exact, abs=1e-15)
 
 
-@pytest.mark.parametrize("tolerance", [1e-12, 1e-13, 1e-14])
+@pytest.mark.parametrize("tolerance", [1e-9, 1e-10, 1e-11, 1e-12, 1e-13, 1e-14])
 def test_bracket_claims_no_more_than_a_decision_resolves(tmp_path: Path, tolerance: float) -> None:
     text = f"""&joint friction_deg = 90 /
         &search tolerance = {tolerance} /
-        &sweep parameter = 'half_angle_deg', values = 45, 90 /
-        &sweep parameter = 'voussoirs', values = 12, 36, 180 /"""
+        &sweep parameter = 'half_angle_deg', values = 10, 20, 45, 90, 140 /
+        &sweep parameter = 'voussoirs', values = 7, 12, 36, 180 /
+        &output joints = .false. /"""
     (tmp_path / "deck.nml").write_text(text)
     run_dda("run", "deck.nml", "--quiet", cwd=tmp_path)
+    beside = []
     for row in read_table(tmp_path / "deck" / "results.csv")[1]:
-        assert row["verdict"] in ("found", "undecided")
         if row["verdict"] == "found":
             low, high, exact = numbers(row, "critical_low", "critical_high", "exact")
-            assert low < exact < high
+            if not low < exact < high:
+                beside.append((row["half_angle_deg"], row["voussoirs"], low, exact, high))
+        else:
+            assert row["verdict"] == "undecided"
+    assert beside == []
 
 
 def test_very_shallow_arch_is_found_right_or_not_at_all(tmp_path: Path) -> None:

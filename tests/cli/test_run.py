@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import csv
 import os
+import pty
 import signal
 import subprocess
 import time
@@ -298,6 +299,27 @@ def test_no_progress_where_standard_error_is_no_terminal(tmp_path: Path) -> None
     done = run_dda("run", "deck.nml", cwd=tmp_path)
     assert done.stderr == ""
     assert "deck/results.csv" in done.stdout
+
+
+@pytest.mark.parametrize("quiet", [False, True])
+def test_progress_goes_to_a_terminal_unless_quiet(tmp_path: Path, quiet: bool) -> None:
+    write_decks(tmp_path, deck=STABLE + "&sweep parameter = 'radius', values = 5, 10, 20 /\n")
+    ours, theirs = pty.openpty()
+    done = subprocess.run(
+        [os.environ["DDA"], "run", "deck.nml", *["--quiet"] * quiet],
+        cwd=tmp_path,
+        stdout=subprocess.DEVNULL,
+        stderr=theirs,
+        timeout=60.0,
+        check=False,
+    )
+    os.write(theirs, b"end")
+    shown = os.read(ours, 10000).decode()
+    os.close(theirs)
+    os.close(ours)
+    assert done.returncode == 0
+    assert (shown == "end") == quiet
+    assert ("2 of 3" in shown and " s left" in shown) != quiet
 
 
 def test_options_may_stand_before_the_decks(tmp_path: Path) -> None:
