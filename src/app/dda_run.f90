@@ -1,7 +1,7 @@
 !> dda run: decks to results
 module dda_run
    use, intrinsic :: iso_fortran_env, only : error_unit
-   use dda_case, only : run_case
+   use dda_case, only : case_t, compute_case, prepare_case, tell_case
    use dda_command_line, only : command_t
    use dda_deck, only : deck_t, flag_of
    use dda_deck_sweep, only : case_deck, n_cases, swept_names, swept_texts
@@ -154,7 +154,7 @@ contains
       !$omp parallel do num_threads(min(command%jobs, total, max_jobs)) schedule(dynamic) default(none) &
       !$omp shared(total, deck, name, command, tables, progress, count, error)
       do number = 1, total
-         call compute_case(command, name, deck, number, total, tables, progress, count, error)
+         call run_one_case(command, name, deck, number, total, tables, progress, count, error)
       end do
       !$omp end parallel do
       call clear_progress(progress)
@@ -174,7 +174,7 @@ contains
    end subroutine run_deck
 
    !> Compute one case and write it down; nothing is computed after a failure to write
-   subroutine compute_case(command, name, deck, number, total, tables, progress, count, error)
+   subroutine run_one_case(command, name, deck, number, total, tables, progress, count, error)
       !> What the user asked for
       type(command_t), intent(in) :: command
       !> Name of the deck
@@ -193,25 +193,32 @@ contains
       integer, intent(inout) :: count(3)
       !> Failure to write
       type(error_t), allocatable, intent(inout) :: error
-      type(deck_t) :: this
+      type(deck_t) :: case_of_deck
+      type(case_t) :: this
       type(error_t), allocatable :: problem
       type(result_row_t) :: row
       type(joint_row_t), allocatable :: joint_row(:)
       character(len=:), allocatable :: remark
       logical :: failed
 
-      !$omp critical (results)
+      !$omp critical (texts)
       failed = allocated(error)
-      !$omp end critical (results)
+      if (.not. failed) then
+         call case_deck(deck, number, case_of_deck, problem)
+         call prepare_case(case_of_deck, this)
+      end if
+      !$omp end critical (texts)
       if (failed) return
-      call case_deck(deck, number, this, problem)
-      call run_case(this, row, joint_row, remark)
-      row%deck = deck_stem(name)
-      row%number = number
-      row%swept = swept_fields(deck, number)
-      joint_row%number = number
-      !$omp critical (results)
-      if (.not. allocated(error)) call write_case(tables, row, joint_row, remark, error)
+      call compute_case(this)
+      !$omp critical (texts)
+      if (.not. allocated(error)) then
+         call tell_case(this, row, joint_row, remark)
+         row%deck = deck_stem(name)
+         row%number = number
+         row%swept = swept_fields(deck, number)
+         joint_row%number = number
+         call write_case(tables, row, joint_row, remark, error)
+      end if
       if (.not. allocated(error)) then
          count(3) = count(3) + 1
          count(merge(2, 1, row%verdict == "undecided")) = &
@@ -220,8 +227,8 @@ contains
          if (.not. command%quiet) call print_row(row, remark, total, count(3))
          call report_progress(progress)
       end if
-      !$omp end critical (results)
-   end subroutine compute_case
+      !$omp end critical (texts)
+   end subroutine run_one_case
 
    !> Make the folder and begin the tables
    subroutine open_tables(deck, tables, error)

@@ -152,10 +152,14 @@ contains
       character(len=*), intent(in) :: group
       !> Name of the key
       character(len=*), intent(in) :: key
-      !> The word, lower case
-      character(len=:), allocatable :: value
+      !> The word, lower case; of fixed length, for gfortran keeps the length of a result that has
+      !> none in memory that threads share
+      character(len=word_length) :: value
 
-      value = text_of(deck, group, key)
+      associate (held => deck%value(key_index(group, key)))
+         value = ""
+         if (allocated(held%text)) value = held%text
+      end associate
    end function word_of
 
    !> A text of the deck

@@ -12,7 +12,7 @@ module dda_deck_set
    private
 
    public :: set_number, set_text, put_number, put_numbers, put_text
-   public :: number_problem, text_problem, is_numeric
+   public :: number_problem, number_fits, text_problem, is_numeric
 
 contains
 
@@ -73,13 +73,16 @@ contains
       character(len=:), allocatable :: problem
       integer :: n
 
-      problem = number_problem(parameter%key, value)
       associate (held => deck%value(parameter%key))
          n = 0
          if (allocated(held%numbers)) n = size(held%numbers)
-         if (parameter%item > n) problem = full_name(deck_key(parameter%key))// &
-            " has no item "//to_text(parameter%item)//": its list has "//to_text(n)
-         if (len(problem) > 0) then
+         if (parameter%item > n) then
+            problem = full_name(deck_key(parameter%key))//" has no item "// &
+               to_text(parameter%item)//": its list has "//to_text(n)
+         else if (.not. number_fits(parameter%key, value)) then
+            problem = number_problem(parameter%key, value)
+         end if
+         if (allocated(problem)) then
             call deck_error(error, problem, deck, place)
             return
          end if
@@ -163,19 +166,29 @@ contains
       real(wp), intent(in) :: value
       !> What was wanted and what was found; empty if the number will do
       character(len=:), allocatable :: problem
-      logical :: fits
 
       problem = ""
+      if (number_fits(key, value)) return
+      problem = full_name(deck_key(key))//" wants "//wanted(deck_key(key))//", found "// &
+         to_text(value)
+   end function number_problem
+
+   !> Whether a number can be the value of a key
+   pure function number_fits(key, value) result(fits)
+      !> Place of the key in the registry
+      integer, intent(in) :: key
+      !> The number
+      real(wp), intent(in) :: value
+      !> The answer
+      logical :: fits
+
       fits = is_numeric(key)
       if (fits) fits = value >= deck_key(key)%at_least .and. value <= deck_key(key)%at_most &
          .and. value > deck_key(key)%above .and. value < deck_key(key)%below
       if (fits .and. deck_key(key)%kind == key_kind%whole) then
          fits = .not. abs(value - anint(value)) > 0.0_wp
       end if
-      if (fits) return
-      problem = full_name(deck_key(key))//" wants "//wanted(deck_key(key))//", found "// &
-         to_text(value)
-   end function number_problem
+   end function number_fits
 
    !> Why a text cannot be the value of a key
    pure function text_problem(key, text) result(problem)

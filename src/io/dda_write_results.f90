@@ -33,9 +33,9 @@ module dda_write_results
       !> Friction angle [deg]
       type(number_t) :: friction_deg
       !> static or dynamic
-      character(len=10) :: mode = ""
+      character(len=64) :: mode = ""
       !> reference or current
-      character(len=10) :: geometry = ""
+      character(len=64) :: geometry = ""
       !> Answer of the case in a word
       character(len=10) :: verdict = ""
       !> Middle of the bracket

@@ -6,8 +6,8 @@ module dda_arch_scene
    use dda_constants, only : degree, pi
    use dda_contact_detection, only : find_contacts
    use dda_deck, only : deck_t, flag_of, integer_of, is_given, list_of, parameter_t, real_of, word_of
-   use dda_deck_set, only : put_number
-   use dda_error, only : error_t
+   use dda_deck_set, only : number_fits, put_number
+   use dda_error, only : error_t, fatal_error
    use dda_kinds, only : wp
    use dda_material, only : friction_coefficient, joint_law_t, material_t
    use dda_scene, only : family_t, scene_t
@@ -45,6 +45,10 @@ contains
       type(error_t), allocatable, intent(out) :: error
       type(deck_t) :: deck
 
+      if (.not. number_fits(family%parameter%key, value)) then
+         call fatal_error(error, "the searched parameter cannot have this value")
+         return
+      end if
       deck = family%deck
       call put_number(deck, family%parameter, value, deck%value(family%parameter%key)%place, error)
       if (.not. allocated(error)) call arch_scene(deck, scene)

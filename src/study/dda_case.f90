@@ -1,72 +1,132 @@
-!> One case of a deck: computed, and told as rows of the result tables
+!> One case of a deck: prepared, computed, and told as rows of the result tables
 module dda_case
    use, intrinsic :: iso_fortran_env, only : int64
    use dda_arch_scene, only : arch_family_t, arch_scene, exact_thickness, search_start
    use dda_contact_detection, only : contacts_t
    use dda_critical, only : critical_t, find_critical, search_t
    use dda_decision, only : decide, decision_t
-   use dda_deck, only : deck_t, flag_of, has_group, is_given, parameter_t, real_of, text_of, word_of
+   use dda_deck, only : deck_t, has_group, is_given, parameter_t, real_of, text_of, word_of
    use dda_deck_check, only : search_bracket
    use dda_deck_parameter, only : find_parameter, parameter_name
    use dda_error, only : error_t
    use dda_kinds, only : wp
    use dda_mechanism, only : follow_collapse, mechanism_of, mechanism_t
    use dda_scene, only : scene_t
+   use dda_text, only : to_text
    use dda_verdict, only : verdict
    use dda_write_results, only : joint_row_t, number_t, result_row_t, some_number
    implicit none
    private
 
-   public :: run_case, verdict_name
+   public :: case_t, prepare_case, compute_case, tell_case, verdict_name
+
+   !> One case in three stages: prepared, computed, told. Only the second may run beside other cases:
+   !> the others make texts, and gfortran keeps the length of a text that a function returns in memory
+   !> that threads share
+   type :: case_t
+      !> The deck with the values of the case
+      type(deck_t) :: deck
+      !> Whether a critical value is searched
+      logical :: searches = .false.
+      !> The scenes of the search
+      type(arch_family_t) :: family
+      !> The search
+      type(search_t) :: search
+      !> What the search found
+      type(critical_t) :: critical
+      !> Decision of a case that searches nothing
+      type(decision_t) :: decision
+      !> Scene of the collapse, or of the decision
+      type(scene_t) :: scene
+      !> Exact critical thickness ratio
+      real(wp) :: exact = 0.0_wp
+      !> Whether it is known
+      logical :: exact_known = .false.
+      !> Wall time of the computation [s]
+      real(wp) :: seconds = 0.0_wp
+   end type case_t
 
 contains
 
-   !> Compute one case
-   subroutine run_case(deck, row, joint_row, remark)
+   !> Make a case ready to be computed
+   pure subroutine prepare_case(deck, this)
       !> The deck with the values of the case
       type(deck_t), intent(in) :: deck
+      !> The case
+      type(case_t), intent(out) :: this
+      character(len=:), allocatable :: searched
+
+      this%deck = deck
+      this%searches = has_group(deck, "search")
+      if (this%searches) call prepare_search(deck, this%family, this%search)
+      searched = searched_name(deck)
+      this%exact_known = searched == "" .or. searched == "thickness_ratio"
+   end subroutine prepare_case
+
+   !> Compute a case
+   subroutine compute_case(this)
+      !> The case, prepared
+      type(case_t), intent(inout) :: this
+      type(error_t), allocatable :: error
+      integer(int64) :: start, finish, rate
+
+      call system_clock(start, rate)
+      if (this%exact_known) call exact_thickness(this%deck, this%exact, this%exact_known)
+      if (this%searches) then
+         call find_critical(this%family, this%search, this%critical)
+         if (allocated(this%critical%fallen)) then
+            call this%family%build(this%critical%falls, this%scene, error)
+            call follow_collapse(this%scene, this%critical%fallen)
+         end if
+      else
+         call arch_scene(this%deck, this%scene)
+         call decide(this%scene%settings, this%scene%system, this%scene%contacts, this%decision)
+         if (this%decision%outcome%verdict == verdict%collapsed) &
+            & call follow_collapse(this%scene, this%decision)
+      end if
+      call system_clock(finish)
+      this%seconds = real(finish - start, wp)/real(rate, wp)
+   end subroutine compute_case
+
+   !> Tell a case
+   pure subroutine tell_case(this, row, joint_row, remark)
+      !> The case, computed
+      type(case_t), intent(in) :: this
       !> Its row; the fields deck, number and swept are left to the caller
       type(result_row_t), intent(out) :: row
       !> Rows of the joints: (n_joint), or (0) if there is nothing to tell
       type(joint_row_t), allocatable, intent(out) :: joint_row(:)
       !> What the user should know beside the row; empty if nothing
       character(len=:), allocatable, intent(out) :: remark
-      integer(int64) :: start, finish, rate
 
-      call system_clock(start, rate)
       remark = ""
-      call describe(deck, row)
       allocate (joint_row(0))
-      if (has_group(deck, "search")) then
-         call run_search(deck, row, joint_row, remark)
+      call describe(this, row)
+      if (this%searches) then
+         call tell_search(this, row, joint_row, remark)
       else
-         call run_decision(deck, row, joint_row, remark)
+         call tell_decision(this, row, joint_row, remark)
       end if
-      call system_clock(finish)
-      row%seconds = real(finish - start, wp)/real(rate, wp)
-   end subroutine run_case
+   end subroutine tell_case
 
    !> Fill the columns that are known before anything is computed
-   pure subroutine describe(deck, row)
-      !> The deck of the case
-      type(deck_t), intent(in) :: deck
+   pure subroutine describe(this, row)
+      !> The case
+      type(case_t), intent(in) :: this
       !> The row
       type(result_row_t), intent(inout) :: row
       character(len=:), allocatable :: searched
-      real(wp) :: exact
-      logical :: known
 
-      searched = searched_name(deck)
-      row%mode = word_of(deck, "analysis", "mode")
-      row%geometry = word_of(deck, "analysis", "geometry")
-      row%half_angle_deg = given_number(deck, "arch", "half_angle_deg", searched)
-      row%thickness_ratio = given_number(deck, "arch", "thickness_ratio", searched)
-      row%friction_deg = given_number(deck, "joint", "friction_deg", searched)
+      searched = searched_name(this%deck)
+      row%mode = word_of(this%deck, "analysis", "mode")
+      row%geometry = word_of(this%deck, "analysis", "geometry")
+      row%half_angle_deg = given_number(this%deck, "arch", "half_angle_deg", searched)
+      row%thickness_ratio = given_number(this%deck, "arch", "thickness_ratio", searched)
+      row%friction_deg = given_number(this%deck, "joint", "friction_deg", searched)
       row%collapse_mode = "none"
       row%springing_hinge = "none"
-      if (searched /= "" .and. searched /= "thickness_ratio") return
-      call exact_thickness(deck, exact, known)
-      if (known) row%exact = some_number(exact)
+      if (this%exact_known) row%exact = some_number(this%exact)
+      row%seconds = this%seconds
    end subroutine describe
 
    !> Name of the searched parameter, empty if nothing is searched
@@ -100,71 +160,65 @@ contains
       if (key /= searched) number = some_number(real_of(deck, group, key))
    end function given_number
 
-   !> Decide a case that searches nothing
-   pure subroutine run_decision(deck, row, joint_row, remark)
-      !> The deck of the case
-      type(deck_t), intent(in) :: deck
+   !> Tell a case that searches nothing
+   pure subroutine tell_decision(this, row, joint_row, remark)
+      !> The case
+      type(case_t), intent(in) :: this
       !> Its row
       type(result_row_t), intent(inout) :: row
       !> Rows of the joints
       type(joint_row_t), allocatable, intent(inout) :: joint_row(:)
       !> Why the verdict is undecided
       character(len=:), allocatable, intent(inout) :: remark
-      type(scene_t) :: scene
-      type(decision_t) :: decision
 
-      call arch_scene(deck, scene)
-      call decide(scene%settings, scene%system, scene%contacts, decision)
-      row%blocks = maxval(scene%system%equation)
-      row%verdict = verdict_name(decision%outcome%verdict)
-      if (allocated(decision%outcome%reason)) remark = decision%outcome%reason
-      if (decision%outcome%verdict == verdict%collapsed) then
-         call follow_collapse(scene, decision)
-         call tell_mechanism(decision%contacts, scene%joint_angle_deg, row)
-      end if
-      row%steps = decision%outcome%steps
-      row%open_close_iterations = decision%outcome%passes
-      row%factorisations = decision%outcome%factorisations
-      joint_row = joint_rows(decision%contacts, scene%joint_angle_deg)
-   end subroutine run_decision
+      associate (outcome => this%decision%outcome)
+         row%verdict = verdict_name(outcome%verdict)
+         if (allocated(outcome%reason)) remark = outcome%reason
+         if (outcome%verdict == verdict%collapsed) &
+            & call tell_mechanism(this%decision%contacts, this%scene%joint_angle_deg, row)
+         row%blocks = maxval(this%scene%system%equation)
+         row%steps = outcome%steps
+         row%open_close_iterations = outcome%passes
+         row%factorisations = outcome%factorisations
+      end associate
+      joint_row = joint_rows(this%decision%contacts, this%scene%joint_angle_deg)
+   end subroutine tell_decision
 
-   !> Search the critical value of a case
-   pure subroutine run_search(deck, row, joint_row, remark)
-      !> The deck of the case
-      type(deck_t), intent(in) :: deck
+   !> Tell the search of a case
+   pure subroutine tell_search(this, row, joint_row, remark)
+      !> The case
+      type(case_t), intent(in) :: this
       !> Its row
       type(result_row_t), intent(inout) :: row
       !> Rows of the joints: of the decision nearest to critical that stands, else of that which falls
       type(joint_row_t), allocatable, intent(inout) :: joint_row(:)
       !> Why the verdict is undecided
       character(len=:), allocatable, intent(inout) :: remark
-      type(arch_family_t) :: family
-      type(search_t) :: search
-      type(critical_t) :: critical
       type(scene_t) :: scene
       type(error_t), allocatable :: error
 
-      call prepare_search(deck, family, search)
-      call find_critical(family, search, critical)
-      row%verdict = verdict_name(critical%verdict)
-      if (allocated(critical%reason) .and. critical%verdict == verdict%undecided) &
-         & remark = critical%reason
-      if (critical%verdict == verdict%found) call tell_bracket(critical, row)
-      if (allocated(critical%fallen)) then
-         call family%build(critical%falls, scene, error)
-         call follow_collapse(scene, critical%fallen)
-         call tell_mechanism(critical%fallen%contacts, scene%joint_angle_deg, row)
-         joint_row = joint_rows(critical%fallen%contacts, scene%joint_angle_deg)
-      end if
-      if (allocated(critical%standing)) then
-         call family%build(critical%stands, scene, error)
-         joint_row = joint_rows(critical%standing%contacts, scene%joint_angle_deg)
-      end if
-      row%blocks = size(joint_row) - 1
-      row%steps = critical%steps
-      row%open_close_iterations = critical%passes
-      row%factorisations = critical%factorisations
-   end subroutine run_search
+      associate (critical => this%critical)
+         row%verdict = verdict_name(critical%verdict)
+         if (critical%verdict == verdict%undecided) then
+            remark = "the bracket cannot be closed further"
+            if (allocated(critical%reason)) &
+               & remark = "at "//to_text(critical%undecided_at)//" "//critical%reason
+         end if
+         if (critical%verdict == verdict%found) call tell_bracket(critical, row)
+         if (allocated(critical%fallen)) then
+            call tell_mechanism(critical%fallen%contacts, this%scene%joint_angle_deg, row)
+            joint_row = joint_rows(critical%fallen%contacts, this%scene%joint_angle_deg)
+         end if
+         if (allocated(critical%standing)) then
+            call this%family%build(critical%stands, scene, error)
+            joint_row = joint_rows(critical%standing%contacts, scene%joint_angle_deg)
+         end if
+         row%blocks = max(0, size(joint_row) - 1)
+         row%steps = critical%steps
+         row%open_close_iterations = critical%passes
+         row%factorisations = critical%factorisations
+      end associate
+   end subroutine tell_search
 
    !> What a deck asks to be searched
    pure subroutine prepare_search(deck, family, search)

@@ -9,7 +9,6 @@ module dda_critical
    use dda_kinds, only : wp
    use dda_scene, only : family_t, scene_t
    use dda_settings, only : flow_rule
-   use dda_text, only : to_text
    use dda_verdict, only : verdict
    implicit none
    private
@@ -34,8 +33,10 @@ module dda_critical
    type :: critical_t
       !> found, or the verdict of both ends, or undecided
       integer :: verdict = 0
-      !> Why the verdict is undecided; unallocated otherwise
+      !> Why the last undecided value is; unallocated if none was
       character(len=:), allocatable :: reason
+      !> The last undecided value
+      real(wp) :: undecided_at = 0.0_wp
       !> Value nearest to critical at which the structure falls
       real(wp) :: falls = 0.0_wp
       !> Value nearest to critical at which it stands
@@ -106,10 +107,7 @@ contains
 
       call find_collapse(family, search, limit, critical)
       if (critical%verdict /= verdict%undecided) return
-      if (.not. allocated(critical%fallen)) then
-         if (.not. allocated(critical%reason)) critical%reason = "no value was found that falls"
-         return
-      end if
+      if (.not. allocated(critical%fallen)) return
       if (search%check_far_end .and. .not. allocated(critical%standing)) &
          & call decide_at(family, limit, critical, answer)
       answer = verdict%collapsed
@@ -133,8 +131,6 @@ contains
             undecided = 0
          end if
       end do
-      if (.not. allocated(critical%reason)) critical%reason = "too many decisions"
-      critical%reason = "the bracket cannot be closed further: "//critical%reason
    end subroutine find_critical
 
    !> Go to the first collapse: from the start towards the low end, or else at the high end
@@ -209,6 +205,7 @@ contains
       call family%build(value, scene, error)
       if (allocated(error)) then
          critical%reason = error%message
+         critical%undecided_at = value
          return
       end if
       critical%current = scene%settings%current
@@ -225,7 +222,8 @@ contains
          critical%stands = value
          call move_alloc(decision, critical%standing)
       else
-         critical%reason = "at "//to_text(value)//" "//decision%outcome%reason
+         critical%reason = decision%outcome%reason
+         critical%undecided_at = value
       end if
    end subroutine decide_at
 

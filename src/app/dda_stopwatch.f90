@@ -1,0 +1,121 @@
+!> How long a job takes and how much memory the process has taken
+module dda_stopwatch
+   use, intrinsic :: iso_fortran_env, only : int64
+   use dda_kinds, only : wp
+   implicit none
+   private
+
+   public :: job_t, median_seconds, peak_memory
+
+   !> Work that is repeated and timed
+   type, abstract :: job_t
+   contains
+      !> Make ready for one run; not timed
+      procedure :: prepare
+      !> The work; timed
+      procedure(run_job), deferred :: run
+   end type job_t
+
+   abstract interface
+      !> Do the work once
+      subroutine run_job(job)
+         import :: job_t
+         !> The job
+         class(job_t), intent(inout) :: job
+      end subroutine run_job
+   end interface
+
+   !> Time that one figure may take [s]
+   real(wp), parameter :: budget = 0.5_wp
+   !> Fewest and most samples of one figure
+   integer, parameter :: fewest = 5, most = 101
+
+contains
+
+   !> Nothing to make ready
+   subroutine prepare(job)
+      !> The job
+      class(job_t), intent(inout) :: job
+
+      associate (unused => job)
+      end associate
+   end subroutine prepare
+
+   !> Median of the times that a job takes; short jobs are summed into samples
+   function median_seconds(job) result(median)
+      !> The job
+      class(job_t), intent(inout) :: job
+      !> The median [s]
+      real(wp) :: median
+      real(wp) :: sample(most), once
+      integer :: batch, i, n
+
+      once = max(seconds_of(job, 2), 1.0e-8_wp)
+      n = max(fewest, min(most, int(budget/once)))
+      batch = max(1, int(budget/(once*real(n, wp))))
+      do i = 1, n
+         sample(i) = seconds_of(job, batch)
+      end do
+      median = median_of(sample(:n))
+   end function median_seconds
+
+   !> Mean time of several runs in a row
+   function seconds_of(job, runs) result(mean)
+      !> The job
+      class(job_t), intent(inout) :: job
+      !> How many
+      integer, intent(in) :: runs
+      !> The mean [s]
+      real(wp) :: mean
+      integer(int64) :: start, finish, rate, ticks
+      integer :: i
+
+      ticks = 0_int64
+      do i = 1, runs
+         call job%prepare()
+         call system_clock(start, rate)
+         call job%run()
+         call system_clock(finish)
+         ticks = ticks + finish - start
+      end do
+      mean = real(ticks, wp)/(real(rate, wp)*real(runs, wp))
+   end function seconds_of
+
+   !> The value in the middle: half of the values are no larger, half no smaller
+   pure real(wp) function median_of(values)
+      !> One value or more: (:)
+      real(wp), intent(in) :: values(:)
+      real(wp) :: sorted(size(values))
+      integer :: at, i
+
+      do i = 1, size(values)
+         at = i
+         do while (at > 1)
+            if (sorted(at - 1) <= values(i)) exit
+            sorted(at) = sorted(at - 1)
+            at = at - 1
+         end do
+         sorted(at) = values(i)
+      end do
+      median_of = (sorted((size(values) + 1)/2) + sorted(size(values)/2 + 1))/2.0_wp
+   end function median_of
+
+   !> Most memory that this process has had at one time, where the system tells it
+   integer function peak_memory()
+      !> [kB]; -1 if it is not known
+      character(len=80) :: line
+      integer :: stat, unit
+
+      peak_memory = -1
+      open (newunit=unit, file="/proc/self/status", action="read", status="old", iostat=stat)
+      if (stat /= 0) return
+      do
+         read (unit, "(a)", iostat=stat) line
+         if (stat /= 0) exit
+         if (line(:6) /= "VmHWM:") cycle
+         read (line(7:index(line, "kB") - 1), *, iostat=stat) peak_memory
+         exit
+      end do
+      close (unit)
+   end function peak_memory
+end module dda_stopwatch
