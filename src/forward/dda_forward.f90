@@ -122,6 +122,7 @@ contains
          call follow_contacts(system, settings%penalty_ratio, settings%n_dof, contacts)
          call take_springs(contacts%springs, equations)
       end if
+      step%was_cut = .false.
       do retry = 0, max_retries
          step%dt = march%dt
          call begin_step(contacts, size(equations%weight, 1), size(equations%weight, 2), step%state)

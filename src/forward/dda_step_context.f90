@@ -15,6 +15,8 @@ module dda_step_context
       type(step_state_t) :: state
       !> Whether the step counts
       logical :: accepted = .false.
+      !> Whether a longer step did not settle
+      logical :: was_cut = .false.
       !> Whether no contact broke in it, so that its end is one of equilibrium
       logical :: whole = .true.
       !> Largest motion of a point [m]

@@ -121,6 +121,7 @@ contains
       step%accepted = step%state%settled
       if (.not. step%accepted) then
          march%dt = cut*march%dt
+         step%was_cut = .true.
          return
       end if
       step%farthest = largest_motion(system, step%state%motion)

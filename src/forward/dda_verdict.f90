@@ -29,6 +29,12 @@ module dda_verdict
    !> Names of the verdicts
    type(verdict_enum), parameter :: verdict = verdict_enum()
 
+   !> Free fall over elastic motion in a step that can prove a collapse: a shallow arch with three
+   !> hinges yields far more than the same arch without, and looks like a mechanism for a while. The
+   !> longest step that settles will do with less
+   real(wp), parameter :: beyond_elastic = 1.0e8_wp
+   !> The least free fall over elastic motion that can prove a collapse
+   real(wp), parameter :: beyond_any = 100.0_wp
    !> Where blocks move, collapse is a displacement of this multiple of the elastic motion
    real(wp), parameter :: collapse_multiple = 100.0_wp
    !> Where blocks move, rest is a step of this share of the displacement so far
@@ -86,12 +92,14 @@ contains
       integer :: answer
       logical :: at_rest, far_beyond_elastic, all_work_is_speed, steady, most_work_is_speed
       logical :: stores_nothing
-      real(wp) :: far
+      real(wp) :: far, fall
 
       far = settings%collapse_displacement
       if (settings%current .and. .not. far > 0.0_wp) far = collapse_multiple*march%elastic_motion
       at_rest = step%acceleration <= settings%rest_tolerance*march%free_acceleration
-      far_beyond_elastic = march%free_acceleration*step%dt**2/2.0_wp >= 100.0_wp*march%elastic_motion
+      fall = march%free_acceleration*step%dt**2/2.0_wp
+      far_beyond_elastic = fall >= beyond_elastic*march%elastic_motion &
+         & .or. (step%was_cut .or. step%dt >= march%longest) .and. fall >= beyond_any*march%elastic_motion
       all_work_is_speed = step%kinetic > 0.999_wp*step%work
       most_work_is_speed = step%kinetic > 0.9_wp*step%work
       steady = abs(step%acceleration - march%last_acceleration) < 0.01_wp*march%last_acceleration

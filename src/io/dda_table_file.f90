@@ -1,9 +1,8 @@
-!> Tables written line by line through the C library, which tells when a disk is full; Fortran's
-!> flush does not
+!> Tables written line by line, each line safe on its own
 module dda_table_file
-   use, intrinsic :: iso_c_binding, only : c_associated, c_char, c_int, c_null_char, c_null_ptr, &
-      & c_ptr, c_size_t
-   use dda_error, only : error_t, fatal_error
+   use, intrinsic :: iso_c_binding, only : c_char, c_int, c_null_char
+   use dda_binary_file, only : append_text, binary_file_t, close_binary, flush_binary, open_binary
+   use dda_error, only : error_t
    implicit none
    private
 
@@ -12,48 +11,11 @@ module dda_table_file
    !> An open table
    type :: table_file_t
       private
-      !> C's handle of the file
-      type(c_ptr) :: handle = c_null_ptr
-      !> Name of the file, for messages
-      character(len=:), allocatable :: name
+      !> Its file
+      type(binary_file_t) :: file
    end type table_file_t
 
    interface
-      !> C: open a file
-      function c_fopen(path, mode) bind(c, name="fopen") result(handle)
-         import :: c_char, c_ptr
-         !> Its name, ended by a null character
-         character(kind=c_char), intent(in) :: path(*)
-         !> What is wanted of it, ended by a null character
-         character(kind=c_char), intent(in) :: mode(*)
-         !> The file, null if it cannot be opened
-         type(c_ptr) :: handle
-      end function c_fopen
-
-      !> C: write items
-      function c_fwrite(items, size, count, handle) bind(c, name="fwrite") result(written)
-         import :: c_char, c_ptr, c_size_t
-         !> The items
-         character(kind=c_char), intent(in) :: items(*)
-         !> Size of an item
-         integer(c_size_t), intent(in), value :: size
-         !> Number of items
-         integer(c_size_t), intent(in), value :: count
-         !> The file
-         type(c_ptr), intent(in), value :: handle
-         !> Number of items written
-         integer(c_size_t) :: written
-      end function c_fwrite
-
-      !> C: hand what is buffered to the system
-      function c_fflush(handle) bind(c, name="fflush") result(failed)
-         import :: c_int, c_ptr
-         !> The file
-         type(c_ptr), intent(in), value :: handle
-         !> 0 if all is well
-         integer(c_int) :: failed
-      end function c_fflush
-
       !> C: remove a file
       function c_remove(path) bind(c, name="remove") result(failed)
          import :: c_char, c_int
@@ -62,15 +24,6 @@ module dda_table_file
          !> 0 if it was removed
          integer(c_int) :: failed
       end function c_remove
-
-      !> C: close a file
-      function c_fclose(handle) bind(c, name="fclose") result(failed)
-         import :: c_int, c_ptr
-         !> The file
-         type(c_ptr), intent(in), value :: handle
-         !> 0 if all is well
-         integer(c_int) :: failed
-      end function c_fclose
    end interface
 
 contains
@@ -86,13 +39,8 @@ contains
       !> Allocated if the file cannot be written
       type(error_t), allocatable, intent(out) :: error
 
-      table%name = file
-      table%handle = c_fopen(file//c_null_char, "w"//c_null_char)
-      if (.not. c_associated(table%handle)) then
-         call fatal_error(error, "a file that can be written is wanted, this one cannot", file, 1)
-         return
-      end if
-      call append_line(table, header, error)
+      call open_binary(file, table%file, error)
+      if (.not. allocated(error)) call append_line(table, header, error)
    end subroutine open_table
 
    !> Write one line, or several, so that it survives the end of the program
@@ -103,24 +51,18 @@ contains
       character(len=*), intent(in) :: line
       !> Allocated if it cannot be written
       type(error_t), allocatable, intent(out) :: error
-      integer(c_size_t) :: length, written
-      integer(c_int) :: failed
 
-      length = len(line) + 1
-      written = c_fwrite(line//new_line("a"), 1_c_size_t, length, table%handle)
-      failed = c_fflush(table%handle)
-      if (written /= length .or. failed /= 0) &
-         & call fatal_error(error, "the results find no room here", table%name, 1)
+      call append_text(table%file, line//new_line("a"))
+      call flush_binary(table%file, error)
    end subroutine append_line
 
    !> Close a table
    subroutine close_table(table)
       !> The table; nothing happens to one that is not open
       type(table_file_t), intent(inout) :: table
-      integer(c_int) :: failed
+      type(error_t), allocatable :: known
 
-      if (c_associated(table%handle)) failed = c_fclose(table%handle)
-      table%handle = c_null_ptr
+      call close_binary(table%file, known)
    end subroutine close_table
 
    !> Remove a file of an earlier run; one that is not there is no failure

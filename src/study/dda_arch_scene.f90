@@ -16,6 +16,7 @@ module dda_arch_scene
    private
 
    public :: arch_family_t, arch_scene, half_joints_deg, exact_thickness, search_start
+   public :: arch_resolution
 
    !> Friction angles from here on mean that no joint slides [deg]
    real(wp), parameter :: no_slip_deg = 89.9_wp
@@ -156,7 +157,7 @@ contains
       type(deck_t), intent(in) :: deck
       !> The settings
       type(settings_t) :: settings
-      real(wp) :: half_angle, direction
+      real(wp) :: half_angle, direction, noise
 
       half_angle = degree*real_of(deck, "arch", "half_angle_deg")
       direction = degree*real_of(deck, "load", "gravity_direction_deg")
@@ -175,8 +176,11 @@ contains
       where (abs(settings%load_direction) < epsilon(1.0_wp)) settings%load_direction = 0.0_wp
       settings%load_direction(1) = settings%load_direction(1) &
          & + real_of(deck, "load", "horizontal_coefficient")
-      settings%rest_tolerance = max(2.0e-14_wp, 1.0e-3_wp &
-         & *min(1.0_wp, half_angle**2/2.0_wp)*real_of(deck, "search", "tolerance"))
+      settings%rest_tolerance = 1.0e-3_wp*min(1.0_wp, half_angle**2/2.0_wp) &
+         & *real_of(deck, "search", "tolerance")
+      ! the thrust is w r, the weight of a voussoir 2 w r alpha/n: rounding of the one moves the other
+      noise = 16.0_wp*epsilon(1.0_wp)*real(size(half_joints_deg(deck)), wp)/half_angle
+      settings%rest_tolerance = max(settings%rest_tolerance, noise)
    end function settings_of
 
    !> Exact critical thickness ratio of the very same polygons by limit analysis
@@ -219,4 +223,16 @@ contains
       square = (degree*real_of(deck, "arch", "half_angle_deg"))**2
       search_start = 0.8_wp*square**2/48.0_wp*max(0.3_wp, 1.0_wp - square/10.0_wp)
    end function search_start
+
+   !> What the rounding of corners makes of the critical thickness ratio. A corner off by eps r makes
+   !> the weight of a voussoir wrong by eps/eta, and with it the place of the thrust by
+   !> alpha^2/8*eps/eta of the radius, to be compared with eta = alpha^4/48; with a margin of 4
+   pure real(wp) function arch_resolution(deck)
+      !> The deck of one case
+      type(deck_t), intent(in) :: deck
+      real(wp) :: square
+
+      square = (degree*real_of(deck, "arch", "half_angle_deg"))**2
+      arch_resolution = 4.0_wp*48.0_wp**2/8.0_wp*epsilon(1.0_wp)/square**3
+   end function arch_resolution
 end module dda_arch_scene

@@ -1,7 +1,8 @@
 !> One case of a deck: prepared, computed, and told as rows of the result tables
 module dda_case
    use, intrinsic :: iso_fortran_env, only : int64
-   use dda_arch_scene, only : arch_family_t, arch_scene, exact_thickness, search_start
+   use dda_arch_scene, only : arch_family_t, arch_resolution, arch_scene, exact_thickness, &
+      & search_start
    use dda_contact_detection, only : contacts_t
    use dda_critical, only : critical_t, find_critical, search_t
    use dda_decision, only : decide, decision_t
@@ -234,6 +235,7 @@ contains
       call find_parameter(text_of(deck, "search", "parameter"), family%parameter, problem)
       call search_bracket(deck, search%low, search%high)
       search%tolerance = real_of(deck, "search", "tolerance")
+      search%resolution = arch_resolution(deck)
       search%start = search%low
       if (searched_name(deck) /= "thickness_ratio") return
       search%start = search_start(deck)
@@ -243,16 +245,21 @@ contains
       search%start = min(max(search%start, search%low), search%high)
    end subroutine prepare_search
 
-   !> Fill the columns of a closed bracket
+   !> Fill the columns of a closed bracket; where its ends lie closer than rounding can tell apart,
+   !> the bracket that is told is as wide as that
    pure subroutine tell_bracket(critical, row)
       !> What was found
       type(critical_t), intent(in) :: critical
       !> The row
       type(result_row_t), intent(inout) :: row
 
-      row%critical_low = some_number(min(critical%falls, critical%stands))
-      row%critical_high = some_number(max(critical%falls, critical%stands))
-      row%critical = some_number((critical%falls + critical%stands)/2.0_wp)
+      real(wp) :: middle, half
+
+      middle = (critical%falls + critical%stands)/2.0_wp
+      half = max(abs(critical%stands - critical%falls)/2.0_wp, critical%half)
+      row%critical = some_number(middle)
+      row%critical_low = some_number(middle - half)
+      row%critical_high = some_number(middle + half)
       row%collapses_at = merge("low ", "high", critical%falls < critical%stands)
       if (row%exact%known) row%relative_error = &
          & some_number((row%critical%value - row%exact%value)/row%exact%value)

@@ -25,6 +25,8 @@ module dda_critical
       real(wp) :: start = 0.0_wp
       !> Width of the bracket over the critical value
       real(wp) :: tolerance = 1.0e-8_wp
+      !> Relative change of the critical value that rounded coordinates can make, if it is known
+      real(wp) :: resolution = 0.0_wp
       !> Whether the end beyond the critical value is decided too; not needed where it is known to stand
       logical :: check_far_end = .true.
    end type search_t
@@ -41,6 +43,8 @@ module dda_critical
       real(wp) :: falls = 0.0_wp
       !> Value nearest to critical at which it stands
       real(wp) :: stands = 0.0_wp
+      !> Half the width that rounding and tolerance leave to the bracket
+      real(wp) :: half = 0.0_wp
       !> Decision at falls, if there is one
       type(decision_t), allocatable :: fallen
       !> Decision at stands, if there is one
@@ -78,14 +82,16 @@ module dda_critical
    !> Most undecided values in a row on the way to a decided one
    integer, parameter :: max_undecided = 6
 
-   !> No bracket is narrower than this share of its value
-   real(wp), parameter :: least_tolerance = 4.0e-13_wp
+   !> Half a bracket is no narrower than this share of its value
+   real(wp), parameter :: least_share = 4.0e-12_wp
+   !> What each joint adds to that share
+   real(wp), parameter :: share_of_joint = 2.0e-14_wp
    !> A bracket wider than this share of its value is no answer
    real(wp), parameter :: widest = 1.0e-4_wp
    !> Share of the value by which moving blocks are first looked for beyond frozen ones
    real(wp), parameter :: first_reach = 1.0e-3_wp
    !> Margin over the noise that three samples show
-   real(wp), parameter :: noise_margin = 5.0_wp
+   real(wp), parameter :: noise_margin = 20.0_wp
    !> Most passes of the secant method
    integer, parameter :: max_passes = 20
    !> Free fall over elastic motion in the step that traces a mechanism
@@ -120,6 +126,7 @@ contains
          if (answer == verdict%collapsed) call trace(family, search, limit, critical, proposal)
          if (closed(critical, proposal)) then
             critical%verdict = verdict%found
+            critical%half = proposal%half
             return
          end if
          call decide_at(family, candidate(critical, proposal, limit), critical, answer)
@@ -289,11 +296,9 @@ contains
       !> Where the last collapse stops
       type(proposal_t), intent(in) :: proposal
 
-      real(wp) :: width
-
-      width = abs(critical%stands - critical%falls)
-      closed = allocated(critical%standing) .and. width <= 2.0001_wp*proposal%half &
-         & .and. width <= widest*abs(critical%stands)
+      closed = allocated(critical%standing) &
+         & .and. abs(critical%stands - critical%falls) <= 2.0001_wp*proposal%half &
+         & .and. 2.0_wp*proposal%half <= widest*abs(critical%stands)
    end function closed
 
    !> Trace the last collapse to where it stops, by the secant method on the power of the loads
@@ -313,7 +318,7 @@ contains
       integer :: pass
       logical :: usable, stopped, only_noise
 
-      proposal%half = search%tolerance*max(abs(critical%falls), tiny(1.0_wp))/2.0_wp
+      proposal%half = least_half(search, critical)*max(abs(critical%falls), tiny(1.0_wp))
       if (critical%fallen%flow /= flow_rule%associated) return
       mechanism%face = critical%fallen%contacts%face
       mechanism%motion = critical%fallen%outcome%motion(:3, :)
@@ -341,14 +346,25 @@ contains
       proposal%value = next
       if (critical%current) then
          proposal%reach = first_reach*abs(next)
-         proposal%half = max(search%tolerance, least_tolerance)*abs(next)/2.0_wp
+         proposal%half = least_half(search, critical)*abs(next)
          return
       end if
       call refine_noise(family, mechanism, next, critical, noise)
-      proposal%half = max(max(search%tolerance, least_tolerance)*abs(next)/2.0_wp, &
-         & abs(noise/coarse_slope), rest_resolution(critical, next))
+      proposal%half = max(least_half(search, critical)*abs(next), abs(noise/coarse_slope), &
+         & rest_resolution(critical, next))
       proposal%reach = proposal%half
    end subroutine trace
+
+   !> Half the width of a bracket over its value: of the tolerance, or of what rounding leaves
+   pure real(wp) function least_half(search, critical)
+      !> What is searched
+      type(search_t), intent(in) :: search
+      !> What was found so far, a collapse among it
+      type(critical_t), intent(in) :: critical
+
+      least_half = max(search%tolerance/2.0_wp, search%resolution, &
+         & least_share + share_of_joint*real(size(critical%fallen%contacts%face), wp))
+   end function least_half
 
    !> Rounding in the solution of the equations: what another length of the step makes of the power
    pure subroutine refine_noise(family, mechanism, value, critical, noise)

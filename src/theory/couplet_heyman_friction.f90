@@ -182,8 +182,10 @@ contains
       deficit = sin(x)**2
    end function haunch_deficit
 
-   !> Hinge and thickness of the line of thrust that a sliding joint dictates: eq. (12) with eq. (7)
-   !> or its like
+   !> Hinge and thickness of the line of thrust that a sliding joint dictates
+   !>
+   !> Eq. (12) with eq. (7) or its like. Where no line touches the intrados below the crown, the
+   !> hinge has reached the crown and opens there outwards: beta is 0.
    elemental subroutine mixed_hinge(alpha, deficit, through_crown, which, beta, eta)
       !> Half angle of embrace [rad]
       real(wp), intent(in) :: alpha
@@ -201,17 +203,33 @@ contains
       real(wp) :: ratio, change
       integer :: step
 
+      eta = thickness_at(0.0_wp, alpha, deficit, through_crown, which)
+      if (deficit <= tangency_excess(eta, which)) then
+         beta = 0.0_wp
+         return
+      end if
       do step = 1, most_steps
          eta = thickness_at(beta, alpha, deficit, through_crown, which)
          ratio = arm_excess(beta)/sin(beta)
-         change = deficit - ratio &
-                - tangency_flag(which)*eta*(1.0_wp + weight_flag(which)*eta/6.0_wp)/(2.0_wp - eta)
+         change = deficit - ratio - tangency_excess(eta, which)
          change = change/(beta - ratio*cos(beta)/sin(beta))
-         beta = beta + change
+         beta = max(beta + change, 0.1_wp*beta)
          if (abs(change) <= short_step*beta) exit
       end do
       eta = thickness_at(beta, alpha, deficit, through_crown, which)
    end subroutine mixed_hinge
+
+   !> beta cot beta - h_e of eq. (12)
+   elemental function tangency_excess(eta, which) result(excess)
+      !> Thickness ratio [-]
+      real(wp), intent(in) :: eta
+      !> One of `theory`
+      integer, intent(in) :: which
+      !> The difference
+      real(wp) :: excess
+
+      excess = tangency_flag(which)*eta*(1.0_wp + weight_flag(which)*eta/6.0_wp)/(2.0_wp - eta)
+   end function tangency_excess
 
    !> Thickness ratio at which the line of thrust passes the intrados at beta and one extrados point
    !>

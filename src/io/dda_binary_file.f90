@@ -1,0 +1,203 @@
+!> Files written through the C library, which tells when a disk is full; Fortran's flush does not.
+!> Whatever fails on the way is reported when the file is flushed or closed
+module dda_binary_file
+   use, intrinsic :: iso_c_binding, only : c_associated, c_char, c_int, c_loc, c_long, c_null_char, &
+      & c_null_ptr, c_ptr, c_size_t
+   use, intrinsic :: iso_fortran_env, only : int32, int64
+   use dda_error, only : error_t, fatal_error
+   use dda_kinds, only : wp
+   implicit none
+   private
+
+   public :: binary_file_t, open_binary, flush_binary, close_binary, go_to
+   public :: append_text, append_reals, append_integers, append_length
+
+   !> A file open for writing
+   type :: binary_file_t
+      private
+      !> C's handle of the file
+      type(c_ptr) :: handle = c_null_ptr
+      !> Name of the file, for messages
+      character(len=:), allocatable :: name
+   end type binary_file_t
+
+   interface
+      !> C: open a file
+      function c_fopen(path, mode) bind(c, name="fopen") result(handle)
+         import :: c_char, c_ptr
+         !> Its name, ended by a null character
+         character(kind=c_char), intent(in) :: path(*)
+         !> What is wanted of it, ended by a null character
+         character(kind=c_char), intent(in) :: mode(*)
+         !> The file, null if it cannot be opened
+         type(c_ptr) :: handle
+      end function c_fopen
+
+      !> C: write items
+      function c_fwrite(items, size, count, handle) bind(c, name="fwrite") result(written)
+         import :: c_ptr, c_size_t
+         !> Where the items are
+         type(c_ptr), intent(in), value :: items
+         !> Size of an item
+         integer(c_size_t), intent(in), value :: size
+         !> Number of items
+         integer(c_size_t), intent(in), value :: count
+         !> The file
+         type(c_ptr), intent(in), value :: handle
+         !> Number of items written
+         integer(c_size_t) :: written
+      end function c_fwrite
+
+      !> C: hand what is buffered to the system
+      function c_fflush(handle) bind(c, name="fflush") result(failed)
+         import :: c_int, c_ptr
+         !> The file
+         type(c_ptr), intent(in), value :: handle
+         !> 0 if all is well
+         integer(c_int) :: failed
+      end function c_fflush
+
+      !> C: go to a place of a file
+      function c_fseek(handle, offset, origin) bind(c, name="fseek") result(failed)
+         import :: c_int, c_long, c_ptr
+         !> The file
+         type(c_ptr), intent(in), value :: handle
+         !> Bytes from the origin
+         integer(c_long), intent(in), value :: offset
+         !> 0 for the beginning of the file
+         integer(c_int), intent(in), value :: origin
+         !> 0 if all is well
+         integer(c_int) :: failed
+      end function c_fseek
+
+      !> C: whether anything has failed since the file was opened
+      function c_ferror(handle) bind(c, name="ferror") result(failed)
+         import :: c_int, c_ptr
+         !> The file
+         type(c_ptr), intent(in), value :: handle
+         !> 0 if all is well
+         integer(c_int) :: failed
+      end function c_ferror
+
+      !> C: close a file
+      function c_fclose(handle) bind(c, name="fclose") result(failed)
+         import :: c_int, c_ptr
+         !> The file
+         type(c_ptr), intent(in), value :: handle
+         !> 0 if all is well
+         integer(c_int) :: failed
+      end function c_fclose
+   end interface
+
+contains
+
+   !> Begin a file
+   subroutine open_binary(name, file, error)
+      !> Name of the file; one that exists is replaced
+      character(len=*), intent(in) :: name
+      !> The file
+      type(binary_file_t), intent(out) :: file
+      !> Allocated if it cannot be written
+      type(error_t), allocatable, intent(out) :: error
+
+      file%name = name
+      file%handle = c_fopen(name//c_null_char, "wb"//c_null_char)
+      if (.not. c_associated(file%handle)) &
+         & call fatal_error(error, "a file that can be written is wanted, this one cannot", name, 1)
+   end subroutine open_binary
+
+   !> Write so that all up to here survives the end of the program
+   subroutine flush_binary(file, error)
+      !> The file
+      type(binary_file_t), intent(in) :: file
+      !> Allocated if anything could not be written since the file was opened
+      type(error_t), allocatable, intent(out) :: error
+      integer(c_int) :: failed(2)
+
+      failed = [c_fflush(file%handle), c_ferror(file%handle)]
+      if (any(failed /= 0)) &
+         & call fatal_error(error, "the results find no room here", file%name, 1)
+   end subroutine flush_binary
+
+   !> Close a file
+   subroutine close_binary(file, error)
+      !> The file; nothing happens to one that is not open
+      type(binary_file_t), intent(inout) :: file
+      !> Allocated if anything could not be written since the file was opened
+      type(error_t), allocatable, intent(out) :: error
+      integer(c_int) :: failed
+
+      if (.not. c_associated(file%handle)) return
+      call flush_binary(file, error)
+      failed = c_fclose(file%handle)
+      if (failed /= 0 .and. .not. allocated(error)) &
+         & call fatal_error(error, "the results find no room here", file%name, 1)
+      file%handle = c_null_ptr
+   end subroutine close_binary
+
+   !> Go on writing at another place; a place beyond the end is not for this
+   subroutine go_to(file, place)
+      !> The file
+      type(binary_file_t), intent(in) :: file
+      !> Bytes before the place
+      integer, intent(in) :: place
+      integer(c_int) :: failed
+
+      failed = c_fseek(file%handle, int(place, c_long), 0_c_int)
+   end subroutine go_to
+
+   !> Write characters as they are
+   subroutine append_text(file, text)
+      !> The file
+      type(binary_file_t), intent(in) :: file
+      !> The characters
+      character(len=*), intent(in), target :: text
+
+      if (len(text) > 0) call append_bytes(file, c_loc(text(1:1)), len(text, c_size_t))
+   end subroutine append_text
+
+   !> Write numbers in the machine's own form
+   subroutine append_reals(file, values)
+      !> The file
+      type(binary_file_t), intent(in) :: file
+      !> The numbers: (:, :)
+      real(wp), intent(in), target, contiguous :: values(:, :)
+
+      if (size(values) > 0) &
+         & call append_bytes(file, c_loc(values), storage_size(values)/8*size(values, kind=c_size_t))
+   end subroutine append_reals
+
+   !> Write integers of 32 bits in the machine's own form
+   subroutine append_integers(file, values)
+      !> The file
+      type(binary_file_t), intent(in) :: file
+      !> The integers: (:)
+      integer(int32), intent(in), target, contiguous :: values(:)
+
+      if (size(values) > 0) &
+         & call append_bytes(file, c_loc(values), 4*size(values, kind=c_size_t))
+   end subroutine append_integers
+
+   !> Write one integer of 64 bits in the machine's own form
+   subroutine append_length(file, length)
+      !> The file
+      type(binary_file_t), intent(in) :: file
+      !> The integer
+      integer(int64), intent(in), target :: length
+
+      call append_bytes(file, c_loc(length), 8_c_size_t)
+   end subroutine append_length
+
+   !> Write bytes; C keeps in mind whether that failed
+   subroutine append_bytes(file, bytes, n)
+      !> The file
+      type(binary_file_t), intent(in) :: file
+      !> Where they are
+      type(c_ptr), intent(in) :: bytes
+      !> How many
+      integer(c_size_t), intent(in) :: n
+      integer(c_size_t) :: written
+
+      written = c_fwrite(bytes, 1_c_size_t, n, file%handle)
+   end subroutine append_bytes
+end module dda_binary_file

@@ -1,0 +1,210 @@
+!> Fields of a grid for ParaView: a name and one column of numbers a point or a cell
+module dda_vtu_field
+   use, intrinsic :: iso_fortran_env, only : int32, int64
+   use dda_binary_file, only : append_integers, append_length, append_reals, binary_file_t
+   use dda_error, only : error_t, require
+   use dda_kinds, only : wp
+   use dda_text, only : to_text
+   use dda_xml_text, only : attribute
+   implicit none
+   private
+
+   public :: field_t, field_kind, field_kind_enum
+   public :: scalar_field, vector_field, tensor_field, state_field
+   public :: check_field, field_attributes, field_bytes, append_field, append_vectors
+
+   !> What the numbers of a field are
+   type :: field_kind_enum
+      !> One real number
+      integer :: scalar = 1
+      !> x and y; written with z = 0
+      integer :: vector = 2
+      !> xx, yy and xy of a symmetric tensor; written as three components of these names
+      integer :: tensor = 3
+      !> One whole number; written as an integer
+      integer :: state = 4
+   end type field_kind_enum
+
+   !> Names of the kinds
+   type(field_kind_enum), parameter :: field_kind = field_kind_enum()
+
+   !> A field
+   type :: field_t
+      !> Name that ParaView shows
+      character(len=64) :: name = ""
+      !> One of field_kind
+      integer :: kind = field_kind%scalar
+      !> The numbers: (1, n), of a vector (2, n), of a tensor (3, n)
+      real(wp), allocatable :: values(:, :)
+   end type field_t
+
+   !> Columns that are turned into the file's form at a time
+   integer, parameter :: chunk = 2048
+
+contains
+
+   !> A field of real numbers
+   pure function scalar_field(name, values) result(field)
+      !> Its name
+      character(len=*), intent(in) :: name
+      !> The numbers: (n)
+      real(wp), intent(in) :: values(:)
+      !> The field
+      type(field_t) :: field
+
+      field%name = name
+      field%kind = field_kind%scalar
+      allocate (field%values(1, size(values)))
+      field%values(1, :) = values
+   end function scalar_field
+
+   !> A field of plane vectors
+   pure function vector_field(name, values) result(field)
+      !> Its name
+      character(len=*), intent(in) :: name
+      !> Components x and y: (2, n)
+      real(wp), intent(in) :: values(:, :)
+      !> The field
+      type(field_t) :: field
+
+      field%name = name
+      field%kind = field_kind%vector
+      allocate (field%values, source=values)
+   end function vector_field
+
+   !> A field of symmetric plane tensors
+   pure function tensor_field(name, values) result(field)
+      !> Its name
+      character(len=*), intent(in) :: name
+      !> Components xx, yy and xy: (3, n)
+      real(wp), intent(in) :: values(:, :)
+      !> The field
+      type(field_t) :: field
+
+      field%name = name
+      field%kind = field_kind%tensor
+      allocate (field%values, source=values)
+   end function tensor_field
+
+   !> A field of whole numbers
+   pure function state_field(name, states) result(field)
+      !> Its name
+      character(len=*), intent(in) :: name
+      !> The numbers: (n)
+      integer, intent(in) :: states(:)
+      !> The field
+      type(field_t) :: field
+
+      field%name = name
+      field%kind = field_kind%state
+      allocate (field%values(1, size(states)))
+      field%values(1, :) = real(states, wp)
+   end function state_field
+
+   !> The contract of a field: a column of the right height for each point or cell
+   pure subroutine check_field(field, n, error)
+      !> The field
+      type(field_t), intent(in) :: field
+      !> Number of points or cells
+      integer, intent(in) :: n
+      !> Allocated if the field does not fit; left as it was otherwise
+      type(error_t), allocatable, intent(inout) :: error
+      integer, parameter :: height(4) = [1, 2, 3, 1]
+      integer :: wanted(2)
+
+      call require(field%kind >= 1 .and. field%kind <= size(height) .and. allocated(field%values), &
+         & "the field '"//trim(field%name)//"' wants a kind and values", error)
+      if (allocated(error)) return
+      wanted = [height(field%kind), n]
+      if (all(shape(field%values) == wanted)) return
+      call require(.false., "the field '"//trim(field%name)//"' wants "//shape_text(wanted) &
+         & //" numbers, found "//shape_text(shape(field%values)), error)
+   end subroutine check_field
+
+   !> A shape as people write it
+   pure function shape_text(extent) result(text)
+      !> Rows and columns: (2)
+      integer, intent(in) :: extent(2)
+      !> The text
+      character(len=:), allocatable :: text
+
+      text = to_text(extent(1))//" x "//to_text(extent(2))
+   end function shape_text
+
+   !> What the file's header says of a field
+   pure function field_attributes(field) result(text)
+      !> The field
+      type(field_t), intent(in) :: field
+      !> Attributes, each with a blank before it
+      character(len=:), allocatable :: text
+
+      text = attribute("type", "Float64")
+      if (field%kind == field_kind%state) text = attribute("type", "Int32")
+      text = text//attribute("Name", trim(field%name))
+      if (field%kind == field_kind%vector .or. field%kind == field_kind%tensor) &
+         & text = text//attribute("NumberOfComponents", "3")
+      if (field%kind == field_kind%tensor) text = text//attribute("ComponentName0", "xx") &
+         & //attribute("ComponentName1", "yy")//attribute("ComponentName2", "xy")
+   end function field_attributes
+
+   !> Room that the numbers of a field take in the file
+   pure function field_bytes(field) result(n)
+      !> The field
+      type(field_t), intent(in) :: field
+      !> Bytes, without the length before them
+      integer(int64) :: n
+      integer, parameter :: column(4) = [8, 24, 24, 4]
+
+      n = int(column(field%kind), int64)*size(field%values, 2, int64)
+   end function field_bytes
+
+   !> Write the length of a field and its numbers
+   subroutine append_field(file, field)
+      !> The file
+      type(binary_file_t), intent(in) :: file
+      !> The field
+      type(field_t), intent(in) :: field
+
+      call append_length(file, field_bytes(field))
+      if (field%kind == field_kind%vector) then
+         call append_vectors(file, field%values)
+      else if (field%kind == field_kind%state) then
+         call append_states(file, field%values)
+      else
+         call append_reals(file, field%values)
+      end if
+   end subroutine append_field
+
+   !> Write plane vectors with z = 0
+   subroutine append_vectors(file, values)
+      !> The file
+      type(binary_file_t), intent(in) :: file
+      !> Components x and y: (2, n)
+      real(wp), intent(in) :: values(:, :)
+      real(wp) :: spatial(3, chunk)
+      integer :: first, n
+
+      spatial(3, :) = 0.0_wp
+      do first = 1, size(values, 2), chunk
+         n = min(chunk, size(values, 2) - first + 1)
+         spatial(1:2, :n) = values(:, first:first + n - 1)
+         call append_reals(file, spatial(:, :n))
+      end do
+   end subroutine append_vectors
+
+   !> Write whole numbers
+   subroutine append_states(file, values)
+      !> The file
+      type(binary_file_t), intent(in) :: file
+      !> The numbers: (1, n)
+      real(wp), intent(in) :: values(:, :)
+      integer(int32) :: states(chunk)
+      integer :: first, n
+
+      do first = 1, size(values, 2), chunk
+         n = min(chunk, size(values, 2) - first + 1)
+         states(:n) = nint(values(1, first:first + n - 1), int32)
+         call append_integers(file, states(:n))
+      end do
+   end subroutine append_states
+end module dda_vtu_field

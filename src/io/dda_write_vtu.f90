@@ -1,0 +1,231 @@
+!> Grids for ParaView: polygons, or single points that carry forces, as VTU with raw binary data
+!> appended, in the machine's own byte order
+!>
+!> https://docs.vtk.org/en/latest/design_documents/VTKFileFormats.html
+module dda_write_vtu
+   use, intrinsic :: iso_fortran_env, only : int32, int64
+   use dda_binary_file, only : append_integers, append_length, append_text, binary_file_t, &
+      & close_binary, open_binary
+   use dda_error, only : error_t, require
+   use dda_kinds, only : wp
+   use dda_text, only : to_text
+   use dda_vtu_field, only : append_field, append_vectors, check_field, field_attributes, &
+      & field_bytes, field_t
+   use dda_xml_text, only : attribute, file_head
+   implicit none
+   private
+
+   public :: write_polygons, write_points
+
+   !> VTK's numbers of the kinds of cells
+   type :: cell_type_enum
+      !> A single point
+      integer :: vertex = 1
+      !> Any simple polygon
+      integer :: polygon = 7
+   end type cell_type_enum
+
+   !> Names of the kinds of cells
+   type(cell_type_enum), parameter :: cell_type = cell_type_enum()
+
+   !> The part of the file before its data, while it grows
+   type :: header_t
+      !> Its text
+      character(len=:), allocatable :: text
+      !> Where the next array begins in the data [bytes]
+      integer(int64) :: offset = 0
+   end type header_t
+
+contains
+
+   !> Write polygons; the file is whole when there is no error
+   subroutine write_polygons(file, point, first_vertex, point_fields, cell_fields, error)
+      !> Name of the file; one that exists is replaced
+      character(len=*), intent(in) :: file
+      !> Corners of all polygons, one polygon after the other: (2, n_point) [m]
+      real(wp), intent(in) :: point(:, :)
+      !> First corner of each polygon, and one beyond the last: (n_polygon + 1)
+      integer, intent(in) :: first_vertex(:)
+      !> Fields with a value at each corner: (:)
+      type(field_t), intent(in) :: point_fields(:)
+      !> Fields with a value for each polygon: (:)
+      type(field_t), intent(in) :: cell_fields(:)
+      !> Allocated if the arrays do not fit together or the file cannot be written
+      type(error_t), allocatable, intent(out) :: error
+      integer :: n
+
+      n = size(first_vertex) - 1
+      call require(n >= 0, "polygons want the number one beyond their last corner", error)
+      if (allocated(error)) return
+      call require(first_vertex(1) == 1 .and. first_vertex(n + 1) == size(point, 2) + 1, &
+         & "the corners of polygons are all the points, in their order", error)
+      call require(all(first_vertex(2:) - first_vertex(:n) >= 3), &
+         & "a polygon has three corners or more", error)
+      call write_grid(file, cell_type%polygon, point, first_vertex(2:), point_fields, cell_fields, &
+         & error)
+   end subroutine write_polygons
+
+   !> Write single points, such as those that contact forces act on; the file is whole when there is
+   !> no error
+   subroutine write_points(file, point, point_fields, error)
+      !> Name of the file; one that exists is replaced
+      character(len=*), intent(in) :: file
+      !> The points: (2, n_point) [m]
+      real(wp), intent(in) :: point(:, :)
+      !> Fields with a value at each point: (:)
+      type(field_t), intent(in) :: point_fields(:)
+      !> Allocated if the arrays do not fit together or the file cannot be written
+      type(error_t), allocatable, intent(out) :: error
+      type(field_t) :: none(0)
+      integer :: i
+
+      call write_grid(file, cell_type%vertex, point, [(i + 1, i=1, size(point, 2))], point_fields, &
+         & none, error)
+   end subroutine write_points
+
+   !> Write cells of one kind that own the points in their order
+   subroutine write_grid(file, kind, point, next_point, point_fields, cell_fields, error)
+      !> Name of the file
+      character(len=*), intent(in) :: file
+      !> One of cell_type
+      integer, intent(in) :: kind
+      !> The points: (2, n_point) [m]
+      real(wp), intent(in) :: point(:, :)
+      !> The point behind the last one of each cell: (n_cell)
+      integer, intent(in) :: next_point(:)
+      !> Fields with a value at each point: (:)
+      type(field_t), intent(in) :: point_fields(:)
+      !> Fields with a value for each cell: (:)
+      type(field_t), intent(in) :: cell_fields(:)
+      !> A contract that is broken already, or a failure of this procedure
+      type(error_t), allocatable, intent(inout) :: error
+      type(binary_file_t) :: vtu
+      integer :: i
+
+      call require(size(point, 1) == 2, "points want two coordinates", error)
+      do i = 1, size(point_fields)
+         call check_field(point_fields(i), size(point, 2), error)
+      end do
+      do i = 1, size(cell_fields)
+         call check_field(cell_fields(i), size(next_point), error)
+      end do
+      if (.not. allocated(error)) call open_binary(file, vtu, error)
+      if (allocated(error)) return
+      call append_text(vtu, grid_header(size(point, 2), size(next_point), point_fields, cell_fields))
+      do i = 1, size(point_fields)
+         call append_field(vtu, point_fields(i))
+      end do
+      do i = 1, size(cell_fields)
+         call append_field(vtu, cell_fields(i))
+      end do
+      call append_length(vtu, 24_int64*size(point, 2, int64))
+      call append_vectors(vtu, point)
+      call append_cells(vtu, kind, size(point, 2), next_point)
+      call append_text(vtu, new_line("a")//"  </AppendedData>"//new_line("a")//"</VTKFile>" &
+         & //new_line("a"))
+      call close_binary(vtu, error)
+   end subroutine write_grid
+
+   !> Write which points the cells own, where each ends and what it is
+   subroutine append_cells(vtu, kind, n_point, next_point)
+      !> The file
+      type(binary_file_t), intent(in) :: vtu
+      !> One of cell_type
+      integer, intent(in) :: kind
+      !> Number of points
+      integer, intent(in) :: n_point
+      !> The point behind the last one of each cell: (n_cell)
+      integer, intent(in) :: next_point(:)
+      integer(int32), allocatable :: connectivity(:)
+      integer :: i
+
+      allocate (connectivity(n_point))
+      do i = 1, n_point
+         connectivity(i) = int(i - 1, int32)
+      end do
+      call append_length(vtu, 4_int64*n_point)
+      call append_integers(vtu, connectivity)
+      call append_length(vtu, 4_int64*size(next_point))
+      call append_integers(vtu, int(next_point - 1, int32))
+      call append_length(vtu, size(next_point, kind=int64))
+      call append_text(vtu, repeat(achar(kind), size(next_point)))
+   end subroutine append_cells
+
+   !> All of the file before its data: arrays in the order in which they are written
+   pure function grid_header(n_point, n_cell, point_fields, cell_fields) result(text)
+      !> Number of points
+      integer, intent(in) :: n_point
+      !> Number of cells
+      integer, intent(in) :: n_cell
+      !> Fields with a value at each point: (:)
+      type(field_t), intent(in) :: point_fields(:)
+      !> Fields with a value for each cell: (:)
+      type(field_t), intent(in) :: cell_fields(:)
+      !> The text, up to the mark behind which the data begin
+      character(len=:), allocatable :: text
+      type(header_t) :: header
+
+      header%text = file_head("UnstructuredGrid")
+      call add_line(header, "  <UnstructuredGrid>")
+      call add_line(header, "    <Piece"//attribute("NumberOfPoints", to_text(n_point)) &
+         & //attribute("NumberOfCells", to_text(n_cell))//">")
+      call add_fields(header, "PointData", point_fields)
+      call add_fields(header, "CellData", cell_fields)
+      call add_line(header, "      <Points>")
+      call add_array(header, attribute("type", "Float64")//attribute("Name", "Points") &
+         & //attribute("NumberOfComponents", "3"), 24_int64*n_point)
+      call add_line(header, "      </Points>")
+      call add_line(header, "      <Cells>")
+      call add_array(header, attribute("type", "Int32")//attribute("Name", "connectivity"), &
+         & 4_int64*n_point)
+      call add_array(header, attribute("type", "Int32")//attribute("Name", "offsets"), 4_int64*n_cell)
+      call add_array(header, attribute("type", "UInt8")//attribute("Name", "types"), int(n_cell, int64))
+      call add_line(header, "      </Cells>")
+      call add_line(header, "    </Piece>")
+      call add_line(header, "  </UnstructuredGrid>")
+      text = header%text//"  <AppendedData"//attribute("encoding", "raw")//">"//new_line("a")//"_"
+   end function grid_header
+
+   !> Announce the fields of the points or of the cells
+   pure subroutine add_fields(header, element, fields)
+      !> The header so far
+      type(header_t), intent(inout) :: header
+      !> PointData or CellData
+      character(len=*), intent(in) :: element
+      !> The fields: (:)
+      type(field_t), intent(in) :: fields(:)
+      integer :: i
+
+      call add_line(header, "      <"//element//">")
+      do i = 1, size(fields)
+         call add_array(header, field_attributes(fields(i)), field_bytes(fields(i)))
+      end do
+      call add_line(header, "      </"//element//">")
+   end subroutine add_fields
+
+   !> Announce an array
+   pure subroutine add_array(header, attributes, n_byte)
+      !> The header so far
+      type(header_t), intent(inout) :: header
+      !> What the array is
+      character(len=*), intent(in) :: attributes
+      !> Its length in the file, without the number before it that tells the length
+      integer(int64), intent(in) :: n_byte
+      character(len=20) :: offset
+
+      write (offset, "(i0)") header%offset
+      call add_line(header, "        <DataArray"//attributes//attribute("format", "appended") &
+         & //attribute("offset", trim(offset))//"/>")
+      header%offset = header%offset + 8_int64 + n_byte
+   end subroutine add_array
+
+   !> Put a line below the header
+   pure subroutine add_line(header, line)
+      !> The header so far
+      type(header_t), intent(inout) :: header
+      !> The line
+      character(len=*), intent(in) :: line
+
+      header%text = header%text//line//new_line("a")
+   end subroutine add_line
+end module dda_write_vtu
