@@ -44,7 +44,9 @@ def test_bad_angle_is_bad_input(word, capsys):
     assert "(0, 180) degrees" in capsys.readouterr().err
 
 
-@pytest.mark.parametrize("words", [[], ["nonsense"], ["theory"], ["theory", "--alpha", "90", "--theory", "x"]])
+@pytest.mark.parametrize(
+    "words", [[], ["nonsense"], ["theory"], ["theory", "--alpha", "90", "--theory", "x"]]
+)
 def test_bad_command_is_bad_input(words, capsys):
     with pytest.raises(SystemExit) as stop:
         main(words)

@@ -26,7 +26,7 @@ DDA = {
     (row["table"], float(row["alpha_deg"]), row["blocks"], float(row["beta_imposed_deg"] or 0)): row
     for row in read_table(ROOT / "input" / "paper" / "paper_tables.csv")
 }
-#: The row of the paper's DDA runs that a table's row is compared with: by half angle, blocks and imposed hinge
+#: Half angle of the tables whose rows differ in something else [deg]
 TABLE_ANGLE = {"1": 90.0, "2": 90.0, "3": 140.0}
 
 
@@ -69,7 +69,11 @@ def dda_row(table: str, key: str) -> dict[str, str]:
         return DDA["table1", 90.0, number, 0.0]
     if table in ("2", "3"):
         return DDA["table" + table, TABLE_ANGLE[table], "4", float(number)]
-    return next(row for row in DDA.values() if row["table"] == "table4" and float(row["alpha_deg"]) == float(number))
+    return next(
+        row
+        for row in DDA.values()
+        if row["table"] == "table4" and float(row["alpha_deg"]) == float(number)
+    )
 
 
 def exact(row: dict[str, str]) -> float:
@@ -83,7 +87,9 @@ def exact(row: dict[str, str]) -> float:
     return 100.0 * (float(dda["beta_dda_deg"]) - values["beta_deg"]) / values["beta_deg"]
 
 
-@pytest.mark.parametrize("row", PRINTED, ids=lambda row: "-".join(filter(None, list(row.values())[:4])))
+@pytest.mark.parametrize(
+    "row", PRINTED, ids=lambda row: "-".join(filter(None, list(row.values())[:4]))
+)
 def test_printed_figure_is_reproduced(row):
     figure = Decimal(row["printed"])
     assert Decimal(exact(row)).quantize(figure, ROUND_HALF_UP) == figure

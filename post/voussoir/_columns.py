@@ -1,0 +1,181 @@
+"""Arguments of any shape to columns that Fortran takes, and its faults to exceptions."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from typing import Union
+
+import numpy as np
+import numpy.typing as npt
+
+Column = npt.NDArray[np.float64]
+Value = Union[np.float64, Column]
+
+#: Numbers of the theories, as in couplet_heyman_theories.f90
+THEORIES = {"heyman": 1, "ccr": 2, "milankovitch": 3}
+
+#: What arguments want, in words
+THICKNESS = "a thickness ratio in (0, 2)"
+HALF_ANGLE = "an angle in (0, pi) rad"
+JOINT = "an angle in [0, alpha] rad"
+
+
+def theory_number(name: str) -> int:
+    """Number of a theory.
+
+    Parameters
+    ----------
+    name : str
+        "heyman", "ccr" or "milankovitch".
+
+    Returns
+    -------
+    int
+        Its number in the Fortran module.
+
+    Raises
+    ------
+    ValueError
+        If there is no such theory.
+    """
+    if not isinstance(name, str) or name.lower() not in THEORIES:
+        raise ValueError(f"theory wants one of {', '.join(map(repr, THEORIES))}, got {name!r}")
+    return THEORIES[name.lower()]
+
+
+def real_array(name: str, value: npt.ArrayLike) -> Column:
+    """A numeric argument as an array of doubles.
+
+    Parameters
+    ----------
+    name : str
+        Name of the argument, for the message.
+    value : array_like
+        Integers or reals of any shape.
+
+    Returns
+    -------
+    ndarray
+        The same numbers, float64.
+
+    Raises
+    ------
+    ValueError
+        If the argument is no array of real numbers.
+    """
+    array = np.asarray(value)
+    if array.dtype.kind not in "iuf" and array.size > 0:
+        raise ValueError(f"{name} wants real numbers, got {value!r}")
+    return array.astype(np.float64)
+
+
+def columns(**arguments: npt.ArrayLike) -> tuple[tuple[int, ...], list[Column]]:
+    """Broadcast arguments against one another and flatten them.
+
+    Parameters
+    ----------
+    **arguments : array_like
+        The arguments by name.
+
+    Returns
+    -------
+    shape : tuple of int
+        Common shape.
+    flat : list of ndarray
+        Each argument as a contiguous array of one rank.
+
+    Raises
+    ------
+    ValueError
+        If an argument is not numeric or the shapes do not fit.
+    """
+    arrays = [real_array(name, value) for name, value in arguments.items()]
+    shape = np.broadcast_shapes(*(array.shape for array in arrays))
+    return shape, [np.ascontiguousarray(np.broadcast_to(array, shape)).ravel() for array in arrays]
+
+
+def shaped(shape: tuple[int, ...], column: npt.NDArray) -> Value:
+    """A result in the shape of the arguments; a number where they were numbers.
+
+    Parameters
+    ----------
+    shape : tuple of int
+        Shape of the arguments.
+    column : ndarray
+        Result, one rank.
+
+    Returns
+    -------
+    ndarray or scalar
+        The result.
+    """
+    return column.reshape(shape)[()]
+
+
+def evaluate(
+    routine: Callable,
+    arguments: Mapping[str, npt.ArrayLike],
+    ranges: Sequence[str],
+    *numbers: int,
+    results: int = 1,
+) -> tuple[Value, ...]:
+    """Call a routine of the Fortran layer for every element of its arguments.
+
+    Parameters
+    ----------
+    routine : callable
+        Takes the arguments as columns, then the numbers; returns columns and its fault.
+    arguments : mapping of str to array_like
+        The arguments by name, in the order of the call.
+    ranges : sequence of str
+        What each of them wants.
+    *numbers : int
+        What follows them in the call.
+    results : int, optional
+        How many columns come back.
+
+    Returns
+    -------
+    tuple of ndarray or scalar
+        The results in the shape of the arguments.
+
+    Raises
+    ------
+    ValueError
+        If an argument is not numeric, the shapes do not fit, or a value is out of range.
+    """
+    shape, flat = columns(**arguments)
+    if flat[0].size == 0:
+        return tuple(np.empty(shape) for _ in range(results))
+    *found, fault = routine(*flat, *numbers)
+    refuse(fault, list(arguments), flat, ranges)
+    return tuple(shaped(shape, column) for column in found)
+
+
+def refuse(
+    fault: Sequence[int], names: Sequence[str], flat: Sequence[npt.NDArray], ranges: Sequence[str]
+) -> None:
+    """Raise the exception that a fault of the Fortran layer stands for.
+
+    Parameters
+    ----------
+    fault : sequence of int
+        Place of the argument and of its element, from 1; zeros where all is well.
+    names : sequence of str
+        Names of the arguments in the order of the Fortran call.
+    flat : sequence of ndarray
+        Their values, one rank.
+    ranges : sequence of str
+        What each of them wants.
+
+    Raises
+    ------
+    ValueError
+        With the offending value.
+    """
+    argument, element = int(fault[0]), int(fault[1])
+    if argument == 0:
+        return
+    value = flat[argument - 1][element - 1].item()
+    where = f" at element {element - 1}" if flat[argument - 1].size > 1 else ""
+    raise ValueError(f"{names[argument - 1]} wants {ranges[argument - 1]}, got {value!r}{where}")

@@ -1,0 +1,71 @@
+"""One style for all figures: readable in print, in greyscale too, the same bytes at every run."""
+
+from __future__ import annotations
+
+from contextlib import contextmanager
+from pathlib import Path
+
+import matplotlib
+
+matplotlib.use("Agg")
+
+import matplotlib.pyplot as plt  # noqa: E402
+from matplotlib.figure import Figure  # noqa: E402
+
+#: Dark to light in greyscale as well: black, blue, vermilion, grey
+INK = ("#000000", "#1f5fa8", "#d1632a", "#9a9a9a")
+#: Line styles that tell the curves apart without colour
+DASHES = ("-", (0, (6, 2)), (0, (5, 1.5, 1, 1.5)), (0, (1.2, 1.2)))
+#: Fill of masonry
+STONE = "#ececec"
+
+_SETTINGS = {
+    "figure.dpi": 100,
+    "savefig.dpi": 200,
+    "font.size": 10,
+    "axes.labelsize": 11,
+    "axes.spines.top": False,
+    "axes.spines.right": False,
+    "axes.grid": True,
+    "grid.color": "#dddddd",
+    "grid.linewidth": 0.6,
+    "legend.frameon": False,
+    "lines.linewidth": 1.6,
+    "mathtext.fontset": "stix",
+    "font.family": "STIXGeneral",
+    "svg.hashsalt": "voussoir",
+    "svg.fonttype": "path",
+}
+
+
+@contextmanager
+def house_style():
+    """Draw within this context."""
+    with plt.rc_context(_SETTINGS):
+        yield
+
+
+def save(figure: Figure, folder: Path, name: str) -> list[Path]:
+    """Write a figure as SVG and PNG and close it.
+
+    Parameters
+    ----------
+    figure : Figure
+        What to write.
+    folder : Path
+        Where; made if missing.
+    name : str
+        File name without ending.
+
+    Returns
+    -------
+    list of Path
+        The two files.
+    """
+    folder.mkdir(parents=True, exist_ok=True)
+    paths = [folder / f"{name}.svg", folder / f"{name}.png"]
+    for path in paths:
+        metadata = {"Date": None} if path.suffix == ".svg" else {"Software": None}
+        figure.savefig(path, bbox_inches="tight", metadata=metadata)
+    plt.close(figure)
+    return paths
