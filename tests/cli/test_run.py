@@ -253,10 +253,6 @@ def test_hostile_names_are_names(tmp_path: Path, name: str) -> None:
     assert row["verdict"] == "stable"
 
 
-def test_name_with_a_blank_at_its_end_is_a_name(tmp_path: Path) -> None:
-    (tmp_path / "deck.nml ").write_text(STABLE)
-    assert run_dda("check", "deck.nml ", cwd=tmp_path).returncode == 0
-
 
 def test_deep_folders_are_found_and_made(tmp_path: Path) -> None:
     deep = Path(*["d" * 200] * 8)
