@@ -1,5 +1,5 @@
-!> The yardstick of the benchmark: LAPACK's banded Cholesky and substitution of one matrix, apart from
-!> whatever solver the program itself has
+!> The yardstick of the benchmark: LAPACK's banded Cholesky and substitution of one matrix, apart
+!> from whatever solver the program itself has
 module dda_band_reference
    use dda_block_matrix, only : block_matrix_t
    use dda_kinds, only : wp

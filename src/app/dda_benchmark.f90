@@ -15,7 +15,7 @@ module dda_benchmark
    use dda_kinds, only : wp
    use dda_material, only : joint_law_t, material_t
    use dda_scene, only : family_t, scene_t
-   use dda_stopwatch, only : job_t, median_seconds
+   use dda_stopwatch, only : job_t, median_of, take_samples, timed_job_t
    use dda_verdict, only : verdict
    implicit none
    private
@@ -41,6 +41,8 @@ module dda_benchmark
       real(wp) :: search = 0.0_wp
       !> Time of one factorisation and substitution by LAPACK [s]
       real(wp) :: lapack = 0.0_wp
+      !> Decision over LAPACK: median of the ratios of samples taken one after the other
+      real(wp) :: ratio = 0.0_wp
       !> Decisions that came out right, of four
       integer :: right = 0
       !> Mean number of factorisations of a decision
@@ -49,8 +51,8 @@ module dda_benchmark
       type(critical_t) :: critical
       !> Relative error of the middle of its bracket
       real(wp) :: error = 0.0_wp
-      !> Parts of the decision's time: setting up, assembly, factor and solve, judging and the rest [s]
-      real(wp) :: part(4) = 0.0_wp
+      !> Shares of setting up, assembly, factor and solve, judging and the rest in a decision's time
+      real(wp) :: share(4) = 0.0_wp
       !> Memory that a search adds to the process; -1 if it is not known [kB]
       integer :: memory = -1
    end type figures_t
@@ -163,8 +165,10 @@ contains
       type(figures_t), intent(inout) :: figures
       type(decisions_job_t) :: decisions
       type(search_job_t) :: search
+      type(timed_job_t) :: searching(1)
       type(discrete_solution_t) :: exact
       type(error_t), allocatable :: error
+      real(wp), allocatable :: sample(:, :)
       integer :: answer(4), i
 
       figures%voussoirs = voussoirs
@@ -173,53 +177,73 @@ contains
       do i = 1, size(distance)
          call search%family%build(exact%eta*(1.0_wp + distance(i)), decisions%scene(i), error)
       end do
-      figures%decision = median_seconds(decisions)/real(size(distance), wp)
+      call decisions%run()
       answer = decisions%decision%outcome%verdict
       figures%right = count(answer == merge(verdict%stable, verdict%collapsed, distance > 0.0_wp))
-      figures%factorisations = real(sum(decisions%decision%outcome%factorisations), wp) &
-         & /real(size(distance), wp)
-      figures%search = median_seconds(search)
+      call search%run()
       figures%critical = search%critical
       figures%error = (search%critical%falls + search%critical%stands)/2.0_wp/exact%eta - 1.0_wp
-      call measure_parts(decisions, figures)
+      allocate (searching(1)%job, source=search)
+      call take_samples(searching, sample)
+      figures%search = median_of(sample(:, 1))
+      call measure_decisions(decisions, figures)
    end subroutine measure
 
-   !> Where the time of a decision goes: what is called apart is timed apart and multiplied by the
-   !> number of its calls, the rest is what is left. The equations are those of the first decision
-   subroutine measure_parts(decisions, figures)
-      !> The four decisions
+   !> Time the decisions, LAPACK and the parts of a decision. What is called apart is timed apart
+   !> and multiplied by the number of its calls, the rest is what is left. The equations are those
+   !> of the first decision
+   subroutine measure_decisions(decisions, figures)
+      !> The four decisions, run once
       type(decisions_job_t), intent(in) :: decisions
-      !> Receives the parts and LAPACK's time
+      !> Receives the figures
       type(figures_t), intent(inout) :: figures
       type(setup_job_t) :: setup
       type(solve_job_t) :: solve
       type(factorise_job_t) :: factorising
       type(substitute_job_t) :: substituting
       type(band_job_t) :: band
-      real(wp) :: solves, solve_time, factorise_time, substitute_time
+      type(timed_job_t) :: timed(6)
+      real(wp), allocatable :: sample(:, :)
+      real(wp) :: solves, cost(2:6)
+      integer :: j
 
       setup%scene = decisions%scene(1)
       call setup%run()
-      ! every run begins with one solution with all joints glued
-      solves = 1.0_wp + real(sum(decisions%decision%outcome%passes), wp)/real(size(distance), wp)
       solve%setup_job_t = setup
       associate (decision => decisions%decision(1))
          solve%contacts%face = decision%contacts%face
          solve%motion = decision%outcome%motion
          solve%dt = sqrt(free_fall)*decision%outcome%elastic_time
       end associate
-      solve_time = median_seconds(solve)
+      call solve%prepare()
+      call solve%run()
       factorising%solve_job_t = solve
-      factorise_time = median_seconds(factorising)
       substituting%solve_job_t = solve
-      substitute_time = median_seconds(substituting)
       call new_band_job(solve%equations%matrix, solve%equations%weight, band)
-      figures%lapack = median_seconds(band)
-      figures%part(1) = median_seconds(setup)
-      figures%part(2) = figures%factorisations*(solve_time - factorise_time - substitute_time)
-      figures%part(3) = figures%factorisations*factorise_time + solves*substitute_time
-      figures%part(4) = figures%decision - sum(figures%part(:3))
-   end subroutine measure_parts
+      allocate (timed(1)%job, source=decisions)
+      allocate (timed(2)%job, source=band)
+      allocate (timed(3)%job, source=setup)
+      allocate (timed(4)%job, source=solve)
+      allocate (timed(5)%job, source=factorising)
+      allocate (timed(6)%job, source=substituting)
+      call take_samples(timed, sample)
+      sample(:, 1) = sample(:, 1)/real(size(distance), wp)
+      figures%decision = median_of(sample(:, 1))
+      figures%lapack = median_of(sample(:, 2))
+      figures%ratio = median_of(sample(:, 1)/sample(:, 2))
+      do j = 2, 6
+         cost(j) = median_of(sample(:, j)/sample(:, 1))
+      end do
+      associate (outcome => decisions%decision%outcome)
+         figures%factorisations = real(sum(outcome%factorisations), wp)/real(size(distance), wp)
+         ! every run begins with one solution with all joints glued
+         solves = 1.0_wp + real(sum(outcome%passes), wp)/real(size(distance), wp)
+      end associate
+      figures%share(1) = cost(3)
+      figures%share(2) = figures%factorisations*(cost(4) - cost(5) - cost(6))
+      figures%share(3) = figures%factorisations*cost(5) + solves*cost(6)
+      figures%share(4) = 1.0_wp - sum(figures%share(:3))
+   end subroutine measure_decisions
 
    !> One search and nothing else
    subroutine search_once(voussoirs)

@@ -51,7 +51,7 @@ contains
             & microseconds(figures%decision), to_text(figures%right)//" of 4", &
             & microseconds(figures%search), small(figures%error), to_text(critical%decisions), &
             & to_text(critical%passes), to_text(critical%factorisations), "-", &
-            & microseconds(figures%lapack), rounded(figures%decision/figures%lapack, 1)]
+            & microseconds(figures%lapack), rounded(figures%ratio, 1)]
          if (figures%memory >= 0) cells(9) = to_text(figures%memory)
          if (critical%verdict /= verdict%found) cells(5) = "not found"
       end associate
@@ -66,8 +66,8 @@ contains
       integer :: i
 
       cells(1) = to_text(figures%voussoirs)
-      do i = 1, size(figures%part)
-         cells(1 + i) = rounded(100.0_wp*figures%part(i)/figures%decision, 0)
+      do i = 1, size(figures%share)
+         cells(1 + i) = rounded(100.0_wp*figures%share(i), 0)
       end do
       cells(6) = rounded(figures%factorisations, 2)
       cells(7) = microseconds(figures%decision/figures%factorisations)

@@ -3,15 +3,17 @@ module dda_run
    use, intrinsic :: iso_fortran_env, only : error_unit
    use dda_case, only : case_t, compute_case, prepare_case, tell_case
    use dda_command_line, only : command_t
-   use dda_deck, only : deck_t, flag_of
+   use dda_deck, only : deck_t, flag_of, integer_of
    use dda_deck_sweep, only : case_deck, n_cases, swept_names, swept_texts
    use dda_error, only : error_line, error_t, fatal_error
+   use dda_picture_files, only : write_album
    use dda_process, only : error_is_terminal, exit_status, make_folder, worst_status
    use dda_progress, only : clear_progress, progress_t, report_progress
    use dda_read_deck, only : read_deck
    use dda_summary, only : print_row, print_total
    use dda_table_file, only : append_line, close_table, open_table, remove_file, table_file_t
    use dda_text, only : to_text
+   use dda_write_frames, only : frame_joints_header, frames_header
    use dda_write_results, only : joint_line, joint_row_t, joints_header, result_row_t, &
       & results_header, results_line
    implicit none
@@ -29,8 +31,16 @@ module dda_run
       type(table_file_t) :: joints
       !> log.txt
       type(table_file_t) :: log
+      !> frames.csv
+      type(table_file_t) :: frames
+      !> frame_joints.csv
+      type(table_file_t) :: frame_joints
       !> Whether joints.csv is wanted
       logical :: has_joints = .false.
+      !> Whether pictures are wanted
+      logical :: has_frames = .false.
+      !> Whether pictures are wanted as VTU too
+      logical :: has_vtu = .false.
    end type tables_t
 
    !> Most cases at the same time
@@ -146,6 +156,8 @@ contains
       count = 0
       tables%folder = folder_of(command, name)
       tables%has_joints = flag_of(deck, "output", "joints")
+      tables%has_frames = integer_of(deck, "output", "frames") > 0
+      tables%has_vtu = flag_of(deck, "output", "vtu")
       call open_tables(deck, tables, error)
       progress%shown = error_is_terminal()
       if (command%quiet) progress%shown = .false.
@@ -161,6 +173,8 @@ contains
       call close_table(tables%results)
       call close_table(tables%joints)
       call close_table(tables%log)
+      call close_table(tables%frames)
+      call close_table(tables%frame_joints)
       status = exit_status%success
       if (count(2) > 0) status = exit_status%undecided
       if (allocated(error)) then
@@ -217,7 +231,10 @@ contains
          row%number = number
          row%swept = swept_fields(deck, number)
          joint_row%number = number
-         call write_case(tables, row, joint_row, remark, error)
+         if (tables%has_frames) call write_album(tables%folder, number, tables%has_vtu, &
+            & this%scene%system, this%scene%contacts, this%album, tables%frames, &
+            & tables%frame_joints, error)
+         if (.not. allocated(error)) call write_case(tables, row, joint_row, remark, error)
       end if
       if (.not. allocated(error)) then
          count(3) = count(3) + 1
@@ -257,6 +274,10 @@ contains
       else
          call remove_file(tables%folder//"/joints.csv")
       end if
+      if (allocated(error) .or. .not. tables%has_frames) return
+      call open_table(tables%folder//"/frames.csv", frames_header(), tables%frames, error)
+      if (.not. allocated(error)) call open_table(tables%folder//"/frame_joints.csv", &
+         & frame_joints_header(), tables%frame_joints, error)
    end subroutine open_tables
 
    !> Values of the swept parameters that have no column of their own, each with a comma behind it

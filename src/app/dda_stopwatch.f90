@@ -5,7 +5,7 @@ module dda_stopwatch
    implicit none
    private
 
-   public :: job_t, median_seconds, peak_memory
+   public :: job_t, timed_job_t, take_samples, median_of, peak_memory
 
    !> Work that is repeated and timed
    type, abstract :: job_t
@@ -25,9 +25,15 @@ module dda_stopwatch
       end subroutine run_job
    end interface
 
-   !> Time that one figure may take [s]
+   !> One of several jobs that are timed in turn
+   type :: timed_job_t
+      !> The job
+      class(job_t), allocatable :: job
+   end type timed_job_t
+
+   !> Time that each job may take [s]
    real(wp), parameter :: budget = 0.5_wp
-   !> Fewest and most samples of one figure
+   !> Fewest and most samples of one job
    integer, parameter :: fewest = 5, most = 101
 
 contains
@@ -41,23 +47,28 @@ contains
       end associate
    end subroutine prepare
 
-   !> Median of the times that a job takes; short jobs are summed into samples
-   function median_seconds(job) result(median)
-      !> The job
-      class(job_t), intent(inout) :: job
-      !> The median [s]
-      real(wp) :: median
-      real(wp) :: sample(most), once
-      integer :: batch, i, n
+   !> Time jobs in turn, so that a disturbance of the machine meets all of them; short jobs are run
+   !> several times a sample
+   subroutine take_samples(timed, sample)
+      !> The jobs: (n)
+      type(timed_job_t), intent(inout) :: timed(:)
+      !> Time of one run in each sample: (n_sample, n) [s]
+      real(wp), allocatable, intent(out) :: sample(:, :)
+      real(wp) :: once(size(timed))
+      integer :: batch(size(timed)), i, j, n
 
-      once = max(seconds_of(job, 2), 1.0e-8_wp)
-      n = max(fewest, min(most, int(budget/once)))
-      batch = max(1, int(budget/(once*real(n, wp))))
-      do i = 1, n
-         sample(i) = seconds_of(job, batch)
+      do j = 1, size(timed)
+         once(j) = max(seconds_of(timed(j)%job, 2), 1.0e-8_wp)
       end do
-      median = median_of(sample(:n))
-   end function median_seconds
+      n = max(fewest, min(most, int(budget/maxval(once))))
+      batch = max(1, int(budget/(once*real(n, wp))))
+      allocate (sample(n, size(timed)))
+      do i = 1, n
+         do j = 1, size(timed)
+            sample(i, j) = seconds_of(timed(j)%job, batch(j))
+         end do
+      end do
+   end subroutine take_samples
 
    !> Mean time of several runs in a row
    function seconds_of(job, runs) result(mean)
@@ -70,10 +81,11 @@ contains
       integer(int64) :: start, finish, rate, ticks
       integer :: i
 
+      call system_clock(count_rate=rate)
       ticks = 0_int64
       do i = 1, runs
          call job%prepare()
-         call system_clock(start, rate)
+         call system_clock(start)
          call job%run()
          call system_clock(finish)
          ticks = ticks + finish - start

@@ -1,8 +1,8 @@
 !> Files written through the C library, which tells when a disk is full; Fortran's flush does not.
 !> Whatever fails on the way is reported when the file is flushed or closed
 module dda_binary_file
-   use, intrinsic :: iso_c_binding, only : c_associated, c_char, c_int, c_loc, c_long, c_null_char, &
-      & c_null_ptr, c_ptr, c_size_t
+   use, intrinsic :: iso_c_binding, only : c_associated, c_char, c_int, c_loc, c_long, &
+      & c_null_char, c_null_ptr, c_ptr, c_size_t
    use, intrinsic :: iso_fortran_env, only : int32, int64
    use dda_error, only : error_t, fatal_error
    use dda_kinds, only : wp
@@ -164,7 +164,7 @@ contains
       real(wp), intent(in), target, contiguous :: values(:, :)
 
       if (size(values) > 0) &
-         & call append_bytes(file, c_loc(values), storage_size(values)/8*size(values, kind=c_size_t))
+         & call append_bytes(file, c_loc(values), 8*size(values, kind=c_size_t))
    end subroutine append_reals
 
    !> Write integers of 32 bits in the machine's own form

@@ -1,4 +1,7 @@
 !> Fields of a grid for ParaView: a name and one column of numbers a point or a cell
+!>
+!> Make an array of fields element by element: gfortran never frees the numbers of fields that stand
+!> in an array constructor
 module dda_vtu_field
    use, intrinsic :: iso_fortran_env, only : int32, int64
    use dda_binary_file, only : append_integers, append_length, append_reals, binary_file_t

@@ -70,8 +70,8 @@ contains
       common = stamp_text(stamp)//","//to_text(stamp%step)//","//to_text(stamp%time)//","
       do block = 1, size(first_vertex) - 1
          do vertex = first_vertex(block), first_vertex(block + 1) - 1
-            call add_row(rows, common//to_text(block)//","//to_text(vertex - first_vertex(block) + 1) &
-               & //","//pair(point(:, vertex)))
+            call add_row(rows, common//to_text(block)//"," &
+               & //to_text(vertex - first_vertex(block) + 1)//","//pair(point(:, vertex)))
          end do
       end do
       lines = text_of(rows)

@@ -60,8 +60,8 @@ contains
       type(error_t), allocatable, intent(out) :: error
       character(len=:), allocatable :: entry
 
-      entry = "    <DataSet"//attribute("timestep", to_text(time))//attribute("part", to_text(part)) &
-         & //attribute("file", shown)//"/>"//new_line("a")
+      entry = "    <DataSet"//attribute("timestep", to_text(time)) &
+         & //attribute("part", to_text(part))//attribute("file", shown)//"/>"//new_line("a")
       call go_to(index%file, index%place + len(ending))
       call append_text(index%file, repeat(" ", len(entry)))
       call flush_binary(index%file, error)

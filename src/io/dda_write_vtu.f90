@@ -111,7 +111,8 @@ contains
       end do
       if (.not. allocated(error)) call open_binary(file, vtu, error)
       if (allocated(error)) return
-      call append_text(vtu, grid_header(size(point, 2), size(next_point), point_fields, cell_fields))
+      call append_text(vtu, grid_header(size(point, 2), size(next_point), point_fields, &
+         & cell_fields))
       do i = 1, size(point_fields)
          call append_field(vtu, point_fields(i))
       end do
@@ -178,8 +179,10 @@ contains
       call add_line(header, "      <Cells>")
       call add_array(header, attribute("type", "Int32")//attribute("Name", "connectivity"), &
          & 4_int64*n_point)
-      call add_array(header, attribute("type", "Int32")//attribute("Name", "offsets"), 4_int64*n_cell)
-      call add_array(header, attribute("type", "UInt8")//attribute("Name", "types"), int(n_cell, int64))
+      call add_array(header, attribute("type", "Int32")//attribute("Name", "offsets"), &
+         & 4_int64*n_cell)
+      call add_array(header, attribute("type", "UInt8")//attribute("Name", "types"), &
+         & int(n_cell, int64))
       call add_line(header, "      </Cells>")
       call add_line(header, "    </Piece>")
       call add_line(header, "  </UnstructuredGrid>")

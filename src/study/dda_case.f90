@@ -3,16 +3,20 @@ module dda_case
    use, intrinsic :: iso_fortran_env, only : int64
    use dda_arch_scene, only : arch_family_t, arch_resolution, arch_scene, exact_thickness, &
       & search_start
+   use dda_block_system, only : block_system_t
    use dda_contact_detection, only : contacts_t
    use dda_critical, only : critical_t, find_critical, search_t
    use dda_decision, only : decide, decision_t
-   use dda_deck, only : deck_t, has_group, is_given, parameter_t, real_of, text_of, word_of
+   use dda_deck, only : deck_t, has_group, integer_of, is_given, parameter_t, real_of, text_of, word_of
    use dda_deck_check, only : search_bracket
    use dda_deck_parameter, only : find_parameter, parameter_name
    use dda_error, only : error_t
+   use dda_forward, only : outcome_t, run_to_verdict
+   use dda_frames, only : album_t
    use dda_kinds, only : wp
    use dda_mechanism, only : follow_collapse, mechanism_of, mechanism_t
    use dda_scene, only : scene_t
+   use dda_settings, only : flow_rule, settings_t
    use dda_text, only : to_text
    use dda_verdict, only : verdict
    use dda_write_results, only : joint_row_t, number_t, result_row_t, some_number
@@ -39,6 +43,8 @@ module dda_case
       type(decision_t) :: decision
       !> Scene of the collapse, or of the decision
       type(scene_t) :: scene
+      !> Pictures of the collapse, or of the way to rest
+      type(album_t) :: album
       !> Exact critical thickness ratio
       real(wp) :: exact = 0.0_wp
       !> Whether it is known
@@ -85,9 +91,41 @@ contains
          if (this%decision%outcome%verdict == verdict%collapsed) &
             & call follow_collapse(this%scene, this%decision)
       end if
+      if (integer_of(this%deck, "output", "frames") > 0) call take_pictures(this)
       call system_clock(finish)
       this%seconds = real(finish - start, wp)/real(rate, wp)
    end subroutine compute_case
+
+   !> Run the scene of the case once more for its pictures, a collapse until a corner has moved a tenth
+   !> of the radius
+   pure subroutine take_pictures(this)
+      !> The case, computed
+      type(case_t), intent(inout) :: this
+      type(error_t), allocatable :: error
+      type(outcome_t) :: outcome
+      type(settings_t) :: settings
+      type(block_system_t) :: system
+      type(contacts_t) :: contacts
+      logical :: slides
+
+      slides = this%decision%flow == flow_rule%coulomb
+      if (allocated(this%critical%fallen)) then
+         slides = this%critical%fallen%flow == flow_rule%coulomb
+      else if (allocated(this%critical%standing)) then
+         slides = this%critical%standing%flow == flow_rule%coulomb
+         call this%family%build(this%critical%stands, this%scene, error)
+      end if
+      if (.not. allocated(this%scene%contacts%joint)) return
+      settings = this%scene%settings
+      settings%flow = merge(flow_rule%coulomb, flow_rule%associated, slides)
+      if (.not. settings%collapse_displacement > 0.0_wp) &
+         & settings%collapse_displacement = 0.1_wp*real_of(this%deck, "arch", "radius")
+      this%album%spacing = settings%collapse_displacement &
+         & /real(integer_of(this%deck, "output", "frames"), wp)
+      system = this%scene%system
+      contacts = this%scene%contacts
+      call run_to_verdict(settings, system, contacts, outcome, this%album)
+   end subroutine take_pictures
 
    !> Tell a case
    pure subroutine tell_case(this, row, joint_row, remark)

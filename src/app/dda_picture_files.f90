@@ -1,0 +1,104 @@
+!> Pictures of a run as files: VTU with an index for ParaView, CSV for everything else
+module dda_picture_files
+   use dda_block_system, only : block_system_t
+   use dda_contact_detection, only : contacts_t
+   use dda_error, only : error_t
+   use dda_frame_rows, only : contact_states, frame_joint_rows
+   use dda_frames, only : album_t, frame_t
+   use dda_kinds, only : wp
+   use dda_process, only : make_folder
+   use dda_table_file, only : append_line, table_file_t
+   use dda_text, only : to_text
+   use dda_vtu_field, only : scalar_field, state_field, tensor_field, vector_field
+   use dda_write_frames, only : frame_joint_lines, frame_joint_row_t, frame_lines, frame_stamp_t
+   use dda_write_pvd, only : add_to_index, close_index, open_index, pvd_index_t
+   use dda_write_vtu, only : write_points, write_polygons
+   implicit none
+   private
+
+   public :: write_album
+
+contains
+
+   !> Write all pictures of a case
+   subroutine write_album(folder, number, vtu, system, contacts, album, frames, joints, error)
+      !> Folder of the deck's results
+      character(len=*), intent(in) :: folder
+      !> Number of the case
+      integer, intent(in) :: number
+      !> Whether VTU files are wanted beside the tables
+      logical, intent(in) :: vtu
+      !> The blocks, for their shapes
+      type(block_system_t), intent(in) :: system
+      !> The contacts, for what touches what
+      type(contacts_t), intent(in) :: contacts
+      !> The pictures
+      type(album_t), intent(in) :: album
+      !> frames.csv
+      type(table_file_t), intent(in) :: frames
+      !> frame_joints.csv
+      type(table_file_t), intent(in) :: joints
+      !> Allocated if something cannot be written
+      type(error_t), allocatable, intent(out) :: error
+      type(pvd_index_t) :: index
+      type(frame_stamp_t) :: stamp
+      type(frame_joint_row_t), allocatable :: row(:)
+      character(len=:), allocatable :: stem
+      integer :: i
+
+      stem = "case_"//to_text(number)
+      if (vtu) then
+         call make_folder(folder//"/frames")
+         call open_index(folder//"/frames/"//stem//".pvd", index, error)
+      end if
+      do i = 1, album%n
+         if (allocated(error)) return
+         associate (frame => album%frame(i))
+            stamp = frame_stamp_t(number, i - 1, frame%step, frame%time)
+            row = frame_joint_rows(system, contacts, frame)
+            call append_line(frames, frame_lines(stamp, system%first_vertex, frame%moved), error)
+            if (.not. allocated(error)) call append_line(joints, frame_joint_lines(stamp, row), error)
+            if (.not. allocated(error) .and. vtu) call write_picture(folder//"/frames/", &
+               & stem//"_"//to_text(i - 1), system, frame, row, index, real(i - 1, wp), error)
+         end associate
+      end do
+      if (.not. allocated(error) .and. vtu) call close_index(index, error)
+   end subroutine write_album
+
+   !> Write the blocks and the joint forces of one picture, and tell the index
+   subroutine write_picture(folder, stem, system, frame, row, index, time, error)
+      !> Folder of the pictures, with a slash behind it
+      character(len=*), intent(in) :: folder
+      !> Name of the picture without ending
+      character(len=*), intent(in) :: stem
+      !> The blocks, for their shapes
+      type(block_system_t), intent(in) :: system
+      !> The picture
+      type(frame_t), intent(in) :: frame
+      !> Its joints: (n_joint)
+      type(frame_joint_row_t), intent(in) :: row(:)
+      !> Receives the names of the files
+      type(pvd_index_t), intent(inout) :: index
+      !> Number of the picture, as a time
+      real(wp), intent(in) :: time
+      !> Allocated if something cannot be written
+      type(error_t), allocatable, intent(out) :: error
+      real(wp) :: place(2, size(row)), force(2, size(row))
+      integer :: states(2, size(row)), b, j
+
+      do j = 1, size(row)
+         place(:, j) = row(j)%point
+         force(:, j) = row(j)%force
+         states(:, j) = contact_states(frame, j)
+      end do
+      call write_polygons(folder//stem//".vtu", frame%moved, system%first_vertex, &
+         & [vector_field("displacement", frame%moved - system%vertex)], &
+         & [state_field("block", [(b, b=1, size(system%area))]), &
+         &  scalar_field("rotation", frame%motion(3, :)), tensor_field("stress", frame%stress)], error)
+      if (.not. allocated(error)) call write_points(folder//stem//"_joints.vtu", place, &
+         & [vector_field("force", force), state_field("state_first", states(1, :)), &
+         &  state_field("state_second", states(2, :))], error)
+      if (.not. allocated(error)) call add_to_index(index, time, 0, stem//".vtu", error)
+      if (.not. allocated(error)) call add_to_index(index, time, 1, stem//"_joints.vtu", error)
+   end subroutine write_picture
+end module dda_picture_files
