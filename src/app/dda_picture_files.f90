@@ -9,7 +9,7 @@ module dda_picture_files
    use dda_process, only : make_folder
    use dda_table_file, only : append_line, table_file_t
    use dda_text, only : to_text
-   use dda_vtu_field, only : scalar_field, state_field, tensor_field, vector_field
+   use dda_vtu_field, only : field_t, scalar_field, state_field, tensor_field, vector_field
    use dda_write_frames, only : frame_joint_lines, frame_joint_row_t, frame_lines, frame_stamp_t
    use dda_write_pvd, only : add_to_index, close_index, open_index, pvd_index_t
    use dda_write_vtu, only : write_points, write_polygons
@@ -83,6 +83,7 @@ contains
       real(wp), intent(in) :: time
       !> Allocated if something cannot be written
       type(error_t), allocatable, intent(out) :: error
+      type(field_t) :: of_corners(1), of_blocks(3), of_joints(3)
       real(wp) :: place(2, size(row)), force(2, size(row))
       integer :: states(2, size(row)), b, j
 
@@ -91,13 +92,17 @@ contains
          force(:, j) = row(j)%force
          states(:, j) = contact_states(frame, j)
       end do
-      call write_polygons(folder//stem//".vtu", frame%moved, system%first_vertex, &
-         & [vector_field("displacement", frame%moved - system%vertex)], &
-         & [state_field("block", [(b, b=1, size(system%area))]), &
-         &  scalar_field("rotation", frame%motion(3, :)), tensor_field("stress", frame%stress)], error)
-      if (.not. allocated(error)) call write_points(folder//stem//"_joints.vtu", place, &
-         & [vector_field("force", force), state_field("state_first", states(1, :)), &
-         &  state_field("state_second", states(2, :))], error)
+      of_corners(1) = vector_field("displacement", frame%moved - system%vertex)
+      of_blocks(1) = state_field("block", [(b, b=1, size(system%area))])
+      of_blocks(2) = scalar_field("rotation", frame%motion(3, :))
+      of_blocks(3) = tensor_field("stress", frame%stress)
+      of_joints(1) = vector_field("force", force)
+      of_joints(2) = state_field("state_first", states(1, :))
+      of_joints(3) = state_field("state_second", states(2, :))
+      call write_polygons(folder//stem//".vtu", frame%moved, system%first_vertex, of_corners, &
+         & of_blocks, error)
+      if (.not. allocated(error)) &
+         & call write_points(folder//stem//"_joints.vtu", place, of_joints, error)
       if (.not. allocated(error)) call add_to_index(index, time, 0, stem//".vtu", error)
       if (.not. allocated(error)) call add_to_index(index, time, 1, stem//"_joints.vtu", error)
    end subroutine write_picture

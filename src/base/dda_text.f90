@@ -26,7 +26,7 @@ contains
       real(wp) :: again
       integer :: digits, stat
 
-      do digits = 6, 17
+      do digits = 15, 17
          write (form, "('(es40.', i0, 'e3)')") digits - 1
          write (buffer, form) value
          read (buffer, *, iostat=stat) again

@@ -154,7 +154,8 @@ module dda_deck_keys
       key_t(group="joint", name="cohesion", unit="Pa", default="0.0", &
             at_least=0.0_wp, at_most=1.0e30_wp, meaning="Shear strength without normal force."), &
       key_t(group="joint", name="tension", unit="Pa", default="0.0", &
-            at_least=0.0_wp, at_most=1.0e30_wp, meaning="Tensile strength.")]
+            at_least=0.0_wp, at_most=1.0e30_wp, &
+            meaning="Tensile strength; at most cohesion/tan(friction_deg) counts.")]
 
    !> Keys of &load
    type(key_t), parameter :: load_keys(*) = [ &
