@@ -35,11 +35,12 @@ contains
             & "   dda help run | check | keys", &
             & "   dda --version", &
             & "", &
-            & "Exit status: 0 every case reached a verdict; 2 bad input; 3 a case ended undecided;", &
-            & "4 results could not be written."])
+            & "Exit status: 0 every case reached a verdict; 2 bad input;", &
+            & "3 a case ended undecided; 4 results could not be written."])
       case ("run")
          call print_lines([character(len=96) :: &
-            & "dda run DECK [DECK ...] [--out DIR] [--jobs N] [--set group%key=value ...] [--quiet]", &
+            & "dda run DECK [DECK ...] [--out DIR] [--jobs N] [--set group%key=value ...]", &
+            & "        [--quiet]", &
             & "", &
             & "   --out DIR   where results go; several decks each have a folder inside it", &
             & "               (without it: a folder named as the deck without its ending)", &

@@ -57,7 +57,8 @@ contains
             stamp = frame_stamp_t(number, i - 1, frame%step, frame%time)
             row = frame_joint_rows(system, contacts, frame)
             call append_line(frames, frame_lines(stamp, system%first_vertex, frame%moved), error)
-            if (.not. allocated(error)) call append_line(joints, frame_joint_lines(stamp, row), error)
+            if (.not. allocated(error)) &
+               & call append_line(joints, frame_joint_lines(stamp, row), error)
             if (.not. allocated(error) .and. vtu) call write_picture(folder//"/frames/", &
                & stem//"_"//to_text(i - 1), system, frame, row, index, real(i - 1, wp), error)
          end associate

@@ -163,8 +163,8 @@ contains
       if (command%quiet) progress%shown = .false.
       progress%total = total
       call system_clock(progress%start)
-      !$omp parallel do num_threads(min(command%jobs, total, max_jobs)) schedule(dynamic) default(none) &
-      !$omp shared(total, deck, name, command, tables, progress, count, error)
+      !$omp parallel do num_threads(min(command%jobs, total, max_jobs)) schedule(dynamic) &
+      !$omp default(none) shared(total, deck, name, command, tables, progress, count, error)
       do number = 1, total
          call run_one_case(command, name, deck, number, total, tables, progress, count, error)
       end do

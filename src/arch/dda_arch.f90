@@ -35,7 +35,8 @@ contains
       real(wp), allocatable :: joint_angle(:)
       integer :: k
 
-      joint_angle = [(half_angle*real(k, wp)/real(voussoirs, wp), k=mod(voussoirs, 2), voussoirs, 2)]
+      joint_angle = [(half_angle*real(k, wp)/real(voussoirs, wp), &
+         & k=mod(voussoirs, 2), voussoirs, 2)]
    end function equal_joints
 
    !> Number of equal chords of a voussoir none of which spans more than a facet
@@ -159,7 +160,8 @@ contains
       end do
       first_vertex(n + 2) = first_vertex(n + 1) + 4
       first_vertex(n + 3) = first_vertex(n + 2) + 4
-      vertex(:, first_vertex(n + 1):first_vertex(n + 2) - 1) = springing(extrados(:, 1), intrados(:, 1))
+      vertex(:, first_vertex(n + 1):first_vertex(n + 2) - 1) = &
+         & springing(extrados(:, 1), intrados(:, 1))
       vertex(:, first_vertex(n + 2):first_vertex(n + 3) - 1) = &
          & springing(intrados(:, size(is_joint)), extrados(:, size(is_joint)))
       edge_pair(1:2, 1) = [n + 1, 4]

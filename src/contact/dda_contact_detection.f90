@@ -35,7 +35,8 @@ module dda_contact_detection
 
 contains
 
-   !> Joints of the pairs of edges that lie together in the reference shape, closed and free of force
+   !> Joints of the pairs of edges that lie together in the reference shape, closed and free of
+   !> force
    pure subroutine find_contacts(system, edge_pair, law, penalty_ratio, n_dof, contacts)
       !> The blocks
       type(block_system_t), intent(in) :: system
@@ -53,11 +54,13 @@ contains
 
       n = size(edge_pair, 2)
       allocate (contacts%joint(n), contacts%face(n), contacts%broken(2, n), contacts%past_slip(n))
-      allocate (contacts%trial(3, n), contacts%force(3, n), contacts%gap(3, n), contacts%increment(3, n))
+      allocate (contacts%trial(3, n), contacts%force(3, n), contacts%gap(3, n))
+      allocate (contacts%increment(3, n))
       do j = 1, n
          contacts%joint(j) = edge_to_edge_joint(system, edge_pair(:, j), law(j))
       end do
-      call new_joint_springs(system, system%centroid, contacts%joint, penalty_ratio, n_dof, contacts%springs)
+      call new_joint_springs(system, system%centroid, contacts%joint, penalty_ratio, n_dof, &
+         & contacts%springs)
       contacts%broken = .false.
       contacts%past_slip = 0.0_wp
       contacts%trial = 0.0_wp
@@ -66,7 +69,8 @@ contains
       contacts%increment = 0.0_wp
    end subroutine find_contacts
 
-   !> Joints where the blocks are now: rows anew, openings measured, and the forces of the step before
+   !> Joints where the blocks are now: rows anew, openings measured, and the forces of the step
+   !> before
    !> as multipliers, so that the springs only carry what changes
    pure subroutine follow_contacts(system, penalty_ratio, n_dof, contacts)
       !> The blocks

@@ -99,7 +99,8 @@ contains
       real(wp), intent(in) :: vertex(:, :)
       !> The joint; normal, tangent and points are set
       type(joint_t), intent(inout) :: joint
-      !> Opening at the two contacts, and how far the second block lies ahead along the edge: (3) [m]
+      !> Opening at the two contacts, and how far the second block lies ahead along the edge: (3)
+      !> [m]
       real(wp), intent(out) :: gap(3)
       real(wp) :: start(2), finish(2), corner(2, 2)
       integer :: k
@@ -121,7 +122,8 @@ contains
       joint%middle(:, 1) = (start + finish)/2.0_wp
       joint%middle(:, 2) = (corner(:, 1) + corner(:, 2))/2.0_wp
       gap(3) = dot_product(joint%tangent, joint%middle(:, 2) - joint%middle(:, 1))
-      ! both blocks feel the shear force on the line of the edge: off it, an open joint would turn them
+      ! both blocks feel the shear force on the line of the edge: off it, an open joint would turn
+      ! them
       joint%middle(:, 2) = joint%middle(:, 1) + gap(3)*joint%tangent
    end subroutine place_joint
 end module dda_contact_types

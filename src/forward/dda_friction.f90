@@ -51,7 +51,8 @@ module dda_friction
 
 contains
 
-   !> Find the motion and the states of one step under Coulomb friction. First no joint may slide; if
+   !> Find the motion and the states of one step under Coulomb friction. First no joint may slide;
+   !> if
    !> a shear force is then too large, all shear forces are bounded by friction times the normal
    !> forces of the pass before, until these no longer change
    pure subroutine iterate_friction(equations, springs, max_changes, state)

@@ -2,7 +2,8 @@
 !>
 !> One step minimises a convex, piecewise quadratic energy. With the faces fixed the minimum is a
 !> linear system; the joint whose force disagrees most with its face then changes its face, as the
-!> simplex method pivots. Should a set of faces come again, Newton's method with an exact line search
+!> simplex method pivots. Should a set of faces come again, Newton's method with an exact line
+!> search
 !> takes over, which must end.
 module dda_open_close
    use, intrinsic :: iso_fortran_env, only : int64

@@ -23,7 +23,8 @@ module dda_step_interval
    real(wp), parameter :: growth = 10.0_wp
    !> Steps whose motions point as far against one another as this cosine rattle
    real(wp), parameter :: rattling = -0.3_wp
-   !> Growth of the step where blocks move: less than the cut after rattling, so that this bears fruit
+   !> Growth of the step where blocks move: less than the cut after rattling, so that this bears
+   !> fruit
    real(wp), parameter :: calm_growth = 3.0_wp
    !> Rattling below this share of the displacement is no matter
    real(wp), parameter :: rattle_share = 1.0e-4_wp
@@ -131,7 +132,8 @@ contains
          & march%dt = march%dt*0.8_wp*sqrt(too_far*march%allowed_motion/step%farthest)
    end subroutine judge_step
 
-   !> Length of the step that follows an accepted one. Where blocks move it aims at the motion that a
+   !> Length of the step that follows an accepted one. Where blocks move it aims at the motion that
+   !> a
    !> step may make, and shrinks where blocks rattle to and fro
    pure subroutine next_interval(settings, step, march)
       !> Settings of the run

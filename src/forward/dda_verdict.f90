@@ -62,7 +62,8 @@ contains
          step%acceleration = 2.0_wp*step%farthest/step%dt**2
          step%work = sum(equations%weight*motion)
          step%kinetic = 0.0_wp
-         step%stored = 0.5_wp*sum(sum(step%state%force**2 - force_before**2, dim=1)/springs%stiffness)
+         step%stored = sum(sum(step%state%force**2 - force_before**2, dim=1) &
+            & /(2.0_wp*springs%stiffness))
          do b = 1, size(system%equation)
             e = system%equation(b)
             if (e == 0) cycle
@@ -99,7 +100,8 @@ contains
       at_rest = step%acceleration <= settings%rest_tolerance*march%free_acceleration
       fall = march%free_acceleration*step%dt**2/2.0_wp
       far_beyond_elastic = fall >= beyond_elastic*march%elastic_motion &
-         & .or. (step%was_cut .or. step%dt >= march%longest) .and. fall >= beyond_any*march%elastic_motion
+         & .or. (step%was_cut .or. step%dt >= march%longest) &
+         & .and. fall >= beyond_any*march%elastic_motion
       all_work_is_speed = step%kinetic > 0.999_wp*step%work
       most_work_is_speed = step%kinetic > 0.9_wp*step%work
       steady = abs(step%acceleration - march%last_acceleration) < 0.01_wp*march%last_acceleration

@@ -36,15 +36,17 @@ contains
             "material%unit_weight is not given", deck, &
             deck%value(key_index("load", "gravity"))%place)
       else if (searched%key > 0 .and. .not. is_static) then
-         call deck_error(error, "a search wants mode = 'static'; a dynamic run ends 'completed', "// &
-            "neither standing nor fallen", deck, place_of(deck, key_index("search", "parameter")))
+         call deck_error(error, "a search wants mode = 'static'; a dynamic run ends "// &
+            "'completed', neither standing nor fallen", deck, &
+            place_of(deck, key_index("search", "parameter")))
       else if (.not. is_static .and. word_of(deck, "analysis", "geometry") == "current") then
-         call deck_error(error, "geometry = 'current' wants mode = 'static': this version has no "// &
-            "dynamics of moving blocks yet", deck, place_of(deck, key_index("analysis", "mode")))
+         call deck_error(error, "geometry = 'current' wants mode = 'static': this version "// &
+            "has no dynamics of moving blocks yet", deck, &
+            place_of(deck, key_index("analysis", "mode")))
       else if (integer_of(deck, "output", "frames") > 0 .and. &
          word_of(deck, "analysis", "geometry") /= "current") then
-         call deck_error(error, "output%frames wants geometry = 'current': in reference geometry "// &
-            "no block moves", deck, place_of(deck, key_index("output", "frames")))
+         call deck_error(error, "output%frames wants geometry = 'current': in reference "// &
+            "geometry no block moves", deck, place_of(deck, key_index("output", "frames")))
       else
          call check_shape(deck, error)
          if (allocated(error) .or. searched%key == 0) return

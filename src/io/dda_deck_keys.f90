@@ -241,7 +241,7 @@ module dda_deck_keys
             meaning="Write forces, openings and states of the joints to joints.csv."), &
       key_t(group="output", name="frames", kind=key_kind%whole, default="0", varies=.false., &
             at_least=0.0_wp, at_most=10000.0_wp, &
-            meaning="Pictures of moving blocks; a collapse is then followed a tenth of the radius."), &
+            meaning="Pictures of moving blocks; a collapse is then followed for radius/10."), &
       key_t(group="output", name="max_cases", kind=key_kind%whole, default="100000", &
             varies=.false., at_least=1.0_wp, at_most=1.0e7_wp, &
             meaning="Most cases that the &sweep groups may make; more is an error.")]

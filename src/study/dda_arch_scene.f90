@@ -5,7 +5,7 @@ module dda_arch_scene
    use dda_block_system, only : block_system_t
    use dda_constants, only : degree, pi
    use dda_contact_detection, only : find_contacts
-   use dda_deck, only : deck_t, flag_of, integer_of, is_given, list_of, parameter_t, real_of, word_of
+   use dda_deck, only : deck_t, integer_of, is_given, list_of, parameter_t, real_of, word_of
    use dda_deck_set, only : number_fits, put_number
    use dda_error, only : error_t, fatal_error
    use dda_kinds, only : wp
@@ -178,7 +178,8 @@ contains
          & + real_of(deck, "load", "horizontal_coefficient")
       settings%rest_tolerance = 1.0e-3_wp*min(1.0_wp, half_angle**2/2.0_wp) &
          & *real_of(deck, "search", "tolerance")
-      ! the thrust is w r, the weight of a voussoir 2 w r alpha/n: rounding of the one moves the other
+      ! the thrust is w r, the weight of a voussoir 2 w r alpha/n: rounding of the one moves the
+      ! other
       noise = 16.0_wp*epsilon(1.0_wp)*real(size(half_joints_deg(deck)), wp)/half_angle
       settings%rest_tolerance = max(settings%rest_tolerance, noise)
    end function settings_of
@@ -224,7 +225,8 @@ contains
       search_start = 0.8_wp*square**2/48.0_wp*max(0.3_wp, 1.0_wp - square/10.0_wp)
    end function search_start
 
-   !> What the rounding of corners makes of the critical thickness ratio. A corner off by eps r makes
+   !> What the rounding of corners makes of the critical thickness ratio. A corner off by eps r
+   !> makes
    !> the weight of a voussoir wrong by eps/eta, and with it the place of the thrust by
    !> alpha^2/8*eps/eta of the radius, to be compared with eta = alpha^4/48; with a margin of 4
    pure real(wp) function arch_resolution(deck)

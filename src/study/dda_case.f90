@@ -7,7 +7,8 @@ module dda_case
    use dda_contact_detection, only : contacts_t
    use dda_critical, only : critical_t, find_critical, search_t
    use dda_decision, only : decide, decision_t
-   use dda_deck, only : deck_t, has_group, integer_of, is_given, parameter_t, real_of, text_of, word_of
+   use dda_deck, only : deck_t, has_group, integer_of, is_given, parameter_t, real_of, text_of, &
+      & word_of
    use dda_deck_check, only : search_bracket
    use dda_deck_parameter, only : find_parameter, parameter_name
    use dda_error, only : error_t
@@ -25,8 +26,10 @@ module dda_case
 
    public :: case_t, prepare_case, compute_case, tell_case, verdict_name
 
-   !> One case in three stages: prepared, computed, told. Only the second may run beside other cases:
-   !> the others make texts, and gfortran keeps the length of a text that a function returns in memory
+   !> One case in three stages: prepared, computed, told. Only the second may run beside other
+   !> cases:
+   !> the others make texts, and gfortran keeps the length of a text that a function returns in
+   !> memory
    !> that threads share
    type :: case_t
       !> The deck with the values of the case
@@ -96,7 +99,8 @@ contains
       this%seconds = real(finish - start, wp)/real(rate, wp)
    end subroutine compute_case
 
-   !> Run the scene of the case once more for its pictures, a collapse until a corner has moved a tenth
+   !> Run the scene of the case once more for its pictures, a collapse until a corner has moved a
+   !> tenth
    !> of the radius
    pure subroutine take_pictures(this)
       !> The case, computed
@@ -229,7 +233,8 @@ contains
       type(case_t), intent(in) :: this
       !> Its row
       type(result_row_t), intent(inout) :: row
-      !> Rows of the joints: of the decision nearest to critical that stands, else of that which falls
+      !> Rows of the joints: of the decision nearest to critical that stands, else of that which
+      !> falls
       type(joint_row_t), allocatable, intent(inout) :: joint_row(:)
       !> Why the verdict is undecided
       character(len=:), allocatable, intent(inout) :: remark

@@ -20,7 +20,8 @@ module dda_frozen_mechanism
       type(joint_face_t), allocatable :: face(:)
       !> Motion of its last step without strains: (3, n_equation)
       real(wp), allocatable :: motion(:, :)
-      !> Length of a step long enough that elastic motion hides nothing, and short enough that rounding
+      !> Length of a step long enough that elastic motion hides nothing, and short enough that
+      !> rounding
       !> leaves the power smooth [s]
       real(wp) :: dt = 0.0_wp
    end type frozen_mechanism_t
@@ -28,7 +29,8 @@ module dda_frozen_mechanism
 contains
 
    !> Power of the loads on the mechanism. The structure with faces held moves under its loads; two
-   !> more solutions with its own inertia as the load leave of that motion the mechanism alone, which
+   !> more solutions with its own inertia as the load leave of that motion the mechanism alone,
+   !> which
    !> is then measured by the mechanism's motion at the value where it was found
    pure subroutine mechanism_power(mechanism, scene, power, noise, usable)
       !> The mechanism

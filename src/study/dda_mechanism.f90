@@ -49,7 +49,8 @@ module dda_mechanism
 
 contains
 
-   !> Follow a collapse under Coulomb friction where joints slide in it, for its motion to be that of
+   !> Follow a collapse under Coulomb friction where joints slide in it, for its motion to be that
+   !> of
    !> joints that do not open by sliding
    pure subroutine follow_collapse(scene, decision)
       !> The scene that fell

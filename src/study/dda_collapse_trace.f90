@@ -1,0 +1,174 @@
+!> Where a collapse stops: its joints, frozen, are traced to the value at which they cease to move
+module dda_collapse_trace
+   use dda_error, only : error_t
+   use dda_frozen_mechanism, only : frozen_mechanism_t, mechanism_power
+   use dda_kinds, only : wp
+   use dda_scene, only : family_t, scene_t
+   use dda_search, only : critical_t, search_t
+   use dda_settings, only : flow_rule
+   implicit none
+   private
+
+   public :: proposal_t, trace
+
+   !> Where a frozen collapse stops
+   type :: proposal_t
+      !> Whether it stops anywhere
+      logical :: usable = .false.
+      !> The value
+      real(wp) :: value = 0.0_wp
+      !> Half the width of the bracket to close around it: of the tolerance, or of what the rounded
+      !> coordinates can tell apart
+      real(wp) :: half = 0.0_wp
+      !> How far beyond and before it to decide; more than half where the frozen joints, which know
+      !> nothing of moving blocks, only come near
+      real(wp) :: reach = 0.0_wp
+   end type proposal_t
+
+   !> Share of the value by which moving blocks are first looked for beyond frozen ones
+   real(wp), parameter :: first_reach = 1.0e-3_wp
+   !> Half a bracket is no narrower than this share of its value
+   real(wp), parameter :: least_share = 4.0e-12_wp
+   !> What each joint adds to that share
+   real(wp), parameter :: share_of_joint = 2.0e-14_wp
+   !> Margin over the noise that three samples show
+   real(wp), parameter :: noise_margin = 20.0_wp
+   !> Most passes of the secant method
+   integer, parameter :: max_passes = 20
+   !> Free fall over elastic motion in the step that traces a mechanism
+   real(wp), parameter :: free_fall = 1.0e4_wp
+
+contains
+
+   !> Trace the last collapse to where it stops, by the secant method on the power of the loads
+   pure subroutine trace(family, search, limit, critical, proposal)
+      !> The family
+      class(family_t), intent(in) :: family
+      !> What is searched
+      type(search_t), intent(in) :: search
+      !> The end of the range on the side that stands
+      real(wp), intent(in) :: limit
+      !> What was found so far; the factorisations are counted
+      type(critical_t), intent(inout) :: critical
+      !> Where the collapse stops
+      type(proposal_t), intent(out) :: proposal
+      type(frozen_mechanism_t) :: mechanism
+      real(wp) :: x(2), power(2), first_power, noise, next, slope, coarse_slope, step
+      integer :: pass
+      logical :: usable, stopped, only_noise
+
+      proposal%half = least_half(search, critical)*max(abs(critical%falls), tiny(1.0_wp))
+      if (critical%fallen%flow /= flow_rule%associated) return
+      mechanism%face = critical%fallen%contacts%face
+      mechanism%motion = critical%fallen%outcome%motion(:3, :)
+      mechanism%dt = sqrt(free_fall)*critical%fallen%outcome%elastic_time
+      x(1) = critical%falls
+      call power_at(family, mechanism, x(1), critical, power(1), noise, usable)
+      first_power = power(1)
+      step = min(0.3_wp, max(1.0e-3_wp, 1.25_wp*critical%fallen%outcome%acceleration_ratio))
+      step = min(step*max(abs(x(1)), 0.01_wp*abs(limit - x(1))), abs(limit - x(1)))
+      x(2) = x(1) + sign(step, limit - x(1))
+      do pass = 1, max_passes
+         if (usable) call power_at(family, mechanism, x(2), critical, power(2), noise, usable)
+         if (.not. usable .or. .not. abs(power(2) - power(1)) > 0.0_wp) return
+         slope = (power(2) - power(1))/(x(2) - x(1))
+         if (pass == 1) coarse_slope = slope
+         next = x(2) - power(2)/slope
+         if (next < search%low .or. next > search%high) return
+         stopped = abs(next - x(2)) < 0.01_wp*search%tolerance*abs(next)
+         only_noise = abs(power(2)) < 1.0e-3_wp*abs(first_power) .and. abs(power(2)) > abs(power(1))
+         if (stopped .or. only_noise) exit
+         x = [x(2), next]
+         power(1) = power(2)
+      end do
+      proposal%usable = .true.
+      proposal%value = next
+      if (critical%current) then
+         proposal%reach = first_reach*abs(next)
+         proposal%half = least_half(search, critical)*abs(next)
+         return
+      end if
+      call refine_noise(family, mechanism, next, critical, noise)
+      proposal%half = max(least_half(search, critical)*abs(next), abs(noise/coarse_slope), &
+         & rest_resolution(critical, next))
+      proposal%reach = proposal%half
+   end subroutine trace
+
+   !> Half the width of a bracket over its value: of the tolerance, or of what rounding leaves
+   pure real(wp) function least_half(search, critical)
+      !> What is searched
+      type(search_t), intent(in) :: search
+      !> What was found so far, a collapse among it
+      type(critical_t), intent(in) :: critical
+
+      least_half = max(search%tolerance/2.0_wp, search%resolution, &
+         & least_share + share_of_joint*real(size(critical%fallen%contacts%face), wp))
+   end function least_half
+
+   !> Rounding in the solution of the equations: what another length of the step makes of the power
+   pure subroutine refine_noise(family, mechanism, value, critical, noise)
+      !> The family
+      class(family_t), intent(in) :: family
+      !> The mechanism
+      type(frozen_mechanism_t), intent(in) :: mechanism
+      !> The value
+      real(wp), intent(in) :: value
+      !> The factorisations are counted
+      type(critical_t), intent(inout) :: critical
+      !> Noise of the power; raised where rounding shows
+      real(wp), intent(inout) :: noise
+      type(frozen_mechanism_t) :: other
+      real(wp) :: power(3), ignored
+      logical :: usable
+      integer :: i
+
+      other = mechanism
+      do i = 1, 3
+         other%dt = mechanism%dt*0.7_wp**(i - 2)
+         call power_at(family, other, value, critical, power(i), ignored, usable)
+         if (.not. usable) return
+      end do
+      noise = max(noise, noise_margin*(maxval(power) - minval(power)))
+   end subroutine refine_noise
+
+   !> How near to its stop a mechanism becomes too slow for a decision to tell it from rest
+   pure real(wp) function rest_resolution(critical, stop)
+      !> What was found so far
+      type(critical_t), intent(in) :: critical
+      !> Value at which the last collapse stops
+      real(wp), intent(in) :: stop
+
+      associate (outcome => critical%fallen%outcome)
+         rest_resolution = 2.0_wp*abs(stop - critical%falls)*outcome%rest_tolerance &
+            & /outcome%acceleration_ratio
+      end associate
+   end function rest_resolution
+
+   !> Power of the loads on a frozen mechanism at one value
+   pure subroutine power_at(family, mechanism, value, critical, power, noise, usable)
+      !> The family
+      class(family_t), intent(in) :: family
+      !> The mechanism
+      type(frozen_mechanism_t), intent(in) :: mechanism
+      !> The value
+      real(wp), intent(in) :: value
+      !> The factorisations are counted
+      type(critical_t), intent(inout) :: critical
+      !> The power
+      real(wp), intent(out) :: power
+      !> What the rounding of coordinates alone makes of it
+      real(wp), intent(out) :: noise
+      !> Whether the power could be found
+      logical, intent(out) :: usable
+      type(error_t), allocatable :: error
+      type(scene_t) :: scene
+
+      power = 0.0_wp
+      noise = 0.0_wp
+      call family%build(value, scene, error)
+      usable = .not. allocated(error)
+      if (.not. usable) return
+      call mechanism_power(mechanism, scene, power, noise, usable)
+      critical%factorisations = critical%factorisations + 1
+   end subroutine power_at
+end module dda_collapse_trace

@@ -1,0 +1,56 @@
+!> What a search looks for, and what it has found
+module dda_search
+   use dda_decision, only : decision_t
+   use dda_kinds, only : wp
+   implicit none
+   private
+
+   public :: search_t, critical_t
+
+   !> What is searched
+   type :: search_t
+      !> Least value of the parameter
+      real(wp) :: low = 0.0_wp
+      !> Largest value of the parameter
+      real(wp) :: high = 1.0_wp
+      !> Where to begin, from low to high
+      real(wp) :: start = 0.0_wp
+      !> Width of the bracket over the critical value
+      real(wp) :: tolerance = 1.0e-8_wp
+      !> Relative change of the critical value that rounded coordinates can make, if it is known
+      real(wp) :: resolution = 0.0_wp
+      !> Whether the end beyond the critical value is decided too; not needed where it is known to
+      !> stand
+      logical :: check_far_end = .true.
+   end type search_t
+
+   !> What was found
+   type :: critical_t
+      !> found, or the verdict of both ends, or undecided
+      integer :: verdict = 0
+      !> Why the last undecided value is; unallocated if none was
+      character(len=:), allocatable :: reason
+      !> The last undecided value
+      real(wp) :: undecided_at = 0.0_wp
+      !> Value nearest to critical at which the structure falls
+      real(wp) :: falls = 0.0_wp
+      !> Value nearest to critical at which it stands
+      real(wp) :: stands = 0.0_wp
+      !> Half the width that rounding and tolerance leave to the bracket
+      real(wp) :: half = 0.0_wp
+      !> Decision at falls, if there is one
+      type(decision_t), allocatable :: fallen
+      !> Decision at stands, if there is one
+      type(decision_t), allocatable :: standing
+      !> Whether the blocks move
+      logical :: current = .false.
+      !> Number of decisions
+      integer :: decisions = 0
+      !> Steps of all decisions
+      integer :: steps = 0
+      !> Passes of the open-close loop of all decisions
+      integer :: passes = 0
+      !> Factorisations of all decisions and proposals
+      integer :: factorisations = 0
+   end type critical_t
+end module dda_search
