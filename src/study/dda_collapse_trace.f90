@@ -64,12 +64,13 @@ contains
       mechanism%dt = sqrt(free_fall)*critical%fallen%outcome%elastic_time
       x(1) = critical%falls
       call power_at(family, mechanism, x(1), critical, power(1), noise, usable)
+      if (.not. usable) return
       first_power = power(1)
       step = min(0.3_wp, max(1.0e-3_wp, 1.25_wp*critical%fallen%outcome%acceleration_ratio))
       step = min(step*max(abs(x(1)), 0.01_wp*abs(limit - x(1))), abs(limit - x(1)))
       x(2) = x(1) + sign(step, limit - x(1))
       do pass = 1, max_passes
-         if (usable) call power_at(family, mechanism, x(2), critical, power(2), noise, usable)
+         call power_at(family, mechanism, x(2), critical, power(2), noise, usable)
          if (.not. usable .or. .not. abs(power(2) - power(1)) > 0.0_wp) return
          slope = (power(2) - power(1))/(x(2) - x(1))
          if (pass == 1) coarse_slope = slope

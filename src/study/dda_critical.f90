@@ -24,7 +24,7 @@ module dda_critical
    integer, parameter :: max_undecided = 6
 
 
-   !> A bracket wider than this share of its value is no answer
+   !> A bracket wider than this share of its value is no answer, unless a wider one was asked for
    real(wp), parameter :: widest = 1.0e-4_wp
 
 contains
@@ -54,7 +54,7 @@ contains
             return
          end if
          if (answer == verdict%collapsed) call trace(family, search, limit, critical, proposal)
-         if (closed(critical, proposal)) then
+         if (closed(search, critical, proposal)) then
             critical%verdict = verdict%found
             critical%half = proposal%half
             return
@@ -220,7 +220,9 @@ contains
    end function middle
 
    !> Whether the bracket is as narrow as the proposal asks for
-   pure logical function closed(critical, proposal)
+   pure logical function closed(search, critical, proposal)
+      !> What is searched
+      type(search_t), intent(in) :: search
       !> What was found so far
       type(critical_t), intent(in) :: critical
       !> Where the last collapse stops
@@ -228,7 +230,7 @@ contains
 
       closed = allocated(critical%standing) &
          & .and. abs(critical%stands - critical%falls) <= 2.0001_wp*proposal%half &
-         & .and. 2.0_wp*proposal%half <= widest*abs(critical%stands)
+         & .and. 2.0_wp*proposal%half <= max(widest, 2.0_wp*search%tolerance)*abs(critical%stands)
    end function closed
 
 end module dda_critical

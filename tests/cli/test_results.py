@@ -659,3 +659,17 @@ def test_joints_of_every_case_are_written(tmp_path: Path) -> None:
     run_deck(tmp_path, text)
     cases = [joint["case"] for joint in read_joints(tmp_path)]
     assert cases == [1] * 5 + [2] * 5 + [3] * 10 + [4] * 10
+
+
+@pytest.mark.parametrize("tolerance", ["1e-2", "1e-3", "1e-4"])
+def test_coarse_tolerance_is_found_around_the_exact_value(tmp_path: Path, tolerance: str) -> None:
+    (tmp_path / "coarse.nml").write_text(
+        f"&joint friction_deg = 90 /\n&search tolerance = {tolerance} /\n"
+    )
+    assert run_dda("run", "coarse.nml", "--quiet", cwd=tmp_path).returncode == 0
+    with (tmp_path / "coarse" / "results.csv").open() as lines:
+        (row,) = csv.DictReader(lines)
+    assert row["verdict"] == "found"
+    assert float(row["critical_low"]) < 0.10742413832037053 < float(row["critical_high"])
+    width = float(row["critical_high"]) - float(row["critical_low"])
+    assert width <= 1.01 * float(tolerance) * float(row["critical"])
