@@ -1,6 +1,6 @@
 !> dda run --resume: what an earlier run of the same deck has finished
 !>
-!> A case is finished where its row in results.csv is whole, for that row is written last. Everything
+!> A case is finished where its row in results.csv is whole: that row is written last. Everything
 !> else of that run, rows cut off by a kill among them, is left out of the tables.
 module dda_resume
    use dda_error, only : error_t

@@ -139,7 +139,8 @@ contains
       progress%total = total - sum(finished%count)
       call system_clock(progress%start)
       !$omp parallel do num_threads(min(command%jobs, total, max_jobs)) schedule(dynamic) &
-      !$omp default(none) shared(total, deck, name, command, tables, progress, count, error, finished)
+      !$omp default(none) &
+      !$omp shared(total, deck, name, command, tables, progress, count, error, finished)
       do number = 1, total
          if (finished%case(number)) cycle
          call run_one_case(command, name, deck, number, total, tables, progress, count, error)
