@@ -65,6 +65,7 @@ contains
       call new_equations(system, contacts%springs, settings, equations)
       call begin_step(contacts, size(equations%weight, 1), size(equations%weight, 2), step%state)
       call first_interval(system, contacts%springs, settings, equations, step%state, march, error)
+      contacts%face = step%state%face
       if (present(album)) call keep_frame(system, contacts, 0, 0.0_wp, 0.0_wp, .false., album)
       do while (.not. allocated(error))
          if (march%steps == settings%max_steps) exit
