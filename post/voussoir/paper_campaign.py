@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import os
-import resource
 import shutil
 import subprocess
 import time
 from collections.abc import Callable, Iterator
+from concurrent.futures import ThreadPoolExecutor, as_completed
 from contextlib import contextmanager
 from dataclasses import dataclass, field
 from functools import cached_property, lru_cache
@@ -17,6 +17,8 @@ from voussoir import paper_tables, results, theory
 
 #: Roughly how long each part takes beside the others; a part that is not named here counts 1
 _WEIGHTS = {"figure12": 12.0, "figure15": 12.0, "figure9": 5.0, "figure18": 4.0, "figure8": 2.0}
+#: Name of the part that all decks are together
+TOGETHER = "all decks"
 #: Decks of this ending are run on demand only: the original program's scheme takes long
 SLOW_ENDING = "_limerick"
 
@@ -48,26 +50,53 @@ class Clock:
     left: dict[str, float]
     timings: list[Timing] = field(default_factory=list)
     _done: float = 0.0
+    _parts: int = 0
     _start: float = field(default_factory=time.monotonic)
+
+    @property
+    def elapsed(self) -> float:
+        """Wall time since the beginning [s]."""
+        return time.monotonic() - self._start
 
     @contextmanager
     def part(self, name: str) -> Iterator[None]:
-        """Measure one part and tell how long the others will take."""
-        start, before = time.monotonic(), _children()
+        """Measure one part that runs no program."""
+        start = time.monotonic()
         yield
-        wall = time.monotonic() - start
-        self.timings.append(Timing(name, wall, _children() - before))
-        self._done += self.left.pop(name, 1.0)
-        left = (time.monotonic() - self._start) / self._done * sum(self.left.values())
-        number = len(self.timings)
-        line = f"[{number}/{number + len(self.left)}] {name}: {wall:.1f} s"
+        self.record(Timing(name, time.monotonic() - start, 0.0))
+
+    def record(self, timing: Timing) -> None:
+        """Count one part and tell how long the others will take."""
+        self.timings.append(timing)
+        self._done += self.left.pop(timing.part, 1.0)
+        left = self.elapsed / self._done * sum(self.left.values())
+        self._parts += 1
+        number = self._parts
+        line = f"[{number}/{number + len(self.left)}] {timing.part}: {timing.wall:.1f} s"
         self.tell(line + (f", about {left:.0f} s left" if self.left else ""))
 
 
-def _children() -> float:
-    """Processor time of all programs that were run so far [s]."""
-    usage = resource.getrusage(resource.RUSAGE_CHILDREN)
-    return usage.ru_utime + usage.ru_stime
+def run_program(part: str, command: list[str | Path]) -> tuple[int, Timing]:
+    """Run a program and measure it.
+
+    Parameters
+    ----------
+    part : str
+        Name of what it does.
+    command : list
+        The program and its arguments.
+
+    Returns
+    -------
+    tuple
+        Its exit status and its times.
+    """
+    start = time.monotonic()
+    process = subprocess.Popen(command)
+    _, status, usage = os.wait4(process.pid, 0)
+    process.returncode = os.waitstatus_to_exitcode(status)
+    timing = Timing(part, time.monotonic() - start, usage.ru_utime + usage.ru_stime)
+    return process.returncode, timing
 
 
 @dataclass
@@ -120,7 +149,7 @@ class Campaign:
         ]
 
     def run(self, dda: Path, clock: Clock, jobs: int, slow: bool, resume: bool) -> int:
-        """Run all decks.
+        """Run all decks, each by a process of its own.
 
         Parameters
         ----------
@@ -129,7 +158,7 @@ class Campaign:
         clock : Clock
             Is told of each deck.
         jobs : int
-            Cases computed at the same time.
+            Decks computed at the same time.
         slow : bool
             Whether to run those decks too that are run on demand only.
         resume : bool
@@ -140,13 +169,26 @@ class Campaign:
         int
             The worst exit status of the program.
         """
+        files = self.deck_files(slow)
+        longest_first = sorted(files, key=lambda file: -clock.left.get(file.stem, 1.0))
+        options = ["--quiet", *(["--resume"] if resume else [])]
         statuses = [0]
-        for file in self.deck_files(slow):
-            with clock.part(file.stem):
-                command = [dda, "run", file, "--out", self.out / file.stem, "--jobs", str(jobs)]
-                command += ["--quiet", *(["--resume"] if resume else [])]
-                statuses.append(subprocess.run(command, check=False).returncode)
-        return next((status for status in (4, 2, 3) if status in statuses), max(statuses))
+        with ThreadPoolExecutor(jobs) as workers:
+            running = [
+                workers.submit(
+                    run_program,
+                    file.stem,
+                    [dda, "run", file, "--out", self.out / file.stem, *options],
+                )
+                for file in longest_first
+            ]
+            for done in as_completed(running):
+                status, timing = done.result()
+                statuses.append(status)
+                clock.record(timing)
+        order = {file.stem: place for place, file in enumerate(files)}
+        clock.timings.sort(key=lambda timing: order.get(timing.part, len(order)))
+        return next((status for status in (4, 2, 3) if status in statuses), max(statuses, key=abs))
 
     def _results(self, deck: str) -> results.Results:
         """Results of one deck, read once."""

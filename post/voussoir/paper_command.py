@@ -10,7 +10,7 @@ import time
 from pathlib import Path
 
 from voussoir import paper_tables
-from voussoir.paper_campaign import Campaign, Clock, find_dda, find_decks, weights
+from voussoir.paper_campaign import TOGETHER, Campaign, Clock, Timing, find_dda, find_decks, weights
 
 _PARTS = ["figures", "animations"]
 
@@ -35,7 +35,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         metavar="N",
         type=_at_least_one,
         default=os.cpu_count() or 1,
-        help="cases computed at the same time (default: one a processor)",
+        help="decks computed at the same time (default: one a processor)",
     )
     parser.add_argument(
         "--resume", action="store_true", help="keep what an earlier run has finished"
@@ -101,6 +101,7 @@ def _make(campaign: Campaign, arguments: argparse.Namespace, dda: Path, clock: C
     status = campaign.run(
         dda, clock, arguments.jobs, slow=arguments.limerick, resume=arguments.resume
     )
+    clock.timings.append(Timing(TOGETHER, clock.elapsed, sum(t.computing for t in clock.timings)))
     if status in (2, 4) or status not in (0, 3):
         return status
     folder = arguments.out

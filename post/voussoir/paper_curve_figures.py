@@ -189,7 +189,7 @@ def _imposed(table: PaperTable, alpha_deg: float) -> Figure:
     for name, marker in zip(THEORIES, ("+", "x", "*")):
         top, eta, _ = theory.critical(alpha, name)
         curve.plot(
-            math.degrees(top), eta, marker=marker, color=INK[0], markersize=10, linestyle="none",
+            math.degrees(top), eta, marker=marker, color=INK[0], markersize=10, linestyle="none", zorder=6,
             label=f"critical, {THEORIES[name]}: {math.degrees(top):.2f}°, {float(eta):.6f}",
         )
     draw_points(curve, table, "joint")

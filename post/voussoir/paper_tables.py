@@ -213,7 +213,9 @@ def percent(share: float | None) -> str:
     if share is None:
         return ""
     percents = 100.0 * share
-    if abs(percents) < 5e-7:
+    if abs(percents) < 5e-16:
+        return "0"
+    if abs(percents) < 5e-5:
         return f"{percents:+.0e}"
     return f"{percents:+.2f}" if abs(percents) >= 1.0 else f"{percents:+.4f}"
 

@@ -11,7 +11,7 @@ from pathlib import Path
 _STYLE = """
 :root { color-scheme: light; }
 * { box-sizing: border-box; }
-body { margin: 0 auto; max-width: 64rem; padding: 0 1rem 4rem; background: #fff; color: #1a1a1a;
+body { margin: 0 auto; max-width: 74rem; padding: 0 1rem 4rem; background: #fff; color: #1a1a1a;
   font: 1rem/1.55 Georgia, 'Times New Roman', serif; overflow-wrap: break-word; }
 h1 { font-size: 1.9rem; line-height: 1.2; margin: 2rem 0 .5rem; }
 h2 { font-size: 1.45rem; margin: 3rem 0 .5rem; padding-top: .5rem; border-top: 2px solid #1a1a1a; }
@@ -22,14 +22,16 @@ nav ol { margin: .3rem 0; padding-left: 1.3rem; columns: 2; column-gap: 2.5rem; 
 nav li { break-inside: avoid; }
 a { color: #174a82; }
 figure { margin: 1.5rem 0; }
-figcaption, caption { text-align: left; font-size: .95rem; max-width: 46rem; padding: .4rem 0; }
+figcaption, .caption { font-size: .95rem; max-width: 46rem; margin: 0; padding: .4rem 0; }
+.table { margin: 1.5rem 0; }
 .wide { overflow-x: auto; }
 .wide:focus { outline: 2px solid #1f5fa8; }
-figure svg { display: block; width: 100%; height: auto; min-width: 34rem; max-width: var(--width); }
+figure svg { display: block; width: 100%; height: auto; min-width: calc(.8*var(--width));
+  max-width: calc(1.2*var(--width)); }
 figure img { display: block; max-width: 100%; height: auto; }
 table { border-collapse: collapse; font: .86rem/1.35 Arial, Helvetica, sans-serif;
   font-variant-numeric: tabular-nums; }
-th, td { padding: .25rem .6rem; text-align: right; white-space: nowrap;
+th, td { padding: .25rem .5rem; text-align: right; white-space: nowrap;
   border-bottom: 1px solid #d6d6d0; }
 th { border-bottom: 2px solid #1a1a1a; vertical-align: bottom; }
 td small, th small { display: block; color: #555; }
@@ -98,9 +100,9 @@ class Page:
         lines += ["".join(f"<td>{cell}</td>" for cell in row) for row in rows]
         body = "".join(f"<tr>{line}</tr>" for line in lines[1:])
         self._body.append(
-            f'<div class="wide" tabindex="0"><table{_named(anchor)}{_class("words", words)}>'
-            f"<caption>{caption}</caption><thead><tr>{lines[0]}</tr></thead>"
-            f"<tbody>{body}</tbody></table></div>"
+            f'<div class="table"{_named(anchor)}><p class="caption">{caption}</p>'
+            f'<div class="wide" tabindex="0"><table{_class("words", words)}>'
+            f"<thead><tr>{lines[0]}</tr></thead><tbody>{body}</tbody></table></div></div>"
         )
 
     def figure(self, svg: Path, caption: str, anchor: str) -> None:
