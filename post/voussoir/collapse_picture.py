@@ -55,11 +55,11 @@ def draw_frame(axes: Axes, run: Results, number: int, frame: Frame, size: float 
             )
         )
     axes.add_collection(
-        PolyCollection(supports, facecolors="white", edgecolors=INK[3], linewidths=0.6, hatch="////")
+        PolyCollection(
+            supports, facecolors="white", edgecolors=INK[3], linewidths=0.6, hatch="////"
+        )
     )
-    axes.add_collection(
-        PolyCollection(blocks, facecolors=STONE, edgecolors=INK[0], linewidths=0.6)
-    )
+    axes.add_collection(PolyCollection(blocks, facecolors=STONE, edgecolors=INK[0], linewidths=0.6))
     if frame.number > 0:
         for kind, points in marks_of(run, number, frame).items():
             axes.plot(*points, linestyle="none", markersize=size, zorder=5, **MARKS[kind])
@@ -106,8 +106,10 @@ def shortened(support: np.ndarray, frame: Frame, joint: int, share: float = 0.3)
     ndarray
         Corners: (n, 2).
     """
-    ends = [np.array([frame.joints["x" + end][joint], frame.joints["y" + end][joint]])
-            for end in ("_1", "_2")]
+    ends = [
+        np.array([frame.joints["x" + end][joint], frame.joints["y" + end][joint]])
+        for end in ("_1", "_2")
+    ]
     along = (ends[1] - ends[0]) / np.linalg.norm(ends[1] - ends[0])
     normal = np.array([-along[1], along[0]])
     depth = (support - ends[0]) @ normal
@@ -149,9 +151,7 @@ def mark_legend(figure: Figure, kinds: tuple[str, ...] = ("intrados", "extrados"
         Line2D([], [], linestyle="none", markersize=6, label=MEANINGS[kind], **MARKS[kind])
         for kind in kinds
     ]
-    figure.legend(
-        handles=entries, loc="upper center", bbox_to_anchor=(0.5, 0.0), ncols=len(kinds)
-    )
+    figure.legend(handles=entries, loc="upper center", bbox_to_anchor=(0.5, 0.0), ncols=len(kinds))
     return figure
 
 

@@ -46,7 +46,10 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         help="also run the decks of the original program's scheme, which take much longer",
     )
     parser.add_argument(
-        "--decks", metavar="DIR", type=Path, help="folder of the decks (default: that of the source)"
+        "--decks",
+        metavar="DIR",
+        type=Path,
+        help="folder of the decks (default: that of the source)",
     )
     parser.add_argument(
         "--dda", metavar="FILE", type=Path, help="the program dda (default: that of the build)"

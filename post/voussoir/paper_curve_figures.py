@@ -116,7 +116,11 @@ def friction(campaign: Campaign) -> Figure:
     ):
         kept = (cases["collapse_mode"] == "rotational") == turning
         axes.plot(
-            cases["friction_deg"][kept], cases["critical"][kept], linestyle="none", label=label, **style
+            cases["friction_deg"][kept],
+            cases["critical"][kept],
+            linestyle="none",
+            label=label,
+            **style,
         )
     for value, words in ((lower[0], "stands at no thickness"), (upper[0], "no joint slips")):
         axes.axvline(value, color=INK[3], linewidth=1.0, linestyle=DASHES[3])
@@ -152,7 +156,12 @@ def numbers_of_blocks(campaign: Campaign) -> Figure:
                 value, color=color, linestyle=dashes, linewidth=1.2, label=f"{heading} {value:.6f}"
             )
         axes.plot(
-            even, exact, color=INK[0], marker=".", markersize=3, linewidth=0.7,
+            even,
+            exact,
+            color=INK[0],
+            marker=".",
+            markersize=3,
+            linewidth=0.7,
             label="exact, every even number",
         )
         draw_points(axes, table, "blocks")
@@ -189,7 +198,13 @@ def _imposed(table: PaperTable, alpha_deg: float) -> Figure:
     for name, marker in zip(THEORIES, ("+", "x", "*")):
         top, eta, _ = theory.critical(alpha, name)
         curve.plot(
-            math.degrees(top), eta, marker=marker, color=INK[0], markersize=10, linestyle="none", zorder=6,
+            math.degrees(top),
+            eta,
+            marker=marker,
+            color=INK[0],
+            markersize=10,
+            linestyle="none",
+            zorder=6,
             label=f"critical, {THEORIES[name]}: {math.degrees(top):.2f}°, {float(eta):.6f}",
         )
     draw_points(curve, table, "joint")

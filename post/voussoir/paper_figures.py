@@ -76,11 +76,23 @@ def animate_all(campaign: Campaign, folder: Path) -> list[Path]:
     shown = [int(five.cases.where(half_angle_deg=angle)["case"][0]) for angle in (45, 90, 120, 145)]
     with house_style():
         return [
-            animate(friction, list(friction.cases["case"]), titles.short_friction_title,
-                    folder / "animation8.gif"),
-            animate(four, [titles.case_of_joint(four, 54.5)], titles.imposed_title,
-                    folder / "animation13.gif"),
-            animate(wide, [titles.case_of_joint(wide, 59.0)], titles.imposed_title,
-                    folder / "animation16.gif"),
+            animate(
+                friction,
+                list(friction.cases["case"]),
+                titles.short_friction_title,
+                folder / "animation8.gif",
+            ),
+            animate(
+                four,
+                [titles.case_of_joint(four, 54.5)],
+                titles.imposed_title,
+                folder / "animation13.gif",
+            ),
+            animate(
+                wide,
+                [titles.case_of_joint(wide, 59.0)],
+                titles.imposed_title,
+                folder / "animation16.gif",
+            ),
             animate(five, shown, titles.short_half_angle_title, folder / "animation18.gif"),
         ]

@@ -48,10 +48,10 @@ def rigid_is_exact(campaign: Campaign) -> Finding:
     friction = np.abs(cases["relative_error"]).max()
     return Finding(
         "Rigid blocks give the exact values of statics",
-        f"In {len(errors)} arches of Tables 1 to 4 the critical thickness of rigid blocks deviates from "
-        f"limit analysis of the same polygons by at most {max(errors):.0e} of its value, in "
-        f"{len(cases)} arches whose joints may slip by at most {friction:.0e}. What follows about the "
-        "paper's values is therefore about its program, not about ours.",
+        f"In {len(errors)} arches of Tables 1 to 4 the critical thickness of rigid blocks "
+        f"deviates from limit analysis of the same polygons by at most {max(errors):.0e} of "
+        f"its value, in {len(cases)} arches whose joints may slip by at most {friction:.0e}. "
+        "What follows about the paper's values is therefore about its program, not about ours.",
     )
 
 
@@ -74,13 +74,14 @@ def from_below(campaign: Campaign) -> Finding:
             f"{first['exact'][example + 1]:.9f}."
         )
     return Finding(
-        f"More blocks bring the critical thickness up to {limit:.6f}, from below and in no steady way",
+        f"More blocks bring the critical thickness up to {limit:.6f}, from below and in no "
+        "steady way",
         f"Of {even.size} even numbers of blocks from {even[0]} to {even[-1]}, "
-        f"{int(np.count_nonzero(exact < limit))} need less than the continuous arch of Milankovitch "
-        f"({limit:.6f}); the largest value is {exact.max():.9f}, at {even[exact.argmax()]} blocks. "
-        f"From one even number to the next the value falls {falls} times: what counts is how near "
-        f"a joint comes to {math.degrees(theory.critical(math.pi / 2, 'milankovitch')[0]):.2f} degrees."
-        + shown,
+        f"{int(np.count_nonzero(exact < limit))} need less than the continuous arch of "
+        f"Milankovitch ({limit:.6f}); the largest value is {exact.max():.9f}, at "
+        f"{even[exact.argmax()]} blocks. From one even number to the next the value "
+        f"falls {falls} times: what counts is how near a joint comes to "
+        f"{math.degrees(theory.critical(math.pi / 2, 'milankovitch')[0]):.2f} degrees." + shown,
     )
 
 
@@ -96,13 +97,14 @@ def growth_with_blocks(campaign: Campaign) -> Finding:
         "The paper's growth with the number of blocks is not statics",
         f"Its values exceed the exact ones by {100 * (paper[0] / exact[0] - 1):.1f} % at "
         f"{rows[0].blocks} blocks and by {100 * (paper[-1] / exact[-1] - 1):.1f} % at "
-        f"{rows[-1].blocks}, about {slope:.2f} % more for each block. The exact values from 30 blocks "
-        f"on lie within {100 * (late.max() / late.min() - 1):.3f} % of one another. The cause is the "
-        "compliance of the contacts in the program that the paper used: it lowers its penalty until "
-        "the deepest corner penetrates by a fixed share of the size of the whole model, whatever "
-        "Young's modulus is. The closures of the joints add up, more joints to more: 36 blocks sink by a "
-        "tenth of their thickness at the crown while they still stand, and the flatter arch needs more "
-        "thickness. Limit analysis of the arch so deformed gives the paper's value.",
+        f"{rows[-1].blocks}, about {slope:.2f} % more for each block. The exact values from 30 "
+        f"blocks on lie within {100 * (late.max() / late.min() - 1):.3f} % of one another. The "
+        "cause is the compliance of the contacts in the program that the paper used: it "
+        "lowers its penalty until the deepest corner penetrates by a fixed share of the size "
+        "of the whole model, whatever Young's modulus is. The closures of the joints add up, "
+        "more joints to more: 36 blocks sink by a tenth of their thickness at the crown while "
+        "they still stand, and the flatter arch needs more thickness. Limit analysis of the "
+        "arch so deformed gives the paper's value.",
     )
 
 
@@ -123,7 +125,8 @@ def paper_elsewhere(campaign: Campaign) -> Finding:
     total = sum(1 for _ in _values(campaign, _PAPER))
     return Finding(
         f"The paper's values lie above the exact ones in {count} of {total} arches",
-        "; ".join(parts) + ". The thinner the arch, the more the same closure of its joints weighs.",
+        "; ".join(parts)
+        + ". The thinner the arch, the more the same closure of its joints weighs.",
     )
 
 
@@ -141,8 +144,9 @@ def other_columns(campaign: Campaign) -> Iterator[Finding]:
         if shares:
             yield Finding(
                 f"{column}: the original's scheme and constants",
-                f"{len(shares)} of {total} arches were found; they deviate from the paper's own values by "
-                f"at most {100 * max(shares):.1f} %, by {100 * float(np.median(shares)):.2f} % in the middle.",
+                f"{len(shares)} of {total} arches were found; they deviate from the paper's own "
+                f"values by at most {100 * max(shares):.1f} %, by "
+                f"{100 * float(np.median(shares)):.2f} % in the middle.",
             )
 
 
@@ -156,9 +160,8 @@ def hinges(campaign: Campaign) -> Finding:
     )
     return Finding(
         f"The hinges of Table 4 are the paper's in {same} of {len(rows)} rows",
-        f"They are "
-        f"the joints that bind in limit analysis in {exact} of {len(rows)} rows. The thickness that the "
-        "paper's program gets is off, its mechanism is not.",
+        f"They are the joints that bind in limit analysis in {exact} of {len(rows)} rows. The "
+        "thickness that the paper's program gets is off, its mechanism is not.",
     )
 
 
@@ -182,8 +185,9 @@ def standing_at_ccr(campaign: Campaign) -> Finding:
     values = ", ".join(f"{value:.7f}" for value in stands["exact"])
     return Finding(
         f"Some arches stand at the thickness of CCR, {eta:g}",
-        f"{words[0].capitalize()} and {words[1]} stand there; the exact critical values of the rigid "
-        f"ones, {values}, lie below it. A collapse that the paper saw in them is its program's.",
+        f"{words[0].capitalize()} and {words[1]} stand there; the exact critical values of the "
+        f"rigid ones, {values}, lie below it. A collapse that the paper saw in them is its "
+        "program's.",
     )
 
 
@@ -202,8 +206,8 @@ def friction_of_50(campaign: Campaign) -> Finding:
             "found": f"needs {at_50.eta:.6f} in place of {row.exact:.6f}",
         }[at_50.status]
         parts.append(
-            f"with it the arch of {row.half_angle} degrees {outcome}, and turns without slip from "
-            f"{least:.2f} degrees on only"
+            f"with it the arch of {row.half_angle} degrees {outcome}, and turns without slip "
+            f"from {least:.2f} degrees on only"
         )
     table3 = {row.joint: least_friction_of(row) for row in campaign.tables["table3"].rows}
     high = ", ".join(
@@ -216,13 +220,13 @@ def friction_of_50(campaign: Campaign) -> Finding:
         "Friction of 50 degrees cannot hold the arches of 140 and 145 degrees",
         "The paper names that angle for all runs. In Table 4, "
         + "; ".join(parts)
-        + f". In Table 3 the turning mechanism needs {high}, and up to {rest:.2f} in the other rows. "
-        "Here these arches have joints that cannot slide.",
+        + f". In Table 3 the turning mechanism needs {high}, and up to {rest:.2f} in the other "
+        "rows. Here these arches have joints that cannot slide.",
     )
 
 
 def least_friction_of(row: Row) -> float:
-    """The same for an arch of Table 3, whose joint is imposed and whose chords span half a degree."""
+    """The same for an arch of Table 3: imposed joint, chords of half a degree."""
     half = np.radians([0.0, float(row.joint), float(row.half_angle)])
     return least_friction(half, facet=math.radians(0.5))
 
@@ -244,8 +248,9 @@ def least_friction(joints: Any, **arch: float) -> float:
     """
     wanted = theory.discrete_solution(joints, **arch).eta * (1.0 + 1e-10)
     return _bisect(
-        lambda angle: theory.discrete_solution(joints, friction=math.radians(angle), **arch).eta
-        <= wanted,
+        lambda angle: (
+            theory.discrete_solution(joints, friction=math.radians(angle), **arch).eta <= wanted
+        ),
         0.0,
         89.0,
     )
@@ -254,10 +259,9 @@ def least_friction(joints: Any, **arch: float) -> float:
 def exact_threshold(blocks: int, eta: float) -> float:
     """Least friction angle at which a semicircle of blocks of a thickness stands, exactly [deg]."""
     return _bisect(
-        lambda angle: theory.discrete_solution(
-            blocks, math.pi / 2, friction=math.radians(angle)
-        ).eta
-        <= eta,
+        lambda angle: (
+            theory.discrete_solution(blocks, math.pi / 2, friction=math.radians(angle)).eta <= eta
+        ),
         0.0,
         60.0,
     )
@@ -283,13 +287,15 @@ def thresholds(campaign: Campaign) -> Finding:
         "The two friction thresholds that the paper cites are found",
         f"Below a coefficient of {found} the arch stands at no thickness (continuous arch: "
         f"{continuous['mu_mixed']:.6f}; the paper cites 0.309 and 0.31). From "
-        f"{math.tan(math.radians(upper['critical'][0])):.6f} on ({upper['blocks'][0]} blocks; continuous "
-        f"arch: {continuous['mu_rotational']:.6f}, the paper cites 0.395 and 0.396) no joint slips "
-        "at the critical thickness. The exact values of the same polygons are "
+        f"{math.tan(math.radians(upper['critical'][0])):.6f} on ({upper['blocks'][0]} blocks; "
+        f"continuous arch: {continuous['mu_rotational']:.6f}, the paper cites 0.395 and 0.396) "
+        "no joint slips at the critical thickness. The exact values of the same polygons are "
         + ", ".join(
             f"{math.tan(math.radians(exact_threshold(int(blocks), eta))):.6f}"
-            for blocks, eta in (*zip(lower["blocks"], lower["thickness_ratio"]),
-                                (upper["blocks"][0], upper["thickness_ratio"][0]))
+            for blocks, eta in (
+                *zip(lower["blocks"], lower["thickness_ratio"]),
+                (upper["blocks"][0], upper["thickness_ratio"][0]),
+            )
         )
         + ".",
     )
@@ -303,17 +309,18 @@ def elastic_shift(campaign: Campaign) -> Finding:
         worst = max(rows, key=lambda row: row.values[_ELASTIC].error)
         median = float(np.median([row.values[_ELASTIC].error for row in rows]))
         parts.append(
-            f"Table {name[-1]}: {100 * median:.3f} % in the middle, {_share(worst, _ELASTIC, 2)} at "
-            f"most ({_arch(worst)})"
+            f"Table {name[-1]}: {100 * median:.3f} % in the middle, "
+            f"{_share(worst, _ELASTIC, 2)} at most ({_arch(worst)})"
         )
     shallow = campaign.tables["table4"].rows[0]
     return Finding(
         "Elastic blocks need a little more thickness, shallow and thin arches noticeably more",
-        "Blocks of the paper's Young's modulus that move and deform shorten the arch under its own weight: "
+        "Blocks of the paper's Young's modulus that move and deform shorten the arch under its "
+        "own weight: "
         + "; ".join(parts)
-        + f". It matters at {shallow.half_angle} degrees ({_share(shallow, _ELASTIC, 2)}) and where the "
-        "arch is thin. The shift is inversely proportional to Young's modulus, and much smaller than "
-        "what the paper's program adds.",
+        + f". It matters at {shallow.half_angle} degrees ({_share(shallow, _ELASTIC, 2)}) and "
+        "where the arch is thin. The shift is inversely proportional to Young's modulus, and "
+        "much smaller than what the paper's program adds.",
     )
 
 

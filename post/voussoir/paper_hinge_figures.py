@@ -47,7 +47,9 @@ def block_numbers(campaign: Campaign) -> Figure:
         axes.set_title(f"$\\eta$ = {eta:g}, {word}", fontsize=10, loc="left")
     grid[-1].set_xlabel("number of blocks [-]")
     handles, labels = grid[0].get_legend_handles_labels()
-    figure.legend(handles, labels, loc="upper center", bbox_to_anchor=(0.5, 0.0), ncols=3, fontsize=9)
+    figure.legend(
+        handles, labels, loc="upper center", bbox_to_anchor=(0.5, 0.0), ncols=3, fontsize=9
+    )
     return figure
 
 
@@ -76,8 +78,14 @@ def _draw_hinges(axes: Axes, table: Table, name: str) -> None:
     for place in np.flatnonzero(table["verdict"] == "stable"):
         word = name.removeprefix("ours, ")
         axes.text(
-            place, height, f"{word}:\nstands", ha="center", va="center", fontsize=8.5,
-            bbox={"facecolor": "white", "edgecolor": "none", "pad": 1.0}, zorder=5,
+            place,
+            height,
+            f"{word}:\nstands",
+            ha="center",
+            va="center",
+            fontsize=8.5,
+            bbox={"facecolor": "white", "edgecolor": "none", "pad": 1.0},
+            zorder=5,
         )
 
 
@@ -92,7 +100,11 @@ def half_angles(campaign: Campaign) -> Figure:
         axes.plot(np.degrees(alpha), np.degrees(beta), color=color, linestyle=dashes, label=heading)
     slope = 1.0 / math.sqrt(2.0)
     axes.plot(
-        [0.0, 80.0], [0.0, 80.0 * slope], color=INK[3], linewidth=1.0, linestyle=DASHES[3],
+        [0.0, 80.0],
+        [0.0, 80.0 * slope],
+        color=INK[3],
+        linewidth=1.0,
+        linestyle=DASHES[3],
         label=r"small arches, $\beta = \alpha/\sqrt{2}$",
     )
     styles = {name: dict(POINTS[name]) for name in POINTS}

@@ -13,71 +13,12 @@ import numpy as np
 import voussoir
 from voussoir import paper_findings, paper_tables, theory
 from voussoir.paper_campaign import TOGETHER, Campaign, Timing
+from voussoir.paper_contents import ANIMATIONS, CAPTIONS, SECTIONS, THEORY_CAPTIONS
 from voussoir.paper_tables import THEORIES, PaperTable, Row, Value, percent, thickness
 from voussoir.report import Page, escape
 
 #: Stands where the time goes that making the page itself has taken
 PAGE_TIME = "@@page@@"
-
-CAPTIONS = {
-    "figure8": "Fig. 8: collapse of 36 blocks of the thickness 0.105965 at friction angles of 0, 10, 20 "
-    "and 30 degrees, followed until a corner has moved by a tenth of the radius. Grey: before. The sliding "
-    "share is slip over slip and opening of all joints at the onset.",
-    "figure8_friction": "Behind Fig. 8: critical thickness of 36 rigid blocks against the friction angle, "
-    "with the two thresholds that the paper cites from others.",
-    "figure9": "Fig. 9: collapse against the number of blocks; thickness 0.105965 (Heyman) and 0.107426 "
-    "(CCR), elastic blocks. &beta;: intrados hinge at the onset.",
-    "figure10": "Fig. 10: intrados hinge against the number of blocks, rigid and elastic, among the "
-    "joints that the arch has. Below its critical thickness an arch may turn at the next joint.",
-    "figure11": "Fig. 11: critical thickness against the number of blocks. The line joins the exact values "
-    "of every even number of blocks.",
-    "figure12": "Fig. 12: collapse of four blocks at half angle 90 degrees, joint imposed at &beta;, at their "
-    "critical thickness &eta; (elastic).",
-    "figure13": "Fig. 13: the same, joint at 54.5 degrees.",
-    "figure14": "Fig. 14: thickness against the imposed joint, half angle 90 degrees, and how far the values "
-    "lie above the exact ones.",
-    "figure15": "Fig. 15: collapse of four blocks at half angle 140 degrees, joint imposed at &beta;, at "
-    "their critical thickness &eta; (elastic, joints that cannot slide).",
-    "figure16": "Fig. 16: the same, joint at 59 degrees.",
-    "figure17": "Fig. 17: thickness against the imposed joint, half angle 140 degrees, and how far the "
-    "values lie above the exact ones.",
-    "figure18": "Fig. 18: collapse of arches of voussoirs of 5 degrees at their critical thickness (elastic; "
-    "joints that cannot slide at 140 and 145 degrees).",
-    "figure19": "Fig. 19: intrados hinge against the half angle of embrace; the joints lie 5 degrees apart.",
-    "figure20": "Fig. 20: critical thickness against the half angle of embrace, and how far the values lie "
-    "above the exact ones.",
-}
-"""What each figure shows, as HTML."""
-
-#: Sections of the paper: title, and what stands there in its order
-SECTIONS = (
-    ("3.1 Friction at the joints", ("figure8", "figure8_modes", "figure8_friction", "thresholds")),
-    ("3.2 Where the haunches turn", ("figure9", "figure10", "hinges9")),
-    ("3.3 Critical thickness", ("table1", "figure11")),
-    (
-        "3.4 Imposed haunch joint",
-        ("table2", "figure12", "figure13", "figure14", "table3", "figure15", "figure16", "figure17"),
-    ),
-    ("3.5 Half angle of embrace", ("table4", "hinges4", "figure18", "figure19", "figure20")),
-)
-
-ANIMATIONS = {
-    "figure8": ("animation8", "The collapses of Fig. 8."),
-    "figure13": ("animation13", "The collapse of Fig. 13."),
-    "figure16": ("animation16", "The collapse of Fig. 16."),
-    "figure18": ("animation18", "Collapses of Fig. 18."),
-}
-"""Name and caption of the animation that follows a figure."""
-
-_THEORY_CAPTIONS = (
-    "collapse mode of a half arch, CCR",
-    "line of thrust and forces on the upper part of a half arch",
-    "lines of thrust of the semicircle above, at and below the critical thickness, CCR",
-    "thickness for equilibrium against the hinge angle, semicircle, CCR",
-    "the same for several half angles, CCR",
-    "the same for the three theories, half angle 90 degrees",
-    "the same for the three theories, half angle 140 degrees",
-)
 
 
 def build(campaign: Campaign, figures: Path, timings: list[Timing], dda: Path) -> str:
@@ -101,14 +42,16 @@ def build(campaign: Campaign, figures: Path, timings: list[Timing], dda: Path) -
     """
     page = Page("Masonry arches by DDA: section 3 of the paper, side by side")
     page.text(
-        "Every numerical experiment of section 3 of Rizzi, Rusconi and Cocchetti's paper on the "
-        "Couplet-Heyman problem, repeated. Beside the paper's own DDA values stand ours, for rigid blocks "
-        "(small displacements) and for elastic blocks that move; the exact values of limit analysis "
-        "of the same polygons; and the analytic solutions of Milankovitch, CCR and Heyman. Each error is "
-        "the deviation from the exact polygon value.",
-        "&eta; is thickness over radius, &beta; the angle of the intrados hinge from the crown, &alpha; the half "
-        "angle of embrace. Radius 10 m, unit weight 22 kN/m<sup>3</sup>, Young's modulus 5e6 "
-        "kN/m<sup>2</sup>, Poisson's ratio 0.2, plane stress, friction 50 degrees where nothing else is said.",
+        "Every numerical experiment of section 3 of Rizzi, Rusconi and Cocchetti's paper on "
+        "the Couplet-Heyman problem, repeated. Beside the paper's own DDA values stand ours, "
+        "for rigid blocks (small displacements) and for elastic blocks that move; the exact "
+        "values of limit analysis of the same polygons; and the analytic solutions of "
+        "Milankovitch, CCR and Heyman. Each error is the deviation from the exact polygon "
+        "value.",
+        "&eta; is thickness over radius, &beta; the angle of the intrados hinge from the "
+        "crown, &alpha; the half angle of embrace. Radius 10 m, unit weight 22 "
+        "kN/m<sup>3</sup>, Young's modulus 5e6 kN/m<sup>2</sup>, Poisson's ratio 0.2, plane "
+        "stress, friction 50 degrees where nothing else is said.",
     )
     _glance(page, campaign)
     page.section("What the comparison shows", "findings")
@@ -151,20 +94,32 @@ def _add(page: Page, campaign: Campaign, figures: Path, part: str) -> None:
         if svg.is_file():
             page.figure(svg, CAPTIONS[part], part)
         else:
-            page.text(f'<span id="{part}">{CAPTIONS[part]} (left out: matplotlib is missing)</span>')
+            page.text(
+                f'<span id="{part}">{CAPTIONS[part]} (left out: matplotlib is missing)</span>'
+            )
         name, caption = ANIMATIONS.get(part, ("", ""))
         if name and (figures / f"{name}.gif").is_file():
             page.animation(figures / f"{name}.gif", caption, name)
     else:
-        {"figure8_modes": _modes, "thresholds": _thresholds, "hinges9": _hinges_of_figure_10,
-         "hinges4": _hinges_of_table_4}[part](page, campaign)
+        {
+            "figure8_modes": _modes,
+            "thresholds": _thresholds,
+            "hinges9": _hinges_of_figure_10,
+            "hinges4": _hinges_of_table_4,
+        }[part](page, campaign)
 
 
 def _thicknesses(page: Page, table: PaperTable) -> None:
     """Tables 1 to 4: values, and below each its error."""
     imposed = bool(table.rows[0].joint)
     head = ["joint [deg]"] if imposed else []
-    head += ["blocks", "&alpha; [deg]", "exact polygon", *map(escape, table.columns), "hinge, ours [deg]"]
+    head += [
+        "blocks",
+        "&alpha; [deg]",
+        "exact polygon",
+        *map(escape, table.columns),
+        "hinge, ours [deg]",
+    ]
     rows = []
     for row in table.rows:
         cells = [row.joint] if imposed else []
@@ -175,8 +130,9 @@ def _thicknesses(page: Page, table: PaperTable) -> None:
         head[0], head[1] = head[1], head[0]
         rows = [[row[1], row[0], *row[2:]] for row in rows]
     page.table(
-        f"<strong>{escape(table.title)}.</strong> Critical thickness ratio; below it the deviation from "
-        "the exact polygon value in percent." + (" Theories: &eta;(&beta;)." if imposed else ""),
+        f"<strong>{escape(table.title)}.</strong> Critical thickness ratio; below it the "
+        "deviation from the exact polygon "
+        "value in percent." + (" Theories: &eta;(&beta;)." if imposed else ""),
         head,
         rows,
         anchor=table.name,
@@ -207,8 +163,15 @@ def _modes(page: Page, campaign: Campaign) -> None:
     ]
     page.table(
         "Collapse modes of Fig. 8",
-        ["&phi; [deg]", "&mu;", "paper", "ours", "sliding share", "intrados hinges [deg]",
-         "extrados hinges [deg]"],
+        [
+            "&phi; [deg]",
+            "&mu;",
+            "paper",
+            "ours",
+            "sliding share",
+            "intrados hinges [deg]",
+            "extrados hinges [deg]",
+        ],
         rows,
         anchor="modes",
     )
@@ -237,8 +200,15 @@ def _thresholds(page: Page, campaign: Campaign) -> None:
             )
     page.table(
         "Friction thresholds of the semicircle",
-        ["", "blocks", "&phi; [deg]", "&mu;, ours", "&mu;, exact polygon", "&mu;, continuous arch",
-         "cited by the paper"],
+        [
+            "",
+            "blocks",
+            "&phi; [deg]",
+            "&mu;, ours",
+            "&mu;, exact polygon",
+            "&mu;, continuous arch",
+            "cited by the paper",
+        ],
         rows,
         anchor="thresholds",
     )
@@ -279,7 +249,8 @@ def _hinges_of_table_4(page: Page, campaign: Campaign) -> None:
     table = campaign.tables["table4"]
     columns = [column for column in table.columns if column not in THEORIES.values()]
     page.table(
-        "Table 4, hinge angles &beta; [deg]; below the theories how far the paper's DDA lies from them [%]",
+        "Table 4, hinge angles &beta; [deg]; below the theories how far the paper's DDA lies "
+        "from them [%]",
         ["&alpha; [deg]", "exact polygon", *map(escape, columns), *THEORIES.values()],
         [_hinge_row(row, columns) for row in table.rows],
         anchor="hinges4",
@@ -288,7 +259,9 @@ def _hinges_of_table_4(page: Page, campaign: Campaign) -> None:
 
 def _hinge_row(row: Row, columns: list[str]) -> list[str]:
     cells = [row.half_angle, _joined(tuple(paper_findings.exact_hinges(row)))]
-    cells += [escape(row.values[column].hinge) if column in row.values else "" for column in columns]
+    cells += [
+        escape(row.values[column].hinge) if column in row.values else "" for column in columns
+    ]
     paper = float(row.values["paper DDA"].hinge)
     for heading in THEORIES.values():
         beta = row.values[heading].hinge
@@ -300,7 +273,7 @@ def _theory(page: Page, figures: Path) -> None:
     """Figures 1 to 7."""
     page.section("Section 2: the theory", "theory")
     page.text("Figures 1 to 7 of the paper, drawn from the analytic solutions.")
-    for number, words in enumerate(_THEORY_CAPTIONS, 1):
+    for number, words in enumerate(THEORY_CAPTIONS, 1):
         svg = figures / f"figure{number}.svg"
         if svg.is_file():
             page.figure(svg, f"Fig. {number}: {words}.", f"figure{number}")
@@ -310,9 +283,10 @@ def _decks(page: Page, campaign: Campaign) -> None:
     """The decks as they were run."""
     page.section("Decks", "decks")
     page.text(
-        "What was computed, as files for <code>dda run</code>. Each has a folder of results beside this "
-        "page: <code>results.csv</code>, <code>joints.csv</code>, and where pictures were wanted "
-        "<code>frames.csv</code> and <code>frames/case_N.pvd</code> for ParaView."
+        "What was computed, as files for <code>dda run</code>. Each has a folder of results "
+        "beside this page: <code>results.csv</code>, <code>joints.csv</code>, and where "
+        "pictures were wanted <code>frames.csv</code> and <code>frames/case_N.pvd</code> for "
+        "ParaView."
     )
     for file in campaign.finished_decks():
         page.listing(file.name, file.read_text(encoding="utf-8"))
@@ -350,8 +324,8 @@ def _run(page: Page, timings: list[Timing], dda: Path) -> None:
     drawing = sum(timing.wall for timing in timings if timing.part in ("figures", "animations"))
     rows.append(["<strong>all but the page</strong>", f"{decks + drawing:.2f}", ""])
     page.table(
-        "How long each part took: wall time, and processor time of the Fortran program [s]. Several decks "
-        "run at the same time.",
+        "How long each part took: wall time, and processor time of the Fortran program [s]. "
+        "Several decks run at the same time.",
         ["part", "wall", "processor"],
         rows,
         anchor="times",

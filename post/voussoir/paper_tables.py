@@ -144,8 +144,10 @@ def join(rows: list[Row], results: Iterator[Cells]) -> list[str]:
     for cells in results:
         key = key_of(cells["half_angle_deg"], cells["blocks"], cells.get("joints_deg(2)", ""))
         if key not in by_key:
-            raise ValueError(f"the paper has no arch of {cells['half_angle_deg']} degrees, "
-                             f"{cells['blocks']} blocks, joint {cells.get('joints_deg(2)', '-')}")
+            raise ValueError(
+                f"the paper has no arch of {cells['half_angle_deg']} degrees, "
+                f"{cells['blocks']} blocks, joint {cells.get('joints_deg(2)', '-')}"
+            )
         row, method = by_key[key], method_of(cells)
         if method not in methods:
             methods.append(method)

@@ -1,10 +1,10 @@
 """Read what `dda run` has written.
 
-    from voussoir import results
-    run = results.read("table1")
-    run.cases["critical"]            # a column as an array, cases in order
-    run.cases.where(geometry="current")["relative_error"]
-    for frame in run.frames_of(1): frame.blocks
+from voussoir import results
+run = results.read("table1")
+run.cases["critical"]            # a column as an array, cases in order
+run.cases.where(geometry="current")["relative_error"]
+for frame in run.frames_of(1): frame.blocks
 """
 
 from __future__ import annotations
@@ -19,11 +19,17 @@ import numpy as np
 
 #: Columns of whole numbers, by name; every other column of numbers has floats
 _WHOLE = frozenset(
-    "case blocks voussoirs steps open_close_iterations factorisations joint frame step block vertex".split()
+    (
+        "case blocks voussoirs steps open_close_iterations factorisations"
+        " joint frame step block vertex"
+    ).split()
 )
 #: Columns of words; what is left are numbers
 _WORDS = frozenset(
-    "deck mode geometry verdict collapses_at collapse_mode springing_hinge state state_1 state_2".split()
+    (
+        "deck mode geometry verdict collapses_at collapse_mode springing_hinge"
+        " state state_1 state_2"
+    ).split()
 )
 #: Columns of several angles joined by semicolons
 _LISTS = frozenset(("intrados_hinge_deg", "extrados_hinge_deg"))
