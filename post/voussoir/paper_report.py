@@ -14,7 +14,7 @@ import voussoir
 from voussoir import paper_findings, paper_tables, theory
 from voussoir.paper_campaign import TOGETHER, Campaign, Timing
 from voussoir.paper_contents import ANIMATIONS, CAPTIONS, SECTIONS, THEORY_CAPTIONS
-from voussoir.paper_tables import THEORIES, PaperTable, Row, Value, percent, thickness
+from voussoir.paper_tables import THEORIES, PaperTable, Row, percent, thickness
 from voussoir.report import Page, escape
 
 #: Stands where the time goes that making the page itself has taken
@@ -124,26 +124,31 @@ def _thicknesses(page: Page, table: PaperTable) -> None:
     for row in table.rows:
         cells = [row.joint] if imposed else []
         cells += [row.blocks, row.half_angle, thickness(row.exact, "exact")]
-        cells += [_cell(row.values.get(column), column) for column in table.columns]
+        cells += [_cell(row, column) for column in table.columns]
         rows.append([*cells, escape(row.values["ours, rigid"].hinge)])
     if table.name == "table4":
         head[0], head[1] = head[1], head[0]
         rows = [[row[1], row[0], *row[2:]] for row in rows]
     page.table(
         f"<strong>{escape(table.title)}.</strong> Critical thickness ratio; below it the "
-        "deviation from the exact polygon "
-        "value in percent." + (" Theories: &eta;(&beta;)." if imposed else ""),
+        "deviation from the exact polygon value in percent; in parentheses how far the paper's "
+        "DDA lies from that theory." + (" Theories: &eta;(&beta;)." if imposed else ""),
         head,
         rows,
         anchor=table.name,
     )
 
 
-def _cell(value: Value | None, column: str) -> str:
+def _cell(row: Row, column: str) -> str:
     """A thickness and its error; nothing where the column has no such arch."""
+    value = row.values.get(column)
     if value is None:
         return ""
-    return f"{thickness(value.eta, column)}<small>{percent(value.error)}</small>"
+    below = percent(value.error)
+    paper = row.values["paper DDA"].eta
+    if column in THEORIES.values() and value.eta and paper:
+        below += f" ({100.0 * (paper / value.eta - 1.0):+.2f})"
+    return f"{thickness(value.eta, column)}<small>{below}</small>"
 
 
 def _modes(page: Page, campaign: Campaign) -> None:

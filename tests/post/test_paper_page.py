@@ -60,6 +60,25 @@ def test_page_tells_times_of_all_parts(paper_page: str) -> None:
 
 
 @pytest.mark.parametrize(
+    "printed",
+    [
+        "+1.27",
+        "+16.73",
+        "+18.34",
+        "+53.16",
+        "+28.20",
+        "+4.49",
+        "+124.12",
+        "+13.17",
+        "+1.29",
+        "+17.13",
+    ],
+)
+def test_percentages_are_those_that_the_paper_prints(paper_page: str, printed: str) -> None:
+    assert f"({printed})</small>" in paper_page
+
+
+@pytest.mark.parametrize(
     "words",
     [
         "86 need less than the continuous arch",
