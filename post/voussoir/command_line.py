@@ -10,6 +10,7 @@ from collections.abc import Sequence
 #: Subcommand: its module, which has add_arguments(parser) and run(arguments) -> exit status,
 #: and one line of help
 COMMANDS = {
+    "paper": ("voussoir.paper_command", "every table and figure of the paper, and the report"),
     "theory": ("voussoir.theory_command", "the three analytic solutions at given half angles"),
 }
 
