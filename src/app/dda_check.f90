@@ -2,7 +2,7 @@
 module dda_check
    use, intrinsic :: iso_fortran_env, only : error_unit, output_unit
    use dda_arch_scene, only : arch_scene
-   use dda_command_line, only : command_t
+   use dda_command_line, only : command_t, name_of
    use dda_deck, only : deck_t, has_group, is_given, text_of, word_of
    use dda_deck_sweep, only : case_deck, n_cases, swept_names
    use dda_error, only : error_line, error_t
@@ -29,12 +29,12 @@ contains
 
       status = exit_status%success
       do i = 1, size(command%name)
-         call read_deck(trim(command%name(i)), command%setting, deck, error)
+         call read_deck(name_of(command, i), command%setting, deck, error)
          if (allocated(error)) then
             write (error_unit, "(a)") error_line(error)
             status = exit_status%bad_input
          else if (.not. command%quiet) then
-            call print_plan(trim(command%name(i)), deck)
+            call print_plan(name_of(command, i), deck)
          end if
       end do
    end subroutine check_decks

@@ -2,6 +2,7 @@
 module dda_help
    use, intrinsic :: iso_fortran_env, only : error_unit, output_unit
    use dda_command_line, only : command_t
+   use dda_deck_token, only : shown
    use dda_deck_words, only : deck_help
    use dda_process, only : exit_status
    implicit none
@@ -60,8 +61,8 @@ contains
       case ("keys")
          write (output_unit, "(a)", advance="no") deck_help()
       case default
-         write (error_unit, "(a)") "dda: error: help on run, check or keys is wanted, '" &
-            & //topic//"' was found"
+         write (error_unit, "(a)") "dda:2: error: wanted help on run, check or keys, found '" &
+            & //shown(topic)//"'; write one of the three"
          status = exit_status%bad_input
       end select
    end subroutine print_help

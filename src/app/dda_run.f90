@@ -2,7 +2,7 @@
 module dda_run
    use, intrinsic :: iso_fortran_env, only : error_unit
    use dda_case, only : case_t, compute_case, prepare_case, tell_case
-   use dda_command_line, only : command_t
+   use dda_command_line, only : command_t, name_of
    use dda_deck, only : deck_t
    use dda_deck_record, only : deck_record
    use dda_deck_sweep, only : case_deck, n_cases
@@ -42,7 +42,7 @@ contains
       allocate (deck(size(command%name)))
       status = exit_status%success
       do i = 1, size(deck)
-         call read_deck(trim(command%name(i)), command%setting, deck(i), error)
+         call read_deck(name_of(command, i), command%setting, deck(i), error)
          if (.not. allocated(error)) call check_folder(command, i, good(:i - 1), error)
          good(i) = .not. allocated(error)
          if (good(i)) cycle
@@ -51,7 +51,7 @@ contains
       end do
       do i = 1, size(deck)
          if (.not. good(i)) cycle
-         call run_deck(command, trim(command%name(i)), deck(i), deck_status)
+         call run_deck(command, name_of(command, i), deck(i), deck_status)
          status = worst_status(status, deck_status)
       end do
    end subroutine run_decks
@@ -69,10 +69,11 @@ contains
       integer :: i
 
       do i = 1, number - 1
-         if (.not. good(i) .or. folder_of(command, trim(command%name(i))) &
-            & /= folder_of(command, trim(command%name(number)))) cycle
-         call fatal_error(error, "a deck with a folder of its own is wanted, "// &
-            & trim(command%name(i))//" writes to the same one", trim(command%name(number)), 1)
+         if (.not. good(i) .or. folder_of(command, name_of(command, i)) &
+            & /= folder_of(command, name_of(command, number))) cycle
+         call fatal_error(error, "wanted a deck with a folder of its own, found that "// &
+            & name_of(command, i)//" writes to "//folder_of(command, name_of(command, i))// &
+            & " too; rename one deck", name_of(command, number), 1)
          return
       end do
    end subroutine check_folder
