@@ -15,8 +15,8 @@ module dda_command_line
    character(len=*), parameter :: subcommands(*) = [character(len=9) :: "run", "check", "help", &
       & "--help", "--version"]
    !> Options of run and check
-   character(len=*), parameter :: options(*) = [character(len=7) :: "--out", "--jobs", "--set", &
-      & "--quiet", "--help"]
+   character(len=*), parameter :: options(*) = [character(len=8) :: "--out", "--jobs", "--set", &
+      & "--resume", "--quiet", "--help"]
 
    !> What the user asked for
    type :: command_t
@@ -88,7 +88,7 @@ contains
          case ("--version")
             command%verb = "version"
          case ("run", "check")
-            command%verb = argument(1)(:16)
+            command%verb = argument(1)(:len(command%verb))
             takes_decks = .true.
          case default
             call fatal_error(error, "wanted a subcommand, found '"//shown(trim(argument(1))) &

@@ -168,7 +168,8 @@ contains
             place_of(deck, key_index("search", "parameter")))
       else if (.not. low < high) then
          call deck_error(error, "wanted search%low below search%high, found "//to_text(low)// &
-            " and "//to_text(high)//"; make low the smaller one", deck, place_of(deck, key_index("search", &
+            " and "//to_text(high)//"; make low the smaller one", deck, &
+            place_of(deck, key_index("search", &
             trim(merge("high", "low ", is_given(deck, "search", "high"))))))
       else
          call check_end(deck, searched, "low", error)

@@ -21,7 +21,8 @@ FAULT = re.compile(
 )
 ORDER = re.compile(
     r"(change|check|choose|close|copy|correct|give|join|leave|make|move|name|number|put|raise"
-    r"|remove|rename|save|shorten|sort|split|sweep|write|add)\b|'dda help( \w+)?' (lists|says|shows)"
+    r"|remove|rename|save|shorten|sort|split|sweep|write|add)\b"
+    r"|'dda help( \w+)?' (lists|says|shows)"
 )
 
 
@@ -103,7 +104,8 @@ def test_misspelt_name_is_told_the_nearest(tmp_path: Path, text: str) -> None:
 
 
 @pytest.mark.parametrize(
-    ("arguments", "meant"), [(["rnu", "deck.nml"], "run"), (["run", "deck.nml", "--quite"], "--quiet")]
+    ("arguments", "meant"),
+    [(["rnu", "deck.nml"], "run"), (["run", "deck.nml", "--quite"], "--quiet")],
 )
 def test_misspelt_command_is_told_the_nearest(arguments: list[str], meant: str) -> None:
     assert f"did you mean '{meant}'?" in run_dda(*arguments).stderr
