@@ -16,7 +16,7 @@ module dda_command_line
       & "--help", "--version"]
    !> Options of run and check
    character(len=*), parameter :: options(*) = [character(len=8) :: "--out", "--jobs", "--set", &
-      & "--resume", "--quiet", "--help"]
+      & "--cases", "--resume", "--quiet", "--help"]
 
    !> What the user asked for
    type :: command_t
@@ -30,6 +30,8 @@ module dda_command_line
       character(len=longest), allocatable :: setting(:)
       !> Output folder; unallocated if none is named
       character(len=:), allocatable :: out
+      !> Numbers of the cases to compute; empty for all
+      character(len=:), allocatable :: cases
       !> Cases computed at the same time
       integer :: jobs = 1
       !> Print nothing but errors
@@ -77,6 +79,7 @@ contains
       integer, allocatable :: name_length(:)
       integer :: i, names, settings
 
+      command%cases = ""
       allocate (name(size(argument) + 1), name_length(size(argument) + 1), setting(size(argument)))
       names = 0
       settings = 0
@@ -150,7 +153,7 @@ contains
       case ("--resume")
          command%resume = .true.
          return
-      case ("--out", "--set", "--jobs")
+      case ("--out", "--set", "--jobs", "--cases")
          if (i == size(argument)) then
             call fatal_error(error, trim(argument(i))//" wants a value, found none; 'dda help " &
                & //trim(command%verb)//"' shows it")
@@ -167,6 +170,10 @@ contains
          command%out = argument(i)(:length(i))
          if (command%out == "") call fatal_error(error, "--out wants the name of a folder, "// &
             & "found an empty one; give one, or leave --out away")
+      else if (argument(i - 1) == "--cases") then
+         command%cases = argument(i)(:length(i))
+         if (command%cases == "") call fatal_error(error, "--cases wants numbers of cases, "// &
+            & "found none; write them like 1-4,7")
       else
          call read_integer(trim(argument(i)), command%jobs, ok)
          if (.not. ok .or. command%jobs < 1) call fatal_error(error, &

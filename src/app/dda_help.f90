@@ -13,7 +13,8 @@ module dda_help
    !> Version of the program
    character(len=*), parameter :: version = "0.1.0"
    !> What there is help on
-   character(len=*), parameter :: topics(*) = [character(len=5) :: "run", "check", "keys", "help"]
+   character(len=*), parameter :: topics(*) = [character(len=5) :: "run", "check", "keys", &
+      & "help"]
 
    !> dda help
    character(len=*), parameter :: general(*) = [character(len=96) :: &
@@ -26,7 +27,7 @@ module dda_help
       & "   dda --help | -h             this page", &
       & "   dda --version               the version", &
       & "", &
-      & "A deck is a text file in Fortran's namelist form. The shortest one that asks a question:", &
+      & "A deck is a text file in Fortran's namelist form. A short one that asks a question:", &
       & "", &
       & "   &arch half_angle_deg = 90.0, voussoirs = 36 /", &
       & "   &search parameter = 'thickness_ratio' /", &
@@ -34,20 +35,22 @@ module dda_help
       & "Written into arch.nml, 'dda run arch.nml' finds the thickness at which this arch falls", &
       & "and writes it to arch/results.csv. Units are SI per metre of depth, angles degrees.", &
       & "", &
-      & "Exit status: 0 every case reached a verdict; 2 bad input, with a line on standard error", &
-      & "FILE:LINE: error: what was wanted, what was found; what to do; 3 a case is undecided or", &
-      & "was not finished; 4 results could not be written. Of several, the first of 4, 2, 3."]
+      & "Exit status: 0 every case reached a verdict; 2 bad input, with a line on standard", &
+      & "error, FILE:LINE: error: what was wanted, what was found; what to do; 3 a case is", &
+      & "undecided or was not finished; 4 results could not be written. Of several, the first", &
+      & "of 4, 2, 3."]
 
    !> dda help run
    character(len=*), parameter :: on_run(*) = [character(len=96) :: &
       & "dda run DECK [DECK ...] [--out DIR] [--jobs N] [--set group%key=value ...]", &
-      & "        [--resume] [--quiet]", &
+      & "        [--cases LIST] [--resume] [--quiet]", &
       & "", &
       & "   --out DIR   where results go; several decks each have a folder inside it", &
       & "               (without it: a folder named as the deck without its ending)", &
       & "   --jobs N    cases computed at the same time (default 1)", &
       & "   --set group%key=value   overrides the deck; commas for lists; may be repeated", &
       & "               (without it: the deck as it is)", &
+      & "   --cases LIST   compute only these cases, such as 1-500,812 (without it: all)", &
       & "   --resume    skip the cases that an earlier run of the same deck with the same", &
       & "               --set has finished; if the deck has changed, compute all anew", &
       & "               (without it: compute all anew)", &
@@ -55,8 +58,8 @@ module dda_help
       & "               the undecided ones of more, and progress where a terminal shows it)", &
       & "   --help, -h  this page", &
       & "", &
-      & "Writes results.csv (a row a case), joints.csv (a row a joint), log.txt, and deck.record,", &
-      & "by which --resume knows the deck again.", &
+      & "Writes results.csv (a row a case), joints.csv (a row a joint), log.txt, and", &
+      & "deck.record, by which --resume knows the deck again.", &
       & "'dda help' lists the exit statuses, 'dda help keys' what a deck may say."]
 
    !> dda help check

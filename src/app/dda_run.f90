@@ -2,6 +2,7 @@
 module dda_run
    use, intrinsic :: iso_fortran_env, only : error_unit
    use dda_case, only : case_t, compute_case, prepare_case, tell_case
+   use dda_case_choice, only : choose_cases
    use dda_command_line, only : command_t, name_of
    use dda_deck, only : deck_t
    use dda_deck_record, only : deck_record
@@ -36,6 +37,7 @@ contains
       integer, intent(out) :: status
       type(deck_t), allocatable :: deck(:)
       type(error_t), allocatable :: error
+      logical, allocatable :: chosen(:)
       logical :: good(size(command%name))
       integer :: i, deck_status
 
@@ -44,6 +46,8 @@ contains
       do i = 1, size(deck)
          call read_deck(name_of(command, i), command%setting, deck(i), error)
          if (.not. allocated(error)) call check_folder(command, i, good(:i - 1), error)
+         if (.not. allocated(error)) call choose_cases(command%cases, &
+            & n_cases(deck(i)), chosen, error)
          good(i) = .not. allocated(error)
          if (good(i)) cycle
          write (error_unit, "(a)") error_line(error)
@@ -129,21 +133,24 @@ contains
       type(finished_t) :: finished
       type(progress_t) :: progress
       type(error_t), allocatable :: error
+      logical, allocatable :: chosen(:)
       integer :: count(3), number, total
 
       total = n_cases(deck)
       count = 0
+      call choose_cases(command%cases, total, chosen, error)
       call name_tables(deck, folder_of(command, name), tables)
       call begin_tables(command, name, deck, total, tables, finished, error)
       progress%shown = error_is_terminal()
       if (command%quiet) progress%shown = .false.
-      progress%total = total - sum(finished%count)
+      chosen = chosen .and. .not. finished%case
+      progress%total = size(pack(chosen, chosen))
       call system_clock(progress%start)
       !$omp parallel do num_threads(min(command%jobs, total, max_jobs)) schedule(dynamic) &
       !$omp default(none) &
-      !$omp shared(total, deck, name, command, tables, progress, count, error, finished)
+      !$omp shared(total, deck, name, command, tables, progress, count, error, chosen)
       do number = 1, total
-         if (finished%case(number)) cycle
+         if (.not. chosen(number)) cycle
          call run_one_case(command, name, deck, number, total, tables, progress, count, error)
       end do
       !$omp end parallel do

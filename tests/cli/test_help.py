@@ -84,6 +84,14 @@ def run_set(folder: Path) -> None:
         assert ",7,90,0.12,60," in row
 
 
+def run_cases(folder: Path) -> None:
+    assert run_dda("run", "deck.nml", "--cases", "4,1-2", cwd=folder).returncode == 0
+    rows = (folder / "deck" / "results.csv").read_text().splitlines()[1:]
+    assert [row.split(",")[1] for row in rows] == ["1", "2", "4"]
+    assert run_dda("run", "deck.nml", "--resume", cwd=folder).returncode == 0
+    assert cases(folder) == 4
+
+
 def run_resume(folder: Path) -> None:
     table = folder / "deck" / "results.csv"
     assert run_dda("run", "deck.nml", cwd=folder).returncode == 0
@@ -115,6 +123,7 @@ PROOFS: dict[tuple[str, str], Callable[[Path], None]] = {
     ("run", "--out"): run_out,
     ("run", "--jobs"): run_jobs,
     ("run", "--set"): run_set,
+    ("run", "--cases"): run_cases,
     ("run", "--resume"): run_resume,
     ("run", "--quiet"): run_quiet,
     ("check", "--set"): check_set,
