@@ -12,6 +12,10 @@ from voussoir import __version__
 #: Subcommand: its module, which has add_arguments(parser) and run(arguments) -> exit status,
 #: and one line of help
 COMMANDS = {
+    "campaign": (
+        "voussoir.campaign_command",
+        "the cases of one deck on many processes or machines",
+    ),
     "paper": ("voussoir.paper_command", "every table and figure of the paper, and the report"),
     "theory": ("voussoir.theory_command", "the three analytic solutions at given half angles"),
 }
