@@ -12,11 +12,13 @@ from voussoir import __version__
 #: Subcommand: its module, which has add_arguments(parser) and run(arguments) -> exit status,
 #: and one line of help
 COMMANDS = {
+    "animate": ("voussoir.animate_command", "the motion of cases as a GIF"),
     "campaign": (
         "voussoir.campaign_command",
         "the cases of one deck on many processes or machines",
     ),
     "paper": ("voussoir.paper_command", "every table and figure of the paper, and the report"),
+    "plot": ("voussoir.plot_command", "pictures and charts of a folder of results"),
     "theory": ("voussoir.theory_command", "the three analytic solutions at given half angles"),
 }
 
