@@ -1,8 +1,9 @@
 """Every command and code block of the documentation, run as it stands there.
 
 A page is one test: its blocks run in their order in one folder. A deck whose name stands in the
-line before it is written to that file. Commands that install packages or build the project are
-those that CI, the README and tests/post/test_install.py run; here they only are known ones.
+line before it is written to that file. Commands that install packages, build the project or run
+the whole paper are those that CI, the README, tests/post/test_install.py and test_paper_page.py
+run; here they only are known ones.
 """
 
 from __future__ import annotations
@@ -19,7 +20,9 @@ from dda_command import run_dda
 
 ROOT = Path(__file__).resolve().parents[2]
 PAGES = sorted([ROOT / "README.md", ROOT / "CONTRIBUTING.md", *(ROOT / "docs").rglob("*.md")])
-INSTALL = re.compile(r"sudo apt-get |cmake -|python3 -m venv |env/bin/|xargs -d |ctest ")
+INSTALL = re.compile(
+    r"sudo apt-get |cmake -|python3 -m venv |env/bin/|xargs -d |ctest |build/bin/voussoir paper "
+)
 COMMAND = re.compile(r"(\$ |dda |voussoir |build/bin/|&[a-z]+\b.*/|python3 |pip |PYTHONPATH=)")
 LABELS = {"", "text", "sh", "sh install", "console", "fortran", "python", "message"}
 
