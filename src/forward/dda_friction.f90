@@ -5,6 +5,7 @@ module dda_friction
    use dda_friction_cone, only : cone_t
    use dda_joint_springs, only : joint_springs_t
    use dda_kinds, only : wp
+   use dda_least_squares, only : least_squares
    use dda_open_close, only : force_noise, iterate_open_close, step_state_t
    implicit none
    private
@@ -15,39 +16,8 @@ module dda_friction
    integer, parameter :: max_corrections = 200
    !> Corrections remembered by the acceleration
    integer, parameter :: memory = 6
-
-   interface
-      !> LAPACK: least squares of a system that may lack rank
-      pure subroutine dgelsy(m, n, nrhs, a, lda, b, ldb, jpvt, rcond, rank, work, lwork, info)
-         import :: wp
-         !> Rows
-         integer, intent(in) :: m
-         !> Columns
-         integer, intent(in) :: n
-         !> Right-hand sides
-         integer, intent(in) :: nrhs
-         !> Rows of the array a
-         integer, intent(in) :: lda
-         !> Rows of the array b
-         integer, intent(in) :: ldb
-         !> Size of the work space
-         integer, intent(in) :: lwork
-         !> Matrix, overwritten: (lda, n)
-         real(wp), intent(inout) :: a(lda, *)
-         !> Right-hand sides in, solutions out: (ldb, nrhs)
-         real(wp), intent(inout) :: b(ldb, *)
-         !> Pivots: (n)
-         integer, intent(inout) :: jpvt(*)
-         !> Columns below this share of the largest are left out
-         real(wp), intent(in) :: rcond
-         !> Rank found
-         integer, intent(out) :: rank
-         !> Work space: (lwork)
-         real(wp), intent(out) :: work(*)
-         !> 0 if all is well
-         integer, intent(out) :: info
-      end subroutine dgelsy
-   end interface
+   !> Remembered changes that differ by less than this share of the largest difference say nothing
+   real(wp), parameter :: negligible = 1.0e-10_wp
 
 contains
 
@@ -122,21 +92,15 @@ contains
       real(wp), intent(in) :: changes(:, :)
       !> The point to try next: (n)
       real(wp) :: next(size(points, 1))
-      real(wp) :: a(size(points, 1), size(points, 2) - 1), b(max(size(points, 1), size(points, 2)))
-      real(wp) :: work(20*size(points, 2) + size(points, 1) + 64)
-      integer :: pivot(size(points, 2)), k, n, rank, info
+      integer :: k
 
-      n = size(points, 1)
       k = size(points, 2)
       next = points(:, k) + changes(:, k)
       if (k == 1) return
-      a = spread(changes(:, k), 2, k - 1) - changes(:, :k - 1)
-      b(:n) = changes(:, k)
-      pivot = 0
-      call dgelsy(n, k - 1, 1, a, n, b, size(b), pivot, 1.0e-10_wp, rank, work, size(work), info)
-      if (info /= 0) return
-      next = next - matmul(spread(points(:, k) + changes(:, k), 2, k - 1) &
-         & - points(:, :k - 1) - changes(:, :k - 1), b(:k - 1))
+      associate (steps => spread(points(:, k), 2, k - 1) - points(:, :k - 1), &
+         & turns => spread(changes(:, k), 2, k - 1) - changes(:, :k - 1))
+         next = next - matmul(steps + turns, least_squares(turns, changes(:, k), negligible))
+      end associate
    end function accelerated
 
    !> Largest shear forces that the joints carry with the normal forces that they have
