@@ -13,8 +13,8 @@ module dda_help
    !> Version of the program
    character(len=*), parameter :: version = "0.1.0"
    !> What there is help on
-   character(len=*), parameter :: topics(*) = [character(len=5) :: "run", "check", "keys", &
-      & "help"]
+   character(len=*), parameter :: topics(*) = [character(len=6) :: "run", "check", "cut", &
+      & "keys", "help"]
 
    !> dda help
    character(len=*), parameter :: general(*) = [character(len=96) :: &
@@ -22,7 +22,8 @@ module dda_help
       & "", &
       & "   dda run DECK [DECK ...]     compute every case of every deck", &
       & "   dda check DECK [DECK ...]   read and check decks, compute nothing", &
-      & "   dda help run | check        options of a subcommand (dda run --help does the same)", &
+      & "   dda cut LINES.geo           cut lines into blocks, say what was dropped", &
+      & "   dda help run | check | cut  options of a subcommand (dda run --help does the same)", &
       & "   dda help keys               every group and key of a deck: unit, range, default", &
       & "   dda --help | -h             this page", &
       & "   dda --version               the version", &
@@ -74,9 +75,22 @@ module dda_help
       & "Reads and checks the decks and prints what would be computed, and why. Writes nothing.", &
       & "Exit status: 0 all decks are good; 2 one is not."]
 
+   !> dda help cut
+   character(len=*), parameter :: on_cut(*) = [character(len=96) :: &
+      & "dda cut LINES.geo [LINES.geo ...] [--out FILE] [--quiet]", &
+      & "", &
+      & "   --out FILE  where the blocks of one LINES.geo go; ends in .vtu or .csv", &
+      & "               (without it: nothing is written)", &
+      & "   --quiet     print nothing but errors (without it: counts, areas, what was dropped)", &
+      & "   --help, -h  this page", &
+      & "", &
+      & "Reads geometry files of the Limerick line, plain or DDAML, cuts the lines into blocks,", &
+      & "and prints counts, areas, and which parts of lines were dropped, and why.", &
+      & "Exit status: 0 all files were cut; 2 one could not be; 4 FILE could not be written."]
+
    !> dda help help
    character(len=*), parameter :: on_help(*) = [character(len=96) :: &
-      & "dda help [run | check | keys | help]", &
+      & "dda help [run | check | cut | keys | help]", &
       & "", &
       & "Prints help on a subcommand or on the keys of a deck (without a topic: the first page)."]
 
@@ -100,13 +114,15 @@ contains
          call print_lines(on_run)
       case ("check")
          call print_lines(on_check)
+      case ("cut")
+         call print_lines(on_cut)
       case ("help", "--help", "-h")
          call print_lines(on_help)
       case ("keys")
          write (output_unit, "(a)", advance="no") deck_help()
       case default
-         write (error_unit, "(a)") "dda:2: error: wanted help on run, check, keys or help, found '" &
-            & //shown(topic)//"'"//near_one(topic, topics)//"; write one of them"
+         write (error_unit, "(a)") "dda:2: error: wanted help on run, check, cut, keys or help, " &
+            & //"found '"//shown(topic)//"'"//near_one(topic, topics)//"; write one of them"
          status = exit_status%bad_input
       end select
    end subroutine print_help

@@ -44,7 +44,8 @@ contains
       do cell = 1, grid%n(1)*grid%n(2)
          call cross_in_cell(line, reach, grid, cell, crossings)
          if (crossings%n <= max_crossings) cycle
-         call fatal_error(error, "the lines cross one another too often: more than 30 million times")
+         call fatal_error(error, "the lines cross one another too often: more than 30 million " &
+            & //"times")
          return
       end do
       associate (n => crossings%n)

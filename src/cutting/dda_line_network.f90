@@ -81,7 +81,8 @@ contains
       call add_remark(remarks, network%line(edge), reason, other, edge_place(network, edge))
    end subroutine drop_edge
 
-   !> The node of each crossing: the nearest one that is there already within 1.25 e00 w0, else a new
+   !> The node of each crossing: the nearest one that is there already within 1.25 e00 w0, else a
+   !> new
    !> one; two boundary lines share a node only with crossings at the very same place
    pure subroutine merge_nodes(scale, crossings, network, node_of)
       !> Scales of the cut

@@ -98,7 +98,8 @@ contains
       h = loops%half_edge(loops%first(inner))
       line = network%line((h + 1)/2)
       call fatal_error(error, "a block without holes is wanted: line "//to_text(line) &
-         & //" belongs to blocks that lie wholly inside block "//to_text(block)//", whose corner 1 "// &
+         & //" belongs to blocks that lie wholly inside block "//to_text(block) &
+         & //", whose corner 1 "// &
          & "is at ("//to_text(cut%vertex(1, cut%first_vertex(block)) + cut%scale%origin(1))//", " &
          & //to_text(cut%vertex(2, cut%first_vertex(block)) + cut%scale%origin(2))//")", &
          & model%file, model%line%row(line))
