@@ -31,8 +31,8 @@
   <Fixedpointlist>
     <Point> 0.5 0.5 </Point>
     <Point> 11.5 0.5 </Point>
-    <Line> -1 0.3 3 0.3 </Line>
-    <Line> 9 0.3 13 0.3 </Line>
+    <Line> -1 0.3 13 0.3 </Line>
+    <Line> 5 0.6 6 0.6 </Line>
   </Fixedpointlist>
   <Loadpointlist>
     <Point> 5.5 4.5 </Point>

@@ -13,16 +13,16 @@ module dda_command_line
    integer, parameter :: longest = 32768
    !> What the first argument may be
    character(len=*), parameter :: subcommands(*) = [character(len=9) :: "run", "check", "cut", &
-      & "help", "--help", "--version"]
+      & "export", "help", "--help", "--version"]
    !> Options of those that read files
    character(len=*), parameter :: options(*) = [character(len=8) :: "--out", "--jobs", "--set", &
       & "--cases", "--resume", "--quiet", "--help"]
 
    !> What the user asked for
    type :: command_t
-      !> run, check, cut, help or version
+      !> run, check, cut, export, help or version
       character(len=16) :: verb = "help"
-      !> Decks to run or check, files to cut, or the topic of help: (n)
+      !> Decks to run, check or export, files to cut, or the topic of help: (n)
       character(len=longest), allocatable :: name(:)
       !> Lengths of those names, blanks at their ends counted: (n) [characters]
       integer, allocatable :: name_length(:)
@@ -90,7 +90,7 @@ contains
             command%verb = "help"
          case ("--version")
             command%verb = "version"
-         case ("run", "check", "cut")
+         case ("run", "check", "cut", "export")
             command%verb = argument(1)(:len(command%verb))
             takes_decks = .true.
          case default

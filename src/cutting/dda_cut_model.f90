@@ -36,7 +36,7 @@ module dda_cut_model
 
    !> Two edges of two blocks that lie together, wholly or in part
    type :: edge_pair_t
-      !> Block and edge, block and edge: (4)
+      !> Block and edge on the left of the line as it was drawn, block and edge on its right: (4)
       integer :: side(4) = 0
       !> Material of the joint
       integer :: joint = 0

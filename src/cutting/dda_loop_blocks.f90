@@ -190,9 +190,6 @@ contains
          part(n)%joint = joint(network%line(e))
          part(n)%place = edge_place(network, e)
          part(n)%side = [owner(:, 2*e - 1), owner(:, 2*e)]
-         if (part(n)%side(1) < part(n)%side(3)) cycle
-         part(n)%side = part(n)%side([3, 4, 1, 2])
-         part(n)%place = part(n)%place([3, 4, 1, 2])
       end do
       part = part(:n)
       ! vertices number the edges of all blocks

@@ -82,8 +82,26 @@ contains
       if (.not. crossed) return
       if (any(share < -overshoot .or. share > 1.0_wp + overshoot)) return
       n = 1
-      point(:, 1) = first(1:2) + share(1)*(first(3:4) - first(1:2))
+      point(:, 1) = crossing_point(first, second, share)
    end subroutine meeting_points
+
+   !> The point where two segments cross, each coordinate from the segment along which it changes
+   !> less: upright and level lines keep their coordinates
+   pure function crossing_point(first, second, share) result(point)
+      !> Ends of one segment: (4) [m]
+      real(wp), intent(in) :: first(4)
+      !> Ends of the other: (4) [m]
+      real(wp), intent(in) :: second(4)
+      !> Place of the crossing on each: (2)
+      real(wp), intent(in) :: share(2)
+      !> The point: (2) [m]
+      real(wp) :: point(2)
+      real(wp) :: a(2), b(2)
+
+      a = first(3:4) - first(1:2)
+      b = second(3:4) - second(1:2)
+      point = merge(first(1:2) + share(1)*a, second(1:2) + share(2)*b, abs(a) <= abs(b))
+   end function crossing_point
 
    !> Add the end of a segment to the points in common if it touches the other segment
    pure subroutine add_touching(end_point, segment, reach, n, point)

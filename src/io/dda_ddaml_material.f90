@@ -15,6 +15,9 @@ module dda_ddaml_material
 
    public :: read_material, read_joint, read_history
 
+   !> Weights that differ by less, relatively, are one weight with rounded digits
+   real(wp), parameter :: same_weight = 1.0e-6_wp
+
 contains
 
    !> Read a Blockmaterial
@@ -47,6 +50,7 @@ contains
       if (.not. allocated(error)) &
          & call read_child(tree, at, "Unitweight", .false., one, warnings, error)
       material%unit_weight = one(1)
+      if (.not. allocated(error)) call check_weight(tree, at, gravity, material, warnings)
       unused = 0.0_wp
       if (.not. allocated(error)) &
          & call read_child(tree, at, "Damping", .false., unused, warnings, error)
@@ -59,6 +63,28 @@ contains
       if (.not. allocated(error)) &
          & call check_material(material, tree%file, tree%element(at)%row, error)
    end subroutine read_material
+
+   !> The original weighs a block by unit mass times gravity, whatever the unit weight says
+   pure subroutine check_weight(tree, at, gravity, material, warnings)
+      !> The file's elements
+      type(xml_tree_t), intent(in) :: tree
+      !> Place of the element
+      integer, intent(in) :: at
+      !> Acceleration of gravity
+      real(wp), intent(in) :: gravity
+      !> The material
+      type(limerick_material_t), intent(inout) :: material
+      !> Receives a unit weight that is not taken
+      type(warnings_t), intent(inout) :: warnings
+      real(wp) :: weight
+
+      weight = material%density*gravity
+      if (abs(material%unit_weight - weight) <= same_weight*abs(weight)) return
+      call add_warning(warnings, "Unitweight = Unitmass*Gravaccel = "//to_text(weight) &
+         & //" is wanted and taken, found "//to_text(material%unit_weight), tree%file, &
+         & tree%element(at)%row)
+      material%unit_weight = weight
+   end subroutine check_weight
 
    !> Read a Jointproperties
    pure subroutine read_joint(tree, at, joint, warnings, error)
