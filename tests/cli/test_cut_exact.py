@@ -121,7 +121,7 @@ def test_blocks_are_those_of_exact_arithmetic(
     (tmp_path / "a.geo").write_text(f"0\n{len(lines)} 0\n0\n0\n0\n0\n0\n0\n" + "".join(rows))
     done = run_dda("cut", "a.geo", "--out", "a.csv", cwd=tmp_path)
     if nested(done.stderr.splitlines()):
-        return
+        pytest.skip("a group of blocks lies inside a block: refused")
     assert done.returncode == 0, done.stderr
     with (tmp_path / "a.csv").open() as table:
         areas = sorted(float(row["area"]) for row in csv.DictReader(table))
