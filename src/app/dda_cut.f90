@@ -198,8 +198,7 @@ contains
          text = text//": once nodes were merged it crosses "//other//" without a node"
       case (cut_reason%too_close)
          text = text//": it passes a node of "//other//" closer than " &
-            & //to_text(cut%scale%clearance) &
-            & //" (e00 w0)"
+            & //to_text(cut%scale%clearance)//" (e00 w0)"
       case (cut_reason%flat)
          text = text//": it bounds a block without area"
       end select

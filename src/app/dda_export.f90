@@ -111,8 +111,8 @@ contains
       write (output_unit, "(a)") stem//".geo, "//stem//"_ddaml.geo, "//stem//".ana (DDAML), " &
          & //stem//"_plain.ana"
       write (output_unit, "(a)") "   the plain .ana has no place for contact constants, " &
-         & //"automatic "// &
-         & "step and penalty, plane strain and gravity (only as unit weight over unit mass)"
+         & //"automatic step and penalty, plane strain and gravity (only as unit weight over " &
+         & //"unit mass)"
       if (what_is_lost(deck) /= "") write (output_unit, "(a)") &
          & "   neither form has a place for "//what_is_lost(deck)
       if (has_group(deck, "search")) write (output_unit, "(a)") &

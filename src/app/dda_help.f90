@@ -140,8 +140,9 @@ contains
       case ("keys")
          write (output_unit, "(a)", advance="no") deck_help()
       case default
-         write (error_unit, "(a)") "dda:2: error: wanted help on run, check, cut, export, keys or help, " &
-            & //"found '"//shown(topic)//"'"//near_one(topic, topics)//"; write one of them"
+         write (error_unit, "(a)") "dda:2: error: wanted help on run, check, cut, export, " &
+            & //"keys or help, found '"//shown(topic)//"'"//near_one(topic, topics) &
+            & //"; write one of them"
          status = exit_status%bad_input
       end select
    end subroutine print_help

@@ -234,8 +234,7 @@ contains
       end do
    end subroutine add_crossed
 
-   !> A point inside a block, off one of its edges; the centre of gravity where the block has no
-   !> room
+   !> A point inside a block, off one of its edges; where there is no room, the centre of gravity
    pure function inside_point(vertex, crossing, edge, depth) result(point)
       !> Corners of the block: (2, n) [m]
       real(wp), intent(in) :: vertex(:, :)
@@ -334,8 +333,8 @@ contains
       !> Its number in the list
       integer, intent(in) :: i
 
-      call fatal_error(error, "a "//what//" in a block is wanted, ("//to_text(entities%place(1, &
-         & i)) &
-         & //", "//to_text(entities%place(2, i))//") lies in none", model%file, entities%row(i))
+      call fatal_error(error, "a "//what//" in a block is wanted, (" &
+         & //to_text(entities%place(1, i))//", "//to_text(entities%place(2, i)) &
+         & //") lies in none", model%file, entities%row(i))
    end subroutine no_block
 end module dda_cut_points

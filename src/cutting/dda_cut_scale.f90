@@ -9,11 +9,9 @@ module dda_cut_scale
 
    !> Scales of a cut
    type :: cut_scale_t
-      !> What all coordinates are counted from, so that a model far from zero loses no digits:
-      !> (2) [m]
+      !> What coordinates are counted from, so that none far from zero loses digits: (2) [m]
       real(wp) :: origin(2) = 0.0_wp
-      !> Size w0 of the model: 1.02 times the larger of half its height and half its width over 1.3
-      !> [m]
+      !> Size w0 of the model: 1.02 times the larger of height/2 and width/2.6 [m]
       real(wp) :: size = 0.0_wp
       !> Distance within which things touch [m]
       real(wp) :: reach = 0.0_wp

@@ -5,6 +5,7 @@ module dda_line_crossings
    use dda_kinds, only : wp
    use dda_segment, only : meeting_points
    use dda_sort, only : sorted_order
+   use dda_text, only : to_text
    implicit none
    private
 
@@ -44,8 +45,8 @@ contains
       do cell = 1, grid%n(1)*grid%n(2)
          call cross_in_cell(line, reach, grid, cell, crossings)
          if (crossings%n <= max_crossings) cycle
-         call fatal_error(error, "the lines cross one another too often: more than 30 million " &
-            & //"times")
+         call fatal_error(error, "fewer than "//to_text(max_crossings) &
+            & //" crossings of lines are wanted, these lines cross more often")
          return
       end do
       associate (n => crossings%n)

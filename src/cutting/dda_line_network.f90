@@ -82,8 +82,7 @@ contains
    end subroutine drop_edge
 
    !> The node of each crossing: the nearest one that is there already within 1.25 e00 w0, else a
-   !> new
-   !> one; two boundary lines share a node only with crossings at the very same place
+   !> new one; two boundary lines share a node only with crossings at the very same place
    pure subroutine merge_nodes(scale, crossings, network, node_of)
       !> Scales of the cut
       type(cut_scale_t), intent(in) :: scale

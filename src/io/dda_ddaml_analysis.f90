@@ -93,8 +93,8 @@ contains
             call read_number(tree, at, "value", 0.0_wp, analysis%contact_damping, error)
          case ("Gravaccel", "Writevertices")
          case ("Boltproperties", "Timehistory")
-            call add_warning(warnings, "the element "//element%name//" has no effect", tree%file, &
-               & element%row)
+            call add_warning(warnings, "the element "//element%name//" has no effect", &
+               & tree%file, element%row)
          case default
             call add_warning(warnings, "the element "//quoted(element%name) &
                & //" is not known and not read", tree%file, element%row)
@@ -125,9 +125,8 @@ contains
       case ("Gravity")
          call choose(tree, at, "flag", "yes", "no", unused, error)
          if (.not. allocated(error) .and. unused) call add_warning(warnings, &
-            & "the phase that turns " &
-            & //"gravity on has no effect: weight acts from the first step", tree%file, &
-            & tree%element(at)%row)
+            & "the phase that turns gravity on has no effect: weight acts from the first step", &
+            & tree%file, tree%element(at)%row)
       case ("Autotimestep")
          call choose(tree, at, "flag", "yes", "no", analysis%auto_time_step, error)
       case ("Planestrain")

@@ -107,11 +107,10 @@ contains
             call read_entities(tree, at, form_t(" Joint ", .true.), model%line, warnings, error)
          case ("Boundlist")
             call read_entities(tree, at, form_t(" Line Joint ", .true., .true.), boundary, &
-               & warnings, &
-               & error)
+               & warnings, error)
          case ("Matlinelist")
-            call read_entities(tree, at, form_t(" Line ", .true.), model%material_line, warnings, &
-               & error)
+            call read_entities(tree, at, form_t(" Line ", .true.), model%material_line, &
+               & warnings, error)
          case ("Fixedpointlist")
             call read_entities(tree, at, form_t(" Point Line "), model%fixed, warnings, error)
          case ("Loadpointlist")
@@ -241,8 +240,8 @@ contains
                & place(:2), error)
             place(3:4) = place(1:2)
          else
-            call take_numbers(words, "a coordinate of "//element%name, largest_coordinate, place, &
-               & error)
+            call take_numbers(words, "a coordinate of "//element%name, largest_coordinate, &
+               & place, error)
          end if
          if (allocated(error)) return
          if (words_left(words) > 0) call add_warning(warnings, "nothing is wanted behind the " &

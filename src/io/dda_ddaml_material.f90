@@ -145,8 +145,7 @@ contains
       call take_numbers(words, "a number of "//name, largest_value, number, error)
       value = number
       if (.not. allocated(error) .and. words_left(words) > 0) call add_warning(warnings, &
-         & "nothing is " &
-         & //"wanted behind the numbers of "//name//", what follows is not read: " &
+         & "nothing is wanted behind the numbers of "//name//", what follows is not read: " &
          & //quoted(this_word(words)), tree%file, this_row(words))
    end subroutine read_child
 
@@ -166,9 +165,8 @@ contains
       do while (child > 0)
          associate (element => tree%element(child))
             if (index(known, " "//element%name//" ") == 0) call add_warning(warnings, &
-               & "the element " &
-               & //quoted(element%name)//" has no meaning in "//tree%element(at)%name &
-               & //" and is not read", tree%file, element%row)
+               & "the element "//quoted(element%name)//" has no meaning in " &
+               & //tree%element(at)%name//" and is not read", tree%file, element%row)
          end associate
          child = next_sibling(tree, child)
       end do
@@ -196,8 +194,7 @@ contains
          & also_blank=";")
       if (words%n /= 3*n) then
          call fatal_error(error, to_text(n)//" records of 3 numbers are wanted in Loadpoint, " &
-            & //"found " &
-            & //to_text(words%n)//" numbers", tree%file, tree%element(at)%row)
+            & //"found "//to_text(words%n)//" numbers", tree%file, tree%element(at)%row)
          return
       end if
       allocate (history%record(3, n))

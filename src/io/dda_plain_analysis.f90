@@ -93,15 +93,15 @@ contains
 
       if (words_left(words) < 13*n) then
          call fatal_error(error, to_text(n)//" block materials of 13 numbers are wanted, the " &
-            & //"file " &
-            & //"holds "//to_text(words_left(words))//" more words", words%file, this_row(words))
+            & //"file holds "//to_text(words_left(words))//" more words", words%file, &
+            & this_row(words))
          return
       end if
       allocate (list(n))
       do i = 1, n
          row = this_row(words)
-         call take_numbers(words, "a number of block material "//to_text(i), largest_value, value, &
-            & error)
+         call take_numbers(words, "a number of block material "//to_text(i), largest_value, &
+            & value, error)
          if (allocated(error)) return
          list(i) = limerick_material_t(value(1), value(2), value(3), value(4), value(5:7), &
             & value(8:10), value(11:13))
@@ -133,8 +133,8 @@ contains
       allocate (list(n))
       do i = 1, n
          row = this_row(words)
-         call take_numbers(words, "a number of joint material "//to_text(i), largest_value, value, &
-            & error)
+         call take_numbers(words, "a number of joint material "//to_text(i), largest_value, &
+            & value, error)
          if (allocated(error)) return
          list(i) = limerick_joint_t(value(1), value(2), value(3))
          call check_joint(list(i), words%file, row, error)
@@ -202,8 +202,7 @@ contains
 
       if (.not. analysis%displacement_ratio > 0.0_wp .or. analysis%displacement_ratio > 1.0_wp) then
          call fatal_error(error, "the largest displacement ratio above 0 and at most 1 is " &
-            & //"wanted, " &
-            & //"found "//to_text(analysis%displacement_ratio), file, row)
+            & //"wanted, found "//to_text(analysis%displacement_ratio), file, row)
       else if (.not. analysis%max_time_step > 0.0_wp) then
          call fatal_error(error, "a largest time step above 0 is wanted, found " &
             & //to_text(analysis%max_time_step), file, row)

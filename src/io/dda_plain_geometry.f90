@@ -55,8 +55,7 @@ contains
       if (allocated(error)) return
       if (model%edge_node_ratio < 0.0_wp .or. model%edge_node_ratio > 0.5_wp) then
          call fatal_error(error, "the edge-node distance ratio e00 from 0 to 0.5 is wanted, " &
-            & //"found " &
-            & //to_text(model%edge_node_ratio), file, words%row(1))
+            & //"found "//to_text(model%edge_node_ratio), file, words%row(1))
          return
       end if
       call read_counts(words, n, error)
@@ -91,9 +90,8 @@ contains
       integer :: row
 
       call take_whole(words, "the number of lines", 0, most, n%lines, error)
-      if (.not. allocated(error)) call take_whole(words, &
-         & "the number of boundary lines, which are counted among the lines,", 0, n%lines, &
-         & n%boundary, error)
+      if (.not. allocated(error)) call take_whole(words, "the number of boundary lines, which " &
+         & //"are counted among the lines,", 0, n%lines, n%boundary, error)
       if (.not. allocated(error)) &
          & call take_whole(words, "the number of material lines", 0, most, n%material_lines, error)
       row = this_row(words)

@@ -107,9 +107,8 @@ contains
             & model%file, model%load%row(1))
       else
          call fatal_error(error, "forces on "//to_text(model%load%n) &
-            & //" load points are wanted, as " &
-            & //"many as "//model%file//" has; found "//to_text(size(analysis%load)), &
-            & analysis%file, 1)
+            & //" load points are wanted, as many as "//model%file//" has; found " &
+            & //to_text(size(analysis%load)), analysis%file, 1)
       end if
    end subroutine check_materials
 

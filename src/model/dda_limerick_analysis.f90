@@ -1,5 +1,4 @@
-!> What an analysis file of the Limerick line says: materials, loads, and the constants of its
-!> scheme
+!> What an analysis file of the Limerick line says: materials, loads, constants of the scheme
 module dda_limerick_analysis
    use dda_kinds, only : wp
    implicit none

@@ -318,8 +318,8 @@ contains
          line = int(said%line)
       end if
       if (index(message, achar(10)) > 0) message = message(:index(message, achar(10)) - 1)
-      call fatal_error(error, "well-formed XML is wanted, libxml2 says "//quoted(message), &
-         & file, line)
+      call fatal_error(error, "well-formed XML is wanted, libxml2 says "//quoted(message), file, &
+         & line)
    end subroutine tell_error
 
    !> A C text as Fortran's

@@ -25,7 +25,7 @@ contains
 
       call new_xml_tree(file, tree)
       if (len(text) >= 0) call fatal_error(error, "the plain form is wanted, found XML: this " &
-         & //"build " &
-         & //"has no libxml2 (on Debian: libxml2-dev); install it and configure again", file, 1)
+         & //"build has no libxml2 (on Debian: libxml2-dev); install it and configure again", &
+         & file, 1)
    end subroutine parse_xml
 end module dda_xml_parser
