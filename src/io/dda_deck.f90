@@ -77,6 +77,8 @@ module dda_deck
       type(cut_model_t), allocatable :: cut
       !> What the file that scene%analysis names says; unallocated if none is named
       type(limerick_analysis_t), allocatable :: analysis
+      !> Length and checksums of those files, for a record of the deck; unallocated without files
+      character(len=:), allocatable :: file_mark
       !> What those files hold that is not read
       type(warnings_t) :: warnings
    end type deck_t

@@ -212,3 +212,17 @@ def test_export_refuses_what_it_cannot_write(tmp_path: Path) -> None:
     (tmp_path / "b.geo").mkdir()
     assert run_dda("export", "b.nml", cwd=tmp_path).returncode == 4
     assert run_dda("export", INPUT / "terrace.nml", cwd=tmp_path).returncode == 2
+
+
+def test_a_changed_file_of_lines_is_computed_anew(tmp_path: Path) -> None:
+    (tmp_path / "ring.nml").write_text("&arch thickness_ratio=0.12, voussoirs=12 /\n")
+    assert run_dda("export", "ring.nml", cwd=tmp_path).returncode == 0
+    scene = "&scene kind='lines', geometry='ring.geo', analysis='ring_plain.ana' /\n"
+    assert row_of(tmp_path, "a", scene)["verdict"] == "stable"
+    kept = (tmp_path / "a" / "results.csv").read_text()
+    assert run_dda("run", "a.nml", "--resume", cwd=tmp_path).returncode == 0
+    assert (tmp_path / "a" / "results.csv").read_text() == kept
+    (tmp_path / "ring.nml").write_text("&arch thickness_ratio=0.10, voussoirs=12 /\n")
+    assert run_dda("export", "ring.nml", cwd=tmp_path).returncode == 0
+    assert run_dda("run", "a.nml", "--resume", cwd=tmp_path).returncode == 0
+    assert ",collapsed," in (tmp_path / "a" / "results.csv").read_text()
