@@ -1,11 +1,13 @@
 !> dda check: read and check decks, say what would be computed
 module dda_check
    use, intrinsic :: iso_fortran_env, only : error_unit, output_unit
-   use dda_arch_scene, only : arch_scene
    use dda_command_line, only : command_t, name_of
    use dda_deck, only : deck_t, has_group, is_given, text_of, word_of
+   use dda_deck_scene, only : deck_scene
    use dda_deck_sweep, only : case_deck, n_cases, swept_names
+   use dda_cut, only : print_warnings
    use dda_error, only : error_line, error_t
+   use dda_line_scene, only : check_line_scene
    use dda_process, only : exit_status
    use dda_read_deck, only : read_deck
    use dda_scene, only : scene_t
@@ -34,6 +36,7 @@ contains
             write (error_unit, "(a)") error_line(error)
             status = exit_status%bad_input
          else if (.not. command%quiet) then
+            call print_warnings(deck%warnings)
             call print_plan(name_of(command, i), deck)
          end if
       end do
@@ -52,7 +55,7 @@ contains
       integer :: s, blocks
 
       call case_deck(deck, 1, first, error)
-      call arch_scene(first, scene)
+      call deck_scene(first, scene)
       blocks = maxval(scene%system%equation)
       swept = ""
       associate (names => swept_names(deck))
@@ -68,9 +71,11 @@ contains
       else
          call tell("searched", "nothing: each case is decided as it is")
       end if
+      if (allocated(deck%cut)) call check_line_scene(deck, error)
+      if (allocated(error)) call tell("not to run", error%message)
       write (output_unit, "(a)") "   the first case:"
       call tell("blocks", to_text(blocks)//" that move, "//to_text(size(scene%system%equation) &
-         & - blocks)//" fixed springings")
+         & - blocks)//trim(merge(" held             ", " fixed springings ", allocated(deck%cut))))
       call tell("joints", to_text(size(scene%contacts%joint))//" of two normal springs and one "// &
          & "shear spring; fixed pairs, for the blocks do not move apart in reference geometry")
       call tell("unknowns", to_text(scene%settings%n_dof)//" a block, " &

@@ -100,13 +100,14 @@ module dda_deck_keys
    type(key_t), parameter :: scene_keys(*) = [ &
       key_t(group="scene", name="title", kind=key_kind%text, default="''", varies=.false., &
             meaning="One line that says what the deck is about."), &
-      key_t(group="scene", name="kind", kind=key_kind%word, default="'arch'", words="arch", &
-            later="lines blocks", varies=.false., &
-            meaning="What the blocks are made from: an arch generated from the keys of &arch."), &
-      key_t(group="scene", name="geometry", kind=key_kind%later, varies=.false., &
-            meaning="File of lines or blocks; for kinds of scene that a later version reads."), &
-      key_t(group="scene", name="analysis", kind=key_kind%later, varies=.false., &
-            meaning="File of the analysis; for kinds of scene that a later version reads.")]
+      key_t(group="scene", name="kind", kind=key_kind%word, default="'arch'", words="arch lines", &
+            later="blocks", varies=.false., &
+            meaning="What the blocks are made from: the keys of &arch, or lines of a file."), &
+      key_t(group="scene", name="geometry", kind=key_kind%text, without="an arch", &
+            varies=.false., meaning="File of lines for kind = 'lines', beside the deck."), &
+      key_t(group="scene", name="analysis", kind=key_kind%text, &
+            without="the keys of this deck", varies=.false., &
+            meaning="File of materials and loads for kind = 'lines'; keys of the deck go before.")]
 
    !> Keys of &arch
    type(key_t), parameter :: arch_keys(*) = [ &
@@ -130,7 +131,10 @@ module dda_deck_keys
             meaning="Largest angle of one chord of a voussoir's intrados or extrados."), &
       key_t(group="arch", name="springing", kind=key_kind%word, default="'frictional'", &
             words="frictional no-slip", &
-            meaning="Whether the two springing joints obey friction or cannot slide.")]
+            meaning="Whether the two springing joints obey friction or cannot slide."), &
+      key_t(group="arch", name="abutment_size", unit="m", without="the thickness", &
+            at_least=1.0e-9_wp, at_most=1.0e9_wp, varies=.false., &
+            meaning="Depth of the abutments of dda export, and their reach beyond the joint.")]
 
    !> Keys of &material
    type(key_t), parameter :: material_keys(*) = [ &

@@ -1,8 +1,7 @@
 !> One case of a deck: prepared, computed, and told as rows of the result tables
 module dda_case
    use, intrinsic :: iso_fortran_env, only : int64
-   use dda_arch_scene, only : arch_family_t, arch_resolution, arch_scene, exact_thickness, &
-      & search_start
+   use dda_arch_scene, only : arch_resolution, exact_thickness, search_start
    use dda_block_system, only : block_system_t
    use dda_contact_detection, only : contacts_t
    use dda_critical, only : critical_t, find_critical, search_t
@@ -10,6 +9,7 @@ module dda_case
    use dda_deck, only : deck_t, has_group, integer_of, is_given, parameter_t, real_of, text_of, &
       & word_of
    use dda_deck_check, only : search_bracket
+   use dda_deck_scene, only : deck_family_t, deck_scene
    use dda_deck_parameter, only : find_parameter, parameter_name
    use dda_error, only : error_t
    use dda_forward, only : outcome_t, run_to_verdict
@@ -37,7 +37,7 @@ module dda_case
       !> Whether a critical value is searched
       logical :: searches = .false.
       !> The scenes of the search
-      type(arch_family_t) :: family
+      type(deck_family_t) :: family
       !> The search
       type(search_t) :: search
       !> What the search found
@@ -70,7 +70,8 @@ contains
       this%searches = has_group(deck, "search")
       if (this%searches) call prepare_search(deck, this%family, this%search)
       searched = searched_name(deck)
-      this%exact_known = searched == "" .or. searched == "thickness_ratio"
+      this%exact_known = (searched == "" .or. searched == "thickness_ratio") &
+         & .and. .not. allocated(deck%cut)
    end subroutine prepare_case
 
    !> Compute a case
@@ -89,7 +90,7 @@ contains
             call follow_collapse(this%scene, this%critical%fallen)
          end if
       else
-         call arch_scene(this%deck, this%scene)
+         call deck_scene(this%deck, this%scene)
          call decide(this%scene%settings, this%scene%system, this%scene%contacts, this%decision)
          if (this%decision%outcome%verdict == verdict%collapsed) &
             & call follow_collapse(this%scene, this%decision)
@@ -123,13 +124,22 @@ contains
       settings = this%scene%settings
       settings%flow = merge(flow_rule%coulomb, flow_rule%associated, slides)
       if (.not. settings%collapse_displacement > 0.0_wp) &
-         & settings%collapse_displacement = 0.1_wp*real_of(this%deck, "arch", "radius")
+         & settings%collapse_displacement = 0.1_wp*size_of(this%deck)
       this%album%spacing = settings%collapse_displacement &
          & /real(integer_of(this%deck, "output", "frames"), wp)
       system = this%scene%system
       contacts = this%scene%contacts
       call run_to_verdict(settings, system, contacts, outcome, this%album)
    end subroutine take_pictures
+
+   !> Size of the structure: the radius of an arch, else half of what is larger, width or height [m]
+   pure real(wp) function size_of(deck)
+      !> The deck
+      type(deck_t), intent(in) :: deck
+
+      size_of = real_of(deck, "arch", "radius")
+      if (allocated(deck%cut)) size_of = deck%cut%scale%size
+   end function size_of
 
    !> Tell a case
    pure subroutine tell_case(this, row, joint_row, remark)
@@ -163,9 +173,12 @@ contains
       searched = searched_name(this%deck)
       row%mode = word_of(this%deck, "analysis", "mode")
       row%geometry = word_of(this%deck, "analysis", "geometry")
-      row%half_angle_deg = given_number(this%deck, "arch", "half_angle_deg", searched)
-      row%thickness_ratio = given_number(this%deck, "arch", "thickness_ratio", searched)
-      row%friction_deg = given_number(this%deck, "joint", "friction_deg", searched)
+      if (.not. allocated(this%deck%cut)) then
+         row%half_angle_deg = given_number(this%deck, "arch", "half_angle_deg", searched)
+         row%thickness_ratio = given_number(this%deck, "arch", "thickness_ratio", searched)
+      end if
+      if (.not. allocated(this%deck%analysis) .or. is_given(this%deck, "joint", "friction_deg")) &
+         & row%friction_deg = given_number(this%deck, "joint", "friction_deg", searched)
       row%collapse_mode = "none"
       row%springing_hinge = "none"
       if (this%exact_known) row%exact = some_number(this%exact)
@@ -269,7 +282,7 @@ contains
       !> The deck of the case
       type(deck_t), intent(in) :: deck
       !> Its scenes
-      type(arch_family_t), intent(out) :: family
+      type(deck_family_t), intent(out) :: family
       !> The search
       type(search_t), intent(out) :: search
       character(len=:), allocatable :: problem
@@ -278,7 +291,7 @@ contains
       call find_parameter(text_of(deck, "search", "parameter"), family%parameter, problem)
       call search_bracket(deck, search%low, search%high)
       search%tolerance = real_of(deck, "search", "tolerance")
-      search%resolution = arch_resolution(deck)
+      if (.not. allocated(deck%cut)) search%resolution = arch_resolution(deck)
       search%start = search%low
       if (searched_name(deck) /= "thickness_ratio") return
       search%start = search_start(deck)
