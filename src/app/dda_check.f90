@@ -3,11 +3,12 @@ module dda_check
    use, intrinsic :: iso_fortran_env, only : error_unit, output_unit
    use dda_command_line, only : command_t, name_of
    use dda_deck, only : deck_t, has_group, is_given, text_of, word_of
-   use dda_deck_scene, only : deck_scene
+   use dda_deck_scene, only : check_deck_scene, deck_scene
    use dda_deck_sweep, only : case_deck, n_cases, swept_names
    use dda_cut, only : print_warnings
    use dda_error, only : error_line, error_t
-   use dda_line_scene, only : check_line_scene
+   use dda_limerick_model, only : half_size, limerick_model_t
+   use dda_limerick_scene, only : limerick_scene
    use dda_process, only : exit_status
    use dda_read_deck, only : read_deck
    use dda_scene, only : scene_t
@@ -71,9 +72,13 @@ contains
       else
          call tell("searched", "nothing: each case is decided as it is")
       end if
-      if (allocated(deck%cut)) call check_line_scene(deck, error)
+      if (allocated(deck%cut)) call check_deck_scene(deck, error)
       if (allocated(error)) call tell("not to run", error%message)
       write (output_unit, "(a)") "   the first case:"
+      if (word_of(first, "analysis", "mode") == "limerick") then
+         call print_limerick_plan(first)
+         return
+      end if
       call tell("blocks", to_text(blocks)//" that move, "//to_text(size(scene%system%equation) &
          & - blocks)//trim(merge(" held             ", " fixed springings ", allocated(deck%cut))))
       call tell("joints", to_text(size(scene%contacts%joint))//" of two normal springs and one "// &
@@ -89,6 +94,30 @@ contains
          & all(scene%contacts%springs%shift <= 0.0) .and. &
          & all(scene%contacts%joint%law%cohesion <= 0.0)))
    end subroutine print_plan
+
+   !> Print what a case of the original's scheme is made of
+   subroutine print_limerick_plan(deck)
+      !> The deck of the case
+      type(deck_t), intent(in) :: deck
+      type(limerick_model_t) :: model
+      integer :: n
+
+      call limerick_scene(deck, model)
+      n = size(model%block_material)
+      if (allocated(deck%cut)) then
+         call tell("blocks", to_text(n)//", held at "//to_text(size(model%fixed_block))//" points")
+      else
+         call tell("blocks", to_text(n - 2)//" and 2 abutments, each held at 4 points")
+      end if
+      call tell("half size", to_text(half_size(model))//" m: what penetration, opening and "// &
+         & "motion are compared with")
+      call tell("contacts", "a vertex and an edge, or two corners; sought anew in each step")
+      call tell("unknowns", "6 a block, "//to_text(6*n)//" in all")
+      call tell("penalty", merge("follows the penetration, up or down", &
+         & "fixed                              ", model%constants%auto_penalty))
+      call tell("velocities", merge("kept                            ", &
+         & "none: every step starts at rest ", model%constants%dynamic))
+   end subroutine print_limerick_plan
 
    !> Print one line of the plan
    subroutine tell(what, how)

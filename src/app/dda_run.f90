@@ -7,10 +7,10 @@ module dda_run
    use dda_cut, only : print_warnings
    use dda_deck, only : deck_t
    use dda_deck_record, only : deck_record
+   use dda_deck_scene, only : check_deck_scene
    use dda_deck_sweep, only : case_deck, n_cases
    use dda_error, only : error_line, error_t, fatal_error
    use dda_help, only : version
-   use dda_line_scene, only : check_line_scene
    use dda_picture_files, only : write_album
    use dda_process, only : error_is_terminal, exit_status, worst_status
    use dda_progress, only : clear_progress, progress_t, report_progress
@@ -48,7 +48,7 @@ contains
       do i = 1, size(deck)
          call read_deck(name_of(command, i), command%setting, deck(i), error)
          if (.not. allocated(error) .and. allocated(deck(i)%cut)) &
-            & call check_line_scene(deck(i), error)
+            & call check_deck_scene(deck(i), error)
          if (.not. command%quiet) call print_warnings(deck(i)%warnings)
          if (.not. allocated(error)) call check_folder(command, i, good(:i - 1), error)
          if (.not. allocated(error)) call choose_cases(command%cases, &

@@ -5,7 +5,7 @@ module dda_deck_check_case
    use dda_text, only : to_text
    use dda_deck_keys, only : deck_key, key_index, group_index
    use dda_deck, only : deck_t, deck_place_t, parameter_t, deck_error, &
-      has_group, integer_of, real_of, word_of, is_given, place_of
+      flag_of, has_group, integer_of, real_of, word_of, is_given, place_of
    use dda_deck_parameter, only : parameter_name
    use dda_deck_set, only : put_number, number_problem
    implicit none
@@ -26,9 +26,11 @@ contains
       type(parameter_t), intent(in) :: searched
       !> The first thing that is wrong
       type(error_t), allocatable, intent(out) :: error
-      logical :: is_static, has_weight, is_lines
+      logical :: is_static, is_limerick, has_weight, is_lines
 
+      is_limerick = word_of(deck, "analysis", "mode") == "limerick"
       is_static = word_of(deck, "analysis", "mode") == "static"
+      if (is_limerick) is_static = .not. flag_of(deck, "limerick", "dynamic")
       has_weight = real_of(deck, "load", "gravity") > 0.0_wp .or. &
          is_given(deck, "material", "unit_weight") .or. is_given(deck, "scene", "analysis")
       is_lines = word_of(deck, "scene", "kind") == "lines"
@@ -40,7 +42,15 @@ contains
          call deck_error(error, "a search wants mode = 'static'; a dynamic run ends "// &
             "'completed', neither standing nor fallen; remove &search or mode = 'dynamic'", deck, &
             place_of(deck, key_index("search", "parameter")))
-      else if (.not. is_static .and. word_of(deck, "analysis", "geometry") == "current") then
+      else if (is_limerick .and. is_given(deck, "analysis", "geometry") .and. &
+         word_of(deck, "analysis", "geometry") /= "current") then
+         call deck_error(error, "mode = 'limerick' wants geometry = 'current' or none: its "// &
+            "blocks always move", deck, place_of(deck, key_index("analysis", "geometry")))
+      else if (is_limerick .and. integer_of(deck, "output", "frames") > 0) then
+         call deck_error(error, "output%frames wants another mode than 'limerick', which "// &
+            "keeps no pictures", deck, place_of(deck, key_index("output", "frames")))
+      else if (.not. (is_static .or. is_limerick) .and. &
+         word_of(deck, "analysis", "geometry") == "current") then
          call deck_error(error, "geometry = 'current' wants mode = 'static': this version "// &
             "has no dynamics of moving blocks yet; change one of the two", deck, &
             place_of(deck, key_index("analysis", "mode")))

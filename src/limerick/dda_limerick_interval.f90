@@ -128,7 +128,7 @@ contains
       end if
    end subroutine judge_step
 
-   !> The penalty goes, by a third at the most, to where the deepest penetration is what is aimed at
+   !> The penalty goes, down to a third at the most, to where the penetration is what is aimed at
    !> (Shi: spri)
    pure subroutine adapt_penalty(model, contacts, march)
       !> The model

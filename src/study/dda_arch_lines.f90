@@ -3,11 +3,13 @@
 module dda_arch_lines
    use dda_arch_scene, only : arch_scene, unit_weight
    use dda_block_system, only : block_system_t
-   use dda_deck, only : deck_error, deck_t, integer_of, is_given, real_of, word_of
+   use dda_deck, only : deck_error, deck_t, is_given, real_of, word_of
    use dda_deck_keys, only : key_index
    use dda_error, only : error_t
    use dda_kinds, only : wp
    use dda_limerick_analysis, only : limerick_analysis_t, limerick_joint_t, limerick_material_t
+   use dda_limerick_model, only : limerick_constants_t
+   use dda_limerick_scene, only : abutment_sides, set_constants
    use dda_line_model, only : add_entity, line_model_t, new_entities
    use dda_scene, only : scene_t
    use dda_text, only : to_text
@@ -37,19 +39,17 @@ contains
       !> Abutments that are too large to lie side by side
       type(error_t), allocatable, intent(out) :: error
       type(scene_t) :: scene
-      real(wp) :: size_of_abutment, corner(2, 4, 2)
+      real(wp) :: depth, overhang, corner(2, 4, 2)
       integer :: n, b, side
 
       call arch_scene(deck, scene)
       n = size(scene%system%area) - 2
-      size_of_abutment = real_of(deck, "arch", "thickness_ratio")*real_of(deck, "arch", "radius")
-      if (is_given(deck, "arch", "abutment_size")) &
-         & size_of_abutment = real_of(deck, "arch", "abutment_size")
+      call abutment_sides(deck, depth, overhang)
       do side = 1, 2
-         corner(:, :, side) = abutment(scene%system, n + side, side == 2, size_of_abutment)
+         corner(:, :, side) = abutment(scene%system, n + side, side == 2, depth, overhang)
       end do
       if (maxval(corner(1, :, 1)) >= 0.0_wp .or. minval(corner(1, :, 2)) <= 0.0_wp) then
-         call deck_error(error, "an abutment smaller than "//to_text(size_of_abutment) &
+         call deck_error(error, "an abutment smaller than "//to_text(depth) &
             & //" m is wanted: the two meet below the arch (arch%abutment_size)", deck, &
             & deck%value(key_index("arch", "abutment_size"))%place)
          return
@@ -74,31 +74,33 @@ contains
       model%edge_node_ratio = edge_node_ratio(model)
    end subroutine arch_lines
 
-   !> Corners of an abutment: the face first, from the intrados to the extrados, prolonged by the
-   !> size on both sides; then as deep as the size
-   pure function abutment(system, springing, is_right, size_of_abutment) result(corner)
+   !> Corners of an abutment: the face first, from the intrados to the extrados, prolonged on both
+   !> sides
+   pure function abutment(system, springing, is_right, size, overhang) result(corner)
       !> The blocks of the arch
       type(block_system_t), intent(in) :: system
       !> Number of the springing block, whose fourth edge is the joint
       integer, intent(in) :: springing
       !> Whether it is the right one
       logical, intent(in) :: is_right
-      !> The size [m]
-      real(wp), intent(in) :: size_of_abutment
+      !> Its depth [m]
+      real(wp), intent(in) :: size
+      !> How far it reaches beyond the joint at either end [m]
+      real(wp), intent(in) :: overhang
       !> The corners: (2, 4) [m]
       real(wp) :: corner(2, 4)
-      real(wp) :: way(2), depth(2)
+      real(wp) :: direction(2), depth(2)
       integer :: first
 
       first = system%first_vertex(springing)
       corner(:, 1:2) = system%vertex(:, [first + 3, first])
       ! the edge of the right springing runs from the extrados to the intrados
       if (is_right) corner(:, 1:2) = corner(:, [2, 1])
-      way = size_of_abutment*along(corner(:, 1), corner(:, 2))
-      depth = right_normal(way)
+      direction = along(corner(:, 1), corner(:, 2))
+      depth = size*right_normal(direction)
       if (.not. is_right) depth = -depth
-      corner(:, 1) = corner(:, 1) - way
-      corner(:, 2) = corner(:, 2) + way
+      corner(:, 1) = corner(:, 1) - overhang*direction
+      corner(:, 2) = corner(:, 2) + overhang*direction
       corner(:, 3) = corner(:, 2) + depth
       corner(:, 4) = corner(:, 1) + depth
    end function abutment
@@ -217,17 +219,8 @@ contains
       type(limerick_joint_t) :: joint
 
       analysis%file = deck%file
-      analysis%dynamic = word_of(deck, "analysis", "mode") == "dynamic"
+      call write_constants(deck, analysis)
       analysis%plane_strain = word_of(deck, "material", "plane") == "strain"
-      analysis%steps = 20000
-      analysis%displacement_ratio = 0.001_wp
-      analysis%max_time_step = 0.01_wp
-      if (is_given(deck, "analysis", "steps")) analysis%steps = integer_of(deck, "analysis", &
-         & "steps")
-      if (is_given(deck, "analysis", "max_displacement_ratio")) &
-         & analysis%displacement_ratio = real_of(deck, "analysis", "max_displacement_ratio")
-      if (is_given(deck, "analysis", "time_step")) &
-         & analysis%max_time_step = real_of(deck, "analysis", "time_step")
       stone%density = real_of(deck, "material", "density")
       stone%unit_weight = unit_weight(deck)
       stone%young = real_of(deck, "material", "young")
@@ -242,6 +235,32 @@ contains
       analysis%joint = joint
       analysis%joint(2:)%friction_deg = no_slip_deg
    end function arch_analysis
+
+   !> The constants of the original's scheme, those of its own mode or its defaults
+   pure subroutine write_constants(deck, analysis)
+      !> The deck of a case
+      type(deck_t), intent(in) :: deck
+      !> Receives the constants
+      type(limerick_analysis_t), intent(inout) :: analysis
+      type(limerick_constants_t) :: constants
+
+      call set_constants(deck, constants)
+      analysis%close_limit = constants%close_ratio
+      analysis%open_limit = constants%open_ratio
+      analysis%spring_penetration = constants%penetration_ratio
+      analysis%overlap_deg = constants%overlap_deg
+      analysis%shear_ratio = constants%stiffness_ratio
+      analysis%auto_penalty = constants%auto_penalty
+      analysis%displacement_ratio = constants%max_displacement_ratio
+      analysis%max_time_step = constants%time_step
+      analysis%steps = constants%max_steps
+      analysis%dynamic = constants%dynamic .or. word_of(deck, "analysis", "mode") == "dynamic"
+      analysis%exact_rotation = constants%exact_rotation
+      if (word_of(deck, "analysis", "mode") /= "limerick") return
+      ! in the other modes these keys mean something else
+      analysis%auto_time_step = constants%auto_time_step
+      analysis%penalty_factor = constants%penalty_factor
+   end subroutine write_constants
 
    !> What the files cannot carry
    pure function what_is_lost(deck) result(text)

@@ -15,6 +15,8 @@ module dda_case
    use dda_forward, only : outcome_t, run_to_verdict
    use dda_frames, only : album_t
    use dda_kinds, only : wp
+   use dda_limerick_decision, only : decide_limerick
+   use dda_limerick_search, only : find_limerick_critical
    use dda_mechanism, only : follow_collapse, mechanism_of, mechanism_t
    use dda_scene, only : scene_t
    use dda_settings, only : flow_rule, settings_t
@@ -36,6 +38,8 @@ module dda_case
       type(deck_t) :: deck
       !> Whether a critical value is searched
       logical :: searches = .false.
+      !> Whether the original's scheme decides
+      logical :: limerick = .false.
       !> The scenes of the search
       type(deck_family_t) :: family
       !> The search
@@ -68,6 +72,7 @@ contains
 
       this%deck = deck
       this%searches = has_group(deck, "search")
+      this%limerick = word_of(deck, "analysis", "mode") == "limerick"
       if (this%searches) call prepare_search(deck, this%family, this%search)
       searched = searched_name(deck)
       this%exact_known = (searched == "" .or. searched == "thickness_ratio") &
@@ -83,12 +88,22 @@ contains
 
       call system_clock(start, rate)
       if (this%exact_known) call exact_thickness(this%deck, this%exact, this%exact_known)
-      if (this%searches) then
+      if (this%searches .and. this%limerick) then
+         ! the limit of this scheme lies somewhat above the exact value
+         if (this%exact_known .and. .not. this%search%check_far_end) &
+            & this%search%start = min(max(this%exact, this%search%low), this%search%high)
+         call find_limerick_critical(this%family, this%search, this%critical)
+         if (allocated(this%critical%fallen)) &
+            & call this%family%build(this%critical%falls, this%scene, error)
+      else if (this%searches) then
          call find_critical(this%family, this%search, this%critical)
          if (allocated(this%critical%fallen)) then
             call this%family%build(this%critical%falls, this%scene, error)
             call follow_collapse(this%scene, this%critical%fallen)
          end if
+      else if (this%limerick) then
+         call deck_scene(this%deck, this%scene)
+         call decide_limerick(this%deck, this%decision)
       else
          call deck_scene(this%deck, this%scene)
          call decide(this%scene%settings, this%scene%system, this%scene%contacts, this%decision)
@@ -173,6 +188,7 @@ contains
       searched = searched_name(this%deck)
       row%mode = word_of(this%deck, "analysis", "mode")
       row%geometry = word_of(this%deck, "analysis", "geometry")
+      if (this%limerick) row%geometry = "current"
       if (.not. allocated(this%deck%cut)) then
          row%half_angle_deg = given_number(this%deck, "arch", "half_angle_deg", searched)
          row%thickness_ratio = given_number(this%deck, "arch", "thickness_ratio", searched)
@@ -291,6 +307,9 @@ contains
       call find_parameter(text_of(deck, "search", "parameter"), family%parameter, problem)
       call search_bracket(deck, search%low, search%high)
       search%tolerance = real_of(deck, "search", "tolerance")
+      ! the original's own verdicts near the limit are no sharper
+      if (word_of(deck, "analysis", "mode") == "limerick" &
+         & .and. .not. is_given(deck, "search", "tolerance")) search%tolerance = 1.0e-4_wp
       if (.not. allocated(deck%cut)) search%resolution = arch_resolution(deck)
       search%start = search%low
       if (searched_name(deck) /= "thickness_ratio") return

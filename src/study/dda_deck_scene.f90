@@ -1,16 +1,17 @@
 !> From a deck of any kind to scenes
 module dda_deck_scene
    use dda_arch_scene, only : arch_scene
-   use dda_deck, only : deck_t, parameter_t
+   use dda_deck, only : deck_t, parameter_t, word_of
    use dda_deck_set, only : number_fits, put_number
    use dda_error, only : error_t, fatal_error
    use dda_kinds, only : wp
-   use dda_line_scene, only : line_scene
+   use dda_limerick_lines, only : check_limerick_lines
+   use dda_line_scene, only : check_line_scene, line_scene
    use dda_scene, only : family_t, scene_t
    implicit none
    private
 
-   public :: deck_family_t, deck_scene
+   public :: deck_family_t, deck_scene, check_deck_scene
 
    !> The scenes of one deck whose searched parameter varies
    type, extends(family_t) :: deck_family_t
@@ -38,6 +39,21 @@ contains
          call arch_scene(deck, scene)
       end if
    end subroutine deck_scene
+
+   !> Whether this version can run the blocks of a deck
+   pure subroutine check_deck_scene(deck, error)
+      !> The deck of a case
+      type(deck_t), intent(in) :: deck
+      !> What it cannot do
+      type(error_t), allocatable, intent(out) :: error
+
+      if (.not. allocated(deck%cut)) return
+      if (word_of(deck, "analysis", "mode") == "limerick") then
+         call check_limerick_lines(deck, error)
+      else
+         call check_line_scene(deck, error)
+      end if
+   end subroutine check_deck_scene
 
    !> Make the scene of one value of the parameter
    pure subroutine build_deck_scene(family, value, scene, error)

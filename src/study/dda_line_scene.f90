@@ -17,7 +17,7 @@ module dda_line_scene
    implicit none
    private
 
-   public :: line_scene, check_line_scene
+   public :: line_scene, check_line_scene, law_of_joint
 
    !> Friction angles from here on mean that a joint cannot slide [deg]
    real(wp), parameter :: no_slip_deg = 89.9_wp
