@@ -59,7 +59,8 @@ contains
       associate (total => system%motion(:, block))
          total(4:6) = total(4:6) + turned_tensor(motion(4:6), total(3), 2.0_wp)
          total(1:3) = total(1:3) + motion(1:3)
-         system%stress(:, block) = turned_tensor(matmul(d, total(4:6)), -total(3), 1.0_wp)
+         system%stress(:, block) = turned_tensor(system%initial_stress(:, block) &
+            & + matmul(d, total(4:6)), -total(3), 1.0_wp)
          do v = system%first_vertex(block), system%first_vertex(block + 1) - 1
             system%moved(:, v) = moved_point(system%vertex(:, v), system%centroid(:, block), total)
          end do
