@@ -149,28 +149,40 @@ contains
       real(wp), intent(in) :: trial(:, :)
       !> The motion: (n_dof, n_equation); unchanged if the factor is not usable
       real(wp), intent(inout) :: motion(:, :)
-      real(wp) :: load(size(motion, 1), size(motion, 2))
       integer :: j
 
-      if (.not. holds(equations, cone, face)) then
-         equations%matrix%diagonal = equations%base
-         do j = 1, size(face)
-            call add_stiffness(springs, cone(j), face(j), j, equations)
-         end do
-         call factorise(equations%matrix, equations%factor)
-         equations%factorisations = equations%factorisations + 1
-         equations%held = face
-         equations%held_friction = cone%friction
-         equations%changed = .not. equations%factor%usable
-      end if
+      call hold_faces(equations, springs, cone, face)
       if (.not. equations%factor%usable) return
-      load = equations%load
+      motion = equations%load
       do j = 1, size(face)
-         call add_load(springs, cone(j), face(j), trial(:, j), j, load)
+         call add_load(springs, cone(j), face(j), trial(:, j), j, motion)
       end do
-      motion = load
       call substitute(equations%factor, motion)
    end subroutine solve_faces
+
+   !> Matrix and factor of these faces, made anew if they are those of others
+   pure subroutine hold_faces(equations, springs, cone, face)
+      !> Blocks assembled
+      type(equations_t), intent(inout) :: equations
+      !> The springs of the joints
+      type(joint_springs_t), intent(in) :: springs
+      !> Bounds of the joint forces: (n_joint)
+      type(cone_t), intent(in) :: cone(:)
+      !> Faces: (n_joint)
+      type(joint_face_t), intent(in) :: face(:)
+      integer :: j
+
+      if (holds(equations, cone, face)) return
+      equations%matrix%diagonal = equations%base
+      do j = 1, size(face)
+         call add_stiffness(springs, cone(j), face(j), j, equations)
+      end do
+      call factorise(equations%matrix, equations%factor)
+      equations%factorisations = equations%factorisations + 1
+      equations%held = face
+      equations%held_friction = cone%friction
+      equations%changed = .not. equations%factor%usable
+   end subroutine hold_faces
 
    !> Whether the factor is that of these faces
    pure logical function holds(equations, cone, face)

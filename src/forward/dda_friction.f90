@@ -5,7 +5,7 @@ module dda_friction
    use dda_friction_cone, only : cone_t
    use dda_joint_springs, only : joint_springs_t
    use dda_kinds, only : wp
-   use dda_open_close, only : iterate_open_close, step_state_t
+   use dda_open_close, only : force_noise, iterate_open_close, step_state_t
    implicit none
    private
 
@@ -54,7 +54,8 @@ contains
    !> Find the motion and the states of one step under Coulomb friction. First no joint may slide;
    !> if
    !> a shear force is then too large, all shear forces are bounded by friction times the normal
-   !> forces of the pass before, until these no longer change
+   !> forces of the pass before, until these no longer change. Where blocks fall so far that rounding
+   !> hides smaller changes, the bounds that changed least are taken
    pure subroutine iterate_friction(equations, springs, max_changes, state)
       !> Blocks assembled; matrix and factor are made anew
       type(equations_t), intent(inout) :: equations
@@ -67,8 +68,9 @@ contains
       real(wp) :: bound(size(springs%stiffness)), change(size(springs%stiffness))
       real(wp) :: bounds(size(springs%stiffness), memory + 1)
       real(wp) :: changes(size(springs%stiffness), memory + 1)
-      real(wp) :: tolerance
-      integer :: correction, kept
+      real(wp) :: best(size(springs%stiffness)), least, tolerance
+      integer :: correction, kept, stale
+      logical :: resolved
 
       tolerance = 1.0e-11_wp*sum(abs(equations%weight(1:2, :)))
       state%cone = cone_t(friction=0.0_wp, limit=huge(1.0_wp))
@@ -78,13 +80,27 @@ contains
       bound = coulomb_bound(springs, state)
       if (all(abs(state%force(3, :)) <= bound + tolerance)) return
       kept = 0
+      stale = 0
+      least = huge(least)
+      resolved = .false.
       do correction = 1, max_corrections
          state%cone%limit = bound
          call iterate_open_close(equations, springs, max_changes, state)
          if (.not. state%settled) return
          change = merge(coulomb_bound(springs, state) - bound, 0.0_wp, &
             & springs%cone%limit < huge(1.0_wp))
-         if (maxval(abs(change)) <= tolerance) return
+         if (maxval(abs(change)) <= tolerance .or. resolved) return
+         stale = stale + 1
+         if (maxval(abs(change)) < least) then
+            least = maxval(abs(change))
+            best = bound
+            stale = 0
+         end if
+         resolved = stale >= memory .and. least <= force_noise(equations, springs, state)
+         if (resolved) then
+            bound = best
+            cycle
+         end if
          if (kept == memory + 1) then
             bounds(:, :memory) = bounds(:, 2:)
             changes(:, :memory) = changes(:, 2:)

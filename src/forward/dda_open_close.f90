@@ -8,13 +8,14 @@
 module dda_open_close
    use, intrinsic :: iso_fortran_env, only : int64
    use dda_assembly, only : equations_t, relative_displacement, solve_faces
+   use dda_block_solve, only : substitute
    use dda_friction_cone, only : apply_face, cone_t, joint_face_t, project
    use dda_joint_springs, only : joint_springs_t
    use dda_kinds, only : wp
    implicit none
    private
 
-   public :: step_state_t, iterate_open_close, joint_forces
+   public :: step_state_t, iterate_open_close, joint_forces, force_noise
 
    !> What the loop works on: the motion of the step and the joints at its end
    type :: step_state_t
@@ -150,7 +151,9 @@ contains
    end subroutine joint_forces
 
    !> Newton's method on the step's energy from the motion of the state; each direction is followed
-   !> to the lowest point
+   !> to the lowest point. The direction corrects what the blocks lack in balance, so that its
+   !> rounding is that of a correction, and a motion in balance is the answer even where rounding
+   !> lets no face agree
    pure subroutine iterate_newton(equations, springs, state)
       !> Blocks assembled; matrix and factor are made anew
       type(equations_t), intent(inout) :: equations
@@ -161,44 +164,80 @@ contains
       type(joint_face_t) :: wanted(size(state%face))
       real(wp) :: gap(size(state%face))
       real(wp) :: from(size(state%motion, 1), size(state%motion, 2))
+      real(wp) :: direction(size(state%motion, 1), size(state%motion, 2))
       integer :: pass
-      logical :: moves
+      logical :: balanced
 
-      from = state%motion
       do pass = 1, max_newton
-         state%motion = from
+         from = state%motion
          call joint_forces(springs, state)
+         call find_unbalance(equations, springs, state, direction, balanced)
          call solve_faces(equations, springs, state%cone, state%face, state%start, state%motion)
          state%passes = state%passes + 1
          if (.not. equations%factor%usable) return
          call disagreement(springs, state, gap, wanted)
-         moves = maxval(springs%stiffness)*maxval(abs(state%motion - from)) > epsilon(1.0_wp) &
-            & *maxval(abs(state%trial))
-         state%settled = maxval(gap) <= force_noise(equations, springs, state) .or. .not. moves
+         state%settled = maxval(gap) <= force_noise(equations, springs, state)
          if (state%settled) return
-         from = from + lowest_point(equations, springs, state, from)*(state%motion - from)
+         state%motion = from
+         state%settled = balanced
+         if (state%settled) return
+         call substitute(equations%factor, direction)
+         state%motion = from + lowest_point(equations, springs, state, from, direction)*direction
       end do
    end subroutine iterate_newton
 
-   !> How far to go from one motion towards another for the least energy. The slope of the energy
-   !> rises piecewise linearly, so its zero is found by bracketing and false position
-   pure function lowest_point(equations, springs, state, from) result(factor)
+   !> What the admissible forces of a motion leave of the loads, and whether that is rounding: then
+   !> no other motion has noticeably less energy
+   pure subroutine find_unbalance(equations, springs, state, rest, balanced)
       !> The equations of the step
       type(equations_t), intent(in) :: equations
       !> The springs of the joints
       type(joint_springs_t), intent(in) :: springs
-      !> The step; its motion is where the direction points to
+      !> The step, with the forces of its motion
       type(step_state_t), intent(in) :: state
-      !> Where the direction starts: (n_dof, n_equation)
+      !> Loads that nothing balances: (n_dof, n_equation)
+      real(wp), intent(out) :: rest(:, :)
+      !> Whether rounding can make as much
+      logical, intent(out) :: balanced
+      real(wp) :: rounding(size(rest, 1), size(rest, 2)), noise
+      integer :: e, j, side
+
+      noise = force_noise(equations, springs, state)
+      do e = 1, size(rest, 2)
+         rest(:, e) = equations%load(:, e) - matmul(equations%base(:, :, e), state%motion(:, e))
+         rounding(:, e) = 8.0_wp*epsilon(1.0_wp)*(abs(equations%load(:, e)) &
+            & + matmul(abs(equations%base(:, :, e)), abs(state%motion(:, e))))
+      end do
+      do j = 1, size(state%face)
+         do side = 1, 2
+            e = springs%equation(side, j)
+            if (e == 0) cycle
+            rest(:, e) = rest(:, e) + matmul(springs%row(:, :, side, j), state%force(:, j))
+            rounding(:, e) = rounding(:, e) + noise*sum(abs(springs%row(:, :, side, j)), dim=2)
+         end do
+      end do
+      balanced = all(abs(rest) <= rounding)
+   end subroutine find_unbalance
+
+   !> How far to go from one motion towards another for the least energy. The slope of the energy
+   !> rises piecewise linearly, so its zero is found by bracketing and false position
+   pure function lowest_point(equations, springs, state, from, direction) result(factor)
+      !> The equations of the step
+      type(equations_t), intent(in) :: equations
+      !> The springs of the joints
+      type(joint_springs_t), intent(in) :: springs
+      !> The step, for bounds and forces at its beginning
+      type(step_state_t), intent(in) :: state
+      !> Where to start: (n_dof, n_equation)
       real(wp), intent(in) :: from(:, :)
+      !> Where to go: (n_dof, n_equation)
+      real(wp), intent(in) :: direction(:, :)
       !> 1 is the whole way
       real(wp) :: factor
-      real(wp) :: direction(size(from, 1), size(from, 2))
       real(wp) :: start(3, size(state%face)), rate(3, size(state%face))
       real(wp) :: slope_at_zero, curvature, low, high, slope_low, slope_high, slope
       integer :: e, pass
 
-      direction = state%motion - from
       start = relative_displacement(springs, from)
       rate = relative_displacement(springs, direction)
       slope_at_zero = 0.0_wp
