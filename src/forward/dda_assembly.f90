@@ -13,7 +13,7 @@ module dda_assembly
    implicit none
    private
 
-   public :: equations_t, new_equations, take_springs, assemble_blocks, solve_faces
+   public :: equations_t, new_equations, renew_springs, take_springs, assemble_blocks, solve_faces
    public :: relative_displacement
 
    !> Matrix, loads and factor; the pattern and the mass are made once, the numbers at each solution
@@ -60,27 +60,13 @@ contains
       !> The equations
       type(equations_t), intent(out) :: equations
       real(wp) :: full(6, 6), load(6)
-      logical :: couples(size(springs%equation, 2))
-      integer :: b, e, j, n, nd, pair(2, size(springs%equation, 2))
+      integer :: b, e, n, nd
 
       nd = settings%n_dof
       n = maxval(system%equation)
-      couples = all(springs%equation > 0, dim=1)
-      allocate (equations%entry(size(couples)), equations%held(size(couples)))
-      allocate (equations%held_friction(size(couples)))
-      equations%entry = 0
-      e = 0
-      do j = 1, size(couples)
-         if (.not. couples(j)) cycle
-         e = e + 1
-         equations%entry(j) = e
-         pair(:, e) = springs%equation(:, j)
-      end do
-      call set_pattern(equations%matrix, nd, n, pair(:, :e))
+      call couple_blocks(springs, nd, n, equations)
       allocate (equations%mass(nd, nd, n), equations%elastic(nd, nd, n), equations%base(nd, nd, n))
       allocate (equations%weight(nd, n), equations%load(nd, n))
-      allocate (equations%stuck(nd, nd, 3, size(couples)))
-      call take_springs(springs, equations)
       do b = 1, size(system%equation)
          e = system%equation(b)
          if (e == 0) cycle
@@ -92,6 +78,56 @@ contains
          equations%weight(:, e) = load(:nd)
       end do
    end subroutine new_equations
+
+   !> Pattern of the matrix and stiffness of the stuck joints
+   pure subroutine couple_blocks(springs, n_dof, n_equation, equations)
+      !> The springs of the joints
+      type(joint_springs_t), intent(in) :: springs
+      !> Unknowns of one block
+      integer, intent(in) :: n_dof
+      !> Number of movable blocks
+      integer, intent(in) :: n_equation
+      !> Receives pattern and stiffness
+      type(equations_t), intent(inout) :: equations
+      logical :: couples(size(springs%equation, 2))
+      integer :: e, j, pair(2, size(springs%equation, 2))
+
+      if (allocated(equations%entry)) &
+         & deallocate (equations%entry, equations%held, equations%held_friction, equations%stuck)
+      couples = all(springs%equation > 0, dim=1)
+      allocate (equations%entry(size(couples)), source=0)
+      allocate (equations%held(size(couples)), equations%held_friction(size(couples)))
+      allocate (equations%stuck(n_dof, n_dof, 3, size(couples)))
+      e = 0
+      do j = 1, size(couples)
+         if (.not. couples(j)) cycle
+         e = e + 1
+         equations%entry(j) = e
+         pair(:, e) = springs%equation(:, j)
+      end do
+      call set_pattern(equations%matrix, n_dof, n_equation, pair(:, :e))
+      call take_springs(springs, equations)
+   end subroutine couple_blocks
+
+   !> Take over the springs of new joints; the pattern is made anew only where other blocks meet
+   pure subroutine renew_springs(before, springs, equations)
+      !> Equations of the blocks of each joint so far: (2, n_joint)
+      integer, intent(in) :: before(:, :)
+      !> The springs of the joints now
+      type(joint_springs_t), intent(in) :: springs
+      !> Receives pattern and stiffness
+      type(equations_t), intent(inout) :: equations
+      logical :: same
+
+      same = size(before, 2) == size(springs%equation, 2)
+      if (same) same = all(before == springs%equation)
+      if (same) then
+         call take_springs(springs, equations)
+      else
+         call couple_blocks(springs, size(equations%weight, 1), size(equations%weight, 2), &
+            & equations)
+      end if
+   end subroutine renew_springs
 
    !> Take over springs whose rows have changed while the coupled pairs have not
    pure subroutine take_springs(springs, equations)

@@ -41,6 +41,9 @@ module dda_step_context
       real(wp) :: dt = 0.0_wp
       !> Most that a corner may move in a step, where blocks move [m]
       real(wp) :: allowed_motion = 0.0_wp
+      !> Most that the corners of each block may move before contacts are searched again, where they
+      !> are searched: (n_block) [m]
+      real(wp), allocatable :: reach(:)
       !> Largest motion of a corner since the beginning [m]
       real(wp) :: displacement = 0.0_wp
       !> Longest step that leaves the matrix well enough conditioned [s]
