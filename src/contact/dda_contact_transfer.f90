@@ -26,6 +26,8 @@ module dda_contact_transfer
       real(wp) :: force(2) = 0.0_wp
       !> Slip that the springs still feel [m]
       real(wp) :: slip = 0.0_wp
+      !> Stiffness of the springs [N/m per metre depth]
+      real(wp) :: stiffness = 0.0_wp
       !> Whether a contact of the next step has taken it over
       logical :: passed_on = .false.
    end type past_contact_t
@@ -60,8 +62,7 @@ contains
       end do
    end subroutine search_contacts
 
-   !> Contacts where the blocks are now; the forces of the step before become multipliers, so that
-   !> the springs only carry what changes
+   !> Contacts where the blocks are now; their springs carry what openings and slip make of them
    pure subroutine renew_contacts(system, travel, reach, penalty_ratio, n_dof, contacts)
       !> The blocks
       type(block_system_t), intent(in) :: system
@@ -97,9 +98,11 @@ contains
          & n_dof, contacts)
       do j = 1, size(joint)
          call take_over_state(before, past, source(:, j), j, contacts)
+         call keep_shear(system, past, source(:, j), contacts%springs%stiffness(j), &
+            & contacts%joint(j))
          call place_joint(system, system%moved, contacts%joint(j), gap)
          contacts%gap(:, j) = gap
-         contacts%trial(:, j) = contacts%force(:, j) - contacts%springs%stiffness(j)*gap
+         contacts%trial(:, j) = -contacts%springs%stiffness(j)*gap
          call guess_face(source(:, j), j, contacts)
       end do
       call set_strength(contacts)
@@ -133,6 +136,7 @@ contains
                if (sum(force(1:2)) > 0.0_wp) list(n)%force(2) = force(3)*force(k)/sum(force(1:2))
                list(n)%slip = slip_at(system, system%moved, joint%contact(k)) &
                   & - contacts%past_slip(j)
+               list(n)%stiffness = contacts%springs%stiffness(j)
             end do
          end associate
       end do
@@ -286,6 +290,29 @@ contains
       end if
       call place_joint(system, system%moved, joint, gap)
    end subroutine take_over_slip
+
+   !> Let the shear force stay the same where the stiffness does not
+   pure subroutine keep_shear(system, past, source, stiffness, joint)
+      !> The blocks
+      type(block_system_t), intent(in) :: system
+      !> The contacts of the step before
+      type(past_contact_t), intent(in) :: past(:)
+      !> Which of them go on, 0 for none: (2)
+      integer, intent(in) :: source(2)
+      !> Stiffness now [N/m per metre depth]
+      real(wp), intent(in) :: stiffness
+      !> The joint
+      type(joint_t), intent(inout) :: joint
+      integer :: k
+
+      do k = 1, joint%n_contact
+         if (source(k) == 0) cycle
+         associate (contact => joint%contact(k), old => past(source(k)))
+            contact%lock = contact%lock + old%slip*(1.0_wp - old%stiffness/stiffness) &
+               & /edge_size(system, contact)
+         end associate
+      end do
+   end subroutine keep_shear
 
    !> Let a joint have no slip where it is
    pure subroutine lock_joint(system, vertex, joint)

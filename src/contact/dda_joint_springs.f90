@@ -26,6 +26,9 @@ module dda_joint_springs
       type(cone_t), allocatable :: cone(:)
       !> Tension that the contacts carry, by which the cone is moved, and a zero: (3, n_joint) [N/m]
       real(wp), allocatable :: shift(:, :)
+      !> Whether the springs give for good: joints that were found may be more than the blocks can
+      !> follow, and forces without give would then not be unique
+      logical :: give = .false.
    end type joint_springs_t
 
    !> A block counts as no smaller across a joint than this share of the root of its area
@@ -52,6 +55,7 @@ contains
       n = size(joint)
       allocate (springs%equation(2, n), springs%row(n_dof, 3, 2, n), springs%stiffness(n))
       allocate (springs%cone(n), springs%shift(3, n))
+      springs%give = any(joint%found)
       do j = 1, n
          springs%equation(:, j) = system%equation(joint(j)%block)
          springs%row(:, :, 1, j) = -joint_rows(joint(j), 1, centroid(:, joint(j)%block(1)), n_dof)

@@ -68,7 +68,8 @@ contains
    end subroutine move_block
 
    !> Keep states, forces and gaps of a step; under Coulomb friction slip is plastic, so that the
-   !> springs start anew from the shear force that they could carry
+   !> springs start anew from the shear force that they could carry. Springs that give keep as much of
+   !> it as carries that force
    pure subroutine update_contacts(step, settings, contacts, breaks)
       !> The accepted step
       type(step_context_t), intent(in) :: step
@@ -86,7 +87,10 @@ contains
       contacts%force = step%state%force
       contacts%increment = step%state%increment
       contacts%gap = contacts%gap + step%state%increment
-      if (settings%current) then
+      if (settings%current .and. contacts%springs%give) then
+         where (contacts%face%slip /= 0) contacts%past_slip = contacts%past_slip &
+            & + contacts%gap(3, :) + contacts%force(3, :)/contacts%springs%stiffness
+      else if (settings%current) then
          where (contacts%face%slip /= 0) &
             & contacts%past_slip = contacts%past_slip + contacts%gap(3, :)
       else if (settings%flow == flow_rule%coulomb) then
