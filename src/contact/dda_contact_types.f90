@@ -114,7 +114,7 @@ contains
       !> Opening at the two contacts, and how far the second block lies ahead along the edge: (3)
       !> [m]
       real(wp), intent(out) :: gap(3)
-      real(wp) :: start(2), lock(2), tangent(2), slip
+      real(wp) :: start(2), finish(2), lock(2), tangent(2), slip
       integer :: k
 
       gap = 0.0_wp
@@ -123,7 +123,8 @@ contains
       do k = 1, joint%n_contact
          associate (c => joint%contact(k))
             start = vertex(:, vertex_number(system, c%edge_block, c%edge))
-            tangent = along(start, vertex(:, vertex_number(system, c%edge_block, c%edge + 1)))
+            finish = vertex(:, vertex_number(system, c%edge_block, c%edge + 1))
+            tangent = along(start, finish)
             c%normal = right_normal(tangent)
             c%point = vertex(:, vertex_number(system, c%vertex_block, c%vertex))
             gap(k) = dot_product(c%normal, c%point - start)
@@ -132,9 +133,10 @@ contains
             gap(3) = gap(3) + c%share*slip
             ! both blocks feel the shear force on the line of the edge: off it, an open joint would
             ! turn them
-            lock = c%foot - slip*tangent
-            joint%middle(:, c%edge_side) = joint%middle(:, c%edge_side) + c%share*lock
-            joint%middle(:, 3 - c%edge_side) = joint%middle(:, 3 - c%edge_side) + c%share*c%foot
+            lock = c%share*((1.0_wp - c%lock)*start + c%lock*finish)
+            joint%middle(:, c%edge_side) = joint%middle(:, c%edge_side) + lock
+            lock = lock + c%share*slip*tangent
+            joint%middle(:, 3 - c%edge_side) = joint%middle(:, 3 - c%edge_side) + lock
             if (c%edge_side == 2) then
                c%normal = -c%normal
                tangent = -tangent
@@ -142,7 +144,8 @@ contains
             joint%tangent = joint%tangent + c%share*tangent
          end associate
       end do
-      joint%tangent = joint%tangent/norm2(joint%tangent)
+      if (any(joint%contact%edge_side /= joint%contact(1)%edge_side)) &
+         & joint%tangent = joint%tangent/norm2(joint%tangent)
       joint%normal = right_normal(joint%tangent)
    end subroutine place_joint
 
