@@ -5,6 +5,7 @@ module dda_run
    use dda_command_line, only : command_t
    use dda_deck, only : deck_t, flag_of, integer_of
    use dda_deck_sweep, only : case_deck, n_cases, swept_names, swept_texts
+   use dda_deck_scene, only : check_scene, warning_line
    use dda_error, only : error_line, error_t, fatal_error
    use dda_picture_files, only : write_album
    use dda_process, only : error_is_terminal, exit_status, make_folder, worst_status
@@ -60,14 +61,18 @@ contains
       type(deck_t), allocatable :: deck(:)
       type(error_t), allocatable :: error
       logical :: good(size(command%name))
-      integer :: i, deck_status
+      integer :: i, deck_status, w
 
       allocate (deck(size(command%name)))
       status = exit_status%success
       do i = 1, size(deck)
          call read_deck(trim(command%name(i)), command%setting, deck(i), error)
+         if (.not. allocated(error)) call check_scene(deck(i), error)
          if (.not. allocated(error)) call check_folder(command, i, good(:i - 1), error)
          good(i) = .not. allocated(error)
+         do w = 1, merge(size(deck(i)%plan%warning), 0, good(i) .and. .not. command%quiet)
+            write (error_unit, "(a)") warning_line(deck(i), w)
+         end do
          if (good(i)) cycle
          write (error_unit, "(a)") error_line(error)
          status = exit_status%bad_input

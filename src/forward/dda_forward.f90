@@ -64,6 +64,12 @@ contains
       type(march_t) :: march
       type(error_t), allocatable :: error
 
+      if (maxval(system%equation) == 0) then
+         ! nothing can move
+         outcome%verdict = merge(verdict%completed, verdict%stable, settings%dynamic)
+         allocate (outcome%motion(settings%n_dof, 0))
+         return
+      end if
       call new_equations(system, contacts%springs, settings, equations)
       call begin_step(contacts, size(equations%weight, 1), size(equations%weight, 2), step%state)
       call first_interval(system, contacts%springs, settings, equations, step%state, march, error)

@@ -1,6 +1,7 @@
 !> A deck in memory: a value for every key of the registry, and where each one came from
 module dda_deck
    use, intrinsic :: ieee_arithmetic, only : ieee_value, ieee_quiet_nan
+   use dda_block_plan, only : block_plan_t, new_plan
    use dda_kinds, only : wp
    use dda_error, only : error_t, fatal_error
    use dda_text, only : read_number
@@ -70,6 +71,8 @@ module dda_deck
       type(deck_place_t), allocatable :: group(:)
       !> The sweeps in their order: (n)
       type(deck_sweep_t), allocatable :: sweep(:)
+      !> The blocks of the geometry file
+      type(block_plan_t) :: plan
    end type deck_t
 
 contains
@@ -83,6 +86,7 @@ contains
       integer :: i
 
       deck%file = file
+      call new_plan(deck%plan)
       allocate (deck%value(0:size(deck_key)), deck%group(size(deck_group)), deck%sweep(0))
       deck%value(0)%number = ieee_value(1.0_wp, ieee_quiet_nan)
       do i = 0, size(deck_key)

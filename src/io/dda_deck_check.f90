@@ -3,7 +3,7 @@ module dda_deck_check
    use dda_kinds, only : wp
    use dda_error, only : error_t
    use dda_text, only : to_text
-   use dda_deck_keys, only : key_t, deck_key, key_kind, key_index
+   use dda_deck_keys, only : key_t, deck_key, key_kind, key_index, group_index
    use dda_deck_words, only : full_name
    use dda_deck, only : deck_t, deck_place_t, parameter_t, deck_error, &
       integer_of, word_of, text_of, is_given, has_group, place_of
@@ -26,12 +26,35 @@ contains
       type(parameter_t) :: searched
       integer :: s
 
-      call check_search(deck, searched, error)
+      call check_kind(deck, error)
+      if (.not. allocated(error)) call check_search(deck, searched, error)
       do s = 1, size(deck%sweep)
          if (.not. allocated(error)) call check_sweep(deck, s, searched, error)
       end do
       if (.not. allocated(error)) call check_cases(deck, searched, error)
    end subroutine check_deck
+
+   !> Check that the deck says where its blocks come from, once
+   pure subroutine check_kind(deck, error)
+      !> The deck
+      type(deck_t), intent(in) :: deck
+      !> A file that is missing or has no use, or an arch beside it
+      type(error_t), allocatable, intent(out) :: error
+      logical :: has_file, wants_file
+
+      has_file = len(text_of(deck, "scene", "geometry")) > 0
+      wants_file = word_of(deck, "scene", "kind") == "blocks"
+      if (wants_file .and. .not. has_file) then
+         call deck_error(error, "kind = 'blocks' wants scene%geometry, the name of a file of "// &
+            "blocks", deck, place_of(deck, key_index("scene", "kind")))
+      else if (has_file .and. .not. wants_file) then
+         call deck_error(error, "scene%geometry has no use with kind = 'arch'", deck, &
+            place_of(deck, key_index("scene", "geometry")))
+      else if (wants_file .and. has_group(deck, "arch")) then
+         call deck_error(error, "&arch has no use with kind = 'blocks'", deck, &
+            deck%group(group_index("arch")))
+      end if
+   end subroutine check_kind
 
    !> Where a search begins and ends
    pure subroutine search_bracket(deck, low, high)
@@ -146,7 +169,11 @@ contains
 
       is_weight = parameter%key == key_index("material", "density") .or. &
          parameter%key == key_index("load", "gravity")
-      if (deck%value(parameter%key)%place%from_command .and. parameter%item == 0) then
+      if (deck_key(parameter%key)%group == "arch" .and. &
+         word_of(deck, "scene", "kind") /= "arch") then
+         call deck_error(error, full_name(deck_key(parameter%key))//" is "//how// &
+            ", but kind = 'blocks' has no arch", deck, place)
+      else if (deck%value(parameter%key)%place%from_command .and. parameter%item == 0) then
          call deck_error(error, full_name(deck_key(parameter%key))//" cannot be set: it is "// &
             how//" in line "//to_text(place%line)//" of "//deck%file, deck, &
             deck%value(parameter%key)%place)

@@ -100,11 +100,12 @@ module dda_deck_keys
    type(key_t), parameter :: scene_keys(*) = [ &
       key_t(group="scene", name="title", kind=key_kind%text, default="''", varies=.false., &
             meaning="One line that says what the deck is about."), &
-      key_t(group="scene", name="kind", kind=key_kind%word, default="'arch'", words="arch", &
-            later="lines blocks", varies=.false., &
-            meaning="What the blocks are made from: an arch generated from the keys of &arch."), &
-      key_t(group="scene", name="geometry", kind=key_kind%later, varies=.false., &
-            meaning="File of lines or blocks; for kinds of scene that a later version reads."), &
+      key_t(group="scene", name="kind", kind=key_kind%word, default="'arch'", words="arch blocks", &
+            later="lines", varies=.false., &
+            meaning="What the blocks are made from: the keys of &arch, or a file of polygons."), &
+      key_t(group="scene", name="geometry", kind=key_kind%text, varies=.false., &
+            without="none: an arch wants none", &
+            meaning="File of blocks for kind = 'blocks', beside the deck unless it begins with /."), &
       key_t(group="scene", name="analysis", kind=key_kind%later, varies=.false., &
             meaning="File of the analysis; for kinds of scene that a later version reads.")]
 

@@ -7,16 +7,17 @@ module dda_read_deck
    use dda_deck_words, only : full_name, near_group, near_key
    use dda_deck_token, only : deck_scan_t, token_kind, token_text, shown
    use dda_deck_scan, only : scan_deck, scan_values
-   use dda_deck, only : deck_t, deck_place_t, parameter_t, new_deck, deck_error
+   use dda_deck, only : deck_t, deck_place_t, parameter_t, new_deck, deck_error, text_of, word_of
    use dda_deck_parameter, only : split_name
    use dda_deck_set, only : put_text
    use dda_deck_entry, only : read_values
    use dda_deck_sweep, only : add_sweep
    use dda_deck_check, only : check_deck
+   use dda_read_blocks, only : parse_blocks
    implicit none
    private
 
-   public :: read_deck, parse_deck
+   public :: read_deck, parse_deck, geometry_file
 
 contains
 
@@ -30,11 +31,27 @@ contains
       type(deck_t), intent(out) :: deck
       !> Bad input, with file and line, or with --set and its number
       type(error_t), allocatable, intent(out) :: error
-      character(len=:), allocatable :: text
+      character(len=:), allocatable :: text, geometry
 
       call read_text_file(file, text, error)
       if (.not. allocated(error)) call parse_deck(text, file, settings, deck, error)
+      if (allocated(error)) return
+      if (word_of(deck, "scene", "kind") /= "blocks") return
+      geometry = geometry_file(deck)
+      call read_text_file(geometry, text, error)
+      if (.not. allocated(error)) call parse_blocks(text, geometry, deck%plan, error)
    end subroutine read_deck
+
+   !> Name of the file of blocks: beside the deck unless it begins with a slash
+   pure function geometry_file(deck) result(path)
+      !> The deck
+      type(deck_t), intent(in) :: deck
+      !> The name
+      character(len=:), allocatable :: path
+
+      path = text_of(deck, "scene", "geometry")
+      if (index(path, "/") /= 1) path = deck%file(:index(deck%file, "/", back=.true.))//path
+   end function geometry_file
 
    !> Read and check a deck from its text
    pure subroutine parse_deck(text, file, settings, deck, error)

@@ -5,55 +5,21 @@ module dda_arch_scene
    use dda_block_system, only : block_system_t
    use dda_constants, only : degree, pi
    use dda_contact_detection, only : find_contacts
-   use dda_deck, only : deck_t, integer_of, is_given, list_of, parameter_t, real_of, word_of
-   use dda_deck_set, only : number_fits, put_number
-   use dda_error, only : error_t, fatal_error
+   use dda_deck, only : deck_t, integer_of, is_given, list_of, real_of, word_of
    use dda_kinds, only : wp
    use dda_material, only : friction_coefficient, joint_law_t, material_t
-   use dda_scene, only : family_t, scene_t
+   use dda_scene, only : scene_t
    use dda_settings, only : settings_t
    implicit none
    private
 
-   public :: arch_family_t, arch_scene, half_joints_deg, exact_thickness, search_start
-   public :: arch_resolution
+   public :: arch_scene, half_joints_deg, exact_thickness, search_start, arch_resolution
+   public :: material_of, settings_of, unit_weight
 
    !> Friction angles from here on mean that no joint slides [deg]
    real(wp), parameter :: no_slip_deg = 89.9_wp
 
-   !> The scenes of one deck whose searched parameter varies
-   type, extends(family_t) :: arch_family_t
-      !> The deck of one case
-      type(deck_t) :: deck
-      !> The parameter
-      type(parameter_t) :: parameter
-   contains
-      !> Make the scene of one value
-      procedure :: build => build_arch_scene
-   end type arch_family_t
-
 contains
-
-   !> Make the scene of one value of the parameter
-   pure subroutine build_arch_scene(family, value, scene, error)
-      !> The family
-      class(arch_family_t), intent(in) :: family
-      !> Value of its parameter
-      real(wp), intent(in) :: value
-      !> The scene
-      type(scene_t), intent(out) :: scene
-      !> Allocated if the parameter cannot have the value
-      type(error_t), allocatable, intent(out) :: error
-      type(deck_t) :: deck
-
-      if (.not. number_fits(family%parameter%key, value)) then
-         call fatal_error(error, "the searched parameter cannot have this value")
-         return
-      end if
-      deck = family%deck
-      call put_number(deck, family%parameter, value, deck%value(family%parameter%key)%place, error)
-      if (.not. allocated(error)) call arch_scene(deck, scene)
-   end subroutine build_arch_scene
 
    !> The scene that the deck of one case describes
    pure subroutine arch_scene(deck, scene)
@@ -61,17 +27,12 @@ contains
       type(deck_t), intent(in) :: deck
       !> The scene
       type(scene_t), intent(out) :: scene
-      type(material_t) :: material
       type(joint_law_t), allocatable :: law(:)
       integer, allocatable :: edge_pair(:, :)
       real(wp), allocatable :: half(:)
       integer :: j, n
 
-      material%density = real_of(deck, "material", "density")
-      material%young = real_of(deck, "material", "young")
-      material%poisson = real_of(deck, "material", "poisson")
-      material%plane_strain = word_of(deck, "material", "plane") == "strain"
-      call arch_blocks(arch_shape(deck), material, scene%system, edge_pair)
+      call arch_blocks(arch_shape(deck), material_of(deck), scene%system, edge_pair)
       scene%system%unit_weight = unit_weight(deck)
       scene%settings = settings_of(deck)
       n = size(edge_pair, 2)
@@ -86,6 +47,19 @@ contains
          scene%joint_angle_deg(n - size(half) + j) = half(j)
       end do
    end subroutine arch_scene
+
+   !> The blocks' material
+   pure function material_of(deck) result(material)
+      !> The deck
+      type(deck_t), intent(in) :: deck
+      !> The material
+      type(material_t) :: material
+
+      material%density = real_of(deck, "material", "density")
+      material%young = real_of(deck, "material", "young")
+      material%poisson = real_of(deck, "material", "poisson")
+      material%plane_strain = word_of(deck, "material", "plane") == "strain"
+   end function material_of
 
    !> The law of the joints
    pure function joint_law(deck) result(law)

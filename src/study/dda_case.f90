@@ -1,8 +1,7 @@
 !> One case of a deck: prepared, computed, and told as rows of the result tables
 module dda_case
    use, intrinsic :: iso_fortran_env, only : int64
-   use dda_arch_scene, only : arch_family_t, arch_resolution, arch_scene, exact_thickness, &
-      & search_start
+   use dda_arch_scene, only : arch_resolution, exact_thickness, search_start
    use dda_block_system, only : block_system_t
    use dda_contact_detection, only : contacts_t
    use dda_critical, only : critical_t, find_critical, search_t
@@ -11,6 +10,7 @@ module dda_case
       & word_of
    use dda_deck_check, only : search_bracket
    use dda_deck_parameter, only : find_parameter, parameter_name
+   use dda_deck_scene, only : deck_family_t, deck_scene
    use dda_error, only : error_t
    use dda_forward, only : outcome_t, run_to_verdict
    use dda_frames, only : album_t
@@ -37,7 +37,7 @@ module dda_case
       !> Whether a critical value is searched
       logical :: searches = .false.
       !> The scenes of the search
-      type(arch_family_t) :: family
+      type(deck_family_t) :: family
       !> The search
       type(search_t) :: search
       !> What the search found
@@ -70,7 +70,8 @@ contains
       this%searches = has_group(deck, "search")
       if (this%searches) call prepare_search(deck, this%family, this%search)
       searched = searched_name(deck)
-      this%exact_known = searched == "" .or. searched == "thickness_ratio"
+      this%exact_known = (searched == "" .or. searched == "thickness_ratio") &
+         & .and. word_of(deck, "scene", "kind") == "arch"
    end subroutine prepare_case
 
    !> Compute a case
@@ -89,7 +90,7 @@ contains
             call follow_collapse(this%scene, this%critical%fallen)
          end if
       else
-         call arch_scene(this%deck, this%scene)
+         call deck_scene(this%deck, this%scene)
          call decide(this%scene%settings, this%scene%system, this%scene%contacts, this%decision)
          if (this%decision%outcome%verdict == verdict%collapsed) &
             & call follow_collapse(this%scene, this%decision)
@@ -163,8 +164,10 @@ contains
       searched = searched_name(this%deck)
       row%mode = word_of(this%deck, "analysis", "mode")
       row%geometry = word_of(this%deck, "analysis", "geometry")
-      row%half_angle_deg = given_number(this%deck, "arch", "half_angle_deg", searched)
-      row%thickness_ratio = given_number(this%deck, "arch", "thickness_ratio", searched)
+      if (word_of(this%deck, "scene", "kind") == "arch") then
+         row%half_angle_deg = given_number(this%deck, "arch", "half_angle_deg", searched)
+         row%thickness_ratio = given_number(this%deck, "arch", "thickness_ratio", searched)
+      end if
       row%friction_deg = given_number(this%deck, "joint", "friction_deg", searched)
       row%collapse_mode = "none"
       row%springing_hinge = "none"
@@ -224,7 +227,7 @@ contains
          row%open_close_iterations = outcome%passes
          row%factorisations = outcome%factorisations
       end associate
-      joint_row = joint_rows(this%decision%contacts, this%scene%joint_angle_deg)
+      joint_row = joint_rows(this%decision%contacts, this%scene%joint_angle_deg, this%scene%origin)
    end subroutine tell_decision
 
    !> Tell the search of a case
@@ -251,13 +254,15 @@ contains
          if (critical%verdict == verdict%found) call tell_bracket(critical, row)
          if (allocated(critical%fallen)) then
             call tell_mechanism(critical%fallen%contacts, this%scene%joint_angle_deg, row)
-            joint_row = joint_rows(critical%fallen%contacts, this%scene%joint_angle_deg)
+            joint_row = joint_rows(critical%fallen%contacts, this%scene%joint_angle_deg, &
+               & this%scene%origin)
          end if
          if (allocated(critical%standing)) then
             call this%family%build(critical%stands, scene, error)
-            joint_row = joint_rows(critical%standing%contacts, scene%joint_angle_deg)
+            joint_row = joint_rows(critical%standing%contacts, scene%joint_angle_deg, scene%origin)
          end if
-         row%blocks = max(0, size(joint_row) - 1)
+         if (allocated(critical%fallen)) row%blocks = maxval(critical%fallen%system%equation)
+         if (allocated(critical%standing)) row%blocks = maxval(critical%standing%system%equation)
          row%steps = critical%steps
          row%open_close_iterations = critical%passes
          row%factorisations = critical%factorisations
@@ -269,7 +274,7 @@ contains
       !> The deck of the case
       type(deck_t), intent(in) :: deck
       !> Its scenes
-      type(arch_family_t), intent(out) :: family
+      type(deck_family_t), intent(out) :: family
       !> The search
       type(search_t), intent(out) :: search
       character(len=:), allocatable :: problem
@@ -278,7 +283,7 @@ contains
       call find_parameter(text_of(deck, "search", "parameter"), family%parameter, problem)
       call search_bracket(deck, search%low, search%high)
       search%tolerance = real_of(deck, "search", "tolerance")
-      search%resolution = arch_resolution(deck)
+      if (word_of(deck, "scene", "kind") == "arch") search%resolution = arch_resolution(deck)
       search%start = search%low
       if (searched_name(deck) /= "thickness_ratio") return
       search%start = search_start(deck)
@@ -327,20 +332,24 @@ contains
    end subroutine tell_mechanism
 
    !> Rows of all joints
-   pure function joint_rows(contacts, joint_angle_deg) result(row)
+   pure function joint_rows(contacts, joint_angle_deg, origin) result(row)
       !> The contacts
       type(contacts_t), intent(in) :: contacts
-      !> Angle of each joint from the crown: (n_joint) [deg]
+      !> Angle of each joint from the crown, or none: (n_joint) or (0) [deg]
       real(wp), intent(in) :: joint_angle_deg(:)
+      !> Where the origin of the blocks' coordinates is: (2) [m]
+      real(wp), intent(in) :: origin(2)
       !> The rows, without the number of the case: (n_joint)
-      type(joint_row_t) :: row(size(joint_angle_deg))
+      type(joint_row_t) :: row(size(contacts%joint))
       integer :: j
 
       do j = 1, size(row)
          row(j)%joint = j
-         row(j)%angle_deg = joint_angle_deg(j)
-         row(j)%intrados = contacts%joint(j)%contact(1)%point
-         row(j)%extrados = contacts%joint(j)%contact(2)%point
+         if (size(joint_angle_deg) > 0) row(j)%angle_deg = some_number(joint_angle_deg(j))
+         associate (joint => contacts%joint(j))
+            row(j)%intrados = joint%contact(1)%point + origin
+            row(j)%extrados = joint%contact(joint%n_contact)%point + origin
+         end associate
          row(j)%normal_force = sum(contacts%force(1:2, j))
          row(j)%shear_force = contacts%force(3, j)
          if (row(j)%normal_force > 0.0_wp) row(j)%eccentricity_ratio = some_number( &

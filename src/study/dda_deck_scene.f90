@@ -1,0 +1,108 @@
+!> From a deck to its scene, whatever its blocks are made from
+module dda_deck_scene
+   use dda_arch_scene, only : arch_scene, material_of, settings_of, unit_weight
+   use dda_block_scene, only : base_t, block_scene, floating_block
+   use dda_deck, only : deck_t, parameter_t, real_of, word_of
+   use dda_deck_set, only : number_fits, put_number
+   use dda_error, only : error_t, fatal_error
+   use dda_kinds, only : wp
+   use dda_read_deck, only : geometry_file
+   use dda_scene, only : family_t, scene_t
+   use dda_text, only : to_text
+   implicit none
+   private
+
+   public :: check_scene, deck_family_t, deck_scene, warning_line
+
+   !> The scenes of one deck whose searched parameter varies
+   type, extends(family_t) :: deck_family_t
+      !> The deck of one case
+      type(deck_t) :: deck
+      !> The parameter
+      type(parameter_t) :: parameter
+   contains
+      !> Make the scene of one value
+      procedure :: build => build_deck_scene
+   end type deck_family_t
+
+   !> Remaining acceleration of blocks at rest, over the tolerance of a search
+   real(wp), parameter :: rest_share = 1.0e-3_wp
+
+contains
+
+   !> Make the scene of one value of the parameter
+   pure subroutine build_deck_scene(family, value, scene, error)
+      !> The family
+      class(deck_family_t), intent(in) :: family
+      !> Value of its parameter
+      real(wp), intent(in) :: value
+      !> The scene
+      type(scene_t), intent(out) :: scene
+      !> Allocated if the parameter cannot have the value
+      type(error_t), allocatable, intent(out) :: error
+      type(deck_t) :: deck
+
+      if (.not. number_fits(family%parameter%key, value)) then
+         call fatal_error(error, "the searched parameter cannot have this value")
+         return
+      end if
+      deck = family%deck
+      call put_number(deck, family%parameter, value, deck%value(family%parameter%key)%place, error)
+      if (.not. allocated(error)) call deck_scene(deck, scene)
+   end subroutine build_deck_scene
+
+   !> The scene that the deck of one case describes
+   pure subroutine deck_scene(deck, scene)
+      !> The deck, checked
+      type(deck_t), intent(in) :: deck
+      !> The scene
+      type(scene_t), intent(out) :: scene
+      type(base_t) :: base
+      real(wp) :: noise
+
+      if (word_of(deck, "scene", "kind") == "arch") then
+         call arch_scene(deck, scene)
+         return
+      end if
+      base%material = material_of(deck)
+      base%unit_weight = unit_weight(deck)
+      base%gravity = real_of(deck, "load", "gravity")
+      base%law = [real_of(deck, "joint", "friction_deg"), real_of(deck, "joint", "cohesion"), &
+         & real_of(deck, "joint", "tension")]
+      scene%settings = settings_of(deck)
+      noise = 16.0_wp*epsilon(1.0_wp)*real(size(deck%plan%fixed), wp)
+      scene%settings%rest_tolerance = max(noise, rest_share*real_of(deck, "search", "tolerance"))
+      call block_scene(deck%plan, base, scene)
+   end subroutine deck_scene
+
+   !> A warning about the blocks as the line that a user sees
+   pure function warning_line(deck, i) result(line)
+      !> The deck
+      type(deck_t), intent(in) :: deck
+      !> Number of the warning
+      integer, intent(in) :: i
+      !> FILE:LINE: warning: message
+      character(len=:), allocatable :: line
+
+      line = geometry_file(deck)//":"//to_text(max(1, deck%plan%warning_line(i)))//": warning: " &
+         & //trim(deck%plan%warning(i))
+   end function warning_line
+
+   !> Check that a static scene can come to rest at all
+   subroutine check_scene(deck, error)
+      !> The deck, checked
+      type(deck_t), intent(in) :: deck
+      !> Allocated if nothing holds a block
+      type(error_t), allocatable, intent(out) :: error
+      type(scene_t) :: scene
+      integer :: b
+
+      if (word_of(deck, "scene", "kind") /= "blocks") return
+      if (word_of(deck, "analysis", "mode") /= "static") return
+      call deck_scene(deck, scene)
+      b = floating_block(scene)
+      if (b == 0) return
+      call fatal_error(error, "block "//to_text(b)//" rests on nothing: no chain of joints ties "// &
+         & "it to a fixed block, as mode = 'static' wants", geometry_file(deck), deck%plan%line(b))
+   end subroutine check_scene
+end module dda_deck_scene
