@@ -244,7 +244,7 @@ contains
             exit
          end if
          if (has_met .and. abs(view%gap) <= level) n_level = n_level + 1
-         time = crossing_time(near, corner(i), edge(i), view)
+         time = crossing_time(near, corner(i), edge(i), view, zone)
          if (time < best_time .or. .not. time > best_time .and. .not. view%gap > best_gap) cycle
          best = i
          best_gap = view%gap
@@ -256,7 +256,7 @@ contains
 
    !> When a corner crosses the line of an edge, in lengths of its travel: never if it stays outside,
    !> before all times if it is inside and stays there
-   pure real(wp) function crossing_time(near, corner, edge, view)
+   pure real(wp) function crossing_time(near, corner, edge, view, slack)
       !> The neighbourhood
       type(neighbourhood_t), intent(in) :: near
       !> Number of the corner
@@ -265,13 +265,16 @@ contains
       integer, intent(in) :: edge
       !> The corner seen from the edge
       type(corner_view_t), intent(in) :: view
-      real(wp) :: approach
+      !> A corner no deeper than this has not crossed: springs that carry give a little [m]
+      real(wp), intent(in) :: slack
+      real(wp) :: approach, gap
 
+      gap = view%gap + slack
       approach = -dot_product(view%normal, near%travel(:, corner) - near%travel(:, edge))
-      if (approach*huge(1.0_wp)**0.5_wp > abs(view%gap)) then
-         crossing_time = view%gap/approach
+      if (approach*huge(1.0_wp)**0.5_wp > abs(gap)) then
+         crossing_time = gap/approach
       else
-         crossing_time = sign(huge(1.0_wp), view%gap)
+         crossing_time = sign(huge(1.0_wp), gap)
       end if
    end function crossing_time
 
