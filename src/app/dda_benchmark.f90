@@ -5,7 +5,7 @@ module dda_benchmark
    use dda_arch, only : arch_blocks, arch_shape_t, equal_joints
    use dda_assembly, only : assemble_blocks, equations_t, new_equations, solve_faces
    use dda_band_reference, only : band_job_t, new_band_job
-   use dda_block_solve, only : factorise, substitute
+   use dda_block_factor, only : factorise, substitute
    use dda_block_system, only : block_system_t
    use dda_constants, only : pi
    use dda_contact_detection, only : contacts_t, find_contacts

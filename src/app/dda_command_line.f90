@@ -24,6 +24,8 @@ module dda_command_line
       integer :: jobs = 1
       !> Print nothing but errors
       logical :: quiet = .false.
+      !> Skip cases that an earlier run has finished
+      logical :: resume = .false.
    end type command_t
 
 contains
@@ -121,6 +123,9 @@ contains
       select case (argument(i))
       case ("--quiet")
          command%quiet = .true.
+         return
+      case ("--resume")
+         command%resume = .true.
          return
       case ("--out", "--set", "--jobs")
          if (i == size(argument)) then

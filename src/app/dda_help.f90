@@ -40,15 +40,18 @@ contains
       case ("run")
          call print_lines([character(len=96) :: &
             & "dda run DECK [DECK ...] [--out DIR] [--jobs N] [--set group%key=value ...]", &
-            & "        [--quiet]", &
+            & "        [--resume] [--quiet]", &
             & "", &
             & "   --out DIR   where results go; several decks each have a folder inside it", &
             & "               (without it: a folder named as the deck without its ending)", &
             & "   --jobs N    cases computed at the same time (1)", &
             & "   --set group%key=value   overrides the deck; commas for lists", &
+            & "   --resume    skip the cases that an earlier run of the same deck with the same", &
+            & "               --set has finished; if the deck has changed, compute all anew", &
             & "   --quiet     print nothing but errors", &
             & "", &
-            & "Writes results.csv (a row a case), joints.csv (a row a joint) and log.txt."])
+            & "Writes results.csv (a row a case), joints.csv (a row a joint), log.txt, and", &
+            & "deck.record, by which --resume knows the deck again."])
       case ("check")
          call print_lines([character(len=96) :: &
             & "dda check DECK [DECK ...] [--set group%key=value ...] [--quiet]", &

@@ -3,52 +3,29 @@ module dda_run
    use, intrinsic :: iso_fortran_env, only : error_unit
    use dda_case, only : case_t, compute_case, prepare_case, tell_case
    use dda_command_line, only : command_t
-   use dda_deck, only : deck_t, flag_of, integer_of
-   use dda_deck_sweep, only : case_deck, n_cases, swept_names, swept_texts
+   use dda_deck, only : deck_t
+   use dda_deck_record, only : deck_record
+   use dda_deck_sweep, only : case_deck, n_cases
    use dda_deck_scene, only : check_scene, warning_line
    use dda_error, only : error_line, error_t, fatal_error
+   use dda_help, only : version
    use dda_picture_files, only : write_album
-   use dda_process, only : error_is_terminal, exit_status, make_folder, worst_status
+   use dda_process, only : error_is_terminal, exit_status, worst_status
    use dda_progress, only : clear_progress, progress_t, report_progress
    use dda_read_deck, only : read_deck
-   use dda_summary, only : print_row, print_total
-   use dda_table_file, only : append_line, close_table, open_table, remove_file, table_file_t
+   use dda_result_tables, only : close_tables, name_tables, open_tables, result_tables_t, &
+      & swept_fields, table, write_case
+   use dda_resume, only : find_finished, finished_t, reopen_tables
+   use dda_summary, only : print_resumed, print_row, print_total
    use dda_text, only : to_text
-   use dda_write_frames, only : frame_joints_header, frames_header
-   use dda_write_results, only : joint_line, joint_row_t, joints_header, result_row_t, &
-      & results_header, results_line
+   use dda_write_results, only : joint_row_t, result_row_t
    implicit none
    private
 
    public :: run_decks, deck_stem
 
-   !> Where the results of one deck go
-   type :: tables_t
-      !> Name of the folder
-      character(len=:), allocatable :: folder
-      !> results.csv
-      type(table_file_t) :: results
-      !> joints.csv
-      type(table_file_t) :: joints
-      !> log.txt
-      type(table_file_t) :: log
-      !> frames.csv
-      type(table_file_t) :: frames
-      !> frame_joints.csv
-      type(table_file_t) :: frame_joints
-      !> Whether joints.csv is wanted
-      logical :: has_joints = .false.
-      !> Whether pictures are wanted
-      logical :: has_frames = .false.
-      !> Whether pictures are wanted as VTU too
-      logical :: has_vtu = .false.
-   end type tables_t
-
    !> Most cases at the same time
    integer, parameter :: max_jobs = 256
-   !> Columns of results.csv that a swept parameter shares
-   character(len=*), parameter :: own_column(*) = [character(len=16) :: "half_angle_deg", &
-      & "thickness_ratio", "friction_deg", "mode", "geometry"]
 
 contains
 
@@ -152,34 +129,31 @@ contains
       type(deck_t), intent(in) :: deck
       !> Exit status of this deck
       integer, intent(out) :: status
-      type(tables_t) :: tables
+      type(result_tables_t) :: tables
+      type(finished_t) :: finished
       type(progress_t) :: progress
       type(error_t), allocatable :: error
       integer :: count(3), number, total
 
       total = n_cases(deck)
       count = 0
-      tables%folder = folder_of(command, name)
-      tables%has_joints = flag_of(deck, "output", "joints")
-      tables%has_frames = integer_of(deck, "output", "frames") > 0
-      tables%has_vtu = flag_of(deck, "output", "vtu")
-      call open_tables(deck, tables, error)
+      call name_tables(deck, folder_of(command, name), tables)
+      call begin_tables(command, name, deck, total, tables, finished, error)
       progress%shown = error_is_terminal()
       if (command%quiet) progress%shown = .false.
-      progress%total = total
+      progress%total = total - sum(finished%count)
       call system_clock(progress%start)
       !$omp parallel do num_threads(min(command%jobs, total, max_jobs)) schedule(dynamic) &
-      !$omp default(none) shared(total, deck, name, command, tables, progress, count, error)
+      !$omp default(none) &
+      !$omp shared(total, deck, name, command, tables, progress, count, error, finished)
       do number = 1, total
+         if (finished%case(number)) cycle
          call run_one_case(command, name, deck, number, total, tables, progress, count, error)
       end do
       !$omp end parallel do
       call clear_progress(progress)
-      call close_table(tables%results)
-      call close_table(tables%joints)
-      call close_table(tables%log)
-      call close_table(tables%frames)
-      call close_table(tables%frame_joints)
+      call close_tables(tables)
+      count = count + [finished%count, sum(finished%count)]
       status = exit_status%success
       if (count(2) > 0) status = exit_status%undecided
       if (allocated(error)) then
@@ -191,6 +165,38 @@ contains
          call print_total(name, tables%folder, count)
       end if
    end subroutine run_deck
+
+   !> Begin the tables, or go on with those of an earlier run of the same deck
+   subroutine begin_tables(command, name, deck, total, tables, finished, error)
+      !> What the user asked for
+      type(command_t), intent(in) :: command
+      !> Name of the deck
+      character(len=*), intent(in) :: name
+      !> The deck
+      type(deck_t), intent(in) :: deck
+      !> Number of cases
+      integer, intent(in) :: total
+      !> The tables, named
+      type(result_tables_t), intent(inout) :: tables
+      !> What is finished already
+      type(finished_t), intent(out) :: finished
+      !> Allocated if the tables cannot be written
+      type(error_t), allocatable, intent(out) :: error
+      character(len=:), allocatable :: record
+
+      record = deck_record(deck, "dda "//version//" on "//deck_stem(name))
+      allocate (finished%case(total), source=.false.)
+      if (command%resume) then
+         call find_finished(tables, record, total, finished)
+         if (.not. command%quiet) &
+            & call print_resumed(name, finished%same_deck, sum(finished%count), total)
+      end if
+      if (finished%same_deck) then
+         call reopen_tables(tables, finished, error)
+      else
+         call open_tables(tables, record, error)
+      end if
+   end subroutine begin_tables
 
    !> Compute one case and write it down; nothing is computed after a failure to write
    subroutine run_one_case(command, name, deck, number, total, tables, progress, count, error)
@@ -205,7 +211,7 @@ contains
       !> Number of cases
       integer, intent(in) :: total
       !> Where the results go
-      type(tables_t), intent(in) :: tables
+      type(result_tables_t), intent(in) :: tables
       !> What was told so far
       type(progress_t), intent(inout) :: progress
       !> Cases decided, undecided, written: (3)
@@ -236,9 +242,9 @@ contains
          row%number = number
          row%swept = swept_fields(deck, number)
          joint_row%number = number
-         if (tables%has_frames) call write_album(tables%folder, number, tables%has_vtu, &
-            & this%scene%system, this%scene%contacts, this%album, tables%frames, &
-            & tables%frame_joints, error)
+         if (tables%at(table%frames)%wanted) call write_album(tables%folder, number, &
+            & tables%has_vtu, this%scene%system, this%scene%contacts, this%album, &
+            & tables%at(table%frames)%open, tables%at(table%frame_joints)%open, error)
          if (.not. allocated(error)) call write_case(tables, row, joint_row, remark, error)
       end if
       if (.not. allocated(error)) then
@@ -251,84 +257,4 @@ contains
       end if
       !$omp end critical (texts)
    end subroutine run_one_case
-
-   !> Make the folder and begin the tables
-   subroutine open_tables(deck, tables, error)
-      !> The deck
-      type(deck_t), intent(in) :: deck
-      !> The tables; their units are set
-      type(tables_t), intent(inout) :: tables
-      !> Allocated if they cannot be written
-      type(error_t), allocatable, intent(out) :: error
-      character(len=:), allocatable :: names
-      integer :: s
-
-      names = ""
-      associate (swept => swept_names(deck))
-         do s = 1, size(swept)
-            if (all(own_column /= swept(s))) names = names//trim(swept(s))//","
-         end do
-      end associate
-      call make_folder(tables%folder)
-      call open_table(tables%folder//"/results.csv", results_header(names), tables%results, error)
-      if (.not. allocated(error)) &
-         & call open_table(tables%folder//"/log.txt", "case verdict remark", tables%log, error)
-      if (allocated(error)) return
-      if (tables%has_joints) then
-         call open_table(tables%folder//"/joints.csv", joints_header(), tables%joints, error)
-      else
-         call remove_file(tables%folder//"/joints.csv")
-      end if
-      if (allocated(error) .or. .not. tables%has_frames) return
-      call open_table(tables%folder//"/frames.csv", frames_header(), tables%frames, error)
-      if (.not. allocated(error)) call open_table(tables%folder//"/frame_joints.csv", &
-         & frame_joints_header(), tables%frame_joints, error)
-   end subroutine open_tables
-
-   !> Values of the swept parameters that have no column of their own, each with a comma behind it
-   function swept_fields(deck, number) result(fields)
-      !> The deck
-      type(deck_t), intent(in) :: deck
-      !> Number of the case
-      integer, intent(in) :: number
-      !> The fields
-      character(len=:), allocatable :: fields
-      integer :: s
-
-      fields = ""
-      associate (swept => swept_names(deck), texts => swept_texts(deck, number))
-         do s = 1, size(swept)
-            if (all(own_column /= swept(s))) fields = fields//trim(texts(s))//","
-         end do
-      end associate
-   end function swept_fields
-
-   !> Write the rows of one case: the joints first, so that a case with a row is whole
-   subroutine write_case(tables, row, joint_row, remark, error)
-      !> The tables
-      type(tables_t), intent(in) :: tables
-      !> Row of the case
-      type(result_row_t), intent(in) :: row
-      !> Rows of its joints
-      type(joint_row_t), intent(in) :: joint_row(:)
-      !> What goes to the log
-      character(len=*), intent(in) :: remark
-      !> Allocated if they cannot be written
-      type(error_t), allocatable, intent(inout) :: error
-      character(len=:), allocatable :: lines
-      integer :: j
-
-      if (tables%has_joints .and. size(joint_row) > 0) then
-         lines = joint_line(joint_row(1))
-         do j = 2, size(joint_row)
-            lines = lines//new_line("a")//joint_line(joint_row(j))
-         end do
-         call append_line(tables%joints, lines, error)
-         if (allocated(error)) return
-      end if
-      call append_line(tables%log, to_text(row%number)//" " &
-         & //trim(trim(row%verdict)//" "//remark), error)
-      if (allocated(error)) return
-      call append_line(tables%results, results_line(row), error)
-   end subroutine write_case
 end module dda_run

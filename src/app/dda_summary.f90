@@ -6,7 +6,7 @@ module dda_summary
    implicit none
    private
 
-   public :: print_row, print_total
+   public :: print_resumed, print_row, print_total
 
    !> Most cases that are printed one by one
    integer, parameter :: max_rows = 100
@@ -42,6 +42,26 @@ contains
          & hinges
       if (remark /= "") write (output_unit, "(8x, a)") remark
    end subroutine print_row
+
+   !> Print what --resume has found
+   subroutine print_resumed(name, same_deck, finished, total)
+      !> Name of the deck
+      character(len=*), intent(in) :: name
+      !> Whether there are results of the same deck
+      logical, intent(in) :: same_deck
+      !> Cases that are finished
+      integer, intent(in) :: finished
+      !> Number of cases
+      integer, intent(in) :: total
+
+      if (same_deck) then
+         write (output_unit, "(a)") name//": resumed, "//to_text(finished)//" of " &
+            & //to_text(total)//" cases are there already"
+      else
+         write (output_unit, "(a)") name//": nothing to resume, there are no results of this very &
+            &deck with these settings; all cases are computed"
+      end if
+   end subroutine print_resumed
 
    !> Print the last line
    subroutine print_total(name, folder, count)

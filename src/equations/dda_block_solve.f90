@@ -1,4 +1,5 @@
-!> Factor and substitute by LAPACK's banded Cholesky (Shi: df20, df21)
+!> LAPACK's banded Cholesky: the condition of a matrix, and what the solver of the steps is measured
+!> against
 module dda_block_solve
    use dda_block_matrix, only : block_matrix_t
    use dda_kinds, only : wp

@@ -1,7 +1,7 @@
 !> The equations of one step: blocks first, then the springs of the joints (Shi: df10 to df18)
 module dda_assembly
+   use dda_block_factor, only : block_factor_t, factorise, plan_factor, substitute
    use dda_block_matrix, only : block_matrix_t, set_pattern
-   use dda_block_solve, only : band_factor_t, factorise, substitute
    use dda_block_system, only : block_system_t
    use dda_elasticity, only : elastic_matrix, stress_load
    use dda_friction_cone, only : apply_face, cone_t, joint_face_t
@@ -16,17 +16,22 @@ module dda_assembly
    public :: equations_t, new_equations, renew_springs, take_springs, assemble_blocks, solve_faces
    public :: relative_displacement
 
-   !> Matrix, loads and factor; the pattern and the mass are made once, the numbers at each solution
+   !> Matrix, loads and factor; the pattern and the mass are made once, the numbers where faces or
+   !> the length of the step change
    type :: equations_t
-      !> Matrix with the springs of the present faces
+      !> Matrix with the springs of the faces held
       type(block_matrix_t) :: matrix
       !> Its factor
-      type(band_factor_t) :: factor
+      type(block_factor_t) :: factor
       !> Entry of the matrix that couples the blocks of a joint, 0 if one is fixed: (n_joint)
       integer, allocatable :: entry(:)
-      !> Stiffness of the stuck joints, which most are: of the first block, of the second one, and
-      !> between the first (rows) and the second: (n_dof, n_dof, 3, n_joint)
-      real(wp), allocatable :: stuck(:, :, :, :)
+      !> First joint in the list of each equation, and one beyond the last: (n_equation + 1)
+      integer, allocatable :: first_joint(:)
+      !> Joints of each equation, negative where it is the second block's: (number of sides)
+      integer, allocatable :: joint(:)
+      !> Stiffness of each block's springs if all its joints are stuck, as most are:
+      !> (n_dof, n_dof, n_equation)
+      real(wp), allocatable :: glued(:, :, :)
       !> Mass: (n_dof, n_dof, n_equation)
       real(wp), allocatable :: mass(:, :, :)
       !> Elastic stiffness of the blocks: (n_dof, n_dof, n_equation)
@@ -37,13 +42,13 @@ module dda_assembly
       real(wp), allocatable :: weight(:, :)
       !> Loads of this step without springs: (n_dof, n_equation)
       real(wp), allocatable :: load(:, :)
-      !> Faces that the factor was made for: (n_joint)
+      !> Faces that the couplings were made for: (n_joint)
       type(joint_face_t), allocatable :: held(:)
-      !> Coefficients of friction that it was made for: (n_joint)
+      !> Coefficients of friction that they were made for: (n_joint)
       real(wp), allocatable :: held_friction(:)
-      !> Whether base or springs have changed since
-      logical :: changed = .true.
-      !> Factorisations so far
+      !> Equations whose numbers have changed since the factor was made: (n_equation)
+      logical, allocatable :: changed(:)
+      !> Factorisations so far, whole or in part
       integer :: factorisations = 0
    end type equations_t
 
@@ -64,9 +69,10 @@ contains
 
       nd = settings%n_dof
       n = maxval(system%equation)
-      call couple_blocks(springs, nd, n, equations)
       allocate (equations%mass(nd, nd, n), equations%elastic(nd, nd, n), equations%base(nd, nd, n))
-      allocate (equations%weight(nd, n), equations%load(nd, n))
+      allocate (equations%glued(nd, nd, n), equations%weight(nd, n), equations%load(nd, n))
+      allocate (equations%changed(n))
+      call new_springs(springs, nd, n, equations)
       do b = 1, size(system%equation)
          e = system%equation(b)
          if (e == 0) cycle
@@ -79,37 +85,27 @@ contains
       end do
    end subroutine new_equations
 
-   !> Pattern of the matrix and stiffness of the stuck joints
-   pure subroutine couple_blocks(springs, n_dof, n_equation, equations)
+   !> Take in new joints: lists, pattern, plan of the factor, springs
+   pure subroutine new_springs(springs, n_dof, n_equation, equations)
       !> The springs of the joints
       type(joint_springs_t), intent(in) :: springs
       !> Unknowns of one block
       integer, intent(in) :: n_dof
       !> Number of movable blocks
       integer, intent(in) :: n_equation
-      !> Receives pattern and stiffness
+      !> Receives them
       type(equations_t), intent(inout) :: equations
-      logical :: couples(size(springs%equation, 2))
-      integer :: e, j, pair(2, size(springs%equation, 2))
 
-      if (allocated(equations%entry)) &
-         & deallocate (equations%entry, equations%held, equations%held_friction, equations%stuck)
-      couples = all(springs%equation > 0, dim=1)
-      allocate (equations%entry(size(couples)), source=0)
-      allocate (equations%held(size(couples)), equations%held_friction(size(couples)))
-      allocate (equations%stuck(n_dof, n_dof, 3, size(couples)))
-      e = 0
-      do j = 1, size(couples)
-         if (.not. couples(j)) cycle
-         e = e + 1
-         equations%entry(j) = e
-         pair(:, e) = springs%equation(:, j)
-      end do
-      call set_pattern(equations%matrix, n_dof, n_equation, pair(:, :e))
+      call list_joints(springs, n_dof, n_equation, equations)
+      call plan_factor(equations%matrix, equations%factor)
+      if (allocated(equations%held)) deallocate (equations%held, equations%held_friction)
+      allocate (equations%held_friction(size(springs%stiffness)), source=0.0_wp)
+      allocate (equations%held(size(springs%stiffness)))
       call take_springs(springs, equations)
-   end subroutine couple_blocks
+   end subroutine new_springs
 
-   !> Take over the springs of new joints; the pattern is made anew only where other blocks meet
+   !> Take over the springs of joints that may be others; the pattern is made anew only where other
+   !> blocks meet
    pure subroutine renew_springs(before, springs, equations)
       !> Equations of the blocks of each joint so far: (2, n_joint)
       integer, intent(in) :: before(:, :)
@@ -124,24 +120,76 @@ contains
       if (same) then
          call take_springs(springs, equations)
       else
-         call couple_blocks(springs, size(equations%weight, 1), size(equations%weight, 2), &
-            & equations)
+         call new_springs(springs, size(equations%weight, 1), size(equations%weight, 2), equations)
       end if
    end subroutine renew_springs
 
-   !> Take over springs whose rows have changed while the coupled pairs have not
+   !> Which joints couple which blocks, and the joints of each block
+   pure subroutine list_joints(springs, n_dof, n_equation, equations)
+      !> The springs of the joints
+      type(joint_springs_t), intent(in) :: springs
+      !> Unknowns of one block
+      integer, intent(in) :: n_dof
+      !> Number of movable blocks
+      integer, intent(in) :: n_equation
+      !> Receives lists and pattern
+      type(equations_t), intent(inout) :: equations
+      integer :: e, j, side, pair(2, size(springs%equation, 2)), next(n_equation)
+
+      if (allocated(equations%entry)) &
+         & deallocate (equations%entry, equations%first_joint, equations%joint)
+      allocate (equations%entry(size(pair, 2)), source=0)
+      allocate (equations%first_joint(n_equation + 1), source=0)
+      e = 0
+      do j = 1, size(pair, 2)
+         do side = 1, 2
+            associate (count => equations%first_joint(springs%equation(side, j) + 1))
+               if (springs%equation(side, j) > 0) count = count + 1
+            end associate
+         end do
+         if (any(springs%equation(:, j) == 0)) cycle
+         e = e + 1
+         equations%entry(j) = e
+         pair(:, e) = springs%equation(:, j)
+      end do
+      call set_pattern(equations%matrix, n_dof, n_equation, pair(:, :e))
+      equations%first_joint(1) = 1
+      do e = 1, n_equation
+         equations%first_joint(e + 1) = equations%first_joint(e) + equations%first_joint(e + 1)
+      end do
+      allocate (equations%joint(equations%first_joint(n_equation + 1) - 1))
+      next = equations%first_joint(:n_equation)
+      do j = 1, size(pair, 2)
+         do side = 1, 2
+            e = springs%equation(side, j)
+            if (e == 0) cycle
+            equations%joint(next(e)) = merge(j, -j, side == 1)
+            next(e) = next(e) + 1
+         end do
+      end do
+   end subroutine list_joints
+
+   !> Take over springs whose rows have changed while the coupled pairs have not; all joints stuck
    pure subroutine take_springs(springs, equations)
       !> The springs of the joints
       type(joint_springs_t), intent(in) :: springs
-      !> Receives the stiffness of the stuck joints
+      !> Receives the stiffness of the springs
       type(equations_t), intent(inout) :: equations
-      real(wp), parameter :: identity(3, 3) = reshape([1.0_wp, 0.0_wp, 0.0_wp, 0.0_wp, 1.0_wp, &
-         & 0.0_wp, 0.0_wp, 0.0_wp, 1.0_wp], [3, 3])
-      integer :: j
+      integer :: e, j, k
 
       equations%changed = .true.
+      equations%held = joint_face_t()
+      do e = 1, size(equations%glued, 3)
+         equations%glued(:, :, e) = 0.0_wp
+         do k = equations%first_joint(e), equations%first_joint(e + 1) - 1
+            j = abs(equations%joint(k))
+            associate (row => springs%row(:, :, merge(1, 2, equations%joint(k) > 0), j))
+               call add_product(springs%stiffness(j)*row, row, equations%glued(:, :, e))
+            end associate
+         end do
+      end do
       do j = 1, size(equations%entry)
-         equations%stuck(:, :, :, j) = joint_stiffness(springs, identity, j)
+         call couple(springs, cone_t(), j, equations)
       end do
    end subroutine take_springs
 
@@ -196,7 +244,7 @@ contains
       call substitute(equations%factor, motion)
    end subroutine solve_faces
 
-   !> Matrix and factor of these faces, made anew if they are those of others
+   !> Matrix and factor of these faces: what has changed is made anew
    pure subroutine hold_faces(equations, springs, cone, face)
       !> Blocks assembled
       type(equations_t), intent(inout) :: equations
@@ -206,75 +254,132 @@ contains
       type(cone_t), intent(in) :: cone(:)
       !> Faces: (n_joint)
       type(joint_face_t), intent(in) :: face(:)
-      integer :: j
+      integer :: e, j, side
 
-      if (holds(equations, cone, face)) return
-      equations%matrix%diagonal = equations%base
       do j = 1, size(face)
-         call add_stiffness(springs, cone(j), face(j), j, equations)
+         if (holds(equations, cone(j), face(j), j)) cycle
+         equations%held(j) = face(j)
+         equations%held_friction(j) = cone(j)%friction
+         call couple(springs, cone(j), j, equations)
+         do side = 1, 2
+            e = springs%equation(side, j)
+            if (e > 0) equations%changed(e) = .true.
+         end do
       end do
-      call factorise(equations%matrix, equations%factor)
+      if (.not. any(equations%changed)) return
+      do e = 1, size(equations%changed)
+         if (equations%changed(e)) call add_springs(springs, cone, e, equations)
+      end do
+      call factorise(equations%matrix, equations%factor, equations%changed)
       equations%factorisations = equations%factorisations + 1
-      equations%held = face
-      equations%held_friction = cone%friction
       equations%changed = .not. equations%factor%usable
    end subroutine hold_faces
 
-   !> Whether the factor is that of these faces
-   pure logical function holds(equations, cone, face)
+   !> Whether the matrix is that of a joint's face
+   pure logical function holds(equations, cone, face, j)
       !> The equations
       type(equations_t), intent(in) :: equations
-      !> Bounds of the joint forces: (n_joint)
-      type(cone_t), intent(in) :: cone(:)
-      !> Faces: (n_joint)
-      type(joint_face_t), intent(in) :: face(:)
-      integer :: j
-
-      holds = .false.
-      if (equations%changed) return
-      do j = 1, size(face)
-         if (face(j)%slip /= equations%held(j)%slip) return
-         if (any(face(j)%open .neqv. equations%held(j)%open)) return
-         if (abs(cone(j)%friction - equations%held_friction(j)) > 0.0_wp) return
-      end do
-      holds = .true.
-   end function holds
-
-   !> Add the stiffness of one joint: p R P R'
-   pure subroutine add_stiffness(springs, cone, face, j, equations)
-      !> The springs of the joints
-      type(joint_springs_t), intent(in) :: springs
       !> Bounds of the joint's force
       type(cone_t), intent(in) :: cone
       !> Its face
       type(joint_face_t), intent(in) :: face
       !> Number of the joint
       integer, intent(in) :: j
-      !> Receives the stiffness
-      type(equations_t), intent(inout) :: equations
-      real(wp) :: tangent(3, 3), constant(3)
-      real(wp) :: stiffness(equations%matrix%n_dof, equations%matrix%n_dof, 3)
-      integer :: e, side
 
-      if (is_stuck(face)) then
-         stiffness = equations%stuck(:, :, :, j)
-      else
-         call apply_face(cone, face, tangent, constant)
-         stiffness = joint_stiffness(springs, tangent, j)
-      end if
-      do side = 1, 2
-         e = springs%equation(side, j)
-         if (e > 0) equations%matrix%diagonal(:, :, e) = equations%matrix%diagonal(:, :, e) &
-            & + stiffness(:, :, side)
-      end do
+      associate (held => equations%held(j))
+         holds = face%slip == held%slip .and. (face%open(1) .eqv. held%open(1)) &
+            & .and. (face%open(2) .eqv. held%open(2))
+      end associate
+      if (face%slip /= 0) holds = holds &
+         & .and. .not. abs(cone%friction - equations%held_friction(j)) > 0.0_wp
+   end function holds
+
+   !> Stiffness between the two blocks of a joint on the face held: p R P R'
+   pure subroutine couple(springs, cone, j, equations)
+      !> The springs of the joints
+      type(joint_springs_t), intent(in) :: springs
+      !> Bounds of the joint's force
+      type(cone_t), intent(in) :: cone
+      !> Number of the joint
+      integer, intent(in) :: j
+      !> Receives the coupling
+      type(equations_t), intent(inout) :: equations
+      integer :: e, first, second
+
       e = equations%entry(j)
       if (e == 0) return
-      if (equations%matrix%pair(1, e) == springs%equation(1, j)) then
-         equations%matrix%coupling(:, :, e) = stiffness(:, :, 3)
-      else
-         equations%matrix%coupling(:, :, e) = transpose(stiffness(:, :, 3))
-      end if
-   end subroutine add_stiffness
+      first = merge(1, 2, equations%matrix%pair(1, e) == springs%equation(1, j))
+      second = 3 - first
+      equations%matrix%coupling(:, :, e) = 0.0_wp
+      call add_product(projected(springs, cone, equations%held(j), first, j), &
+         & springs%row(:, :, second, j), equations%matrix%coupling(:, :, e))
+   end subroutine couple
+
+   !> Diagonal block of one equation: the block and its springs on the faces held
+   pure subroutine add_springs(springs, cone, e, equations)
+      !> The springs of the joints
+      type(joint_springs_t), intent(in) :: springs
+      !> Bounds of the joint forces: (n_joint)
+      type(cone_t), intent(in) :: cone(:)
+      !> Number of the equation
+      integer, intent(in) :: e
+      !> Receives the diagonal block
+      type(equations_t), intent(inout) :: equations
+      integer :: first, j, k, last, side
+
+      first = equations%first_joint(e)
+      last = equations%first_joint(e + 1) - 1
+      associate (joint => equations%joint(first:last))
+         if (all(is_stuck(equations%held(abs(joint))))) then
+            equations%matrix%diagonal(:, :, e) = equations%base(:, :, e) + equations%glued(:, :, e)
+            return
+         end if
+         equations%matrix%diagonal(:, :, e) = equations%base(:, :, e)
+         do k = 1, size(joint)
+            j = abs(joint(k))
+            side = merge(1, 2, joint(k) > 0)
+            call add_product(projected(springs, cone(j), equations%held(j), side, j), &
+               & springs%row(:, :, side, j), equations%matrix%diagonal(:, :, e))
+         end do
+      end associate
+   end subroutine add_springs
+
+   !> Rows of one side of a joint, projected on its face: p R P
+   pure function projected(springs, cone, face, side, j) result(steep)
+      !> The springs of the joints
+      type(joint_springs_t), intent(in) :: springs
+      !> Bounds of the joint's force
+      type(cone_t), intent(in) :: cone
+      !> Its face
+      type(joint_face_t), intent(in) :: face
+      !> Side of the joint, 1 or 2
+      integer, intent(in) :: side
+      !> Number of the joint
+      integer, intent(in) :: j
+      !> The projected rows: (n_dof, 3)
+      real(wp) :: steep(size(springs%row, 1), 3)
+      real(wp) :: tangent(3, 3), constant(3)
+
+      steep = springs%stiffness(j)*springs%row(:, :, side, j)
+      if (is_stuck(face)) return
+      call apply_face(cone, face, tangent, constant)
+      steep = matmul(steep, tangent)
+   end function projected
+
+   !> c = c + a b' of three columns
+   pure subroutine add_product(a, b, c)
+      !> First factor: (n, 3)
+      real(wp), intent(in) :: a(:, :)
+      !> Second factor: (n, 3)
+      real(wp), intent(in) :: b(:, :)
+      !> What the product is added to: (n, n)
+      real(wp), intent(inout) :: c(:, :)
+      integer :: k
+
+      do k = 1, size(b, 1)
+         c(:, k) = c(:, k) + a(:, 1)*b(k, 1) + a(:, 2)*b(k, 2) + a(:, 3)*b(k, 3)
+      end do
+   end subroutine add_product
 
    !> Add the load of one joint: R (P z + c)
    pure subroutine add_load(springs, cone, face, trial, j, load)
@@ -306,37 +411,12 @@ contains
    end subroutine add_load
 
    !> Whether a face is the inside of the cone
-   pure logical function is_stuck(face)
+   elemental logical function is_stuck(face)
       !> The face
       type(joint_face_t), intent(in) :: face
 
       is_stuck = face%slip == 0 .and. .not. any(face%open)
    end function is_stuck
-
-   !> Stiffness of one joint: p R P R' of the first block, of the second one, and between them
-   pure function joint_stiffness(springs, tangent, j) result(stiffness)
-      !> The springs of the joints
-      type(joint_springs_t), intent(in) :: springs
-      !> Projector P on the joint's face: (3, 3)
-      real(wp), intent(in) :: tangent(3, 3)
-      !> Number of the joint
-      integer, intent(in) :: j
-      !> The three blocks: (n_dof, n_dof, 3)
-      real(wp) :: stiffness(size(springs%row, 1), size(springs%row, 1), 3)
-      real(wp) :: steep(size(springs%row, 1), 3)
-      integer :: c, pair
-
-      do pair = 1, 3
-         associate (a => springs%row(:, :, merge(2, 1, pair == 2), j), &
-            & b => springs%row(:, :, merge(1, 2, pair == 1), j))
-            steep = springs%stiffness(j)*matmul(a, tangent)
-            do c = 1, size(b, 1)
-               stiffness(:, c, pair) = steep(:, 1)*b(c, 1) + steep(:, 2)*b(c, 2) &
-                  & + steep(:, 3)*b(c, 3)
-            end do
-         end associate
-      end do
-   end function joint_stiffness
 
    !> Openings and slips of the joints by a motion of the blocks
    pure function relative_displacement(springs, motion) result(increment)

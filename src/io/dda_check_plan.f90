@@ -1,6 +1,6 @@
 !> Blocks as a user gives them, checked: what makes no block is refused by its number
 module dda_check_plan
-   use dda_block_plan, only : block_plan_t
+   use dda_block_input, only : block_plan_t
    use dda_box_tree, only : box_pairs
    use dda_error, only : error_t, fatal_error
    use dda_kinds, only : wp

@@ -1,7 +1,7 @@
 !> A deck in memory: a value for every key of the registry, and where each one came from
 module dda_deck
    use, intrinsic :: ieee_arithmetic, only : ieee_value, ieee_quiet_nan
-   use dda_block_plan, only : block_plan_t, new_plan
+   use dda_block_input, only : block_plan_t, new_plan
    use dda_kinds, only : wp
    use dda_error, only : error_t, fatal_error
    use dda_text, only : read_number

@@ -1,6 +1,6 @@
 !> Read a file of blocks: polygons, materials, points and what acts on them, one thing a line
 module dda_read_blocks
-   use dda_block_plan, only : block_at, block_plan_t, law_plan_t, material_plan_t, new_plan
+   use dda_block_input, only : block_at, block_plan_t, law_plan_t, material_plan_t, new_plan
    use dda_boundary, only : held_point_t, history_t, loaded_point_t, measured_point_t
    use dda_check_plan, only : add_plan_block, check_plan
    use dda_error, only : error_t, fatal_error

@@ -2,11 +2,15 @@
 module dda_table_file
    use, intrinsic :: iso_c_binding, only : c_char, c_int, c_null_char
    use dda_binary_file, only : append_text, binary_file_t, close_binary, flush_binary, open_binary
-   use dda_error, only : error_t
+   use dda_error, only : error_t, fatal_error
    implicit none
    private
 
    public :: table_file_t, open_table, append_line, close_table, remove_file
+   public :: open_part, keep_line, settle_part
+
+   !> Ending of a table that is not whole yet
+   character(len=*), parameter :: part = ".part"
 
    !> An open table
    type :: table_file_t
@@ -24,6 +28,17 @@ module dda_table_file
          !> 0 if it was removed
          integer(c_int) :: failed
       end function c_remove
+
+      !> C: give a file another name; one of that name is replaced at once, never half
+      function c_rename(from, to) bind(c, name="rename") result(failed)
+         import :: c_char, c_int
+         !> Its name, ended by a null character
+         character(kind=c_char), intent(in) :: from(*)
+         !> Its new name, likewise
+         character(kind=c_char), intent(in) :: to(*)
+         !> 0 if it was renamed
+         integer(c_int) :: failed
+      end function c_rename
    end interface
 
 contains
@@ -64,6 +79,45 @@ contains
 
       call close_binary(table%file, known)
    end subroutine close_table
+
+   !> Begin a table beside the one that it will replace
+   subroutine open_part(file, header, table, error)
+      !> Name of the table
+      character(len=*), intent(in) :: file
+      !> First line
+      character(len=*), intent(in) :: header
+      !> The table
+      type(table_file_t), intent(out) :: table
+      !> Allocated if the file cannot be written
+      type(error_t), allocatable, intent(out) :: error
+
+      call open_table(file//part, header, table, error)
+   end subroutine open_part
+
+   !> Write one line that need not be safe yet
+   subroutine keep_line(table, line)
+      !> The table
+      type(table_file_t), intent(in) :: table
+      !> The line
+      character(len=*), intent(in) :: line
+
+      call append_text(table%file, line//new_line("a"))
+   end subroutine keep_line
+
+   !> Put a table begun beside in the place of the one that it replaces; it stays open
+   subroutine settle_part(file, table, error)
+      !> Name of the table
+      character(len=*), intent(in) :: file
+      !> The table
+      type(table_file_t), intent(in) :: table
+      !> Allocated if the file cannot be written
+      type(error_t), allocatable, intent(out) :: error
+
+      call flush_binary(table%file, error)
+      if (allocated(error)) return
+      if (c_rename(file//part//c_null_char, file//c_null_char) /= 0) &
+         & call fatal_error(error, "a file that can be replaced is wanted, this one cannot", file)
+   end subroutine settle_part
 
    !> Remove a file of an earlier run; one that is not there is no failure
    subroutine remove_file(file)

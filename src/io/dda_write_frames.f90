@@ -1,6 +1,7 @@
 !> Frames of a run as CSV: a row for each corner of each block (frames.csv), a row for each joint
 !> (frame_joints.csv)
 module dda_write_frames
+   use dda_growing_text, only : add_line, growing_text_t, lines_of
    use dda_kinds, only : wp
    use dda_text, only : to_text
    implicit none
@@ -35,14 +36,6 @@ module dda_write_frames
       character(len=8) :: state(2) = ""
    end type frame_joint_row_t
 
-   !> Rows that are put together into one text, whose room doubles where it must
-   type :: rows_t
-      !> The text and room behind it
-      character(len=:), allocatable :: text
-      !> Length of the text
-      integer :: length = 0
-   end type rows_t
-
 contains
 
    !> Names of the columns of frames.csv
@@ -64,17 +57,17 @@ contains
       !> The rows, parted by line ends
       character(len=:), allocatable :: lines
       character(len=:), allocatable :: common
-      type(rows_t) :: rows
+      type(growing_text_t) :: rows
       integer :: block, vertex
 
       common = stamp_text(stamp)//","//to_text(stamp%step)//","//to_text(stamp%time)//","
       do block = 1, size(first_vertex) - 1
          do vertex = first_vertex(block), first_vertex(block + 1) - 1
-            call add_row(rows, common//to_text(block)//"," &
+            call add_line(rows, common//to_text(block)//"," &
                & //to_text(vertex - first_vertex(block) + 1)//","//pair(point(:, vertex)))
          end do
       end do
-      lines = text_of(rows)
+      lines = lines_of(rows)
    end function frame_lines
 
    !> Names of the columns of frame_joints.csv
@@ -93,16 +86,16 @@ contains
       type(frame_joint_row_t), intent(in) :: row(:)
       !> The rows, parted by line ends
       character(len=:), allocatable :: lines
-      type(rows_t) :: rows
+      type(growing_text_t) :: rows
       integer :: j
 
       do j = 1, size(row)
-         call add_row(rows, stamp_text(stamp)//","//to_text(row(j)%joint)//"," &
+         call add_line(rows, stamp_text(stamp)//","//to_text(row(j)%joint)//"," &
             & //pair(row(j)%contact(:, 1))//","//pair(row(j)%contact(:, 2))//"," &
             & //pair(row(j)%point)//","//pair(row(j)%force)//"," &
             & //trim(row(j)%state(1))//","//trim(row(j)%state(2)))
       end do
-      lines = text_of(rows)
+      lines = lines_of(rows)
    end function frame_joint_lines
 
    !> Case and frame as the first fields of a row
@@ -124,34 +117,4 @@ contains
 
       text = to_text(vector(1))//","//to_text(vector(2))
    end function pair
-
-   !> Put a row below the others
-   pure subroutine add_row(rows, row)
-      !> The rows so far
-      type(rows_t), intent(inout) :: rows
-      !> The row
-      character(len=*), intent(in) :: row
-      character(len=:), allocatable :: longer
-      integer :: room
-
-      if (.not. allocated(rows%text)) rows%text = repeat(" ", 4096)
-      room = rows%length + len(row) + 1
-      if (room > len(rows%text)) then
-         longer = rows%text//repeat(" ", max(room, len(rows%text)))
-         call move_alloc(longer, rows%text)
-      end if
-      rows%text(rows%length + 1:room) = row//new_line("a")
-      rows%length = room
-   end subroutine add_row
-
-   !> The rows without the last line end
-   pure function text_of(rows) result(text)
-      !> The rows
-      type(rows_t), intent(in) :: rows
-      !> The text; empty if there are none
-      character(len=:), allocatable :: text
-
-      text = ""
-      if (rows%length > 0) text = rows%text(:rows%length - 1)
-   end function text_of
 end module dda_write_frames

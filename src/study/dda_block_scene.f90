@@ -1,6 +1,6 @@
 !> From blocks as a user gives them to a scene ready to run
 module dda_block_scene
-   use dda_block_plan, only : block_plan_t, unsupported_block
+   use dda_block_input, only : block_plan_t, unsupported_block
    use dda_block_system, only : new_block_system, set_initial_state
    use dda_contact_search, only : new_joint_search
    use dda_contact_transfer, only : search_contacts

@@ -2,7 +2,7 @@
 !> the parameter of a search: its zero is where the mechanism stops
 module dda_frozen_mechanism
    use dda_assembly, only : assemble_blocks, equations_t, new_equations, solve_faces
-   use dda_block_solve, only : substitute
+   use dda_block_factor, only : substitute
    use dda_block_system, only : block_system_t
    use dda_friction_cone, only : joint_face_t
    use dda_joint_springs, only : joint_springs_t, new_joint_springs

@@ -17,6 +17,7 @@ STABLE = "&arch thickness_ratio = 0.12 /\n"
 UNDECIDED = "&arch thickness_ratio = 0.12 /\n&analysis steps = 1 /\n"
 BAD = "&arch\n thickness_ratio = 2 /\n"
 TABLES = ["joints.csv", "log.txt", "results.csv"]
+FILES = ["deck.record", *TABLES]
 
 
 def write_decks(folder: Path, **texts: str) -> None:
@@ -64,7 +65,7 @@ def test_help_of_a_subcommand(verb: str) -> None:
     assert run_dda(verb, "--help").stdout == done.stdout
 
 
-@pytest.mark.parametrize("option", ["--out DIR", "--jobs N", "--set group%key=value", "--quiet"])
+@pytest.mark.parametrize("option", ["--out DIR", "--jobs N", "--set group%key=value", "--resume", "--quiet"])
 def test_help_of_run_names_the_option(option: str) -> None:
     assert option in run_dda("help", "run").stdout
 
@@ -184,7 +185,7 @@ def test_default_folder_is_named_as_the_deck_in_the_current_folder(tmp_path: Pat
     assert run_dda("run", "../decks/arch.nml", cwd=tmp_path / "work").returncode == 0
     assert names_in(tmp_path / "work") == ["arch"]
     assert names_in(tmp_path / "decks") == ["arch.nml"]
-    assert names_in(tmp_path / "work" / "arch") == TABLES
+    assert names_in(tmp_path / "work" / "arch") == FILES
 
 
 def test_only_the_last_ending_is_cut(tmp_path: Path) -> None:
@@ -197,7 +198,7 @@ def test_only_the_last_ending_is_cut(tmp_path: Path) -> None:
 def test_out_of_one_deck_is_the_folder_itself(tmp_path: Path) -> None:
     write_decks(tmp_path, deck=STABLE)
     assert run_dda("run", "deck.nml", "--out", "a/b/c", cwd=tmp_path).returncode == 0
-    assert names_in(tmp_path / "a" / "b" / "c") == TABLES
+    assert names_in(tmp_path / "a" / "b" / "c") == FILES
     assert not (tmp_path / "deck").exists()
 
 
@@ -206,13 +207,13 @@ def test_out_of_several_decks_has_a_folder_for_each(tmp_path: Path) -> None:
     done = run_dda("run", "one.nml", "two.nml", "--out", "both", cwd=tmp_path)
     assert done.returncode == 0
     assert names_in(tmp_path / "both") == ["one", "two"]
-    assert names_in(tmp_path / "both" / "two") == TABLES
+    assert names_in(tmp_path / "both" / "two") == FILES
 
 
 def test_out_may_be_absolute_and_end_in_a_slash(tmp_path: Path) -> None:
     write_decks(tmp_path, deck=STABLE)
     assert run_dda("run", "deck.nml", "--out", f"{tmp_path}/results/", cwd=tmp_path).returncode == 0
-    assert names_in(tmp_path / "results") == TABLES
+    assert names_in(tmp_path / "results") == FILES
 
 
 def test_results_of_an_earlier_run_are_replaced(tmp_path: Path) -> None:
@@ -221,7 +222,7 @@ def test_results_of_an_earlier_run_are_replaced(tmp_path: Path) -> None:
     assert run_dda("run", "many.nml", "--out", "results", cwd=tmp_path).returncode == 0
     assert run_dda("run", "one.nml", "--out", "results", cwd=tmp_path).returncode == 0
     assert len(rows_of(tmp_path / "results")) == 1
-    assert names_in(tmp_path / "results") == ["log.txt", "results.csv"]
+    assert names_in(tmp_path / "results") == ["deck.record", "log.txt", "results.csv"]
 
 
 # names
@@ -260,7 +261,7 @@ def test_deep_folders_are_found_and_made(tmp_path: Path) -> None:
     (tmp_path / deep / "deck.nml").write_text(STABLE)
     done = run_dda("run", deep / "deck.nml", "--out", deep / "results", cwd=tmp_path)
     assert done.returncode == 0
-    assert names_in(tmp_path / deep / "results") == TABLES
+    assert names_in(tmp_path / deep / "results") == FILES
 
 
 def test_deck_without_an_ending_is_left_alone(tmp_path: Path) -> None:
@@ -324,7 +325,7 @@ def test_progress_goes_to_a_terminal_unless_quiet(tmp_path: Path, quiet: bool) -
 def test_options_may_stand_before_the_decks(tmp_path: Path) -> None:
     write_decks(tmp_path, deck=STABLE)
     assert run_dda("run", "--quiet", "--out", "o", "deck.nml", cwd=tmp_path).returncode == 0
-    assert names_in(tmp_path / "o") == TABLES
+    assert names_in(tmp_path / "o") == FILES
 
 
 # --set
@@ -357,7 +358,7 @@ def test_set_may_switch_joints_off(tmp_path: Path) -> None:
     write_decks(tmp_path, deck=STABLE)
     setting = "output%joints=.false."
     assert run_dda("run", "deck.nml", "--set", setting, cwd=tmp_path).returncode == 0
-    assert names_in(tmp_path / "deck") == ["log.txt", "results.csv"]
+    assert names_in(tmp_path / "deck") == ["deck.record", "log.txt", "results.csv"]
 
 
 def test_set_of_a_search_key_starts_a_search(tmp_path: Path) -> None:

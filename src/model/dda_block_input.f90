@@ -1,5 +1,5 @@
 !> Blocks as a user gives them, before materials and laws are known: what makes a scene
-module dda_block_plan
+module dda_block_input
    use dda_boundary, only : boundary_t
    use dda_kinds, only : wp
    use dda_polygon, only : depth_in
@@ -120,4 +120,4 @@ contains
       end do
       unsupported_block = findloc(tied, .false., dim=1)
    end function unsupported_block
-end module dda_block_plan
+end module dda_block_input

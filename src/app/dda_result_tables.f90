@@ -1,0 +1,207 @@
+!> The tables of one deck's results: begun, added to case by case, closed
+module dda_result_tables
+   use dda_deck, only : deck_t, flag_of, integer_of
+   use dda_deck_sweep, only : swept_names, swept_texts
+   use dda_error, only : error_t
+   use dda_process, only : make_folder
+   use dda_table_file, only : append_line, close_table, open_table, remove_file, table_file_t
+   use dda_text, only : to_text
+   use dda_growing_text, only : add_line, growing_text_t, lines_of
+   use dda_write_frames, only : frame_joints_header, frames_header
+   use dda_write_results, only : joint_line, joint_row_t, joints_header, result_row_t, &
+      & results_header, results_line
+   implicit none
+   private
+
+   public :: result_tables_t, result_table_t, table, table_enum
+   public :: name_tables, open_tables, close_tables, write_case, swept_fields, write_record
+
+   !> Places of the tables in result_tables_t
+   type :: table_enum
+      !> A row a case
+      integer :: results = 1
+      !> A row a joint
+      integer :: joints = 2
+      !> A line a case
+      integer :: log = 3
+      !> A row a corner of a picture
+      integer :: frames = 4
+      !> A row a joint of a picture
+      integer :: frame_joints = 5
+   end type table_enum
+
+   !> The places by name
+   type(table_enum), parameter :: table = table_enum()
+
+   !> One table
+   type :: result_table_t
+      !> Name of the file with its folder
+      character(len=:), allocatable :: file
+      !> First line
+      character(len=:), allocatable :: header
+      !> Whether the deck wants it
+      logical :: wanted = .true.
+      !> The open file
+      type(table_file_t) :: open
+   end type result_table_t
+
+   !> Where the results of one deck go
+   type :: result_tables_t
+      !> Name of the folder
+      character(len=:), allocatable :: folder
+      !> The tables, by their places
+      type(result_table_t) :: at(5)
+      !> File that holds what was asked for
+      character(len=:), allocatable :: record_file
+      !> Whether pictures are wanted as VTU too
+      logical :: has_vtu = .false.
+   end type result_tables_t
+
+   !> Columns of results.csv that a swept parameter shares
+   character(len=*), parameter :: own_column(*) = [character(len=16) :: "half_angle_deg", &
+      & "thickness_ratio", "friction_deg", "mode", "geometry"]
+
+contains
+
+   !> Name the tables that a deck wants; no file is touched
+   subroutine name_tables(deck, folder, tables)
+      !> The deck
+      type(deck_t), intent(in) :: deck
+      !> Name of the folder
+      character(len=*), intent(in) :: folder
+      !> The tables
+      type(result_tables_t), intent(out) :: tables
+      character(len=:), allocatable :: names
+      integer :: s
+
+      names = ""
+      associate (swept => swept_names(deck))
+         do s = 1, size(swept)
+            if (all(own_column /= swept(s))) names = names//trim(swept(s))//","
+         end do
+      end associate
+      tables%folder = folder
+      tables%record_file = folder//"/deck.record"
+      tables%has_vtu = flag_of(deck, "output", "vtu")
+      call name_table(tables%at(table%results), "/results.csv", results_header(names))
+      call name_table(tables%at(table%joints), "/joints.csv", joints_header())
+      call name_table(tables%at(table%log), "/log.txt", "case verdict remark")
+      call name_table(tables%at(table%frames), "/frames.csv", frames_header())
+      call name_table(tables%at(table%frame_joints), "/frame_joints.csv", frame_joints_header())
+      tables%at(table%joints)%wanted = flag_of(deck, "output", "joints")
+      tables%at([table%frames, table%frame_joints])%wanted = &
+         & integer_of(deck, "output", "frames") > 0
+
+   contains
+
+      !> Name one table
+      subroutine name_table(this, name, header)
+         !> The table
+         type(result_table_t), intent(inout) :: this
+         !> Name of its file in the folder
+         character(len=*), intent(in) :: name
+         !> First line
+         character(len=*), intent(in) :: header
+
+         this%file = folder//name
+         this%header = header
+      end subroutine name_table
+   end subroutine name_tables
+
+   !> Make the folder and begin all tables; those of an earlier run are replaced or removed
+   subroutine open_tables(tables, record, error)
+      !> The tables, named
+      type(result_tables_t), intent(inout) :: tables
+      !> What was asked for
+      character(len=*), intent(in) :: record
+      !> Allocated if they cannot be written
+      type(error_t), allocatable, intent(out) :: error
+      integer :: i
+
+      call make_folder(tables%folder)
+      ! killed on the way, old rows must not pass for those of this deck
+      call remove_file(tables%record_file)
+      do i = 1, size(tables%at)
+         associate (this => tables%at(i))
+            if (this%wanted) then
+               call open_table(this%file, this%header, this%open, error)
+            else
+               call remove_file(this%file)
+            end if
+         end associate
+         if (allocated(error)) return
+      end do
+      call write_record(tables, record, error)
+   end subroutine open_tables
+
+   !> Write down what was asked for
+   subroutine write_record(tables, record, error)
+      !> The tables
+      type(result_tables_t), intent(in) :: tables
+      !> What was asked for
+      character(len=*), intent(in) :: record
+      !> Allocated if it cannot be written
+      type(error_t), allocatable, intent(out) :: error
+      type(table_file_t) :: file
+
+      call open_table(tables%record_file, record, file, error)
+      call close_table(file)
+   end subroutine write_record
+
+   !> Close all tables
+   subroutine close_tables(tables)
+      !> The tables
+      type(result_tables_t), intent(inout) :: tables
+      integer :: i
+
+      do i = 1, size(tables%at)
+         call close_table(tables%at(i)%open)
+      end do
+   end subroutine close_tables
+
+   !> Values of the swept parameters that have no column of their own, each with a comma behind it
+   function swept_fields(deck, number) result(fields)
+      !> The deck
+      type(deck_t), intent(in) :: deck
+      !> Number of the case
+      integer, intent(in) :: number
+      !> The fields
+      character(len=:), allocatable :: fields
+      integer :: s
+
+      fields = ""
+      associate (swept => swept_names(deck), texts => swept_texts(deck, number))
+         do s = 1, size(swept)
+            if (all(own_column /= swept(s))) fields = fields//trim(texts(s))//","
+         end do
+      end associate
+   end function swept_fields
+
+   !> Write the rows of one case: that of results.csv last, so that a case with a row is whole
+   subroutine write_case(tables, row, joint_row, remark, error)
+      !> The tables
+      type(result_tables_t), intent(in) :: tables
+      !> Row of the case
+      type(result_row_t), intent(in) :: row
+      !> Rows of its joints
+      type(joint_row_t), intent(in) :: joint_row(:)
+      !> What goes to the log
+      character(len=*), intent(in) :: remark
+      !> Allocated if they cannot be written
+      type(error_t), allocatable, intent(inout) :: error
+      type(growing_text_t) :: lines
+      integer :: j
+
+      if (tables%at(table%joints)%wanted .and. size(joint_row) > 0) then
+         do j = 1, size(joint_row)
+            call add_line(lines, joint_line(joint_row(j)))
+         end do
+         call append_line(tables%at(table%joints)%open, lines_of(lines), error)
+         if (allocated(error)) return
+      end if
+      call append_line(tables%at(table%log)%open, to_text(row%number)//" " &
+         & //trim(trim(row%verdict)//" "//remark), error)
+      if (allocated(error)) return
+      call append_line(tables%at(table%results)%open, results_line(row), error)
+   end subroutine write_case
+end module dda_result_tables

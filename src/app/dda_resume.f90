@@ -1,0 +1,220 @@
+!> dda run --resume: what an earlier run of the same deck has finished
+!>
+!> A case is finished where its row in results.csv is whole: that row is written last. Everything
+!> else of that run, rows cut off by a kill among them, is left out of the tables.
+module dda_resume
+   use dda_error, only : error_t
+   use dda_kinds, only : wp
+   use dda_result_tables, only : result_table_t, result_tables_t, table
+   use dda_table_file, only : keep_line, open_part, settle_part
+   use dda_table_lines, only : close_lines, field, n_fields, next_line, open_lines, table_lines_t
+   use dda_text, only : read_integer, read_number
+   use dda_text_file, only : read_text_file
+   implicit none
+   private
+
+   public :: finished_t, find_finished, reopen_tables
+
+   !> What an earlier run has left
+   type :: finished_t
+      !> Whether it ran the same deck with the same settings
+      logical :: same_deck = .false.
+      !> Whether a case is finished: (n)
+      logical, allocatable :: case(:)
+      !> How many ended with a verdict, and undecided: (2)
+      integer :: count(2) = 0
+   end type finished_t
+
+   !> Where a table has what tells a whole row of a case
+   type :: layout_t
+      !> Number of columns; 0 for the log, which has blanks in place of commas and free remarks
+      integer :: columns = 0
+      !> Column of the case
+      integer :: case = 1
+      !> Column of the seconds, the last one of results.csv; 0 in other tables
+      integer :: seconds = 0
+   end type layout_t
+
+contains
+
+   !> Find the cases that are finished
+   subroutine find_finished(tables, record, total, finished)
+      !> The tables, named
+      type(result_tables_t), intent(in) :: tables
+      !> What is asked for
+      character(len=*), intent(in) :: record
+      !> Number of cases
+      integer, intent(in) :: total
+      !> What was found
+      type(finished_t), intent(out) :: finished
+      character(len=:), allocatable :: earlier
+      type(error_t), allocatable :: none_left
+      integer, allocatable :: joints(:)
+
+      allocate (finished%case(total), source=.false.)
+      call read_text_file(tables%record_file, earlier, none_left)
+      if (.not. allocated(none_left)) finished%same_deck = earlier == record//new_line("a")
+      if (.not. finished%same_deck) return
+      allocate (joints(total), source=1)
+      if (tables%at(table%joints)%wanted) call count_joints(tables%at(table%joints), joints)
+      call read_results(tables%at(table%results), joints, finished)
+   end subroutine find_finished
+
+   !> Read which cases have a whole row in results.csv, and their joints in joints.csv
+   subroutine read_results(this, joints, finished)
+      !> The table
+      type(result_table_t), intent(in) :: this
+      !> Rows of each case in joints.csv: (n)
+      integer, intent(in) :: joints(:)
+      !> Receives the cases
+      type(finished_t), intent(inout) :: finished
+      type(table_lines_t) :: lines
+      type(layout_t) :: layout
+      character(len=:), allocatable :: line
+      integer :: number, outcome, blocks, verdict
+      logical :: found
+
+      layout = layout_of(this%header)
+      blocks = column(this%header, "blocks")
+      verdict = column(this%header, "verdict")
+      call open_lines(this%file, lines)
+      do
+         call next_line(lines, line, found)
+         if (.not. found) exit
+         number = case_of(layout, line, size(joints))
+         if (number == 0) cycle
+         if (finished%case(number)) cycle
+         if (joints(number) == 0 .and. field(line, blocks) /= "0") cycle
+         finished%case(number) = .true.
+         outcome = merge(2, 1, field(line, verdict) == "undecided")
+         finished%count(outcome) = finished%count(outcome) + 1
+      end do
+      call close_lines(lines)
+   end subroutine read_results
+
+   !> Begin all tables with what they hold of finished cases, in place of what they hold now
+   subroutine reopen_tables(tables, finished, error)
+      !> The tables, named
+      type(result_tables_t), intent(inout) :: tables
+      !> What is finished
+      type(finished_t), intent(in) :: finished
+      !> Allocated if they cannot be written
+      type(error_t), allocatable, intent(out) :: error
+      integer :: i
+
+      do i = 1, size(tables%at)
+         if (tables%at(i)%wanted) call keep_rows(tables%at(i), i == table%results, &
+            & finished%case, error)
+         if (allocated(error)) return
+      end do
+   end subroutine reopen_tables
+
+   !> Write a table anew with the rows of finished cases alone
+   subroutine keep_rows(this, once, finished, error)
+      !> The table; is open afterwards
+      type(result_table_t), intent(inout) :: this
+      !> Whether a case has no more than one row
+      logical, intent(in) :: once
+      !> Whether a case is finished: (n)
+      logical, intent(in) :: finished(:)
+      !> Allocated if it cannot be written
+      type(error_t), allocatable, intent(out) :: error
+      type(table_lines_t) :: lines
+      character(len=:), allocatable :: line
+      type(layout_t) :: layout
+      logical, allocatable :: wanted(:)
+      integer :: number
+      logical :: found
+
+      call open_part(this%file, this%header, this%open, error)
+      if (allocated(error)) return
+      allocate (wanted, source=finished)
+      layout = layout_of(this%header)
+      call open_lines(this%file, lines)
+      do
+         call next_line(lines, line, found)
+         if (.not. found) exit
+         number = case_of(layout, line, size(finished))
+         if (number == 0) cycle
+         if (wanted(number)) call keep_line(this%open, line)
+         if (once) wanted(number) = .false.
+      end do
+      call close_lines(lines)
+      call settle_part(this%file, this%open, error)
+   end subroutine keep_rows
+
+   !> Rows of each case in joints.csv, 0 where they are not numbered from 1 without a gap
+   subroutine count_joints(this, joints)
+      !> The table
+      type(result_table_t), intent(in) :: this
+      !> How many: (n)
+      integer, intent(out) :: joints(:)
+      type(table_lines_t) :: lines
+      type(layout_t) :: layout
+      character(len=:), allocatable :: line
+      integer :: number, joint
+      logical :: found, ok
+
+      joints = 0
+      layout = layout_of(this%header)
+      call open_lines(this%file, lines)
+      do
+         call next_line(lines, line, found)
+         if (.not. found) exit
+         number = case_of(layout, line, size(joints))
+         if (number == 0) cycle
+         call read_integer(field(line, 2), joint, ok)
+         if (ok .and. joint == 1) joints(number) = 0
+         joints(number) = merge(joints(number) + 1, 0, ok .and. joint == joints(number) + 1)
+      end do
+      call close_lines(lines)
+   end subroutine count_joints
+
+   !> Where a table has what tells a whole row
+   pure function layout_of(header) result(layout)
+      !> First line of the table
+      character(len=*), intent(in) :: header
+      !> The layout
+      type(layout_t) :: layout
+
+      if (index(header, ",") == 0) return
+      layout%columns = n_fields(header)
+      layout%case = column(header, "case")
+      layout%seconds = column(header, "seconds")
+   end function layout_of
+
+   !> Case that a line belongs to; 0 for one that is no whole row of the table
+   pure integer function case_of(layout, line, total)
+      !> What the table looks like
+      type(layout_t), intent(in) :: layout
+      !> The line
+      character(len=*), intent(in) :: line
+      !> Number of cases
+      integer, intent(in) :: total
+      real(wp) :: seconds
+      logical :: ok
+
+      if (layout%columns == 0) then
+         call read_integer(line(:max(0, index(line, " ") - 1)), case_of, ok)
+      else
+         ok = n_fields(line) == layout%columns
+         if (ok) call read_integer(field(line, layout%case), case_of, ok)
+         if (ok .and. layout%seconds > 0) &
+            & call read_number(field(line, layout%seconds), seconds, ok)
+      end if
+      if (ok) ok = case_of >= 1 .and. case_of <= total
+      if (.not. ok) case_of = 0
+   end function case_of
+
+   !> Place of a column, 0 if there is none of that name
+   pure integer function column(header, name)
+      !> First line of a table
+      character(len=*), intent(in) :: header
+      !> Name of the column
+      character(len=*), intent(in) :: name
+
+      do column = n_fields(header), 1, -1
+         if (field(header, column) == name) return
+      end do
+   end function column
+end module dda_resume

@@ -1,0 +1,48 @@
+!> A text of many lines, whose room doubles where it must
+module dda_growing_text
+   implicit none
+   private
+
+   public :: growing_text_t, add_line, lines_of
+
+   !> Lines put together so far
+   type :: growing_text_t
+      private
+      !> The lines, each with its end, and room behind them
+      character(len=:), allocatable :: text
+      !> Length of the lines
+      integer :: length = 0
+   end type growing_text_t
+
+contains
+
+   !> Put a line below the others
+   pure subroutine add_line(lines, line)
+      !> The lines so far
+      type(growing_text_t), intent(inout) :: lines
+      !> The line
+      character(len=*), intent(in) :: line
+      character(len=:), allocatable :: longer
+      integer :: room
+
+      if (.not. allocated(lines%text)) lines%text = repeat(" ", 4096)
+      room = lines%length + len(line) + 1
+      if (room > len(lines%text)) then
+         longer = lines%text//repeat(" ", max(room, len(lines%text)))
+         call move_alloc(longer, lines%text)
+      end if
+      lines%text(lines%length + 1:room) = line//new_line("a")
+      lines%length = room
+   end subroutine add_line
+
+   !> The lines, parted by line ends, none behind the last
+   pure function lines_of(lines) result(text)
+      !> The lines
+      type(growing_text_t), intent(in) :: lines
+      !> The text; empty if there are none
+      character(len=:), allocatable :: text
+
+      text = ""
+      if (lines%length > 0) text = lines%text(:lines%length - 1)
+   end function lines_of
+end module dda_growing_text

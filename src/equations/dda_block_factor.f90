@@ -1,0 +1,65 @@
+!> Factor and substitute by blocks: the solver of every step (Shi: df20, df21)
+!>
+!>    matrix = L D L',  D diagonal,  the diagonal of L ones
+!>
+!> Rows of blocks are eliminated one after the other; only blocks that are not zero are stored. The
+!> chain of an arch is eliminated from both ends, so that its mirror images feel the same rounding
+!> and the processor has two rows to work on. A row whose numbers and whose predecessors have not
+!> changed keeps its factor.
+module dda_block_factor
+   use dda_block_matrix, only : block_matrix_t
+   use dda_block_plan, only : block_factor_t, plan_factor
+   use dda_block_rows_3, only : eliminate_3 => eliminate, substitute_3 => substitute_rows
+   use dda_block_rows_6, only : eliminate_6 => eliminate, substitute_6 => substitute_rows
+   use dda_kinds, only : wp
+   implicit none
+   private
+
+   public :: block_factor_t, plan_factor, factorise, substitute
+
+contains
+
+   !> Factor a matrix; one that is not positive definite gives a factor that is not usable
+   pure subroutine factorise(matrix, factor, changed)
+      !> The matrix
+      type(block_matrix_t), intent(in) :: matrix
+      !> Its factor, laid out for its pattern
+      type(block_factor_t), intent(inout) :: factor
+      !> Blocks whose diagonal block or couplings have changed since the factor was usable; all if
+      !> it is not given: (n_block)
+      logical, intent(in), optional :: changed(:)
+      logical :: anew(size(factor%block))
+      integer :: i
+
+      anew = .true.
+      if (present(changed) .and. factor%usable) then
+         do i = 1, size(anew)
+            anew(i) = changed(factor%block(i)) &
+               & .or. any(anew(factor%column(factor%start(i):factor%start(i + 1) - 1)))
+         end do
+      end if
+      select case (factor%n_dof)
+      case (6)
+         call eliminate_6(matrix, anew, factor)
+      case (3)
+         call eliminate_3(matrix, anew, factor)
+      case default
+         factor%usable = .false.
+      end select
+   end subroutine factorise
+
+   !> Solve for one right-hand side
+   pure subroutine substitute(factor, x)
+      !> Usable factor
+      type(block_factor_t), intent(in) :: factor
+      !> Right-hand side in, solution out: (n_dof, n_block)
+      real(wp), intent(inout) :: x(:, :)
+
+      select case (factor%n_dof)
+      case (6)
+         call substitute_6(factor, x)
+      case (3)
+         call substitute_3(factor, x)
+      end select
+   end subroutine substitute
+end module dda_block_factor

@@ -1,0 +1,299 @@
+"""dda run --resume: finished cases are kept, everything else is computed as if never begun."""
+
+from __future__ import annotations
+
+import csv
+import os
+import random
+import signal
+import subprocess
+import time
+from pathlib import Path
+
+import pytest
+from dda_command import run_dda
+
+DECK = """&search /
+&sweep parameter = 'half_angle_deg', values = 60, 90, 120 /
+&sweep parameter = 'voussoirs', values = 4, 7, 12, 36 /
+"""
+MOVING = """&arch voussoirs = 6, thickness_ratio = 0.1 /
+&analysis geometry = 'current' /
+&output frames = 3 /
+&sweep parameter = 'radius', values = 5, 8, 10, 12 /
+"""
+UNDECIDED = """&arch thickness_ratio = 0.12 /
+&sweep parameter = 'steps', values = 400, 1, 400 /
+"""
+
+
+def write_deck(folder: Path, text: str = DECK) -> Path:
+    """Write deck.nml and return the folder that its results go to."""
+    (folder / "deck.nml").write_text(text)
+    return folder / "deck"
+
+
+def run(folder: Path, *options: str) -> subprocess.CompletedProcess[str]:
+    """Run deck.nml in a folder."""
+    return run_dda("run", "deck.nml", *options, cwd=folder)
+
+
+def tables(folder: Path) -> dict[str, list[str]]:
+    """Lines of all tables in the order of the alphabet, wall times left out."""
+    found = {}
+    for file in folder.iterdir():
+        if file.is_file():
+            lines = file.read_text().splitlines()
+            if file.name == "results.csv":
+                lines = [line.rpartition(",")[0] for line in lines]
+            found[file.name] = sorted(lines)
+    return found
+
+
+def seconds(folder: Path) -> dict[str, str]:
+    """Wall time of each case as written, by which a row that was kept is known again."""
+    with (folder / "results.csv").open(newline="") as lines:
+        return {row["case"]: row["seconds"] for row in csv.DictReader(lines)}
+
+
+def cut(file: Path, keep: int) -> None:
+    """Cut a file after some bytes, as a kill does."""
+    file.write_bytes(file.read_bytes()[:keep])
+
+
+def test_finished_run_is_left_as_it_is(tmp_path: Path) -> None:
+    out = write_deck(tmp_path)
+    run(tmp_path)
+    before = {file.name: file.read_bytes() for file in out.iterdir()}
+    done = run(tmp_path, "--resume")
+    assert done.returncode == 0
+    assert "12 of 12 cases are there already" in done.stdout
+    assert {file.name: file.read_bytes() for file in out.iterdir()} == before
+
+
+def test_first_run_may_be_a_resumed_one(tmp_path: Path) -> None:
+    out = write_deck(tmp_path)
+    done = run(tmp_path, "--resume")
+    assert done.returncode == 0
+    assert "nothing to resume" in done.stdout
+    assert len(seconds(out)) == 12
+
+
+def test_quiet_resume_prints_nothing(tmp_path: Path) -> None:
+    write_deck(tmp_path)
+    run(tmp_path)
+    done = run(tmp_path, "--resume", "--quiet")
+    assert done.stdout == done.stderr == ""
+
+
+@pytest.mark.parametrize("seed", range(12))
+def test_row_cut_anywhere_is_computed_again(tmp_path: Path, seed: int) -> None:
+    out = write_deck(tmp_path)
+    run(tmp_path)
+    whole, times = tables(out), seconds(out)
+    size = (out / "results.csv").stat().st_size
+    keep = size - 1 if seed == 0 else random.Random(seed).randrange(size)
+    cut(out / "results.csv", keep)
+    rows = max(0, (out / "results.csv").read_text().count("\n") - 1)
+    done = run(tmp_path, "--resume", "--jobs", "2")
+    assert done.returncode == 0
+    assert f"{rows} of 12 cases are there already" in done.stdout
+    assert tables(out) == whole
+    again = seconds(out)
+    assert sum(again[case] == times[case] for case in times) >= rows
+
+
+@pytest.mark.parametrize("table", ["joints.csv", "log.txt"])
+def test_rows_of_an_unfinished_case_leave_no_trace(tmp_path: Path, table: str) -> None:
+    out = write_deck(tmp_path)
+    run(tmp_path)
+    whole = tables(out)
+    lines = (out / "results.csv").read_text().splitlines(keepends=True)
+    (out / "results.csv").write_text("".join(lines[:-3]))
+    cut(out / table, (out / table).stat().st_size - 5)
+    assert run(tmp_path, "--resume").returncode == 0
+    assert tables(out) == whole
+
+
+def test_case_without_its_joints_is_computed_again(tmp_path: Path) -> None:
+    out = write_deck(tmp_path)
+    run(tmp_path)
+    whole = tables(out)
+    lines = (out / "joints.csv").read_text().splitlines(keepends=True)
+    (out / "joints.csv").write_text("".join(line for line in lines if not line.startswith("5,")))
+    done = run(tmp_path, "--resume")
+    assert "11 of 12 cases are there already" in done.stdout
+    assert tables(out) == whole
+
+
+@pytest.mark.parametrize(
+    "damage",
+    [
+        lambda line: line * 2,
+        lambda line: "\0" * len(line) + "\n",
+        lambda line: line.replace("deck,3,", "deck,300,"),
+        lambda line: line.replace("deck,3,", "deck,-3,"),
+        lambda line: line.rpartition(",")[0] + "\n",
+        lambda line: line.rpartition(",")[0] + ",\n",
+        lambda line: "",
+    ],
+    ids=["twice", "zeros", "beyond", "negative", "short", "no seconds", "gone"],
+)
+def test_damaged_row_is_not_taken_as_good(tmp_path: Path, damage) -> None:
+    out = write_deck(tmp_path)
+    run(tmp_path)
+    whole = tables(out)
+    lines = (out / "results.csv").read_text().splitlines(keepends=True)
+    lines[3] = damage(lines[3])
+    (out / "results.csv").write_text("".join(lines))
+    assert run(tmp_path, "--resume").returncode == 0
+    assert tables(out) == whole
+
+
+def test_frames_of_unfinished_cases_are_made_anew(tmp_path: Path) -> None:
+    out = write_deck(tmp_path, MOVING)
+    assert run(tmp_path).returncode == 0
+    whole = tables(out)
+    lines = (out / "results.csv").read_text().splitlines(keepends=True)
+    (out / "results.csv").write_text("".join(lines[:3]))
+    cut(out / "frames.csv", (out / "frames.csv").stat().st_size * 3 // 4)
+    (out / "frames" / "case_3.pvd").unlink()
+    done = run(tmp_path, "--resume")
+    assert "2 of 4 cases" in done.stdout
+    assert tables(out) == whole
+    assert (out / "frames" / "case_3.pvd").exists()
+
+
+@pytest.mark.parametrize(
+    "change",
+    [
+        lambda text: text.replace("120", "110"),
+        lambda text: text.replace("&search /", "&search tolerance = 1e-6 /"),
+        lambda text: text + "&joint friction_deg = 45 /",
+        lambda text: text + "&output joints = .false. /",
+        lambda text: text.replace("4, 7, 12, 36", "4, 7, 12"),
+    ],
+    ids=["value", "search", "group", "output", "fewer"],
+)
+def test_changed_deck_is_computed_anew(tmp_path: Path, change) -> None:
+    out = write_deck(tmp_path)
+    run(tmp_path)
+    write_deck(tmp_path, change(DECK))
+    done = run(tmp_path, "--resume")
+    assert done.returncode == 0
+    assert "all cases are computed" in done.stdout
+    resumed = tables(out)
+    run(tmp_path)
+    assert tables(out) == resumed
+
+
+@pytest.mark.parametrize(
+    ("first", "second"),
+    [("45", None), (None, "45"), ("45", "40")],
+    ids=["dropped", "added", "other"],
+)
+def test_changed_set_is_computed_anew(
+    tmp_path: Path, first: str | None, second: str | None
+) -> None:
+    def setting(value: str | None) -> list[str]:
+        return ["--set", f"joint%friction_deg={value}"] if value else []
+
+    out = write_deck(tmp_path)
+    run(tmp_path, *setting(first))
+    done = run(tmp_path, "--resume", *setting(second))
+    assert "all cases are computed" in done.stdout
+    with (out / "results.csv").open(newline="") as lines:
+        assert {row["friction_deg"] for row in csv.DictReader(lines)} == {second or "50"}
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "! a comment\n" + DECK.replace("&search /", "&Search\n\n/"),
+        DECK.replace("values = 60, 90, 120", "first = 60, last = 120, count = 3"),
+    ],
+    ids=["comments", "evenly spaced"],
+)
+def test_same_deck_in_other_words_is_resumed(tmp_path: Path, text: str) -> None:
+    write_deck(tmp_path)
+    run(tmp_path)
+    write_deck(tmp_path, text)
+    assert "12 of 12" in run(tmp_path, "--resume").stdout
+
+
+def test_same_set_as_in_the_deck_is_resumed(tmp_path: Path) -> None:
+    write_deck(tmp_path)
+    run(tmp_path, "--set", "joint%friction_deg=45")
+    write_deck(tmp_path, DECK + "&joint friction_deg = 45.0 /")
+    assert "12 of 12" in run(tmp_path, "--resume").stdout
+
+
+def test_undecided_cases_of_before_count_for_the_status(tmp_path: Path) -> None:
+    out = write_deck(tmp_path, UNDECIDED)
+    assert run(tmp_path).returncode == 3
+    done = run(tmp_path, "--resume")
+    assert done.returncode == 3
+    assert "2 decided, 1 undecided" in done.stdout
+    assert len(seconds(out)) == 3
+
+
+@pytest.mark.parametrize("signals", [signal.SIGKILL, signal.SIGTERM])
+def test_killed_twice_ends_as_an_unbroken_run(tmp_path: Path, signals: int) -> None:
+    text = DECK + "&sweep parameter = 'friction_deg', first = 30, last = 60, count = 60 /\n"
+    out = write_deck(tmp_path, text)
+    table = out / "results.csv"
+    enough = 20000
+    for attempt in range(2):
+        with subprocess.Popen(
+            [os.environ["DDA"], "run", "deck.nml", "--quiet", "--resume"], cwd=tmp_path
+        ) as process:
+            patience = time.monotonic() + 60.0
+            while not table.exists() or table.stat().st_size < enough * (attempt + 1):
+                assert process.poll() is None, "the run ended before it could be killed"
+                assert time.monotonic() < patience
+                time.sleep(0.005)
+            process.send_signal(signals)
+    rows = table.read_text().count("\n") - 1
+    done = run(tmp_path, "--resume")
+    assert done.returncode == 0
+    assert 50 < rows < 720
+    assert f"{rows} of 720 cases are there already" in done.stdout
+    resumed = tables(out)
+    assert run_dda("run", "deck.nml", "--out", "unbroken", "--quiet", cwd=tmp_path).returncode == 0
+    assert tables(tmp_path / "unbroken") == resumed
+
+
+def test_table_that_cannot_be_replaced_gives_4_and_is_kept(tmp_path: Path) -> None:
+    out = write_deck(tmp_path)
+    run(tmp_path)
+    before = (out / "results.csv").read_bytes()
+    (out / "joints.csv.part").mkdir()
+    done = run(tmp_path, "--resume")
+    assert done.returncode == 4
+    assert "joints.csv.part" in done.stderr
+    assert "12 of 12 cases are safe" in done.stderr
+    assert (out / "results.csv").read_bytes() == before
+
+
+@pytest.mark.skipif(os.geteuid() == 0, reason="root writes into every folder")
+def test_read_only_folder_gives_4(tmp_path: Path) -> None:
+    out = write_deck(tmp_path)
+    run(tmp_path)
+    before = (out / "results.csv").read_bytes()
+    out.chmod(0o555)
+    done = run(tmp_path, "--resume")
+    out.chmod(0o755)
+    assert done.returncode == 4
+    assert (out / "results.csv").read_bytes() == before
+
+
+@pytest.mark.skipif(not Path("/dev/full").exists(), reason="no /dev/full here")
+def test_full_disk_keeps_what_is_there(tmp_path: Path) -> None:
+    out = write_deck(tmp_path)
+    run(tmp_path)
+    before = (out / "results.csv").read_bytes()
+    (out / "results.csv.part").symlink_to("/dev/full")
+    done = run(tmp_path, "--resume")
+    assert done.returncode == 4
+    assert "results.csv" in done.stderr
+    assert (out / "results.csv").read_bytes() == before
