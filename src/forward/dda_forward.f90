@@ -6,7 +6,7 @@ module dda_forward
    use dda_contact_detection, only : contacts_t, follow_contacts
    use dda_contact_transfer, only : renew_contacts
    use dda_error, only : error_t, fatal_error
-   use dda_frames, only : album_t, keep_frame
+   use dda_frames, only : album_t, keep_frame, keep_track
    use dda_kinds, only : wp
    use dda_multipliers, only : settle_joints
    use dda_open_close, only : step_state_t
@@ -48,7 +48,7 @@ module dda_forward
 contains
 
    !> Run a static analysis to its verdict, a dynamic one to its last step
-   pure subroutine run_to_verdict(settings, system, contacts, outcome, album)
+   pure subroutine run_to_verdict(settings, system, contacts, outcome, album, onward)
       !> Settings of the run
       type(settings_t), intent(in) :: settings
       !> The blocks: at the beginning in, at the end out
@@ -59,6 +59,8 @@ contains
       type(outcome_t), intent(out) :: outcome
       !> Receives pictures of the run where blocks move
       type(album_t), intent(inout), optional :: album
+      !> The march of a run that goes on in, without steps for one that begins; where it ended out
+      type(march_t), intent(inout), optional :: onward
       type(equations_t) :: equations
       type(step_context_t) :: step
       type(march_t) :: march
@@ -72,8 +74,10 @@ contains
       end if
       call new_equations(system, contacts%springs, settings, equations)
       call begin_step(contacts, size(equations%weight, 1), size(equations%weight, 2), step%state)
-      call first_interval(system, contacts%springs, settings, equations, step%state, march, error)
-      if (present(album)) call keep_frame(system, contacts, 0, 0.0_wp, 0.0_wp, .false., album)
+      if (present(onward)) march = onward
+      if (march%steps == 0) call first_interval(system, contacts%springs, settings, equations, &
+         & step%state, march, error)
+      if (present(album)) call keep_pictures(system, contacts, march, .false., album)
       do while (.not. allocated(error))
          if (march%steps == settings%max_steps) exit
          call advance(settings, system, contacts, equations, march, step, error)
@@ -83,11 +87,12 @@ contains
             & march%displacement = largest_displacement(system, settings%current)
          if (step%whole .and. .not. settings%dynamic) &
             & outcome%verdict = judge_verdict(march, step, settings)
-         if (present(album)) call keep_frame(system, contacts, march%steps, march%time, &
-            & march%displacement, outcome%verdict /= verdict%undecided, album)
+         if (present(album)) call keep_pictures(system, contacts, march, &
+            & outcome%verdict /= verdict%undecided, album)
          if (outcome%verdict /= verdict%undecided) exit
          call next_interval(settings, step, march)
       end do
+      if (present(onward)) onward = march
       outcome%rest_tolerance = settings%rest_tolerance
       outcome%steps = march%steps
       outcome%passes = march%passes
@@ -106,6 +111,23 @@ contains
          outcome%reason = "all steps are spent and neither rest nor collapse is proven"
       end if
    end subroutine run_to_verdict
+
+   !> Keep a picture if one is due, and where the measured points are
+   pure subroutine keep_pictures(system, contacts, march, last, album)
+      !> The blocks
+      type(block_system_t), intent(in) :: system
+      !> The contacts
+      type(contacts_t), intent(in) :: contacts
+      !> The march
+      type(march_t), intent(in) :: march
+      !> Whether the run ends here
+      logical, intent(in) :: last
+      !> Receives the picture
+      type(album_t), intent(inout) :: album
+
+      call keep_frame(system, contacts, march%steps, march%time, march%displacement, last, album)
+      call keep_track(system, march%steps, march%time, album)
+   end subroutine keep_pictures
 
    !> One step: blocks and contacts change only when it is accepted
    pure subroutine advance(settings, system, contacts, equations, march, step, error)

@@ -71,6 +71,8 @@ module dda_deck
       type(deck_place_t), allocatable :: group(:)
       !> The sweeps in their order: (n)
       type(deck_sweep_t), allocatable :: sweep(:)
+      !> Text of the geometry file; unallocated if there is none
+      character(len=:), allocatable :: geometry_text
       !> The blocks of the geometry file
       type(block_plan_t) :: plan
    end type deck_t

@@ -194,7 +194,10 @@ module dda_deck_keys
             meaning="Largest vertex displacement that means collapse."), &
       key_t(group="analysis", name="open_close_limit", kind=key_kind%whole, default="400", &
             at_least=1.0_wp, at_most=1.0e9_wp, &
-            meaning="Most open-close changes of a step before the line search takes over.")]
+            meaning="Most open-close changes of a step before the line search takes over."), &
+      key_t(group="analysis", name="restart", kind=key_kind%text, varies=.false., &
+            without="the run begins at the beginning", &
+            meaning="Restart file of a dynamic run that goes on; steps counts those before, too.")]
 
    !> Keys of &search
    type(key_t), parameter :: search_keys(*) = [ &
@@ -243,6 +246,8 @@ module dda_deck_keys
       key_t(group="output", name="frames", kind=key_kind%whole, default="0", varies=.false., &
             at_least=0.0_wp, at_most=10000.0_wp, &
             meaning="Pictures of moving blocks; a collapse is then followed for radius/10."), &
+      key_t(group="output", name="restart", kind=key_kind%flag, default=".false.", varies=.false., &
+            meaning="Write the end of each dynamic case to case_N.restart, to go on from there."), &
       key_t(group="output", name="max_cases", kind=key_kind%whole, default="100000", &
             varies=.false., at_least=1.0_wp, at_most=1.0e7_wp, &
             meaning="Most cases that the &sweep groups may make; more is an error.")]

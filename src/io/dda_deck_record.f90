@@ -37,6 +37,7 @@ contains
       do i = 1, size(deck%sweep)
          call add_sweep(lines, deck%sweep(i))
       end do
+      if (allocated(deck%geometry_text)) call add_line(lines, deck%geometry_text)
       record = lines_of(lines)
    end function deck_record
 

@@ -17,7 +17,7 @@ module dda_read_deck
    implicit none
    private
 
-   public :: read_deck, parse_deck, geometry_file
+   public :: read_deck, parse_deck, geometry_file, file_beside
 
 contains
 
@@ -39,7 +39,9 @@ contains
       if (word_of(deck, "scene", "kind") /= "blocks") return
       geometry = geometry_file(deck)
       call read_text_file(geometry, text, error)
-      if (.not. allocated(error)) call parse_blocks(text, geometry, deck%plan, error)
+      if (allocated(error)) return
+      deck%geometry_text = text
+      call parse_blocks(text, geometry, deck%plan, error)
    end subroutine read_deck
 
    !> Name of the file of blocks: beside the deck unless it begins with a slash
@@ -49,9 +51,21 @@ contains
       !> The name
       character(len=:), allocatable :: path
 
-      path = text_of(deck, "scene", "geometry")
-      if (index(path, "/") /= 1) path = deck%file(:index(deck%file, "/", back=.true.))//path
+      path = file_beside(deck, text_of(deck, "scene", "geometry"))
    end function geometry_file
+
+   !> Name of a file that a deck names: beside the deck unless it begins with a slash
+   pure function file_beside(deck, name) result(path)
+      !> The deck
+      type(deck_t), intent(in) :: deck
+      !> The name in the deck
+      character(len=*), intent(in) :: name
+      !> The name for all
+      character(len=:), allocatable :: path
+
+      path = name
+      if (index(path, "/") /= 1) path = deck%file(:index(deck%file, "/", back=.true.))//path
+   end function file_beside
 
    !> Read and check a deck from its text
    pure subroutine parse_deck(text, file, settings, deck, error)

@@ -11,9 +11,12 @@ module dda_case
    use dda_deck_check, only : search_bracket
    use dda_deck_parameter, only : find_parameter, parameter_name
    use dda_deck_scene, only : deck_family_t, deck_scene
-   use dda_error, only : error_t
+   use dda_error, only : error_line, error_t
    use dda_forward, only : outcome_t, run_to_verdict
    use dda_frames, only : album_t
+   use dda_restart, only : load_restart
+   use dda_read_deck, only : file_beside
+   use dda_step_context, only : march_t
    use dda_kinds, only : wp
    use dda_mechanism, only : follow_collapse, mechanism_of, mechanism_t
    use dda_scene, only : scene_t
@@ -46,6 +49,12 @@ module dda_case
       type(decision_t) :: decision
       !> Scene of the collapse, or of the decision
       type(scene_t) :: scene
+      !> Where a dynamic run goes on, and where it ended
+      type(march_t) :: onward
+      !> Restart file that it goes on from; empty if there is none
+      character(len=:), allocatable :: restart_file
+      !> Why the case could not be computed
+      type(error_t), allocatable :: error
       !> Pictures of the collapse, or of the way to rest
       type(album_t) :: album
       !> Exact critical thickness ratio
@@ -67,6 +76,7 @@ contains
       character(len=:), allocatable :: searched
 
       this%deck = deck
+      this%restart_file = file_beside(deck, text_of(deck, "analysis", "restart"))
       this%searches = has_group(deck, "search")
       if (this%searches) call prepare_search(deck, this%family, this%search)
       searched = searched_name(deck)
@@ -82,6 +92,7 @@ contains
       integer(int64) :: start, finish, rate
 
       call system_clock(start, rate)
+      call plan_album(this)
       if (this%exact_known) call exact_thickness(this%deck, this%exact, this%exact_known)
       if (this%searches) then
          call find_critical(this%family, this%search, this%critical)
@@ -91,18 +102,50 @@ contains
          end if
       else
          call deck_scene(this%deck, this%scene)
-         call decide(this%scene%settings, this%scene%system, this%scene%contacts, this%decision)
+         call compute_decision(this)
          if (this%decision%outcome%verdict == verdict%collapsed) &
             & call follow_collapse(this%scene, this%decision)
       end if
-      if (integer_of(this%deck, "output", "frames") > 0) call take_pictures(this)
+      if (integer_of(this%deck, "output", "frames") > 0 .or. size(this%album%point) > 0) &
+         & call take_pictures(this)
       call system_clock(finish)
       this%seconds = real(finish - start, wp)/real(rate, wp)
    end subroutine compute_case
 
-   !> Run the scene of the case once more for its pictures, a collapse until a corner has moved a
-   !> tenth
-   !> of the radius
+   !> Decide the scene, from its beginning or from where an earlier run has ended
+   subroutine compute_decision(this)
+      !> The case, its scene made
+      type(case_t), intent(inout) :: this
+      type(block_system_t) :: system
+      type(contacts_t) :: contacts
+
+      system = this%scene%system
+      contacts = this%scene%contacts
+      if (is_given(this%deck, "analysis", "restart")) then
+         call load_restart(this%restart_file, this%scene%settings, system, contacts, this%onward, &
+            & this%error)
+         if (allocated(this%error)) return
+      end if
+      call decide(this%scene%settings, system, contacts, this%decision, this%album, this%onward)
+   end subroutine compute_decision
+
+   !> What the album of the case is to hold
+   pure subroutine plan_album(this)
+      !> The case
+      type(case_t), intent(inout) :: this
+      integer :: frames
+
+      frames = integer_of(this%deck, "output", "frames")
+      allocate (this%album%point(0))
+      if (this%searches) return
+      if (allocated(this%deck%plan%boundary%measured)) &
+         & this%album%point = this%deck%plan%boundary%measured
+      if (frames > 0 .and. word_of(this%deck, "analysis", "mode") == "dynamic") &
+         & this%album%every = max(1, integer_of(this%deck, "analysis", "steps")/frames)
+   end subroutine plan_album
+
+   !> Run a static scene once more for its pictures, a collapse until a corner has moved a tenth of
+   !> the radius, or of the size of the blocks
    pure subroutine take_pictures(this)
       !> The case, computed
       type(case_t), intent(inout) :: this
@@ -113,6 +156,7 @@ contains
       type(contacts_t) :: contacts
       logical :: slides
 
+      if (this%scene%settings%dynamic) return
       slides = this%decision%flow == flow_rule%coulomb
       if (allocated(this%critical%fallen)) then
          slides = this%critical%fallen%flow == flow_rule%coulomb
@@ -124,13 +168,27 @@ contains
       settings = this%scene%settings
       settings%flow = merge(flow_rule%coulomb, flow_rule%associated, slides)
       if (.not. settings%collapse_displacement > 0.0_wp) &
-         & settings%collapse_displacement = 0.1_wp*real_of(this%deck, "arch", "radius")
-      this%album%spacing = settings%collapse_displacement &
+         & settings%collapse_displacement = 0.1_wp*scene_size(this)
+      if (integer_of(this%deck, "output", "frames") > 0) &
+         & this%album%spacing = settings%collapse_displacement &
          & /real(integer_of(this%deck, "output", "frames"), wp)
       system = this%scene%system
       contacts = this%scene%contacts
       call run_to_verdict(settings, system, contacts, outcome, this%album)
    end subroutine take_pictures
+
+   !> Radius of an arch, or mean size of the blocks that move [m]
+   pure real(wp) function scene_size(this)
+      !> The case
+      type(case_t), intent(in) :: this
+
+      associate (system => this%scene%system)
+         scene_size = sqrt(sum(system%area, mask=system%equation > 0) &
+            & /real(max(1, count(system%equation > 0)), wp))
+      end associate
+      if (word_of(this%deck, "scene", "kind") == "arch") &
+         & scene_size = real_of(this%deck, "arch", "radius")
+   end function scene_size
 
    !> Tell a case
    pure subroutine tell_case(this, row, joint_row, remark)
@@ -146,7 +204,10 @@ contains
       remark = ""
       allocate (joint_row(0))
       call describe(this, row)
-      if (this%searches) then
+      if (allocated(this%error)) then
+         row%verdict = verdict_name(verdict%undecided)
+         remark = error_line(this%error)
+      else if (this%searches) then
          call tell_search(this, row, joint_row, remark)
       else
          call tell_decision(this, row, joint_row, remark)

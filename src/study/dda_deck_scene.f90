@@ -2,11 +2,13 @@
 module dda_deck_scene
    use dda_arch_scene, only : arch_scene, material_of, settings_of, unit_weight
    use dda_block_scene, only : base_t, block_scene, floating_block
-   use dda_deck, only : deck_t, parameter_t, real_of, word_of
+   use dda_deck, only : deck_error, deck_t, is_given, parameter_t, place_of, real_of, text_of, &
+      & word_of
+   use dda_deck_keys, only : key_index
    use dda_deck_set, only : number_fits, put_number
    use dda_error, only : error_t, fatal_error
    use dda_kinds, only : wp
-   use dda_read_deck, only : geometry_file
+   use dda_read_deck, only : file_beside, geometry_file
    use dda_scene, only : family_t, scene_t
    use dda_text, only : to_text
    implicit none
@@ -88,15 +90,25 @@ contains
          & //trim(deck%plan%warning(i))
    end function warning_line
 
-   !> Check that a static scene can come to rest at all
+   !> Check that a static scene can come to rest at all, and that a run that goes on has a file
    subroutine check_scene(deck, error)
       !> The deck, checked
       type(deck_t), intent(in) :: deck
-      !> Allocated if nothing holds a block
+      !> Allocated if nothing holds a block, or no file is there
       type(error_t), allocatable, intent(out) :: error
       type(scene_t) :: scene
       integer :: b
+      logical :: exists
 
+      if (is_given(deck, "analysis", "restart")) then
+         inquire (file=file_beside(deck, text_of(deck, "analysis", "restart")), exist=exists)
+         if (.not. exists) then
+            call deck_error(error, "there is no restart file '"// &
+               & text_of(deck, "analysis", "restart")//"'", deck, &
+               & place_of(deck, key_index("analysis", "restart")))
+            return
+         end if
+      end if
       if (word_of(deck, "scene", "kind") /= "blocks") return
       if (word_of(deck, "analysis", "mode") /= "static") return
       call deck_scene(deck, scene)
