@@ -55,6 +55,7 @@ contains
       do j = 1, size(joint)
          call lock_joint(system, system%vertex, joint(j))
          call place_joint(system, system%vertex, joint(j), gap)
+         joint(j)%contact%closed_at = gap(1:2)
       end do
       call set_joints(system, system%centroid, joint, penalty_ratio, n_dof, contacts)
       do j = 1, size(joint)
@@ -282,6 +283,7 @@ contains
          associate (contact => joint%contact(k))
             length = edge_size(system, contact)
             contact%lock = contact%lock - past(source(k))%slip/length
+            contact%closed_at = past(source(k))%contact%closed_at
          end associate
       end do
       if (joint%n_contact == 2) then

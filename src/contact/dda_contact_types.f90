@@ -34,6 +34,9 @@ module dda_contact_types
       real(wp) :: share = 0.5_wp
       !> Where on the edge the vertex has no slip, as a share of the edge from its start
       real(wp) :: lock = 0.0_wp
+      !> Height of the vertex above the edge at which the contact is closed: what lies together at
+      !> the beginning but for rounded coordinates is closed there [m]
+      real(wp) :: closed_at = 0.0_wp
    end type contact_t
 
    !> One or two contacts with one shear spring
@@ -129,6 +132,7 @@ contains
             c%point = vertex(:, vertex_number(system, c%vertex_block, c%vertex))
             gap(k) = dot_product(c%normal, c%point - start)
             c%foot = c%point - gap(k)*c%normal
+            gap(k) = gap(k) - c%closed_at
             slip = slip_at(system, vertex, c)
             gap(3) = gap(3) + c%share*slip
             ! both blocks feel the shear force on the line of the edge: off it, an open joint would

@@ -69,6 +69,7 @@ contains
       stiffest = maxval(system%materials%young)
       if (size(springs%stiffness) > 0) stiffest = maxval(springs%stiffness)
       march%longest = sqrt(2.0_wp*mean_mass/(least_inertia*stiffest))
+      march%resolution = epsilon(1.0_wp)*maxval(abs(system%vertex))
       march%allowed_motion = settings%max_displacement_ratio &
          & *sqrt(minval(system%area, mask=system%equation > 0))
       if (settings%dynamic) then

@@ -42,8 +42,8 @@ contains
          & contacts%broken, contacts%springs%stiffness, contacts%springs%cone, &
          & contacts%springs%shift
       if (stat == 0) write (unit, iostat=stat, iomsg=reason) march%steps, march%time, march%dt, &
-         & march%allowed_motion, march%displacement, march%longest, march%elastic_motion, &
-         & march%free_acceleration, march%last_acceleration, march%passes, &
+         & march%allowed_motion, march%resolution, march%displacement, march%longest, &
+         & march%elastic_motion, march%free_acceleration, march%last_acceleration, march%passes, &
          & allocated(march%reach), allocated(march%last_motion)
       if (stat == 0 .and. allocated(march%reach)) &
          & write (unit, iostat=stat, iomsg=reason) march%reach
@@ -94,8 +94,8 @@ contains
       if (.not. allocated(error)) then
          call read_state(unit, n(3), settings, system, contacts, stat)
          if (stat == 0) read (unit, iostat=stat) march%steps, march%time, march%dt, &
-            & march%allowed_motion, march%displacement, march%longest, march%elastic_motion, &
-            & march%free_acceleration, march%last_acceleration, march%passes, has
+            & march%allowed_motion, march%resolution, march%displacement, march%longest, &
+            & march%elastic_motion, march%free_acceleration, march%last_acceleration, march%passes, has
          if (stat == 0 .and. has(1)) then
             allocate (march%reach(size(system%area)))
             read (unit, iostat=stat) march%reach
