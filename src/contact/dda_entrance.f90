@@ -126,7 +126,7 @@ contains
       joint%n_contact = 2
       joint%length = length
       do k = 1, 2
-         view = view_corner(near%outline, near%vertex, corner(k), edge(k))
+         view = view_corner(near%outline, near%vertex, corner(k), edge(k), reach)
          if (abs(view%gap) > reach) return
          joint%contact(k) = new_contact(near, corner(k), edge(k), &
             & merge(1, 2, edge(k) == pair(1)), length/2.0_wp)
@@ -187,8 +187,8 @@ contains
       real(wp) :: zone(2)
       integer(int64) :: key
 
-      view = view_corner(near%outline, near%vertex, corner, edge)
-      if (.not. view%faces .or. abs(view%gap) > reach) return
+      view = view_corner(near%outline, near%vertex, corner, edge, reach)
+      if (.not. view%faces) return
       ! in a notch the edge ends at its wall, at a corner that sticks out another edge may be meant
       zone = meeting_zone(near, corner, edge)
       if (.not. is_convex(near%outline, near%vertex, edge)) zone(1) = -zone(1)
@@ -236,8 +236,8 @@ contains
       best_gap = -huge(best_gap)
       best_time = -huge(best_time)
       do i = 1, 4
-         view = view_corner(near%outline, near%vertex, corner(i), edge(i))
-         if (.not. view%faces .or. abs(view%gap) > reach) cycle
+         view = view_corner(near%outline, near%vertex, corner(i), edge(i), reach)
+         if (.not. view%faces) cycle
          if (has_met .and. was_closed(near, corner(i), edge(i))) then
             best = i
             n_level = 0

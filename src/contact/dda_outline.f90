@@ -61,7 +61,7 @@ contains
    end function outline_of
 
    !> See a corner from an edge
-   pure function view_corner(outline, vertex, corner, edge) result(view)
+   pure function view_corner(outline, vertex, corner, edge, reach) result(view)
       !> The outline
       type(outline_t), intent(in) :: outline
       !> Corners: (2, n_vertex) [m]
@@ -70,6 +70,8 @@ contains
       integer, intent(in) :: corner
       !> Number of the edge
       integer, intent(in) :: edge
+      !> A corner farther from the line does not face the edge [m]
+      real(wp), intent(in) :: reach
       !> The view
       type(corner_view_t) :: view
       real(wp) :: tangent(2), sides(2)
@@ -81,6 +83,7 @@ contains
          view%normal = right_normal(tangent)
          view%gap = dot_product(view%normal, point - start)
          view%way = dot_product(tangent, point - start)
+         if (abs(view%gap) > reach) return
          sides(1) = dot_product(view%normal, along(point, vertex(:, outline%previous(corner))))
          sides(2) = dot_product(view%normal, along(point, vertex(:, outline%next(corner))))
       end associate

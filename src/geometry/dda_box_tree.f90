@@ -20,6 +20,8 @@ module dda_box_tree
       integer :: n_leaf = 1
       !> Box of each leaf, 0 for none: (n_leaf)
       integer, allocatable :: box(:)
+      !> Largest number of a box below each node: (2*n_leaf - 1)
+      integer, allocatable :: last(:)
       !> Lower left corners of the nodes: (2, 2*n_leaf - 1) [m]
       real(wp), allocatable :: low(:, :)
       !> Upper right corners: (2, 2*n_leaf - 1) [m]
@@ -51,14 +53,15 @@ contains
          do while (top > 0)
             node = stack(top)
             top = top - 1
-            if (any(tree%low(:, node) > high(:, i)) .or. any(tree%high(:, node) < low(:, i))) cycle
+            if (tree%last(node) <= i) cycle
+            if (tree%low(1, node) > high(1, i) .or. tree%low(2, node) > high(2, i)) cycle
+            if (tree%high(1, node) < low(1, i) .or. tree%high(2, node) < low(2, i)) cycle
             if (node < tree%n_leaf) then
                stack(top + 1:top + 2) = [2*node + 1, 2*node]
                top = top + 2
                cycle
             end if
             j = tree%box(node - tree%n_leaf + 1)
-            if (j <= i) cycle
             if (group(j) == group(i)) cycle
             if (n == size(found, 2)) then
                allocate (wider(2, 2*n))
@@ -104,14 +107,17 @@ contains
       allocate (tree%box(tree%n_leaf), source=0)
       allocate (tree%low(2, 2*tree%n_leaf - 1), source=huge(1.0_wp))
       allocate (tree%high(2, 2*tree%n_leaf - 1), source=-huge(1.0_wp))
+      allocate (tree%last(2*tree%n_leaf - 1), source=0)
       order = rising_order(curve_places((low + high)/2.0_wp))
       tree%box(:n) = order
       do i = 1, n
          leaf = tree%n_leaf - 1 + i
+         tree%last(leaf) = order(i)
          tree%low(:, leaf) = low(:, order(i))
          tree%high(:, leaf) = high(:, order(i))
       end do
       do i = tree%n_leaf - 1, 1, -1
+         tree%last(i) = max(tree%last(2*i), tree%last(2*i + 1))
          tree%low(:, i) = min(tree%low(:, 2*i), tree%low(:, 2*i + 1))
          tree%high(:, i) = max(tree%high(:, 2*i), tree%high(:, 2*i + 1))
       end do
