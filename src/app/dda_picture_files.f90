@@ -65,7 +65,8 @@ contains
             if (.not. allocated(error)) &
                & call append_line(joints, frame_joint_lines(stamp, row), error)
             if (.not. allocated(error) .and. vtu) call write_picture(folder//"/frames/", &
-               & stem//"_"//to_text(i - 1), system, origin, frame, row, index, real(i - 1, wp), error)
+               & stem//"_"//to_text(i - 1), system, origin, frame, row, index, real(i - 1, wp), &
+               & error)
          end associate
       end do
       if (.not. allocated(error) .and. vtu) call close_index(index, error)

@@ -1,5 +1,5 @@
-!> What touches, or may touch in the coming step (Shi: df04): edges whose boxes come near one another
-!> are looked at pair of blocks by pair of blocks
+!> What touches, or may touch in the coming step (Shi: df04): edges whose boxes come near one
+!> another are looked at pair of blocks by pair of blocks
 module dda_contact_search
    use, intrinsic :: iso_fortran_env, only : int64
    use dda_block_system, only : block_system_t

@@ -1,5 +1,5 @@
-!> What touched goes on touching (Shi: df06): forces, states, slip and strength pass from the contacts
-!> of the step before to those of the next
+!> What touched goes on touching (Shi: df06): forces, states, slip and strength pass from the
+!> contacts of the step before to those of the next
 module dda_contact_transfer
    use, intrinsic :: iso_fortran_env, only : int64
    use dda_block_system, only : block_system_t
@@ -190,65 +190,85 @@ contains
       !> Places in past, 0 for none: (2, n_joint)
       integer, intent(out) :: source(:, :)
       integer(int64) :: past_key(size(past)), key(2)
-      integer(int64) :: past_pair(size(past)), pair(2)
-      integer :: order(size(past)), i, j, k, n
+      integer :: order(size(past)), j, k
 
       past_key = contact_keys(system, past%contact)
       source = 0
       do j = 1, size(joint)
          key = contact_keys(system, joint(j)%contact)
          do k = 1, joint(j)%n_contact
-            do i = place_in(past_key, key(k)), size(past)
-               if (past_key(i) /= key(k)) exit
-               if (past(i)%passed_on) cycle
-               past(i)%passed_on = .true.
-               source(k, j) = i
-               exit
-            end do
+            source(k, j) = same_contact(past, past_key, key(k))
+            if (source(k, j) > 0) past(source(k, j))%passed_on = .true.
          end do
       end do
-      past_pair = pair_keys(past%contact, size(system%area))
-      order = rising_order(past_pair)
-      past_pair = past_pair(order)
+      past_key = pair_keys(past%contact, size(system%area))
+      order = rising_order(past_key)
+      past_key = past_key(order)
       do j = 1, size(joint)
-         pair = pair_keys(joint(j)%contact, size(system%area))
+         key = pair_keys(joint(j)%contact, size(system%area))
          do k = 1, joint(j)%n_contact
             if (source(k, j) > 0) cycle
-            n = next_to(joint(j)%contact(k), pair(k))
-            if (n == 0) cycle
-            past(n)%passed_on = .true.
-            source(k, j) = n
+            source(k, j) = next_contact(system, past, order, past_key, joint(j)%contact(k), &
+               & key(k), sum(reach(joint(j)%block)))
+            if (source(k, j) > 0) past(source(k, j))%passed_on = .true.
          end do
       end do
-
-   contains
-
-      !> The nearest contact of the same blocks that none has taken over and that carried a force
-      pure integer function next_to(contact, key)
-         !> The contact that looks for one
-         type(contact_t), intent(in) :: contact
-         !> Key of its blocks
-         integer(int64), intent(in) :: key
-         real(wp) :: least, distance, here(2), there(2)
-         integer :: m
-
-         next_to = 0
-         least = reach(contact%vertex_block) + reach(contact%edge_block)
-         here = system%moved(:, vertex_number(system, contact%vertex_block, contact%vertex))
-         do m = place_in(past_pair, key), size(past)
-            if (past_pair(m) /= key) exit
-            associate (old => past(order(m)))
-               if (old%passed_on .or. .not. old%force(1) > 0.0_wp) cycle
-               there = system%moved(:, vertex_number(system, old%contact%vertex_block, &
-                  & old%contact%vertex))
-               distance = norm2(there - here)
-            end associate
-            if (distance > least) cycle
-            least = distance
-            next_to = order(m)
-         end do
-      end function next_to
    end subroutine match_contacts
+
+   !> The contact of the step before of the same corner and edge that none has taken over, or 0
+   pure integer function same_contact(past, past_key, key)
+      !> The contacts of the step before
+      type(past_contact_t), intent(in) :: past(:)
+      !> Their keys, rising
+      integer(int64), intent(in) :: past_key(:)
+      !> Key of the contact that looks for one
+      integer(int64), intent(in) :: key
+      integer :: i
+
+      same_contact = 0
+      do i = place_in(past_key, key), size(past)
+         if (past_key(i) /= key) return
+         if (past(i)%passed_on) cycle
+         same_contact = i
+         return
+      end do
+   end function same_contact
+
+   !> The nearest contact of the same blocks that none has taken over and that carried a force, or 0
+   pure integer function next_contact(system, past, order, past_pair, contact, pair, reach)
+      !> The blocks
+      type(block_system_t), intent(in) :: system
+      !> The contacts of the step before
+      type(past_contact_t), intent(in) :: past(:)
+      !> Their order by blocks
+      integer, intent(in) :: order(:)
+      !> Keys of their blocks in that order, rising
+      integer(int64), intent(in) :: past_pair(:)
+      !> The contact that looks for one
+      type(contact_t), intent(in) :: contact
+      !> Key of its blocks
+      integer(int64), intent(in) :: pair
+      !> How far away it may lie [m]
+      real(wp), intent(in) :: reach
+      real(wp) :: least, distance, here(2), there(2)
+      integer :: m
+
+      next_contact = 0
+      least = reach
+      here = system%moved(:, vertex_number(system, contact%vertex_block, contact%vertex))
+      do m = place_in(past_pair, pair), size(past)
+         if (past_pair(m) /= pair) exit
+         associate (old => past(order(m)))
+            if (old%passed_on .or. .not. old%force(1) > 0.0_wp) cycle
+            there = system%moved(:, vertex_number(system, old%contact%vertex_block, &
+               & old%contact%vertex))
+         end associate
+         distance = norm2(there - here)
+         if (distance > least) cycle
+         least = distance
+         next_contact = order(m)
+      end do
+   end function next_contact
 
    !> Numbers that tell pairs of blocks apart
    elemental function pair_keys(contact, n_block) result(key)
@@ -370,7 +390,8 @@ contains
             contacts%force(k, j) = old%force(1)
             contacts%force(3, j) = contacts%force(3, j) + old%force(2)
             contacts%broken(k, j) = before%broken(old%place, old%joint)
-            if (before%face(old%joint)%slip /= 0) contacts%face(j)%slip = before%face(old%joint)%slip
+            if (before%face(old%joint)%slip /= 0) &
+               & contacts%face(j)%slip = before%face(old%joint)%slip
          end associate
       end do
    end subroutine take_over_state

@@ -254,8 +254,8 @@ contains
       call add_single(near, corner(best), edge(best), merge(2, 1, best <= 2), used, n_used, list)
    end subroutine join_corners
 
-   !> When a corner crosses the line of an edge, in lengths of its travel: never if it stays outside,
-   !> before all times if it is inside and stays there
+   !> When a corner crosses the line of an edge, in lengths of its travel: never if it stays
+   !> outside, before all times if it is inside and stays there
    pure real(wp) function crossing_time(near, corner, edge, view, slack)
       !> The neighbourhood
       type(neighbourhood_t), intent(in) :: near

@@ -92,9 +92,9 @@ contains
       row(:, 3) = joint%tangent(1)*t(1, :n_dof) + joint%tangent(2)*t(2, :n_dof)
    end function joint_rows
 
-   !> Stiffness E t/l = E area/l**2 of the softer of the movable blocks at a joint: l the block's size
-   !> across it, t that along it; of given edges t is their length, of found ones l is twice the way
-   !> from the centre
+   !> Stiffness E t/l = E area/l**2 of the softer of the movable blocks at a joint: l the block's
+   !> size across it, t that along it; of given edges t is their length, of found ones l is twice
+   !> the way from the centre
    pure function block_stiffness(system, centroid, joint) result(stiffness)
       !> The blocks
       type(block_system_t), intent(in) :: system

@@ -68,8 +68,8 @@ contains
    end subroutine move_block
 
    !> Keep states, forces and gaps of a step; under Coulomb friction slip is plastic, so that the
-   !> springs start anew from the shear force that they could carry. Springs that give keep as much of
-   !> it as carries that force
+   !> springs start anew from the shear force that they could carry. Springs that give keep as much
+   !> of it as carries that force
    pure subroutine update_contacts(step, settings, contacts, breaks)
       !> The accepted step
       type(step_context_t), intent(in) :: step

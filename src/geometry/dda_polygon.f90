@@ -103,8 +103,8 @@ contains
       segments_meet = all(max(min(a, b), min(c, d)) <= min(max(a, b), max(c, d)))
    end function segments_meet
 
-   !> The point of one polygon's outline that lies deepest in another, of the corners and the middles
-   !> of the pieces into which the other cuts the edges
+   !> The point of one polygon's outline that lies deepest in another, of the corners and the
+   !> middles of the pieces into which the other cuts the edges
    pure subroutine deepest_on_outline(outline, other, deepest, point)
       !> Corners of the one: (2, n) [m]
       real(wp), intent(in) :: outline(:, :)

@@ -48,8 +48,8 @@ contains
          call deck_error(error, "output%frames wants geometry = 'current': in reference "// &
             "geometry no block moves", deck, place_of(deck, key_index("output", "frames")))
       else if (is_static .and. is_given(deck, "analysis", "restart")) then
-         call deck_error(error, "analysis%restart wants mode = 'dynamic': a static run comes to "// &
-            "rest by itself", deck, place_of(deck, key_index("analysis", "restart")))
+         call deck_error(error, "analysis%restart wants mode = 'dynamic': a static run comes "// &
+            "to rest by itself", deck, place_of(deck, key_index("analysis", "restart")))
       else
          call check_shape(deck, error)
          if (allocated(error) .or. searched%key == 0) return

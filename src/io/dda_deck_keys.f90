@@ -105,7 +105,7 @@ module dda_deck_keys
             meaning="What the blocks are made from: the keys of &arch, or a file of polygons."), &
       key_t(group="scene", name="geometry", kind=key_kind%text, varies=.false., &
             without="none: an arch wants none", &
-            meaning="File of blocks for kind = 'blocks', beside the deck unless it begins with /."), &
+            meaning="File of blocks for kind = 'blocks', beside the deck unless it is absolute."), &
       key_t(group="scene", name="analysis", kind=key_kind%later, varies=.false., &
             meaning="File of the analysis; for kinds of scene that a later version reads.")]
 

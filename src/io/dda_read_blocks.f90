@@ -1,20 +1,17 @@
 !> Read a file of blocks: polygons, materials, points and what acts on them, one thing a line
 module dda_read_blocks
-   use dda_block_input, only : block_at, block_plan_t, law_plan_t, material_plan_t, new_plan
-   use dda_boundary, only : held_point_t, history_t, loaded_point_t, measured_point_t
+   use dda_block_input, only : block_plan_t, law_plan_t, material_plan_t, new_plan
+   use dda_block_lines, only : entry_t, line_t, split_line, take_keys, take_numbers, word_size
+   use dda_block_points, only : add_point
    use dda_check_plan, only : add_plan_block, check_plan
    use dda_error, only : error_t, fatal_error
    use dda_kinds, only : wp
-   use dda_text, only : lower_case, read_integer, read_number, to_text
+   use dda_text, only : read_integer, read_number, to_text
    implicit none
    private
 
    public :: parse_blocks
 
-   !> Longest word of a line [characters]
-   integer, parameter :: word_size = 32
-   !> Most words of a line
-   integer, parameter :: max_words = 40
    !> Keys that a material may have
    character(len=word_size), parameter :: material_key(4) = [character(len=word_size) :: &
       & "density", "unit_weight", "young", "poisson"]
@@ -24,28 +21,6 @@ module dda_read_blocks
    !> Words that begin an entry
    character(len=*), parameter :: entries = "block, material, joint, fix, measure, load, "// &
       & "displacement, base_acceleration"
-
-   !> One line as words
-   type :: line_t
-      !> Number of the line
-      integer :: number = 0
-      !> Number of words
-      integer :: n = 0
-      !> The words
-      character(len=word_size) :: word(max_words) = ""
-   end type line_t
-
-   !> The entry that is being read
-   type :: entry_t
-      !> Its first line
-      type(line_t) :: head
-      !> Rows of numbers below it: (3, n)
-      real(wp), allocatable :: row(:, :)
-      !> Number of rows
-      integer :: n_row = 0
-      !> Numbers of each row
-      integer :: n_column = 0
-   end type entry_t
 
    !> A point entry, kept until all blocks are known
    type :: point_entry_t
@@ -78,7 +53,8 @@ contains
          finish = index(text(start:)//achar(10), achar(10)) + start - 2
          number = number + 1
          call split_line(text(start:finish), number, line, error)
-         if (.not. allocated(error) .and. line%n > 0) call take_line(line, entry, later, plan, error)
+         if (.not. allocated(error) .and. line%n > 0) &
+            & call take_line(line, entry, later, plan, error)
          start = finish + 2
       end do
       if (.not. allocated(error)) call close_entry(entry, later, plan, error)
@@ -88,40 +64,6 @@ contains
       end do
       if (allocated(error)) error%file = file
    end subroutine parse_blocks
-
-   !> Part a line into words; what follows a ! is a comment
-   pure subroutine split_line(text, number, line, error)
-      !> The line
-      character(len=*), intent(in) :: text
-      !> Its number
-      integer, intent(in) :: number
-      !> The words
-      type(line_t), intent(out) :: line
-      !> Too many or too long words
-      type(error_t), allocatable, intent(out) :: error
-      integer :: i, last, first
-
-      line%number = number
-      last = index(text//"!", "!") - 1
-      first = 0
-      do i = 1, last + 1
-         if (i <= last) then
-            if (index(" "//achar(9), text(i:i)) == 0) then
-               if (first == 0) first = i
-               cycle
-            end if
-         end if
-         if (first == 0) cycle
-         if (line%n == max_words .or. i - first > word_size) then
-            call fatal_error(error, "wanted at most "//to_text(max_words)//" words of " &
-               & //to_text(word_size)//" characters, found more", line=number)
-            return
-         end if
-         line%n = line%n + 1
-         line%word(line%n) = lower_case(text(first:i - 1))
-         first = 0
-      end do
-   end subroutine split_line
 
    !> Take a line: the beginning of an entry, or a row of the one before
    pure subroutine take_line(line, entry, later, plan, error)
@@ -284,30 +226,6 @@ contains
       plan%stress(:, size(plan%fixed)) = stress
    end subroutine close_block
 
-   !> Read the numbers behind a word
-   pure subroutine take_numbers(line, i, number, error)
-      !> The line
-      type(line_t), intent(in) :: line
-      !> Place of the word; then the place after the numbers
-      integer, intent(inout) :: i
-      !> The numbers: (n)
-      real(wp), intent(inout) :: number(:)
-      !> Anything else
-      type(error_t), allocatable, intent(out) :: error
-      logical :: ok
-      integer :: k
-
-      do k = 1, size(number)
-         ok = i + k <= line%n
-         if (ok) call read_number(trim(line%word(i + k)), number(k), ok)
-         if (ok) cycle
-         call fatal_error(error, "wanted "//to_text(size(number))//" numbers after '" &
-            & //trim(line%word(i))//"'", line=line%number)
-         return
-      end do
-      i = i + size(number) + 1
-   end subroutine take_numbers
-
    !> Take in a material: material N [density d] [unit_weight w] [young e] [poisson p]
    pure subroutine add_material(line, plan, error)
       !> The line
@@ -371,149 +289,4 @@ contains
          plan%laws = [plan%laws, law]
       end if
    end subroutine add_law
-
-   !> Read words with a number each
-   pure subroutine take_keys(line, first, key, value, given, error)
-      !> The line
-      type(line_t), intent(in) :: line
-      !> Place of the first word
-      integer, intent(in) :: first
-      !> Words that may come: (n)
-      character(len=*), intent(in) :: key(:)
-      !> Their numbers: (n)
-      real(wp), intent(inout) :: value(:)
-      !> Which came: (n)
-      logical, intent(inout) :: given(:)
-      !> Anything wrong
-      type(error_t), allocatable, intent(out) :: error
-      integer :: i, k
-
-      i = first
-      do while (i <= line%n .and. .not. allocated(error))
-         k = findloc(key == line%word(i), .true., dim=1)
-         if (k == 0) then
-            call fatal_error(error, "unknown word '"//trim(line%word(i))//"'", line=line%number)
-         else if (given(k)) then
-            call fatal_error(error, trim(key(k))//" is given twice", line=line%number)
-         else
-            given(k) = .true.
-            call take_numbers(line, i, value(k:k), error)
-         end if
-      end do
-   end subroutine take_keys
-
-   !> Take in a point, or the motion of the ground, once all blocks are known
-   pure subroutine add_point(entry, plan, error)
-      !> The entry
-      type(entry_t), intent(in) :: entry
-      !> Receives it
-      type(block_plan_t), intent(inout) :: plan
-      !> Anything wrong
-      type(error_t), allocatable, intent(out) :: error
-      type(history_t) :: history
-      real(wp) :: point(2), value(2)
-      integer :: block, i
-      logical :: is_ground, has_value
-
-      is_ground = entry%head%word(1) == "base_acceleration"
-      i = 1
-      point = 0.0_wp
-      if (.not. is_ground) call take_numbers(entry%head, i, point, error)
-      if (is_ground) i = 2
-      if (allocated(error)) return
-      has_value = entry%n_column == 3 .and. entry%head%n >= i
-      if (has_value) then
-         i = i - 1
-         call take_numbers(entry%head, i, value, error)
-      end if
-      if (allocated(error)) return
-      if (entry%n_column == 3) then
-         call read_history(entry, has_value, value, history, error)
-         if (allocated(error)) return
-      end if
-      if (is_ground) then
-         plan%boundary%base_acceleration = history
-         return
-      end if
-      point = point - plan%origin
-      block = block_at(plan, point)
-      if (block == 0) then
-         call fatal_error(error, "wanted a point of a block, found (" &
-            & //to_text(point(1) + plan%origin(1))//", "//to_text(point(2) + plan%origin(2)) &
-            & //"), which lies in none", line=entry%head%number)
-         return
-      end if
-      call keep_point(entry, i, block, point, history, plan, error)
-   end subroutine add_point
-
-   !> Put a point where it belongs
-   pure subroutine keep_point(entry, i, block, point, history, plan, error)
-      !> The entry
-      type(entry_t), intent(in) :: entry
-      !> Place of the word after the numbers
-      integer, intent(in) :: i
-      !> Block that owns the point
-      integer, intent(in) :: block
-      !> The point: (2) [m]
-      real(wp), intent(in) :: point(2)
-      !> Its force or displacement in time
-      type(history_t), intent(in) :: history
-      !> Receives it
-      type(block_plan_t), intent(inout) :: plan
-      !> A word too many
-      type(error_t), allocatable, intent(out) :: error
-      type(held_point_t) :: held
-      logical :: has_word
-
-      has_word = i <= entry%head%n
-      associate (boundary => plan%boundary)
-         if (.not. allocated(boundary%held)) &
-            & allocate (boundary%held(0), boundary%loaded(0), boundary%measured(0))
-         select case (entry%head%word(1))
-         case ("fix")
-            held = held_point_t(block, point, [.true., .true.], history)
-            if (has_word) held%along = entry%head%word(i) == ["x", "y"]
-            has_word = has_word .and. .not. any(held%along)
-            boundary%held = [boundary%held, held]
-         case ("displacement")
-            boundary%held = [boundary%held, held_point_t(block, point, [.true., .true.], history)]
-         case ("load")
-            boundary%loaded = [boundary%loaded, loaded_point_t(block, point, history)]
-         case ("measure")
-            boundary%measured = [boundary%measured, measured_point_t(block, point)]
-         end select
-      end associate
-      if (has_word) call fatal_error(error, "unknown word '"//trim(entry%head%word(i))//"'", &
-         & line=entry%head%number)
-   end subroutine keep_point
-
-   !> A vector in time: one value behind the word, or rows of time and components below it
-   pure subroutine read_history(entry, has_value, value, history, error)
-      !> The entry
-      type(entry_t), intent(in) :: entry
-      !> Whether there is one value behind the word
-      logical, intent(in) :: has_value
-      !> That value: (2)
-      real(wp), intent(in) :: value(2)
-      !> The history
-      type(history_t), intent(out) :: history
-      !> Neither or both, or times that do not increase
-      type(error_t), allocatable, intent(out) :: error
-      integer :: n
-
-      n = entry%n_row
-      if (has_value .eqv. n > 0) then
-         call fatal_error(error, "wanted either two components behind the point or rows of time " &
-            & //"and components below it", line=entry%head%number)
-      else if (has_value) then
-         allocate (history%time(1), source=0.0_wp)
-         allocate (history%value(2, 1))
-         history%value(:, 1) = value
-      else if (any(entry%row(1, 2:n) <= entry%row(1, :n - 1))) then
-         call fatal_error(error, "wanted increasing times [s]", line=entry%head%number)
-      else
-         allocate (history%time, source=entry%row(1, :n))
-         allocate (history%value, source=entry%row(2:3, :n))
-      end if
-   end subroutine read_history
 end module dda_read_blocks

@@ -59,7 +59,7 @@ module dda_block_input
       integer, allocatable :: warning_line(:)
    end type block_plan_t
 
-   !> A point may lie outside its block by this share of the block's size, for coordinates are rounded
+   !> A point may lie outside its block by this share of the block's size: coordinates are rounded
    real(wp), parameter :: rounded = 1.0e-4_wp
 
 contains

@@ -114,7 +114,8 @@ contains
       call deck_scene(deck, scene)
       b = floating_block(scene)
       if (b == 0) return
-      call fatal_error(error, "block "//to_text(b)//" rests on nothing: no chain of joints ties "// &
-         & "it to a fixed block, as mode = 'static' wants", geometry_file(deck), deck%plan%line(b))
+      call fatal_error(error, "block "//to_text(b)//" rests on nothing: no chain of joints "// &
+         & "ties it to a fixed block, as mode = 'static' wants", geometry_file(deck), &
+         & deck%plan%line(b))
    end subroutine check_scene
 end module dda_deck_scene

@@ -83,8 +83,10 @@ contains
          & + sum(max(0.0_wp, contacts%increment(2, :)), mask=contacts%face%open(2))
       allocate (mechanism%intrados_deg(0), mechanism%extrados_deg(0))
       if (n > 0) then
-         mechanism%intrados_deg = each_once(abs(pack(joint_angle_deg, role == joint_role%hinge_first)))
-         mechanism%extrados_deg = each_once(abs(pack(joint_angle_deg, role == joint_role%hinge_second)))
+         mechanism%intrados_deg = &
+            & each_once(abs(pack(joint_angle_deg, role == joint_role%hinge_first)))
+         mechanism%extrados_deg = &
+            & each_once(abs(pack(joint_angle_deg, role == joint_role%hinge_second)))
          if (any(role([1, n]) == joint_role%hinge_first)) mechanism%springing = "intrados"
          if (any(role([1, n]) == joint_role%hinge_second)) mechanism%springing = "extrados"
       end if

@@ -95,7 +95,8 @@ contains
          call read_state(unit, n(3), settings, system, contacts, stat)
          if (stat == 0) read (unit, iostat=stat) march%steps, march%time, march%dt, &
             & march%allowed_motion, march%resolution, march%displacement, march%longest, &
-            & march%elastic_motion, march%free_acceleration, march%last_acceleration, march%passes, has
+            & march%elastic_motion, march%free_acceleration, march%last_acceleration, &
+            & march%passes, has
          if (stat == 0 .and. has(1)) then
             allocate (march%reach(size(system%area)))
             read (unit, iostat=stat) march%reach
