@@ -7,7 +7,7 @@
 #
 # Python3_EXECUTABLE, where given, is the only candidate; else the first python3 on PATH, then that of
 # each system prefix: a private interpreter without NumPy does not hide the system's.
-# The same file serves `pip install .` (post/CMakeLists.txt, SKBUILD is then set).
+# The same file serves `pip install .` (SKBUILD is then set).
 
 enable_language(C)
 
@@ -131,7 +131,20 @@ function(voussoir_add_python)
   # The generator expression keeps generators of several configurations from adding a subfolder.
   set_target_properties(_theory PROPERTIES LIBRARY_OUTPUT_DIRECTORY "${package}$<0:>")
   add_custom_target(voussoir_python ALL DEPENDS _theory)
+  set(permissions OWNER_READ OWNER_WRITE OWNER_EXECUTE GROUP_READ GROUP_EXECUTE WORLD_READ
+    WORLD_EXECUTE)
+  set(VOUSSOIR_PACKAGE_FOLDER python)
   configure_file("${VOUSSOIR_SOURCE_ROOT}/cmake/voussoir.in" "${CMAKE_BINARY_DIR}/bin/voussoir"
-    @ONLY FILE_PERMISSIONS OWNER_READ OWNER_WRITE OWNER_EXECUTE GROUP_READ GROUP_EXECUTE
-    WORLD_READ WORLD_EXECUTE)
+    @ONLY FILE_PERMISSIONS ${permissions})
+
+  # Installed, the package has a folder of its own: no other Python meets it by accident.
+  set(VOUSSOIR_PACKAGE_FOLDER "${CMAKE_INSTALL_LIBDIR}/voussoir/python")
+  configure_file("${VOUSSOIR_SOURCE_ROOT}/cmake/voussoir.in"
+    "${CMAKE_BINARY_DIR}/install/voussoir" @ONLY)
+  install(PROGRAMS "${CMAKE_BINARY_DIR}/install/voussoir" TYPE BIN COMPONENT python)
+  install(TARGETS _theory LIBRARY DESTINATION "${VOUSSOIR_PACKAGE_FOLDER}/voussoir"
+    COMPONENT python)
+  install(DIRECTORY "${VOUSSOIR_SOURCE_ROOT}/post/voussoir"
+    DESTINATION "${VOUSSOIR_PACKAGE_FOLDER}" COMPONENT python
+    PATTERN "__pycache__" EXCLUDE PATTERN "*.pyc" EXCLUDE)
 endfunction()

@@ -7,11 +7,68 @@ import importlib
 import sys
 from collections.abc import Sequence
 
+from voussoir import __version__
+
 #: Subcommand: its module, which has add_arguments(parser) and run(arguments) -> exit status,
 #: and one line of help
 COMMANDS = {
+    "animate": ("voussoir.animate_command", "the motion of cases as a GIF"),
+    "campaign": (
+        "voussoir.campaign_command",
+        "the cases of one deck on many processes or machines",
+    ),
+    "paper": ("voussoir.paper_command", "every table and figure of the paper, and the report"),
+    "plot": ("voussoir.plot_command", "pictures and charts of a folder of results"),
     "theory": ("voussoir.theory_command", "the three analytic solutions at given half angles"),
 }
+
+
+EXIT_STATUS = "Exit status: 0 done; 2 bad input; 4 a result could not be written."
+
+
+class Formatter(argparse.RawDescriptionHelpFormatter):
+    """Help that shows every default, unless the text says what holds without the option."""
+
+    def _get_help_string(self, action: argparse.Action) -> str:
+        text = action.help or ""
+        silent = isinstance(action, (argparse._HelpAction, argparse._VersionAction))
+        if not action.option_strings or action.required or silent or "default" in text:
+            return text
+        return text + (" (default: no)" if action.default is False else " (default: %(default)s)")
+
+
+def build_parser(chosen: str | None = None) -> argparse.ArgumentParser:
+    """The parser of the command line.
+
+    Parameters
+    ----------
+    chosen : str, optional
+        Subcommand whose options are wanted; the others' modules are not loaded.
+
+    Returns
+    -------
+    argparse.ArgumentParser
+        With a subparser for each subcommand.
+    """
+    parser = argparse.ArgumentParser(
+        prog="voussoir",
+        description="Masonry arches: theory, tables and figures.",
+        epilog="'voussoir help COMMAND' lists the options of one. " + EXIT_STATUS,
+    )
+    parser.add_argument("--version", action="version", version=f"voussoir {__version__}")
+    subparsers = parser.add_subparsers(dest="command", required=True, metavar="COMMAND")
+    for name, (module, summary) in COMMANDS.items():
+        subparser = subparsers.add_parser(
+            name,
+            help=summary,
+            description=summary[0].upper() + summary[1:] + ".",
+            epilog=EXIT_STATUS,
+            formatter_class=Formatter,
+        )
+        if name == chosen:
+            importlib.import_module(module).add_arguments(subparser)
+    subparsers.add_parser("help", help="this page, or the options of a subcommand")
+    return parser
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -25,18 +82,10 @@ def main(arguments: Sequence[str] | None = None) -> int:
     Returns
     -------
     int
-        Exit status: 0, or 2 for bad input.
+        Exit status: 0, 2 for bad input, 4 where a result could not be written.
     """
     words = list(sys.argv[1:] if arguments is None else arguments)
-    parser = argparse.ArgumentParser(
-        prog="voussoir", description="Masonry arches: theory, tables and figures."
-    )
-    subparsers = parser.add_subparsers(dest="command", required=True, metavar="COMMAND")
-    for name, (module, summary) in COMMANDS.items():
-        subparser = subparsers.add_parser(
-            name, help=summary, description=summary[0].upper() + summary[1:] + "."
-        )
-        if name in words[:1]:
-            importlib.import_module(module).add_arguments(subparser)
-    chosen = parser.parse_args(words)
+    if words[:1] in ([], ["help"]):
+        words = [*words[1:2], "--help"] if words[1:2] != ["help"] else ["--help"]
+    chosen = build_parser(words[0] if words else None).parse_args(words)
     return importlib.import_module(COMMANDS[chosen.command][0]).run(chosen)

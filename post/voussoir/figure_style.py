@@ -45,8 +45,14 @@ def house_style():
         yield
 
 
-def save(figure: Figure, folder: Path, name: str) -> list[Path]:
-    """Write a figure as SVG and PNG and close it.
+#: What files say of their making, left out for equal bytes at every run
+_METADATA = {".svg": {"Date": None}, ".pdf": {"CreationDate": None}, ".png": {"Software": None}}
+
+
+def save(
+    figure: Figure, folder: Path, name: str, formats: tuple[str, ...] = ("svg", "png")
+) -> list[Path]:
+    """Write a figure and close it.
 
     Parameters
     ----------
@@ -56,16 +62,17 @@ def save(figure: Figure, folder: Path, name: str) -> list[Path]:
         Where; made if missing.
     name : str
         File name without ending.
+    formats : tuple of str, optional
+        Endings without the dot, of svg, pdf and png.
 
     Returns
     -------
     list of Path
-        The two files.
+        The files.
     """
     folder.mkdir(parents=True, exist_ok=True)
-    paths = [folder / f"{name}.svg", folder / f"{name}.png"]
+    paths = [folder / f"{name}.{ending}" for ending in formats]
     for path in paths:
-        metadata = {"Date": None} if path.suffix == ".svg" else {"Software": None}
-        figure.savefig(path, bbox_inches="tight", metadata=metadata)
+        figure.savefig(path, bbox_inches="tight", metadata=_METADATA[path.suffix])
     plt.close(figure)
     return paths

@@ -3,7 +3,7 @@ program dda
    use, intrinsic :: iso_fortran_env, only : error_unit, output_unit
    use dda_check, only : check_decks
    use dda_command_line, only : command_t, read_command
-   use dda_error, only : error_t
+   use dda_error, only : error_line, error_t
    use dda_help, only : print_help, version
    use dda_process, only : exit_status, leave
    use dda_run, only : run_decks
@@ -15,7 +15,7 @@ program dda
    status = exit_status%success
    call read_command(command, error)
    if (allocated(error)) then
-      write (error_unit, "(a)") "dda: error: "//error%message
+      write (error_unit, "(a)") error_line(error)
       call leave(exit_status%bad_input)
    end if
    select case (command%verb)

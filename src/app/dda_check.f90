@@ -1,8 +1,8 @@
 !> dda check: read and check decks, say what would be computed
 module dda_check
    use, intrinsic :: iso_fortran_env, only : error_unit, output_unit
+   use dda_command_line, only : command_t, name_of
    use dda_deck_scene, only : check_scene, deck_scene, warning_line
-   use dda_command_line, only : command_t
    use dda_deck, only : deck_t, has_group, is_given, text_of, word_of
    use dda_deck_sweep, only : case_deck, n_cases, swept_names
    use dda_error, only : error_line, error_t
@@ -29,7 +29,7 @@ contains
 
       status = exit_status%success
       do i = 1, size(command%name)
-         call read_deck(trim(command%name(i)), command%setting, deck, error)
+         call read_deck(name_of(command, i), command%setting, deck, error)
          if (.not. allocated(error)) call check_scene(deck, error)
          if (allocated(error)) then
             write (error_unit, "(a)") error_line(error)
@@ -38,7 +38,7 @@ contains
             do w = 1, size(deck%plan%warning)
                write (error_unit, "(a)") warning_line(deck, w)
             end do
-            call print_plan(trim(command%name(i)), deck)
+            call print_plan(name_of(command, i), deck)
          end if
       end do
    end subroutine check_decks

@@ -1,14 +1,22 @@
 !> The command line as a value
 module dda_command_line
    use dda_error, only : error_t, fatal_error
+   use dda_deck_token, only : shown
+   use dda_deck_words, only : near_one
    use dda_text, only : read_integer, to_text
    implicit none
    private
 
-   public :: command_t, read_command
+   public :: command_t, read_command, name_of
 
    !> Longest argument that is taken
    integer, parameter :: longest = 32768
+   !> What the first argument may be
+   character(len=*), parameter :: subcommands(*) = [character(len=9) :: "run", "check", "help", &
+      & "--help", "--version"]
+   !> Options of run and check
+   character(len=*), parameter :: options(*) = [character(len=8) :: "--out", "--jobs", "--set", &
+      & "--cases", "--resume", "--quiet", "--help"]
 
    !> What the user asked for
    type :: command_t
@@ -16,10 +24,14 @@ module dda_command_line
       character(len=16) :: verb = "help"
       !> Decks to run or check, or the topic of help: (n)
       character(len=longest), allocatable :: name(:)
+      !> Lengths of those names, blanks at their ends counted: (n) [characters]
+      integer, allocatable :: name_length(:)
       !> --set values: (n)
       character(len=longest), allocatable :: setting(:)
       !> Output folder; unallocated if none is named
       character(len=:), allocatable :: out
+      !> Numbers of the cases to compute; empty for all
+      character(len=:), allocatable :: cases
       !> Cases computed at the same time
       integer :: jobs = 1
       !> Print nothing but errors
@@ -37,33 +49,38 @@ contains
       !> Allocated if an argument is not understood
       type(error_t), allocatable, intent(out) :: error
       character(len=longest), allocatable :: argument(:)
-      integer :: i, length
+      integer, allocatable :: length(:)
+      integer :: i
 
-      allocate (argument(command_argument_count()))
+      allocate (argument(command_argument_count()), length(command_argument_count()))
       do i = 1, size(argument)
-         call get_command_argument(i, argument(i), length)
-         if (length > longest) then
-            call fatal_error(error, "an argument of at most "//to_text(longest) &
-               & //" characters is wanted, one of "//to_text(length)//" was found")
+         call get_command_argument(i, argument(i), length(i))
+         if (length(i) > longest) then
+            call fatal_error(error, "wanted an argument of at most "//to_text(longest) &
+               & //" characters, found one of "//to_text(length(i))//"; shorten it", "dda", i)
             return
          end if
       end do
-      call parse_command(argument, command, error)
+      call parse_command(argument, length, command, error)
    end subroutine read_command
 
    !> Understand the arguments
-   pure subroutine parse_command(argument, command, error)
+   pure subroutine parse_command(argument, length, command, error)
       !> The arguments: (n)
       character(len=*), intent(in) :: argument(:)
+      !> Their lengths, blanks at their ends counted: (n) [characters]
+      integer, intent(in) :: length(:)
       !> What the user asked for
       type(command_t), intent(out) :: command
       !> Allocated if an argument is not understood
       type(error_t), allocatable, intent(out) :: error
       character(len=longest), allocatable :: name(:), setting(:)
       logical :: takes_decks
+      integer, allocatable :: name_length(:)
       integer :: i, names, settings
 
-      allocate (name(size(argument) + 1), setting(size(argument)))
+      command%cases = ""
+      allocate (name(size(argument) + 1), name_length(size(argument) + 1), setting(size(argument)))
       names = 0
       settings = 0
       takes_decks = .false.
@@ -74,11 +91,11 @@ contains
          case ("--version")
             command%verb = "version"
          case ("run", "check")
-            command%verb = argument(1)(:16)
+            command%verb = argument(1)(:len(command%verb))
             takes_decks = .true.
          case default
-            call fatal_error(error, "run, check or help is wanted, '"//trim(argument(1)) &
-               & //"' was found")
+            call fatal_error(error, "wanted a subcommand, found '"//shown(trim(argument(1))) &
+               & //"'"//near_one(trim(argument(1)), subcommands)//"; 'dda help' lists all", line=1)
          end select
       end if
       i = 2
@@ -90,28 +107,37 @@ contains
          else if (takes_decks .and. (argument(i) == "--help" .or. argument(i) == "-h")) then
             names = 1
             name(1) = command%verb
+            name_length(1) = len_trim(command%verb)
             command%verb = "help"
             exit
          else if (takes_decks .and. argument(i)(1:1) == "-") then
-            call take_option(argument, i, command, error)
+            call take_option(argument, length, i, command, error)
          else
             names = names + 1
             name(names) = argument(i)
+            name_length(names) = length(i)
             if (takes_decks .and. name(names) == "") &
-               & call fatal_error(error, "the name of a deck is wanted, an empty one was found")
+               & call fatal_error(error, "wanted the name of a deck, found an empty one; "// &
+               & "give one")
          end if
+         if (allocated(error)) error%line = i
          i = i + 1
       end do
       allocate (command%name, source=name(:names))
+      allocate (command%name_length, source=name_length(:names))
       allocate (command%setting, source=setting(:settings))
       if (takes_decks .and. command%verb /= "help" .and. names == 0 .and. .not. allocated(error)) &
-         & call fatal_error(error, "dda "//trim(command%verb)//" wants the name of a deck")
+         & call fatal_error(error, "dda "//trim(command%verb)//" wants the name of a deck, "// &
+         & "found none; 'dda help "//trim(command%verb)//"' says more", line=1)
+      if (allocated(error)) error%file = "dda"
    end subroutine parse_command
 
    !> Understand one option and its value
-   pure subroutine take_option(argument, i, command, error)
+   pure subroutine take_option(argument, length, i, command, error)
       !> The arguments: (n)
       character(len=*), intent(in) :: argument(:)
+      !> Their lengths, blanks at their ends counted: (n) [characters]
+      integer, intent(in) :: length(:)
       !> Place of the option in, of its last part out
       integer, intent(inout) :: i
       !> Receives the option
@@ -127,24 +153,44 @@ contains
       case ("--resume")
          command%resume = .true.
          return
-      case ("--out", "--set", "--jobs")
+      case ("--out", "--set", "--jobs", "--cases")
          if (i == size(argument)) then
-            call fatal_error(error, trim(argument(i))//" wants a value")
+            call fatal_error(error, trim(argument(i))//" wants a value, found none; 'dda help " &
+               & //trim(command%verb)//"' shows it")
             return
          end if
       case default
-         call fatal_error(error, "unknown option "//trim(argument(i)) &
-            & //"; 'dda help "//trim(command%verb)//"' lists those that exist")
+         call fatal_error(error, "unknown option "//shown(trim(argument(i)))// &
+            & near_one(trim(argument(i)), options)//"; 'dda help "//trim(command%verb)// &
+            & "' lists all")
          return
       end select
       i = i + 1
       if (argument(i - 1) == "--out") then
-         command%out = trim(argument(i))
-         if (command%out == "") call fatal_error(error, "--out wants the name of a folder")
+         command%out = argument(i)(:length(i))
+         if (command%out == "") call fatal_error(error, "--out wants the name of a folder, "// &
+            & "found an empty one; give one, or leave --out away")
+      else if (argument(i - 1) == "--cases") then
+         command%cases = argument(i)(:length(i))
+         if (command%cases == "") call fatal_error(error, "--cases wants numbers of cases, "// &
+            & "found none; write them like 1-4,7")
       else
          call read_integer(trim(argument(i)), command%jobs, ok)
          if (.not. ok .or. command%jobs < 1) call fatal_error(error, &
-            & "--jobs wants a number of cases from 1, '"//trim(argument(i))//"' was found")
+            & "--jobs wants a whole number of cases from 1, found '"//shown(trim(argument(i))) &
+            & //"'; correct it, or leave it out for 1")
       end if
    end subroutine take_option
+
+   !> Name of a deck or a topic as it was given, blanks at its end included
+   pure function name_of(command, i) result(name)
+      !> What the user asked for
+      type(command_t), intent(in) :: command
+      !> Place of the name
+      integer, intent(in) :: i
+      !> The name
+      character(len=:), allocatable :: name
+
+      name = command%name(i)(:command%name_length(i))
+   end function name_of
 end module dda_command_line

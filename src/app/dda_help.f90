@@ -2,7 +2,8 @@
 module dda_help
    use, intrinsic :: iso_fortran_env, only : error_unit, output_unit
    use dda_command_line, only : command_t
-   use dda_deck_words, only : deck_help
+   use dda_deck_token, only : shown
+   use dda_deck_words, only : deck_help, near_one
    use dda_process, only : exit_status
    implicit none
    private
@@ -11,6 +12,73 @@ module dda_help
 
    !> Version of the program
    character(len=*), parameter :: version = "0.1.0"
+   !> What there is help on
+   character(len=*), parameter :: topics(*) = [character(len=5) :: "run", "check", "keys", &
+      & "help"]
+
+   !> dda help
+   character(len=*), parameter :: general(*) = [character(len=96) :: &
+      & "dda: discontinuous deformation analysis of masonry arches", &
+      & "", &
+      & "   dda run DECK [DECK ...]     compute every case of every deck", &
+      & "   dda check DECK [DECK ...]   read and check decks, compute nothing", &
+      & "   dda help run | check        options of a subcommand (dda run --help does the same)", &
+      & "   dda help keys               every group and key of a deck: unit, range, default", &
+      & "   dda --help | -h             this page", &
+      & "   dda --version               the version", &
+      & "", &
+      & "A deck is a text file in Fortran's namelist form. A short one that asks a question:", &
+      & "", &
+      & "   &arch half_angle_deg = 90.0, voussoirs = 36 /", &
+      & "   &search parameter = 'thickness_ratio' /", &
+      & "", &
+      & "Written into arch.nml, 'dda run arch.nml' finds the thickness at which this arch falls", &
+      & "and writes it to arch/results.csv. Units are SI per metre of depth, angles degrees.", &
+      & "", &
+      & "Exit status: 0 every case reached a verdict; 2 bad input, with a line on standard", &
+      & "error, FILE:LINE: error: what was wanted, what was found; what to do; 3 a case is", &
+      & "undecided or was not finished; 4 results could not be written. Of several, the first", &
+      & "of 4, 2, 3."]
+
+   !> dda help run
+   character(len=*), parameter :: on_run(*) = [character(len=96) :: &
+      & "dda run DECK [DECK ...] [--out DIR] [--jobs N] [--set group%key=value ...]", &
+      & "        [--cases LIST] [--resume] [--quiet]", &
+      & "", &
+      & "   --out DIR   where results go; several decks each have a folder inside it", &
+      & "               (without it: a folder named as the deck without its ending)", &
+      & "   --jobs N    cases computed at the same time (default 1)", &
+      & "   --set group%key=value   overrides the deck; commas for lists; may be repeated", &
+      & "               (without it: the deck as it is)", &
+      & "   --cases LIST   compute only these cases, such as 1-500,812 (without it: all)", &
+      & "   --resume    skip the cases that an earlier run of the same deck with the same", &
+      & "               --set has finished; if the deck has changed, compute all anew", &
+      & "               (without it: compute all anew)", &
+      & "   --quiet     print nothing but errors (without it: a line a case of up to 100,", &
+      & "               the undecided ones of more, and progress where a terminal shows it)", &
+      & "   --help, -h  this page", &
+      & "", &
+      & "Writes results.csv (a row a case), joints.csv (a row a joint), log.txt, and", &
+      & "deck.record, by which --resume knows the deck again.", &
+      & "'dda help' lists the exit statuses, 'dda help keys' what a deck may say."]
+
+   !> dda help check
+   character(len=*), parameter :: on_check(*) = [character(len=96) :: &
+      & "dda check DECK [DECK ...] [--set group%key=value ...] [--quiet]", &
+      & "", &
+      & "   --set group%key=value   overrides the deck; commas for lists; may be repeated", &
+      & "               (without it: the deck as it is)", &
+      & "   --quiet     print nothing but errors (without it: the plan of each deck)", &
+      & "   --help, -h  this page", &
+      & "", &
+      & "Reads and checks the decks and prints what would be computed, and why. Writes nothing.", &
+      & "Exit status: 0 all decks are good; 2 one is not."]
+
+   !> dda help help
+   character(len=*), parameter :: on_help(*) = [character(len=96) :: &
+      & "dda help [run | check | keys | help]", &
+      & "", &
+      & "Prints help on a subcommand or on the keys of a deck (without a topic: the first page)."]
 
 contains
 
@@ -27,41 +95,18 @@ contains
       if (size(command%name) > 0) topic = trim(command%name(1))
       select case (topic)
       case ("")
-         call print_lines([character(len=96) :: &
-            & "dda: discontinuous deformation analysis of masonry arches", &
-            & "", &
-            & "   dda run DECK [DECK ...]     compute every case of every deck", &
-            & "   dda check DECK [DECK ...]   read and check decks, compute nothing", &
-            & "   dda help run | check | keys", &
-            & "   dda --version", &
-            & "", &
-            & "Exit status: 0 every case reached a verdict; 2 bad input;", &
-            & "3 a case ended undecided; 4 results could not be written."])
+         call print_lines(general)
       case ("run")
-         call print_lines([character(len=96) :: &
-            & "dda run DECK [DECK ...] [--out DIR] [--jobs N] [--set group%key=value ...]", &
-            & "        [--resume] [--quiet]", &
-            & "", &
-            & "   --out DIR   where results go; several decks each have a folder inside it", &
-            & "               (without it: a folder named as the deck without its ending)", &
-            & "   --jobs N    cases computed at the same time (1)", &
-            & "   --set group%key=value   overrides the deck; commas for lists", &
-            & "   --resume    skip the cases that an earlier run of the same deck with the same", &
-            & "               --set has finished; if the deck has changed, compute all anew", &
-            & "   --quiet     print nothing but errors", &
-            & "", &
-            & "Writes results.csv (a row a case), joints.csv (a row a joint), log.txt, and", &
-            & "deck.record, by which --resume knows the deck again."])
+         call print_lines(on_run)
       case ("check")
-         call print_lines([character(len=96) :: &
-            & "dda check DECK [DECK ...] [--set group%key=value ...] [--quiet]", &
-            & "", &
-            & "Reads and checks the decks and prints what would be computed, and why."])
+         call print_lines(on_check)
+      case ("help", "--help", "-h")
+         call print_lines(on_help)
       case ("keys")
          write (output_unit, "(a)", advance="no") deck_help()
       case default
-         write (error_unit, "(a)") "dda: error: help on run, check or keys is wanted, '" &
-            & //topic//"' was found"
+         write (error_unit, "(a)") "dda:2: error: wanted help on run, check, keys or help, found '" &
+            & //shown(topic)//"'"//near_one(topic, topics)//"; write one of them"
          status = exit_status%bad_input
       end select
    end subroutine print_help

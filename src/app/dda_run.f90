@@ -2,7 +2,8 @@
 module dda_run
    use, intrinsic :: iso_fortran_env, only : error_unit
    use dda_case, only : case_t, compute_case, prepare_case, tell_case
-   use dda_command_line, only : command_t
+   use dda_case_choice, only : choose_cases
+   use dda_command_line, only : command_t, name_of
    use dda_deck, only : deck_t, flag_of
    use dda_deck_record, only : deck_record
    use dda_deck_sweep, only : case_deck, n_cases
@@ -38,15 +39,18 @@ contains
       integer, intent(out) :: status
       type(deck_t), allocatable :: deck(:)
       type(error_t), allocatable :: error
+      logical, allocatable :: chosen(:)
       logical :: good(size(command%name))
       integer :: i, deck_status, w
 
       allocate (deck(size(command%name)))
       status = exit_status%success
       do i = 1, size(deck)
-         call read_deck(trim(command%name(i)), command%setting, deck(i), error)
+         call read_deck(name_of(command, i), command%setting, deck(i), error)
          if (.not. allocated(error)) call check_scene(deck(i), error)
          if (.not. allocated(error)) call check_folder(command, i, good(:i - 1), error)
+         if (.not. allocated(error)) call choose_cases(command%cases, &
+            & n_cases(deck(i)), chosen, error)
          good(i) = .not. allocated(error)
          do w = 1, merge(size(deck(i)%plan%warning), 0, good(i) .and. .not. command%quiet)
             write (error_unit, "(a)") warning_line(deck(i), w)
@@ -57,7 +61,7 @@ contains
       end do
       do i = 1, size(deck)
          if (.not. good(i)) cycle
-         call run_deck(command, trim(command%name(i)), deck(i), deck_status)
+         call run_deck(command, name_of(command, i), deck(i), deck_status)
          status = worst_status(status, deck_status)
       end do
    end subroutine run_decks
@@ -75,10 +79,11 @@ contains
       integer :: i
 
       do i = 1, number - 1
-         if (.not. good(i) .or. folder_of(command, trim(command%name(i))) &
-            & /= folder_of(command, trim(command%name(number)))) cycle
-         call fatal_error(error, "a deck with a folder of its own is wanted, "// &
-            & trim(command%name(i))//" writes to the same one", trim(command%name(number)), 1)
+         if (.not. good(i) .or. folder_of(command, name_of(command, i)) &
+            & /= folder_of(command, name_of(command, number))) cycle
+         call fatal_error(error, "wanted a deck with a folder of its own, found that "// &
+            & name_of(command, i)//" writes to "//folder_of(command, name_of(command, i))// &
+            & " too; rename one deck", name_of(command, number), 1)
          return
       end do
    end subroutine check_folder
@@ -134,21 +139,24 @@ contains
       type(finished_t) :: finished
       type(progress_t) :: progress
       type(error_t), allocatable :: error
+      logical, allocatable :: chosen(:)
       integer :: count(3), number, total
 
       total = n_cases(deck)
       count = 0
+      call choose_cases(command%cases, total, chosen, error)
       call name_tables(deck, folder_of(command, name), tables)
       call begin_tables(command, name, deck, total, tables, finished, error)
       progress%shown = error_is_terminal()
       if (command%quiet) progress%shown = .false.
-      progress%total = total - sum(finished%count)
+      chosen = chosen .and. .not. finished%case
+      progress%total = size(pack(chosen, chosen))
       call system_clock(progress%start)
       !$omp parallel do num_threads(min(command%jobs, total, max_jobs)) schedule(dynamic) &
       !$omp default(none) &
-      !$omp shared(total, deck, name, command, tables, progress, count, error, finished)
+      !$omp shared(total, deck, name, command, tables, progress, count, error, chosen)
       do number = 1, total
-         if (finished%case(number)) cycle
+         if (.not. chosen(number)) cycle
          call run_one_case(command, name, deck, number, total, tables, progress, count, error)
       end do
       !$omp end parallel do

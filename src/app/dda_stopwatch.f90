@@ -1,6 +1,5 @@
 !> How long a job takes and how much memory the process has taken
 module dda_stopwatch
-   use, intrinsic :: iso_fortran_env, only : int64
    use dda_kinds, only : wp
    implicit none
    private
@@ -48,11 +47,11 @@ contains
    end subroutine prepare
 
    !> Time jobs in turn, so that a disturbance of the machine meets all of them; short jobs are run
-   !> several times a sample
+   !> several times a sample, of which the least time counts
    subroutine take_samples(timed, sample)
       !> The jobs: (n)
       type(timed_job_t), intent(inout) :: timed(:)
-      !> Time of one run in each sample: (n_sample, n) [s]
+      !> Least time of one run in each sample: (n_sample, n) [s]
       real(wp), allocatable, intent(out) :: sample(:, :)
       real(wp) :: once(size(timed))
       integer :: batch(size(timed)), i, j, n
@@ -70,27 +69,26 @@ contains
       end do
    end subroutine take_samples
 
-   !> Mean time of several runs in a row
-   function seconds_of(job, runs) result(mean)
+   !> Least time of several runs in a row: other work on the machine can only add to it. What counts
+   !> is the time that the processor gives to this process, not that in which it waits
+   function seconds_of(job, runs) result(least)
       !> The job
       class(job_t), intent(inout) :: job
       !> How many
       integer, intent(in) :: runs
-      !> The mean [s]
-      real(wp) :: mean
-      integer(int64) :: start, finish, rate, ticks
+      !> The least [s]
+      real(wp) :: least
+      real(wp) :: start, finish
       integer :: i
 
-      call system_clock(count_rate=rate)
-      ticks = 0_int64
+      least = huge(least)
       do i = 1, runs
          call job%prepare()
-         call system_clock(start)
+         call cpu_time(start)
          call job%run()
-         call system_clock(finish)
-         ticks = ticks + finish - start
+         call cpu_time(finish)
+         least = min(least, finish - start)
       end do
-      mean = real(ticks, wp)/(real(rate, wp)*real(runs, wp))
    end function seconds_of
 
    !> The value in the middle: half of the values are no larger, half no smaller

@@ -11,7 +11,8 @@ module dda_friction_cone
    implicit none
    private
 
-   public :: joint_face_t, cone_t, project, apply_face, contact_state, contact_state_enum
+   public :: joint_face_t, cone_t, project, apply_face, is_stuck
+   public :: contact_state, contact_state_enum
 
    !> Face of the cone on which the force of a joint lies
    type :: joint_face_t
@@ -104,6 +105,14 @@ contains
       end if
       force(3) = real(face%slip, wp)*(abs(trial(3)) - multiplier)
    end subroutine return_to_limit
+
+   !> Whether a face is the inside of the cone
+   elemental logical function is_stuck(face)
+      !> The face
+      type(joint_face_t), intent(in) :: face
+
+      is_stuck = face%slip == 0 .and. .not. any(face%open)
+   end function is_stuck
 
    !> A face as an affine map: force = tangent*trial + constant as long as the face is held
    pure subroutine apply_face(cone, face, tangent, constant)

@@ -13,7 +13,7 @@ module dda_block_plan
       integer :: n_dof = 0
       !> Block at each place: (n_block)
       integer, allocatable :: block(:)
-      !> First entry of each row below the diagonal, by place, and one beyond the last: (n_block + 1)
+      !> First entry below the diagonal of each row, by place, and one beyond: (n_block + 1)
       integer, allocatable :: start(:)
       !> Column of each entry, as a place, rising within a row: (n_lower)
       integer, allocatable :: column(:)

@@ -4,7 +4,7 @@ module dda_assembly
    use dda_block_matrix, only : block_matrix_t, set_pattern
    use dda_block_system, only : block_system_t
    use dda_elasticity, only : elastic_matrix, stress_load
-   use dda_friction_cone, only : apply_face, cone_t, joint_face_t
+   use dda_friction_cone, only : apply_face, cone_t, is_stuck, joint_face_t
    use dda_inertia, only : mass_matrix
    use dda_joint_springs, only : joint_springs_t
    use dda_kinds, only : wp
@@ -396,27 +396,25 @@ contains
       !> Receives the load: (n_dof, n_equation)
       real(wp), intent(inout) :: load(:, :)
       real(wp) :: tangent(3, 3), constant(3)
-      integer :: e, side
+      integer :: c, e, side
 
       constant = trial
       if (.not. is_stuck(face)) then
          call apply_face(cone, face, tangent, constant)
          constant = constant + matmul(tangent, trial + springs%shift(:, j)) - springs%shift(:, j)
       end if
+      if (.not. any(abs(constant) > 0.0_wp)) return
       do side = 1, 2
          e = springs%equation(side, j)
-         if (e > 0) load(:, e) = load(:, e) + springs%row(:, 1, side, j)*constant(1) &
-            & + springs%row(:, 2, side, j)*constant(2) + springs%row(:, 3, side, j)*constant(3)
+         if (e == 0) cycle
+         ! blocks have 3 or 6 unknowns: three at a time, so that the compiler knows the length
+         do c = 1, size(load, 1), 3
+            load(c:c + 2, e) = load(c:c + 2, e) + springs%row(c:c + 2, 1, side, j)*constant(1) &
+               & + springs%row(c:c + 2, 2, side, j)*constant(2) &
+               & + springs%row(c:c + 2, 3, side, j)*constant(3)
+         end do
       end do
    end subroutine add_load
-
-   !> Whether a face is the inside of the cone
-   elemental logical function is_stuck(face)
-      !> The face
-      type(joint_face_t), intent(in) :: face
-
-      is_stuck = face%slip == 0 .and. .not. any(face%open)
-   end function is_stuck
 
    !> Openings and slips of the joints by a motion of the blocks
    pure function relative_displacement(springs, motion) result(increment)
@@ -426,18 +424,23 @@ contains
       real(wp), intent(in) :: motion(:, :)
       !> Opening at the two contacts and slip: (3, n_joint) [m]
       real(wp) :: increment(3, size(springs%equation, 2))
-      integer :: e, j, k, side
+      real(wp) :: seen(3)
+      integer :: c, e, j, k, side
 
-      increment = 0.0_wp
       do j = 1, size(springs%equation, 2)
+         seen = 0.0_wp
          do side = 1, 2
             e = springs%equation(side, j)
             if (e == 0) cycle
-            do k = 1, 3
-               increment(k, j) = increment(k, j) &
-                  & + dot_product(motion(:, e), springs%row(:, k, side, j))
+            do c = 1, size(motion, 1), 3
+               do k = 1, 3
+                  seen(k) = seen(k) + springs%row(c, k, side, j)*motion(c, e) &
+                     & + springs%row(c + 1, k, side, j)*motion(c + 1, e) &
+                     & + springs%row(c + 2, k, side, j)*motion(c + 2, e)
+               end do
             end do
          end do
+         increment(:, j) = seen
       end do
    end function relative_displacement
 end module dda_assembly

@@ -75,8 +75,11 @@ contains
       call new_equations(system, contacts%springs, settings, equations)
       call begin_step(contacts, size(equations%weight, 1), size(equations%weight, 2), step%state)
       if (present(onward)) march = onward
-      if (march%steps == 0) call first_interval(system, contacts%springs, settings, equations, &
-         & step%state, march, error)
+      if (march%steps == 0) then
+         call first_interval(system, contacts%springs, settings, equations, step%state, march, &
+            & error)
+         contacts%face = step%state%face
+      end if
       if (present(album)) call keep_pictures(system, contacts, march, .false., album)
       do while (.not. allocated(error))
          if (march%steps == settings%max_steps) exit

@@ -52,10 +52,9 @@ module dda_friction
 contains
 
    !> Find the motion and the states of one step under Coulomb friction. First no joint may slide;
-   !> if
-   !> a shear force is then too large, all shear forces are bounded by friction times the normal
-   !> forces of the pass before, until these no longer change. Where blocks fall so far that rounding
-   !> hides smaller changes, the bounds that changed least are taken
+   !> if a shear force is then too large, all shear forces are bounded by friction times the normal
+   !> forces of the pass before, until these no longer change. Where blocks fall so far that
+   !> rounding hides smaller changes, the bounds that changed least are taken
    pure subroutine iterate_friction(equations, springs, max_changes, state)
       !> Blocks assembled; matrix and factor are made anew
       type(equations_t), intent(inout) :: equations
@@ -75,7 +74,7 @@ contains
       tolerance = 1.0e-11_wp*sum(abs(equations%weight(1:2, :)))
       state%cone = cone_t(friction=0.0_wp, limit=huge(1.0_wp))
       state%face%slip = 0
-      call iterate_open_close(equations, springs, max_changes, state)
+      call iterate_open_close(equations, springs, max_changes, state, one_by_one=.true.)
       if (.not. state%settled) return
       bound = coulomb_bound(springs, state)
       if (all(abs(state%force(3, :)) <= bound + tolerance)) return
@@ -85,7 +84,7 @@ contains
       resolved = .false.
       do correction = 1, max_corrections
          state%cone%limit = bound
-         call iterate_open_close(equations, springs, max_changes, state)
+         call iterate_open_close(equations, springs, max_changes, state, one_by_one=.true.)
          if (.not. state%settled) return
          change = merge(coulomb_bound(springs, state) - bound, 0.0_wp, &
             & springs%cone%limit < huge(1.0_wp))

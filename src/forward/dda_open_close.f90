@@ -1,21 +1,21 @@
 !> The open-close loop: an active-set method on the faces of the friction cones (Shi: df18 to df22)
 !>
 !> One step minimises a convex, piecewise quadratic energy. With the faces fixed the minimum is a
-!> linear system; the joint whose force disagrees most with its face then changes its face, as the
-!> simplex method pivots. Should a set of faces come again, Newton's method with an exact line
-!> search
+!> linear system; each joint whose force disagrees with its face more than its neighbours' do then
+!> changes its face, as the simplex method pivots. Should a set of faces come again, only the joint
+!> that disagrees most does; should one come again then, Newton's method with an exact line search
 !> takes over, which must end.
 module dda_open_close
    use, intrinsic :: iso_fortran_env, only : int64
    use dda_assembly, only : equations_t, relative_displacement, solve_faces
    use dda_block_factor, only : substitute
-   use dda_friction_cone, only : apply_face, cone_t, joint_face_t, project
+   use dda_friction_cone, only : apply_face, cone_t, is_stuck, joint_face_t, project
    use dda_joint_springs, only : joint_springs_t
    use dda_kinds, only : wp
    implicit none
    private
 
-   public :: step_state_t, iterate_open_close, joint_forces, force_noise
+   public :: step_state_t, iterate_open_close, change_faces, joint_forces, force_noise
 
    !> What the loop works on: the motion of the step and the joints at its end
    type :: step_state_t
@@ -44,6 +44,8 @@ module dda_open_close
    !> Joints whose disagreement is as large as the largest but for rounding change together, which
    !> keeps the mirror images of a symmetric scene alike
    real(wp), parameter :: tie = 1.0e-9_wp
+   !> Joints whose disagreement is below this share of the largest wait for their turn
+   real(wp), parameter :: notable = 0.1_wp
 
    !> Most passes of Newton's method: where it needs more, a shorter step is cheaper
    integer, parameter :: max_newton = 40
@@ -51,7 +53,7 @@ module dda_open_close
 contains
 
    !> Find the motion and the faces of one step
-   pure subroutine iterate_open_close(equations, springs, max_changes, state)
+   pure subroutine iterate_open_close(equations, springs, max_changes, state, one_by_one)
       !> Blocks assembled; matrix and factor are made anew
       type(equations_t), intent(inout) :: equations
       !> The springs of the joints
@@ -60,20 +62,28 @@ contains
       integer, intent(in) :: max_changes
       !> Faces to begin with in, motion and joints out
       type(step_state_t), intent(inout) :: state
+      !> Whether only the joint that disagrees most changes its face, as it does after a repetition
+      logical, intent(in), optional :: one_by_one
       type(joint_face_t) :: wanted(size(state%face))
       real(wp) :: gap(size(state%face))
       real(wp) :: best(size(state%motion, 1), size(state%motion, 2)), least
       integer(int64) :: seen(max_changes + 1)
-      integer :: change
-      logical :: came_again
+      integer :: change, since
+      logical :: peaks
 
+      peaks = .true.
+      if (present(one_by_one)) peaks = .not. one_by_one
+      since = 1
       state%settled = .false.
       best = 0.0_wp
       least = huge(least)
       do change = 1, max_changes + 1
          seen(change) = hash(state%face)
-         came_again = any(seen(:change - 1) == seen(change))
-         if (came_again) exit
+         if (any(seen(since:change - 1) == seen(change))) then
+            if (.not. peaks) exit
+            peaks = .false.
+            since = change
+         end if
          call solve_faces(equations, springs, state%cone, state%face, state%start, state%motion)
          state%passes = state%passes + 1
          if (.not. equations%factor%usable) return
@@ -84,7 +94,11 @@ contains
             least = maxval(gap)
             best = state%motion
          end if
-         where (gap >= (1.0_wp - tie)*maxval(gap)) state%face = wanted
+         if (peaks) then
+            where (is_peak(equations, springs, gap)) state%face = wanted
+         else
+            where (gap >= (1.0_wp - tie)*maxval(gap)) state%face = wanted
+         end if
       end do
       if (.not. state%settled) then
          state%motion = best
@@ -92,6 +106,51 @@ contains
       end if
       if (state%settled) call joint_forces(springs, state)
    end subroutine iterate_open_close
+
+   !> Change the faces of a motion once: where to begin, if the motion is nearly that of a step
+   pure subroutine change_faces(equations, springs, state)
+      !> The equations
+      type(equations_t), intent(in) :: equations
+      !> The springs of the joints
+      type(joint_springs_t), intent(in) :: springs
+      !> The step; its faces are changed
+      type(step_state_t), intent(inout) :: state
+      type(joint_face_t) :: wanted(size(state%face))
+      real(wp) :: gap(size(state%face))
+
+      call disagreement(springs, state, gap, wanted)
+      if (maxval(gap) <= force_noise(equations, springs, state)) return
+      where (is_peak(equations, springs, gap)) state%face = wanted
+   end subroutine change_faces
+
+   !> Joints that disagree more than all others of their two blocks
+   pure function is_peak(equations, springs, gap)
+      !> The equations, for the joints of each block
+      type(equations_t), intent(in) :: equations
+      !> The springs, for the blocks of each joint
+      type(joint_springs_t), intent(in) :: springs
+      !> Disagreement: (n_joint) [N/m]
+      real(wp), intent(in) :: gap(:)
+      !> The joints: (n_joint)
+      logical :: is_peak(size(gap))
+      real(wp) :: highest, threshold
+      integer :: e, j, k, side
+
+      threshold = notable*maxval(gap)
+      do j = 1, size(gap)
+         is_peak(j) = gap(j) >= threshold
+         if (.not. is_peak(j)) cycle
+         highest = gap(j)
+         do side = 1, 2
+            e = springs%equation(side, j)
+            if (e == 0) cycle
+            do k = equations%first_joint(e), equations%first_joint(e + 1) - 1
+               highest = max(highest, gap(abs(equations%joint(k))))
+            end do
+         end do
+         is_peak(j) = gap(j) >= (1.0_wp - tie)*highest
+      end do
+   end function is_peak
 
    !> Force that rounding alone can make: of all loads, and of the penalty on the largest motion
    pure function force_noise(equations, springs, state) result(noise)
@@ -119,7 +178,7 @@ contains
       real(wp), intent(out) :: gap(:)
       !> Face that each joint ought to have: (n_joint)
       type(joint_face_t), intent(out) :: wanted(:)
-      real(wp) :: admissible(3), constant(3), shift(3), tangent(3, 3)
+      real(wp) :: admissible(3), constant(3), held(3), shift(3), tangent(3, 3)
       integer :: j
 
       state%increment = relative_displacement(springs, state%motion)
@@ -127,8 +186,12 @@ contains
          shift = springs%shift(:, j)
          state%trial(:, j) = state%start(:, j) - springs%stiffness(j)*state%increment(:, j)
          call project(state%cone(j), state%trial(:, j) + shift, admissible, wanted(j))
-         call apply_face(state%cone(j), state%face(j), tangent, constant)
-         gap(j) = norm2(matmul(tangent, state%trial(:, j) + shift) + constant - admissible) &
+         held = state%trial(:, j) + shift
+         if (.not. is_stuck(state%face(j))) then
+            call apply_face(state%cone(j), state%face(j), tangent, constant)
+            held = matmul(tangent, held) + constant
+         end if
+         gap(j) = sqrt(sum((held - admissible)**2)) &
             & - 16.0_wp*epsilon(1.0_wp)*maxval(abs(state%trial(:, j)))
       end do
    end subroutine disagreement

@@ -6,7 +6,7 @@ module dda_step_interval
    use dda_friction_cone, only : cone_t, joint_face_t
    use dda_joint_springs, only : joint_springs_t
    use dda_kinds, only : wp
-   use dda_open_close, only : step_state_t
+   use dda_open_close, only : change_faces, step_state_t
    use dda_settings, only : settings_t
    use dda_step_context, only : march_t, step_context_t
    implicit none
@@ -48,7 +48,7 @@ contains
       type(settings_t), intent(in) :: settings
       !> The equations; matrix and factor are made anew
       type(equations_t), intent(inout) :: equations
-      !> The step's state; its motion becomes that of the glued system
+      !> The step's state; its motion becomes that of the glued system, its faces those to begin with
       type(step_state_t), intent(inout) :: state
       !> The march, made new
       type(march_t), intent(out) :: march
@@ -83,6 +83,7 @@ contains
          call fatal_error(error, "the blocks with all joints closed make no stable system")
          return
       end if
+      call change_faces(equations, springs, state)
       march%elastic_motion = largest_motion(system, state%motion)
       if (march%free_acceleration > 0.0_wp) march%dt = min(march%longest, &
          & sqrt(2.0_wp*first_fall*march%elastic_motion/march%free_acceleration))

@@ -54,7 +54,6 @@ contains
       real(wp), intent(in) :: force_before(:, :)
       !> The step; its measures are set
       type(step_context_t), intent(inout) :: step
-      real(wp) :: stiff(size(equations%weight, 1))
       integer :: b, e, nd
 
       nd = size(equations%weight, 1)
@@ -67,15 +66,32 @@ contains
          do b = 1, size(system%equation)
             e = system%equation(b)
             if (e == 0) cycle
-            stiff = matmul(equations%mass(:, :, e), motion(:, e))
-            step%kinetic = step%kinetic + dot_product(motion(:, e), stiff)*2.0_wp/step%dt**2
+            step%kinetic = step%kinetic &
+               & + quadratic(equations%mass(:, :, e), motion(:, e))*2.0_wp/step%dt**2
             if (nd < 6) cycle
-            stiff = matmul(equations%elastic(:, :, e), motion(:, e))
-            step%stored = step%stored + dot_product(motion(:, e), stiff)/2.0_wp &
+            step%stored = step%stored &
+               & + quadratic(equations%elastic(4:6, 4:6, e), motion(4:6, e))/2.0_wp &
                & + system%area(b)*dot_product(motion(4:6, e), system%stress(:, b))
          end do
       end associate
    end subroutine measure_step
+
+   !> x' a x
+   pure real(wp) function quadratic(a, x)
+      !> Symmetric matrix: (n, n)
+      real(wp), intent(in) :: a(:, :)
+      !> Column: (n)
+      real(wp), intent(in) :: x(:)
+      integer :: c, r
+
+      quadratic = 0.0_wp
+      do c = 1, size(x)
+         do r = 1, c - 1
+            quadratic = quadratic + 2.0_wp*x(c)*a(r, c)*x(r)
+         end do
+         quadratic = quadratic + x(c)*a(c, c)*x(c)
+      end do
+   end function quadratic
 
    !> Judge a static run by its last two steps.
    !> It stands if the joint forces balance the full load but for a residue that would accelerate no

@@ -103,7 +103,8 @@ contains
       file%name = name
       file%handle = c_fopen(name//c_null_char, "wb"//c_null_char)
       if (.not. c_associated(file%handle)) &
-         & call fatal_error(error, "a file that can be written is wanted, this one cannot", name, 1)
+         & call fatal_error(error, "wanted a file that can be written, found one that cannot; "// &
+         & "choose another folder with --out", name, 1)
    end subroutine open_binary
 
    !> Write so that all up to here survives the end of the program
@@ -116,7 +117,8 @@ contains
 
       failed = [c_fflush(file%handle), c_ferror(file%handle)]
       if (any(failed /= 0)) &
-         & call fatal_error(error, "the results find no room here", file%name, 1)
+         & call fatal_error(error, "wanted room for the results, found "// &
+         & "none; make room or choose another folder with --out", file%name, 1)
    end subroutine flush_binary
 
    !> Close a file
@@ -131,7 +133,8 @@ contains
       call flush_binary(file, error)
       failed = c_fclose(file%handle)
       if (failed /= 0 .and. .not. allocated(error)) &
-         & call fatal_error(error, "the results find no room here", file%name, 1)
+         & call fatal_error(error, "wanted room for the results, found "// &
+         & "none; make room or choose another folder with --out", file%name, 1)
       file%handle = c_null_ptr
    end subroutine close_binary
 

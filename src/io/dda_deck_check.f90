@@ -90,8 +90,8 @@ contains
          key = deck_key(searched%key)
          if (key%group == "search" .or. &
             .not. any(key%kind == [key_kind%number, key_kind%numbers])) then
-            problem = "wanted a key with real values such as thickness_ratio, found "// &
-               full_name(key)
+            problem = "wanted a key with real values, found "//full_name(key)// &
+               "; sweep it instead, or search one like thickness_ratio"
          end if
       end if
       if (len(problem) > 0) then
@@ -117,12 +117,14 @@ contains
       associate (sweep => deck%sweep(s))
          name = parameter_name(sweep%parameter)
          problem = ""
-         if (same(sweep%parameter, searched)) problem = name//" is both swept and searched"
+         if (same(sweep%parameter, searched)) problem = name// &
+            " is both swept and searched; remove one of the two"
          if (deck_key(sweep%parameter%key)%group == "search" .and. searched%key == 0) &
-            problem = name//" is swept, but the deck has no &search"
+            problem = name//" is swept, but the deck has no &search; add one"
          do other = 1, s - 1
             if (same(sweep%parameter, deck%sweep(other)%parameter)) problem = name// &
-               " is swept twice: first in line "//to_text(deck%sweep(other)%place%line)
+               " is swept twice: first in line "//to_text(deck%sweep(other)%place%line)// &
+               "; put all values into one &sweep"
          end do
          if (sweep%linked) call check_link(deck, s, problem)
          if (len(problem) > 0) then
@@ -144,13 +146,13 @@ contains
       integer :: here, before
 
       if (s == 1) then
-         problem = "the first &sweep cannot be linked: there is none before it"
+         problem = "the first &sweep cannot be linked: there is none before it; remove linked"
          return
       end if
       here = size(deck%sweep(s)%numbers) + size(deck%sweep(s)%texts)
       before = size(deck%sweep(s - 1)%numbers) + size(deck%sweep(s - 1)%texts)
       if (here /= before) problem = "a linked &sweep wants as many values as the one before, "// &
-         to_text(before)//", found "//to_text(here)
+         to_text(before)//", found "//to_text(here)//"; make them equal"
    end subroutine check_link
 
    !> Check that varying a parameter has an effect and does not undo a --set
@@ -175,12 +177,12 @@ contains
             ", but kind = 'blocks' has no arch", deck, place)
       else if (deck%value(parameter%key)%place%from_command .and. parameter%item == 0) then
          call deck_error(error, full_name(deck_key(parameter%key))//" cannot be set: it is "// &
-            how//" in line "//to_text(place%line)//" of "//deck%file, deck, &
+            how//" in line "//to_text(place%line)//" of "//deck%file//"; remove the --set", deck, &
             deck%value(parameter%key)%place)
       else if (is_weight .and. is_given(deck, "material", "unit_weight") .and. &
          word_of(deck, "analysis", "mode") == "static") then
          call deck_error(error, full_name(deck_key(parameter%key))//" is "//how// &
-            ", but it has no effect: material%unit_weight is given", deck, place)
+            ", but it has no effect: material%unit_weight is given; remove that", deck, place)
       end if
    end subroutine check_varied
 
@@ -211,7 +213,8 @@ contains
       if (n > integer_of(deck, "output", "max_cases")) then
          call deck_error(error, "wanted at most "// &
             to_text(integer_of(deck, "output", "max_cases"))// &
-            " cases (output%max_cases), found "//to_text(n)//" or more", deck, &
+            " cases, found "//to_text(n)//" or more; raise output%max_cases if they are meant", &
+            deck, &
             deck%sweep(size(deck%sweep))%place)
          return
       end if

@@ -33,20 +33,21 @@ contains
          is_given(deck, "material", "unit_weight")
       if (is_static .and. .not. has_weight) then
          call deck_error(error, "a static analysis wants a weight: load%gravity is 0 and "// &
-            "material%unit_weight is not given", deck, &
+            "material%unit_weight is not given; give one of them", deck, &
             deck%value(key_index("load", "gravity"))%place)
       else if (searched%key > 0 .and. .not. is_static) then
          call deck_error(error, "a search wants mode = 'static'; a dynamic run ends "// &
-            "'completed', neither standing nor fallen", deck, &
+            "'completed', neither standing nor fallen; remove &search or mode = 'dynamic'", deck, &
             place_of(deck, key_index("search", "parameter")))
       else if (.not. is_static .and. word_of(deck, "analysis", "geometry") == "current") then
          call deck_error(error, "geometry = 'current' wants mode = 'static': this version "// &
-            "has no dynamics of moving blocks yet", deck, &
+            "has no dynamics of moving blocks yet; change one of the two", deck, &
             place_of(deck, key_index("analysis", "mode")))
       else if (integer_of(deck, "output", "frames") > 0 .and. &
          word_of(deck, "analysis", "geometry") /= "current") then
          call deck_error(error, "output%frames wants geometry = 'current': in reference "// &
-            "geometry no block moves", deck, place_of(deck, key_index("output", "frames")))
+            "geometry no block moves; change one of the two", deck, &
+            place_of(deck, key_index("output", "frames")))
       else if (is_static .and. is_given(deck, "analysis", "restart")) then
          call deck_error(error, "analysis%restart wants mode = 'dynamic': a static run comes "// &
             "to rest by itself", deck, place_of(deck, key_index("analysis", "restart")))
@@ -72,7 +73,7 @@ contains
       span = 2.0_wp*real_of(deck, "arch", "half_angle_deg")/real_of(deck, "arch", "voussoirs")
       if (span < 180.0_wp .or. is_given(deck, "arch", "facet_deg")) return
       call deck_error(error, "one chord a voussoir wants voussoirs of less than 180 degrees, "// &
-         "found "//to_text(span)//": give facet_deg or more voussoirs", deck, &
+         "found "//to_text(span)//"; give facet_deg or more voussoirs", deck, &
          later(deck, "half_angle_deg", "voussoirs"))
    end subroutine check_shape
 
@@ -91,18 +92,20 @@ contains
       associate (joints => deck%value(key_index("arch", "joints_deg"))%numbers)
          n = size(joints)
          if (n < 2) then
-            problem = "wants two angles or more, found "//to_text(n)
+            problem = "wants two angles or more, found "//to_text(n)// &
+               "; write 0 (the crown) and the springing at least"
          else if (abs(joints(1)) > 0.0_wp) then
-            problem = "wants 0 first (the crown), found "//to_text(joints(1))
+            problem = "wants 0 first (the crown), found "//to_text(joints(1))// &
+               "; write the joints of one half only"
          else if (is_given(deck, "arch", "voussoirs")) then
-            problem = "and arch%voussoirs exclude one another"
+            problem = "and arch%voussoirs exclude one another; remove one of them"
             place = later(deck, "joints_deg", "voussoirs")
          end if
          do i = 2, n
             if (len(problem) > 0) exit
             if (joints(i) > joints(i - 1) + same_angle) cycle
             problem = "wants increasing angles [deg], found "//to_text(joints(i - 1))// &
-               " before "//to_text(joints(i))
+               " before "//to_text(joints(i))//"; sort them, each one once"
          end do
       end associate
       if (len(problem) > 0) then
@@ -127,7 +130,7 @@ contains
       end associate
       if (.not. abs(last - half_angle) > same_angle) return
       call deck_error(error, "arch%joints_deg ends at "//to_text(last)// &
-         ", but arch%half_angle_deg is "//to_text(half_angle), deck, &
+         ", but arch%half_angle_deg is "//to_text(half_angle)//"; remove half_angle_deg", deck, &
          later(deck, "joints_deg", "half_angle_deg"))
    end subroutine check_half_angle
 
@@ -164,11 +167,12 @@ contains
       call bracket_of(deck, searched, low, high)
       if (.not. low > -huge(low) .or. .not. high < huge(high)) then
          call deck_error(error, "a search for "//parameter_name(searched)// &
-            " wants search%low and search%high", deck, &
+            " wants search%low and search%high, which have no default; give both", deck, &
             place_of(deck, key_index("search", "parameter")))
       else if (.not. low < high) then
          call deck_error(error, "wanted search%low below search%high, found "//to_text(low)// &
-            " and "//to_text(high), deck, place_of(deck, key_index("search", &
+            " and "//to_text(high)//"; make low the smaller one", deck, &
+            place_of(deck, key_index("search", &
             trim(merge("high", "low ", is_given(deck, "search", "high"))))))
       else
          call check_end(deck, searched, "low", error)
@@ -192,7 +196,8 @@ contains
       if (.not. is_given(deck, "search", name)) return
       problem = number_problem(searched%key, real_of(deck, "search", name))
       if (len(problem) > 0) then
-         call deck_error(error, "search%"//name//": "//problem, deck, &
+         call deck_error(error, "search%"//name//": "//problem// &
+            "; choose an end that it can take", deck, &
             deck%value(key_index("search", name))%place)
       else if (deck_key(searched%key)%group == "arch") then
          trial = deck

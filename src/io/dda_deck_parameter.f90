@@ -56,21 +56,24 @@ contains
       fits = deck_key%name == key .and. (deck_key%group == group .or. len(group) == 0)
       problem = ""
       if (.not. ok) then
-         problem = "wanted a name such as joints_deg(2), found '"//shown(name)//"'"
+         problem = "wanted a name such as joints_deg(2), found '"//shown(name)// &
+            "'; number the items from 1"
       else if (.not. any(fits)) then
          problem = "'"//shown(name)//"' is no key: "//near_key(key, group)
       else if (.not. any(fits .and. deck_key%varies)) then
-         problem = "'"//shown(name)//"' cannot be varied"
+         problem = "'"//shown(name)//"' cannot be varied; choose a key of the groups arch to "// &
+            "analysis"
       else if (count(fits .and. deck_key%varies) > 1) then
-         problem = "'"//shown(name)//"' is a key of several groups: write group%key"
+         problem = "'"//shown(name)//"' is a key of several groups; write group%key"
       end if
       if (len(problem) > 0) return
       parameter%key = maxloc(merge(1, 0, fits .and. deck_key%varies), dim=1)
       i = parameter%key
       if (deck_key(i)%kind == key_kind%numbers .eqv. parameter%item > 0) return
-      problem = trim(deck_key(i)%name)//" is a list: name one item, such as "// &
+      problem = trim(deck_key(i)%name)//" is a list; name one item, such as "// &
          trim(deck_key(i)%name)//"(2)"
-      if (parameter%item > 0) problem = trim(deck_key(i)%name)//" has no items"
+      if (parameter%item > 0) problem = trim(deck_key(i)%name)//" has no items; leave the "// &
+         "parentheses away"
    end subroutine find_parameter
 
    !> Name of a parameter as a column is headed

@@ -40,7 +40,8 @@ contains
       if (scan%open_group > 0) then
          call not_closed(scan, "the end of the file", error)
       else if (scan%n == 0) then
-         call fatal_error(error, "wanted at least one group such as &arch, found none", line=1)
+         call fatal_error(error, "wanted at least one group, found none; write &arch / for an "// &
+            "arch of defaults", line=1)
       end if
    end subroutine scan_deck
 
@@ -63,7 +64,8 @@ contains
       end do
       do i = 1, scan%n
          if (scan%token(i)%kind == token_kind%key .or. scan%token(i)%kind == token_kind%close) then
-            call fatal_error(error, "wanted values, found '"//shown(text)//"'")
+            call fatal_error(error, "wanted values, found '"//shown(text)// &
+               "'; write one value, or several parted by commas")
             return
          end if
       end do
@@ -81,11 +83,12 @@ contains
       last = word_end(scan)
       if (scan%text(first:first) /= "&") then
          call fatal_error(error, "wanted a group such as &arch, found text between groups: '"// &
-            shown(scan%text(first:max(first, last)))//"'", line=scan%line)
+            shown(scan%text(first:max(first, last)))//"'; remove it or put '!' before it", &
+            line=scan%line)
       else if (last == first .or. &
          verify(lower_case(scan%text(first + 1:last)), name_letters) > 0) then
          call fatal_error(error, "wanted the name of a group after '&', found '"// &
-            shown(scan%text(first + 1:last))//"'", line=scan%line)
+            shown(scan%text(first + 1:last))//"'; write one like &arch", line=scan%line)
       else
          call add_token(scan, token_kind%group, first + 1, last, 1, error)
          scan%open_group = scan%n
@@ -109,7 +112,8 @@ contains
       case (",")
          call scan_comma(scan, error)
       case ("=")
-         call fatal_error(error, "wanted a key before '='", line=scan%line)
+         call fatal_error(error, "wanted a key before '=', found none; write key = value", &
+            line=scan%line)
       case ("'", """")
          call scan_quoted(scan, 1, error)
       case default
@@ -195,7 +199,8 @@ contains
       end do
       last = min(last - 1, len(scan%text))
       call fatal_error(error, "wanted a closing quote on the same line after at most "// &
-         to_text(max_text)//" characters, found '"//shown(scan%text(first:last))//"'", &
+         to_text(max_text)//" characters, found '"//shown(scan%text(first:last))// &
+         "'; close the quote", &
          line=scan%line)
    end subroutine scan_quoted
 
@@ -251,7 +256,8 @@ contains
       if (ok) ok = count >= 1 .and. count <= max_items
       if (ok) return
       call fatal_error(error, "wanted a repeat count from 1 to "//to_text(max_items)// &
-         " before '*', found '"//shown(scan%text(first:first + star - 2))//"'", line=scan%line)
+         " before '*', found '"//shown(scan%text(first:first + star - 2))// &
+         "'; write it like 3*1.5", line=scan%line)
    end subroutine repeat_count
 
    !> The error of a group without its slash
@@ -264,10 +270,10 @@ contains
       type(error_t), allocatable, intent(out) :: error
 
       if (scan%open_group == 0) then
-         call fatal_error(error, "wanted values, found "//found)
+         call fatal_error(error, "wanted values, found "//found//"; remove it")
       else
          call fatal_error(error, "wanted '/' at the end of &"// &
-            token_text(scan, scan%open_group)//", found "//found, &
+            token_text(scan, scan%open_group)//", found "//found//"; close the group", &
             line=scan%token(scan%open_group)%line)
       end if
    end subroutine not_closed

@@ -4,7 +4,7 @@ module dda_deck_set
    use dda_error, only : error_t
    use dda_text, only : to_text, lower_case
    use dda_deck_keys, only : key_t, deck_key, key_kind, key_index
-   use dda_deck_words, only : wanted, quoted_words, full_name
+   use dda_deck_words, only : wanted, quoted_words, full_name, near_word, or_leave_out
    use dda_deck_token, only : shown
    use dda_deck, only : deck_t, deck_place_t, parameter_t, deck_error
    use dda_deck_parameter, only : find_parameter
@@ -78,9 +78,10 @@ contains
          if (allocated(held%numbers)) n = size(held%numbers)
          if (parameter%item > n) then
             problem = full_name(deck_key(parameter%key))//" has no item "// &
-               to_text(parameter%item)//": its list has "//to_text(n)
+               to_text(parameter%item)//": its list has "//to_text(n)//"; write it in &"// &
+               trim(deck_key(parameter%key)%group)
          else if (.not. number_fits(parameter%key, value)) then
-            problem = number_problem(parameter%key, value)
+            problem = number_problem(parameter%key, value)//or_leave_out(parameter%key)
          end if
          if (allocated(problem)) then
             call deck_error(error, problem, deck, place)
@@ -115,7 +116,7 @@ contains
       do i = 1, size(values)
          problem = number_problem(key, values(i))
          if (len(problem) == 0) cycle
-         call deck_error(error, problem, deck, place)
+         call deck_error(error, problem//or_leave_out(key), deck, place)
          return
       end do
       deck%value(key)%numbers = values
@@ -141,7 +142,7 @@ contains
 
       problem = text_problem(parameter%key, text)
       if (len(problem) > 0) then
-         call deck_error(error, problem, deck, place)
+         call deck_error(error, problem//or_leave_out(parameter%key), deck, place)
          return
       end if
       associate (held => deck%value(parameter%key))
@@ -215,7 +216,7 @@ contains
          fits = entry%kind == key_kind%text
       end select
       if (.not. fits .and. len(problem) == 0) problem = full_name(entry)//" wants "// &
-         wanted(entry)//", found '"//shown(trim(text))//"'"
+         wanted(entry)//", found '"//shown(trim(text))//"'"//near_word(entry, text)
    end function text_problem
 
    !> Whether a list of words holds a word, whatever its case

@@ -33,12 +33,14 @@ contains
 
       sweep%place = place
       if (size(deck%sweep) == max_sweeps) then
-         call deck_error(error, "wanted at most "//to_text(max_sweeps)//" &sweep groups", &
+         call deck_error(error, "wanted at most "//to_text(max_sweeps)//" &sweep groups, found "// &
+            "one more; split the deck", &
             deck, place)
          return
       end if
       if (.not. is_given(deck, "sweep", "parameter")) then
-         call deck_error(error, "wanted sweep%parameter, the name of a key", deck, place)
+         call deck_error(error, "wanted sweep%parameter, the name of a key, found none; "// &
+            "give it, such as parameter = 'voussoirs'", deck, place)
          return
       end if
       call find_parameter(text_of(deck, "sweep", "parameter"), sweep%parameter, problem)
@@ -93,6 +95,7 @@ contains
       !> None of them or more than one
       type(error_t), allocatable, intent(out) :: error
       logical :: has_values, has_texts, has_any, has_all
+      character(len=26) :: found
       integer :: i, s
 
       has_values = is_given(deck, "sweep", "values")
@@ -102,8 +105,11 @@ contains
       has_all = is_given(deck, "sweep", "first") .and. is_given(deck, "sweep", "last") .and. &
          is_given(deck, "sweep", "count")
       if (count([has_values, has_texts, has_any]) /= 1 .or. (has_any .neqv. has_all)) then
+         found = "more than one"
+         if (has_any .and. .not. has_all) found = "one of these three missing"
+         if (.not. any([has_values, has_texts, has_any])) found = "none"
          call deck_error(error, "wanted exactly one of: values, texts, or first with last "// &
-            "and count", deck, sweep%place)
+            "and count, found "//trim(found)//"; give one of them", deck, sweep%place)
          return
       end if
       allocate (sweep%numbers(0), sweep%texts(0))
@@ -138,7 +144,8 @@ contains
       last = real_of(deck, "sweep", "last")
       n = integer_of(deck, "sweep", "count")
       if (n == 1 .and. abs(last - first) > 0.0_wp) then
-         call deck_error(error, "sweep%count = 1 wants the same first and last", deck, &
+         call deck_error(error, "sweep%count = 1 wants the same first and last, found "// &
+            to_text(first)//" and "//to_text(last)//"; make them equal, or count larger", deck, &
             place_of(deck, key_index("sweep", "count")))
       else
          sweep%numbers = [(first + (last - first)*real(i - 1, wp)/real(max(n - 1, 1), wp), &
@@ -162,16 +169,28 @@ contains
       associate (key => sweep%parameter%key)
          if (is_numeric(key) .neqv. size(sweep%numbers) > 0) problem = "wanted "// &
             trim(merge("values", "texts ", is_numeric(key)))//": "// &
-            full_name(deck_key(key))//" wants "//wanted(deck_key(key))
+            full_name(deck_key(key))//" wants "//wanted(deck_key(key))//"; write "// &
+            trim(merge("values", "texts ", is_numeric(key)))//" = ..."
          do i = 1, size(sweep%numbers)
-            if (len(problem) == 0) problem = number_problem(key, sweep%numbers(i))
+            if (len(problem) == 0) problem = advised(number_problem(key, sweep%numbers(i)))
          end do
          do i = 1, size(sweep%texts)
-            if (len(problem) == 0) problem = text_problem(key, sweep%texts(i))
+            if (len(problem) == 0) problem = advised(text_problem(key, sweep%texts(i)))
          end do
       end associate
       if (len(problem) > 0) call deck_error(error, problem, deck, sweep%place)
    end subroutine check_values
+
+   !> What is wrong with one value of a sweep, with what to do about it
+   pure function advised(problem) result(text)
+      !> What was wanted and what was found; empty if nothing is wrong
+      character(len=*), intent(in) :: problem
+      !> The same with an advice; empty if nothing is wrong
+      character(len=:), allocatable :: text
+
+      text = problem
+      if (len(problem) > 0) text = problem//"; change or remove that value of the sweep"
+   end function advised
 
    !> Number of values of a sweep
    pure function n_values(sweep) result(n)

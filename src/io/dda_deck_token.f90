@@ -151,7 +151,7 @@ contains
 
       if (scan%n == max_tokens) then
          call fatal_error(error, "wanted at most "//to_text(max_tokens)// &
-            " groups, keys and values", line=scan%line)
+            " groups, keys and values, found more; split the deck", line=scan%line)
          return
       end if
       if (scan%n == size(scan%token)) then

@@ -1,12 +1,13 @@
 !> The registry in words: what a key wants, which key was meant, the printed help
 module dda_deck_words
    use dda_kinds, only : wp
-   use dda_text, only : to_text
+   use dda_text, only : to_text, lower_case
    use dda_deck_keys, only : key_t, key_kind, deck_key, deck_group, word_length
    implicit none
    private
 
-   public :: wanted, range_text, quoted_words, full_name, near_group, near_key, deck_help
+   public :: wanted, range_text, quoted_words, full_name, near_group, near_key, near_word
+   public :: near_one, or_leave_out, deck_help
 
    !> Longest word that is compared letter by letter [characters]
    integer, parameter :: longest = 40
@@ -115,7 +116,8 @@ contains
       !> Sentence that names the nearest group
       character(len=:), allocatable :: text
 
-      text = "the nearest known group is &"//nearest_word(name, deck_group%name)
+      text = "the nearest known group is &"//nearest_word(name, deck_group%name)// &
+         "; 'dda help keys' lists all"
    end function near_group
 
    !> The key that was meant
@@ -131,12 +133,69 @@ contains
 
       do i = 1, size(deck_key)
          if (deck_key(i)%name /= name) cycle
-         text = "it is a key of &"//trim(deck_key(i)%group)
+         text = "it is a key of &"//trim(deck_key(i)%group)//"; move it there"
          return
       end do
       fits = deck_key%group == group .or. (len(group) == 0 .and. deck_key%varies)
-      text = "the nearest known key is "//nearest_word(name, pack(deck_key%name, fits))
+      text = "the nearest known key is "//nearest_word(name, pack(deck_key%name, fits))// &
+         "; 'dda help keys' lists all"
    end function near_key
+
+   !> The word that was meant, of those that a key takes
+   pure function near_word(key, text) result(near)
+      !> Entry of the registry
+      type(key_t), intent(in) :: key
+      !> Word that the key does not take
+      character(len=*), intent(in) :: text
+      !> Words after a colon that name the nearest one; empty for a key that takes no words
+      character(len=:), allocatable :: near
+      character(len=word_length) :: list(len(key%words)/2)
+      integer :: i, first, blank
+
+      near = ""
+      if (len_trim(key%words) == 0) return
+      list = ""
+      first = 1
+      do i = 1, size(list)
+         if (first > len_trim(key%words)) exit
+         blank = index(key%words(first:)//" ", " ")
+         list(i) = key%words(first:first + blank - 2)
+         first = first + blank
+      end do
+      near = near_one(lower_case(trim(text)), list(:i - 1))
+   end function near_word
+
+   !> A word of a list that is much like another
+   pure function near_one(word, list) result(near)
+      !> Word that is not on the list
+      character(len=*), intent(in) :: word
+      !> Words to choose from: (n)
+      character(len=*), intent(in) :: list(:)
+      !> Words after a colon that name it; empty if more than half of the letters differ
+      character(len=:), allocatable :: near
+
+      near = nearest_word(word, list)
+      if (2*edit_distance(word, near) <= len(near) + 1) then
+         near = ": did you mean '"//near//"'?"
+      else
+         near = ""
+      end if
+   end function near_one
+
+   !> What a deck may do instead of giving a key a value that it can take
+   pure function or_leave_out(key) result(advice)
+      !> Place of the key in the registry
+      integer, intent(in) :: key
+      !> Words after a semicolon
+      character(len=:), allocatable :: advice
+
+      advice = "; correct it"
+      if (len_trim(deck_key(key)%default) > 0) then
+         advice = advice//", or leave it out for "//trim(deck_key(key)%default)
+      else if (len_trim(deck_key(key)%without) > 0 .and. deck_key(key)%group /= "sweep") then
+         advice = advice//", or leave it out: "//trim(deck_key(key)%without)
+      end if
+   end function or_leave_out
 
    !> The word of a list that is nearest to a word, which may be the beginning of one
    pure function nearest_word(word, list) result(found)

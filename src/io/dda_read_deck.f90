@@ -118,7 +118,7 @@ contains
          return
       else if (deck%group(g)%line > 0 .and. name /= "sweep") then
          call deck_error(error, "group &"//name//" is repeated: the first is in line "// &
-            to_text(deck%group(g)%line), deck, place)
+            to_text(deck%group(g)%line)//"; join the two", deck, place)
          return
       end if
       deck%group(g) = place
@@ -149,14 +149,14 @@ contains
       place%line = scan%token(i)%line
       if (scan%token(i)%kind /= token_kind%key) then
          call deck_error(error, "wanted key = value in &"//group//", found '"// &
-            shown(token_text(scan, i))//"'", deck, place)
+            shown(token_text(scan, i))//"'; write a key, '=' and its value", deck, place)
          return
       end if
       call find_key(group, token_text(scan, i), deck, place, key, error)
       if (allocated(error)) return
       if (deck%value(key)%given) then
          call deck_error(error, full_name(deck_key(key))//" is repeated: the first is in line "// &
-            to_text(deck%value(key)%place%line), deck, place)
+            to_text(deck%value(key)%place%line)//"; remove one of them", deck, place)
          return
       end if
       first = i + 1
@@ -199,13 +199,13 @@ contains
       open = index(name//"(", "(")
       if (key == 0 .and. key_index(group, name(:open - 1)) > 0) then
          call deck_error(error, "wanted the whole list, "//name(:open - 1)//" = ..., found "// &
-            shown(name), deck, place)
+            shown(name)//"; write all of its items", deck, place)
       else if (key == 0) then
          call deck_error(error, "unknown key '"//shown(name)//"' in &"//group//": "// &
             near_key(name, group), deck, place)
       else if (deck_key(key)%kind == key_kind%later) then
          call deck_error(error, full_name(deck_key(key))//" is not yet there. It will be: "// &
-            trim(deck_key(key)%meaning), deck, place)
+            trim(deck_key(key)%meaning)//" Remove it", deck, place)
       end if
    end subroutine find_key
 
@@ -227,9 +227,10 @@ contains
       equals = index(setting, "=")
       call split_name(setting(:max(equals - 1, 0)), group, name, parameter%item, ok)
       if (.not. ok .or. equals == 0 .or. len(group) == 0 .or. has_control(setting)) then
-         call deck_error(error, "wanted group%key=value, found '"//shown(setting)//"'", deck, place)
+         call deck_error(error, "wanted group%key=value, found '"//shown(setting)// &
+            "'; write it like arch%radius=5.0", deck, place)
       else if (group == "sweep") then
-         call deck_error(error, "&sweep cannot be set", deck, place)
+         call deck_error(error, "&sweep cannot be set; change the deck", deck, place)
       else if (group_index(group) == 0) then
          call deck_error(error, "unknown group &"//shown(group)//": "//near_group(group), &
             deck, place)
@@ -272,7 +273,8 @@ contains
       if (is_text .and. .not. has_quotes) then
          call put_text(deck, parameter, trim(adjustl(text)), place, error)
       else if (parameter%item > 0 .and. deck_key(parameter%key)%kind /= key_kind%numbers) then
-         call deck_error(error, full_name(deck_key(parameter%key))//" has no items", deck, place)
+         call deck_error(error, full_name(deck_key(parameter%key))//" has no items; leave "// &
+            "the parentheses away", deck, place)
       else
          call scan_values(text, scan, error)
          if (allocated(error)) then

@@ -1,6 +1,7 @@
 !> A text file as one string, whatever its line ends, or a failure with a line
 module dda_text_file
-   use, intrinsic :: iso_fortran_env, only : int64
+   use, intrinsic :: iso_c_binding, only : c_associated, c_char, c_int, c_loc, c_null_char, &
+      c_ptr, c_size_t
    use dda_error, only : error_t, fatal_error
    use dda_text, only : to_text
    implicit none
@@ -12,6 +13,64 @@ module dda_text_file
    integer, parameter :: megabyte = 1024**2
    !> Largest file that is read [bytes]
    integer, parameter :: max_file_size = 64*megabyte
+
+   ! Through the C library: Fortran's open cuts the blanks at the end of a name.
+   interface
+      !> C: open a file
+      function c_fopen(path, mode) bind(c, name="fopen") result(handle)
+         import :: c_char, c_ptr
+         !> Its name, ended by a null character
+         character(kind=c_char), intent(in) :: path(*)
+         !> What is wanted of it, ended by a null character
+         character(kind=c_char), intent(in) :: mode(*)
+         !> The file, null if it cannot be opened
+         type(c_ptr) :: handle
+      end function c_fopen
+
+      !> C: read items
+      function c_fread(items, size, count, handle) bind(c, name="fread") result(got)
+         import :: c_ptr, c_size_t
+         !> Where the items go
+         type(c_ptr), intent(in), value :: items
+         !> Size of an item
+         integer(c_size_t), intent(in), value :: size
+         !> Number of items
+         integer(c_size_t), intent(in), value :: count
+         !> The file
+         type(c_ptr), intent(in), value :: handle
+         !> Number of items read; fewer at the end of the file
+         integer(c_size_t) :: got
+      end function c_fread
+
+      !> C: whether anything has failed since the file was opened
+      function c_ferror(handle) bind(c, name="ferror") result(failed)
+         import :: c_int, c_ptr
+         !> The file
+         type(c_ptr), intent(in), value :: handle
+         !> 0 if all is well
+         integer(c_int) :: failed
+      end function c_ferror
+
+      !> C: close a file
+      function c_fclose(handle) bind(c, name="fclose") result(failed)
+         import :: c_int, c_ptr
+         !> The file
+         type(c_ptr), intent(in), value :: handle
+         !> 0 if all is well
+         integer(c_int) :: failed
+      end function c_fclose
+
+      !> C: what may be done with a file
+      function c_access(path, mode) bind(c, name="access") result(failed)
+         import :: c_char, c_int
+         !> Its name, ended by a null character
+         character(kind=c_char), intent(in) :: path(*)
+         !> What is wanted; 0: that it exists
+         integer(c_int), intent(in), value :: mode
+         !> 0 if it may be done
+         integer(c_int) :: failed
+      end function c_access
+   end interface
 
 contains
 
@@ -33,61 +92,82 @@ contains
       error%file = file
    end subroutine read_text_file
 
-   !> Read a whole file as it is
+   !> Read a whole file as it is, be it a pipe
    subroutine read_bytes(file, bytes, error)
       !> Name of the file
       character(len=*), intent(in) :: file
       !> Its bytes; empty after a failure
       character(len=:), allocatable, intent(out) :: bytes
-      !> Missing, no plain file, too large or unreadable
+      !> Missing, a folder, empty, too large or unreadable
       type(error_t), allocatable, intent(out) :: error
-      character(len=200) :: reason
-      integer :: unit, stat, n
+      type(c_ptr) :: handle
+      integer(c_int) :: failed
 
       bytes = ""
-      call check_file(file, n, error)
+      call check_name(file, error)
       if (allocated(error)) return
-      open (newunit=unit, file=file, access="stream", form="unformatted", status="old", &
-         action="read", iostat=stat, iomsg=reason)
-      if (stat == 0) then
-         bytes = repeat(" ", n)
-         read (unit, iostat=stat, iomsg=reason) bytes
-         close (unit)
+      handle = c_fopen(file//c_null_char, "rb"//c_null_char)
+      if (.not. c_associated(handle)) then
+         call fatal_error(error, "wanted a file that can be read, found one that cannot; "// &
+            "check its permissions")
+         return
       end if
-      if (stat == 0) return
-      bytes = ""
-      call fatal_error(error, "the file cannot be read: "//trim(reason))
+      call read_to_end(handle, bytes)
+      failed = c_ferror(handle)
+      if (failed /= 0) then
+         call fatal_error(error, "wanted a file that can be read, found one that ends in a "// &
+            "failure; copy it to another place")
+      else if (len(bytes) == 0) then
+         call fatal_error(error, "wanted a text, found that the file is empty; write into it")
+      else if (len(bytes) > max_file_size) then
+         call fatal_error(error, "wanted a file of at most "//to_text(max_file_size/megabyte)// &
+            " MB, found a larger one; split it")
+      end if
+      failed = c_fclose(handle)
    end subroutine read_bytes
 
-   !> Whether a name stands for a plain file of a size that can be read
-   subroutine check_file(file, n, error)
+   !> Whether a name stands for something that may be a file
+   subroutine check_name(file, error)
       !> Name of the file
       character(len=*), intent(in) :: file
-      !> Size of the file [bytes]
-      integer, intent(out) :: n
-      !> Missing, a folder, empty or too large
+      !> Missing or a folder
       type(error_t), allocatable, intent(out) :: error
-      integer(int64) :: file_size
-      logical :: exists, is_folder
+      integer(c_int), parameter :: exists = 0
 
-      n = 0
-      inquire (file=file, exist=exists, size=file_size)
-      inquire (file=file//"/.", exist=is_folder)
       if (len_trim(file) == 0) then
-         call fatal_error(error, "wanted the name of a file, found an empty one")
-      else if (is_folder) then
-         call fatal_error(error, "wanted a file, found a folder")
-      else if (.not. exists) then
-         call fatal_error(error, "there is no such file")
-      else if (file_size <= 0) then
-         call fatal_error(error, "the file is empty")
-      else if (file_size > max_file_size) then
-         call fatal_error(error, "wanted a file of at most "//to_text(max_file_size/megabyte)// &
-            " MB, found "//to_text(int((file_size - 1)/megabyte) + 1)//" MB")
-      else
-         n = int(file_size)
+         call fatal_error(error, "wanted the name of a file, found an empty one; give one")
+      else if (c_access(file//"/."//c_null_char, exists) == 0) then
+         call fatal_error(error, "wanted a file, found a folder; name a file in it")
+      else if (c_access(file//c_null_char, exists) /= 0) then
+         if (c_access(file//".nml"//c_null_char, exists) == 0) then
+            call fatal_error(error, "there is no such file; write "//file//".nml")
+         else
+            call fatal_error(error, "there is no such file; check the name and the folder")
+         end if
       end if
-   end subroutine check_file
+   end subroutine check_name
+
+   !> Read an open file to its end, or to one byte more than is allowed
+   subroutine read_to_end(handle, bytes)
+      !> C's handle of the file
+      type(c_ptr), intent(in) :: handle
+      !> What was read
+      character(len=:), allocatable, intent(out) :: bytes
+      character(len=:), allocatable, target :: room, longer
+      integer(c_size_t) :: n, got
+
+      allocate (character(len=65536) :: room)
+      n = 0
+      do
+         got = c_fread(c_loc(room(n + 1:n + 1)), 1_c_size_t, len(room) - n, handle)
+         n = n + got
+         if (n < len(room) .or. n > max_file_size) exit
+         allocate (character(len=min(2*len(room), max_file_size + 1)) :: longer)
+         longer(:n) = room(:n)
+         call move_alloc(longer, room)
+      end do
+      bytes = room(:n)
+   end subroutine read_to_end
 
    !> One kind of line end, no byte order mark, no control characters but the tab
    pure subroutine plain_text(raw, text, error)
@@ -114,7 +194,7 @@ contains
          code = ichar(text(n:n))
          if (code >= 32 .and. code /= 127 .or. text(n:n) == lf .or. text(n:n) == tab) cycle
          call fatal_error(error, "wanted plain text, found a control character (code "// &
-            to_text(code)//")", line=line)
+            to_text(code)//"); save the file as plain text", line=line)
          return
       end do
       text = text(:n)

@@ -365,6 +365,20 @@ def test_second_set_is_told_from_the_first(tmp_path: Path) -> None:
     assert done.stderr.startswith("--set:2: error: ")
 
 
+@pytest.mark.parametrize(
+    "cases", ["0", "2", "1-2", "1-", "-1", "1--1", "2-1", "x", "1,,1", "1, 1", "1.0", "1-1-1"]
+)
+def test_errors_of_cases_name_cases(tmp_path: Path, cases: str) -> None:
+    (tmp_path / "deck.nml").write_text(GOOD)
+    done = run_dda("run", "deck.nml", "--cases", cases, cwd=tmp_path)
+    assert done.returncode == 2
+    assert re.fullmatch(
+        r"--cases:1: error: wanted cases from 1 to 1, found '.*'; write them like 1-4,7\n",
+        done.stderr,
+    )
+    assert not (tmp_path / "deck").exists()
+
+
 def test_set_of_what_is_swept_is_refused(tmp_path: Path) -> None:
     (tmp_path / "deck.nml").write_text("&sweep parameter='radius', values=1, 2 /\n")
     done = run_dda("run", "deck.nml", "--set", "arch%radius=5", cwd=tmp_path)
@@ -387,6 +401,8 @@ COMMAND_LINES = {
     "jobs-no-number": ["run", "deck.nml", "--jobs", "all"],
     "jobs-fraction": ["run", "deck.nml", "--jobs", "1.5"],
     "jobs-huge": ["run", "deck.nml", "--jobs", "99999999999"],
+    "cases-without-numbers": ["run", "deck.nml", "--cases"],
+    "cases-empty": ["run", "deck.nml", "--cases", ""],
     "empty-name": ["run", ""],
     "unknown-help": ["help", "me"],
 }

@@ -45,7 +45,7 @@ def test_bad_angle_is_bad_input(word, capsys):
 
 
 @pytest.mark.parametrize(
-    "words", [[], ["nonsense"], ["theory"], ["theory", "--alpha", "90", "--theory", "x"]]
+    "words", [["nonsense"], ["help", "nonsense"], ["theory"], ["theory", "--alpha", "90", "--theory", "x"]]
 )
 def test_bad_command_is_bad_input(words, capsys):
     with pytest.raises(SystemExit) as stop:

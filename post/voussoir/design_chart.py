@@ -1,0 +1,151 @@
+"""Design charts: the critical value of a sweep against what was swept."""
+
+from __future__ import annotations
+
+import matplotlib.pyplot as plt
+import numpy as np
+from matplotlib.figure import Figure
+
+from voussoir.figure_style import INK
+from voussoir.results import Results, Table
+
+#: What columns mean, for the axes
+MEANINGS = {
+    "half_angle_deg": "half angle $\\alpha$ [°]",
+    "friction_deg": "friction angle $\\varphi$ [°]",
+    "blocks": "number of voussoirs",
+    "voussoirs": "number of voussoirs",
+    "thickness_ratio": "thickness over radius $t/r$",
+    "radius": "radius $r$ [m]",
+    "horizontal_coefficient": "horizontal force over weight",
+}
+#: Columns that a sweep may run over although they are not its own
+_SHARED = ("half_angle_deg", "blocks", "friction_deg", "thickness_ratio", "geometry")
+#: First and last column that every table has; swept parameters stand between
+_BEFORE, _BEHIND = "case", "blocks"
+_MARKERS = "osD^vP*X"
+#: Most curves that can be told apart
+MOST_CURVES = 8
+
+
+class ChartError(ValueError):
+    """No chart can be drawn: why, and what to do."""
+
+
+def swept_columns(cases: Table) -> list[str]:
+    """Columns that were swept and vary.
+
+    Parameters
+    ----------
+    cases : Table
+        results.csv.
+
+    Returns
+    -------
+    list of str
+        Their names; `blocks` only where no other column explains it.
+    """
+    names = list(cases.columns)
+    own = names[names.index(_BEFORE) + 1 : names.index(_BEHIND)]
+    shared = [name for name in _SHARED if not (name == "blocks" and "voussoirs" in own)]
+    return [name for name in own + shared if len(_values(cases, name)) > 1]
+
+
+def draw_chart(run: Results, column: str | None = None) -> Figure:
+    """Draw the critical value against one swept column, a curve for each value of the others.
+
+    Parameters
+    ----------
+    run : Results
+        The results of a deck with &search and &sweep.
+    column : str, optional
+        The abscissa; by default the numeric column with the most values.
+
+    Returns
+    -------
+    Figure
+        The figure: brackets' middles as points, exact values of the same polygons as lines.
+
+    Raises
+    ------
+    ChartError
+        If nothing was found, nothing was swept, or the curves are too many.
+    """
+    found = run.cases.take(run.cases["verdict"] == "found")
+    swept = swept_columns(run.cases)
+    numeric = [name for name in swept if found[name].dtype.kind in "if"]
+    if column is None:
+        if not numeric:
+            raise ChartError("wanted a swept number, found none; name a case instead: --case 1")
+        column = max(numeric, key=lambda name: len(_values(found, name)))
+    if column not in numeric:
+        raise ChartError(
+            f"wanted one of {', '.join(numeric) or 'no columns'} to chart, found '{column}'; "
+            "choose a number that was swept"
+        )
+    if len(found) < 2:
+        raise ChartError("wanted two critical values or more, found fewer; give the deck &search")
+    others = [name for name in swept if name != column and not _follows(found, name, column)]
+    groups = _groups(found, others)
+    if len(groups) > MOST_CURVES:
+        raise ChartError(
+            f"wanted at most {MOST_CURVES} curves, found {len(groups)}; chart another column of "
+            + ", ".join(numeric)
+        )
+    return _draw(run, groups, column)
+
+
+def _draw(run: Results, groups: list[tuple[str, Table]], column: str) -> Figure:
+    figure, axes = plt.subplots(figsize=(6.4, 4.4), layout="constrained")
+    exact = False
+    for number, (label, rows) in enumerate(groups):
+        rows = rows.take(np.argsort(rows[column], kind="stable"))
+        color = INK[number % 3]
+        known = ~np.isnan(rows["exact"])
+        exact |= bool(known.any())
+        axes.plot(rows[column][known], rows["exact"][known], color=color, linewidth=1.2)
+        axes.plot(
+            rows[column], rows["critical"], linestyle="none", marker=_MARKERS[number],
+            markerfacecolor="white", markeredgecolor=color, markersize=6, label=label or "DDA",
+        )
+    axes.set_xlabel(MEANINGS.get(column, column))
+    axes.set_ylabel(_searched(run))
+    if exact:
+        axes.plot([], [], color=INK[3], linewidth=1.2, label="limit analysis, same polygons")
+    axes.legend()
+    return figure
+
+
+def _searched(run: Results) -> str:
+    """What was searched: the record of the deck tells, else the column that is empty."""
+    record = run.folder / "deck.record"
+    lines = record.read_text(encoding="utf-8").splitlines() if record.is_file() else []
+    name = "thickness_ratio"
+    if "search%parameter" in lines:
+        name = lines[lines.index("search%parameter") + 1].strip()
+    return "critical " + MEANINGS.get(name, name)
+
+
+def _values(cases: Table, name: str) -> set:
+    column = cases[name]
+    return set(column[~np.isnan(column)] if column.dtype.kind == "f" else column)
+
+
+def _follows(cases: Table, name: str, column: str) -> bool:
+    """Whether a column is a function of the abscissa, as in a linked sweep."""
+    pairs = set(zip(cases[column].tolist(), cases[name].tolist()))
+    return len(pairs) == len(set(cases[column].tolist()))
+
+
+def _groups(cases: Table, others: list[str]) -> list[tuple[str, Table]]:
+    keys = sorted(set(zip(*(cases[name].tolist() for name in others)))) if others else [()]
+    groups = []
+    for key in keys:
+        rows = cases.where(**dict(zip(others, key)))
+        label = ", ".join(
+            f"{MEANINGS.get(name, name)}: {value:g}" if isinstance(value, float)
+            else f"{MEANINGS.get(name, name)}: {value}"
+            for name, value in zip(others, key)
+        )
+        groups.append((label, rows))
+    return groups

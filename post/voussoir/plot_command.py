@@ -1,0 +1,140 @@
+"""`voussoir plot`: pictures of a folder of results."""
+
+from __future__ import annotations
+
+import argparse
+import math
+import sys
+from pathlib import Path
+
+from voussoir import results
+
+#: Most cases that are drawn without being named
+MOST_CASES = 12
+_AUTO = "auto"
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Add the options of the subcommand.
+
+    Parameters
+    ----------
+    parser : argparse.ArgumentParser
+        Parser of the subcommand.
+    """
+    parser.description = (
+        "Draw the cases of a folder that dda run has written: blocks, line of thrust, hinges, "
+        "slips, forces, displaced shape; or chart the critical values of a sweep."
+    )
+    parser.add_argument("folder", metavar="DIR", type=Path, help="folder of the results")
+    parser.add_argument(
+        "--case",
+        metavar="N",
+        type=int,
+        nargs="+",
+        help=f"cases to draw (default: the first {MOST_CASES}; none with --chart)",
+    )
+    parser.add_argument(
+        "--chart",
+        metavar="COLUMN",
+        nargs="?",
+        const=_AUTO,
+        help="chart the critical values against this column, such as half_angle_deg; without a "
+        "name against the swept column with the most values (default: no chart)",
+    )
+    parser.add_argument(
+        "--out", metavar="DIR", type=Path, help="where the pictures go (default: DIR/plots)"
+    )
+    parser.add_argument(
+        "--format",
+        metavar="ENDING",
+        nargs="+",
+        choices=("svg", "pdf", "png"),
+        default=("svg",),
+        help="of svg, pdf, png (default: svg)",
+    )
+    parser.add_argument(
+        "--magnify",
+        metavar="M",
+        type=_magnification,
+        help="magnification of the displaced shape, 0 for none (default: chosen, and stated)",
+    )
+    parser.add_argument(
+        "--no-forces", action="store_true", help="leave the contact forces out"
+    )
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Draw.
+
+    Parameters
+    ----------
+    arguments : argparse.Namespace
+        Parsed options.
+
+    Returns
+    -------
+    int
+        Exit status: 0, 2 for results that cannot be drawn, 4 for files that cannot be written.
+    """
+    try:
+        return _run(arguments)
+    except (FileNotFoundError, KeyError, ValueError) as error:
+        words = error.args[0] if isinstance(error, KeyError) else error
+        sys.stderr.write(f"{arguments.folder}:1: error: {words}\n")
+        return 2
+    except ImportError as error:
+        sys.stderr.write(
+            f"voussoir:1: error: wanted matplotlib, found none ({error}); install "
+            "python3-matplotlib\n"
+        )
+        return 2
+    except OSError as error:
+        sys.stderr.write(
+            f"{error.filename or arguments.out}:1: error: wanted a file that can be written, "
+            f"found: {error.strerror}; choose another folder with --out\n"
+        )
+        return 4
+
+
+def _run(arguments: argparse.Namespace) -> int:
+    """Draw; failures are exceptions."""
+    read = results.read(arguments.folder)
+    from voussoir.case_picture import draw_case
+    from voussoir.design_chart import draw_chart
+    from voussoir.figure_style import house_style, save
+
+    out = arguments.out or arguments.folder / "plots"
+    paths: list[Path] = []
+    with house_style():
+        if arguments.chart:
+            column = None if arguments.chart == _AUTO else arguments.chart
+            name = "chart" if column is None else f"chart_{column}"
+            paths += save(draw_chart(read, column), out, name, tuple(arguments.format))
+        for number in _cases(arguments, read):
+            figure = draw_case(read, number, arguments.magnify, not arguments.no_forces)
+            paths += save(figure, out, f"case_{number}", tuple(arguments.format))
+    for path in paths:
+        print(path)
+    return 0
+
+
+def _cases(arguments: argparse.Namespace, read: results.Results) -> list[int]:
+    """Cases to draw."""
+    if arguments.case or arguments.chart:
+        return arguments.case or []
+    drawn = [int(number) for number in read.cases["case"][:MOST_CASES]]
+    if len(drawn) < len(read.cases):
+        print(f"the first {MOST_CASES} of {len(read.cases)} cases; --case N draws others")
+    return drawn
+
+
+def _magnification(word: str) -> float:
+    """A finite number from 0."""
+    try:
+        number = float(word)
+    except ValueError:
+        number = math.nan
+    if not 0.0 <= number < math.inf:
+        raise argparse.ArgumentTypeError(f"wants a number from 0, got '{word}'")
+    return number

@@ -1,0 +1,196 @@
+"""A self-contained HTML page: headings with a table of contents, tables, inline figures."""
+
+from __future__ import annotations
+
+import base64
+import html
+import re
+from collections.abc import Iterable, Sequence
+from pathlib import Path
+
+_STYLE = """
+:root { color-scheme: light; }
+* { box-sizing: border-box; }
+body { margin: 0 auto; max-width: 74rem; padding: 0 1rem 4rem; background: #fff; color: #1a1a1a;
+  font: 1rem/1.55 Georgia, 'Times New Roman', serif; overflow-wrap: break-word; }
+h1 { font-size: 1.9rem; line-height: 1.2; margin: 2rem 0 .5rem; }
+h2 { font-size: 1.45rem; margin: 3rem 0 .5rem; padding-top: .5rem; border-top: 2px solid #1a1a1a; }
+h3 { font-size: 1.15rem; margin: 2rem 0 .4rem; }
+p, ul, ol { max-width: 46rem; }
+nav { background: #f4f4f1; padding: .6rem 1.2rem; margin: 1.5rem 0; }
+nav ol { margin: .3rem 0; padding-left: 1.3rem; columns: 2; column-gap: 2.5rem; }
+nav li { break-inside: avoid; }
+a { color: #174a82; }
+figure { margin: 1.5rem 0; }
+figcaption, .caption { font-size: .95rem; max-width: 46rem; margin: 0; padding: .4rem 0; }
+.table { margin: 1.5rem 0; }
+.wide { overflow-x: auto; }
+.wide:focus { outline: 2px solid #1f5fa8; }
+figure svg { display: block; width: 100%; height: auto; min-width: calc(.8*var(--width));
+  max-width: calc(1.2*var(--width)); }
+figure img { display: block; max-width: 100%; height: auto; }
+table { border-collapse: collapse; font: .86rem/1.35 Arial, Helvetica, sans-serif;
+  font-variant-numeric: tabular-nums; }
+th, td { padding: .25rem .5rem; text-align: right; white-space: nowrap;
+  border-bottom: 1px solid #d6d6d0; }
+th { border-bottom: 2px solid #1a1a1a; vertical-align: bottom; }
+td small, th small { display: block; color: #555; }
+tr > :first-child { position: sticky; left: 0; background: #fff; }
+table.words td { text-align: left; white-space: normal; }
+pre { overflow-x: auto; background: #f4f4f1; padding: .8rem; font-size: .82rem; line-height: 1.4; }
+summary { cursor: pointer; }
+@media (max-width: 40rem) { nav ol { columns: 1; } h1 { font-size: 1.5rem; } }
+@media print { nav { columns: 1; } .wide { overflow: visible; } }
+"""
+
+
+def escape(text: object) -> str:
+    """A text as it stands in HTML."""
+    return html.escape(str(text))
+
+
+class Page:
+    """A page that grows from top to bottom.
+
+    Parameters
+    ----------
+    title : str
+        Heading of the page.
+    """
+
+    def __init__(self, title: str) -> None:
+        self._title = title
+        self._body: list[str] = []
+        self._contents: list[tuple[int, str, str]] = []
+        self._figures = 0
+
+    def section(self, title: str, anchor: str, level: int = 2) -> None:
+        """Begin a section; those of level 2 and 3 are in the table of contents."""
+        self._contents.append((level, title, anchor))
+        self._body.append(f'<h{level} id="{anchor}">{escape(title)}</h{level}>')
+
+    def text(self, *paragraphs: str) -> None:
+        """Add paragraphs; they may hold HTML."""
+        self._body += [f"<p>{paragraph}</p>" for paragraph in paragraphs]
+
+    def table(
+        self,
+        caption: str,
+        head: Sequence[str],
+        rows: Iterable[Sequence[str]],
+        anchor: str = "",
+        words: bool = False,
+    ) -> None:
+        """Add a table.
+
+        Parameters
+        ----------
+        caption : str
+            What it shows; may hold HTML.
+        head : sequence of str
+            Headings of the columns; may hold HTML.
+        rows : iterable of sequences of str
+            The cells; may hold HTML.
+        anchor : str, optional
+            Name for links.
+        words : bool, optional
+            Whether the cells hold words rather than numbers.
+        """
+        lines = ["".join(f'<th scope="col">{cell}</th>' for cell in head)]
+        lines += ["".join(f"<td>{cell}</td>" for cell in row) for row in rows]
+        body = "".join(f"<tr>{line}</tr>" for line in lines[1:])
+        self._body.append(
+            f'<div class="table"{_named(anchor)}><p class="caption">{caption}</p>'
+            f'<div class="wide" tabindex="0"><table{_class("words", words)}>'
+            f"<thead><tr>{lines[0]}</tr></thead><tbody>{body}</tbody></table></div></div>"
+        )
+
+    def figure(self, svg: Path, caption: str, anchor: str) -> None:
+        """Add a figure from an SVG file.
+
+        Parameters
+        ----------
+        svg : Path
+            The file.
+        caption : str
+            What it shows; may hold HTML.
+        anchor : str
+            Name for links.
+        """
+        self._figures += 1
+        drawing = inline_svg(svg.read_text(encoding="utf-8"), f"f{self._figures}-", caption)
+        self._body.append(
+            f'<figure id="{anchor}"><div class="wide" tabindex="0">{drawing}</div>'
+            f"<figcaption>{caption}</figcaption></figure>"
+        )
+
+    def animation(self, gif: Path, caption: str, anchor: str) -> None:
+        """Add a GIF."""
+        data = base64.b64encode(gif.read_bytes()).decode("ascii")
+        plain = escape(re.sub("<[^>]*>", "", caption))
+        self._body.append(
+            f'<figure id="{anchor}"><img alt="{plain}" src="data:image/gif;base64,{data}">'
+            f"<figcaption>{caption}</figcaption></figure>"
+        )
+
+    def listing(self, title: str, text: str) -> None:
+        """Add a text that opens at a click."""
+        self._body.append(
+            f"<details><summary>{escape(title)}</summary><pre>{escape(text)}</pre></details>"
+        )
+
+    def render(self) -> str:
+        """The page as HTML; the table of contents stands where the first section begins."""
+        entries = "".join(
+            f'<li><a href="#{anchor}">{escape(title)}</a></li>'
+            for level, title, anchor in self._contents
+            if level == 2
+        )
+        nav = f'<nav aria-label="Contents"><strong>Contents</strong><ol>{entries}</ol></nav>'
+        place = next((i for i, part in enumerate(self._body) if part.startswith("<h2")), 0)
+        body = [*self._body[:place], nav, *self._body[place:]]
+        return (
+            '<!DOCTYPE html>\n<html lang="en"><head><meta charset="utf-8">'
+            '<meta name="viewport" content="width=device-width, initial-scale=1">'
+            f"<title>{escape(self._title)}</title><style>{_STYLE}</style></head>\n<body>"
+            f"<h1>{escape(self._title)}</h1>\n" + "\n".join(body) + "\n</body></html>\n"
+        )
+
+
+def inline_svg(text: str, prefix: str, label: str) -> str:
+    """An SVG file as an element of a page.
+
+    Parameters
+    ----------
+    text : str
+        The file.
+    prefix : str
+        Put before all its names, which otherwise meet those of other figures of the page.
+    label : str
+        What it shows, for those who cannot see it; tags are left out.
+
+    Returns
+    -------
+    str
+        The element, as wide as its place and at most as wide as it was drawn.
+    """
+    svg = text[text.index("<svg") :].strip()
+    svg = re.sub(r"<metadata>.*?</metadata>\s*", "", svg, flags=re.DOTALL)
+    svg = re.sub(r'\bid="', f'id="{prefix}', svg)
+    svg = re.sub(r'href="#', f'href="#{prefix}', svg)
+    svg = re.sub(r"url\(#", f"url(#{prefix}", svg)
+    head, _, rest = svg.partition(">")
+    width = re.search(r'\bwidth="([\d.]+)pt"', head)
+    head = re.sub(r'\s(width|height)="[\d.]+pt"', "", head)
+    plain = escape(re.sub("<[^>]*>", "", label))
+    points = float(width.group(1)) if width else 460.0
+    style = f'style="--width: {points * 4 / 3:.0f}px"'
+    return f'{head} role="img" aria-label="{plain}" {style}>{rest}'
+
+
+def _named(anchor: str) -> str:
+    return f' id="{anchor}"' if anchor else ""
+
+
+def _class(name: str, wanted: bool) -> str:
+    return f' class="{name}"' if wanted else ""

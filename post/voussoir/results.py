@@ -1,0 +1,245 @@
+"""Read what `dda run` has written.
+
+from voussoir import results
+run = results.read("table1")
+run.cases["critical"]            # a column as an array, cases in order
+run.cases.where(geometry="current")["relative_error"]
+for frame in run.frames_of(1): frame.blocks
+"""
+
+from __future__ import annotations
+
+import csv
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+#: Columns of whole numbers, by name; every other column of numbers has floats
+_WHOLE = frozenset(
+    (
+        "case blocks voussoirs steps open_close_iterations factorisations"
+        " joint frame step block vertex"
+    ).split()
+)
+#: Columns of words; what is left are numbers
+_WORDS = frozenset(
+    (
+        "deck mode geometry verdict collapses_at collapse_mode springing_hinge"
+        " state state_1 state_2"
+    ).split()
+)
+#: Columns of several angles joined by semicolons
+_LISTS = frozenset(("intrados_hinge_deg", "extrados_hinge_deg"))
+
+
+class Table:
+    """Columns of equal length.
+
+    Parameters
+    ----------
+    columns : dict of str to ndarray
+        Whole numbers, floats (NaN where a cell is empty), texts, or objects (tuples of floats for
+        the hinge angles).
+    """
+
+    def __init__(self, columns: dict[str, np.ndarray]) -> None:
+        self.columns = columns
+
+    def __getitem__(self, name: str) -> np.ndarray:
+        """A column."""
+        return self.columns[name]
+
+    def __contains__(self, name: str) -> bool:
+        """Whether there is a column of that name."""
+        return name in self.columns
+
+    def __len__(self) -> int:
+        """Number of rows."""
+        return len(next(iter(self.columns.values()), ()))
+
+    def rows(self) -> Iterator[dict[str, Any]]:
+        """Rows one by one."""
+        for row in range(len(self)):
+            yield {name: column[row] for name, column in self.columns.items()}
+
+    def where(self, **wanted: Any) -> Table:
+        """Rows whose columns have the wanted values.
+
+        Parameters
+        ----------
+        **wanted
+            Value of each column by its name.
+
+        Returns
+        -------
+        Table
+            The rows, in the same order.
+        """
+        kept = np.ones(len(self), dtype=bool)
+        for name, value in wanted.items():
+            kept &= self.columns[name] == value
+        return self.take(kept)
+
+    def take(self, rows: np.ndarray) -> Table:
+        """Some of the rows, by a mask or by their places."""
+        return Table({name: column[rows] for name, column in self.columns.items()})
+
+
+@dataclass(frozen=True)
+class Frame:
+    """One picture of a run.
+
+    Attributes
+    ----------
+    number, step : int
+        Number of the picture and of the time step before it.
+    time : float
+        Sum of the time steps before it [s].
+    blocks : list of ndarray
+        Corners of each block, (n, 2) [m].
+    joints : Table
+        Contact points, force and states of each joint: the rows of frame_joints.csv.
+    """
+
+    number: int
+    step: int
+    time: float
+    blocks: list[np.ndarray]
+    joints: Table
+
+
+@dataclass(frozen=True)
+class Results:
+    """The results of one deck.
+
+    Attributes
+    ----------
+    folder : Path
+        Where they were read.
+    cases : Table
+        results.csv, in the order of the cases.
+    joints : Table or None
+        joints.csv, likewise; None if the deck did not want it.
+    frames, frame_joints : Table or None
+        frames.csv and frame_joints.csv, likewise.
+    """
+
+    folder: Path
+    cases: Table
+    joints: Table | None
+    frames: Table | None
+    frame_joints: Table | None
+
+    def case(self, number: int) -> dict[str, Any]:
+        """Row of one case.
+
+        Raises
+        ------
+        KeyError
+            If there is no such case.
+        """
+        for row in self.cases.where(case=number).rows():
+            return row
+        raise KeyError(f"no case {number} in {self.folder}")
+
+    def joints_of(self, number: int) -> Table:
+        """Joints of one case."""
+        if self.joints is None:
+            raise KeyError(f"no joints.csv in {self.folder}")
+        return self.joints.where(case=number)
+
+    def frames_of(self, number: int) -> list[Frame]:
+        """Pictures of one case in their order; none where none were written."""
+        if self.frames is None or self.frame_joints is None:
+            return []
+        corners = self.frames.where(case=number)
+        joints = self.frame_joints.where(case=number)
+        pictures = []
+        for frame in np.unique(corners["frame"]):
+            of_frame = corners.where(frame=frame)
+            points = np.column_stack((of_frame["x"], of_frame["y"]))
+            starts = np.flatnonzero(np.diff(of_frame["block"])) + 1
+            pictures.append(
+                Frame(
+                    number=int(frame),
+                    step=int(of_frame["step"][0]),
+                    time=float(of_frame["time"][0]),
+                    blocks=np.split(points, starts),
+                    joints=joints.where(frame=frame),
+                )
+            )
+        return pictures
+
+    def pvd(self, number: int) -> Path | None:
+        """The file to open in ParaView for one case, None if there is none."""
+        file = self.folder / "frames" / f"case_{number}.pvd"
+        return file if file.is_file() else None
+
+
+def read(folder: str | Path) -> Results:
+    """Read the results of one deck.
+
+    Parameters
+    ----------
+    folder : str or Path
+        Where `dda run` has written them.
+
+    Returns
+    -------
+    Results
+        The tables with their types, cases in order whatever the order in which they ended.
+
+    Raises
+    ------
+    FileNotFoundError
+        If there is no results.csv in the folder.
+    ValueError
+        If a table holds what `dda` does not write.
+    """
+    folder = Path(folder)
+    cases = _read_table(folder / "results.csv")
+    if cases is None:
+        raise FileNotFoundError(f"no results.csv in {folder}: not a folder written by 'dda run'")
+    return Results(
+        folder=folder,
+        cases=cases,
+        joints=_read_table(folder / "joints.csv"),
+        frames=_read_table(folder / "frames.csv"),
+        frame_joints=_read_table(folder / "frame_joints.csv"),
+    )
+
+
+def _read_table(file: Path) -> Table | None:
+    """A table with typed columns in the order of its cases, None if there is no such file."""
+    if not file.is_file():
+        return None
+    with file.open(newline="", encoding="utf-8") as lines:
+        names, *rows = csv.reader(lines)
+    for number, row in enumerate(rows, 2):
+        if len(row) != len(names):
+            raise ValueError(f"{file}:{number}: {len(names)} cells wanted, {len(row)} found")
+    cells = list(zip(*rows)) or [()] * len(names)
+    try:
+        table = Table({name: _typed(name, column) for name, column in zip(names, cells)})
+    except ValueError as problem:
+        raise ValueError(f"{file}: {problem}") from problem
+    return table.take(np.argsort(table["case"], kind="stable"))
+
+
+def _typed(name: str, cells: tuple[str, ...]) -> np.ndarray:
+    """A column with its type."""
+    if name in _LISTS:
+        column = np.empty(len(cells), dtype=object)
+        column[:] = [tuple(float(part) for part in cell.split(";") if part) for cell in cells]
+        return column
+    if name in _WHOLE:
+        return np.array(cells, dtype=np.int64)
+    if name not in _WORDS:
+        try:
+            return np.array([cell or "nan" for cell in cells], dtype=float)
+        except ValueError:  # a swept parameter that takes words
+            pass
+    return np.array(cells, dtype=str)

@@ -1,0 +1,159 @@
+"""Every command and code block of the documentation, run as it stands there.
+
+A page is one test: its blocks run in their order in one folder. A deck whose name stands in the
+line before it is written to that file. Commands that install packages, build the project or run
+the whole paper are those that CI, the README, tests/post/test_install.py and test_paper_page.py
+run; here they only are known ones.
+"""
+
+from __future__ import annotations
+
+import os
+import re
+import subprocess
+import sys
+from dataclasses import dataclass
+from pathlib import Path
+
+import pytest
+from dda_command import run_dda
+
+ROOT = Path(__file__).resolve().parents[2]
+PAGES = sorted([ROOT / "README.md", ROOT / "CONTRIBUTING.md", *(ROOT / "docs").rglob("*.md")])
+INSTALL = re.compile(
+    r"sudo apt-get |cmake -|python3 -m venv |env/bin/|xargs -d |ctest |build/bin/voussoir paper "
+)
+COMMAND = re.compile(r"(\$ |dda |voussoir |build/bin/|&[a-z]+\b.*/|python3 |pip |PYTHONPATH=)")
+LABELS = {"", "text", "sh", "sh install", "console", "fortran", "python", "message"}
+
+
+@dataclass
+class Block:
+    """A fenced block: its label, its text, its line, and the line of words before it."""
+
+    label: str
+    text: str
+    line: int
+    before: str
+
+
+def blocks_of(page: Path) -> list[Block]:
+    """Fenced blocks of a page."""
+    found, before = [], ""
+    lines = iter(enumerate(page.read_text(encoding="utf-8").splitlines(), 1))
+    for number, line in lines:
+        if line.lstrip().startswith("```"):
+            indent, label = len(line) - len(line.lstrip()), line.strip().strip("`").strip()
+            text = []
+            for _, inner in lines:
+                if inner.strip() == "```":
+                    break
+                text.append(inner[indent:])
+            found.append(Block(label, "\n".join(text) + "\n", number, before))
+            before = ""
+        elif line.strip():
+            before = line
+    return found
+
+
+def installs(block: Block) -> bool:
+    """Whether all commands of a block install packages or build."""
+    return all(INSTALL.match(line) for line in block.text.splitlines() if line.strip())
+
+
+@pytest.fixture
+def shell(tmp_path: Path) -> dict[str, str]:
+    """Environment in which dda, voussoir and python3 are those of the build."""
+    build = Path(os.environ["DDA"]).parents[1]
+    (tmp_path / "build").symlink_to(build)
+    (tmp_path / "input").symlink_to(ROOT / "input")
+    programs = tmp_path / ".programs"
+    programs.mkdir()
+    (programs / "python3").write_text(f"#!/bin/sh\nexec '{sys.executable}' \"$@\"\n")
+    (programs / "python3").chmod(0o755)
+    path = f"{programs}:{build / 'bin'}:{os.environ['PATH']}"
+    return os.environ | {"PATH": path, "PYTHONPATH": str(build / "python")}
+
+
+def run_script(text: str, folder: Path, shell: dict[str, str]) -> str:
+    """What a shell script prints; it must succeed."""
+    done = subprocess.run(
+        ["sh", "-e", "-c", text], cwd=folder, env=shell, capture_output=True, text=True, check=False
+    )
+    assert done.returncode == 0, f"{text}\n{done.stdout}\n{done.stderr}"
+    return done.stdout
+
+
+def plain(text: str) -> str:
+    """Text without what differs from machine to machine: rounding errors and blanks."""
+    return " ".join(re.sub(r"-?\d\.\dE-\d\d", "ERROR", text).split())
+
+
+def run_console(block: Block, folder: Path, shell: dict[str, str]) -> None:
+    """Run a transcript: each command prints what stands under it, if anything does."""
+    for part in re.split(r"^\$ ", block.text, flags=re.MULTILINE)[1:]:
+        command, _, expected = part.partition("\n")
+        while command.count('"') % 2:  # an argument of several lines
+            line, _, expected = expected.partition("\n")
+            command += "\n" + line
+        printed = run_script(command, folder, shell)
+        assert not expected.strip() or plain(expected) == plain(printed)
+
+
+def check_messages(block: Block, folder: Path) -> None:
+    """A deck and the message about it; a comment alone stands for a deck that is not there."""
+    *deck, message = block.text.rstrip("\n").split("\n")
+    name = message.split(":")[0]
+    if not deck[0].startswith("!"):
+        (folder / name).write_text("\n".join(deck) + "\n")
+    done = run_dda("check", name, cwd=folder)
+    assert (done.returncode, done.stderr) == (2, message + "\n")
+
+
+def run_block(block: Block, folder: Path, shell: dict[str, str]) -> None:
+    """Run a block as its label wants it."""
+    if block.label == "fortran":
+        named = re.search(r"`([\w.-]+\.nml)`:?$", block.before)
+        name = named[1] if named else f"line{block.line}.nml"
+        (folder / name).write_text(block.text)
+        done = run_dda("check", name, cwd=folder)
+        assert done.returncode == 0, done.stderr
+    elif block.label == "python":
+        (folder / "block.py").write_text(block.text)
+        run_script("python3 block.py", folder, shell)
+    elif block.label == "message":
+        check_messages(block, folder)
+    elif block.text.startswith("$ "):
+        run_console(block, folder, shell)
+    elif block.label == "sh":
+        run_script(block.text, folder, shell)
+    elif not installs(block):
+        looks_run = [line for line in block.text.splitlines() if COMMAND.match(line)]
+        assert block.label != "sh install" and not looks_run, "give the block its label"
+
+
+def ready() -> bool:
+    """Whether the package of this build and matplotlib can be loaded."""
+    words = "import voussoir.theory, matplotlib"
+    return subprocess.run([sys.executable, "-c", words], capture_output=True).returncode == 0
+
+
+@pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)
+def test_blocks_of_a_page_run(page: Path, tmp_path: Path, shell: dict[str, str]) -> None:
+    blocks = blocks_of(page)
+    python = any(block.label in ("sh", "python") or "$ " in block.text for block in blocks)
+    if python and not ready():
+        pytest.skip("the package voussoir of this build or matplotlib cannot be loaded here")
+    for block in blocks:
+        assert block.label in LABELS, f"{page.name}:{block.line}: unknown label {block.label}"
+        run_block(block, tmp_path, shell)
+
+
+def test_links_between_pages_lead_somewhere() -> None:
+    broken = []
+    for page in PAGES:
+        text = re.sub(r"^```.*?^```", "", page.read_text(encoding="utf-8"), flags=re.M | re.S)
+        for target in re.findall(r"\]\(([^)#:\s]+\.\w+)(?:#[^)]*)?\)", text):
+            if not (page.parent / target).exists():
+                broken.append(f"{page.name}: {target}")
+    assert broken == []

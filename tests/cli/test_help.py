@@ -1,0 +1,162 @@
+"""Help: on every subcommand, in every way to ask; every option in it works, every default shows."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+from dda_command import run_dda
+
+SUBCOMMANDS = ["run", "check", "help"]
+SWEEP = "&arch thickness_ratio = 0.12 /\n&sweep parameter = 'radius', first = 1, last = 4, count = 4 /\n"
+
+
+def help_on(*words: str) -> str:
+    """What a call for help prints; it must succeed and say nothing on standard error."""
+    done = run_dda(*words)
+    assert (done.returncode, done.stderr) == (0, "")
+    return done.stdout
+
+
+@pytest.mark.parametrize("words", [(), ("help",), ("--help",), ("-h",)])
+def test_first_page_names_every_subcommand_and_status(words: tuple[str, ...]) -> None:
+    page = help_on(*words)
+    assert [verb for verb in ("dda run", "dda check", "dda help", "--version") if verb not in page] == []
+    for status in "0234":
+        assert re.search(rf"[:;,] {status} |\b{status} ", page)
+
+
+@pytest.mark.parametrize("verb", SUBCOMMANDS)
+def test_every_way_to_ask_gives_the_same_page(verb: str) -> None:
+    page = help_on("help", verb)
+    assert page.startswith(f"dda {verb} ")
+    assert page == help_on(verb, "--help") == help_on(verb, "-h")
+    assert max(map(len, page.splitlines())) <= 100
+
+
+def test_help_wins_over_other_options() -> None:
+    assert help_on("run", "no such deck.nml", "--quiet", "--help") == help_on("help", "run")
+
+
+def test_example_of_the_first_page_runs(tmp_path: Path) -> None:
+    lines = [line.strip() for line in help_on().splitlines()]
+    deck = [line for line in lines if line.startswith("&") and line.endswith("/")]
+    assert len(deck) == 2
+    (tmp_path / "arch.nml").write_text("\n".join(deck))
+    assert run_dda("run", "arch.nml", cwd=tmp_path).returncode == 0
+    assert "0.1074241" in (tmp_path / "arch" / "results.csv").read_text()
+
+
+def test_version_is_that_of_the_project() -> None:
+    project = (Path(__file__).parents[2] / "CMakeLists.txt").read_text()
+    version = re.search(r"project\(voussoir VERSION ([\d.]+)", project)
+    assert version
+    assert help_on("--version") == f"dda {version[1]}\n"
+
+
+def cases(folder: Path, name: str = "deck") -> int:
+    """Number of rows of a table of results."""
+    return (folder / name / "results.csv").read_text().count("\n") - 1
+
+
+def run_out(folder: Path) -> None:
+    assert run_dda("run", "deck.nml", "--out", "a/b", cwd=folder).returncode == 0
+    assert cases(folder, "a/b") == 4
+
+
+def run_jobs(folder: Path) -> None:
+    tables = []
+    for jobs in "13":
+        assert run_dda("run", "deck.nml", "--jobs", jobs, "--out", jobs, cwd=folder).returncode == 0
+        rows = (folder / jobs / "results.csv").read_text().splitlines()[1:]
+        tables.append(sorted(row.rsplit(",", 1)[0] for row in rows))
+    assert tables[0] == tables[1]
+    assert len(tables[0]) == 4
+
+
+def run_set(folder: Path) -> None:
+    done = run_dda("run", "deck.nml", "--set", "arch%voussoirs=7", "--set", "joint%friction_deg=60",
+                   cwd=folder)
+    assert done.returncode == 0
+    for row in (folder / "deck" / "results.csv").read_text().splitlines()[1:]:
+        assert ",7,90,0.12,60," in row
+
+
+def run_cases(folder: Path) -> None:
+    assert run_dda("run", "deck.nml", "--cases", "4,1-2", cwd=folder).returncode == 0
+    rows = (folder / "deck" / "results.csv").read_text().splitlines()[1:]
+    assert [row.split(",")[1] for row in rows] == ["1", "2", "4"]
+    assert run_dda("run", "deck.nml", "--resume", cwd=folder).returncode == 0
+    assert cases(folder) == 4
+
+
+def run_resume(folder: Path) -> None:
+    table = folder / "deck" / "results.csv"
+    assert run_dda("run", "deck.nml", cwd=folder).returncode == 0
+    whole = table.read_text()
+    table.write_text("".join(whole.splitlines(keepends=True)[:3]))
+    assert run_dda("run", "deck.nml", "--resume", cwd=folder).returncode == 0
+    assert table.read_text().splitlines()[:3] == whole.splitlines()[:3]
+    assert cases(folder) == 4
+
+
+def run_quiet(folder: Path) -> None:
+    done = run_dda("run", "deck.nml", "--quiet", cwd=folder)
+    assert (done.returncode, done.stdout, done.stderr) == (0, "", "")
+    assert cases(folder) == 4
+
+
+def check_set(folder: Path) -> None:
+    done = run_dda("check", "deck.nml", "--set", "arch%voussoirs=7", cwd=folder)
+    assert "7 that move" in done.stdout
+
+
+def check_quiet(folder: Path) -> None:
+    done = run_dda("check", "deck.nml", "--quiet", cwd=folder)
+    assert (done.returncode, done.stdout, done.stderr) == (0, "", "")
+
+
+#: Subcommand and option: what proves that the option works
+PROOFS: dict[tuple[str, str], Callable[[Path], None]] = {
+    ("run", "--out"): run_out,
+    ("run", "--jobs"): run_jobs,
+    ("run", "--set"): run_set,
+    ("run", "--cases"): run_cases,
+    ("run", "--resume"): run_resume,
+    ("run", "--quiet"): run_quiet,
+    ("check", "--set"): check_set,
+    ("check", "--quiet"): check_quiet,
+}
+
+
+def options_of(verb: str) -> dict[str, str]:
+    """Options on the page of a subcommand, with what the page says of each."""
+    parts = re.split(r"^   (--[a-z-]+)", help_on("help", verb), flags=re.MULTILINE)
+    return dict(zip(parts[1::2], parts[2::2], strict=True))
+
+
+@pytest.mark.parametrize("verb", SUBCOMMANDS)
+def test_every_option_of_a_page_has_a_proof(verb: str) -> None:
+    listed = {(verb, option) for option in options_of(verb) if option != "--help"}
+    assert listed == {proof for proof in PROOFS if proof[0] == verb}
+
+
+@pytest.mark.parametrize("verb", SUBCOMMANDS)
+def test_every_option_says_what_holds_without_it(verb: str) -> None:
+    for option, text in options_of(verb).items():
+        assert option == "--help" or "without it" in text or "default" in text, option
+
+
+@pytest.mark.parametrize(("verb", "option"), PROOFS)
+def test_option_works(tmp_path: Path, verb: str, option: str) -> None:
+    (tmp_path / "deck.nml").write_text(SWEEP)
+    PROOFS[verb, option](tmp_path)
+
+
+def test_every_key_shows_its_default_or_what_holds_without_it() -> None:
+    keys = re.findall(r"^   (\w+)(.*)\n      (.+)", help_on("help", "keys"), flags=re.MULTILINE)
+    assert len(keys) > 40
+    bare = [name for name, rest, _ in keys if " = " not in rest and "without it" not in rest]
+    assert set(bare) <= {"geometry", "analysis", "parameter"}

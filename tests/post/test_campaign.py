@@ -1,0 +1,251 @@
+"""Campaigns: one table, whoever computed what; nothing finished is lost when workers are killed."""
+
+from __future__ import annotations
+
+import csv
+import os
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pytest
+
+pytest.importorskip("voussoir", reason="PYTHONPATH wants the build's python folder")
+
+from voussoir import campaign_part  # noqa: E402
+from voussoir.campaign import share  # noqa: E402
+from voussoir.campaign_merge import merge, slices_of  # noqa: E402
+from voussoir.campaign_part import finished_by, finished_in, ranges_of  # noqa: E402
+from voussoir.command_line import main  # noqa: E402
+
+DDA = os.environ.get("DDA", "")
+pytestmark = pytest.mark.skipif(not DDA, reason="DDA wants the name of the program")
+
+DECK = """&arch voussoirs = 12 /
+&search /
+&sweep parameter = 'half_angle_deg', first = 60, last = 90, count = {angles} /
+&sweep parameter = 'friction_deg', values = 20, 30, 50 /
+"""
+
+
+@pytest.fixture(autouse=True)
+def program(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The program of this build."""
+    monkeypatch.setenv("VOUSSOIR_DDA", DDA)
+
+
+def write_deck(folder: Path, angles: int = 10) -> Path:
+    """A deck of three times so many cases; some of them fall at any thickness."""
+    deck = folder / "sweep.nml"
+    deck.write_text(DECK.format(angles=angles))
+    return deck
+
+
+def tables(folder: Path) -> dict[str, list[str]]:
+    """Tables sorted by case, seconds left out."""
+    found = {}
+    for name, column in (("results.csv", 1), ("joints.csv", 0)):
+        header, *rows = (folder / name).read_text().splitlines()
+        if name == "results.csv":
+            rows = [row.rpartition(",")[0] for row in rows]
+        found[name] = [header, *sorted(rows, key=lambda row: int(row.split(",")[column]))]
+    header, *lines = (folder / "log.txt").read_text().splitlines()
+    found["log.txt"] = [header, *sorted(lines, key=lambda line: int(line.split()[0]))]
+    return found
+
+
+@pytest.fixture(scope="module")
+def unbroken(tmp_path_factory: pytest.TempPathFactory) -> dict[str, list[str]]:
+    """Tables of one run that nobody disturbed."""
+    folder = tmp_path_factory.mktemp("unbroken")
+    subprocess.run([DDA, "run", write_deck(folder), "--out", folder, "--quiet"], check=False)
+    return tables(folder)
+
+
+def test_campaign_gives_the_tables_of_one_run_in_order(tmp_path: Path, unbroken) -> None:
+    deck = str(write_deck(tmp_path))
+    out = tmp_path / "out"
+    status = main(["campaign", deck, "--out", str(out), "--workers", "3", "--quiet"])
+    assert status == 0
+    assert tables(out) == unbroken
+    cases = [int(row["case"]) for row in csv.DictReader((out / "results.csv").open())]
+    assert cases == list(range(1, 31))
+    assert not (out / "parts").exists()
+    words = [DDA, "run", deck, "--out", out, "--resume"]
+    assert "30" in subprocess.run(words, capture_output=True, text=True, check=True).stdout
+    assert tables(out) == unbroken
+
+
+def test_shares_of_a_job_array_make_one_table(tmp_path: Path, unbroken, capsys) -> None:
+    deck, out = str(write_deck(tmp_path)), tmp_path / "out"
+    for index in ("3", "1", "2"):
+        assert not (out / "results.csv").exists()
+        words = ["campaign", deck, "--out", str(out), "--index", index, "--of", "3"]
+        assert main(words) == 0
+    assert tables(out) == unbroken
+    printed = capsys.readouterr().out
+    assert "this share has ended, 20 cases of others are left" in printed
+    assert "0 undecided, 0 not finished" in printed
+
+
+def test_shares_are_all_cases_each_once() -> None:
+    for total, of in ((10, 3), (3, 10), (100000, 7), (1, 1)):
+        cases = [case for index in range(1, of + 1) for case in share(total, index, of)]
+        assert cases == list(range(1, total + 1))
+
+
+def test_merge_shows_what_is_finished_so_far(tmp_path: Path, unbroken, capsys) -> None:
+    deck, out = str(write_deck(tmp_path)), tmp_path / "out"
+    assert main(["campaign", deck, "--out", str(out), "--index", "2", "--of", "3"]) == 0
+    assert main(["campaign", deck, "--out", str(out), "--merge"]) == 3
+    assert "20 not finished" in capsys.readouterr().out
+    whole = unbroken["results.csv"]
+    assert tables(out)["results.csv"] == whole[:1] + whole[11:21]
+    assert main(["campaign", deck, "--out", str(out)]) == 0
+    assert "10 of 30 cases were finished before" in capsys.readouterr().out
+    assert tables(out) == unbroken
+
+
+def test_settings_reach_every_part(tmp_path: Path) -> None:
+    deck, out = str(write_deck(tmp_path, 2)), tmp_path / "out"
+    words = ["campaign", deck, "--out", str(out), "--set", "arch%voussoirs=7", "--quiet"]
+    assert main(words) == 0
+    assert {row["blocks"] for row in csv.DictReader((out / "results.csv").open())} == {"7"}
+
+
+def test_another_deck_is_not_mixed_with_the_first(tmp_path: Path, capsys) -> None:
+    deck, out = write_deck(tmp_path, 2), tmp_path / "out"
+    assert main(["campaign", str(deck), "--out", str(out), "--quiet"]) == 0
+    deck.write_text(deck.read_text().replace("12", "8"))
+    assert main(["campaign", str(deck), "--out", str(out)]) == 2
+    error = capsys.readouterr().err
+    assert "other sha256" in error and ":1: error: wanted" in error and "--anew" in error
+    assert main(["campaign", str(deck), "--out", str(out), "--anew", "--quiet"]) == 0
+    assert {row["blocks"] for row in csv.DictReader((out / "results.csv").open())} == {"8"}
+
+
+def test_bad_deck_is_told_as_by_the_program(tmp_path: Path, capsys) -> None:
+    (tmp_path / "bad.nml").write_text("&arch\n radius = -1 /\n")
+    assert main(["campaign", str(tmp_path / "bad.nml"), "--out", str(tmp_path / "out")]) == 2
+    assert "bad.nml:2: error: arch%radius wants" in capsys.readouterr().err
+    assert not (tmp_path / "out").exists()
+
+
+@pytest.mark.parametrize(
+    ("words", "message"),
+    [
+        (["--index", "1"], "give both"),
+        (["--of", "3"], "give both"),
+        (["--index", "4", "--of", "3"], "number the shares from 1"),
+        (["--index", "1", "--of", "3", "--anew"], "remove the folder"),
+        (["--scheduler", "tcp://127.0.0.1:1"], "--scheduler:1: error: wanted"),
+    ],
+)
+def test_options_that_do_not_go_together_are_refused(tmp_path, words, message, capsys, monkeypatch):
+    monkeypatch.setattr("voussoir.campaign_dask.WAIT", 1.0)
+    deck = str(write_deck(tmp_path))
+    assert main(["campaign", deck, "--out", str(tmp_path / "out"), *words]) == 2
+    assert message in capsys.readouterr().err
+
+
+def test_folder_that_cannot_be_written_is_status_4(tmp_path: Path, capsys) -> None:
+    (tmp_path / "taken").write_text("a file")
+    deck = str(write_deck(tmp_path))
+    assert main(["campaign", deck, "--out", str(tmp_path / "taken")]) == 4
+    assert "taken" in capsys.readouterr().err
+
+
+def test_missing_program_is_told(tmp_path: Path, monkeypatch, capsys) -> None:
+    monkeypatch.setenv("VOUSSOIR_DDA", str(tmp_path / "nothing"))
+    assert main(["campaign", str(write_deck(tmp_path))]) == 2
+    assert "wanted the program dda" in capsys.readouterr().err
+
+
+def test_program_that_is_killed_is_started_again(tmp_path: Path, unbroken) -> None:
+    """Each start dies after two more cases: a SIGKILL in its middle, sixteen times over."""
+    dying = tmp_path / "dda"
+    dying.write_text(
+        "#!/bin/sh\n"
+        f"[ $1 = run ] || exec '{DDA}' \"$@\"\n"
+        f"'{DDA}' \"$@\" & child=$!\n"
+        'while [ "$(cat "$4/results.csv" 2>/dev/null | wc -l)" -lt 3 ]; do\n'
+        "  kill -0 $child 2>/dev/null || break\ndone\n"
+        "kill -9 $child 2>/dev/null; kill -9 $$\n"
+    )
+    dying.chmod(0o755)
+    cases = tuple(range(1, 31))
+    part = campaign_part.Part(dying, write_deck(tmp_path), (), tmp_path / "parts", cases)
+    assert campaign_part.run_part(part) == (0, "")
+    assert finished_in(tmp_path / "parts", range(1, 31)) == set(range(1, 31))
+    assert len(list((tmp_path / "parts").iterdir())) > 1
+    merge(tmp_path / "parts", tmp_path)
+    assert tables(tmp_path) == unbroken
+
+
+def test_case_that_kills_the_program_holds_up_no_other(tmp_path: Path) -> None:
+    dying = tmp_path / "dda"
+    dying.write_text(
+        f"#!/bin/sh\ncase \" $* \" in *'--cases 4'*) kill -9 $$;; esac\nexec '{DDA}' \"$@\"\n"
+    )
+    dying.chmod(0o755)
+    part = campaign_part.Part(dying, write_deck(tmp_path), (), tmp_path / "parts", (4, 5, 6))
+    assert campaign_part.run_part(part) == (0, "")
+    assert finished_in(tmp_path / "parts", (4, 5, 6)) == {5, 6}
+
+
+def test_rows_that_were_cut_off_are_not_taken(tmp_path: Path) -> None:
+    attempt = tmp_path / "1-3.x"
+    attempt.mkdir()
+    (attempt / "results.csv").write_text('deck,case,verdict,seconds\n"a,b",1,stable,0.1\na,2,stab')
+    assert finished_by(attempt) == {1}
+    assert [place[0] for place in slices_of(attempt / "results.csv")] == [1]
+    (attempt / "results.csv").write_text("deck,case,verdict,seconds\na,1,stable\na,2,stable,0.1\n")
+    assert finished_by(attempt) == {2}
+
+
+def test_ranges_read_back() -> None:
+    assert ranges_of([1, 2, 3, 7, 9, 10]) == "1-3,7,9-10"
+    assert ranges_of([5]) == "5"
+
+
+def test_campaign_killed_twice_loses_nothing(tmp_path: Path, unbroken) -> None:
+    deck, out = write_deck(tmp_path), tmp_path / "out"
+    command = [sys.executable, "-m", "voussoir", "campaign", str(deck), "--out", str(out)]
+    known: set[int] = set()
+    for _ in range(2):
+        process = subprocess.Popen(command + ["--workers", "1", "--quiet"], start_new_session=True)
+        deadline = time.monotonic() + 60
+        while time.monotonic() < deadline and process.poll() is None:
+            if len(finished_in(out / "parts", range(1, 31))) > len(known) + 3:
+                os.killpg(process.pid, signal.SIGKILL)
+                break
+            time.sleep(0.002)
+        process.wait()
+        if (out / "results.csv").exists():
+            break
+        now = finished_in(out / "parts", range(1, 31))
+        assert now > known
+        known = now
+    assert subprocess.run(command, check=False).returncode == 0
+    assert tables(out) == unbroken
+
+
+def test_dask_cluster_gives_the_same_table_though_a_worker_is_killed(tmp_path: Path) -> None:
+    distributed = pytest.importorskip("distributed", reason="Dask is not installed: skipped")
+    deck, out = write_deck(tmp_path, 200), tmp_path / "out"
+    subprocess.run([DDA, "run", deck, "--out", tmp_path / "one", "--quiet"], check=True)
+    with distributed.LocalCluster(2, threads_per_worker=1, dashboard_address=None) as cluster:
+        address = cluster.scheduler_address
+        words = ["campaign", str(deck), "--out", str(out), "--scheduler", address]
+        process = subprocess.Popen([sys.executable, "-m", "voussoir", *words])
+        deadline = time.monotonic() + 120
+        while time.monotonic() < deadline and len(finished_in(out / "parts", range(1, 601))) < 20:
+            time.sleep(0.01)
+        assert process.poll() is None
+        os.kill(cluster.workers[0].pid, signal.SIGKILL)
+        before = finished_in(out / "parts", range(1, 601))
+        assert 20 <= len(before) < 600
+        assert process.wait(timeout=300) == 0
+    assert tables(out) == tables(tmp_path / "one")

@@ -1,0 +1,87 @@
+"""Help of `voussoir`: on every subcommand, every default shown, every option run by some test."""
+
+from __future__ import annotations
+
+import argparse
+import ast
+import importlib
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+pytest.importorskip("voussoir", reason="PYTHONPATH wants the build's python folder")
+
+from voussoir import __version__  # noqa: E402
+from voussoir.command_line import COMMANDS, build_parser, main  # noqa: E402
+
+TESTS = Path(__file__).parents[1]
+
+
+def help_of(words: list[str], capsys: pytest.CaptureFixture[str]) -> str:
+    """What a call for help prints."""
+    with pytest.raises(SystemExit) as stop:
+        main(words)
+    assert stop.value.code == 0
+    return capsys.readouterr().out
+
+
+def parser_of(command: str) -> argparse.ArgumentParser:
+    """The parser of a subcommand."""
+    parser = argparse.ArgumentParser()
+    importlib.import_module(COMMANDS[command][0]).add_arguments(parser)
+    return parser
+
+
+def options_of(command: str) -> Iterator[argparse.Action]:
+    """Options of a subcommand but --help."""
+    for action in parser_of(command)._actions:
+        if action.option_strings and action.option_strings[-1] != "--help":
+            yield action
+
+
+@pytest.mark.parametrize("words", [[], ["help"], ["--help"], ["-h"], ["help", "help"]])
+def test_first_page_names_every_subcommand(words: list[str], capsys) -> None:
+    page = help_of(words, capsys)
+    assert [name for name in COMMANDS if name not in page] == []
+
+
+def test_version_is_told(capsys) -> None:
+    assert help_of(["--version"], capsys) == f"voussoir {__version__}\n"
+
+
+@pytest.mark.parametrize("command", COMMANDS)
+def test_every_way_to_ask_gives_the_same_page(command: str, capsys) -> None:
+    page = help_of(["help", command], capsys)
+    assert page == help_of([command, "--help"], capsys)
+    for action in parser_of(command)._actions:
+        assert action.help, f"{command} {action.dest} is not explained"
+        assert (action.option_strings or [action.metavar or action.dest])[-1] in page
+
+
+@pytest.mark.parametrize("command", COMMANDS)
+def test_every_default_is_shown(command: str, capsys) -> None:
+    subparsers = build_parser(command)._subparsers._group_actions[0].choices
+    show = subparsers[command]._get_formatter()._get_help_string
+    for action in options_of(command):
+        assert action.required or "default" in show(action), action.option_strings
+
+
+def words_of_calls() -> Iterator[set[str]]:
+    """Words of each list, tuple or call in the tests, where they are written out."""
+    for file in TESTS.rglob("test_*.py"):
+        for node in ast.walk(ast.parse(file.read_text(encoding="utf-8"))):
+            if isinstance(node, (ast.List, ast.Tuple, ast.Call)):
+                parts = [part for part in ast.walk(node) if isinstance(part, ast.Constant)]
+                yield {part.value.split("=")[0] for part in parts if isinstance(part.value, str)}
+
+
+CALLS = list(words_of_calls())
+
+
+# `voussoir paper` runs every deck of the paper: the target `paper` of the build is its test
+@pytest.mark.parametrize("command", [name for name in COMMANDS if name != "paper"])
+def test_every_option_is_run_by_a_test(command: str) -> None:
+    for action in options_of(command):
+        tested = [words for words in CALLS if {command, action.option_strings[-1]} <= words]
+        assert tested, f"no test calls voussoir {command} {action.option_strings[-1]}"

@@ -1,0 +1,69 @@
+"""`cmake --install` puts programs, package, decks and documents into a prefix that may be moved."""
+
+from __future__ import annotations
+
+import os
+import shutil
+import subprocess
+from pathlib import Path
+
+import pytest
+
+BUILD = os.environ.get("VOUSSOIR_BUILD", "")
+
+
+@pytest.fixture(scope="module")
+def prefix(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """An installation that was moved after it was made."""
+    if not BUILD or not shutil.which("cmake"):
+        pytest.skip("VOUSSOIR_BUILD wants the folder of a whole build, and cmake the path")
+    folder = tmp_path_factory.mktemp("install")
+    command = ["cmake", "--install", BUILD, "--prefix", str(folder / "first")]
+    subprocess.run(command, check=True, capture_output=True)
+    (folder / "first").rename(folder / "moved here")
+    return folder / "moved here"
+
+
+def run(program: Path, *words: str) -> str:
+    """What an installed program prints, without help from this test's environment."""
+    environment = {"PATH": "/usr/bin:/bin", "PYTHONDONTWRITEBYTECODE": "1"}
+    done = subprocess.run(
+        [program, *words], env=environment, capture_output=True, text=True, check=False
+    )
+    assert done.returncode == 0, done.stderr
+    return done.stdout
+
+
+def test_installed_program_runs_an_installed_deck(prefix: Path, tmp_path: Path) -> None:
+    deck = next((prefix / "share/voussoir/input").rglob("table4.nml"))
+    out = run(prefix / "bin/dda", "run", str(deck), "--out", str(tmp_path))
+    assert "0 undecided" in out
+
+
+def test_installed_command_finds_its_package_through_a_link(prefix: Path, tmp_path: Path) -> None:
+    (tmp_path / "vsr").symlink_to(prefix / "bin/voussoir")
+    assert "1.059653e-01" in run(tmp_path / "vsr", "theory", "--alpha", "90")
+
+
+def test_documents_are_installed(prefix: Path) -> None:
+    folder = prefix / "share/doc/voussoir"
+    assert (folder / "README.md").exists() and (folder / "docs/input.md").exists()
+
+
+def test_nothing_of_the_machine_is_left_in_the_package(prefix: Path) -> None:
+    assert not list(prefix.rglob("__pycache__"))
+    assert not list(prefix.rglob("*.f90"))
+
+
+def test_notes_remove_all_that_was_installed(tmp_path: Path) -> None:
+    if not BUILD or not shutil.which("cmake"):
+        pytest.skip("VOUSSOIR_BUILD wants the folder of a whole build, and cmake the path")
+    text = (Path(__file__).parents[2] / "docs/installation.md").read_text()
+    notes = [line for line in text.splitlines() if line.startswith("xargs ")]
+    assert len(notes) == 1
+    subprocess.run(["cmake", "--install", BUILD, "--prefix", str(tmp_path / "p")], check=True,
+                   capture_output=True)
+    assert any(path.is_file() for path in tmp_path.rglob("*"))
+    command = notes[0].replace("build/", f"{BUILD}/")
+    subprocess.run(command, shell=True, check=True)
+    assert not any(path.is_file() for path in tmp_path.rglob("*"))

@@ -1,0 +1,139 @@
+"""voussoir.results: what dda has written, with types, in the order of the cases."""
+
+from __future__ import annotations
+
+import os
+import random
+import subprocess
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+pytest.importorskip("voussoir", reason="PYTHONPATH wants the build's python folder")
+
+from voussoir import results  # noqa: E402
+
+
+def run(folder: Path, text: str) -> results.Results:
+    """Run a deck and read its results."""
+    (folder / "deck.nml").write_text(text)
+    command = [os.environ["DDA"], "run", "deck.nml", "--out", "out", "--quiet"]
+    subprocess.run(command, cwd=folder, check=True, timeout=120)
+    return results.read(folder / "out")
+
+
+@pytest.fixture(scope="module")
+def searched(tmp_path_factory: pytest.TempPathFactory) -> results.Results:
+    """Critical thickness of six arches."""
+    text = """&search /
+        &sweep parameter = 'voussoirs', values = 4, 7, 12 /
+        &sweep parameter = 'plane', texts = 'stress', 'strain' /"""
+    return run(tmp_path_factory.mktemp("searched"), text)
+
+
+@pytest.fixture(scope="module")
+def moved(tmp_path_factory: pytest.TempPathFactory) -> results.Results:
+    """Collapse of two arches with pictures."""
+    text = """&arch voussoirs = 6 /
+        &analysis geometry = 'current' /
+        &output frames = 4 /
+        &sweep parameter = 'thickness_ratio', values = 0.05, 0.2 /"""
+    return run(tmp_path_factory.mktemp("moved"), text)
+
+
+def test_columns_have_their_types(searched: results.Results) -> None:
+    cases = searched.cases
+    assert len(cases) == 6
+    assert cases["case"].dtype == np.int64
+    assert cases["blocks"].tolist() == [4, 4, 7, 7, 12, 12]
+    assert cases["critical"].dtype == float
+    assert np.isnan(cases["thickness_ratio"]).all()
+    assert cases["plane"].tolist() == ["stress", "strain"] * 3
+    assert cases["intrados_hinge_deg"][4] == (60.0,)
+    assert cases["extrados_hinge_deg"][4] == (0.0, 90.0)
+
+
+def test_columns_are_what_the_file_holds(searched: results.Results) -> None:
+    lines = (searched.folder / "results.csv").read_text().splitlines()
+    names = lines[0].split(",")
+    for line in lines[1:]:
+        cells = dict(zip(names, line.split(",")))
+        row = searched.case(int(cells["case"]))
+        assert row["critical"] == float(cells["critical"])
+        assert row["verdict"] == cells["verdict"]
+        assert row["seconds"] == float(cells["seconds"])
+
+
+def test_order_of_the_rows_does_not_matter(searched: results.Results, tmp_path: Path) -> None:
+    for name in ("results.csv", "joints.csv"):
+        head, *rows = (searched.folder / name).read_text().splitlines()
+        blocks: dict[str, list[str]] = {}
+        for row in rows:
+            blocks.setdefault(row.split(",")[1 if name == "results.csv" else 0], []).append(row)
+        keys = list(blocks)
+        random.Random(1).shuffle(keys)
+        text = "\n".join([head, *(row for key in keys for row in blocks[key])]) + "\n"
+        (tmp_path / name).write_text(text)
+    shuffled = results.read(tmp_path)
+    assert shuffled.cases["critical"].tolist() == searched.cases["critical"].tolist()
+    assert (
+        shuffled.joints_of(3)["x_intrados"].tolist() == searched.joints_of(3)["x_intrados"].tolist()
+    )
+
+
+def test_where_keeps_what_is_wanted(searched: results.Results) -> None:
+    kept = searched.cases.where(blocks=7, plane="strain")
+    assert kept["case"].tolist() == [4]
+    assert [row["case"] for row in searched.cases.where(blocks=12).rows()] == [5, 6]
+
+
+def test_joints_belong_to_their_case(searched: results.Results) -> None:
+    joints = searched.joints_of(5)
+    assert len(joints) == 13
+    assert joints["angle_deg"][[0, 6, 12]].tolist() == [-90.0, 0.0, 90.0]
+    assert set(joints["state"]) <= {"locked", "hinge_intrados", "hinge_extrados", "sliding", "open"}
+
+
+def test_unknown_case_is_an_error(searched: results.Results) -> None:
+    with pytest.raises(KeyError, match="no case 7"):
+        searched.case(7)
+
+
+def test_frames_hold_blocks_and_joints(moved: results.Results) -> None:
+    frames = moved.frames_of(1)
+    assert [frame.number for frame in frames] == list(range(len(frames)))
+    assert len(frames) >= 4
+    assert [frame.time for frame in frames] == sorted(frame.time for frame in frames)
+    for frame in frames:
+        assert [block.shape for block in frame.blocks] == [(4, 2)] * 8
+        assert len(frame.joints) == 7
+    moving = np.linalg.norm(frames[-1].blocks[2] - frames[0].blocks[2], axis=1)
+    assert moving.max() > 0.5
+    assert np.array_equal(frames[-1].blocks[-1], frames[0].blocks[-1])
+    file = moved.pvd(1)
+    assert file is not None and file.name == "case_1.pvd"
+
+
+def test_decks_without_pictures_have_none(searched: results.Results) -> None:
+    assert searched.frames is None
+    assert searched.frames_of(1) == []
+    assert searched.pvd(1) is None
+
+
+def test_folder_without_results_is_named(tmp_path: Path) -> None:
+    with pytest.raises(FileNotFoundError, match="no results.csv"):
+        results.read(tmp_path)
+
+
+def test_torn_row_is_named_with_its_line(searched: results.Results, tmp_path: Path) -> None:
+    text = (searched.folder / "results.csv").read_text()
+    (tmp_path / "results.csv").write_text(text[:-40])
+    with pytest.raises(ValueError, match=r"results.csv:7: \d+ cells wanted"):
+        results.read(tmp_path)
+
+
+def test_run_without_cases_reads_as_empty(searched: results.Results, tmp_path: Path) -> None:
+    head = (searched.folder / "results.csv").read_text().splitlines()[0]
+    (tmp_path / "results.csv").write_text(head + "\n")
+    assert len(results.read(tmp_path).cases) == 0
