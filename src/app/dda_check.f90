@@ -3,7 +3,7 @@ module dda_check
    use, intrinsic :: iso_fortran_env, only : error_unit, output_unit
    use dda_command_line, only : command_t, name_of
    use dda_deck, only : deck_t, has_group, is_given, text_of, word_of
-   use dda_deck_scene, only : check_deck_scene, deck_scene
+   use dda_deck_scene, only : check_lines, check_scene, deck_scene, warning_line
    use dda_deck_sweep, only : case_deck, n_cases, swept_names
    use dda_cut, only : print_warnings
    use dda_error, only : error_line, error_t
@@ -28,16 +28,20 @@ contains
       integer, intent(out) :: status
       type(deck_t) :: deck
       type(error_t), allocatable :: error
-      integer :: i
+      integer :: i, w
 
       status = exit_status%success
       do i = 1, size(command%name)
          call read_deck(name_of(command, i), command%setting, deck, error)
+         if (.not. allocated(error)) call check_scene(deck, error)
          if (allocated(error)) then
             write (error_unit, "(a)") error_line(error)
             status = exit_status%bad_input
          else if (.not. command%quiet) then
             call print_warnings(deck%warnings)
+            do w = 1, size(deck%plan%warning)
+               write (error_unit, "(a)") warning_line(deck, w)
+            end do
             call print_plan(name_of(command, i), deck)
          end if
       end do
@@ -54,7 +58,9 @@ contains
       type(error_t), allocatable :: error
       character(len=:), allocatable :: swept
       integer :: s, blocks
+      logical :: arch
 
+      arch = word_of(deck, "scene", "kind") == "arch"
       call case_deck(deck, 1, first, error)
       call deck_scene(first, scene)
       blocks = maxval(scene%system%equation)
@@ -72,7 +78,7 @@ contains
       else
          call tell("searched", "nothing: each case is decided as it is")
       end if
-      if (allocated(deck%cut)) call check_deck_scene(deck, error)
+      if (allocated(deck%cut)) call check_lines(deck, error)
       if (allocated(error)) call tell("not to run", error%message)
       write (output_unit, "(a)") "   the first case:"
       if (word_of(first, "analysis", "mode") == "limerick") then
@@ -80,9 +86,8 @@ contains
          return
       end if
       call tell("blocks", to_text(blocks)//" that move, "//to_text(size(scene%system%equation) &
-         & - blocks)//trim(merge(" held             ", " fixed springings ", allocated(deck%cut))))
-      call tell("joints", to_text(size(scene%contacts%joint))//" of two normal springs and one "// &
-         & "shear spring; fixed pairs, for the blocks do not move apart in reference geometry")
+         & - blocks)//trim(merge(" fixed springings", " held            ", arch)))
+      call tell("joints", joints_text(scene))
       call tell("unknowns", to_text(scene%settings%n_dof)//" a block, " &
          & //to_text(scene%settings%n_dof*blocks)//" in all")
       if (scene%settings%dynamic) then
@@ -118,6 +123,27 @@ contains
       call tell("velocities", merge("kept                            ", &
          & "none: every step starts at rest ", model%constants%dynamic))
    end subroutine print_limerick_plan
+
+   !> The joints and how long they last
+   pure function joints_text(scene) result(text)
+      !> The scene
+      type(scene_t), intent(in) :: scene
+      !> The text
+      character(len=:), allocatable :: text
+      integer :: singles
+
+      singles = count(scene%contacts%joint%n_contact == 1)
+      text = to_text(size(scene%contacts%joint) - singles)//" of two normal springs and one "// &
+         & "shear spring"
+      if (singles > 0) text = text//", "//to_text(singles)//" of one corner before an edge"
+      if (.not. scene%settings%current) then
+         text = text//"; fixed pairs, for the blocks do not move apart in reference geometry"
+      else if (scene%contacts%searched) then
+         text = text//"; searched anew in every step, for the blocks move"
+      else
+         text = text//"; fixed pairs that follow the blocks"
+      end if
+   end function joints_text
 
    !> Print one line of the plan
    subroutine tell(what, how)

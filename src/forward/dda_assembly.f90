@@ -13,7 +13,7 @@ module dda_assembly
    implicit none
    private
 
-   public :: equations_t, new_equations, take_springs, assemble_blocks, solve_faces
+   public :: equations_t, new_equations, renew_springs, take_springs, assemble_blocks, solve_faces
    public :: relative_displacement
 
    !> Matrix, loads and factor; the pattern and the mass are made once, the numbers where faces or
@@ -69,13 +69,10 @@ contains
 
       nd = settings%n_dof
       n = maxval(system%equation)
-      call list_joints(springs, nd, n, equations)
-      call plan_factor(equations%matrix, equations%factor)
       allocate (equations%mass(nd, nd, n), equations%elastic(nd, nd, n), equations%base(nd, nd, n))
       allocate (equations%glued(nd, nd, n), equations%weight(nd, n), equations%load(nd, n))
-      allocate (equations%held_friction(size(springs%stiffness)), source=0.0_wp)
-      allocate (equations%held(size(springs%stiffness)), equations%changed(n))
-      call take_springs(springs, equations)
+      allocate (equations%changed(n))
+      call new_springs(springs, nd, n, equations)
       do b = 1, size(system%equation)
          e = system%equation(b)
          if (e == 0) cycle
@@ -87,6 +84,45 @@ contains
          equations%weight(:, e) = load(:nd)
       end do
    end subroutine new_equations
+
+   !> Take in new joints: lists, pattern, plan of the factor, springs
+   pure subroutine new_springs(springs, n_dof, n_equation, equations)
+      !> The springs of the joints
+      type(joint_springs_t), intent(in) :: springs
+      !> Unknowns of one block
+      integer, intent(in) :: n_dof
+      !> Number of movable blocks
+      integer, intent(in) :: n_equation
+      !> Receives them
+      type(equations_t), intent(inout) :: equations
+
+      call list_joints(springs, n_dof, n_equation, equations)
+      call plan_factor(equations%matrix, equations%factor)
+      if (allocated(equations%held)) deallocate (equations%held, equations%held_friction)
+      allocate (equations%held_friction(size(springs%stiffness)), source=0.0_wp)
+      allocate (equations%held(size(springs%stiffness)))
+      call take_springs(springs, equations)
+   end subroutine new_springs
+
+   !> Take over the springs of joints that may be others; the pattern is made anew only where other
+   !> blocks meet
+   pure subroutine renew_springs(before, springs, equations)
+      !> Equations of the blocks of each joint so far: (2, n_joint)
+      integer, intent(in) :: before(:, :)
+      !> The springs of the joints now
+      type(joint_springs_t), intent(in) :: springs
+      !> Receives pattern and stiffness
+      type(equations_t), intent(inout) :: equations
+      logical :: same
+
+      same = size(before, 2) == size(springs%equation, 2)
+      if (same) same = all(before == springs%equation)
+      if (same) then
+         call take_springs(springs, equations)
+      else
+         call new_springs(springs, size(equations%weight, 1), size(equations%weight, 2), equations)
+      end if
+   end subroutine renew_springs
 
    !> Which joints couple which blocks, and the joints of each block
    pure subroutine list_joints(springs, n_dof, n_equation, equations)
@@ -100,6 +136,8 @@ contains
       type(equations_t), intent(inout) :: equations
       integer :: e, j, side, pair(2, size(springs%equation, 2)), next(n_equation)
 
+      if (allocated(equations%entry)) &
+         & deallocate (equations%entry, equations%first_joint, equations%joint)
       allocate (equations%entry(size(pair, 2)), source=0)
       allocate (equations%first_joint(n_equation + 1), source=0)
       e = 0

@@ -59,7 +59,8 @@ contains
       associate (total => system%motion(:, block))
          total(4:6) = total(4:6) + turned_tensor(motion(4:6), total(3), 2.0_wp)
          total(1:3) = total(1:3) + motion(1:3)
-         system%stress(:, block) = turned_tensor(matmul(d, total(4:6)), -total(3), 1.0_wp)
+         system%stress(:, block) = turned_tensor(system%initial_stress(:, block) &
+            & + matmul(d, total(4:6)), -total(3), 1.0_wp)
          do v = system%first_vertex(block), system%first_vertex(block + 1) - 1
             system%moved(:, v) = moved_point(system%vertex(:, v), system%centroid(:, block), total)
          end do
@@ -67,7 +68,8 @@ contains
    end subroutine move_block
 
    !> Keep states, forces and gaps of a step; under Coulomb friction slip is plastic, so that the
-   !> springs start anew from the shear force that they could carry
+   !> springs start anew from the shear force that they could carry. Springs that give keep as much
+   !> of it as carries that force
    pure subroutine update_contacts(step, settings, contacts, breaks)
       !> The accepted step
       type(step_context_t), intent(in) :: step
@@ -85,7 +87,10 @@ contains
       contacts%force = step%state%force
       contacts%increment = step%state%increment
       contacts%gap = contacts%gap + step%state%increment
-      if (settings%current) then
+      if (settings%current .and. contacts%springs%give) then
+         where (contacts%face%slip /= 0) contacts%past_slip = contacts%past_slip &
+            & + contacts%gap(3, :) + contacts%force(3, :)/contacts%springs%stiffness
+      else if (settings%current) then
          where (contacts%face%slip /= 0) &
             & contacts%past_slip = contacts%past_slip + contacts%gap(3, :)
       else if (settings%flow == flow_rule%coulomb) then

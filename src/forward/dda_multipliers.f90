@@ -20,8 +20,8 @@ module dda_multipliers
 
 contains
 
-   !> Settle the joints of one step: once in reference geometry, where the penalty has no influence;
-   !> until the multipliers stay the same where blocks move
+   !> Settle the joints of one step: once in reference geometry, where the penalty has no influence,
+   !> and where springs give for good; until the multipliers stay the same where blocks move
    pure subroutine settle_joints(settings, equations, springs, state)
       !> Settings of the run
       type(settings_t), intent(in) :: settings
@@ -35,7 +35,7 @@ contains
       real(wp) :: tolerance
       integer :: pass
 
-      if (.not. settings%current) then
+      if (springs%give .or. .not. settings%current) then
          call settle_once(settings, equations, springs, state)
          return
       end if

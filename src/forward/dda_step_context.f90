@@ -41,8 +41,13 @@ module dda_step_context
       real(wp) :: dt = 0.0_wp
       !> Most that a corner may move in a step, where blocks move [m]
       real(wp) :: allowed_motion = 0.0_wp
+      !> Most that the corners of each block may move before contacts are searched again, where they
+      !> are searched: (n_block) [m]
+      real(wp), allocatable :: reach(:)
       !> Largest motion of a corner since the beginning [m]
       real(wp) :: displacement = 0.0_wp
+      !> Motions that the coordinates of corners cannot tell from none [m]
+      real(wp) :: resolution = 0.0_wp
       !> Longest step that leaves the matrix well enough conditioned [s]
       real(wp) :: longest = 0.0_wp
       !> Largest motion if every joint were glued: the scale of elastic motion [m]

@@ -56,7 +56,7 @@ contains
       type(error_t), allocatable, intent(out) :: error
       type(cone_t) :: glued(size(springs%stiffness))
       type(joint_face_t) :: closed(size(springs%stiffness))
-      real(wp) :: mean_mass
+      real(wp) :: mean_mass, stiffest
       integer :: e
 
       mean_mass = 0.0_wp
@@ -66,13 +66,16 @@ contains
             & norm2(equations%weight(1:2, e))/equations%mass(1, 1, e))
       end do
       march%last_acceleration = march%free_acceleration
-      march%longest = sqrt(2.0_wp*mean_mass/(least_inertia*maxval(springs%stiffness)))
+      stiffest = maxval(system%materials%young)
+      if (size(springs%stiffness) > 0) stiffest = maxval(springs%stiffness)
+      march%longest = sqrt(2.0_wp*mean_mass/(least_inertia*stiffest))
+      march%resolution = epsilon(1.0_wp)*maxval(abs(system%vertex))
+      march%allowed_motion = settings%max_displacement_ratio &
+         & *sqrt(minval(system%area, mask=system%equation > 0))
       if (settings%dynamic) then
          march%dt = dynamic_step(system, settings, march%free_acceleration)
          return
       end if
-      march%allowed_motion = settings%max_displacement_ratio &
-         & *sqrt(minval(system%area, mask=system%equation > 0))
       march%dt = march%longest
       call assemble_blocks(system, settings, march%dt, equations)
       call solve_faces(equations, springs, glued, closed, state%start, state%motion)

@@ -124,7 +124,7 @@ contains
       stores_nothing = abs(step%stored) < 1.0e-3_wp*abs(step%work)
       ! where blocks move, a step that comes to rest has only proven the shape it started from
       if (settings%current) at_rest = at_rest .and. march%steps >= 2 &
-         & .and. step%farthest <= still*march%displacement
+         & .and. step%farthest <= max(still*march%displacement, march%resolution)
       answer = verdict%undecided
       if (at_rest) then
          answer = verdict%stable

@@ -101,11 +101,11 @@ module dda_deck_keys
    type(key_t), parameter :: scene_keys(*) = [ &
       key_t(group="scene", name="title", kind=key_kind%text, default="''", varies=.false., &
             meaning="One line that says what the deck is about."), &
-      key_t(group="scene", name="kind", kind=key_kind%word, default="'arch'", words="arch lines", &
-            later="blocks", varies=.false., &
-            meaning="What the blocks are made from: the keys of &arch, or lines of a file."), &
-      key_t(group="scene", name="geometry", kind=key_kind%text, without="an arch", &
-            varies=.false., meaning="File of lines for kind = 'lines', beside the deck."), &
+      key_t(group="scene", name="kind", kind=key_kind%word, default="'arch'", &
+            words="arch lines blocks", varies=.false., meaning="What the blocks are made from: "// &
+            "the keys of &arch, lines of a file, or polygons of a file."), &
+      key_t(group="scene", name="geometry", kind=key_kind%text, without="an arch", varies=.false., &
+            meaning="File of lines or of blocks, beside the deck unless it begins with a slash."), &
       key_t(group="scene", name="analysis", kind=key_kind%text, &
             without="the keys of this deck", varies=.false., &
             meaning="File of materials and loads for kind = 'lines'; keys of the deck go before.")]
@@ -201,7 +201,10 @@ module dda_deck_keys
             meaning="Largest vertex displacement that means collapse."), &
       key_t(group="analysis", name="open_close_limit", kind=key_kind%whole, default="400", &
             at_least=1.0_wp, at_most=1.0e9_wp, &
-            meaning="Most open-close changes of a step before the line search takes over.")]
+            meaning="Most open-close changes of a step before the line search takes over."), &
+      key_t(group="analysis", name="restart", kind=key_kind%text, varies=.false., &
+            without="the run begins at the beginning", &
+            meaning="Restart file of a dynamic run that goes on; steps counts those before, too.")]
 
    !> Keys of &limerick
    type(key_t), parameter :: limerick_keys(*) = [ &
@@ -275,6 +278,8 @@ module dda_deck_keys
       key_t(group="output", name="frames", kind=key_kind%whole, default="0", varies=.false., &
             at_least=0.0_wp, at_most=10000.0_wp, &
             meaning="Pictures of moving blocks; a collapse is then followed for radius/10."), &
+      key_t(group="output", name="restart", kind=key_kind%flag, default=".false.", varies=.false., &
+            meaning="Write the end of each dynamic case to case_N.restart, to go on from there."), &
       key_t(group="output", name="max_cases", kind=key_kind%whole, default="100000", &
             varies=.false., at_least=1.0_wp, at_most=1.0e7_wp, &
             meaning="Most cases that the &sweep groups may make; more is an error.")]

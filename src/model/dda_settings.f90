@@ -1,5 +1,6 @@
 !> What a run is told once
 module dda_settings
+   use dda_boundary, only : boundary_t
    use dda_kinds, only : wp
    implicit none
    private
@@ -42,6 +43,8 @@ module dda_settings
       real(wp) :: collapse_displacement = 0.0_wp
       !> Body force per unit of weight: direction of gravity and the horizontal coefficient: (2)
       real(wp) :: load_direction(2) = [0.0_wp, -1.0_wp]
+      !> Held, loaded and measured points, and the motion of the ground
+      type(boundary_t) :: boundary
       !> Remaining acceleration over that of the loads below which a structure is at rest
       real(wp) :: rest_tolerance = 1.0e-11_wp
    end type settings_t

@@ -13,8 +13,8 @@ module dda_arch_scene
    implicit none
    private
 
-   public :: arch_scene, half_joints_deg, exact_thickness, search_start
-   public :: arch_resolution, joint_law, settings_of, unit_weight
+   public :: arch_scene, half_joints_deg, exact_thickness, search_start, arch_resolution
+   public :: joint_law, material_of, settings_of, unit_weight
 
    !> Friction angles from here on mean that no joint slides [deg]
    real(wp), parameter :: no_slip_deg = 89.9_wp
@@ -27,17 +27,12 @@ contains
       type(deck_t), intent(in) :: deck
       !> The scene
       type(scene_t), intent(out) :: scene
-      type(material_t) :: material
       type(joint_law_t), allocatable :: law(:)
       integer, allocatable :: edge_pair(:, :)
       real(wp), allocatable :: half(:)
       integer :: j, n
 
-      material%density = real_of(deck, "material", "density")
-      material%young = real_of(deck, "material", "young")
-      material%poisson = real_of(deck, "material", "poisson")
-      material%plane_strain = word_of(deck, "material", "plane") == "strain"
-      call arch_blocks(arch_shape(deck), material, scene%system, edge_pair)
+      call arch_blocks(arch_shape(deck), material_of(deck), scene%system, edge_pair)
       scene%system%unit_weight = unit_weight(deck)
       scene%settings = settings_of(deck, degree*real_of(deck, "arch", "half_angle_deg"), &
          & size(half_joints_deg(deck)))
@@ -53,6 +48,19 @@ contains
          scene%joint_angle_deg(n - size(half) + j) = half(j)
       end do
    end subroutine arch_scene
+
+   !> The blocks' material
+   pure function material_of(deck) result(material)
+      !> The deck
+      type(deck_t), intent(in) :: deck
+      !> The material
+      type(material_t) :: material
+
+      material%density = real_of(deck, "material", "density")
+      material%young = real_of(deck, "material", "young")
+      material%poisson = real_of(deck, "material", "poisson")
+      material%plane_strain = word_of(deck, "material", "plane") == "strain"
+   end function material_of
 
    !> The law of the joints
    pure function joint_law(deck) result(law)
