@@ -7,7 +7,7 @@ module dda_forward
    use dda_contact_detection, only : contacts_t, follow_contacts
    use dda_contact_transfer, only : renew_contacts
    use dda_curved_motion, only : follow_curves
-   use dda_energy, only : audit_step, audit_t, keep_energy
+   use dda_energy, only : audit_step, keep_energy
    use dda_error, only : error_t, fatal_error
    use dda_frames, only : album_t, keep_frame, keep_track
    use dda_impact_time, only : meet_impact
@@ -53,7 +53,7 @@ module dda_forward
 contains
 
    !> Run a static analysis to its verdict, a dynamic one to its end
-   pure subroutine run_to_verdict(settings, system, contacts, outcome, album, onward, audit)
+   pure subroutine run_to_verdict(settings, system, contacts, outcome, album, onward)
       !> Settings of the run
       type(settings_t), intent(in) :: settings
       !> The blocks: at the beginning in, at the end out
@@ -66,8 +66,6 @@ contains
       type(album_t), intent(inout), optional :: album
       !> The march of a run that goes on in, without steps for one that begins; where it ended out
       type(march_t), intent(inout), optional :: onward
-      !> Receives the energies of a dynamic run
-      type(audit_t), intent(inout), optional :: audit
       type(equations_t) :: equations
       type(step_context_t) :: step
       type(march_t) :: march
@@ -94,7 +92,7 @@ contains
          if (march%steps == settings%max_steps) exit
          call advance(settings, system, contacts, equations, march, step, error)
          if (allocated(error)) exit
-         if (present(audit) .and. settings%dynamic) call keep_energy(march%energy, audit)
+         if (present(album)) call keep_energy(march%energy, album%audit)
          outcome%verdict = verdict%undecided
          if (settings%current .or. settings%collapse_displacement > 0.0_wp) &
             & march%displacement = largest_displacement(system, settings%current)
