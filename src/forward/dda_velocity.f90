@@ -35,10 +35,15 @@ module dda_velocity
    !> A block whose strain swings by more than this angle in the longest step [rad] has no strain
    !> rate: its strain follows its load
    real(wp), parameter :: resolved = 1.0_wp
+   !> Most tries with less restitution; the last one has none
+   integer, parameter :: max_tries = 8
+   !> Energy that counts as rounding, over that of motion
+   real(wp), parameter :: energy_noise = 1.0e-12_wp
 
 contains
 
-   !> Velocities of the blocks at the end of a settled step
+   !> Velocities of the blocks at the end of a settled step. Newton's restitution may bring in energy
+   !> where there is friction, or where blocks are hit in several places; then there is less of it
    pure subroutine settle_velocities(settings, system, contacts, equations, step)
       !> Settings of the run
       type(settings_t), intent(in) :: settings
@@ -50,14 +55,46 @@ contains
       type(equations_t), intent(inout) :: equations
       !> The step; its velocities are set, and whether it counts
       type(step_context_t), intent(inout) :: step
-      type(step_state_t) :: state
-      type(joint_springs_t) :: springs
-      logical :: closed(2, size(contacts%joint)), follows(size(system%equation))
-      real(wp) :: part(2, size(contacts%joint)), held_force(size(equations%fixed%force))
-      integer :: j
+      logical :: closed(2, size(contacts%joint))
+      real(wp) :: part(2, size(contacts%joint)), before
+      integer :: try
 
       closed = closed_contacts(system, contacts, step)
       part = parting_speed(settings, system, contacts, closed, step)
+      before = kinetic_energy(equations, 2.0_wp/step%dt*step%state%motion &
+         & - packed_velocity(system, size(step%state%motion, 1)))
+      do try = 0, max_tries
+         if (try == max_tries) part = 0.0_wp
+         call settle_impulses(settings, system, contacts, closed, part, equations, step)
+         if (.not. step%accepted) return
+         step%impact = before - kinetic_energy(equations, step%velocity)
+         if (step%impact >= -energy_noise*before .or. .not. any(part > 0.0_wp)) return
+         part = 0.8_wp*part
+      end do
+   end subroutine settle_velocities
+
+   !> Velocities for given speeds at which the contacts must part
+   pure subroutine settle_impulses(settings, system, contacts, closed, part, equations, step)
+      !> Settings of the run
+      type(settings_t), intent(in) :: settings
+      !> The blocks before the step
+      type(block_system_t), intent(in) :: system
+      !> The contacts before the step
+      type(contacts_t), intent(in) :: contacts
+      !> Contacts that are closed: (2, n_joint)
+      logical, intent(in) :: closed(:, :)
+      !> The speeds: (2, n_joint) [m/s]
+      real(wp), intent(in) :: part(:, :)
+      !> The equations; matrix and factor are made anew
+      type(equations_t), intent(inout) :: equations
+      !> The step; its velocities are set, and whether it counts
+      type(step_context_t), intent(inout) :: step
+      type(step_state_t) :: state
+      type(joint_springs_t) :: springs
+      logical :: follows(size(system%equation))
+      real(wp) :: held_force(size(equations%fixed%force))
+      integer :: j
+
       follows = strain_follows(system, step%longest)
       held_force = equations%fixed%force
       call assemble_rates(settings, system, follows, step, equations)
@@ -74,10 +111,8 @@ contains
       step%accepted = state%settled
       if (.not. step%accepted) return
       step%velocity = state%motion/step%dt
-      call keep_moment(contacts, equations, state%force, step)
-      step%impact = kinetic_energy(equations, 2.0_wp/step%dt*step%state%motion &
-         & - packed_velocity(system, size(state%motion, 1))) - kinetic_energy(equations, step%velocity)
-   end subroutine settle_velocities
+      call keep_moment(system, contacts, springs, equations, state%force, step)
+   end subroutine settle_impulses
 
    !> Contacts that are closed at the end of a step: those that carry a force, and those without a
    !> gap
@@ -232,19 +267,24 @@ contains
 
    !> Keep the moment of momentum of each pair of blocks. The centres have moved while their
    !> impulses acted as at the beginning: the pair's centres bring in
-   !> dt**2 (F/2 - N) x (v2 - v1), F the force of the motion, N that of the impulse. The two blocks
-   !> give it back by one change of spin
-   pure subroutine keep_moment(contacts, equations, impulse, step)
+   !> dt**2 (F/2 - N) x (v2 - v1), F the force of the motion, N that of the impulse; and the rows of a
+   !> joint between turned edges may lie off one line. The two blocks give it back by one change of
+   !> spin
+   pure subroutine keep_moment(system, contacts, springs, equations, impulse, step)
+      !> The blocks before the step
+      type(block_system_t), intent(in) :: system
       !> The contacts before the step
       type(contacts_t), intent(in) :: contacts
+      !> Springs that the impulses have acted by
+      type(joint_springs_t), intent(in) :: springs
       !> The equations, for the moments of inertia
       type(equations_t), intent(in) :: equations
       !> Forces that stand for the impulses: (3, n_joint) [N/m]
       real(wp), intent(in) :: impulse(:, :)
       !> The step; its spins are changed
       type(step_context_t), intent(inout) :: step
-      real(wp) :: change(size(step%velocity, 2)), force(2), excess(3), moment
-      integer :: j, one, other
+      real(wp) :: change(size(step%velocity, 2)), force(2), excess(3), moment, turn(3)
+      integer :: b, j, one, other, side
 
       change = 0.0_wp
       do j = 1, size(contacts%joint)
@@ -257,6 +297,12 @@ contains
                & + excess(3)*joint%tangent
          end associate
          moment = step%dt**2*cross(force, step%velocity(1:2, other) - step%velocity(1:2, one))
+         do side = 1, 2
+            b = contacts%joint(j)%block(side)
+            turn = matmul(springs%row(1:3, :, side, j), impulse(:, j))
+            moment = moment + step%dt*(turn(3) + cross(system%centroid(:, b) &
+               & + system%motion(1:2, b), turn(1:2)))
+         end do
          moment = moment/(equations%mass(3, 3, one) + equations%mass(3, 3, other))
          change(one) = change(one) - moment
          change(other) = change(other) - moment
