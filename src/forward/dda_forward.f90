@@ -171,6 +171,7 @@ contains
          if (widened) call place_contacts(settings, system, march, contacts, equations)
          widened = .false.
          step%dt = march%dt
+         contacts%remember = .not. in_time
          if (in_time) call stiffen_contacts(system, step%dt, contacts)
          if (in_time) call take_springs(contacts%springs, equations)
          call begin_step(contacts, size(equations%weight, 1), size(equations%weight, 2), step%state)
