@@ -8,6 +8,7 @@ module dda_forward
    use dda_contact_transfer, only : renew_contacts
    use dda_curved_motion, only : follow_curves
    use dda_energy, only : audit_step, keep_energy
+   use dda_entry, only : refuse_entry
    use dda_error, only : error_t, fatal_error
    use dda_frames, only : album_t, keep_frame, keep_track
    use dda_impact_time, only : meet_impact
@@ -223,9 +224,12 @@ contains
       call meet_impact(settings, system, contacts, equations, march, step)
       if (.not. step%accepted) return
       call settle_velocities(settings, system, contacts, equations, step)
-      if (step%accepted) return
-      step%was_cut = .true.
-      march%dt = march%dt/2.0_wp
+      if (step%accepted) then
+         if (contacts%searched) call refuse_entry(settings, system, contacts, march, step)
+      else
+         step%was_cut = .true.
+         march%dt = march%dt/2.0_wp
+      end if
    end subroutine settle_impacts
 
    !> Contacts where the blocks are now: those that were given, or those that a search finds
