@@ -9,6 +9,7 @@ module dda_picture_files
    use dda_table_file, only : append_line, table_file_t
    use dda_text, only : to_text
    use dda_vtu_field, only : field_t, scalar_field, state_field, tensor_field, vector_field
+   use dda_write_energy, only : energy_lines
    use dda_write_frames, only : frame_joint_lines, frame_joint_row_t, frame_lines, frame_stamp_t, &
       & point_lines
    use dda_write_pvd, only : add_to_index, close_index, open_index, pvd_index_t
@@ -16,7 +17,7 @@ module dda_picture_files
    implicit none
    private
 
-   public :: write_album, write_track
+   public :: write_album, write_track, write_energies
 
 contains
 
@@ -94,6 +95,30 @@ contains
       call append_line(points, point_lines(number, album%when(:, :album%n_track), place, &
          & album%track(:, :, :album%n_track), origin), error)
    end subroutine write_track
+
+   !> Write the energies of a case
+   subroutine write_energies(number, album, table, error)
+      !> Number of the case
+      integer, intent(in) :: number
+      !> Holds the energies
+      type(album_t), intent(in) :: album
+      !> energy.csv
+      type(table_file_t), intent(in) :: table
+      !> Allocated if they cannot be written
+      type(error_t), allocatable, intent(out) :: error
+      real(wp) :: value(10, album%audit%n)
+      integer :: i
+
+      if (album%audit%n == 0) return
+      do i = 1, size(value, 2)
+         associate (energy => album%audit%energy(i))
+            value(:, i) = [energy%time, energy%kinetic, energy%elastic, energy%contact, &
+               & energy%gravity, energy%work, energy%friction, energy%damping, energy%impact, &
+               & energy%numerical]
+         end associate
+      end do
+      call append_line(table, energy_lines(number, value), error)
+   end subroutine write_energies
 
    !> Write the blocks and the joint forces of one picture, and tell the index
    subroutine write_picture(folder, stem, system, origin, frame, row, index, time, error)

@@ -7,6 +7,7 @@ module dda_result_tables
    use dda_table_file, only : append_line, close_table, open_table, remove_file, table_file_t
    use dda_text, only : to_text
    use dda_growing_text, only : add_line, growing_text_t, lines_of
+   use dda_write_energy, only : energy_header
    use dda_write_frames, only : frame_joints_header, frames_header, points_header
    use dda_write_results, only : joint_line, joint_row_t, joints_header, result_row_t, &
       & results_header, results_line
@@ -30,6 +31,8 @@ module dda_result_tables
       integer :: frame_joints = 5
       !> A row a measured point and step
       integer :: points = 6
+      !> A row a step
+      integer :: energy = 7
    end type table_enum
 
    !> The places by name
@@ -52,7 +55,7 @@ module dda_result_tables
       !> Name of the folder
       character(len=:), allocatable :: folder
       !> The tables, by their places
-      type(result_table_t) :: at(6)
+      type(result_table_t) :: at(7)
       !> File that holds what was asked for
       character(len=:), allocatable :: record_file
       !> Whether pictures are wanted as VTU too
@@ -94,6 +97,9 @@ contains
       tables%at(table%points)%wanted = .false.
       if (allocated(deck%plan%boundary%measured)) tables%at(table%points)%wanted = &
          & size(deck%plan%boundary%measured) > 0 .and. .not. has_group(deck, "search")
+      call name_table(tables%at(table%energy), "/energy.csv", energy_header())
+      tables%at(table%energy)%wanted = flag_of(deck, "output", "energy") &
+         & .and. .not. has_group(deck, "search")
       tables%at(table%joints)%wanted = flag_of(deck, "output", "joints")
       tables%at([table%frames, table%frame_joints])%wanted = &
          & integer_of(deck, "output", "frames") > 0

@@ -11,7 +11,7 @@ module dda_run
    use dda_deck_scene, only : check_lines, check_scene, warning_line
    use dda_error, only : error_line, error_t, fatal_error
    use dda_help, only : version
-   use dda_picture_files, only : write_album, write_track
+   use dda_picture_files, only : write_album, write_energies, write_track
    use dda_process, only : error_is_terminal, exit_status, worst_status
    use dda_progress, only : clear_progress, progress_t, report_progress
    use dda_read_deck, only : read_deck
@@ -259,6 +259,8 @@ contains
             & tables%at(table%frames)%open, tables%at(table%frame_joints)%open, error)
          if (tables%at(table%points)%wanted .and. .not. allocated(error)) call write_track( &
             & number, this%scene%origin, this%album, tables%at(table%points)%open, error)
+         if (tables%at(table%energy)%wanted .and. .not. allocated(error)) call write_energies( &
+            & number, this%album, tables%at(table%energy)%open, error)
          if (.not. allocated(error)) call write_end(tables%folder, number, this, error)
          if (.not. allocated(error)) call write_case(tables, row, joint_row, remark, error)
       end if

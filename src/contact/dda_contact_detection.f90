@@ -34,6 +34,8 @@ module dda_contact_detection
       logical, allocatable :: broken(:, :)
       !> Whether blocks that move are searched for new contacts; otherwise the joints stay as given
       logical :: searched = .false.
+      !> Whether found contacts remember their slip; in time what sticks has no speed to slip with
+      logical :: remember = .true.
       !> The search
       type(joint_search_t) :: search
    end type contacts_t
@@ -84,6 +86,7 @@ contains
 
       n = size(joint)
       fresh%searched = contacts%searched
+      fresh%remember = contacts%remember
       fresh%search = contacts%search
       allocate (fresh%joint, source=joint)
       allocate (fresh%face(n), fresh%past_slip(n))

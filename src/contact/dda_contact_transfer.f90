@@ -138,6 +138,7 @@ contains
                list(n)%slip = slip_at(system, system%moved, joint%contact(k)) &
                   & - contacts%past_slip(j)
                list(n)%stiffness = contacts%springs%stiffness(j)
+               if (.not. contacts%remember) list(n)%slip = 0.0_wp
             end do
          end associate
       end do

@@ -1,12 +1,17 @@
 !> Forward analysis: one step as a transaction, and a run of steps to a verdict (Shi: df)
 module dda_forward
-   use dda_assembly, only : assemble_blocks, equations_t, new_equations, renew_springs, take_springs
+   use dda_assembly, only : equations_t, new_equations, renew_springs, take_springs
+   use dda_block_inertia, only : assemble_blocks, turn_masses
    use dda_block_system, only : block_system_t
    use dda_block_update, only : update_blocks, update_contacts
    use dda_contact_detection, only : contacts_t, follow_contacts
    use dda_contact_transfer, only : renew_contacts
+   use dda_curved_motion, only : follow_curves
+   use dda_energy, only : audit_step, keep_energy
+   use dda_entry, only : refuse_entry
    use dda_error, only : error_t, fatal_error
    use dda_frames, only : album_t, keep_frame, keep_track
+   use dda_impact_time, only : meet_impact
    use dda_kinds, only : wp
    use dda_multipliers, only : settle_joints
    use dda_open_close, only : step_state_t
@@ -14,6 +19,7 @@ module dda_forward
    use dda_step_context, only : march_t, step_context_t
    use dda_step_interval, only : first_interval, judge_step, next_interval
    use dda_step_reach, only : first_reach, judge_reach, next_reach, travel_of
+   use dda_velocity, only : settle_velocities, stiffen_contacts
    use dda_verdict, only : judge_verdict, largest_displacement, measure_step, verdict
    implicit none
    private
@@ -47,7 +53,7 @@ module dda_forward
 
 contains
 
-   !> Run a static analysis to its verdict, a dynamic one to its last step
+   !> Run a static analysis to its verdict, a dynamic one to its end
    pure subroutine run_to_verdict(settings, system, contacts, outcome, album, onward)
       !> Settings of the run
       type(settings_t), intent(in) :: settings
@@ -80,11 +86,14 @@ contains
             & error)
          contacts%face = step%state%face
       end if
+      if (settings%dynamic .and. march%steps == 0) call audit_step(settings, system, equations, &
+         & contacts, step, 0.0_wp, march%energy)
       if (present(album)) call keep_pictures(system, contacts, march, .false., album)
       do while (.not. allocated(error))
          if (march%steps == settings%max_steps) exit
          call advance(settings, system, contacts, equations, march, step, error)
          if (allocated(error)) exit
+         if (present(album)) call keep_energy(march%energy, album%audit)
          outcome%verdict = verdict%undecided
          if (settings%current .or. settings%collapse_displacement > 0.0_wp) &
             & march%displacement = largest_displacement(system, settings%current)
@@ -93,7 +102,8 @@ contains
          if (present(album)) call keep_pictures(system, contacts, march, &
             & outcome%verdict /= verdict%undecided, album)
          if (outcome%verdict /= verdict%undecided) exit
-         call next_interval(settings, step, march)
+         if (settings%duration > 0.0_wp .and. march%time >= settings%duration) exit
+         call next_interval(settings, system, step, march)
       end do
       if (present(onward)) onward = march
       outcome%rest_tolerance = settings%rest_tolerance
@@ -108,8 +118,11 @@ contains
       if (allocated(error)) then
          outcome%verdict = verdict%undecided
          outcome%reason = error%message
-      else if (settings%dynamic) then
+      else if (settings%dynamic .and. march%time >= settings%duration) then
          outcome%verdict = verdict%completed
+      else if (settings%dynamic) then
+         outcome%verdict = verdict%undecided
+         outcome%reason = "all steps are spent before the end of the run"
       else if (outcome%verdict == verdict%undecided) then
          outcome%reason = "all steps are spent and neither rest nor collapse is proven"
       end if
@@ -149,21 +162,30 @@ contains
       !> Allocated if no step, however short, settles
       type(error_t), allocatable, intent(inout) :: error
       integer :: retry
-      logical :: breaks, widened
+      logical :: breaks, in_time, widened
 
+      in_time = settings%dynamic .and. settings%current
       widened = settings%current
+      if (settings%current) call turn_masses(system, equations)
       step%was_cut = .false.
       do retry = 0, max_retries
          if (widened) call place_contacts(settings, system, march, contacts, equations)
          widened = .false.
          step%dt = march%dt
+         contacts%remember = .not. in_time
+         if (in_time) call stiffen_contacts(system, step%dt, contacts)
+         if (in_time) call take_springs(contacts%springs, equations)
          call begin_step(contacts, size(equations%weight, 1), size(equations%weight, 2), step%state)
-         call assemble_blocks(system, settings, step%dt, equations)
+         call assemble_blocks(system, settings, step%dt, equations, march%time)
          call settle_joints(settings, equations, contacts%springs, step%state)
+         if (in_time .and. step%state%settled) &
+            & call follow_curves(settings, system, contacts, equations, step)
          march%passes = march%passes + step%state%passes
          call judge_step(settings, system, march, step)
          if (contacts%searched .and. settings%current) &
             & call judge_reach(system, contacts, march, step, widened)
+         if (step%accepted .and. in_time) &
+            & call settle_impacts(settings, system, contacts, equations, march, step)
          if (step%accepted) exit
       end do
       if (.not. step%accepted) then
@@ -177,7 +199,38 @@ contains
       step%whole = .not. breaks
       march%steps = march%steps + 1
       march%time = march%time + step%dt
+      if (settings%dynamic) call audit_step(settings, system, equations, contacts, step, &
+         & march%time, march%energy)
    end subroutine advance
+
+   !> Velocities after a settled step: cut it if blocks meet in it that rebound, or if the impulses
+   !> do not settle
+   pure subroutine settle_impacts(settings, system, contacts, equations, march, step)
+      !> Settings of the run
+      type(settings_t), intent(in) :: settings
+      !> The blocks before the step
+      type(block_system_t), intent(in) :: system
+      !> The contacts before the step
+      type(contacts_t), intent(in) :: contacts
+      !> The equations
+      type(equations_t), intent(inout) :: equations
+      !> The march; the length of the next try is set
+      type(march_t), intent(inout) :: march
+      !> The settled step; its velocities are set, and whether it counts
+      type(step_context_t), intent(inout) :: step
+
+      step%longest = march%longest
+      step%slowest_impact = 2.0_wp*march%free_acceleration*march%longest
+      call meet_impact(settings, system, contacts, equations, march, step)
+      if (.not. step%accepted) return
+      call settle_velocities(settings, system, contacts, equations, step)
+      if (step%accepted) then
+         if (contacts%searched) call refuse_entry(settings, system, contacts, march, step)
+      else
+         step%was_cut = .true.
+         march%dt = march%dt/2.0_wp
+      end if
+   end subroutine settle_impacts
 
    !> Contacts where the blocks are now: those that were given, or those that a search finds
    pure subroutine place_contacts(settings, system, march, contacts, equations)

@@ -6,6 +6,7 @@ module dda_frames
    use dda_contact_types, only : joint_t
    use dda_deformation, only : moved_point
    use dda_friction_cone, only : joint_face_t
+   use dda_energy, only : audit_t
    use dda_kinds, only : wp
    implicit none
    private
@@ -48,6 +49,8 @@ module dda_frames
       integer :: n = 0
       !> The pictures, the first n of them
       type(frame_t), allocatable :: frame(:)
+      !> Energies of a dynamic run
+      type(audit_t) :: audit
       !> Points whose way is kept in every step: (n_point)
       type(measured_point_t), allocatable :: point(:)
       !> Steps of which it is kept, the beginning among them

@@ -59,7 +59,7 @@ contains
       nd = size(equations%weight, 1)
       associate (motion => step%state%motion)
          step%acceleration = 2.0_wp*step%farthest/step%dt**2
-         step%work = sum(equations%weight*motion)
+         step%work = sum(equations%outer*motion)
          step%kinetic = 0.0_wp
          step%stored = sum(sum(step%state%force**2 - force_before**2, dim=1) &
             & /(2.0_wp*springs%stiffness))

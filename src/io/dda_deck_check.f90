@@ -44,7 +44,7 @@ contains
       character(len=:), allocatable :: kind, problem
       integer :: i
 
-      kind = word_of(deck, "scene", "kind")
+      kind = trim(word_of(deck, "scene", "kind"))
       if (kind /= "arch" .and. .not. is_given(deck, "scene", "geometry")) then
          call deck_error(error, "scene%kind = '"//kind//"' wants scene%geometry, a file of "// &
             kind//"; name one", deck, place_of(deck, key_index("scene", "kind")))
@@ -182,8 +182,8 @@ contains
       if (deck_key(parameter%key)%group == "arch" .and. &
          word_of(deck, "scene", "kind") /= "arch") then
          call deck_error(error, full_name(deck_key(parameter%key))//" is "//how// &
-            ", but it has no effect: scene%kind is '"//word_of(deck, "scene", "kind")// &
-            "'; name another key", deck, place)
+            ", but it has no effect: scene%kind is '"// &
+            trim(word_of(deck, "scene", "kind"))//"'; name another key", deck, place)
       else if (deck%value(parameter%key)%place%from_command .and. parameter%item == 0) then
          call deck_error(error, full_name(deck_key(parameter%key))//" cannot be set: it is "// &
             how//" in line "//to_text(place%line)//" of "//deck%file//"; remove the --set", deck, &

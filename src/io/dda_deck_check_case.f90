@@ -48,11 +48,13 @@ contains
       else if (is_limerick .and. integer_of(deck, "output", "frames") > 0) then
          call deck_error(error, "output%frames wants another mode than 'limerick', which "// &
             "keeps no pictures", deck, place_of(deck, key_index("output", "frames")))
-      else if (.not. (is_static .or. is_limerick) .and. &
-         word_of(deck, "analysis", "geometry") == "current") then
-         call deck_error(error, "geometry = 'current' wants mode = 'static': this version "// &
-            "has no dynamics of moving blocks yet; change one of the two", deck, &
-            place_of(deck, key_index("analysis", "mode")))
+      else if (real_of(deck, "analysis", "restitution") > 0.0_wp .and. (is_static .or. &
+         word_of(deck, "analysis", "geometry") /= "current")) then
+         call deck_error(error, "restitution wants mode = 'dynamic' and geometry = 'current'", &
+            deck, place_of(deck, key_index("analysis", "restitution")))
+      else if (is_static .and. is_given(deck, "analysis", "duration")) then
+         call deck_error(error, "duration wants mode = 'dynamic': a static run has no time", &
+            deck, place_of(deck, key_index("analysis", "duration")))
       else if (integer_of(deck, "output", "frames") > 0 .and. &
          word_of(deck, "analysis", "geometry") /= "current") then
          call deck_error(error, "output%frames wants geometry = 'current': in reference "// &

@@ -37,6 +37,12 @@ module dda_settings
       integer :: max_changes = 400
       !> Length of the first static step or of every dynamic one; 0 to choose it [s]
       real(wp) :: time_step = 0.0_wp
+      !> Speed after an impact over that before it, where blocks move in time
+      real(wp) :: restitution = 0.0_wp
+      !> Rate at which velocities decay by damping in proportion to mass [1/s]
+      real(wp) :: damping = 0.0_wp
+      !> Time at which a dynamic run ends; 0 to end with its last step [s]
+      real(wp) :: duration = 0.0_wp
       !> Largest motion of a corner in a step over the size of the smallest block
       real(wp) :: max_displacement_ratio = 0.05_wp
       !> Motion of a corner that means collapse; 0 for a test without a length [m]

@@ -148,6 +148,10 @@ contains
          & settings%time_step = real_of(deck, "analysis", "time_step")
       if (is_given(deck, "analysis", "collapse_displacement")) &
          & settings%collapse_displacement = real_of(deck, "analysis", "collapse_displacement")
+      if (is_given(deck, "analysis", "duration")) &
+         & settings%duration = real_of(deck, "analysis", "duration")
+      settings%restitution = real_of(deck, "analysis", "restitution")
+      settings%damping = real_of(deck, "analysis", "damping")
       settings%max_displacement_ratio = real_of(deck, "analysis", "max_displacement_ratio")
       settings%load_direction = [cos(direction), sin(direction)]
       ! the four main directions, free of rounding, so that a symmetric arch stays symmetric

@@ -6,7 +6,7 @@ module dda_case
    use dda_contact_detection, only : contacts_t
    use dda_critical, only : critical_t, find_critical, search_t
    use dda_decision, only : decide, decision_t
-   use dda_deck, only : deck_t, has_group, integer_of, is_given, parameter_t, real_of, text_of, &
+   use dda_deck, only : deck_t, flag_of, has_group, integer_of, is_given, parameter_t, real_of, text_of, &
       & word_of
    use dda_deck_check, only : search_bracket
    use dda_deck_parameter, only : find_parameter, parameter_name
@@ -153,6 +153,8 @@ contains
       frames = integer_of(this%deck, "output", "frames")
       allocate (this%album%point(0))
       if (this%searches) return
+      this%album%audit%wanted = flag_of(this%deck, "output", "energy") &
+         & .and. word_of(this%deck, "analysis", "mode") == "dynamic"
       if (allocated(this%deck%plan%boundary%measured)) &
          & this%album%point = this%deck%plan%boundary%measured
       if (frames > 0 .and. word_of(this%deck, "analysis", "mode") == "dynamic") &
