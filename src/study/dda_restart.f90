@@ -44,6 +44,7 @@ contains
       if (stat == 0) write (unit, iostat=stat, iomsg=reason) march%steps, march%time, march%dt, &
          & march%allowed_motion, march%resolution, march%displacement, march%longest, &
          & march%elastic_motion, march%free_acceleration, march%last_acceleration, march%passes, &
+         & march%energy, &
          & allocated(march%reach), allocated(march%last_motion)
       if (stat == 0 .and. allocated(march%reach)) &
          & write (unit, iostat=stat, iomsg=reason) march%reach
@@ -96,7 +97,7 @@ contains
          if (stat == 0) read (unit, iostat=stat) march%steps, march%time, march%dt, &
             & march%allowed_motion, march%resolution, march%displacement, march%longest, &
             & march%elastic_motion, march%free_acceleration, march%last_acceleration, &
-            & march%passes, has
+            & march%passes, march%energy, has
          if (stat == 0 .and. has(1)) then
             allocate (march%reach(size(system%area)))
             read (unit, iostat=stat) march%reach
