@@ -1,5 +1,5 @@
-!> The part of the equations that blocks have without contacts: inertia, elasticity, loads (Shi: df11
-!> to df16)
+!> The part of the equations that blocks have without contacts: inertia, elasticity, loads
+!> (Shi: df11 to df16)
 module dda_block_inertia
    use dda_assembly, only : equations_t
    use dda_block_system, only : block_system_t
@@ -54,7 +54,8 @@ contains
          equations%force_scale = equations%force_scale + sum(abs(impetus(1:2)))
       end do
       call follow_fixed_points(system, settings, start, dt, equations%fixed)
-      call add_fixed_springs(equations%fixed, equations%fixed%target, equations%base, equations%load)
+      call add_fixed_springs(equations%fixed, equations%fixed%target, equations%base, &
+         & equations%load)
    end subroutine assemble_blocks
 
    !> Rate of mass damping in a dynamic step: never more than what would stop a block within it

@@ -16,7 +16,8 @@ module dda_block_update
 contains
 
    !> Add the motion of a step; stress follows the strain, velocity the constant acceleration or the
-   !> law of impact. Where blocks move, strain is kept in the block's own frame and the corners are built anew from it
+   !> law of impact. Where blocks move, strain is kept in the block's own frame and the corners are
+   !> built anew from it
    pure subroutine update_blocks(step, settings, system)
       !> The accepted step
       type(step_context_t), intent(in) :: step

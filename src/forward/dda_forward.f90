@@ -166,13 +166,13 @@ contains
 
       in_time = settings%dynamic .and. settings%current
       widened = settings%current
+      contacts%remember = .not. in_time
       if (settings%current) call turn_masses(system, equations)
       step%was_cut = .false.
       do retry = 0, max_retries
          if (widened) call place_contacts(settings, system, march, contacts, equations)
          widened = .false.
          step%dt = march%dt
-         contacts%remember = .not. in_time
          if (in_time) call stiffen_contacts(system, step%dt, contacts)
          if (in_time) call take_springs(contacts%springs, equations)
          call begin_step(contacts, size(equations%weight, 1), size(equations%weight, 2), step%state)

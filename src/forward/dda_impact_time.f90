@@ -15,8 +15,8 @@ module dda_impact_time
 
 contains
 
-   !> Cut a step in which an open contact closes fast to the time at which the two blocks, if nothing
-   !> else touched them, would be near enough to count as touching
+   !> Cut a step in which an open contact closes fast to the time at which the two blocks, if
+   !> nothing else touched them, would be near enough to count as touching
    pure subroutine meet_impact(settings, system, contacts, equations, march, step)
       !> Settings of the run
       type(settings_t), intent(in) :: settings

@@ -1,7 +1,7 @@
 !> Contacts of blocks that move in time: multipliers and friction of one step, or of its impulses
 !>
-!> With given bounds of the shear forces the problem is convex, and the passes of the multipliers end
-!> quickly. Around them, the bounds follow the normal forces (Coulomb), beginning with those of the
+!> With given bounds of the shear forces the problem is convex, and the passes of the multipliers
+!> end quickly. Around them, the bounds follow the normal forces (Coulomb), beginning with those of the
 !> step before. Whatever the bounds are, friction takes energy and no momentum; so a step in which
 !> they change a little to the end counts.
 module dda_settle_in_time
@@ -67,7 +67,8 @@ contains
          if (.not. state%settled) return
          change = bounds_now() - bound
          wrong = 0.0_wp
-         where (state%face%slip /= 0 .or. abs(state%force(3, :)) > bound + change) wrong = abs(change)
+         where (state%face%slip /= 0 .or. abs(state%force(3, :)) > bound + change) &
+            & wrong = abs(change)
          if (maxval(wrong) <= fine*equations%force_scale) return
          least = min(least, maxval(wrong))
          if (kept == memory + 1) then

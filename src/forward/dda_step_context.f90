@@ -39,7 +39,8 @@ module dda_step_context
       real(wp) :: longest = 0.0_wp
       !> Motion of the blocks and states of the joints
       type(step_state_t) :: state
-      !> Gaps at its end beyond those of the linear motion, where blocks move in time: (2, n_joint) [m]
+      !> Gaps at its end beyond those of the linear motion, where blocks move in time:
+      !> (2, n_joint) [m]
       real(wp), allocatable :: curve(:, :)
       !> Velocities at its end, where blocks move in time: (n_dof, n_equation)
       real(wp), allocatable :: velocity(:, :)
@@ -82,8 +83,8 @@ module dda_step_context
       real(wp) :: displacement = 0.0_wp
       !> Motions that the coordinates of corners cannot tell from none [m]
       real(wp) :: resolution = 0.0_wp
-      !> Longest step: the one that was asked for in a dynamic run; in a static one that which leaves
-      !> the matrix well enough conditioned [s]
+      !> Longest step: the one that was asked for in a dynamic run; in a static one that which
+      !> leaves the matrix well enough conditioned [s]
       real(wp) :: longest = 0.0_wp
       !> Largest motion if every joint were glued: the scale of elastic motion [m]
       real(wp) :: elastic_motion = 0.0_wp

@@ -42,8 +42,8 @@ module dda_velocity
 
 contains
 
-   !> Velocities of the blocks at the end of a settled step. Newton's restitution may bring in energy
-   !> where there is friction, or where blocks are hit in several places; then there is less of it
+   !> Velocities of the blocks at the end of a settled step. Newton's restitution may bring in
+   !> energy where there is friction, or where blocks are hit in several places; then there is less of it
    pure subroutine settle_velocities(settings, system, contacts, equations, step)
       !> Settings of the run
       type(settings_t), intent(in) :: settings
@@ -131,7 +131,8 @@ contains
       do j = 1, size(contacts%joint)
          do k = 1, contacts%joint(j)%n_contact
             closed(k, j) = .not. step%state%face(j)%open(k) .or. contacts%gap(k, j) &
-               & + step%state%increment(k, j) + step%curve(k, j) <= near_gap(system, contacts%joint(j)%block)
+               & + step%state%increment(k, j) + step%curve(k, j) &
+               & <= near_gap(system, contacts%joint(j)%block)
          end do
       end do
    end function closed_contacts
@@ -267,8 +268,8 @@ contains
 
    !> Keep the moment of momentum of each pair of blocks. The centres have moved while their
    !> impulses acted as at the beginning: the pair's centres bring in
-   !> dt**2 (F/2 - N) x (v2 - v1), F the force of the motion, N that of the impulse; and the rows of a
-   !> joint between turned edges may lie off one line. The two blocks give it back by one change of
+   !> dt**2 (F/2 - N) x (v2 - v1), F the force of the motion, N that of the impulse; and the rows of
+   !> a joint between turned edges may lie off one line. The two blocks give it back by one change of
    !> spin
    pure subroutine keep_moment(system, contacts, springs, equations, impulse, step)
       !> The blocks before the step

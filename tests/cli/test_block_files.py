@@ -30,7 +30,7 @@ def test_check_tells_what_was_found(tmp_path: Path) -> None:
     tip = "block\n0.5 2\n1 3\n0 3\n"
     done = run_dda("check", write(tmp_path, BASE + BLOCK + tip))
     assert done.returncode == 0
-    assert "2 that move, 1 fixed" in done.stdout
+    assert "2 that move, 1 held" in done.stdout
     assert "1 of two normal springs and one shear spring, 1 of one corner before an edge" in done.stdout
 
 
