@@ -59,7 +59,7 @@ module dda_result_tables
 
    !> Columns of results.csv that a swept parameter shares
    character(len=*), parameter :: own_column(*) = [character(len=16) :: "half_angle_deg", &
-      & "thickness_ratio", "friction_deg", "mode", "geometry"]
+      & "thickness_ratio", "friction_deg", "mode", "geometry", "unknowns"]
 
 contains
 

@@ -48,6 +48,11 @@ contains
          call deck_error(error, "output%frames wants geometry = 'current': in reference "// &
             "geometry no block moves; change one of the two", deck, &
             place_of(deck, key_index("output", "frames")))
+      else if (is_given(deck, "analysis", "unknowns") .and. &
+         all(integer_of(deck, "analysis", "unknowns") /= [3, 6])) then
+         call deck_error(error, "analysis%unknowns wants 3 or 6, found "// &
+            to_text(integer_of(deck, "analysis", "unknowns")), deck, &
+            place_of(deck, key_index("analysis", "unknowns")))
       else
          call check_shape(deck, error)
          if (allocated(error) .or. searched%key == 0) return

@@ -193,7 +193,10 @@ module dda_deck_keys
             meaning="Largest vertex displacement that means collapse."), &
       key_t(group="analysis", name="open_close_limit", kind=key_kind%whole, default="400", &
             at_least=1.0_wp, at_most=1.0e9_wp, &
-            meaning="Most open-close changes of a step before the line search takes over.")]
+            meaning="Most open-close changes of a step before the line search takes over."), &
+      key_t(group="analysis", name="unknowns", kind=key_kind%whole, &
+            without="what the scene needs", at_least=3.0_wp, at_most=6.0_wp, &
+            meaning="Unknowns of a block: 6, or 3 for blocks without strain.")]
 
    !> Keys of &search
    type(key_t), parameter :: search_keys(*) = [ &

@@ -68,6 +68,8 @@ module dda_write_results
       integer :: factorisations = 0
       !> Wall time of the case [s]
       real(wp) :: seconds = 0.0_wp
+      !> Unknowns of a block in the decisions
+      integer :: unknowns = 0
    end type result_row_t
 
    !> One row of joints.csv
@@ -120,7 +122,7 @@ contains
       line = "deck,case,"//swept//"blocks,half_angle_deg,thickness_ratio,friction_deg,mode," &
          & //"geometry,verdict,critical,critical_low,critical_high,collapses_at,exact," &
          & //"relative_error,collapse_mode,sliding_share,intrados_hinge_deg,extrados_hinge_deg," &
-         & //"springing_hinge,steps,open_close_iterations,factorisations,seconds"
+         & //"springing_hinge,steps,open_close_iterations,factorisations,seconds,unknowns"
    end function results_header
 
    !> One row of results.csv
@@ -141,7 +143,7 @@ contains
          & //joined(row%intrados_hinge_deg)//","//joined(row%extrados_hinge_deg)//"," &
          & //trim(row%springing_hinge)//","//to_text(row%steps)//"," &
          & //to_text(row%open_close_iterations)//","//to_text(row%factorisations)//"," &
-         & //to_text(row%seconds)
+         & //to_text(row%seconds)//","//to_text(row%unknowns)
    end function results_line
 
    !> Names of the columns of joints.csv

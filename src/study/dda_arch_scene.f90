@@ -11,6 +11,7 @@ module dda_arch_scene
    use dda_kinds, only : wp
    use dda_material, only : friction_coefficient, joint_law_t, material_t
    use dda_scene, only : family_t, scene_t
+   use dda_scene_plan, only : plan_scene, scene_plan_t
    use dda_settings, only : settings_t
    implicit none
    private
@@ -158,11 +159,14 @@ contains
       !> The settings
       type(settings_t) :: settings
       real(wp) :: half_angle, direction, noise
+      type(scene_plan_t) :: plan
 
+      plan = plan_scene(deck)
       half_angle = degree*real_of(deck, "arch", "half_angle_deg")
       direction = degree*real_of(deck, "load", "gravity_direction_deg")
-      settings%dynamic = word_of(deck, "analysis", "mode") == "dynamic"
-      settings%current = word_of(deck, "analysis", "geometry") == "current"
+      settings%dynamic = plan%velocities
+      settings%current = plan%moving
+      settings%n_dof = plan%unknowns
       settings%penalty_ratio = real_of(deck, "analysis", "penalty_ratio")
       settings%max_steps = integer_of(deck, "analysis", "steps")
       settings%max_changes = integer_of(deck, "analysis", "open_close_limit")
@@ -181,6 +185,8 @@ contains
       ! the thrust is w r, the weight of a voussoir 2 w r alpha/n: rounding of the one moves the
       ! other
       noise = 16.0_wp*epsilon(1.0_wp)*real(size(half_joints_deg(deck)), wp)/half_angle
+      ! a corner off by eps r makes the weight of a voussoir wrong by eps over the thickness ratio
+      noise = max(noise, epsilon(1.0_wp)/real_of(deck, "arch", "thickness_ratio"))
       settings%rest_tolerance = max(settings%rest_tolerance, noise)
    end function settings_of
 

@@ -17,7 +17,9 @@ module dda_case
    use dda_kinds, only : wp
    use dda_mechanism, only : follow_collapse, mechanism_of, mechanism_t
    use dda_scene, only : scene_t
+   use dda_scene_plan, only : plan_scene, scene_plan_t
    use dda_settings, only : flow_rule, settings_t
+   use dda_shared_forces, only : share_forces
    use dda_text, only : to_text
    use dda_verdict, only : verdict
    use dda_write_results, only : joint_row_t, number_t, result_row_t, some_number
@@ -34,6 +36,8 @@ module dda_case
    type :: case_t
       !> The deck with the values of the case
       type(deck_t) :: deck
+      !> What its scene needs
+      type(scene_plan_t) :: plan
       !> Whether a critical value is searched
       logical :: searches = .false.
       !> The scenes of the search
@@ -67,6 +71,7 @@ contains
       character(len=:), allocatable :: searched
 
       this%deck = deck
+      this%plan = plan_scene(deck)
       this%searches = has_group(deck, "search")
       if (this%searches) call prepare_search(deck, this%family, this%search)
       searched = searched_name(deck)
@@ -94,10 +99,27 @@ contains
          if (this%decision%outcome%verdict == verdict%collapsed) &
             & call follow_collapse(this%scene, this%decision)
       end if
+      if (this%plan%shared_forces) call share_told_forces(this)
       if (integer_of(this%deck, "output", "frames") > 0) call take_pictures(this)
       call system_clock(finish)
       this%seconds = real(finish - start, wp)/real(rate, wp)
    end subroutine compute_case
+
+   !> Share out the joint forces of the structure that is told, if it stands: it is the decision
+   !> nearest to critical where one is searched
+   pure subroutine share_told_forces(this)
+      !> The case, decided
+      type(case_t), intent(inout) :: this
+      type(scene_t) :: scene
+      type(error_t), allocatable :: error
+
+      if (allocated(this%critical%standing)) then
+         call this%family%build(this%critical%stands, scene, error)
+         call share_forces(scene, this%critical%standing)
+      else if (this%decision%outcome%verdict == verdict%stable) then
+         call share_forces(this%scene, this%decision)
+      end if
+   end subroutine share_told_forces
 
    !> Run the scene of the case once more for its pictures, a collapse until a corner has moved a
    !> tenth
@@ -170,6 +192,7 @@ contains
       row%springing_hinge = "none"
       if (this%exact_known) row%exact = some_number(this%exact)
       row%seconds = this%seconds
+      row%unknowns = this%plan%unknowns
    end subroutine describe
 
    !> Name of the searched parameter, empty if nothing is searched
