@@ -1,6 +1,7 @@
 !> Forward analysis: one step as a transaction, and a run of steps to a verdict (Shi: df)
 module dda_forward
    use dda_assembly, only : assemble_blocks, equations_t, new_equations, take_springs
+   use dda_block_solve, only : condition_estimate
    use dda_block_system, only : block_system_t
    use dda_block_update, only : update_blocks, update_contacts
    use dda_contact_detection, only : contacts_t, follow_contacts
@@ -30,6 +31,8 @@ module dda_forward
       real(wp) :: rest_tolerance = 0.0_wp
       !> Length of a step in which free fall is the elastic motion [s]
       real(wp) :: elastic_time = 0.0_wp
+      !> Estimated condition number of the last equations, if it was wanted
+      real(wp) :: condition = 0.0_wp
       !> Motion of the last step: (n_dof, n_equation)
       real(wp), allocatable :: motion(:, :)
       !> Accepted steps
@@ -89,6 +92,7 @@ contains
          outcome%acceleration_ratio = step%acceleration/march%free_acceleration
          outcome%elastic_time = sqrt(2.0_wp*march%elastic_motion/march%free_acceleration)
       end if
+      if (settings%tells_condition) outcome%condition = condition_estimate(equations%matrix)
       call move_alloc(step%state%motion, outcome%motion)
       if (allocated(error)) then
          outcome%verdict = verdict%undecided

@@ -242,6 +242,9 @@ module dda_deck_keys
             meaning="Write the blocks of each case for ParaView."), &
       key_t(group="output", name="joints", kind=key_kind%flag, default=".true.", varies=.false., &
             meaning="Write forces, openings and states of the joints to joints.csv."), &
+      key_t(group="output", name="condition", kind=key_kind%flag, default=".false.", &
+            varies=.false., &
+            meaning="Estimate the condition number of the last equations of each case."), &
       key_t(group="output", name="frames", kind=key_kind%whole, default="0", varies=.false., &
             at_least=0.0_wp, at_most=10000.0_wp, &
             meaning="Pictures of moving blocks; a collapse is then followed for radius/10."), &

@@ -70,6 +70,8 @@ module dda_write_results
       real(wp) :: seconds = 0.0_wp
       !> Unknowns of a block in the decisions
       integer :: unknowns = 0
+      !> Estimated condition number of the last equations
+      type(number_t) :: condition
    end type result_row_t
 
    !> One row of joints.csv
@@ -122,7 +124,7 @@ contains
       line = "deck,case,"//swept//"blocks,half_angle_deg,thickness_ratio,friction_deg,mode," &
          & //"geometry,verdict,critical,critical_low,critical_high,collapses_at,exact," &
          & //"relative_error,collapse_mode,sliding_share,intrados_hinge_deg,extrados_hinge_deg," &
-         & //"springing_hinge,steps,open_close_iterations,factorisations,seconds,unknowns"
+         & //"springing_hinge,steps,open_close_iterations,factorisations,seconds,unknowns,condition"
    end function results_header
 
    !> One row of results.csv
@@ -143,7 +145,8 @@ contains
          & //joined(row%intrados_hinge_deg)//","//joined(row%extrados_hinge_deg)//"," &
          & //trim(row%springing_hinge)//","//to_text(row%steps)//"," &
          & //to_text(row%open_close_iterations)//","//to_text(row%factorisations)//"," &
-         & //to_text(row%seconds)//","//to_text(row%unknowns)
+         & //to_text(row%seconds)//","//to_text(row%unknowns)//"," &
+         & //number_text(row%condition)
    end function results_line
 
    !> Names of the columns of joints.csv

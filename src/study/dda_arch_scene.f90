@@ -5,7 +5,7 @@ module dda_arch_scene
    use dda_block_system, only : block_system_t
    use dda_constants, only : degree, pi
    use dda_contact_detection, only : find_contacts
-   use dda_deck, only : deck_t, integer_of, is_given, list_of, parameter_t, real_of, word_of
+   use dda_deck, only : deck_t, flag_of, integer_of, is_given, list_of, parameter_t, real_of, word_of
    use dda_deck_set, only : number_fits, put_number
    use dda_error, only : error_t, fatal_error
    use dda_kinds, only : wp
@@ -167,6 +167,7 @@ contains
       settings%dynamic = plan%velocities
       settings%current = plan%moving
       settings%n_dof = plan%unknowns
+      settings%tells_condition = flag_of(deck, "output", "condition")
       settings%penalty_ratio = real_of(deck, "analysis", "penalty_ratio")
       settings%max_steps = integer_of(deck, "analysis", "steps")
       settings%max_changes = integer_of(deck, "analysis", "open_close_limit")

@@ -246,6 +246,7 @@ contains
          row%steps = outcome%steps
          row%open_close_iterations = outcome%passes
          row%factorisations = outcome%factorisations
+         call tell_condition(outcome, row)
       end associate
       joint_row = joint_rows(this%decision%contacts, this%scene%joint_angle_deg)
    end subroutine tell_decision
@@ -284,8 +285,24 @@ contains
          row%steps = critical%steps
          row%open_close_iterations = critical%passes
          row%factorisations = critical%factorisations
+         if (allocated(critical%standing)) then
+            call tell_condition(critical%standing%outcome, row)
+         else if (allocated(critical%fallen)) then
+            call tell_condition(critical%fallen%outcome, row)
+         end if
       end associate
    end subroutine tell_search
+
+   !> Fill the column of the condition number, if it was estimated
+   pure subroutine tell_condition(outcome, row)
+      !> How the decision ended
+      type(outcome_t), intent(in) :: outcome
+      !> The row
+      type(result_row_t), intent(inout) :: row
+
+      if (outcome%condition > 0.0_wp .and. outcome%condition < huge(1.0_wp)) &
+         & row%condition = some_number(outcome%condition)
+   end subroutine tell_condition
 
    !> What a deck asks to be searched
    pure subroutine prepare_search(deck, family, search)

@@ -13,7 +13,7 @@ FIRST = ["deck", "case"]
 LAST = """blocks half_angle_deg thickness_ratio friction_deg mode geometry verdict critical
     critical_low critical_high collapses_at exact relative_error collapse_mode sliding_share
     intrados_hinge_deg extrados_hinge_deg springing_hinge steps open_close_iterations
-    factorisations seconds unknowns""".split()
+    factorisations seconds unknowns condition""".split()
 JOINTS = """case joint angle_deg x_intrados y_intrados x_extrados y_extrados normal_force
     shear_force eccentricity_ratio opening_intrados opening_extrados slip state""".split()
 
@@ -104,7 +104,7 @@ def test_columns_of_a_run_without_search(tmp_path: Path) -> None:
     assert [row["mode"], row["geometry"]] == ["static", "reference"]
     for name in ("critical", "critical_low", "critical_high", "collapses_at", "relative_error"):
         assert row[name] == ""
-    assert all(int(row[name]) > 0 for name in LAST[-5:-2])
+    assert all(int(row[name]) > 0 for name in LAST[-6:-3])
     assert 0.0 < float(row["seconds"]) < 60.0
 
 
@@ -729,3 +729,13 @@ def test_three_thin_voussoirs_stand_in_spite_of_rounding(tmp_path: Path, unknown
         &analysis unknowns = {unknowns} /
         &sweep parameter = 'thickness_ratio', first = 1.0e-6, last = 1.1e-6, count = 20 /"""
     assert {row["verdict"] for row in run_deck(tmp_path, text)} == {"stable"}
+
+
+def test_condition_is_told_where_wanted(tmp_path: Path) -> None:
+    text = "&arch thickness_ratio = 0.12 /\n&output condition = .true. /\n"
+    rows = run_deck(tmp_path, text + "&sweep parameter = 'unknowns', values = 3, 6 /\n")
+    assert [row["unknowns"] for row in rows] == ["3", "6"]
+    for row in rows:
+        assert 1e3 < float(row["condition"]) < 1e13
+    (row,) = run_deck(tmp_path, "&arch thickness_ratio = 0.12 /\n")
+    assert row["condition"] == ""
