@@ -28,6 +28,10 @@ module dda_joint_springs
       real(wp), allocatable :: shift(:, :)
    end type joint_springs_t
 
+   !> Most that the stiffness of two joints may differ by: a joint between two slivers is stiff far
+   !> beyond what the blocks around can feel, and would cut the longest step short
+   real(wp), parameter :: stiffest = 1.0e2_wp
+
 contains
 
    !> Springs of all joints
@@ -56,6 +60,7 @@ contains
          springs%stiffness(j) = penalty_ratio*block_stiffness(system, joint(j))
          call mohr_coulomb(joint(j), [.false., .false.], springs%cone(j), springs%shift(:, j))
       end do
+      if (n > 0) springs%stiffness = min(springs%stiffness, stiffest*minval(springs%stiffness))
    end subroutine new_joint_springs
 
    !> What the joint sees of one block's unknowns

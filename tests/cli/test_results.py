@@ -739,3 +739,19 @@ def test_condition_is_told_where_wanted(tmp_path: Path) -> None:
         assert 1e3 < float(row["condition"]) < 1e13
     (row,) = run_deck(tmp_path, "&arch thickness_ratio = 0.12 /\n")
     assert row["condition"] == ""
+
+
+@pytest.mark.parametrize("unknowns", [3, 6])
+@pytest.mark.parametrize("joints", ["0, {w}, 54.5, 90", "0, 54.5, {s}, 90", "0, 54.5, {e}, 90"])
+def test_slivers_of_stone_change_nothing(tmp_path: Path, unknowns: int, joints: str) -> None:
+    for width in (1e-3, 1e-5, 1e-7):
+        places = joints.format(w=width, s=54.5 + width, e=90.0 - width)
+        (row,) = run_deck(
+            tmp_path,
+            f"&arch joints_deg = {places}, facet_deg = 0.5 /\n&search /\n"
+            f"&joint friction_deg = 90 /\n&analysis unknowns = {unknowns} /\n",
+        )
+        low, exact, high = numbers(row, "critical_low", "exact", "critical_high")
+        assert low < exact < high
+        assert exact == pytest.approx(0.1074776776, abs=1e-9)
+        assert high - low < 1e-5 * exact
