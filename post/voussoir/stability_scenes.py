@@ -133,7 +133,7 @@ def searched(
         deck["analysis"] = {"geometry": "current", **others.get("analysis", {})}
         deck["material"] = {"young": NEARLY_RIGID, **others.get("material", {})}
         elastic = UNIT_WEIGHT * arch.get("radius", 10.0) / deck["material"]["young"]
-        expectation = Shifted(exact, 10.0 * elastic + 1e-7 * (exact or 0.0))
+        expectation = Shifted(exact, 30.0 * elastic + 1e-7 * (exact or 0.0))
     return Scene(group, name + (", moving" if current else ""), deck, expectation, guard)
 
 

@@ -43,6 +43,8 @@ module dda_step_context
       real(wp) :: allowed_motion = 0.0_wp
       !> Largest motion of a corner since the beginning [m]
       real(wp) :: displacement = 0.0_wp
+      !> Motion that the rounding of coordinates may feign, where blocks move [m]
+      real(wp) :: rounding = 0.0_wp
       !> Longest step that leaves the matrix well enough conditioned [s]
       real(wp) :: longest = 0.0_wp
       !> Largest motion if every joint were glued: the scale of elastic motion [m]

@@ -66,6 +66,7 @@ contains
             & norm2(equations%weight(1:2, e))/equations%mass(1, 1, e))
       end do
       march%last_acceleration = march%free_acceleration
+      if (settings%current) march%rounding = feigned_motion(system)
       march%longest = sqrt(2.0_wp*mean_mass/(least_inertia*maxval(springs%stiffness)))
       if (settings%dynamic) then
          march%dt = dynamic_step(system, settings, march%free_acceleration)
@@ -86,6 +87,30 @@ contains
          & sqrt(2.0_wp*first_fall*march%elastic_motion/march%free_acceleration))
       if (settings%time_step > 0.0_wp) march%dt = min(march%longest, settings%time_step)
    end subroutine first_interval
+
+   !> Motion that the rounding of coordinates feigns: a joint's corner off by eps of the model's size
+   !> tilts a block, and that moves its far end by the block's aspect ratio times as much; errors of
+   !> many blocks add up by chance
+   pure function feigned_motion(system) result(motion)
+      !> The blocks
+      type(block_system_t), intent(in) :: system
+      !> The motion [m]
+      real(wp) :: motion
+      real(wp) :: slender
+      integer :: b
+
+      slender = 0.0_wp
+      do b = 1, size(system%equation)
+         if (system%equation(b) == 0) cycle
+         associate (vertex => system%vertex(:, &
+            & system%first_vertex(b):system%first_vertex(b + 1) - 1))
+            slender = max(slender, sum(norm2(vertex - cshift(vertex, 1, dim=2), dim=1))**2 &
+               & /system%area(b))
+         end associate
+      end do
+      motion = epsilon(1.0_wp)*maxval(abs(system%vertex))*slender &
+         & *sqrt(real(count(system%equation > 0), wp))
+   end function feigned_motion
 
    !> Length of a dynamic step: the one that was asked for, or that in which free fall from rest
    !> goes as far as a step may

@@ -43,6 +43,8 @@ module dda_verdict
    real(wp), parameter :: left_over = 1.0e-12_wp
    !> Where blocks move, rest is a step of this share of the displacement so far
    real(wp), parameter :: still = 1.0e-8_wp
+   !> Or of this share at most, where rounding alone feigns it
+   real(wp), parameter :: barely = 1.0e-4_wp
 
 contains
 
@@ -171,7 +173,8 @@ contains
       stores_nothing = abs(step%stored) < 1.0e-3_wp*abs(step%work)
       ! where blocks move, a step that comes to rest has only proven the shape it started from
       if (settings%current) at_rest = at_rest .and. march%steps >= 2 &
-         & .and. step%farthest <= still*march%displacement
+         & .and. step%farthest <= max(still*march%displacement, &
+         & min(march%rounding, barely*march%displacement))
       answer = verdict%undecided
       if (at_rest) then
          answer = verdict%stable

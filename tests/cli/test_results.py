@@ -755,3 +755,12 @@ def test_slivers_of_stone_change_nothing(tmp_path: Path, unknowns: int, joints: 
         assert low < exact < high
         assert exact == pytest.approx(0.1074776776, abs=1e-9)
         assert high - low < 1e-5 * exact
+
+
+@pytest.mark.parametrize("young", [1e12, 1e14, 1e16])
+def test_moving_blocks_of_stiff_stone_come_to_rest(tmp_path: Path, young: float) -> None:
+    text = f"&analysis geometry = 'current' /\n&material young = {young} /\n&search /\n"
+    (row,) = run_deck(tmp_path, text + "&joint friction_deg = 90 /\n")
+    critical, exact = numbers(row, "critical", "exact")
+    shift = 2240.0 * 9.81 * 10.0 / young
+    assert abs(critical - exact) < 2.0 * shift + 1e-8 * exact
