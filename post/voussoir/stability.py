@@ -9,7 +9,8 @@ from concurrent.futures import ThreadPoolExecutor
 from itertools import chain
 from pathlib import Path
 
-from voussoir.dda_program import Finished, Row, find_program, run_deck
+from voussoir.dda_program import DdaError, find_dda
+from voussoir.deck_runs import Finished, Row, run_deck
 from voussoir.stability_judge import WRONG, judge
 from voussoir.stability_page import Line, headline, write_csv, write_markdown, write_page
 from voussoir.stability_scenes import Scene, catalogue, random_scenes
@@ -60,10 +61,10 @@ def run(arguments: argparse.Namespace) -> int:
         sys.stdout.writelines(f"{scene.group}: {scene.name}\n" for scene in scenes)
         return 0
     try:
-        find_program("dda")
-    except FileNotFoundError as missing:
+        find_dda()
+    except DdaError as missing:
         sys.stderr.write(f"voussoir: error: {missing}\n")
-        return 2
+        return missing.status
     lines = run_scenes(scenes, arguments.out, arguments.jobs, arguments.timeout)
     write_csv(lines, arguments.out / "stability.csv")
     write_markdown(lines, arguments.out / "stability.md")

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Protocol
 
-from voussoir.dda_program import Finished, Row
+from voussoir.deck_runs import Finished, Row
 
 RIGHT, UNDECIDED, WRONG = "right", "undecided", "WRONG"
 
@@ -105,7 +105,8 @@ class Shifted:
         shift = float(row["critical"]) - self.exact
         near = abs(shift) <= self.bound
         why = "" if near else f"more than elasticity explains: {self.bound:.1e}"
-        return Judgement(RIGHT if near else WRONG, row["critical"], f"{shift / self.exact:.1e}", why)
+        colour = RIGHT if near else WRONG
+        return Judgement(colour, row["critical"], f"{shift / self.exact:.1e}", why)
 
 
 @dataclass(frozen=True)
@@ -210,7 +211,8 @@ def judge(expectation: Expectation, finished: Finished) -> Judgement:
         return Judgement(WRONG, "refused", "", finished.message[:200])
     open_cases = [row for row in finished.rows if row["verdict"] == "undecided"]
     if open_cases:
-        return Judgement(UNDECIDED, "undecided", "", finished.remarks.get(open_cases[0]["case"], ""))
+        reason = finished.remarks.get(open_cases[0]["case"], "")
+        return Judgement(UNDECIDED, "undecided", "", reason)
     return expectation.judge(finished.rows)
 
 

@@ -232,16 +232,17 @@ contains
       search_start = 0.8_wp*square**2/48.0_wp*max(0.3_wp, 1.0_wp - square/10.0_wp)
    end function search_start
 
-   !> What the rounding of corners makes of the critical thickness ratio. A corner off by eps r
-   !> makes
-   !> the weight of a voussoir wrong by eps/eta, and with it the place of the thrust by
-   !> alpha^2/8*eps/eta of the radius, to be compared with eta = alpha^4/48; with a margin of 4
+   !> What the rounding of corners makes of the critical thickness ratio eta, relative to it, at the
+   !> deck's own thickness. A corner off by eps r makes the weight of a voussoir wrong by eps/eta, and with it
+   !> the place of the thrust by alpha^2/8*eps/eta of the radius, to be compared with eta; with a
+   !> margin of 4
    pure real(wp) function arch_resolution(deck)
       !> The deck of one case
       type(deck_t), intent(in) :: deck
       real(wp) :: square
 
       square = (degree*real_of(deck, "arch", "half_angle_deg"))**2
-      arch_resolution = 4.0_wp*48.0_wp**2/8.0_wp*epsilon(1.0_wp)/square**3
+      arch_resolution = 4.0_wp*square/8.0_wp*epsilon(1.0_wp) &
+         & /real_of(deck, "arch", "thickness_ratio")**2
    end function arch_resolution
 end module dda_arch_scene

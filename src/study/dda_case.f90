@@ -321,6 +321,7 @@ contains
       search%resolution = arch_resolution(deck)
       search%start = search%low
       if (searched_name(deck) /= "thickness_ratio") return
+      search%resolution_at = real_of(deck, "arch", "thickness_ratio")
       search%start = search_start(deck)
       if (.not. is_given(deck, "search", "low")) search%low = 1.0e-5_wp*search%start
       search%check_far_end = is_given(deck, "search", "high")

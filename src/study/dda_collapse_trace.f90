@@ -101,8 +101,12 @@ contains
       type(search_t), intent(in) :: search
       !> What was found so far, a collapse among it
       type(critical_t), intent(in) :: critical
+      real(wp) :: resolution
 
-      least_half = max(search%tolerance/2.0_wp, search%resolution, &
+      resolution = search%resolution
+      if (search%resolution_at > 0.0_wp) &
+         & resolution = resolution*(search%resolution_at/critical%falls)**2
+      least_half = max(search%tolerance/2.0_wp, resolution, &
          & least_share + share_of_joint*real(size(critical%fallen%contacts%face), wp))
    end function least_half
 
