@@ -83,7 +83,8 @@ contains
       tables%folder = folder
       tables%record_file = folder//"/deck.record"
       tables%has_vtu = flag_of(deck, "output", "vtu")
-      call name_table(tables%at(table%results), "/results.csv", results_header(names))
+      call name_table(tables%at(table%results), "/results.csv", results_header(names, &
+         & flag_of(deck, "output", "condition")))
       call name_table(tables%at(table%joints), "/joints.csv", joints_header())
       call name_table(tables%at(table%log), "/log.txt", "case verdict remark")
       call name_table(tables%at(table%frames), "/frames.csv", frames_header())

@@ -158,7 +158,7 @@ contains
       type(deck_t), intent(in) :: deck
       !> The settings
       type(settings_t) :: settings
-      real(wp) :: half_angle, direction, noise
+      real(wp) :: half_angle, direction, noise, rise
       type(scene_plan_t) :: plan
 
       plan = plan_scene(deck)
@@ -181,13 +181,13 @@ contains
       where (abs(settings%load_direction) < epsilon(1.0_wp)) settings%load_direction = 0.0_wp
       settings%load_direction(1) = settings%load_direction(1) &
          & + real_of(deck, "load", "horizontal_coefficient")
-      settings%rest_tolerance = 1.0e-3_wp*min(1.0_wp, half_angle**2/2.0_wp) &
-         & *real_of(deck, "search", "tolerance")
+      rise = min(1.0_wp, half_angle**2/2.0_wp)
+      settings%rest_tolerance = 1.0e-3_wp*rise*real_of(deck, "search", "tolerance")
       ! the thrust is w r, the weight of a voussoir 2 w r alpha/n: rounding of the one moves the
       ! other
       noise = 16.0_wp*epsilon(1.0_wp)*real(size(half_joints_deg(deck)), wp)/half_angle
       ! a corner off by eps r makes the weight of a voussoir wrong by eps over the thickness ratio
-      noise = max(noise, epsilon(1.0_wp)/real_of(deck, "arch", "thickness_ratio"))
+      noise = max(noise, rise*epsilon(1.0_wp)/real_of(deck, "arch", "thickness_ratio"))
       settings%rest_tolerance = max(settings%rest_tolerance, noise)
    end function settings_of
 

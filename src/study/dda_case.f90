@@ -7,7 +7,7 @@ module dda_case
    use dda_contact_detection, only : contacts_t
    use dda_critical, only : critical_t, find_critical, search_t
    use dda_decision, only : decide, decision_t
-   use dda_deck, only : deck_t, has_group, integer_of, is_given, parameter_t, real_of, text_of, &
+   use dda_deck, only : deck_t, flag_of, has_group, integer_of, is_given, parameter_t, real_of, text_of, &
       & word_of
    use dda_deck_check, only : search_bracket
    use dda_deck_parameter, only : find_parameter, parameter_name
@@ -193,6 +193,7 @@ contains
       if (this%exact_known) row%exact = some_number(this%exact)
       row%seconds = this%seconds
       row%unknowns = this%plan%unknowns
+      row%tells_condition = flag_of(this%deck, "output", "condition")
    end subroutine describe
 
    !> Name of the searched parameter, empty if nothing is searched

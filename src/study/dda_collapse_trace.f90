@@ -36,7 +36,7 @@ module dda_collapse_trace
    !> Most passes of the secant method
    integer, parameter :: max_passes = 20
    !> Free fall over elastic motion in the step that traces a mechanism
-   real(wp), parameter :: free_fall = 1.0e4_wp
+   real(wp), parameter :: free_fall = 1.0e6_wp
 
 contains
 

@@ -13,7 +13,7 @@ FIRST = ["deck", "case"]
 LAST = """blocks half_angle_deg thickness_ratio friction_deg mode geometry verdict critical
     critical_low critical_high collapses_at exact relative_error collapse_mode sliding_share
     intrados_hinge_deg extrados_hinge_deg springing_hinge steps open_close_iterations
-    factorisations seconds unknowns condition""".split()
+    factorisations seconds unknowns""".split()
 JOINTS = """case joint angle_deg x_intrados y_intrados x_extrados y_extrados normal_force
     shear_force eccentricity_ratio opening_intrados opening_extrados slip state""".split()
 
@@ -104,7 +104,7 @@ def test_columns_of_a_run_without_search(tmp_path: Path) -> None:
     assert [row["mode"], row["geometry"]] == ["static", "reference"]
     for name in ("critical", "critical_low", "critical_high", "collapses_at", "relative_error"):
         assert row[name] == ""
-    assert all(int(row[name]) > 0 for name in LAST[-6:-3])
+    assert all(int(row[name]) > 0 for name in LAST[-5:-2])
     assert 0.0 < float(row["seconds"]) < 60.0
 
 
@@ -738,7 +738,7 @@ def test_condition_is_told_where_wanted(tmp_path: Path) -> None:
     for row in rows:
         assert 1e3 < float(row["condition"]) < 1e13
     (row,) = run_deck(tmp_path, "&arch thickness_ratio = 0.12 /\n")
-    assert row["condition"] == ""
+    assert "condition" not in row
 
 
 @pytest.mark.parametrize("unknowns", [3, 6])
