@@ -330,8 +330,8 @@ contains
       search%start = min(max(search%start, search%low), search%high)
    end subroutine prepare_search
 
-   !> Fill the columns of a closed bracket; where its ends lie closer than rounding can tell apart,
-   !> the bracket that is told is as wide as that
+   !> Fill the columns of a closed bracket. Its middle is where the collapse stops, and where its ends
+   !> lie closer than rounding can tell apart, it is told as wide as that
    pure subroutine tell_bracket(critical, row)
       !> What was found
       type(critical_t), intent(in) :: critical
@@ -341,7 +341,9 @@ contains
       real(wp) :: middle, half
 
       middle = (critical%falls + critical%stands)/2.0_wp
-      half = max(abs(critical%stands - critical%falls)/2.0_wp, critical%half)
+      if (critical%stops .and. abs(critical%stop - middle) < abs(critical%stop - critical%falls)) &
+         & middle = critical%stop
+      half = max(abs(critical%stands - middle), abs(critical%falls - middle), critical%half)
       row%critical = some_number(middle)
       row%critical_low = some_number(middle - half)
       row%critical_high = some_number(middle + half)

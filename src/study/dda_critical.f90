@@ -57,6 +57,8 @@ contains
          if (closed(search, critical, proposal)) then
             critical%verdict = verdict%found
             critical%half = proposal%half
+            critical%stop = proposal%value
+            critical%stops = proposal%usable .and. .not. critical%current
             return
          end if
          call decide_at(family, candidate(critical, proposal, limit), critical, answer)

@@ -41,6 +41,10 @@ module dda_search
       real(wp) :: stands = 0.0_wp
       !> Half the width that rounding and tolerance leave to the bracket
       real(wp) :: half = 0.0_wp
+      !> Where the last collapse stops, if it does
+      real(wp) :: stop = 0.0_wp
+      !> Whether that is known
+      logical :: stops = .false.
       !> Decision at falls, if there is one
       type(decision_t), allocatable :: fallen
       !> Decision at stands, if there is one
