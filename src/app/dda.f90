@@ -5,6 +5,7 @@ program dda
    use dda_command_line, only : command_t, read_command
    use dda_error, only : error_line, error_t
    use dda_help, only : print_help, version
+   use dda_memory, only : keep_memory
    use dda_process, only : exit_status, leave
    use dda_run, only : run_decks
    implicit none
@@ -13,6 +14,7 @@ program dda
    integer :: status
 
    status = exit_status%success
+   call keep_memory()
    call read_command(command, error)
    if (allocated(error)) then
       write (error_unit, "(a)") error_line(error)
