@@ -45,9 +45,9 @@ module dda_search
       real(wp) :: stop = 0.0_wp
       !> Whether that is known
       logical :: stops = .false.
-      !> Decision at falls, if there is one
+      !> Decision at falls, if there is one; without its blocks and springs
       type(decision_t), allocatable :: fallen
-      !> Decision at stands, if there is one
+      !> Decision at stands, if there is one; likewise, and without its motion
       type(decision_t), allocatable :: standing
       !> Whether the blocks move
       logical :: current = .false.
