@@ -268,6 +268,8 @@ contains
       integer :: i
 
       do i = size(deck_key), 1, -1
+         ! the first letter tells most keys apart, and a comparison of texts is a call
+         if (deck_key(i)%name(1:1) /= name(1:1)) cycle
          if (deck_key(i)%name == name .and. deck_key(i)%group == group) return
       end do
    end function key_index
