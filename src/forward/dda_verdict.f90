@@ -44,7 +44,7 @@ module dda_verdict
    !> Where blocks move, rest is a step of this share of the displacement so far
    real(wp), parameter :: still = 1.0e-8_wp
    !> Or of this share at most, where rounding alone feigns it
-   real(wp), parameter :: barely = 1.0e-4_wp
+   real(wp), parameter :: barely = 1.0e-6_wp
 
 contains
 

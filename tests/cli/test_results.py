@@ -757,7 +757,7 @@ def test_slivers_of_stone_change_nothing(tmp_path: Path, unknowns: int, joints: 
         assert high - low < 1e-5 * exact
 
 
-@pytest.mark.parametrize("young", [1e12, 1e14, 1e16])
+@pytest.mark.parametrize("young", [1e12, 1e14, 1e15])
 def test_moving_blocks_of_stiff_stone_come_to_rest(tmp_path: Path, young: float) -> None:
     text = f"&analysis geometry = 'current' /\n&material young = {young} /\n&search /\n"
     (row,) = run_deck(tmp_path, text + "&joint friction_deg = 90 /\n")
