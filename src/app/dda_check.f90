@@ -96,8 +96,8 @@ contains
       call tell("strength", trim(merge("cohesion or tension, until a joint breaks", &
          & "none: friction alone                     ", plan%strength)))
       if (plan%shared_forces) then
-         call tell("joints.csv", "forces at rest once more with 6 unknowns, for strain "// &
-            & "shares them out")
+         call tell("joints.csv", "forces of the arch found to stand once more with 6 unknowns, "// &
+            & "for strain shares them out")
       else if (flag_of(deck, "output", "joints")) then
          call tell("joints.csv", "forces of the decision itself")
       else
@@ -123,6 +123,8 @@ contains
       if (reason == strain_reason%moving) words = "strain, for it moves corners where blocks move"
       if (reason == strain_reason%dynamic) words = "strain, for blocks vibrate as they move"
       if (reason == strain_reason%strength) words = "strain, for it says which joint breaks first"
+      if (reason == strain_reason%forces) words = "strain, for it shares out the forces of "// &
+         & "joints.csv"
       if (reason == strain_reason%displacement) words = "strain, for it is part of the "// &
          & "displacement that means collapse"
    end function why

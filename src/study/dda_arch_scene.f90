@@ -5,7 +5,8 @@ module dda_arch_scene
    use dda_block_system, only : block_system_t
    use dda_constants, only : degree, pi
    use dda_contact_detection, only : find_contacts
-   use dda_deck, only : deck_t, flag_of, integer_of, is_given, list_of, parameter_t, real_of, word_of
+   use dda_deck, only : deck_t, flag_of, integer_of, is_given, list_of, parameter_t, real_of, &
+      & word_of
    use dda_deck_set, only : number_fits, put_number
    use dda_error, only : error_t, fatal_error
    use dda_kinds, only : wp
@@ -233,16 +234,16 @@ contains
    end function search_start
 
    !> What the rounding of corners makes of the critical thickness ratio eta, relative to it, at the
-   !> deck's own thickness. A corner off by eps r makes the weight of a voussoir wrong by eps/eta, and with it
-   !> the place of the thrust by alpha^2/8*eps/eta of the radius, to be compared with eta; with a
-   !> margin of 4
+   !> deck's own thickness. A corner off by eps r makes the weight of a voussoir wrong by eps/eta,
+   !> and with it the place of the thrust by alpha^2/8*eps/eta of the radius, to be compared with
+   !> eta; with a margin of 8
    pure real(wp) function arch_resolution(deck)
       !> The deck of one case
       type(deck_t), intent(in) :: deck
       real(wp) :: square
 
       square = (degree*real_of(deck, "arch", "half_angle_deg"))**2
-      arch_resolution = 4.0_wp*square/8.0_wp*epsilon(1.0_wp) &
+      arch_resolution = 8.0_wp*square/8.0_wp*epsilon(1.0_wp) &
          & /real_of(deck, "arch", "thickness_ratio")**2
    end function arch_resolution
 end module dda_arch_scene

@@ -7,8 +7,8 @@ module dda_case
    use dda_contact_detection, only : contacts_t
    use dda_critical, only : critical_t, find_critical, search_t
    use dda_decision, only : decide, decision_t
-   use dda_deck, only : deck_t, flag_of, has_group, integer_of, is_given, parameter_t, real_of, text_of, &
-      & word_of
+   use dda_deck, only : deck_t, flag_of, has_group, integer_of, is_given, parameter_t, real_of, &
+      & text_of, word_of
    use dda_deck_check, only : search_bracket
    use dda_deck_parameter, only : find_parameter, parameter_name
    use dda_error, only : error_t
@@ -60,6 +60,9 @@ module dda_case
       real(wp) :: seconds = 0.0_wp
    end type case_t
 
+   !> A bracket whose middle is off by more than this share of its half is lopsided
+   real(wp), parameter :: lopsided = 0.05_wp
+
 contains
 
    !> Make a case ready to be computed
@@ -105,20 +108,16 @@ contains
       this%seconds = real(finish - start, wp)/real(rate, wp)
    end subroutine compute_case
 
-   !> Share out the joint forces of the structure that is told, if it stands: it is the decision
-   !> nearest to critical where one is searched
+   !> Share out the joint forces of the arch nearest to critical that was found to stand
    pure subroutine share_told_forces(this)
       !> The case, decided
       type(case_t), intent(inout) :: this
       type(scene_t) :: scene
       type(error_t), allocatable :: error
 
-      if (allocated(this%critical%standing)) then
-         call this%family%build(this%critical%stands, scene, error)
-         call share_forces(scene, this%critical%standing)
-      else if (this%decision%outcome%verdict == verdict%stable) then
-         call share_forces(this%scene, this%decision)
-      end if
+      if (.not. allocated(this%critical%standing)) return
+      call this%family%build(this%critical%stands, scene, error)
+      call share_forces(scene, this%critical%standing)
    end subroutine share_told_forces
 
    !> Run the scene of the case once more for its pictures, a collapse until a corner has moved a
@@ -330,18 +329,21 @@ contains
       search%start = min(max(search%start, search%low), search%high)
    end subroutine prepare_search
 
-   !> Fill the columns of a closed bracket. Its middle is where the collapse stops, and where its ends
-   !> lie closer than rounding can tell apart, it is told as wide as that
+   !> Fill the columns of a closed bracket. Where its ends lie lopsided about the value at which the
+   !> collapse stops, that value is its middle; where they lie closer than rounding can tell apart,
+   !> it is told as wide as that
    pure subroutine tell_bracket(critical, row)
       !> What was found
       type(critical_t), intent(in) :: critical
       !> The row
       type(result_row_t), intent(inout) :: row
 
-      real(wp) :: middle, half
+      real(wp) :: middle, half, off
 
       middle = (critical%falls + critical%stands)/2.0_wp
-      if (critical%stops .and. abs(critical%stop - middle) < abs(critical%stop - critical%falls)) &
+      half = abs(critical%stands - critical%falls)/2.0_wp
+      off = abs(critical%stop - middle)
+      if (critical%stops .and. off > lopsided*half .and. off < 2.0_wp*half) &
          & middle = critical%stop
       half = max(abs(critical%stands - middle), abs(critical%falls - middle), critical%half)
       row%critical = some_number(middle)

@@ -78,7 +78,7 @@ contains
          if (pass == 1) coarse_slope = slope
          next = x(2) - power(2)/slope
          if (next < search%low .or. next > search%high) return
-         stopped = abs(next - x(2)) < 0.01_wp*search%tolerance*abs(next)
+         stopped = abs(next - x(2)) < 0.02_wp*least_half(search, critical)*abs(next)
          only_noise = abs(power(2)) < 1.0e-3_wp*abs(first_power) .and. abs(power(2)) > abs(power(1))
          if (stopped .or. only_noise) exit
          x = [x(2), next]

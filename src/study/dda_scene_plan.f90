@@ -5,7 +5,7 @@
 !> other, and where a displacement means collapse; and it shares out the joint forces at rest.
 module dda_scene_plan
    use dda_block_system, only : n_unknown
-   use dda_deck, only : deck_t, flag_of, integer_of, is_given, real_of, word_of
+   use dda_deck, only : deck_t, flag_of, has_group, integer_of, is_given, real_of, word_of
    implicit none
    private
 
@@ -28,6 +28,8 @@ module dda_scene_plan
       integer :: strength = 4
       !> A displacement means collapse, and strain is part of it
       integer :: displacement = 5
+      !> The joint forces of a single decision are wanted, and strain shares them out
+      integer :: forces = 6
    end type strain_reason_enum
 
    !> Names of the reasons
@@ -45,7 +47,7 @@ module dda_scene_plan
       logical :: moving = .false.
       !> Whether joints have cohesion or tensile strength, and may lose it
       logical :: strength = .false.
-      !> Whether the forces of rigid blocks at rest are computed once more with strain
+      !> Whether the forces of the arch that a search found to stand are computed with strain
       logical :: shared_forces = .false.
    end type scene_plan_t
 
@@ -68,13 +70,18 @@ contains
          return
       end if
       plan%reason = strain_reason%none
+      plan%shared_forces = flag_of(deck, "output", "joints") .and. has_group(deck, "search")
+      if (flag_of(deck, "output", "joints") .and. .not. plan%shared_forces) &
+         & plan%reason = strain_reason%forces
       if (is_given(deck, "analysis", "collapse_displacement")) &
          & plan%reason = strain_reason%displacement
       if (plan%strength) plan%reason = strain_reason%strength
       if (plan%velocities) plan%reason = strain_reason%dynamic
       if (plan%moving) plan%reason = strain_reason%moving
-      if (plan%reason /= strain_reason%none) return
-      plan%unknowns = n_rigid
-      plan%shared_forces = flag_of(deck, "output", "joints")
+      if (plan%reason == strain_reason%none) then
+         plan%unknowns = n_rigid
+      else
+         plan%shared_forces = .false.
+      end if
    end function plan_scene
 end module dda_scene_plan

@@ -13,6 +13,13 @@ from voussoir.stability_judge import Critical, Refused, Same, Shifted, Verdict, 
 from voussoir.stability_scenes import catalogue, random_scenes  # noqa: E402
 
 
+@pytest.fixture(autouse=True)
+def _program(monkeypatch):
+    """The program under test."""
+    if "DDA" in os.environ:
+        monkeypatch.setenv("VOUSSOIR_DDA", os.environ["DDA"])
+
+
 def row(verdict="found", critical="0.1", low="0.0999", high="0.1001", case="1"):
     """A row of results.csv."""
     names = ("case", "verdict", "critical", "critical_low", "critical_high")
