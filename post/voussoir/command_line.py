@@ -20,6 +20,8 @@ COMMANDS = {
     "paper": ("voussoir.paper_command", "every table and figure of the paper, and the report"),
     "plot": ("voussoir.plot_command", "pictures and charts of a folder of results"),
     "theory": ("voussoir.theory_command", "the three analytic solutions at given half angles"),
+    "work-precision": ("voussoir.work_precision", "error against run time"),
+    "stability": ("voussoir.stability", "stiff and extreme scenes, judged by exact answers"),
 }
 
 

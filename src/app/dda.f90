@@ -7,6 +7,7 @@ program dda
    use dda_error, only : error_line, error_t
    use dda_export, only : export_decks
    use dda_help, only : print_help, version
+   use dda_memory, only : keep_memory
    use dda_process, only : exit_status, leave
    use dda_run, only : run_decks
    implicit none
@@ -15,6 +16,7 @@ program dda
    integer :: status
 
    status = exit_status%success
+   call keep_memory()
    call read_command(command, error)
    if (allocated(error)) then
       write (error_unit, "(a)") error_line(error)

@@ -2,7 +2,7 @@
 module dda_check
    use, intrinsic :: iso_fortran_env, only : error_unit, output_unit
    use dda_command_line, only : command_t, name_of
-   use dda_deck, only : deck_t, has_group, is_given, text_of, word_of
+   use dda_deck, only : deck_t, flag_of, has_group, integer_of, is_given, text_of, word_of
    use dda_deck_scene, only : check_lines, check_scene, deck_scene, warning_line
    use dda_deck_sweep, only : case_deck, n_cases, swept_names
    use dda_cut, only : print_warnings
@@ -12,6 +12,7 @@ module dda_check
    use dda_process, only : exit_status
    use dda_read_deck, only : read_deck
    use dda_scene, only : scene_t
+   use dda_scene_plan, only : plan_scene, scene_plan_t, strain_reason
    use dda_text, only : to_text
    implicit none
    private
@@ -88,16 +89,7 @@ contains
       call tell("blocks", to_text(blocks)//" that move, "//to_text(size(scene%system%equation) &
          & - blocks)//trim(merge(" fixed springings", " held            ", arch)))
       call tell("joints", joints_text(scene))
-      call tell("unknowns", to_text(scene%settings%n_dof)//" a block, " &
-         & //to_text(scene%settings%n_dof*blocks)//" in all")
-      if (scene%settings%dynamic) then
-         call tell("velocities", "kept: mode is dynamic")
-      else
-         call tell("velocities", "none: every step starts at rest, mode is static")
-      end if
-      call tell("strength", merge("friction alone           ", "cohesion or tension given", &
-         & all(scene%contacts%springs%shift <= 0.0) .and. &
-         & all(scene%contacts%joint%law%cohesion <= 0.0)))
+      call print_parts(first, blocks)
    end subroutine print_plan
 
    !> Print what a case of the original's scheme is made of
@@ -144,6 +136,56 @@ contains
          text = text//"; fixed pairs that follow the blocks"
       end if
    end function joints_text
+
+   !> Print which parts of the method a case needs, and why
+   subroutine print_parts(deck, blocks)
+      !> The deck of the case
+      type(deck_t), intent(in) :: deck
+      !> Blocks that move
+      integer, intent(in) :: blocks
+      type(scene_plan_t) :: plan
+
+      plan = plan_scene(deck)
+      call tell("unknowns", to_text(plan%unknowns)//" a block, "//to_text(plan%unknowns*blocks) &
+         & //" in all: "//trim(why(plan%reason)))
+      call tell("velocities", trim(merge("kept: mode is dynamic                          ", &
+         & "none: every step starts at rest, mode is static", plan%velocities)))
+      call tell("strength", trim(merge("cohesion or tension, until a joint breaks", &
+         & "none: friction alone                     ", plan%strength)))
+      if (plan%shared_forces) then
+         call tell("joints.csv", "forces of the arch found to stand once more with 6 unknowns, "// &
+            & "for strain shares them out")
+      else if (flag_of(deck, "output", "joints")) then
+         call tell("joints.csv", "forces of the decision itself")
+      else
+         call tell("joints.csv", "none: output%joints is .false.")
+      end if
+      if (integer_of(deck, "output", "frames") > 0) then
+         call tell("frames", "the case is run once more for its pictures")
+      else
+         call tell("frames", "none: output%frames is 0")
+      end if
+   end subroutine print_parts
+
+   !> Why a block has as many unknowns
+   pure function why(reason) result(words)
+      !> One of strain_reason
+      integer, intent(in) :: reason
+      !> The words
+      character(len=100) :: words
+
+      words = "the deck gives analysis%unknowns"
+      if (reason == strain_reason%none) words = "rigid, for equilibrium alone decides where "// &
+         & "nothing moves or breaks"
+      if (reason == strain_reason%moving) words = "strain, for it moves corners where blocks move"
+      if (reason == strain_reason%dynamic) words = "strain, for blocks vibrate as they move"
+      if (reason == strain_reason%strength) words = "strain, for it says which joint breaks first"
+      if (reason == strain_reason%forces) words = "strain, for it shares out the forces of "// &
+         & "joints.csv"
+      if (reason == strain_reason%files) words = "strain, for blocks of a file have laws and stress of their own"
+      if (reason == strain_reason%displacement) words = "strain, for it is part of the "// &
+         & "displacement that means collapse"
+   end function why
 
    !> Print one line of the plan
    subroutine tell(what, how)

@@ -64,7 +64,7 @@ module dda_result_tables
 
    !> Columns of results.csv that a swept parameter shares
    character(len=*), parameter :: own_column(*) = [character(len=16) :: "half_angle_deg", &
-      & "thickness_ratio", "friction_deg", "mode", "geometry"]
+      & "thickness_ratio", "friction_deg", "mode", "geometry", "unknowns"]
 
 contains
 
@@ -88,7 +88,8 @@ contains
       tables%folder = folder
       tables%record_file = folder//"/deck.record"
       tables%has_vtu = flag_of(deck, "output", "vtu")
-      call name_table(tables%at(table%results), "/results.csv", results_header(names))
+      call name_table(tables%at(table%results), "/results.csv", results_header(names, &
+         & flag_of(deck, "output", "condition")))
       call name_table(tables%at(table%joints), "/joints.csv", joints_header())
       call name_table(tables%at(table%log), "/log.txt", "case verdict remark")
       call name_table(tables%at(table%frames), "/frames.csv", frames_header())

@@ -31,8 +31,10 @@ module dda_resume
       integer :: columns = 0
       !> Column of the case
       integer :: case = 1
-      !> Column of the seconds, the last one of results.csv; 0 in other tables
+      !> Column of the seconds of results.csv; 0 in other tables
       integer :: seconds = 0
+      !> Column of the unknowns of results.csv, the last one that is never empty; 0 in other tables
+      integer :: unknowns = 0
    end type layout_t
 
 contains
@@ -181,6 +183,7 @@ contains
       layout%columns = n_fields(header)
       layout%case = column(header, "case")
       layout%seconds = column(header, "seconds")
+      layout%unknowns = column(header, "unknowns")
    end function layout_of
 
    !> Case that a line belongs to; 0 for one that is no whole row of the table
@@ -192,6 +195,7 @@ contains
       !> Number of cases
       integer, intent(in) :: total
       real(wp) :: seconds
+      integer :: unknowns
       logical :: ok
 
       if (layout%columns == 0) then
@@ -201,6 +205,8 @@ contains
          if (ok) call read_integer(field(line, layout%case), case_of, ok)
          if (ok .and. layout%seconds > 0) &
             & call read_number(field(line, layout%seconds), seconds, ok)
+         if (ok .and. layout%unknowns > 0) &
+            & call read_integer(field(line, layout%unknowns), unknowns, ok)
       end if
       if (ok) ok = case_of >= 1 .and. case_of <= total
       if (.not. ok) case_of = 0

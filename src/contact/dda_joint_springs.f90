@@ -33,6 +33,9 @@ module dda_joint_springs
 
    !> A block counts as no smaller across a joint than this share of the root of its area
    real(wp), parameter :: least_size = 0.1_wp
+   !> Most that the stiffness of two joints may differ by: a joint between two slivers is stiff far
+   !> beyond what the blocks around can feel, and would cut the longest step short
+   real(wp), parameter :: stiffest = 1.0e2_wp
 
 contains
 
@@ -63,6 +66,7 @@ contains
          springs%stiffness(j) = penalty_ratio*block_stiffness(system, centroid, joint(j))
          call mohr_coulomb(joint(j), [.false., .false.], springs%cone(j), springs%shift(:, j))
       end do
+      if (n > 0 .and. .not. springs%give) springs%stiffness = min(springs%stiffness, stiffest*minval(springs%stiffness))
    end subroutine new_joint_springs
 
    !> What the joint sees of one block's unknowns

@@ -4,6 +4,7 @@ module dda_forward
    use dda_block_inertia, only : assemble_blocks, turn_masses
    use dda_block_system, only : block_system_t
    use dda_block_update, only : update_blocks, update_contacts
+   use dda_condition, only : factored_condition
    use dda_contact_detection, only : contacts_t, follow_contacts
    use dda_contact_transfer, only : renew_contacts
    use dda_curved_motion, only : follow_curves
@@ -38,6 +39,8 @@ module dda_forward
       real(wp) :: rest_tolerance = 0.0_wp
       !> Length of a step in which free fall is the elastic motion [s]
       real(wp) :: elastic_time = 0.0_wp
+      !> Estimated condition number of the last equations, if it was wanted
+      real(wp) :: condition = 0.0_wp
       !> Motion of the last step: (n_dof, n_equation)
       real(wp), allocatable :: motion(:, :)
       !> Accepted steps
@@ -114,6 +117,8 @@ contains
          outcome%acceleration_ratio = step%acceleration/march%free_acceleration
          outcome%elastic_time = sqrt(2.0_wp*march%elastic_motion/march%free_acceleration)
       end if
+      if (settings%tells_condition) &
+         & outcome%condition = factored_condition(equations%matrix, equations%factor)
       call move_alloc(step%state%motion, outcome%motion)
       if (allocated(error)) then
          outcome%verdict = verdict%undecided

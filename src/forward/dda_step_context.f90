@@ -83,6 +83,8 @@ module dda_step_context
       real(wp) :: displacement = 0.0_wp
       !> Motions that the coordinates of corners cannot tell from none [m]
       real(wp) :: resolution = 0.0_wp
+      !> Motion that the rounding of coordinates may feign, where blocks move [m]
+      real(wp) :: rounding = 0.0_wp
       !> Longest step: the one that was asked for in a dynamic run; in a static one that which
       !> leaves the matrix well enough conditioned [s]
       real(wp) :: longest = 0.0_wp

@@ -68,6 +68,7 @@ contains
       end do
       march%last_acceleration = march%free_acceleration
       march%resolution = epsilon(1.0_wp)*maxval(abs(system%vertex))
+      if (settings%current) march%rounding = feigned_motion(system)
       march%allowed_motion = settings%max_displacement_ratio &
          & *sqrt(minval(system%area, mask=system%equation > 0))
       if (settings%dynamic) then
@@ -93,6 +94,30 @@ contains
          & sqrt(2.0_wp*first_fall*march%elastic_motion/march%free_acceleration))
       if (settings%time_step > 0.0_wp) march%dt = min(march%longest, settings%time_step)
    end subroutine first_interval
+
+   !> Motion that the rounding of coordinates feigns: a corner off by eps of the model's size tilts a
+   !> block, and that moves its far end by the block's aspect ratio times as much; errors of
+   !> many blocks add up by chance
+   pure function feigned_motion(system) result(motion)
+      !> The blocks
+      type(block_system_t), intent(in) :: system
+      !> The motion [m]
+      real(wp) :: motion
+      real(wp) :: slender
+      integer :: b
+
+      slender = 0.0_wp
+      do b = 1, size(system%equation)
+         if (system%equation(b) == 0) cycle
+         associate (vertex => system%vertex(:, &
+            & system%first_vertex(b):system%first_vertex(b + 1) - 1))
+            slender = max(slender, sum(norm2(vertex - cshift(vertex, 1, dim=2), dim=1))**2 &
+               & /system%area(b))
+         end associate
+      end do
+      motion = epsilon(1.0_wp)*maxval(abs(system%vertex))*slender &
+         & *sqrt(real(count(system%equation > 0), wp))
+   end function feigned_motion
 
    !> Length of a dynamic step: the one that was asked for, or that in which free fall from rest
    !> goes as far as a step may

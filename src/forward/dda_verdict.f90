@@ -37,8 +37,14 @@ module dda_verdict
    real(wp), parameter :: beyond_any = 100.0_wp
    !> Where blocks move, collapse is a displacement of this multiple of the elastic motion
    real(wp), parameter :: collapse_multiple = 100.0_wp
+   !> A block of less than this share of the mean mass is light
+   real(wp), parameter :: light = 1.0e-2_wp
+   !> Share of the whole weight to which joint forces are balanced, with a margin of ten
+   real(wp), parameter :: left_over = 1.0e-12_wp
    !> Where blocks move, rest is a step of this share of the displacement so far
    real(wp), parameter :: still = 1.0e-8_wp
+   !> Or of this share at most, where rounding alone feigns it
+   real(wp), parameter :: barely = 1.0e-6_wp
 
 contains
 
@@ -59,6 +65,8 @@ contains
       nd = size(equations%weight, 1)
       associate (motion => step%state%motion)
          step%acceleration = 2.0_wp*step%farthest/step%dt**2
+         if (has_light_blocks(equations)) &
+            & step%acceleration = felt_acceleration(system, equations, motion, step%dt)
          step%work = sum(equations%outer*motion)
          step%kinetic = 0.0_wp
          step%stored = sum(sum(step%state%force**2 - force_before**2, dim=1) &
@@ -93,6 +101,47 @@ contains
       end do
    end function quadratic
 
+   !> Whether a block is so light that what the open-close loop leaves would move it
+   pure logical function has_light_blocks(equations)
+      !> The equations of the step
+      type(equations_t), intent(in) :: equations
+
+      associate (mass => equations%mass(1, 1, :))
+         has_light_blocks = minval(mass)*real(size(mass), wp) < light*sum(mass)
+      end associate
+   end function has_light_blocks
+
+   !> Largest acceleration of a point, without light blocks that no more than rounding moves: the
+   !> open-close loop balances forces to a share of the whole weight, not of each block's
+   pure function felt_acceleration(system, equations, motion, dt) result(largest)
+      !> The blocks
+      type(block_system_t), intent(in) :: system
+      !> The equations of the step
+      type(equations_t), intent(in) :: equations
+      !> Motion of the step: (n_dof, n_equation)
+      real(wp), intent(in) :: motion(:, :)
+      !> Length of the step [s]
+      real(wp), intent(in) :: dt
+      !> The acceleration [m/s2]
+      real(wp) :: largest
+      real(wp) :: acceleration, gyration, mean_mass, noise
+      integer :: b, e
+
+      noise = left_over*sum(abs(equations%weight(1:2, :)))
+      mean_mass = sum(equations%mass(1, 1, :))/real(size(equations%mass, 3), wp)
+      largest = 0.0_wp
+      do b = 1, size(system%equation)
+         e = system%equation(b)
+         if (e == 0) cycle
+         gyration = sqrt((system%second(1, b) + system%second(2, b))/system%area(b))
+         acceleration = (norm2(motion(1:2, e)) + gyration*abs(motion(3, e)))*2.0_wp/dt**2
+         associate (mass => equations%mass(1, 1, e))
+            if (mass < light*mean_mass .and. mass*acceleration < noise) cycle
+         end associate
+         largest = max(largest, acceleration)
+      end do
+   end function felt_acceleration
+
    !> Judge a static run by its last two steps.
    !> It stands if the joint forces balance the full load but for a residue that would accelerate no
    !> point noticeably. It falls if the blocks have fallen far beyond any elastic motion, and the
@@ -124,7 +173,8 @@ contains
       stores_nothing = abs(step%stored) < 1.0e-3_wp*abs(step%work)
       ! where blocks move, a step that comes to rest has only proven the shape it started from
       if (settings%current) at_rest = at_rest .and. march%steps >= 2 &
-         & .and. step%farthest <= max(still*march%displacement, march%resolution)
+         & .and. step%farthest <= max(still*march%displacement, march%resolution, &
+         & min(march%rounding, barely*march%displacement))
       answer = verdict%undecided
       if (at_rest) then
          answer = verdict%stable

@@ -63,6 +63,11 @@ contains
       else if (is_static .and. is_given(deck, "analysis", "restart")) then
          call deck_error(error, "analysis%restart wants mode = 'dynamic': a static run comes "// &
             "to rest by itself", deck, place_of(deck, key_index("analysis", "restart")))
+      else if (is_given(deck, "analysis", "unknowns") .and. &
+         all(integer_of(deck, "analysis", "unknowns") /= [3, 6])) then
+         call deck_error(error, "analysis%unknowns wants 3 or 6, found "// &
+            to_text(integer_of(deck, "analysis", "unknowns"))//"; choose one of the two", deck, &
+            place_of(deck, key_index("analysis", "unknowns")))
       else
          if (word_of(deck, "scene", "kind") == "arch") call check_shape(deck, error)
          if (allocated(error) .or. searched%key == 0) return

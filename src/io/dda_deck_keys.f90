@@ -212,7 +212,10 @@ module dda_deck_keys
             meaning="Most open-close changes of a step before the line search takes over."), &
       key_t(group="analysis", name="restart", kind=key_kind%text, varies=.false., &
             without="the run begins at the beginning", &
-            meaning="Restart file of a dynamic run that goes on; steps counts those before, too.")]
+            meaning="Restart file of a dynamic run that goes on; steps counts those before, too."), &
+      key_t(group="analysis", name="unknowns", kind=key_kind%whole, &
+            without="what the scene needs", at_least=3.0_wp, at_most=6.0_wp, &
+            meaning="Unknowns of a block: 6, or 3 for blocks without strain.")]
 
    !> Keys of &limerick
    type(key_t), parameter :: limerick_keys(*) = [ &
@@ -283,6 +286,9 @@ module dda_deck_keys
             meaning="Write the blocks of each case for ParaView."), &
       key_t(group="output", name="joints", kind=key_kind%flag, default=".true.", varies=.false., &
             meaning="Write forces, openings and states of the joints to joints.csv."), &
+      key_t(group="output", name="condition", kind=key_kind%flag, default=".false.", &
+            varies=.false., &
+            meaning="Estimate the condition number of the last equations of each case."), &
       key_t(group="output", name="frames", kind=key_kind%whole, default="0", varies=.false., &
             at_least=0.0_wp, at_most=10000.0_wp, &
             meaning="Pictures of moving blocks; a collapse is then followed for radius/10."), &
@@ -310,6 +316,8 @@ contains
       integer :: i
 
       do i = size(deck_key), 1, -1
+         ! the first letter tells most keys apart, and a comparison of texts is a call
+         if (deck_key(i)%name(1:1) /= name(1:1)) cycle
          if (deck_key(i)%name == name .and. deck_key(i)%group == group) return
       end do
    end function key_index

@@ -68,6 +68,12 @@ module dda_write_results
       integer :: factorisations = 0
       !> Wall time of the case [s]
       real(wp) :: seconds = 0.0_wp
+      !> Unknowns of a block in the decisions
+      integer :: unknowns = 0
+      !> Whether the table has a column of condition numbers
+      logical :: tells_condition = .false.
+      !> Estimated condition number of the last equations
+      type(number_t) :: condition
    end type result_row_t
 
    !> One row of joints.csv
@@ -111,16 +117,19 @@ contains
    end function some_number
 
    !> Names of the columns of results.csv
-   pure function results_header(swept) result(line)
+   pure function results_header(swept, tells_condition) result(line)
       !> Names of the swept parameters that have no column of their own, each with a comma behind it
       character(len=*), intent(in) :: swept
+      !> Whether the table has a column of condition numbers
+      logical, intent(in) :: tells_condition
       !> The line
       character(len=:), allocatable :: line
 
       line = "deck,case,"//swept//"blocks,half_angle_deg,thickness_ratio,friction_deg,mode," &
          & //"geometry,verdict,critical,critical_low,critical_high,collapses_at,exact," &
          & //"relative_error,collapse_mode,sliding_share,intrados_hinge_deg,extrados_hinge_deg," &
-         & //"springing_hinge,steps,open_close_iterations,factorisations,seconds"
+         & //"springing_hinge,steps,open_close_iterations,factorisations,seconds,unknowns"
+      if (tells_condition) line = line//",condition"
    end function results_header
 
    !> One row of results.csv
@@ -141,7 +150,8 @@ contains
          & //joined(row%intrados_hinge_deg)//","//joined(row%extrados_hinge_deg)//"," &
          & //trim(row%springing_hinge)//","//to_text(row%steps)//"," &
          & //to_text(row%open_close_iterations)//","//to_text(row%factorisations)//"," &
-         & //to_text(row%seconds)
+         & //to_text(row%seconds)//","//to_text(row%unknowns)
+      if (row%tells_condition) line = line//","//number_text(row%condition)
    end function results_line
 
    !> Names of the columns of joints.csv

@@ -53,5 +53,7 @@ module dda_settings
       type(boundary_t) :: boundary
       !> Remaining acceleration over that of the loads below which a structure is at rest
       real(wp) :: rest_tolerance = 1.0e-11_wp
+      !> Whether the condition number of the last equations is wanted
+      logical :: tells_condition = .false.
    end type settings_t
 end module dda_settings

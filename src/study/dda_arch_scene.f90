@@ -5,10 +5,11 @@ module dda_arch_scene
    use dda_block_system, only : block_system_t
    use dda_constants, only : degree, pi
    use dda_contact_detection, only : find_contacts
-   use dda_deck, only : deck_t, integer_of, is_given, list_of, real_of, word_of
+   use dda_deck, only : deck_t, flag_of, integer_of, is_given, list_of, real_of, word_of
    use dda_kinds, only : wp
    use dda_material, only : friction_coefficient, joint_law_t, material_t
    use dda_scene, only : scene_t
+   use dda_scene_plan, only : plan_scene, scene_plan_t
    use dda_settings, only : settings_t
    implicit none
    private
@@ -36,6 +37,7 @@ contains
       scene%system%unit_weight = unit_weight(deck)
       scene%settings = settings_of(deck, degree*real_of(deck, "arch", "half_angle_deg"), &
          & size(half_joints_deg(deck)))
+      scene%settings%rest_tolerance = max(scene%settings%rest_tolerance, weight_rounding(deck))
       n = size(edge_pair, 2)
       allocate (law(n), source=joint_law(deck))
       if (word_of(deck, "arch", "springing") == "no-slip") law([1, n])%no_slip = .true.
@@ -136,11 +138,15 @@ contains
       integer, intent(in) :: joints
       !> The settings
       type(settings_t) :: settings
-      real(wp) :: direction, noise
+      real(wp) :: direction, noise, rise
+      type(scene_plan_t) :: plan
 
+      plan = plan_scene(deck)
       direction = degree*real_of(deck, "load", "gravity_direction_deg")
-      settings%dynamic = word_of(deck, "analysis", "mode") == "dynamic"
-      settings%current = word_of(deck, "analysis", "geometry") == "current"
+      settings%dynamic = plan%velocities
+      settings%current = plan%moving
+      settings%n_dof = plan%unknowns
+      settings%tells_condition = flag_of(deck, "output", "condition")
       settings%penalty_ratio = real_of(deck, "analysis", "penalty_ratio")
       settings%max_steps = integer_of(deck, "analysis", "steps")
       settings%max_changes = integer_of(deck, "analysis", "open_close_limit")
@@ -158,13 +164,23 @@ contains
       where (abs(settings%load_direction) < epsilon(1.0_wp)) settings%load_direction = 0.0_wp
       settings%load_direction(1) = settings%load_direction(1) &
          & + real_of(deck, "load", "horizontal_coefficient")
-      settings%rest_tolerance = 1.0e-3_wp*min(1.0_wp, half_angle**2/2.0_wp) &
-         & *real_of(deck, "search", "tolerance")
+      rise = min(1.0_wp, half_angle**2/2.0_wp)
+      settings%rest_tolerance = 1.0e-3_wp*rise*real_of(deck, "search", "tolerance")
       ! the thrust is w r, the weight of a voussoir 2 w r alpha/n: rounding of the one moves the
       ! other
       noise = 16.0_wp*epsilon(1.0_wp)*real(joints, wp)/half_angle
       settings%rest_tolerance = max(settings%rest_tolerance, noise)
    end function settings_of
+
+   !> Acceleration over that of free fall that rounding feigns: a corner off by eps r makes the
+   !> weight of a voussoir wrong by eps over the thickness ratio
+   pure real(wp) function weight_rounding(deck)
+      !> The deck
+      type(deck_t), intent(in) :: deck
+
+      weight_rounding = min(1.0_wp, (degree*real_of(deck, "arch", "half_angle_deg"))**2/2.0_wp) &
+         & *epsilon(1.0_wp)/real_of(deck, "arch", "thickness_ratio")
+   end function weight_rounding
 
    !> Exact critical thickness ratio of the very same polygons by limit analysis
    pure subroutine exact_thickness(deck, eta, known)
@@ -207,16 +223,17 @@ contains
       search_start = 0.8_wp*square**2/48.0_wp*max(0.3_wp, 1.0_wp - square/10.0_wp)
    end function search_start
 
-   !> What the rounding of corners makes of the critical thickness ratio. A corner off by eps r
-   !> makes
-   !> the weight of a voussoir wrong by eps/eta, and with it the place of the thrust by
-   !> alpha^2/8*eps/eta of the radius, to be compared with eta = alpha^4/48; with a margin of 4
+   !> What the rounding of corners makes of the critical thickness ratio eta, relative to it, at the
+   !> deck's own thickness. A corner off by eps r makes the weight of a voussoir wrong by eps/eta,
+   !> and with it the place of the thrust by alpha^2/8*eps/eta of the radius, to be compared with
+   !> eta; with a margin of 8
    pure real(wp) function arch_resolution(deck)
       !> The deck of one case
       type(deck_t), intent(in) :: deck
       real(wp) :: square
 
       square = (degree*real_of(deck, "arch", "half_angle_deg"))**2
-      arch_resolution = 4.0_wp*48.0_wp**2/8.0_wp*epsilon(1.0_wp)/square**3
+      arch_resolution = 8.0_wp*square/8.0_wp*epsilon(1.0_wp) &
+         & /real_of(deck, "arch", "thickness_ratio")**2
    end function arch_resolution
 end module dda_arch_scene

@@ -6,8 +6,8 @@ module dda_case
    use dda_contact_detection, only : contacts_t
    use dda_critical, only : critical_t, find_critical, search_t
    use dda_decision, only : decide, decision_t
-   use dda_deck, only : deck_t, flag_of, has_group, integer_of, is_given, parameter_t, real_of, text_of, &
-      & word_of
+   use dda_deck, only : deck_t, flag_of, has_group, integer_of, is_given, parameter_t, real_of, &
+      & text_of, word_of
    use dda_deck_check, only : search_bracket
    use dda_deck_parameter, only : find_parameter, parameter_name
    use dda_deck_scene, only : deck_family_t, deck_scene
@@ -22,7 +22,9 @@ module dda_case
    use dda_limerick_search, only : find_limerick_critical
    use dda_mechanism, only : follow_collapse, mechanism_of, mechanism_t
    use dda_scene, only : scene_t
+   use dda_scene_plan, only : plan_scene, scene_plan_t
    use dda_settings, only : flow_rule, settings_t
+   use dda_shared_forces, only : share_forces
    use dda_text, only : to_text
    use dda_verdict, only : verdict
    use dda_write_results, only : joint_row_t, number_t, result_row_t, some_number
@@ -39,6 +41,8 @@ module dda_case
    type :: case_t
       !> The deck with the values of the case
       type(deck_t) :: deck
+      !> What its scene needs
+      type(scene_plan_t) :: plan
       !> Whether a critical value is searched
       logical :: searches = .false.
       !> Whether the original's scheme decides
@@ -69,6 +73,9 @@ module dda_case
       real(wp) :: seconds = 0.0_wp
    end type case_t
 
+   !> A bracket whose middle is off by more than this share of its half is lopsided
+   real(wp), parameter :: lopsided = 0.05_wp
+
 contains
 
    !> Make a case ready to be computed
@@ -81,6 +88,7 @@ contains
 
       this%deck = deck
       this%restart_file = file_beside(deck, text_of(deck, "analysis", "restart"))
+      this%plan = plan_scene(deck)
       this%searches = has_group(deck, "search")
       this%limerick = word_of(deck, "analysis", "mode") == "limerick"
       if (this%searches) call prepare_search(deck, this%family, this%search)
@@ -121,6 +129,7 @@ contains
          if (this%decision%outcome%verdict == verdict%collapsed) &
             & call follow_collapse(this%scene, this%decision)
       end if
+      if (this%plan%shared_forces) call share_told_forces(this)
       if (integer_of(this%deck, "output", "frames") > 0 .or. size(this%album%point) > 0) &
          & call take_pictures(this)
       call system_clock(finish)
@@ -160,6 +169,18 @@ contains
       if (frames > 0 .and. word_of(this%deck, "analysis", "mode") == "dynamic") &
          & this%album%every = max(1, integer_of(this%deck, "analysis", "steps")/frames)
    end subroutine plan_album
+
+   !> Share out the joint forces of the arch nearest to critical that was found to stand
+   pure subroutine share_told_forces(this)
+      !> The case, decided
+      type(case_t), intent(inout) :: this
+      type(scene_t) :: scene
+      type(error_t), allocatable :: error
+
+      if (.not. allocated(this%critical%standing)) return
+      call this%family%build(this%critical%stands, scene, error)
+      call share_forces(scene, this%critical%standing)
+   end subroutine share_told_forces
 
    !> Run a static scene once more for its pictures, a collapse until a corner has moved a tenth of
    !> the radius, or of the size of the blocks
@@ -254,6 +275,8 @@ contains
       row%springing_hinge = "none"
       if (this%exact_known) row%exact = some_number(this%exact)
       row%seconds = this%seconds
+      row%unknowns = this%plan%unknowns
+      row%tells_condition = flag_of(this%deck, "output", "condition")
    end subroutine describe
 
    !> Name of the searched parameter, empty if nothing is searched
@@ -307,6 +330,7 @@ contains
          row%steps = outcome%steps
          row%open_close_iterations = outcome%passes
          row%factorisations = outcome%factorisations
+         call tell_condition(outcome, row)
       end associate
       joint_row = joint_rows(this%decision%contacts, this%scene%joint_angle_deg, this%scene%origin)
    end subroutine tell_decision
@@ -347,8 +371,24 @@ contains
          row%steps = critical%steps
          row%open_close_iterations = critical%passes
          row%factorisations = critical%factorisations
+         if (allocated(critical%standing)) then
+            call tell_condition(critical%standing%outcome, row)
+         else if (allocated(critical%fallen)) then
+            call tell_condition(critical%fallen%outcome, row)
+         end if
       end associate
    end subroutine tell_search
+
+   !> Fill the column of the condition number, if it was estimated
+   pure subroutine tell_condition(outcome, row)
+      !> How the decision ended
+      type(outcome_t), intent(in) :: outcome
+      !> The row
+      type(result_row_t), intent(inout) :: row
+
+      if (outcome%condition > 0.0_wp .and. outcome%condition < huge(1.0_wp)) &
+         & row%condition = some_number(outcome%condition)
+   end subroutine tell_condition
 
    !> What a deck asks to be searched
    pure subroutine prepare_search(deck, family, search)
@@ -370,6 +410,7 @@ contains
       if (word_of(deck, "scene", "kind") == "arch") search%resolution = arch_resolution(deck)
       search%start = search%low
       if (searched_name(deck) /= "thickness_ratio") return
+      search%resolution_at = real_of(deck, "arch", "thickness_ratio")
       search%start = search_start(deck)
       if (.not. is_given(deck, "search", "low")) search%low = 1.0e-5_wp*search%start
       search%check_far_end = is_given(deck, "search", "high")
@@ -377,18 +418,23 @@ contains
       search%start = min(max(search%start, search%low), search%high)
    end subroutine prepare_search
 
-   !> Fill the columns of a closed bracket; where its ends lie closer than rounding can tell apart,
-   !> the bracket that is told is as wide as that
+   !> Fill the columns of a closed bracket. Where its ends lie lopsided about the value at which the
+   !> collapse stops, that value is its middle; where they lie closer than rounding can tell apart,
+   !> it is told as wide as that
    pure subroutine tell_bracket(critical, row)
       !> What was found
       type(critical_t), intent(in) :: critical
       !> The row
       type(result_row_t), intent(inout) :: row
 
-      real(wp) :: middle, half
+      real(wp) :: middle, half, off
 
       middle = (critical%falls + critical%stands)/2.0_wp
-      half = max(abs(critical%stands - critical%falls)/2.0_wp, critical%half)
+      half = abs(critical%stands - critical%falls)/2.0_wp
+      off = abs(critical%stop - middle)
+      if (critical%stops .and. off > lopsided*half .and. off < 2.0_wp*half) &
+         & middle = critical%stop
+      half = max(abs(critical%stands - middle), abs(critical%falls - middle), critical%half)
       row%critical = some_number(middle)
       row%critical_low = some_number(middle - half)
       row%critical_high = some_number(middle + half)

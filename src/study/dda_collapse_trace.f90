@@ -33,10 +33,12 @@ module dda_collapse_trace
    real(wp), parameter :: share_of_joint = 2.0e-14_wp
    !> Margin over the noise that three samples show
    real(wp), parameter :: noise_margin = 20.0_wp
+   !> Roots whose mean is taken where rounding is more than the tolerance
+   integer, parameter :: n_roots = 32
    !> Most passes of the secant method
    integer, parameter :: max_passes = 20
    !> Free fall over elastic motion in the step that traces a mechanism
-   real(wp), parameter :: free_fall = 1.0e4_wp
+   real(wp), parameter :: free_fall = 1.0e6_wp
 
 contains
 
@@ -76,7 +78,7 @@ contains
          if (pass == 1) coarse_slope = slope
          next = x(2) - power(2)/slope
          if (next < search%low .or. next > search%high) return
-         stopped = abs(next - x(2)) < 0.01_wp*search%tolerance*abs(next)
+         stopped = abs(next - x(2)) < 0.02_wp*least_half(search, critical)*abs(next)
          only_noise = abs(power(2)) < 1.0e-3_wp*abs(first_power) .and. abs(power(2)) > abs(power(1))
          if (stopped .or. only_noise) exit
          x = [x(2), next]
@@ -93,6 +95,8 @@ contains
       proposal%half = max(least_half(search, critical)*abs(next), abs(noise/coarse_slope), &
          & rest_resolution(critical, next))
       proposal%reach = proposal%half
+      if (proposal%half > search%tolerance*abs(next)) &
+         & call average_root(family, mechanism, coarse_slope, critical, proposal)
    end subroutine trace
 
    !> Half the width of a bracket over its value: of the tolerance, or of what rounding leaves
@@ -101,10 +105,42 @@ contains
       type(search_t), intent(in) :: search
       !> What was found so far, a collapse among it
       type(critical_t), intent(in) :: critical
+      real(wp) :: resolution
 
-      least_half = max(search%tolerance/2.0_wp, search%resolution, &
+      resolution = search%resolution
+      if (search%resolution_at > 0.0_wp) &
+         & resolution = resolution*(search%resolution_at/critical%falls)**2
+      least_half = max(search%tolerance/2.0_wp, resolution, &
          & least_share + share_of_joint*real(size(critical%fallen%contacts%face), wp))
    end function least_half
+
+   !> Where rounding leaves more than the tolerance: the mean of many roots, as each value of the
+   !> parameter rounds the coordinates otherwise
+   pure subroutine average_root(family, mechanism, slope, critical, proposal)
+      !> The family
+      class(family_t), intent(in) :: family
+      !> The mechanism
+      type(frozen_mechanism_t), intent(in) :: mechanism
+      !> Change of the power with the value
+      real(wp), intent(in) :: slope
+      !> The factorisations are counted
+      type(critical_t), intent(inout) :: critical
+      !> The proposal; its value is set
+      type(proposal_t), intent(inout) :: proposal
+      real(wp) :: power, ignored, total
+      logical :: usable
+      integer :: i
+
+      total = 0.0_wp
+      do i = 1, n_roots
+         call power_at(family, mechanism, proposal%value &
+            & + proposal%half*real(2*i - 1 - n_roots, wp)/real(n_roots, wp), critical, power, &
+            & ignored, usable)
+         if (.not. usable) return
+         total = total + power
+      end do
+      proposal%value = proposal%value - total/real(n_roots, wp)/slope
+   end subroutine average_root
 
    !> Rounding in the solution of the equations: what another length of the step makes of the power
    pure subroutine refine_noise(family, mechanism, value, critical, noise)

@@ -4,9 +4,11 @@
 !> The joints of a collapse, frozen, tell where it would stop; two decisions close around that value
 !> prove it. Where the joints tell nothing, the bracket is halved.
 module dda_critical
+   use dda_block_system, only : block_system_t
    use dda_collapse_trace, only : proposal_t, trace
    use dda_decision, only : decide, decision_t
    use dda_error, only : error_t
+   use dda_joint_springs, only : joint_springs_t
    use dda_kinds, only : wp
    use dda_scene, only : family_t, scene_t
    use dda_search, only : critical_t, search_t
@@ -57,6 +59,8 @@ contains
          if (closed(search, critical, proposal)) then
             critical%verdict = verdict%found
             critical%half = proposal%half
+            critical%stop = proposal%value
+            critical%stops = proposal%usable .and. .not. critical%current
             return
          end if
          call decide_at(family, candidate(critical, proposal, limit), critical, answer)
@@ -152,6 +156,7 @@ contains
       critical%passes = critical%passes + decision%outcome%passes
       critical%factorisations = critical%factorisations + decision%outcome%factorisations
       answer = decision%outcome%verdict
+      call shed(decision)
       if (answer == verdict%collapsed) then
          critical%falls = value
          call move_alloc(decision, critical%fallen)
@@ -163,6 +168,17 @@ contains
          critical%undecided_at = value
       end if
    end subroutine decide_at
+
+   !> Give back what a search does not ask a kept decision for: its blocks and springs, which the
+   !> family makes anew at any value
+   pure subroutine shed(decision)
+      !> The decision
+      type(decision_t), intent(inout) :: decision
+
+      decision%system = block_system_t()
+      decision%contacts%springs = joint_springs_t()
+      if (decision%outcome%verdict == verdict%stable) deallocate (decision%outcome%motion)
+   end subroutine shed
 
    !> Where to decide next: just beyond the proposal, then just before it, then inside the bracket
    pure function candidate(critical, proposal, limit) result(value)

@@ -63,14 +63,14 @@ contains
       if (allocated(deck%cut)) then
          call line_scene(deck, scene)
       else if (word_of(deck, "scene", "kind") == "blocks") then
-         call plan_scene(deck, scene)
+         call file_scene(deck, scene)
       else
          call arch_scene(deck, scene)
       end if
    end subroutine deck_scene
 
    !> The scene of a deck's file of blocks
-   pure subroutine plan_scene(deck, scene)
+   pure subroutine file_scene(deck, scene)
       !> The deck, checked
       type(deck_t), intent(in) :: deck
       !> The scene
@@ -84,7 +84,7 @@ contains
          & real_of(deck, "joint", "tension")]
       scene%settings = settings_of(deck, pi/2.0_wp, size(deck%plan%fixed))
       call block_scene(deck%plan, base, scene)
-   end subroutine plan_scene
+   end subroutine file_scene
 
    !> Whether this version can run the blocks that were cut from lines
    pure subroutine check_lines(deck, error)

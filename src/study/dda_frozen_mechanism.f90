@@ -55,8 +55,12 @@ contains
       noise = 0.0_wp
       settings = scene%settings
       settings%n_dof = 3
-      call new_joint_springs(scene%system, scene%system%centroid, scene%contacts%joint, &
-         & settings%penalty_ratio, settings%n_dof, springs)
+      if (scene%settings%n_dof == settings%n_dof) then
+         springs = scene%contacts%springs
+      else
+         call new_joint_springs(scene%system, scene%system%centroid, scene%contacts%joint, &
+            & settings%penalty_ratio, settings%n_dof, springs)
+      end if
       call new_equations(scene%system, springs, settings, equations)
       usable = all(shape(equations%weight) == shape(mechanism%motion))
       if (.not. usable) return

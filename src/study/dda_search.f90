@@ -19,6 +19,9 @@ module dda_search
       real(wp) :: tolerance = 1.0e-8_wp
       !> Relative change of the critical value that rounded coordinates can make, if it is known
       real(wp) :: resolution = 0.0_wp
+      !> Value at which that holds; elsewhere it goes with the inverse of the value's square. 0
+      !> where it holds everywhere
+      real(wp) :: resolution_at = 0.0_wp
       !> Whether the end beyond the critical value is decided too; not needed where it is known to
       !> stand
       logical :: check_far_end = .true.
@@ -38,9 +41,13 @@ module dda_search
       real(wp) :: stands = 0.0_wp
       !> Half the width that rounding and tolerance leave to the bracket
       real(wp) :: half = 0.0_wp
-      !> Decision at falls, if there is one
+      !> Where the last collapse stops, if it does
+      real(wp) :: stop = 0.0_wp
+      !> Whether that is known
+      logical :: stops = .false.
+      !> Decision at falls, if there is one; without its blocks and springs
       type(decision_t), allocatable :: fallen
-      !> Decision at stands, if there is one
+      !> Decision at stands, if there is one; likewise, and without its motion
       type(decision_t), allocatable :: standing
       !> Whether the blocks move
       logical :: current = .false.

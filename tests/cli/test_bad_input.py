@@ -82,6 +82,7 @@ RANGES = [
     ("analysis", "time_step", ["0", "-1"]),
     ("analysis", "penalty_ratio", ["0", "-1"]),
     ("analysis", "collapse_displacement", ["0", "-1"]),
+    ("analysis", "unknowns", ["0", "4", "5", "7"]),
     ("search", "tolerance", ["0", "-1e-8", "1"]),
 ]
 

@@ -48,6 +48,14 @@ def test_plan_names_the_deck_and_its_title(tmp_path: Path) -> None:
         ("&arch joints_deg = 0, 54.5, 90 /\n", ["blocks 4", "joints 5"]),
         ("&search /\n", ["searched thickness_ratio"]),
         ("&search parameter = 'friction_deg' /\n", ["searched friction_deg"]),
+        ("&search /\n", ["unknowns 3 a block, 108 in all: rigid", "once more with 6 unknowns"]),
+        ("&output joints = .false. /\n", ["unknowns 3 a block", "none: output%joints is .false."]),
+        ("&arch /\n", ["unknowns 6 a block, 216 in all: strain, for it shares out the forces"]),
+        ("&analysis unknowns = 6 /\n", ["unknowns 6 a block, 216 in all: the deck gives"]),
+        ("&analysis geometry = 'current' /\n", ["6 a block, 216 in all: strain, for it moves"]),
+        ("&analysis mode = 'dynamic' /\n", ["6 a block", "strain, for blocks vibrate", "kept"]),
+        ("&joint cohesion = 1e3 /\n", ["6 a block", "which joint breaks first"]),
+        ("&analysis collapse_displacement = 0.1 /\n", ["6 a block", "displacement that means"]),
         ("&arch thickness_ratio = 0.1 /\n", ["searched nothing"]),
         (
             "&sweep parameter='voussoirs', values=6, 12, 18 /\n"

@@ -45,7 +45,9 @@ def tables(folder: Path) -> dict[str, list[str]]:
         if file.is_file():
             lines = file.read_text().splitlines()
             if file.name == "results.csv":
-                lines = [line.rpartition(",")[0] for line in lines]
+                place = lines[0].split(",").index("seconds") - len(lines[0].split(","))
+                lines = [",".join(part[:place] + part[place + 1 or None :])
+                         for part in (line.split(",") for line in lines)]
             found[file.name] = sorted(lines)
     return found
 
@@ -135,9 +137,10 @@ def test_case_without_its_joints_is_computed_again(tmp_path: Path) -> None:
         lambda line: line.replace("deck,3,", "deck,-3,"),
         lambda line: line.rpartition(",")[0] + "\n",
         lambda line: line.rpartition(",")[0] + ",\n",
+        lambda line: line.rsplit(",", 2)[0] + ",,3\n",
         lambda line: "",
     ],
-    ids=["twice", "zeros", "beyond", "negative", "short", "no seconds", "gone"],
+    ids=["twice", "zeros", "beyond", "negative", "short", "no unknowns", "no seconds", "gone"],
 )
 def test_damaged_row_is_not_taken_as_good(tmp_path: Path, damage) -> None:
     out = write_deck(tmp_path)

@@ -1,0 +1,93 @@
+!> What a scene needs: the parts of the method without which its answer would be another one
+!>
+!> Whether a structure stands is a matter of equilibrium alone as long as its shape stays. Strain
+!> matters where blocks move, where they keep their velocities, where joints break one after the
+!> other, and where a displacement means collapse; and it shares out the joint forces at rest.
+module dda_scene_plan
+   use dda_block_system, only : n_unknown
+   use dda_deck, only : deck_t, flag_of, has_group, integer_of, is_given, real_of, word_of
+   implicit none
+   private
+
+   public :: scene_plan_t, plan_scene, strain_reason, n_rigid
+
+   !> Unknowns of a rigid block: u0, v0, r0
+   integer, parameter :: n_rigid = 3
+
+   !> Why blocks have strains or not
+   type :: strain_reason_enum
+      !> The deck says how many unknowns a block has
+      integer :: forced = 0
+      !> Equilibrium alone decides
+      integer :: none = 1
+      !> Blocks move, and strain moves their corners
+      integer :: moving = 2
+      !> Velocities are kept: the blocks' vibrations are part of the motion
+      integer :: dynamic = 3
+      !> Which joint breaks first follows from how the blocks share out the forces
+      integer :: strength = 4
+      !> A displacement means collapse, and strain is part of it
+      integer :: displacement = 5
+      !> The joint forces of a single decision are wanted, and strain shares them out
+      integer :: forces = 6
+      !> The original's scheme has strain
+      integer :: original = 7
+      !> Blocks from files, whose joints have laws and whose states have stress of their own
+      integer :: files = 8
+   end type strain_reason_enum
+
+   !> Names of the reasons
+   type(strain_reason_enum), parameter :: strain_reason = strain_reason_enum()
+
+   !> Parts of a scene
+   type :: scene_plan_t
+      !> Unknowns of a block in the decisions: 6, or 3 without strain
+      integer :: unknowns = n_unknown
+      !> Why, one of strain_reason
+      integer :: reason = 0
+      !> Whether velocities are kept
+      logical :: velocities = .false.
+      !> Whether blocks move and contacts follow them
+      logical :: moving = .false.
+      !> Whether joints have cohesion or tensile strength, and may lose it
+      logical :: strength = .false.
+      !> Whether the forces of the arch that a search found to stand are computed with strain
+      logical :: shared_forces = .false.
+   end type scene_plan_t
+
+contains
+
+   !> What the scene of one case needs
+   pure function plan_scene(deck) result(plan)
+      !> The deck of the case
+      type(deck_t), intent(in) :: deck
+      !> The plan
+      type(scene_plan_t) :: plan
+
+      plan%velocities = word_of(deck, "analysis", "mode") == "dynamic"
+      plan%moving = word_of(deck, "analysis", "geometry") == "current"
+      plan%strength = real_of(deck, "joint", "cohesion") > 0.0 &
+         & .or. real_of(deck, "joint", "tension") > 0.0
+      if (is_given(deck, "analysis", "unknowns")) then
+         plan%reason = strain_reason%forced
+         plan%unknowns = integer_of(deck, "analysis", "unknowns")
+         return
+      end if
+      plan%reason = strain_reason%none
+      plan%shared_forces = flag_of(deck, "output", "joints") .and. has_group(deck, "search")
+      if (flag_of(deck, "output", "joints") .and. .not. plan%shared_forces) &
+         & plan%reason = strain_reason%forces
+      if (is_given(deck, "analysis", "collapse_displacement")) &
+         & plan%reason = strain_reason%displacement
+      if (plan%strength) plan%reason = strain_reason%strength
+      if (plan%velocities) plan%reason = strain_reason%dynamic
+      if (plan%moving) plan%reason = strain_reason%moving
+      if (word_of(deck, "scene", "kind") /= "arch") plan%reason = strain_reason%files
+      if (word_of(deck, "analysis", "mode") == "limerick") plan%reason = strain_reason%original
+      if (plan%reason == strain_reason%none) then
+         plan%unknowns = n_rigid
+      else
+         plan%shared_forces = .false.
+      end if
+   end function plan_scene
+end module dda_scene_plan

@@ -1,0 +1,136 @@
+"""`voussoir stability`: the judgement itself, on answers made up, and a few scenes run."""
+
+import csv
+import os
+
+import pytest
+
+pytest.importorskip("voussoir", reason="PYTHONPATH wants the build's python folder")
+
+from voussoir.command_line import main  # noqa: E402
+from voussoir.deck_runs import Finished  # noqa: E402
+from voussoir.stability_judge import Critical, Refused, Same, Shifted, Verdict, judge  # noqa: E402
+from voussoir.stability_scenes import catalogue, random_scenes  # noqa: E402
+
+
+@pytest.fixture(autouse=True)
+def _program(monkeypatch):
+    """The program under test."""
+    if "DDA" in os.environ:
+        monkeypatch.setenv("VOUSSOIR_DDA", os.environ["DDA"])
+
+
+def row(verdict="found", critical="0.1", low="0.0999", high="0.1001", case="1"):
+    """A row of results.csv."""
+    names = ("case", "verdict", "critical", "critical_low", "critical_high")
+    return dict(zip(names, (case, verdict, critical, low, high)))
+
+
+def colour(expectation, *rows, status=0, **others):
+    """Colour of a run that left these rows."""
+    return judge(expectation, Finished(status, list(rows), **others)).colour
+
+
+@pytest.mark.parametrize(
+    ("expectation", "answer", "wanted"),
+    [
+        (Critical(0.10005), row(), "right"),
+        (Critical(0.1002), row(), "WRONG"),
+        (Critical(0.1), row("collapsed"), "WRONG"),
+        (Critical(None), row("collapsed"), "right"),
+        (Critical(None), row(), "WRONG"),
+        (Critical(0.0), row("stable"), "right"),
+        (Critical(0.0), row("collapsed"), "WRONG"),
+        (Shifted(0.1001, 2e-4), row(), "right"),
+        (Shifted(0.1001, 2e-5), row(), "WRONG"),
+        (Shifted(None, 1.0), row("collapsed"), "right"),
+        (Verdict("stable"), row("stable"), "right"),
+        (Verdict("stable"), row("collapsed"), "WRONG"),
+        (Verdict("stable"), row("completed"), "WRONG"),
+        (Refused("young"), row("stable"), "WRONG"),
+    ],
+)
+def test_answers_are_judged_by_the_exact_one(expectation, answer, wanted):
+    assert colour(expectation, answer) == wanted
+
+
+def test_cases_that_must_agree_are_compared():
+    pair = row(), row(critical="0.1000001")
+    assert colour(Same(1e-5), *pair) == "right"
+    assert colour(Same(1e-7), *pair) == "WRONG"
+
+
+def test_undecided_gives_its_reason():
+    left = Finished(3, [row("undecided")], {"1": "all steps are spent"})
+    judgement = judge(Critical(0.1), left)
+    assert (judgement.colour, judgement.reason) == ("undecided", "all steps are spent")
+
+
+@pytest.mark.parametrize(
+    "left",
+    [
+        Finished(1, [row()]),
+        Finished(-11, [row()]),
+        Finished(0, [row()], not_a_number=("joints.csv",)),
+        Finished(0, []),
+        Finished(2, [], message="deck.nml:1: error: young wants a number"),
+    ],
+)
+def test_crashes_and_nan_and_lost_rows_are_wrong_whatever_they_say(left):
+    assert judge(Critical(0.1), left).colour == "WRONG"
+
+
+def test_refusal_must_name_the_key():
+    left = Finished(2, [], message="deck.nml:1: error: young wants a number")
+    assert judge(Refused("young"), left).colour == "right"
+    assert judge(Refused("poisson"), left).colour == "WRONG"
+
+
+def test_catalogue_is_large_and_without_repetition():
+    names = [(scene.group, scene.name) for scene in catalogue()]
+    assert len(names) > 300 and len(set(names)) == len(names)
+
+
+def test_same_seed_makes_the_same_arches():
+    one, other, third = (
+        [scene.text() for scene in random_scenes(20, seed)] for seed in (7, 7, 8)
+    )
+    assert one == other != third
+
+
+@pytest.mark.skipif("DDA" not in os.environ, reason="the program is named by DDA")
+def test_scenes_are_run_and_told(tmp_path, capsys):
+    only = "large angles: 145 deg, friction 6"
+    assert main(["stability", "--out", str(tmp_path), "--only", only, "--random", "0"]) == 0
+    last = capsys.readouterr().out.splitlines()[-1]
+    assert last.startswith("0 WRONG, 0 undecided (0.0 %), 4 right")
+    with (tmp_path / "stability.csv").open() as lines:
+        rows = list(csv.DictReader(lines))
+    assert {line["result"] for line in rows} == {"right"}
+    assert all(float(line["condition"]) > 1.0 and int(line["passes"]) > 0 for line in rows)
+    assert "0 WRONG" in (tmp_path / "stability.md").read_text()
+    assert (tmp_path / "stability.html").read_text().count("class='right'") == 4
+
+
+@pytest.mark.skipif("DDA" not in os.environ, reason="the program is named by DDA")
+def test_random_arches_are_right(tmp_path):
+    words = ["stability", "--out", str(tmp_path), "--only", "random", "--random", "40"]
+    words += ["--seed", "5"]
+    assert main([*words, "--jobs", "2", "--timeout", "120"]) == 0
+
+
+def test_scenes_are_listed(capsys):
+    options = ["stability", "--only", "sliver", "--random", "0", "--list"]
+    assert main(options) == 0
+    assert len(capsys.readouterr().out.splitlines()) == 21
+
+
+@pytest.mark.skipif("DDA" not in os.environ, reason="the program is named by DDA")
+def test_scene_that_takes_too_long_is_undecided(tmp_path, capsys):
+    words = ["--only", "voussoirs: 10000", "--random", "0"]
+    done = main(
+        ["stability", "--out", str(tmp_path), "--timeout", "0.01", "--jobs", "1", "--seed", "1"]
+        + words
+    )
+    assert done == 0
+    assert "0 WRONG, 1 undecided" in capsys.readouterr().out

@@ -1,0 +1,98 @@
+"""`voussoir work-precision`: the linear programs against exact values, and a small run."""
+
+import csv
+import math
+import os
+
+import pytest
+
+pytest.importorskip("voussoir", reason="PYTHONPATH wants the build's python folder")
+
+from voussoir import limit_lp, theory  # noqa: E402
+from voussoir.command_line import main  # noqa: E402
+from voussoir.work_precision_page import best_table, race_table  # noqa: E402
+from voussoir.work_precision_runs import Arch, Point, Race  # noqa: E402
+
+needs_scipy = pytest.mark.skipif(limit_lp.scipy_version() is None, reason="scipy is missing")
+needs_dda = pytest.mark.skipif("DDA" not in os.environ, reason="the program is named by DDA")
+
+
+@pytest.fixture(autouse=True)
+def _program(monkeypatch):
+    """The program under test."""
+    if "DDA" in os.environ:
+        monkeypatch.setenv("VOUSSOIR_DDA", os.environ["DDA"])
+
+
+@needs_scipy
+@pytest.mark.parametrize("program", [limit_lp.stands_by_general, limit_lp.stands_by_compact])
+@pytest.mark.parametrize(
+    ("half_angle", "voussoirs", "friction"),
+    [(45, 18, 60), (90, 4, 60), (90, 36, 60), (90, 36, 20), (120, 48, 50), (145, 58, 65)],
+)
+def test_linear_programs_know_the_critical_thickness(program, half_angle, voussoirs, friction):
+    alpha, angle = math.radians(half_angle), math.radians(friction)
+    exact = float(theory.discrete_critical(voussoirs, alpha, friction=angle))
+    for distance in (-1e-2, -1e-3, 1e-3, 1e-2):
+        stands = program(alpha, voussoirs, exact * (1.0 + distance), math.tan(angle))
+        assert stands == (distance > 0.0)
+
+
+@needs_scipy
+def test_general_program_takes_an_odd_number_of_voussoirs():
+    exact = float(theory.discrete_critical(35, math.pi / 2.0, friction=math.radians(60.0)))
+    for factor in (0.999, 1.001):
+        answer = limit_lp.stands_by_general(math.pi / 2.0, 35, factor * exact, math.tan(1.0))
+        assert answer == (factor > 1.0)
+    with pytest.raises(ValueError, match="even number"):
+        limit_lp.stands_by_compact(math.pi / 2.0, 35, exact, 1.0)
+
+
+def test_fastest_setting_is_named_for_each_accuracy():
+    arch = Arch(90.0, 36)
+    points = [
+        Point(arch, "tolerance", "0.01", 1e-5, 0.001, 3),
+        Point(arch, "tolerance", "1e-8", 1e-9, 0.004, 9),
+        Point(arch, "penalty", "1", 1e-9, 0.003, 9),
+        Point(arch, "steps", "2", None, 0.0001, 2),
+    ]
+    row = best_table(points)[-1]
+    fast, fine = "tolerance = 0.01: 1.00 ms", "penalty = 1: 3.00 ms"
+    assert row.endswith(f"| {fast} | {fine} | {fine} | none |")
+
+
+def test_ratios_are_those_of_the_times():
+    times = Race(Arch(90.0, 36), 1e-4, 4, 1e-3, 1e-2, 4, 2e-3, 3)
+    assert race_table([times])[-1].endswith("| 3 of 4 | 100 | 20.0 | 0.50 |")
+    without = Race(Arch(90.0, 36), 1e-4, 4, 1e-3, None, 0, None, 0)
+    assert race_table([without])[-1].count("-") == 7
+
+
+@needs_dda
+def test_small_run_writes_tables_and_figure(tmp_path, capsys):
+    pytest.importorskip("matplotlib")
+    options = ["--angles", "90", "--voussoirs", "6", "--repeats", "1"]
+    assert main(["work-precision", "--out", str(tmp_path), *options]) == 0
+    printed = capsys.readouterr().out
+    assert printed == (tmp_path / "work_precision.md").read_text()
+    assert "| 90 | 6 |" in printed
+    with (tmp_path / "work_precision.csv").open() as lines:
+        rows = list(csv.DictReader(lines))
+    fine = [row for row in rows if row["family"] == "tolerance" and float(row["setting"]) < 1e-7]
+    assert fine and all(float(row["error"]) < float(row["setting"]) for row in fine[:3])
+    moving = {row["setting"]: row for row in rows if row["family"] == "Young's modulus, moving"}
+    shift = [float(moving[young]["error"]) for young in ("5e+09", "5e+10", "5e+11")]
+    assert shift[0] / shift[1] == pytest.approx(10.0, rel=0.01)
+    assert shift[1] / shift[2] == pytest.approx(10.0, rel=0.01)
+    for name in ("work_precision.svg", "work_precision.png"):
+        assert (tmp_path / name).stat().st_size > 5000
+
+
+@needs_dda
+def test_race_alone_writes_no_diagram(tmp_path, capsys):
+    arches = ["work-precision", "--race", "--angles", "60", "--voussoirs", "4", "8"]
+    arches += ["--repeats", "1"]
+    assert main([*arches, "--out", str(tmp_path)]) == 0
+    printed = capsys.readouterr().out
+    assert "| 60 | 4 |" in printed and "| 60 | 8 |" in printed
+    assert not (tmp_path / "work_precision.csv").exists()
