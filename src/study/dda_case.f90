@@ -361,13 +361,13 @@ contains
             call tell_mechanism(critical%fallen%contacts, this%scene%joint_angle_deg, row)
             joint_row = joint_rows(critical%fallen%contacts, this%scene%joint_angle_deg, &
                & this%scene%origin)
+            row%blocks = maxval(this%scene%system%equation)
          end if
          if (allocated(critical%standing)) then
             call this%family%build(critical%stands, scene, error)
             joint_row = joint_rows(critical%standing%contacts, scene%joint_angle_deg, scene%origin)
+            row%blocks = maxval(scene%system%equation)
          end if
-         if (allocated(critical%fallen)) row%blocks = maxval(critical%fallen%system%equation)
-         if (allocated(critical%standing)) row%blocks = maxval(critical%standing%system%equation)
          row%steps = critical%steps
          row%open_close_iterations = critical%passes
          row%factorisations = critical%factorisations
