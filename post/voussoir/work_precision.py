@@ -25,10 +25,22 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "--out", type=Path, default=Path("work_precision"), help="folder of tables and figure"
     )
     parser.add_argument(
-        "--angles", type=float, nargs="+", default=[45.0, 90.0, 140.0], metavar="DEG"
+        "--angles",
+        type=float,
+        nargs="+",
+        default=[45.0, 90.0, 140.0],
+        metavar="DEG",
+        help="half angles of embrace, in degrees",
     )
-    parser.add_argument("--voussoirs", type=int, nargs="+", default=[36, 1000], metavar="N")
-    parser.add_argument("--repeats", type=int, default=5, help="runs of each setting (5)")
+    parser.add_argument(
+        "--voussoirs",
+        type=int,
+        nargs="+",
+        default=[36, 1000],
+        metavar="N",
+        help="numbers of voussoirs, even ones",
+    )
+    parser.add_argument("--repeats", type=int, default=5, help="runs of each setting")
     parser.add_argument(
         "--race", action="store_true", help="only the times of one decision, no diagram"
     )

@@ -133,7 +133,8 @@ def draw(points: Sequence[Point], folder: Path) -> list[Path]:
     columns = min(3, len(arches))
     rows = -(-len(arches) // columns)
     with house_style():
-        figure, axes = plt.subplots(rows, columns, figsize=(4.2 * columns, 3.6 * rows), squeeze=False)
+        size = 4.2 * columns, 3.6 * rows
+        figure, axes = plt.subplots(rows, columns, figsize=size, squeeze=False)
         for axis in axes.flat[len(arches) :]:
             axis.set_visible(False)
         for axis, arch in zip(axes.flat, arches):

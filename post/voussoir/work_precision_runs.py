@@ -139,7 +139,8 @@ def dda_points(arch: Arch, folder: Path, repeats: int) -> Iterator[Point]:
                 keys[group] = more
                 text = ""
             keys[group] = ", ".join(filter(None, [keys.get(group), f"{key} = {value!r}"]))
-            deck = arch.deck() + text + "".join(f"&{name} {line} /\n" for name, line in keys.items())
+            groups = "".join(f"&{name} {line} /\n" for name, line in keys.items())
+            deck = arch.deck() + text + groups
             deck += f"&sweep parameter = 'radius', values = {repeats}*10.0 /\n"
             rows = run_deck(deck, folder / f"{arch.half_angle_deg:g}_{arch.voussoirs}").rows
             if rows:

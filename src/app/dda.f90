@@ -3,7 +3,9 @@ program dda
    use, intrinsic :: iso_fortran_env, only : error_unit, output_unit
    use dda_check, only : check_decks
    use dda_command_line, only : command_t, read_command
+   use dda_cut, only : cut_files
    use dda_error, only : error_line, error_t
+   use dda_export, only : export_decks
    use dda_help, only : print_help, version
    use dda_memory, only : keep_memory
    use dda_process, only : exit_status, leave
@@ -25,6 +27,10 @@ program dda
       call run_decks(command, status)
    case ("check")
       call check_decks(command, status)
+   case ("cut")
+      call cut_files(command, status)
+   case ("export")
+      call export_decks(command, status)
    case ("version")
       write (output_unit, "(a)") "dda "//version
    case default

@@ -1,11 +1,14 @@
 !> dda check: read and check decks, say what would be computed
 module dda_check
    use, intrinsic :: iso_fortran_env, only : error_unit, output_unit
-   use dda_arch_scene, only : arch_scene
    use dda_command_line, only : command_t, name_of
-   use dda_deck, only : deck_t, flag_of, has_group, integer_of, text_of
+   use dda_deck, only : deck_t, flag_of, has_group, integer_of, text_of, word_of
+   use dda_deck_scene, only : check_deck_scene, deck_scene
    use dda_deck_sweep, only : case_deck, n_cases, swept_names
+   use dda_cut, only : print_warnings
    use dda_error, only : error_line, error_t
+   use dda_limerick_model, only : half_size, limerick_model_t
+   use dda_limerick_scene, only : limerick_scene
    use dda_process, only : exit_status
    use dda_read_deck, only : read_deck
    use dda_scene, only : scene_t
@@ -35,6 +38,7 @@ contains
             write (error_unit, "(a)") error_line(error)
             status = exit_status%bad_input
          else if (.not. command%quiet) then
+            call print_warnings(deck%warnings)
             call print_plan(name_of(command, i), deck)
          end if
       end do
@@ -53,7 +57,7 @@ contains
       integer :: s, blocks
 
       call case_deck(deck, 1, first, error)
-      call arch_scene(first, scene)
+      call deck_scene(first, scene)
       blocks = maxval(scene%system%equation)
       swept = ""
       associate (names => swept_names(deck))
@@ -69,13 +73,43 @@ contains
       else
          call tell("searched", "nothing: each case is decided as it is")
       end if
+      if (allocated(deck%cut)) call check_deck_scene(deck, error)
+      if (allocated(error)) call tell("not to run", error%message)
       write (output_unit, "(a)") "   the first case:"
+      if (word_of(first, "analysis", "mode") == "limerick") then
+         call print_limerick_plan(first)
+         return
+      end if
       call tell("blocks", to_text(blocks)//" that move, "//to_text(size(scene%system%equation) &
-         & - blocks)//" fixed springings")
+         & - blocks)//trim(merge(" held             ", " fixed springings ", allocated(deck%cut))))
       call tell("joints", to_text(size(scene%contacts%joint))//" of two normal springs and one "// &
          & "shear spring")
       call print_parts(first, blocks)
    end subroutine print_plan
+
+   !> Print what a case of the original's scheme is made of
+   subroutine print_limerick_plan(deck)
+      !> The deck of the case
+      type(deck_t), intent(in) :: deck
+      type(limerick_model_t) :: model
+      integer :: n
+
+      call limerick_scene(deck, model)
+      n = size(model%block_material)
+      if (allocated(deck%cut)) then
+         call tell("blocks", to_text(n)//", held at "//to_text(size(model%fixed_block))//" points")
+      else
+         call tell("blocks", to_text(n - 2)//" and 2 abutments, each held at 4 points")
+      end if
+      call tell("half size", to_text(half_size(model))//" m: what penetration, opening and "// &
+         & "motion are compared with")
+      call tell("contacts", "a vertex and an edge, or two corners; sought anew in each step")
+      call tell("unknowns", "6 a block, "//to_text(6*n)//" in all")
+      call tell("penalty", merge("follows the penetration, up or down", &
+         & "fixed                              ", model%constants%auto_penalty))
+      call tell("velocities", merge("kept                            ", &
+         & "none: every step starts at rest ", model%constants%dynamic))
+   end subroutine print_limerick_plan
 
    !> Print which parts of the method a case needs, and why
    subroutine print_parts(deck, blocks)
@@ -125,6 +159,7 @@ contains
       if (reason == strain_reason%strength) words = "strain, for it says which joint breaks first"
       if (reason == strain_reason%forces) words = "strain, for it shares out the forces of "// &
          & "joints.csv"
+      if (reason == strain_reason%lines) words = "strain, for blocks of lines may break apart"
       if (reason == strain_reason%displacement) words = "strain, for it is part of the "// &
          & "displacement that means collapse"
    end function why

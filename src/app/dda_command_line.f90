@@ -12,23 +12,23 @@ module dda_command_line
    !> Longest argument that is taken
    integer, parameter :: longest = 32768
    !> What the first argument may be
-   character(len=*), parameter :: subcommands(*) = [character(len=9) :: "run", "check", "help", &
-      & "--help", "--version"]
-   !> Options of run and check
+   character(len=*), parameter :: subcommands(*) = [character(len=9) :: "run", "check", "cut", &
+      & "export", "help", "--help", "--version"]
+   !> Options of those that read files
    character(len=*), parameter :: options(*) = [character(len=8) :: "--out", "--jobs", "--set", &
       & "--cases", "--resume", "--quiet", "--help"]
 
    !> What the user asked for
    type :: command_t
-      !> run, check, help or version
+      !> run, check, cut, export, help or version
       character(len=16) :: verb = "help"
-      !> Decks to run or check, or the topic of help: (n)
+      !> Decks to run, check or export, files to cut, or the topic of help: (n)
       character(len=longest), allocatable :: name(:)
       !> Lengths of those names, blanks at their ends counted: (n) [characters]
       integer, allocatable :: name_length(:)
       !> --set values: (n)
       character(len=longest), allocatable :: setting(:)
-      !> Output folder; unallocated if none is named
+      !> Output folder, or the file of cut; unallocated if none is named
       character(len=:), allocatable :: out
       !> Numbers of the cases to compute; empty for all
       character(len=:), allocatable :: cases
@@ -90,7 +90,7 @@ contains
             command%verb = "help"
          case ("--version")
             command%verb = "version"
-         case ("run", "check")
+         case ("run", "check", "cut", "export")
             command%verb = argument(1)(:len(command%verb))
             takes_decks = .true.
          case default
@@ -117,7 +117,7 @@ contains
             name(names) = argument(i)
             name_length(names) = length(i)
             if (takes_decks .and. name(names) == "") &
-               & call fatal_error(error, "wanted the name of a deck, found an empty one; "// &
+               & call fatal_error(error, "wanted the name of a file, found an empty one; "// &
                & "give one")
          end if
          if (allocated(error)) error%line = i
@@ -127,10 +127,34 @@ contains
       allocate (command%name_length, source=name_length(:names))
       allocate (command%setting, source=setting(:settings))
       if (takes_decks .and. command%verb /= "help" .and. names == 0 .and. .not. allocated(error)) &
-         & call fatal_error(error, "dda "//trim(command%verb)//" wants the name of a deck, "// &
-         & "found none; 'dda help "//trim(command%verb)//"' says more", line=1)
+         & call fatal_error(error, "dda "//trim(command%verb)//" wants the name of a " &
+         & //trim(merge("file of lines", "deck         ", command%verb == "cut"))//", found " &
+         & //"none; 'dda help "//trim(command%verb)//"' says more", line=1)
+      if (command%verb == "cut" .and. .not. allocated(error)) call check_cut(command, error)
       if (allocated(error)) error%file = "dda"
    end subroutine parse_command
+
+   !> Whether dda cut can do what is asked
+   pure subroutine check_cut(command, error)
+      !> What the user asked for
+      type(command_t), intent(in) :: command
+      !> Allocated if it cannot
+      type(error_t), allocatable, intent(out) :: error
+      integer :: n
+
+      if (size(command%setting) > 0) then
+         call fatal_error(error, "dda cut reads no deck, found --set; leave it away", line=1)
+      else if (allocated(command%out)) then
+         n = len(command%out)
+         if (size(command%name) > 1) then
+            call fatal_error(error, "--out wants a single file of lines, found " &
+               & //to_text(size(command%name))//"; cut them one by one", line=1)
+         else if (all(command%out(max(n - 3, 1):) /= [".vtu", ".csv"])) then
+            call fatal_error(error, "--out wants a file that ends in .vtu or .csv, found '" &
+               & //shown(command%out)//"'; give it one of these endings", line=1)
+         end if
+      end if
+   end subroutine check_cut
 
    !> Understand one option and its value
    pure subroutine take_option(argument, length, i, command, error)

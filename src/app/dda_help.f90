@@ -13,8 +13,8 @@ module dda_help
    !> Version of the program
    character(len=*), parameter :: version = "0.1.0"
    !> What there is help on
-   character(len=*), parameter :: topics(*) = [character(len=5) :: "run", "check", "keys", &
-      & "help"]
+   character(len=*), parameter :: topics(*) = [character(len=6) :: "run", "check", "cut", &
+      & "export", "keys", "help"]
 
    !> dda help
    character(len=*), parameter :: general(*) = [character(len=96) :: &
@@ -22,7 +22,10 @@ module dda_help
       & "", &
       & "   dda run DECK [DECK ...]     compute every case of every deck", &
       & "   dda check DECK [DECK ...]   read and check decks, compute nothing", &
-      & "   dda help run | check        options of a subcommand (dda run --help does the same)", &
+      & "   dda cut LINES.geo           cut lines into blocks, say what was dropped", &
+      & "   dda export DECK [DECK ...]  write arches as files of the Limerick line", &
+      & "   dda help run | check | cut | export", &
+      & "                               options of a subcommand (dda run --help does the same)", &
       & "   dda help keys               every group and key of a deck: unit, range, default", &
       & "   dda --help | -h             this page", &
       & "   dda --version               the version", &
@@ -74,9 +77,37 @@ module dda_help
       & "Reads and checks the decks and prints what would be computed, and why. Writes nothing.", &
       & "Exit status: 0 all decks are good; 2 one is not."]
 
+   !> dda help cut
+   character(len=*), parameter :: on_cut(*) = [character(len=96) :: &
+      & "dda cut LINES.geo [LINES.geo ...] [--out FILE] [--quiet]", &
+      & "", &
+      & "   --out FILE  where the blocks of one LINES.geo go; ends in .vtu or .csv", &
+      & "               (without it: nothing is written)", &
+      & "   --quiet     print nothing but errors (without it: counts, areas, what was dropped)", &
+      & "   --help, -h  this page", &
+      & "", &
+      & "Reads geometry files of the Limerick line, plain or DDAML, cuts the lines into blocks,", &
+      & "and prints counts, areas, and which parts of lines were dropped, and why.", &
+      & "Exit status: 0 all files were cut; 2 one could not be; 4 FILE could not be written."]
+
+   !> dda help export
+   character(len=*), parameter :: on_export(*) = [character(len=96) :: &
+      & "dda export DECK [DECK ...] [--out DIR] [--set group%key=value ...] [--quiet]", &
+      & "", &
+      & "   --out DIR   where the files go (without it: the current folder)", &
+      & "   --set group%key=value   overrides the deck; commas for lists; may be repeated", &
+      & "               (without it: the deck as it is)", &
+      & "   --quiet     print nothing but errors (without it: names, and what is lost)", &
+      & "   --help, -h  this page", &
+      & "", &
+      & "Writes the arch of each case in the conventions of the Limerick line: NAME.geo and", &
+      & "NAME_ddaml.geo, NAME.ana (DDAML) and NAME_plain.ana, and says what they cannot carry.", &
+      & "arch%abutment_size sets the abutments' size.", &
+      & "Exit status: 0 all cases were written; 2 bad input; 4 files could not be written."]
+
    !> dda help help
    character(len=*), parameter :: on_help(*) = [character(len=96) :: &
-      & "dda help [run | check | keys | help]", &
+      & "dda help [run | check | cut | export | keys | help]", &
       & "", &
       & "Prints help on a subcommand or on the keys of a deck (without a topic: the first page)."]
 
@@ -100,13 +131,18 @@ contains
          call print_lines(on_run)
       case ("check")
          call print_lines(on_check)
+      case ("cut")
+         call print_lines(on_cut)
+      case ("export")
+         call print_lines(on_export)
       case ("help", "--help", "-h")
          call print_lines(on_help)
       case ("keys")
          write (output_unit, "(a)", advance="no") deck_help()
       case default
-         write (error_unit, "(a)") "dda:2: error: wanted help on run, check, keys or help, found '" &
-            & //shown(topic)//"'"//near_one(topic, topics)//"; write one of them"
+         write (error_unit, "(a)") "dda:2: error: wanted help on run, check, cut, export, " &
+            & //"keys or help, found '"//shown(topic)//"'"//near_one(topic, topics) &
+            & //"; write one of them"
          status = exit_status%bad_input
       end select
    end subroutine print_help

@@ -4,8 +4,10 @@ module dda_run
    use dda_case, only : case_t, compute_case, prepare_case, tell_case
    use dda_case_choice, only : choose_cases
    use dda_command_line, only : command_t, name_of
+   use dda_cut, only : print_warnings
    use dda_deck, only : deck_t
    use dda_deck_record, only : deck_record
+   use dda_deck_scene, only : check_deck_scene
    use dda_deck_sweep, only : case_deck, n_cases
    use dda_error, only : error_line, error_t, fatal_error
    use dda_help, only : version
@@ -45,6 +47,9 @@ contains
       status = exit_status%success
       do i = 1, size(deck)
          call read_deck(name_of(command, i), command%setting, deck(i), error)
+         if (.not. allocated(error) .and. allocated(deck(i)%cut)) &
+            & call check_deck_scene(deck(i), error)
+         if (.not. command%quiet) call print_warnings(deck(i)%warnings)
          if (.not. allocated(error)) call check_folder(command, i, good(:i - 1), error)
          if (.not. allocated(error)) call choose_cases(command%cases, &
             & n_cases(deck(i)), chosen, error)

@@ -1,9 +1,9 @@
 !> Forward analysis: one step as a transaction, and a run of steps to a verdict (Shi: df)
 module dda_forward
    use dda_assembly, only : assemble_blocks, equations_t, new_equations, take_springs
-   use dda_block_solve, only : condition_estimate
    use dda_block_system, only : block_system_t
    use dda_block_update, only : update_blocks, update_contacts
+   use dda_condition, only : factored_condition
    use dda_contact_detection, only : contacts_t, follow_contacts
    use dda_error, only : error_t, fatal_error
    use dda_frames, only : album_t, keep_frame
@@ -92,7 +92,8 @@ contains
          outcome%acceleration_ratio = step%acceleration/march%free_acceleration
          outcome%elastic_time = sqrt(2.0_wp*march%elastic_motion/march%free_acceleration)
       end if
-      if (settings%tells_condition) outcome%condition = condition_estimate(equations%matrix)
+      if (settings%tells_condition) &
+         & outcome%condition = factored_condition(equations%matrix, equations%factor)
       call move_alloc(step%state%motion, outcome%motion)
       if (allocated(error)) then
          outcome%verdict = verdict%undecided

@@ -1,9 +1,12 @@
 !> A deck in memory: a value for every key of the registry, and where each one came from
 module dda_deck
    use, intrinsic :: ieee_arithmetic, only : ieee_value, ieee_quiet_nan
+   use dda_cut_model, only : cut_model_t
    use dda_kinds, only : wp
    use dda_error, only : error_t, fatal_error
+   use dda_limerick_analysis, only : limerick_analysis_t
    use dda_text, only : read_number
+   use dda_warnings, only : warnings_t
    use dda_deck_keys, only : deck_key, deck_group, key_kind, key_index, group_index, word_length
    implicit none
    private
@@ -70,6 +73,14 @@ module dda_deck
       type(deck_place_t), allocatable :: group(:)
       !> The sweeps in their order: (n)
       type(deck_sweep_t), allocatable :: sweep(:)
+      !> Blocks cut from the file that scene%geometry names; unallocated for other kinds of scenes
+      type(cut_model_t), allocatable :: cut
+      !> What the file that scene%analysis names says; unallocated if none is named
+      type(limerick_analysis_t), allocatable :: analysis
+      !> Length and checksums of those files, for a record of the deck; unallocated without files
+      character(len=:), allocatable :: file_mark
+      !> What those files hold that is not read
+      type(warnings_t) :: warnings
    end type deck_t
 
 contains

@@ -156,6 +156,10 @@ contains
          word_of(deck, "analysis", "mode") == "static") then
          call deck_error(error, full_name(deck_key(parameter%key))//" is "//how// &
             ", but it has no effect: material%unit_weight is given; remove that", deck, place)
+      else if (deck_key(parameter%key)%group == "arch" .and. &
+         word_of(deck, "scene", "kind") == "lines") then
+         call deck_error(error, full_name(deck_key(parameter%key))//" is "//how// &
+            ", but it has no effect: scene%kind is 'lines'; name another key", deck, place)
       end if
    end subroutine check_varied
 

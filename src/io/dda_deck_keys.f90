@@ -92,6 +92,7 @@ module dda_deck_keys
       group_t("joint", "the Mohr-Coulomb law of the joints"), &
       group_t("load", "what acts on the blocks"), &
       group_t("analysis", "how a single case is computed"), &
+      group_t("limerick", "the original's scheme: with mode = 'limerick' only"), &
       group_t("search", "looks for the critical value of one parameter"), &
       group_t("sweep", "runs one case a value; up to 8 such groups"), &
       group_t("output", "what is written")]
@@ -100,13 +101,14 @@ module dda_deck_keys
    type(key_t), parameter :: scene_keys(*) = [ &
       key_t(group="scene", name="title", kind=key_kind%text, default="''", varies=.false., &
             meaning="One line that says what the deck is about."), &
-      key_t(group="scene", name="kind", kind=key_kind%word, default="'arch'", words="arch", &
-            later="lines blocks", varies=.false., &
-            meaning="What the blocks are made from: an arch generated from the keys of &arch."), &
-      key_t(group="scene", name="geometry", kind=key_kind%later, varies=.false., &
-            meaning="File of lines or blocks; for kinds of scene that a later version reads."), &
-      key_t(group="scene", name="analysis", kind=key_kind%later, varies=.false., &
-            meaning="File of the analysis; for kinds of scene that a later version reads.")]
+      key_t(group="scene", name="kind", kind=key_kind%word, default="'arch'", words="arch lines", &
+            later="blocks", varies=.false., &
+            meaning="What the blocks are made from: the keys of &arch, or lines of a file."), &
+      key_t(group="scene", name="geometry", kind=key_kind%text, without="an arch", &
+            varies=.false., meaning="File of lines for kind = 'lines', beside the deck."), &
+      key_t(group="scene", name="analysis", kind=key_kind%text, &
+            without="the keys of this deck", varies=.false., &
+            meaning="File of materials and loads for kind = 'lines'; keys of the deck go before.")]
 
    !> Keys of &arch
    type(key_t), parameter :: arch_keys(*) = [ &
@@ -130,7 +132,13 @@ module dda_deck_keys
             meaning="Largest angle of one chord of a voussoir's intrados or extrados."), &
       key_t(group="arch", name="springing", kind=key_kind%word, default="'frictional'", &
             words="frictional no-slip", &
-            meaning="Whether the two springing joints obey friction or cannot slide.")]
+            meaning="Whether the two springing joints obey friction or cannot slide."), &
+      key_t(group="arch", name="abutment_size", unit="m", without="0.43 of the radius", &
+            at_least=1.0e-9_wp, at_most=1.0e9_wp, &
+            meaning="Depth of the abutments of mode 'limerick' and of dda export."), &
+      key_t(group="arch", name="abutment_overhang", unit="m", without="abutment_size", &
+            at_least=0.0_wp, at_most=1.0e9_wp, &
+            meaning="By how much such abutments are longer than the joints, at either end.")]
 
    !> Keys of &material
    type(key_t), parameter :: material_keys(*) = [ &
@@ -171,8 +179,8 @@ module dda_deck_keys
    !> Keys of &analysis
    type(key_t), parameter :: analysis_keys(*) = [ &
       key_t(group="analysis", name="mode", kind=key_kind%word, default="'static'", &
-            words="static dynamic", later="limerick", &
-            meaning="Whether the velocity is put to zero at each step or carried on."), &
+            words="static dynamic limerick", &
+            meaning="Velocity put to zero at each step, or carried on, or the original's scheme."), &
       key_t(group="analysis", name="geometry", kind=key_kind%word, default="'reference'", &
             words="reference current", &
             meaning="Small displacements on the undeformed shape, or blocks that move."), &
@@ -197,6 +205,31 @@ module dda_deck_keys
       key_t(group="analysis", name="unknowns", kind=key_kind%whole, &
             without="what the scene needs", at_least=3.0_wp, at_most=6.0_wp, &
             meaning="Unknowns of a block: 6, or 3 for blocks without strain.")]
+
+   !> Keys of &limerick
+   type(key_t), parameter :: limerick_keys(*) = [ &
+      key_t(group="limerick", name="dynamic", kind=key_kind%flag, default=".false.", &
+            meaning="Whether the velocity is carried on instead of put to zero at each step."), &
+      key_t(group="limerick", name="auto_penalty", kind=key_kind%flag, default=".true.", &
+            meaning="Whether the contact stiffness follows the penetration."), &
+      key_t(group="limerick", name="penetration_ratio", default="4e-4", &
+            at_least=1.0e-12_wp, at_most=1.0_wp, &
+            meaning="g3: penetration over the half size that the automatic penalty aims at."), &
+      key_t(group="limerick", name="close_ratio", default="2e-4", &
+            at_least=0.0_wp, at_most=1.0_wp, &
+            meaning="s0: penetration over the half size beyond which an open contact closes."), &
+      key_t(group="limerick", name="open_ratio", default="2e-7", &
+            at_least=0.0_wp, at_most=1.0_wp, &
+            meaning="f0: opening over the half size beyond which a closed contact opens."), &
+      key_t(group="limerick", name="overlap_deg", unit="deg", default="3.0", &
+            at_least=0.0_wp, at_most=45.0_wp, &
+            meaning="h1: overlap of two corners that is overlooked."), &
+      key_t(group="limerick", name="stiffness_ratio", default="2.5", &
+            at_least=1.0e-6_wp, at_most=1.0e6_wp, &
+            meaning="h2: normal over shear stiffness of a contact."), &
+      key_t(group="limerick", name="rotation", kind=key_kind%word, default="'linear'", &
+            words="linear exact", &
+            meaning="Whether vertices turn along the tangent or by sine and cosine.")]
 
    !> Keys of &search
    type(key_t), parameter :: search_keys(*) = [ &
@@ -254,7 +287,7 @@ module dda_deck_keys
 
    !> All keys, group by group
    type(key_t), parameter :: deck_key(*) = [scene_keys, arch_keys, material_keys, joint_keys, &
-      load_keys, analysis_keys, search_keys, sweep_keys, output_keys]
+      load_keys, analysis_keys, limerick_keys, search_keys, sweep_keys, output_keys]
 
 contains
 

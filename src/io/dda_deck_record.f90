@@ -14,7 +14,8 @@ module dda_deck_record
 contains
 
    !> The record of a deck: groups, given keys with their values, sweeps; comments, blanks and the
-   !> order of keys leave no trace in it, a --set leaves the one that a key in the deck would leave
+   !> order of keys leave no trace in it, a --set leaves the one that a key in the deck would leave;
+   !> files that the deck names leave their checksums
    pure function deck_record(deck, maker) result(record)
       !> The deck, checked
       type(deck_t), intent(in) :: deck
@@ -37,6 +38,7 @@ contains
       do i = 1, size(deck%sweep)
          call add_sweep(lines, deck%sweep(i))
       end do
+      if (allocated(deck%file_mark)) call add_line(lines, "files"//deck%file_mark)
       record = lines_of(lines)
    end function deck_record
 

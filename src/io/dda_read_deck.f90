@@ -13,6 +13,7 @@ module dda_read_deck
    use dda_deck_entry, only : read_values
    use dda_deck_sweep, only : add_sweep
    use dda_deck_check, only : check_deck
+   use dda_deck_lines, only : read_lines
    implicit none
    private
 
@@ -34,6 +35,7 @@ contains
 
       call read_text_file(file, text, error)
       if (.not. allocated(error)) call parse_deck(text, file, settings, deck, error)
+      if (.not. allocated(error)) call read_lines(deck, error)
    end subroutine read_deck
 
    !> Read and check a deck from its text

@@ -5,57 +5,22 @@ module dda_arch_scene
    use dda_block_system, only : block_system_t
    use dda_constants, only : degree, pi
    use dda_contact_detection, only : find_contacts
-   use dda_deck, only : deck_t, flag_of, integer_of, is_given, list_of, parameter_t, real_of, &
-      & word_of
-   use dda_deck_set, only : number_fits, put_number
-   use dda_error, only : error_t, fatal_error
+   use dda_deck, only : deck_t, flag_of, integer_of, is_given, list_of, real_of, word_of
    use dda_kinds, only : wp
    use dda_material, only : friction_coefficient, joint_law_t, material_t
-   use dda_scene, only : family_t, scene_t
+   use dda_scene, only : scene_t
    use dda_scene_plan, only : plan_scene, scene_plan_t
    use dda_settings, only : settings_t
    implicit none
    private
 
-   public :: arch_family_t, arch_scene, half_joints_deg, exact_thickness, search_start
-   public :: arch_resolution
+   public :: arch_scene, half_joints_deg, exact_thickness, search_start
+   public :: arch_resolution, joint_law, settings_of, unit_weight
 
    !> Friction angles from here on mean that no joint slides [deg]
    real(wp), parameter :: no_slip_deg = 89.9_wp
 
-   !> The scenes of one deck whose searched parameter varies
-   type, extends(family_t) :: arch_family_t
-      !> The deck of one case
-      type(deck_t) :: deck
-      !> The parameter
-      type(parameter_t) :: parameter
-   contains
-      !> Make the scene of one value
-      procedure :: build => build_arch_scene
-   end type arch_family_t
-
 contains
-
-   !> Make the scene of one value of the parameter
-   pure subroutine build_arch_scene(family, value, scene, error)
-      !> The family
-      class(arch_family_t), intent(in) :: family
-      !> Value of its parameter
-      real(wp), intent(in) :: value
-      !> The scene
-      type(scene_t), intent(out) :: scene
-      !> Allocated if the parameter cannot have the value
-      type(error_t), allocatable, intent(out) :: error
-      type(deck_t) :: deck
-
-      if (.not. number_fits(family%parameter%key, value)) then
-         call fatal_error(error, "the searched parameter cannot have this value")
-         return
-      end if
-      deck = family%deck
-      call put_number(deck, family%parameter, value, deck%value(family%parameter%key)%place, error)
-      if (.not. allocated(error)) call arch_scene(deck, scene)
-   end subroutine build_arch_scene
 
    !> The scene that the deck of one case describes
    pure subroutine arch_scene(deck, scene)
@@ -75,7 +40,9 @@ contains
       material%plane_strain = word_of(deck, "material", "plane") == "strain"
       call arch_blocks(arch_shape(deck), material, scene%system, edge_pair)
       scene%system%unit_weight = unit_weight(deck)
-      scene%settings = settings_of(deck)
+      scene%settings = settings_of(deck, degree*real_of(deck, "arch", "half_angle_deg"), &
+         & size(half_joints_deg(deck)))
+      scene%settings%rest_tolerance = max(scene%settings%rest_tolerance, weight_rounding(deck))
       n = size(edge_pair, 2)
       allocate (law(n), source=joint_law(deck))
       if (word_of(deck, "arch", "springing") == "no-slip") law([1, n])%no_slip = .true.
@@ -154,16 +121,19 @@ contains
 
    !> Settings of the runs. The acceleration that counts as rest follows the tolerance of the search
    !> and the arch: a shallow arch that lacks the same share of its thickness accelerates less
-   pure function settings_of(deck) result(settings)
+   pure function settings_of(deck, half_angle, joints) result(settings)
       !> The deck
       type(deck_t), intent(in) :: deck
+      !> Angle from the crown to a springing; a right angle for what is no arch [rad]
+      real(wp), intent(in) :: half_angle
+      !> Joints of one half of an arch, or all joints
+      integer, intent(in) :: joints
       !> The settings
       type(settings_t) :: settings
-      real(wp) :: half_angle, direction, noise, rise
+      real(wp) :: direction, noise, rise
       type(scene_plan_t) :: plan
 
       plan = plan_scene(deck)
-      half_angle = degree*real_of(deck, "arch", "half_angle_deg")
       direction = degree*real_of(deck, "load", "gravity_direction_deg")
       settings%dynamic = plan%velocities
       settings%current = plan%moving
@@ -186,11 +156,19 @@ contains
       settings%rest_tolerance = 1.0e-3_wp*rise*real_of(deck, "search", "tolerance")
       ! the thrust is w r, the weight of a voussoir 2 w r alpha/n: rounding of the one moves the
       ! other
-      noise = 16.0_wp*epsilon(1.0_wp)*real(size(half_joints_deg(deck)), wp)/half_angle
-      ! a corner off by eps r makes the weight of a voussoir wrong by eps over the thickness ratio
-      noise = max(noise, rise*epsilon(1.0_wp)/real_of(deck, "arch", "thickness_ratio"))
+      noise = 16.0_wp*epsilon(1.0_wp)*real(joints, wp)/half_angle
       settings%rest_tolerance = max(settings%rest_tolerance, noise)
    end function settings_of
+
+   !> Acceleration over that of free fall that rounding feigns: a corner off by eps r makes the
+   !> weight of a voussoir wrong by eps over the thickness ratio
+   pure real(wp) function weight_rounding(deck)
+      !> The deck
+      type(deck_t), intent(in) :: deck
+
+      weight_rounding = min(1.0_wp, (degree*real_of(deck, "arch", "half_angle_deg"))**2/2.0_wp) &
+         & *epsilon(1.0_wp)/real_of(deck, "arch", "thickness_ratio")
+   end function weight_rounding
 
    !> Exact critical thickness ratio of the very same polygons by limit analysis
    pure subroutine exact_thickness(deck, eta, known)

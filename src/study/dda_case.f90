@@ -1,8 +1,7 @@
 !> One case of a deck: prepared, computed, and told as rows of the result tables
 module dda_case
    use, intrinsic :: iso_fortran_env, only : int64
-   use dda_arch_scene, only : arch_family_t, arch_resolution, arch_scene, exact_thickness, &
-      & search_start
+   use dda_arch_scene, only : arch_resolution, exact_thickness, search_start
    use dda_block_system, only : block_system_t
    use dda_contact_detection, only : contacts_t
    use dda_critical, only : critical_t, find_critical, search_t
@@ -10,11 +9,14 @@ module dda_case
    use dda_deck, only : deck_t, flag_of, has_group, integer_of, is_given, parameter_t, real_of, &
       & text_of, word_of
    use dda_deck_check, only : search_bracket
+   use dda_deck_scene, only : deck_family_t, deck_scene
    use dda_deck_parameter, only : find_parameter, parameter_name
    use dda_error, only : error_t
    use dda_forward, only : outcome_t, run_to_verdict
    use dda_frames, only : album_t
    use dda_kinds, only : wp
+   use dda_limerick_decision, only : decide_limerick
+   use dda_limerick_search, only : find_limerick_critical
    use dda_mechanism, only : follow_collapse, mechanism_of, mechanism_t
    use dda_scene, only : scene_t
    use dda_scene_plan, only : plan_scene, scene_plan_t
@@ -40,8 +42,10 @@ module dda_case
       type(scene_plan_t) :: plan
       !> Whether a critical value is searched
       logical :: searches = .false.
+      !> Whether the original's scheme decides
+      logical :: limerick = .false.
       !> The scenes of the search
-      type(arch_family_t) :: family
+      type(deck_family_t) :: family
       !> The search
       type(search_t) :: search
       !> What the search found
@@ -76,9 +80,11 @@ contains
       this%deck = deck
       this%plan = plan_scene(deck)
       this%searches = has_group(deck, "search")
+      this%limerick = word_of(deck, "analysis", "mode") == "limerick"
       if (this%searches) call prepare_search(deck, this%family, this%search)
       searched = searched_name(deck)
-      this%exact_known = searched == "" .or. searched == "thickness_ratio"
+      this%exact_known = (searched == "" .or. searched == "thickness_ratio") &
+         & .and. .not. allocated(deck%cut)
    end subroutine prepare_case
 
    !> Compute a case
@@ -90,14 +96,24 @@ contains
 
       call system_clock(start, rate)
       if (this%exact_known) call exact_thickness(this%deck, this%exact, this%exact_known)
-      if (this%searches) then
+      if (this%searches .and. this%limerick) then
+         ! the limit of this scheme lies somewhat above the exact value
+         if (this%exact_known .and. .not. this%search%check_far_end) &
+            & this%search%start = min(max(this%exact, this%search%low), this%search%high)
+         call find_limerick_critical(this%family, this%search, this%critical)
+         if (allocated(this%critical%fallen)) &
+            & call this%family%build(this%critical%falls, this%scene, error)
+      else if (this%searches) then
          call find_critical(this%family, this%search, this%critical)
          if (allocated(this%critical%fallen)) then
             call this%family%build(this%critical%falls, this%scene, error)
             call follow_collapse(this%scene, this%critical%fallen)
          end if
+      else if (this%limerick) then
+         call deck_scene(this%deck, this%scene)
+         call decide_limerick(this%deck, this%decision)
       else
-         call arch_scene(this%deck, this%scene)
+         call deck_scene(this%deck, this%scene)
          call decide(this%scene%settings, this%scene%system, this%scene%contacts, this%decision)
          if (this%decision%outcome%verdict == verdict%collapsed) &
             & call follow_collapse(this%scene, this%decision)
@@ -144,13 +160,22 @@ contains
       settings = this%scene%settings
       settings%flow = merge(flow_rule%coulomb, flow_rule%associated, slides)
       if (.not. settings%collapse_displacement > 0.0_wp) &
-         & settings%collapse_displacement = 0.1_wp*real_of(this%deck, "arch", "radius")
+         & settings%collapse_displacement = 0.1_wp*size_of(this%deck)
       this%album%spacing = settings%collapse_displacement &
          & /real(integer_of(this%deck, "output", "frames"), wp)
       system = this%scene%system
       contacts = this%scene%contacts
       call run_to_verdict(settings, system, contacts, outcome, this%album)
    end subroutine take_pictures
+
+   !> Size of the structure: the radius of an arch, else half of what is larger, width or height [m]
+   pure real(wp) function size_of(deck)
+      !> The deck
+      type(deck_t), intent(in) :: deck
+
+      size_of = real_of(deck, "arch", "radius")
+      if (allocated(deck%cut)) size_of = deck%cut%scale%size
+   end function size_of
 
    !> Tell a case
    pure subroutine tell_case(this, row, joint_row, remark)
@@ -184,9 +209,13 @@ contains
       searched = searched_name(this%deck)
       row%mode = word_of(this%deck, "analysis", "mode")
       row%geometry = word_of(this%deck, "analysis", "geometry")
-      row%half_angle_deg = given_number(this%deck, "arch", "half_angle_deg", searched)
-      row%thickness_ratio = given_number(this%deck, "arch", "thickness_ratio", searched)
-      row%friction_deg = given_number(this%deck, "joint", "friction_deg", searched)
+      if (this%limerick) row%geometry = "current"
+      if (.not. allocated(this%deck%cut)) then
+         row%half_angle_deg = given_number(this%deck, "arch", "half_angle_deg", searched)
+         row%thickness_ratio = given_number(this%deck, "arch", "thickness_ratio", searched)
+      end if
+      if (.not. allocated(this%deck%analysis) .or. is_given(this%deck, "joint", "friction_deg")) &
+         & row%friction_deg = given_number(this%deck, "joint", "friction_deg", searched)
       row%collapse_mode = "none"
       row%springing_hinge = "none"
       if (this%exact_known) row%exact = some_number(this%exact)
@@ -309,7 +338,7 @@ contains
       !> The deck of the case
       type(deck_t), intent(in) :: deck
       !> Its scenes
-      type(arch_family_t), intent(out) :: family
+      type(deck_family_t), intent(out) :: family
       !> The search
       type(search_t), intent(out) :: search
       character(len=:), allocatable :: problem
@@ -318,7 +347,10 @@ contains
       call find_parameter(text_of(deck, "search", "parameter"), family%parameter, problem)
       call search_bracket(deck, search%low, search%high)
       search%tolerance = real_of(deck, "search", "tolerance")
-      search%resolution = arch_resolution(deck)
+      ! the original's own verdicts near the limit are no sharper
+      if (word_of(deck, "analysis", "mode") == "limerick" &
+         & .and. .not. is_given(deck, "search", "tolerance")) search%tolerance = 1.0e-4_wp
+      if (.not. allocated(deck%cut)) search%resolution = arch_resolution(deck)
       search%start = search%low
       if (searched_name(deck) /= "thickness_ratio") return
       search%resolution_at = real_of(deck, "arch", "thickness_ratio")

@@ -30,6 +30,10 @@ module dda_scene_plan
       integer :: displacement = 5
       !> The joint forces of a single decision are wanted, and strain shares them out
       integer :: forces = 6
+      !> The original's scheme has strain
+      integer :: original = 7
+      !> Blocks cut from lines, whose joints have laws of their own
+      integer :: lines = 8
    end type strain_reason_enum
 
    !> Names of the reasons
@@ -60,7 +64,7 @@ contains
       !> The plan
       type(scene_plan_t) :: plan
 
-      plan%velocities = word_of(deck, "analysis", "mode") /= "static"
+      plan%velocities = word_of(deck, "analysis", "mode") == "dynamic"
       plan%moving = word_of(deck, "analysis", "geometry") == "current"
       plan%strength = real_of(deck, "joint", "cohesion") > 0.0 &
          & .or. real_of(deck, "joint", "tension") > 0.0
@@ -78,6 +82,8 @@ contains
       if (plan%strength) plan%reason = strain_reason%strength
       if (plan%velocities) plan%reason = strain_reason%dynamic
       if (plan%moving) plan%reason = strain_reason%moving
+      if (allocated(deck%cut)) plan%reason = strain_reason%lines
+      if (word_of(deck, "analysis", "mode") == "limerick") plan%reason = strain_reason%original
       if (plan%reason == strain_reason%none) then
          plan%unknowns = n_rigid
       else

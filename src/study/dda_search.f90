@@ -19,8 +19,8 @@ module dda_search
       real(wp) :: tolerance = 1.0e-8_wp
       !> Relative change of the critical value that rounded coordinates can make, if it is known
       real(wp) :: resolution = 0.0_wp
-      !> Value at which that holds; elsewhere it goes with the inverse of the value's square. 0 where
-      !> it holds everywhere
+      !> Value at which that holds; elsewhere it goes with the inverse of the value's square. 0
+      !> where it holds everywhere
       real(wp) :: resolution_at = 0.0_wp
       !> Whether the end beyond the critical value is decided too; not needed where it is known to
       !> stand

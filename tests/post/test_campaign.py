@@ -49,7 +49,8 @@ def tables(folder: Path) -> dict[str, list[str]]:
     for name, column in (("results.csv", 1), ("joints.csv", 0)):
         header, *rows = (folder / name).read_text().splitlines()
         if name == "results.csv":
-            rows = [row.rpartition(",")[0] for row in rows]
+            place = header.split(",").index("seconds")
+            rows = [",".join(row.split(",")[:place] + row.split(",")[place + 1 :]) for row in rows]
         found[name] = [header, *sorted(rows, key=lambda row: int(row.split(",")[column]))]
     header, *lines = (folder / "log.txt").read_text().splitlines()
     found["log.txt"] = [header, *sorted(lines, key=lambda line: int(line.split()[0]))]

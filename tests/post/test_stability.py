@@ -114,5 +114,23 @@ def test_scenes_are_run_and_told(tmp_path, capsys):
 
 @pytest.mark.skipif("DDA" not in os.environ, reason="the program is named by DDA")
 def test_random_arches_are_right(tmp_path):
-    options = ["--out", str(tmp_path), "--only", "random", "--random", "40", "--seed", "5"]
-    assert main(["stability", *options]) == 0
+    words = ["stability", "--out", str(tmp_path), "--only", "random", "--random", "40"]
+    words += ["--seed", "5"]
+    assert main([*words, "--jobs", "2", "--timeout", "120"]) == 0
+
+
+def test_scenes_are_listed(capsys):
+    options = ["stability", "--only", "sliver", "--random", "0", "--list"]
+    assert main(options) == 0
+    assert len(capsys.readouterr().out.splitlines()) == 21
+
+
+@pytest.mark.skipif("DDA" not in os.environ, reason="the program is named by DDA")
+def test_scene_that_takes_too_long_is_undecided(tmp_path, capsys):
+    words = ["--only", "voussoirs: 10000", "--random", "0"]
+    done = main(
+        ["stability", "--out", str(tmp_path), "--timeout", "0.01", "--jobs", "1", "--seed", "1"]
+        + words
+    )
+    assert done == 0
+    assert "0 WRONG, 1 undecided" in capsys.readouterr().out

@@ -1,0 +1,229 @@
+!> dda cut: lines to blocks
+module dda_cut
+   use, intrinsic :: iso_fortran_env, only : error_unit, output_unit
+   use dda_command_line, only : command_t, name_of
+   use dda_cut_model, only : cut_model_t, point_kind
+   use dda_cut_report, only : cut_reason, cut_remark_t
+   use dda_cutting, only : cut_blocks
+   use dda_error, only : error_line, error_t
+   use dda_kinds, only : wp
+   use dda_line_model, only : line_model_t
+   use dda_process, only : exit_status, worst_status
+   use dda_read_limerick, only : read_geometry
+   use dda_text, only : to_text
+   use dda_warnings, only : warning_line, warnings_t
+   use dda_write_cut, only : write_cut_table, write_cut_vtu
+   implicit none
+   private
+
+   public :: cut_files, print_warnings
+
+   !> Most rows of a list on the screen
+   integer, parameter :: most_rows = 50
+
+contains
+
+   !> Cut all files of the command line
+   subroutine cut_files(command, status)
+      !> What the user asked for
+      type(command_t), intent(in) :: command
+      !> Exit status of the program
+      integer, intent(out) :: status
+      integer :: i, file_status
+
+      status = exit_status%success
+      do i = 1, size(command%name)
+         call cut_file(command, name_of(command, i), file_status)
+         status = worst_status(status, file_status)
+      end do
+   end subroutine cut_files
+
+   !> Cut one file
+   subroutine cut_file(command, name, status)
+      !> What the user asked for
+      type(command_t), intent(in) :: command
+      !> Name of the file
+      character(len=*), intent(in) :: name
+      !> Exit status of this file
+      integer, intent(out) :: status
+      type(line_model_t) :: model
+      type(cut_model_t) :: cut
+      type(warnings_t) :: warnings
+      type(error_t), allocatable :: error
+
+      status = exit_status%success
+      call read_geometry(name, model, warnings, error)
+      if (.not. command%quiet) call print_warnings(warnings)
+      if (.not. allocated(error)) call cut_blocks(model, cut, error)
+      if (allocated(error)) then
+         status = exit_status%bad_input
+      else
+         if (.not. command%quiet) call print_cut(model, cut)
+         if (allocated(command%out)) call write_cut(command%out, cut, error)
+         if (allocated(error)) status = exit_status%not_written
+      end if
+      if (allocated(error)) write (error_unit, "(a)") error_line(error)
+   end subroutine cut_file
+
+   !> Print what a reader warns of
+   subroutine print_warnings(warnings)
+      !> The warnings
+      type(warnings_t), intent(in) :: warnings
+      integer :: i
+
+      if (.not. allocated(warnings%item)) return
+      do i = 1, min(size(warnings%item), most_rows)
+         write (error_unit, "(a)") warning_line(warnings%item(i))
+      end do
+      if (size(warnings%item) > most_rows) write (error_unit, "(a)") "and " &
+         & //to_text(size(warnings%item) - most_rows)//" more warnings"
+   end subroutine print_warnings
+
+   !> Write the blocks; the ending of the name says how
+   subroutine write_cut(file, cut, error)
+      !> Name of the file
+      character(len=*), intent(in) :: file
+      !> The blocks
+      type(cut_model_t), intent(in) :: cut
+      !> Allocated if it cannot be written
+      type(error_t), allocatable, intent(out) :: error
+
+      if (index(file, ".vtu", back=.true.) == len(file) - 3) then
+         call write_cut_vtu(file, cut, error)
+      else
+         call write_cut_table(file, cut, error)
+      end if
+   end subroutine write_cut
+
+   !> Print counts, areas, and what was dropped
+   subroutine print_cut(model, cut)
+      !> Lines and points
+      type(line_model_t), intent(in) :: model
+      !> The blocks
+      type(cut_model_t), intent(in) :: cut
+      integer :: smallest, largest
+
+      smallest = minloc(cut%area, 1)
+      largest = maxloc(cut%area, 1)
+      write (output_unit, "(a)") model%file//": "//to_text(model%line%n)//" lines, " &
+         & //to_text(size(cut%area))//" blocks"
+      if (size(cut%area) > 0) then
+         call tell("area", to_text(sum(cut%area))//" in all")
+         call tell("smallest", to_text(cut%area(smallest))//", block "//to_text(smallest))
+         call tell("largest", to_text(cut%area(largest))//", block "//to_text(largest))
+      end if
+      call tell("joints", to_text(size(cut%pair))//" pairs of edges that lie together")
+      call tell("points", to_text(count(cut%point%kind == point_kind%fixed))//" fixed, " &
+         & //to_text(count(cut%point%kind == point_kind%load))//" load, " &
+         & //to_text(count(cut%point%kind == point_kind%measured))//" measured")
+      if (cut%n_removed > 0) call tell("taken out", to_text(cut%n_removed) &
+         & //" blocks that hold hole points")
+      if (cut%n_merged > 0) call tell("merged", to_text(cut%n_merged)//" crossings with a node " &
+         & //"nearer than "//to_text(cut%scale%merge)//" (1.25 e00 w0, w0 = " &
+         & //to_text(cut%scale%size)//")")
+      call print_blocks(cut)
+      call print_dropped(model, cut)
+   end subroutine print_cut
+
+   !> Print a row a block
+   subroutine print_blocks(cut)
+      !> The blocks
+      type(cut_model_t), intent(in) :: cut
+      integer :: b
+
+      write (output_unit, "(3x, a)") "block  material  corners  area"
+      do b = 1, min(size(cut%area), most_rows)
+         write (output_unit, "(3x, i5, i10, i9, 2x, a)") b, cut%material(b), &
+            & cut%first_vertex(b + 1) - cut%first_vertex(b), to_text(cut%area(b))
+      end do
+      if (size(cut%area) > most_rows) write (output_unit, "(3x, a)") "and " &
+         & //to_text(size(cut%area) - most_rows)//" more: --out FILE.csv lists all of them"
+   end subroutine print_blocks
+
+   !> Print what was dropped, and why
+   subroutine print_dropped(model, cut)
+      !> Lines and points
+      type(line_model_t), intent(in) :: model
+      !> The blocks
+      type(cut_model_t), intent(in) :: cut
+      logical, allocatable :: unused(:)
+      integer :: i
+
+      associate (remarks => cut%remarks)
+         if (remarks%n == 0) then
+            call tell("dropped", "nothing")
+            return
+         end if
+         allocate (unused(model%line%n), source=.false.)
+         unused(remarks%item(:remarks%n)%line) = remarks%item(:remarks%n)%reason &
+            & <= cut_reason%loose_line
+         call tell("dropped", to_text(remarks%n)//" parts of lines; "//to_text(count(unused)) &
+            & //" lines meet fewer than two others and are unused")
+         do i = 1, min(remarks%n, most_rows)
+            write (output_unit, "(6x, a)") remark_text(model, cut, remarks%item(i))
+         end do
+         if (remarks%n > most_rows) write (output_unit, "(6x, a)") "and " &
+            & //to_text(remarks%n - most_rows)//" more"
+      end associate
+   end subroutine print_dropped
+
+   !> A remark in words
+   pure function remark_text(model, cut, remark) result(text)
+      !> Lines and points
+      type(line_model_t), intent(in) :: model
+      !> The blocks
+      type(cut_model_t), intent(in) :: cut
+      !> The remark
+      type(cut_remark_t), intent(in) :: remark
+      !> One line
+      character(len=:), allocatable :: text
+      character(len=:), allocatable :: other
+
+      text = model%file//":"//to_text(model%line%row(remark%line))//": line " &
+         & //to_text(remark%line)//" from "//point_text(cut, remark%place(1:2))//" to " &
+         & //point_text(cut, remark%place(3:4))
+      other = ""
+      if (remark%other > 0) other = "line "//to_text(remark%other)//" ("//model%file//":" &
+         & //to_text(model%line%row(remark%other))//")"
+      select case (remark%reason)
+      case (cut_reason%point)
+         text = text//": it has no length"
+      case (cut_reason%loose_line)
+         text = text//": it meets fewer than two other lines"
+      case (cut_reason%loose_edge)
+         text = text//": this part ends in nothing"
+      case (cut_reason%doubled)
+         text = text//": it lies on "//other
+      case (cut_reason%crossing)
+         text = text//": once nodes were merged it crosses "//other//" without a node"
+      case (cut_reason%too_close)
+         text = text//": it passes a node of "//other//" closer than " &
+            & //to_text(cut%scale%clearance)//" (e00 w0)"
+      case (cut_reason%flat)
+         text = text//": it bounds a block without area"
+      end select
+   end function remark_text
+
+   !> A point in the file's coordinates
+   pure function point_text(cut, point) result(text)
+      !> The blocks
+      type(cut_model_t), intent(in) :: cut
+      !> The point, from the origin of the cut: (2) [m]
+      real(wp), intent(in) :: point(2)
+      !> Its coordinates in parentheses
+      character(len=:), allocatable :: text
+
+      text = "("//to_text(point(1) + cut%scale%origin(1))//", " &
+         & //to_text(point(2) + cut%scale%origin(2))//")"
+   end function point_text
+
+   !> Print one line of the summary
+   subroutine tell(what, how)
+      !> What is told
+      character(len=*), intent(in) :: what
+      !> Its value
+      character(len=*), intent(in) :: how
+
+      write (output_unit, "(3x, a12, a)") [character(len=12) :: what], how
+   end subroutine tell
+end module dda_cut

@@ -1,0 +1,121 @@
+!> dda export: arch decks as files of the Limerick line
+module dda_export
+   use, intrinsic :: iso_fortran_env, only : error_unit, output_unit
+   use dda_arch_lines, only : arch_analysis, arch_lines, what_is_lost
+   use dda_command_line, only : command_t, name_of
+   use dda_deck, only : deck_t, has_group
+   use dda_deck_sweep, only : case_deck, n_cases
+   use dda_error, only : error_line, error_t, fatal_error
+   use dda_limerick_analysis, only : limerick_analysis_t
+   use dda_line_model, only : line_model_t
+   use dda_process, only : exit_status, make_folder, worst_status
+   use dda_read_deck, only : read_deck
+   use dda_run, only : deck_stem
+   use dda_text, only : to_text
+   use dda_write_limerick, only : ddaml_analysis, ddaml_geometry, plain_analysis, plain_geometry, &
+      & write_text
+   implicit none
+   private
+
+   public :: export_decks
+
+contains
+
+   !> Export all decks of the command line
+   subroutine export_decks(command, status)
+      !> What the user asked for
+      type(command_t), intent(in) :: command
+      !> Exit status of the program
+      integer, intent(out) :: status
+      type(deck_t) :: deck
+      type(error_t), allocatable :: error
+      integer :: i, deck_status
+
+      status = exit_status%success
+      do i = 1, size(command%name)
+         call read_deck(name_of(command, i), command%setting, deck, error)
+         if (.not. allocated(error) .and. allocated(deck%cut)) call fatal_error(error, &
+            & "a deck with an arch is wanted, this one names files already", deck%file, 1)
+         if (allocated(error)) then
+            write (error_unit, "(a)") error_line(error)
+            deck_status = exit_status%bad_input
+         else
+            call export_deck(command, deck, deck_status)
+         end if
+         status = worst_status(status, deck_status)
+      end do
+   end subroutine export_decks
+
+   !> Export all cases of a deck
+   subroutine export_deck(command, deck, status)
+      !> What the user asked for
+      type(command_t), intent(in) :: command
+      !> The deck, checked
+      type(deck_t), intent(in) :: deck
+      !> Exit status of this deck
+      integer, intent(out) :: status
+      type(deck_t) :: case_of_deck
+      type(line_model_t) :: model
+      type(error_t), allocatable :: error
+      character(len=:), allocatable :: folder, stem
+      integer :: number
+
+      status = exit_status%success
+      folder = "."
+      if (allocated(command%out)) folder = command%out
+      if (allocated(command%out)) call make_folder(folder)
+      do number = 1, n_cases(deck)
+         stem = folder//"/"//deck_stem(deck%file)
+         if (n_cases(deck) > 1) stem = stem//"_"//to_text(number)
+         call case_deck(deck, number, case_of_deck, error)
+         if (.not. allocated(error)) call arch_lines(case_of_deck, model, error)
+         if (allocated(error)) status = exit_status%bad_input
+         if (.not. allocated(error)) then
+            call write_pair(stem, model, arch_analysis(case_of_deck), error)
+            if (allocated(error)) status = exit_status%not_written
+         end if
+         if (allocated(error)) then
+            write (error_unit, "(a)") error_line(error)
+            return
+         end if
+         if (.not. command%quiet) call tell(stem, case_of_deck)
+      end do
+   end subroutine export_deck
+
+   !> Write geometry and analysis in both forms
+   subroutine write_pair(stem, model, analysis, error)
+      !> Name of the files without their endings
+      character(len=*), intent(in) :: stem
+      !> Lines and points
+      type(line_model_t), intent(in) :: model
+      !> The analysis
+      type(limerick_analysis_t), intent(in) :: analysis
+      !> Allocated if they cannot be written
+      type(error_t), allocatable, intent(out) :: error
+
+      call write_text(stem//".geo", plain_geometry(model), error)
+      if (.not. allocated(error)) &
+         & call write_text(stem//"_ddaml.geo", ddaml_geometry(model), error)
+      if (.not. allocated(error)) call write_text(stem//".ana", ddaml_analysis(analysis), error)
+      if (.not. allocated(error)) &
+         & call write_text(stem//"_plain.ana", plain_analysis(analysis), error)
+   end subroutine write_pair
+
+   !> Say what was written, and what was lost
+   subroutine tell(stem, deck)
+      !> Name of the files without their endings
+      character(len=*), intent(in) :: stem
+      !> The deck of the case
+      type(deck_t), intent(in) :: deck
+
+      write (output_unit, "(a)") stem//".geo, "//stem//"_ddaml.geo, "//stem//".ana (DDAML), " &
+         & //stem//"_plain.ana"
+      write (output_unit, "(a)") "   the plain .ana has no place for contact constants, " &
+         & //"automatic step and penalty, plane strain and gravity (only as unit weight over " &
+         & //"unit mass)"
+      if (what_is_lost(deck) /= "") write (output_unit, "(a)") &
+         & "   neither form has a place for "//what_is_lost(deck)
+      if (has_group(deck, "search")) write (output_unit, "(a)") &
+         & "   the search is not written: the files hold the deck's own value of its parameter"
+   end subroutine tell
+end module dda_export

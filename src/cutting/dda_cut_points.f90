@@ -1,0 +1,340 @@
+!> Points, fixed lines and material lines find their blocks (Shi: dc10, dc11, dc13)
+module dda_cut_points
+   use dda_cut_model, only : block_point_t, block_vertices, cut_model_t, point_kind
+   use dda_error, only : error_t, fatal_error
+   use dda_kinds, only : wp
+   use dda_line_model, only : entities_t, line_model_t
+   use dda_polygon, only : contains_point, polygon_distance
+   use dda_segment, only : crossing_parameters
+   use dda_simplex, only : area_moments, area_moments_t
+   use dda_text, only : to_text
+   use dda_vector, only : along, right_normal
+   implicit none
+   private
+
+   public :: boxes_t, block_boxes, block_at, place_points, give_materials, remove_holes
+
+   !> How far inside its block the point of a fixed line lies, over the size of the model
+   real(wp), parameter :: fixed_depth = 0.005_wp
+
+   !> Boxes around blocks
+   type :: boxes_t
+      !> Lower left corners: (2, n) [m]
+      real(wp), allocatable :: low(:, :)
+      !> Upper right corners: (2, n) [m]
+      real(wp), allocatable :: high(:, :)
+   end type boxes_t
+
+contains
+
+   !> Boxes around all blocks
+   pure function block_boxes(cut) result(boxes)
+      !> The blocks
+      type(cut_model_t), intent(in) :: cut
+      !> Their boxes
+      type(boxes_t) :: boxes
+      integer :: b, n, i
+
+      n = size(cut%area)
+      allocate (boxes%low(2, n), boxes%high(2, n))
+      do b = 1, n
+         associate (vertex => cut%vertex(:, cut%first_vertex(b):cut%first_vertex(b + 1) - 1))
+            do i = 1, 2
+               boxes%low(i, b) = minval(vertex(i, :))
+               boxes%high(i, b) = maxval(vertex(i, :))
+            end do
+         end associate
+      end do
+   end function block_boxes
+
+   !> The block that holds a point; if none does, the nearest one within the distance in which nodes
+   !> may have been moved. 0 if there is none
+   pure integer function block_at(cut, boxes, point)
+      !> The blocks
+      type(cut_model_t), intent(in) :: cut
+      !> Their boxes
+      type(boxes_t), intent(in) :: boxes
+      !> The point, from the origin of the cut: (2) [m]
+      real(wp), intent(in) :: point(2)
+      real(wp) :: nearest, here
+      integer :: b, next_best
+
+      next_best = 0
+      nearest = cut%scale%merge
+      do b = 1, size(cut%area)
+         block_at = b
+         if (any(point < boxes%low(:, b) - cut%scale%merge)) cycle
+         if (any(point > boxes%high(:, b) + cut%scale%merge)) cycle
+         associate (vertex => cut%vertex(:, cut%first_vertex(b):cut%first_vertex(b + 1) - 1))
+            if (contains_point(vertex, point)) return
+            here = polygon_distance(vertex, point)
+         end associate
+         if (here > nearest .or. (next_best > 0 .and. .not. here < nearest)) cycle
+         nearest = here
+         next_best = b
+      end do
+      block_at = next_best
+   end function block_at
+
+   !> Take out the blocks that hold hole points (Shi: dc11)
+   pure subroutine remove_holes(model, cut, error)
+      !> Lines and points
+      type(line_model_t), intent(in) :: model
+      !> The blocks; those with a hole point go
+      type(cut_model_t), intent(inout) :: cut
+      !> A hole point that lies in no block
+      type(error_t), allocatable, intent(out) :: error
+      logical, allocatable :: keep(:)
+      integer, allocatable :: number(:), first(:)
+      type(boxes_t) :: boxes
+      integer :: i, b, n, k
+
+      if (model%hole%n == 0) return
+      boxes = block_boxes(cut)
+      allocate (keep(size(cut%area)), source=.true.)
+      do i = 1, model%hole%n
+         b = block_at(cut, boxes, model%hole%place(1:2, i) - cut%scale%origin)
+         if (b == 0) call no_block(error, "hole point", model, model%hole, i)
+         if (b == 0) return
+         keep(b) = .false.
+      end do
+      cut%n_removed = count(.not. keep)
+      allocate (number(size(keep)), first(count(keep) + 1), source=0)
+      n = 0
+      first(1) = 1
+      do b = 1, size(keep)
+         if (.not. keep(b)) cycle
+         n = n + 1
+         number(b) = n
+         k = cut%first_vertex(b + 1) - cut%first_vertex(b)
+         cut%vertex(:, first(n):first(n) + k - 1) = block_vertices(cut, b)
+         cut%edge_joint(first(n):first(n) + k - 1) = &
+            & cut%edge_joint(cut%first_vertex(b):cut%first_vertex(b + 1) - 1)
+         first(n + 1) = first(n) + k
+      end do
+      cut%area = pack(cut%area, keep)
+      cut%vertex = cut%vertex(:, :first(n + 1) - 1)
+      cut%edge_joint = cut%edge_joint(:first(n + 1) - 1)
+      call move_alloc(first, cut%first_vertex)
+      n = 0
+      do k = 1, size(cut%pair)
+         if (any(number(cut%pair(k)%side([1, 3])) == 0)) cycle
+         n = n + 1
+         cut%pair(n) = cut%pair(k)
+         cut%pair(n)%side([1, 3]) = number(cut%pair(k)%side([1, 3]))
+      end do
+      cut%pair = cut%pair(:n)
+   end subroutine remove_holes
+
+   !> Points and fixed lines to blocks; a fixed line holds the block on each edge that it crosses,
+   !> or else the block of its first end (Shi: dc10, dc11)
+   pure subroutine place_points(model, cut, error)
+      !> Lines and points
+      type(line_model_t), intent(in) :: model
+      !> Receives the points
+      type(cut_model_t), intent(inout) :: cut
+      !> A point that lies in no block
+      type(error_t), allocatable, intent(out) :: error
+      type(boxes_t) :: boxes
+      type(block_point_t), allocatable :: point(:)
+      integer :: i, n
+
+      boxes = block_boxes(cut)
+      n = 0
+      allocate (point(model%fixed%n + model%load%n + model%measured%n + 8))
+      do i = 1, model%fixed%n
+         call add_crossed(model%fixed%place(:, i), i, boxes, cut, point, n)
+         if (n > 0) then
+            if (point(n)%source == i) cycle
+         end if
+         call add_single(model, model%fixed, "fixed point", point_kind%fixed, i, boxes, cut, &
+            & point, n, error)
+         if (allocated(error)) return
+      end do
+      do i = 1, model%load%n
+         call add_single(model, model%load, "load point", point_kind%load, i, boxes, cut, point, &
+            & n, error)
+         if (allocated(error)) return
+      end do
+      do i = 1, model%measured%n
+         call add_single(model, model%measured, "measured point", point_kind%measured, i, boxes, &
+            & cut, point, n, error)
+         if (allocated(error)) return
+      end do
+      cut%point = point(:n)
+   end subroutine place_points
+
+   !> A point in one block
+   pure subroutine add_single(model, entities, what, kind, i, boxes, cut, point, n, error)
+      !> Lines and points
+      type(line_model_t), intent(in) :: model
+      !> The list of the point
+      type(entities_t), intent(in) :: entities
+      !> What the point is called
+      character(len=*), intent(in) :: what
+      !> One of point_kind
+      integer, intent(in) :: kind
+      !> Number of the point in its list
+      integer, intent(in) :: i
+      !> Boxes of the blocks
+      type(boxes_t), intent(in) :: boxes
+      !> The blocks
+      type(cut_model_t), intent(in) :: cut
+      !> Receives the point
+      type(block_point_t), allocatable, intent(inout) :: point(:)
+      !> Number of points
+      integer, intent(inout) :: n
+      !> The point lies in no block
+      type(error_t), allocatable, intent(out) :: error
+      real(wp) :: place(2)
+      integer :: b
+
+      place = entities%place(1:2, i) - cut%scale%origin
+      b = block_at(cut, boxes, place)
+      if (b == 0) then
+         call no_block(error, what, model, entities, i)
+      else
+         call append_point(point, n, block_point_t(kind, b, i, place))
+      end if
+   end subroutine add_single
+
+   !> One fixed point for each edge that a fixed line crosses, a little inside the edge's block
+   pure subroutine add_crossed(line, source, boxes, cut, point, n)
+      !> The fixed line: (4) [m]
+      real(wp), intent(in) :: line(4)
+      !> Its number
+      integer, intent(in) :: source
+      !> Boxes of the blocks
+      type(boxes_t), intent(in) :: boxes
+      !> The blocks
+      type(cut_model_t), intent(in) :: cut
+      !> Receives the points
+      type(block_point_t), allocatable, intent(inout) :: point(:)
+      !> Number of points
+      integer, intent(inout) :: n
+      real(wp) :: segment(4), edge(4), share(2), crossing(2)
+      logical :: crossed
+      integer :: b, k
+
+      segment = line - [cut%scale%origin, cut%scale%origin]
+      do b = 1, size(cut%area)
+         if (misses(segment, boxes, b)) cycle
+         associate (vertex => cut%vertex(:, cut%first_vertex(b):cut%first_vertex(b + 1) - 1))
+            do k = 1, size(vertex, 2)
+               edge = [vertex(:, k), vertex(:, 1 + mod(k, size(vertex, 2)))]
+               call crossing_parameters(edge, segment, share, crossed)
+               ! an edge owns its first corner, so that a line through a corner counts once
+               if (.not. crossed .or. share(1) < 0.0_wp .or. share(1) >= 1.0_wp) cycle
+               if (share(2) < 0.0_wp .or. share(2) > 1.0_wp) cycle
+               crossing = edge(1:2) + share(1)*(edge(3:4) - edge(1:2))
+               call append_point(point, n, block_point_t(point_kind%fixed, b, source, &
+                  & inside_point(vertex, crossing, edge, fixed_depth*cut%scale%size)))
+            end do
+         end associate
+      end do
+   end subroutine add_crossed
+
+   !> A point inside a block, off one of its edges; where there is no room, the centre of gravity
+   pure function inside_point(vertex, crossing, edge, depth) result(point)
+      !> Corners of the block: (2, n) [m]
+      real(wp), intent(in) :: vertex(:, :)
+      !> Place on the edge: (2) [m]
+      real(wp), intent(in) :: crossing(2)
+      !> Ends of the edge: (4) [m]
+      real(wp), intent(in) :: edge(4)
+      !> Wanted distance from the edge [m]
+      real(wp), intent(in) :: depth
+      !> The point: (2) [m]
+      real(wp) :: point(2)
+      type(area_moments_t) :: moments
+      real(wp) :: inward(2)
+      integer :: i
+
+      inward = -right_normal(along(edge(1:2), edge(3:4)))
+      do i = 0, 20
+         point = crossing + depth*0.5_wp**i*inward
+         if (contains_point(vertex, point)) return
+      end do
+      moments = area_moments(vertex)
+      point = moments%centroid
+   end function inside_point
+
+   !> Blocks get the material of the last material line that crosses one of their edges, or that
+   !> starts in them and crosses none; the first material otherwise (Shi: dc13)
+   pure subroutine give_materials(model, cut, error)
+      !> Lines and points
+      type(line_model_t), intent(in) :: model
+      !> Receives the materials
+      type(cut_model_t), intent(inout) :: cut
+      !> A material line that meets no block
+      type(error_t), allocatable, intent(out) :: error
+      type(boxes_t) :: boxes
+      type(block_point_t), allocatable :: point(:)
+      integer :: i, n, b
+
+      allocate (cut%material(size(cut%area)), source=1)
+      if (model%material_line%n == 0) return
+      boxes = block_boxes(cut)
+      allocate (point(8))
+      do i = 1, model%material_line%n
+         n = 0
+         call add_crossed(model%material_line%place(:, i), i, boxes, cut, point, n)
+         cut%material(point(:n)%block) = model%material_line%material(i)
+         if (n > 0) cycle
+         b = block_at(cut, boxes, model%material_line%place(1:2, i) - cut%scale%origin)
+         if (b == 0) call no_block(error, "material line", model, model%material_line, i)
+         if (b == 0) return
+         cut%material(b) = model%material_line%material(i)
+      end do
+   end subroutine give_materials
+
+   !> Whether the box of a block lies away from a segment's
+   pure logical function misses(segment, boxes, block)
+      !> Ends of the segment: (4) [m]
+      real(wp), intent(in) :: segment(4)
+      !> The boxes
+      type(boxes_t), intent(in) :: boxes
+      !> Number of the block
+      integer, intent(in) :: block
+
+      misses = any(max(segment(1:2), segment(3:4)) < boxes%low(:, block)) &
+         & .or. any(min(segment(1:2), segment(3:4)) > boxes%high(:, block))
+   end function misses
+
+   !> Add a point to a list
+   pure subroutine append_point(point, n, new)
+      !> The list
+      type(block_point_t), allocatable, intent(inout) :: point(:)
+      !> Number of points
+      integer, intent(inout) :: n
+      !> The point
+      type(block_point_t), intent(in) :: new
+      type(block_point_t), allocatable :: longer(:)
+
+      if (n == size(point)) then
+         allocate (longer(2*n + 8))
+         longer(:n) = point
+         call move_alloc(longer, point)
+      end if
+      n = n + 1
+      point(n) = new
+   end subroutine append_point
+
+   !> Say that a thing lies in no block
+   pure subroutine no_block(error, what, model, entities, i)
+      !> The failure
+      type(error_t), allocatable, intent(out) :: error
+      !> What the thing is called
+      character(len=*), intent(in) :: what
+      !> Lines and points
+      type(line_model_t), intent(in) :: model
+      !> The list of the thing
+      type(entities_t), intent(in) :: entities
+      !> Its number in the list
+      integer, intent(in) :: i
+
+      call fatal_error(error, "a "//what//" in a block is wanted, (" &
+         & //to_text(entities%place(1, i))//", "//to_text(entities%place(2, i)) &
+         & //") lies in none", model%file, entities%row(i))
+   end subroutine no_block
+end module dda_cut_points

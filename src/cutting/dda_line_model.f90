@@ -1,0 +1,84 @@
+!> Lines and points as a geometry file gives them, before they are cut into blocks
+module dda_line_model
+   use dda_kinds, only : wp
+   implicit none
+   private
+
+   public :: line_model_t, entities_t, new_entities, add_entity
+
+   !> Segments or points of one kind, in the order of the file
+   type :: entities_t
+      !> How many there are
+      integer :: n = 0
+      !> Ends x1, y1, x2, y2; a point has both ends in one place: (4, n or more) [m]
+      real(wp), allocatable :: place(:, :)
+      !> Material of the joint or of the blocks, where the kind has one: (n or more)
+      integer, allocatable :: material(:)
+      !> Line of the file: (n or more)
+      integer, allocatable :: row(:)
+   end type entities_t
+
+   !> Everything that a geometry file says
+   type :: line_model_t
+      !> Name of the file, for messages
+      character(len=:), allocatable :: file
+      !> Shi's e00: nodes closer than this, times the size of the model, become one
+      real(wp) :: edge_node_ratio = 0.0_wp
+      !> So many of the first lines are boundary lines, which are never deleted
+      integer :: n_boundary = 0
+      !> Boundary lines, then joints, with the material of the joint
+      type(entities_t) :: line
+      !> Lines that give blocks their material
+      type(entities_t) :: material_line
+      !> Lines, or points, that hold blocks
+      type(entities_t) :: fixed
+      !> Points where forces act
+      type(entities_t) :: load
+      !> Points that are followed
+      type(entities_t) :: measured
+      !> Points whose blocks are taken out
+      type(entities_t) :: hole
+      !> Points of seismic records, which nothing uses yet
+      type(entities_t) :: seismic
+   end type line_model_t
+
+contains
+
+   !> An empty list with room
+   pure subroutine new_entities(entities, room)
+      !> The list
+      type(entities_t), intent(out) :: entities
+      !> How many are expected
+      integer, intent(in) :: room
+
+      allocate (entities%place(4, room), entities%material(room), entities%row(room))
+   end subroutine new_entities
+
+   !> Add a segment or a point
+   pure subroutine add_entity(entities, place, material, row)
+      !> The list
+      type(entities_t), intent(inout) :: entities
+      !> Its ends: (4) [m]
+      real(wp), intent(in) :: place(4)
+      !> Its material; 0 if the kind has none
+      integer, intent(in) :: material
+      !> Line of the file
+      integer, intent(in) :: row
+      type(entities_t) :: longer
+
+      if (entities%n == size(entities%row)) then
+         call new_entities(longer, 2*entities%n + 8)
+         longer%n = entities%n
+         longer%place(:, :longer%n) = entities%place
+         longer%material(:longer%n) = entities%material
+         longer%row(:longer%n) = entities%row
+         call move_alloc(longer%place, entities%place)
+         call move_alloc(longer%material, entities%material)
+         call move_alloc(longer%row, entities%row)
+      end if
+      entities%n = entities%n + 1
+      entities%place(:, entities%n) = place
+      entities%material(entities%n) = material
+      entities%row(entities%n) = row
+   end subroutine add_entity
+end module dda_line_model

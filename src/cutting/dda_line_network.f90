@@ -1,0 +1,212 @@
+!> The network of nodes and edges that lines make (Shi: dc04, dc05)
+module dda_line_network
+   use dda_cut_report, only : add_remark, cut_reason, cut_remarks_t
+   use dda_cut_scale, only : cut_scale_t
+   use dda_kinds, only : wp
+   use dda_line_crossings, only : crossings_t
+   use dda_node_table, only : add_node, nearest_node, new_node_table, node_table_t
+   use dda_sort, only : sorted_order
+   implicit none
+   private
+
+   public :: network_t, join_crossings, edge_place, drop_edge
+
+   !> Nodes, and edges between neighbouring nodes of a line
+   type :: network_t
+      !> Nodes: (2, n_node) [m]
+      real(wp), allocatable :: node(:, :)
+      !> First and second node of each edge, along its line: (2, n_edge)
+      integer, allocatable :: edge(:, :)
+      !> Line of each edge: (n_edge)
+      integer, allocatable :: line(:)
+      !> Edges that were not dropped: (n_edge)
+      logical, allocatable :: alive(:)
+      !> The first lines, so many, are boundaries
+      integer :: n_boundary = 0
+      !> Crossings that became a node that was there already at another place
+      integer :: n_merged = 0
+   end type network_t
+
+contains
+
+   !> Crossings to nodes, lines to edges
+   pure subroutine join_crossings(line, n_boundary, scale, crossings, network, remarks)
+      !> Ends of the lines: (4, n_line) [m]
+      real(wp), intent(in) :: line(:, :)
+      !> Number of boundary lines, the first ones
+      integer, intent(in) :: n_boundary
+      !> Scales of the cut
+      type(cut_scale_t), intent(in) :: scale
+      !> The crossings in their order
+      type(crossings_t), intent(in) :: crossings
+      !> The network
+      type(network_t), intent(out) :: network
+      !> Receives the lines that make no edge, and edges that are there twice
+      type(cut_remarks_t), intent(inout) :: remarks
+      integer, allocatable :: node_of(:)
+
+      network%n_boundary = n_boundary
+      call merge_nodes(scale, crossings, network, node_of)
+      call chain_lines(line, crossings, node_of, network, remarks)
+      call drop_doubled(network, remarks)
+   end subroutine join_crossings
+
+   !> Ends of an edge
+   pure function edge_place(network, edge) result(place)
+      !> The network
+      type(network_t), intent(in) :: network
+      !> Number of the edge
+      integer, intent(in) :: edge
+      !> Its ends: (4) [m]
+      real(wp) :: place(4)
+
+      place(1:2) = network%node(:, network%edge(1, edge))
+      place(3:4) = network%node(:, network%edge(2, edge))
+   end function edge_place
+
+   !> Drop an edge and say why
+   pure subroutine drop_edge(network, edge, reason, other, remarks)
+      !> The network
+      type(network_t), intent(inout) :: network
+      !> Number of the edge
+      integer, intent(in) :: edge
+      !> One of cut_reason
+      integer, intent(in) :: reason
+      !> Number of the line in the way, or 0
+      integer, intent(in) :: other
+      !> Receives the reason
+      type(cut_remarks_t), intent(inout) :: remarks
+
+      network%alive(edge) = .false.
+      call add_remark(remarks, network%line(edge), reason, other, edge_place(network, edge))
+   end subroutine drop_edge
+
+   !> The node of each crossing: the nearest one that is there already within 1.25 e00 w0, else a
+   !> new one; two boundary lines share a node only with crossings at the very same place
+   pure subroutine merge_nodes(scale, crossings, network, node_of)
+      !> Scales of the cut
+      type(cut_scale_t), intent(in) :: scale
+      !> The crossings
+      type(crossings_t), intent(in) :: crossings
+      !> Receives the nodes
+      type(network_t), intent(inout) :: network
+      !> Node of each crossing: (n)
+      integer, allocatable, intent(out) :: node_of(:)
+      type(node_table_t) :: table
+      real(wp) :: distance
+      integer :: k
+
+      allocate (node_of(crossings%n))
+      call new_node_table(crossings%n, 1.001_wp*scale%merge, table)
+      do k = 1, crossings%n
+         distance = scale%merge
+         if (all(crossings%line(:, k) <= network%n_boundary)) distance = scale%reach
+         node_of(k) = nearest_node(table, crossings%point(:, k), distance)
+         if (node_of(k) == 0) then
+            call add_node(table, crossings%point(:, k))
+            node_of(k) = table%n
+         else if (norm2(crossings%point(:, k) - table%point(:, node_of(k))) > scale%reach) then
+            network%n_merged = network%n_merged + 1
+         end if
+      end do
+      allocate (network%node, source=table%point(:, :table%n))
+   end subroutine merge_nodes
+
+   !> Edges between neighbouring nodes of each line
+   pure subroutine chain_lines(line, crossings, node_of, network, remarks)
+      !> Ends of the lines: (4, n_line) [m]
+      real(wp), intent(in) :: line(:, :)
+      !> The crossings
+      type(crossings_t), intent(in) :: crossings
+      !> Node of each crossing: (n)
+      integer, intent(in) :: node_of(:)
+      !> Receives the edges
+      type(network_t), intent(inout) :: network
+      !> Receives the lines that make no edge
+      type(cut_remarks_t), intent(inout) :: remarks
+      integer, allocatable :: on_line(:), node(:), order(:), seen(:), last(:)
+      real(wp), allocatable :: along(:)
+      integer :: i, k, n, n_edge
+
+      n = crossings%n
+      allocate (on_line(2*n), node(2*n), along(2*n))
+      on_line(:n) = crossings%line(1, :n)
+      on_line(n + 1:) = crossings%line(2, :n)
+      node(:n) = node_of
+      node(n + 1:) = node_of
+      do k = 1, 2*n
+         i = on_line(k)
+         along(k) = dot_product(network%node(:, node(k)) - line(1:2, i), &
+            & line(3:4, i) - line(1:2, i))
+      end do
+      allocate (order, source=sorted_order(on_line, along))
+      allocate (seen(size(network%node, 2)), last(size(line, 2)), source=0)
+      allocate (network%edge(2, 2*n), network%line(2*n))
+      n_edge = 0
+      do k = 1, 2*n
+         i = on_line(order(k))
+         associate (here => node(order(k)))
+            if (seen(here) == i) cycle
+            seen(here) = i
+            if (last(i) > 0) then
+               n_edge = n_edge + 1
+               network%edge(:, n_edge) = [last(i), here]
+               network%line(n_edge) = i
+            end if
+            last(i) = here
+         end associate
+      end do
+      network%edge = network%edge(:, :n_edge)
+      network%line = network%line(:n_edge)
+      allocate (network%alive(n_edge), source=.true.)
+      call tell_loose_lines(line, network, remarks)
+   end subroutine chain_lines
+
+   !> Lines with fewer than two nodes have no edge
+   pure subroutine tell_loose_lines(line, network, remarks)
+      !> Ends of the lines: (4, n_line) [m]
+      real(wp), intent(in) :: line(:, :)
+      !> The network
+      type(network_t), intent(in) :: network
+      !> Receives the lines
+      type(cut_remarks_t), intent(inout) :: remarks
+      logical, allocatable :: has_edge(:)
+      integer :: i
+
+      allocate (has_edge(size(line, 2)), source=.false.)
+      has_edge(network%line) = .true.
+      do i = 1, size(line, 2)
+         if (has_edge(i)) cycle
+         if (all(abs(line(3:4, i) - line(1:2, i)) <= 0.0_wp)) then
+            call add_remark(remarks, i, cut_reason%point, 0, line(:, i))
+         else
+            call add_remark(remarks, i, cut_reason%loose_line, 0, line(:, i))
+         end if
+      end do
+   end subroutine tell_loose_lines
+
+   !> Of edges between the same two nodes the one of the first line stays: lines that lie together
+   pure subroutine drop_doubled(network, remarks)
+      !> The network
+      type(network_t), intent(inout) :: network
+      !> Receives what is dropped
+      type(cut_remarks_t), intent(inout) :: remarks
+      integer, allocatable :: order(:)
+      integer :: k, kept
+
+      if (size(network%line) == 0) return
+      allocate (order, source=sorted_order(minval(network%edge, 1), &
+         & real(maxval(network%edge, 1), wp)))
+      kept = order(1)
+      do k = 2, size(order)
+         associate (edge => order(k))
+            if (minval(network%edge(:, edge)) == minval(network%edge(:, kept)) &
+               & .and. maxval(network%edge(:, edge)) == maxval(network%edge(:, kept))) then
+               call drop_edge(network, edge, cut_reason%doubled, network%line(kept), remarks)
+            else
+               kept = edge
+            end if
+         end associate
+      end do
+   end subroutine drop_doubled
+end module dda_line_network

@@ -1,0 +1,326 @@
+!> Analysis files in DDAML, the XML form
+module dda_ddaml_analysis
+   use dda_ddaml_geometry, only : attribute_words, find_part
+   use dda_ddaml_material, only : read_history, read_joint, read_material
+   use dda_error, only : error_t, fatal_error
+   use dda_kinds, only : wp
+   use dda_limerick_analysis, only : limerick_analysis_t, limerick_joint_t, limerick_material_t, &
+      & load_history_t
+   use dda_plain_analysis, only : check_steps, largest_value
+   use dda_text, only : to_text
+   use dda_warnings, only : add_warning, warnings_t
+   use dda_word_list, only : quoted, take_numbers, take_whole, word_list_t
+   use dda_xml_tree, only : attribute_of, find_child, first_child, has_attribute, next_sibling, &
+      & xml_tree_t
+   implicit none
+   private
+
+   public :: read_ddaml_analysis
+
+   !> Most steps
+   integer, parameter :: most_steps = 1000000000
+
+contains
+
+   !> Read the analysis of a tree
+   pure subroutine read_ddaml_analysis(tree, analysis, warnings, error)
+      !> The file's elements
+      type(xml_tree_t), intent(in) :: tree
+      !> The analysis
+      type(limerick_analysis_t), intent(out) :: analysis
+      !> Receives what the reader ignores
+      type(warnings_t), intent(inout) :: warnings
+      !> What is wrong, with its line
+      type(error_t), allocatable, intent(out) :: error
+      integer :: part, at
+
+      analysis%file = tree%file
+      ! what an absent element means to the original
+      analysis%auto_time_step = .false.
+      analysis%auto_penalty = .false.
+      allocate (analysis%material(0), analysis%joint(0), analysis%load(0))
+      call find_part(tree, "Analysis", part, error)
+      if (allocated(error)) return
+      ! weights that are not given need the gravity
+      at = find_child(tree, part, "Gravaccel")
+      if (at > 0) call read_number(tree, at, "value", 0.0_wp, analysis%gravity, error)
+      at = first_child(tree, part)
+      do while (at > 0 .and. .not. allocated(error))
+         call read_element(tree, at, analysis, warnings, error)
+         at = next_sibling(tree, at)
+      end do
+      if (.not. allocated(error)) call check_complete(tree, part, analysis, warnings, error)
+   end subroutine read_ddaml_analysis
+
+   !> Read one child of Analysis
+   pure subroutine read_element(tree, at, analysis, warnings, error)
+      !> The file's elements
+      type(xml_tree_t), intent(in) :: tree
+      !> Place of the child
+      integer, intent(in) :: at
+      !> Receives what it says
+      type(limerick_analysis_t), intent(inout) :: analysis
+      !> Receives what the reader ignores
+      type(warnings_t), intent(inout) :: warnings
+      !> What is wrong
+      type(error_t), allocatable, intent(out) :: error
+
+      associate (element => tree%element(at))
+         select case (element%name)
+         case ("Analysistype", "Rotation", "Gravity", "Autotimestep", "Autopenalty", "Planestrain")
+            call read_switch(tree, at, analysis, warnings, error)
+         case ("Blockmaterial", "Jointproperties", "Loadpointlist")
+            call read_properties(tree, at, analysis, warnings, error)
+         case ("AConstants")
+            call read_constants(tree, at, analysis, warnings, error)
+         case ("Numtimesteps")
+            call read_whole(tree, at, "timesteps", 1, analysis%steps, error)
+         case ("Maxtimestep")
+            call read_number(tree, at, "maxtimestep", 0.0_wp, analysis%max_time_step, error)
+         case ("Mintimestep")
+            call read_number(tree, at, "mintimestep", 0.0_wp, analysis%min_time_step, error)
+         case ("Maxdisplacement")
+            call read_number(tree, at, "maxdisplacement", 0.0_wp, analysis%displacement_ratio, &
+               & error)
+         case ("Opencloselimit", "OCLimit")
+            call read_whole(tree, at, "maxopenclose", 1, analysis%open_close_limit, error)
+         case ("Saveinterval")
+            analysis%save_interval = 10
+            if (has_attribute(tree, at, "step")) &
+               & call read_whole(tree, at, "step", 0, analysis%save_interval, error)
+            if (analysis%save_interval == 0) analysis%save_interval = 10
+         case ("Contactdamping", "ContactDamping")
+            call read_number(tree, at, "value", 0.0_wp, analysis%contact_damping, error)
+         case ("Gravaccel", "Writevertices")
+         case ("Boltproperties", "Timehistory")
+            call add_warning(warnings, "the element "//element%name//" has no effect", &
+               & tree%file, element%row)
+         case default
+            call add_warning(warnings, "the element "//quoted(element%name) &
+               & //" is not known and not read", tree%file, element%row)
+         end select
+      end associate
+   end subroutine read_element
+
+   !> Read an element that chooses
+   pure subroutine read_switch(tree, at, analysis, warnings, error)
+      !> The file's elements
+      type(xml_tree_t), intent(in) :: tree
+      !> Place of the element
+      integer, intent(in) :: at
+      !> Receives the choice
+      type(limerick_analysis_t), intent(inout) :: analysis
+      !> Receives what the reader ignores
+      type(warnings_t), intent(inout) :: warnings
+      !> What is wrong
+      type(error_t), allocatable, intent(out) :: error
+      logical :: unused
+
+      select case (tree%element(at)%name)
+      case ("Analysistype")
+         call choose(tree, at, "type", "dynamic", "static", analysis%dynamic, error)
+      case ("Rotation")
+         call choose(tree, at, "type", "exact secondorder", "linear", analysis%exact_rotation, &
+            & error)
+      case ("Gravity")
+         call choose(tree, at, "flag", "yes", "no", unused, error)
+         if (.not. allocated(error) .and. unused) call add_warning(warnings, &
+            & "the phase that turns gravity on has no effect: weight acts from the first step", &
+            & tree%file, tree%element(at)%row)
+      case ("Autotimestep")
+         call choose(tree, at, "flag", "yes", "no", analysis%auto_time_step, error)
+      case ("Planestrain")
+         call choose(tree, at, "flag", "yes", "no", analysis%plane_strain, error)
+      case ("Autopenalty")
+         call choose(tree, at, "flag", "yes", "no", analysis%auto_penalty, error)
+         if (allocated(error)) return
+         if (has_attribute(tree, at, "pfactor")) then
+            call read_number(tree, at, "pfactor", 0.0_wp, analysis%penalty_factor, error)
+         else
+            call add_warning(warnings, "Autopenalty wants the attribute pfactor, 50 is taken", &
+               & tree%file, tree%element(at)%row)
+         end if
+      end select
+   end subroutine read_switch
+
+   !> Read an element that holds materials or loads
+   pure subroutine read_properties(tree, at, analysis, warnings, error)
+      !> The file's elements
+      type(xml_tree_t), intent(in) :: tree
+      !> Place of the element
+      integer, intent(in) :: at
+      !> Receives them
+      type(limerick_analysis_t), intent(inout) :: analysis
+      !> Receives what the reader ignores
+      type(warnings_t), intent(inout) :: warnings
+      !> What is wrong
+      type(error_t), allocatable, intent(out) :: error
+      type(limerick_material_t) :: material
+      type(limerick_joint_t) :: joint
+      type(load_history_t), allocatable :: longer(:)
+      integer :: child, n
+
+      select case (tree%element(at)%name)
+      case ("Blockmaterial")
+         call read_material(tree, at, analysis%gravity, material, warnings, error)
+         analysis%material = [analysis%material, material]
+      case ("Jointproperties")
+         call read_joint(tree, at, joint, warnings, error)
+         analysis%joint = [analysis%joint, joint]
+      case ("Loadpointlist")
+         child = first_child(tree, at)
+         do while (child > 0 .and. .not. allocated(error))
+            if (tree%element(child)%name == "Loadpoint") then
+               n = size(analysis%load)
+               allocate (longer(n + 1))
+               longer(:n) = analysis%load
+               call read_history(tree, child, longer(n + 1), error)
+               call move_alloc(longer, analysis%load)
+            else
+               call add_warning(warnings, "the element "//quoted(tree%element(child)%name) &
+                  & //" has no meaning in Loadpointlist and is not read", tree%file, &
+                  & tree%element(child)%row)
+            end if
+            child = next_sibling(tree, child)
+         end do
+      end select
+   end subroutine read_properties
+
+   !> Read the constants of the scheme
+   pure subroutine read_constants(tree, at, analysis, warnings, error)
+      !> The file's elements
+      type(xml_tree_t), intent(in) :: tree
+      !> Place of AConstants
+      integer, intent(in) :: at
+      !> Receives them
+      type(limerick_analysis_t), intent(inout) :: analysis
+      !> Receives what the reader ignores
+      type(warnings_t), intent(inout) :: warnings
+      !> What is wrong
+      type(error_t), allocatable, intent(out) :: error
+      integer :: child
+
+      child = first_child(tree, at)
+      do while (child > 0 .and. .not. allocated(error))
+         associate (element => tree%element(child))
+            select case (element%name)
+            case ("Openclose")
+               call read_number(tree, child, "value", 0.0_wp, analysis%close_limit, error)
+            case ("Opencriteria")
+               call read_number(tree, child, "value", 0.0_wp, analysis%open_limit, error)
+            case ("NormSpringPen")
+               call read_number(tree, child, "value", 1.0e-30_wp, analysis%spring_penetration, &
+                  & error)
+            case ("AngleOverlap")
+               call read_number(tree, child, "value", 0.0_wp, analysis%overlap_deg, error)
+            case ("ShearNormRatio")
+               call read_number(tree, child, "value", 1.0e-30_wp, analysis%shear_ratio, error)
+            case ("MinReflineFactor")
+            case default
+               call add_warning(warnings, "the element "//quoted(element%name) &
+                  & //" is not known and not read", tree%file, element%row)
+            end select
+         end associate
+         child = next_sibling(tree, child)
+      end do
+   end subroutine read_constants
+
+   !> Read an attribute that chooses between two meanings
+   pure subroutine choose(tree, at, name, words_for_yes, word_for_no, yes, error)
+      !> The file's elements
+      type(xml_tree_t), intent(in) :: tree
+      !> Place of the element
+      integer, intent(in) :: at
+      !> Name of the attribute
+      character(len=*), intent(in) :: name
+      !> Words that mean yes, parted by blanks
+      character(len=*), intent(in) :: words_for_yes
+      !> The word that means no
+      character(len=*), intent(in) :: word_for_no
+      !> The choice
+      logical, intent(out) :: yes
+      !> Another word, or none
+      type(error_t), allocatable, intent(out) :: error
+      character(len=:), allocatable :: word
+
+      word = attribute_of(tree, at, name)
+      yes = len(word) > 0 .and. index(" "//words_for_yes//" ", " "//word//" ") > 0
+      if (.not. yes .and. word /= word_for_no) call fatal_error(error, "the attribute "//name &
+         & //" of "//quoted(tree%element(at)%name)//" wants one of "//words_for_yes//" " &
+         & //word_for_no//", found "//quoted(word), tree%file, tree%element(at)%row)
+   end subroutine choose
+
+   !> Read an attribute that is a number
+   pure subroutine read_number(tree, at, name, low, value, error)
+      !> The file's elements
+      type(xml_tree_t), intent(in) :: tree
+      !> Place of the element
+      integer, intent(in) :: at
+      !> Name of the attribute
+      character(len=*), intent(in) :: name
+      !> Smallest value
+      real(wp), intent(in) :: low
+      !> The number
+      real(wp), intent(inout) :: value
+      !> What is wrong
+      type(error_t), allocatable, intent(out) :: error
+      type(word_list_t) :: words
+      real(wp) :: number(1)
+
+      call attribute_words(tree, at, name, words, error)
+      if (.not. allocated(error)) &
+         & call take_numbers(words, "the attribute "//name, largest_value, number, error)
+      if (allocated(error)) return
+      value = number(1)
+      if (value < low) call fatal_error(error, "the attribute "//name//" from "//to_text(low) &
+         & //" is wanted, found "//to_text(value), tree%file, tree%element(at)%row)
+   end subroutine read_number
+
+   !> Read an attribute that is a whole number
+   pure subroutine read_whole(tree, at, name, low, value, error)
+      !> The file's elements
+      type(xml_tree_t), intent(in) :: tree
+      !> Place of the element
+      integer, intent(in) :: at
+      !> Name of the attribute
+      character(len=*), intent(in) :: name
+      !> Smallest value
+      integer, intent(in) :: low
+      !> The number
+      integer, intent(inout) :: value
+      !> What is wrong
+      type(error_t), allocatable, intent(out) :: error
+      type(word_list_t) :: words
+
+      call attribute_words(tree, at, name, words, error)
+      if (.not. allocated(error)) &
+         & call take_whole(words, "the attribute "//name, low, most_steps, value, error)
+   end subroutine read_whole
+
+   !> Whether all is there that an analysis needs
+   pure subroutine check_complete(tree, part, analysis, warnings, error)
+      !> The file's elements
+      type(xml_tree_t), intent(in) :: tree
+      !> Place of Analysis
+      integer, intent(in) :: part
+      !> The analysis
+      type(limerick_analysis_t), intent(in) :: analysis
+      !> Receives what was assumed
+      type(warnings_t), intent(inout) :: warnings
+      !> What is missing
+      type(error_t), allocatable, intent(out) :: error
+      character(len=*), parameter :: wanted(5) = [character(len=16) :: "Numtimesteps", &
+         & "Maxtimestep", "Maxdisplacement", "Blockmaterial", "Jointproperties"]
+      integer :: i
+
+      do i = 1, size(wanted)
+         if (find_child(tree, part, trim(wanted(i))) > 0) cycle
+         call fatal_error(error, "the element "//trim(wanted(i))//" is wanted in Analysis, none " &
+            & //"was found", tree%file, tree%element(part)%row)
+         return
+      end do
+      if (find_child(tree, part, "Autopenalty") == 0) call add_warning(warnings, "Autopenalty is " &
+         & //"wanted, flag=""no"" with pfactor=""50"" is taken", tree%file, tree%element(part)%row)
+      call check_steps(analysis, tree%file, tree%element(part)%row, error)
+   end subroutine check_complete
+end module dda_ddaml_analysis

@@ -1,0 +1,253 @@
+!> Geometry files in DDAML, the XML form
+module dda_ddaml_geometry
+   use dda_error, only : error_t, fatal_error
+   use dda_kinds, only : wp
+   use dda_line_model, only : add_entity, entities_t, line_model_t, new_entities
+   use dda_text, only : to_text
+   use dda_warnings, only : add_warning, warnings_t
+   use dda_word_list, only : quoted, largest_coordinate, split_words, take_material, take_number, &
+      & take_numbers, this_row, this_word, word_list_t, words_left
+   use dda_xml_tree, only : attribute_of, find_child, first_child, has_attribute, next_sibling, &
+      & xml_tree_t
+   implicit none
+   private
+
+   public :: read_ddaml_geometry, find_part, attribute_words
+
+   !> What an entity of a list is made of
+   type :: form_t
+      !> Names of its element, with blanks around each
+      character(len=16) :: names = ""
+      !> Whether its type is the number of a material
+      logical :: has_material = .false.
+      !> Whether the type may be left out: the first material
+      logical :: may_lack_type = .false.
+   end type form_t
+
+contains
+
+   !> Read the geometry of a tree
+   pure subroutine read_ddaml_geometry(tree, model, warnings, error)
+      !> The file's elements
+      type(xml_tree_t), intent(in) :: tree
+      !> Lines and points
+      type(line_model_t), intent(out) :: model
+      !> Receives what the reader ignores
+      type(warnings_t), intent(inout) :: warnings
+      !> What is wrong, with its line
+      type(error_t), allocatable, intent(out) :: error
+      type(entities_t) :: boundary
+      integer :: part, at, i
+
+      model%file = tree%file
+      call find_part(tree, "Geometry", part, error)
+      if (allocated(error)) return
+      call new_entities(model%line, 64)
+      call new_entities(boundary, 0)
+      call new_entities(model%material_line, 0)
+      call new_entities(model%fixed, 0)
+      call new_entities(model%load, 0)
+      call new_entities(model%measured, 0)
+      call new_entities(model%hole, 0)
+      call new_entities(model%seismic, 0)
+      at = first_child(tree, part)
+      do while (at > 0 .and. .not. allocated(error))
+         call read_list(tree, at, model, boundary, warnings, error)
+         at = next_sibling(tree, at)
+      end do
+      if (allocated(error)) return
+      ! boundary lines come first
+      model%n_boundary = boundary%n
+      do i = 1, model%line%n
+         call add_entity(boundary, model%line%place(:, i), model%line%material(i), &
+            & model%line%row(i))
+      end do
+      model%line = boundary
+   end subroutine read_ddaml_geometry
+
+   !> Find the part of a file that is wanted: inside the root, or the root itself
+   pure subroutine find_part(tree, name, part, error)
+      !> The file's elements
+      type(xml_tree_t), intent(in) :: tree
+      !> Name of the part
+      character(len=*), intent(in) :: name
+      !> Its place
+      integer, intent(out) :: part
+      !> There is none
+      type(error_t), allocatable, intent(out) :: error
+
+      part = 1
+      if (tree%element(1)%name == name) return
+      part = find_child(tree, 1, name)
+      if (part == 0) call fatal_error(error, "an element "//name//" inside the root is wanted, " &
+         & //"none was found", tree%file, tree%element(1)%row)
+   end subroutine find_part
+
+   !> Read one child of Geometry
+   pure subroutine read_list(tree, at, model, boundary, warnings, error)
+      !> The file's elements
+      type(xml_tree_t), intent(in) :: tree
+      !> Place of the child
+      integer, intent(in) :: at
+      !> Receives what it says
+      type(line_model_t), intent(inout) :: model
+      !> Receives boundary lines
+      type(entities_t), intent(inout) :: boundary
+      !> Receives what the reader ignores
+      type(warnings_t), intent(inout) :: warnings
+      !> What is wrong
+      type(error_t), allocatable, intent(out) :: error
+      type(form_t), parameter :: point = form_t(" Point ")
+
+      associate (element => tree%element(at))
+         select case (element%name)
+         case ("Edgenodedist")
+            call read_ratio(tree, at, model%edge_node_ratio, error)
+         case ("Jointlist")
+            call read_entities(tree, at, form_t(" Joint ", .true.), model%line, warnings, error)
+         case ("Boundlist")
+            call read_entities(tree, at, form_t(" Line Joint ", .true., .true.), boundary, &
+               & warnings, error)
+         case ("Matlinelist")
+            call read_entities(tree, at, form_t(" Line ", .true.), model%material_line, &
+               & warnings, error)
+         case ("Fixedpointlist")
+            call read_entities(tree, at, form_t(" Point Line "), model%fixed, warnings, error)
+         case ("Loadpointlist")
+            call read_entities(tree, at, point, model%load, warnings, error)
+         case ("Measuredpointlist")
+            call read_entities(tree, at, point, model%measured, warnings, error)
+         case ("Holepointlist")
+            call read_entities(tree, at, point, model%hole, warnings, error)
+         case ("Seismicpointlist")
+            call read_entities(tree, at, point, model%seismic, warnings, error)
+            if (.not. allocated(error) .and. model%seismic%n > 0) call add_warning(warnings, &
+               & "seismic points have no effect", tree%file, element%row)
+         case ("Boltlist")
+            if (first_child(tree, at) > 0) call fatal_error(error, "a model without bolts is " &
+               & //"wanted: this program has no bolts", tree%file, &
+               & tree%element(first_child(tree, at))%row)
+         case default
+            call add_warning(warnings, "the element "//quoted(element%name) &
+               & //" is not known and not read", tree%file, element%row)
+         end select
+      end associate
+   end subroutine read_list
+
+   !> Read Shi's e00
+   pure subroutine read_ratio(tree, at, ratio, error)
+      !> The file's elements
+      type(xml_tree_t), intent(in) :: tree
+      !> Place of the element
+      integer, intent(in) :: at
+      !> The ratio
+      real(wp), intent(inout) :: ratio
+      !> What is wrong
+      type(error_t), allocatable, intent(out) :: error
+      type(word_list_t) :: words
+
+      call attribute_words(tree, at, "distance", words, error)
+      if (.not. allocated(error)) call take_number(words, "the edge-node distance", ratio, error)
+      if (allocated(error)) return
+      if (ratio < 0.0_wp .or. ratio > 0.5_wp) call fatal_error(error, &
+         & "an edge-node distance from 0 " &
+         & //"to 0.5 is wanted, found "//to_text(ratio), tree%file, tree%element(at)%row)
+   end subroutine read_ratio
+
+   !> The words of an attribute that must be there
+   pure subroutine attribute_words(tree, at, name, words, error)
+      !> The file's elements
+      type(xml_tree_t), intent(in) :: tree
+      !> Place of the element
+      integer, intent(in) :: at
+      !> Name of the attribute
+      character(len=*), intent(in) :: name
+      !> Its words
+      type(word_list_t), intent(out) :: words
+      !> It is not there
+      type(error_t), allocatable, intent(out) :: error
+
+      associate (element => tree%element(at))
+         call split_words(attribute_of(tree, at, name), tree%file, element%row, words)
+         words%row = element%row
+         if (words%n /= 1) call fatal_error(error, "the attribute "//name//" with one value is " &
+            & //"wanted in "//quoted(element%name)//", found " &
+            & //quoted(attribute_of(tree, at, name)), tree%file, element%row)
+      end associate
+   end subroutine attribute_words
+
+   !> Read the elements of a list
+   pure subroutine read_entities(tree, list, form, entities, warnings, error)
+      !> The file's elements
+      type(xml_tree_t), intent(in) :: tree
+      !> Place of the list
+      integer, intent(in) :: list
+      !> What its elements are made of
+      type(form_t), intent(in) :: form
+      !> Receives them
+      type(entities_t), intent(inout) :: entities
+      !> Receives what the reader ignores
+      type(warnings_t), intent(inout) :: warnings
+      !> What is wrong
+      type(error_t), allocatable, intent(out) :: error
+      integer :: at
+
+      at = first_child(tree, list)
+      do while (at > 0 .and. .not. allocated(error))
+         associate (element => tree%element(at))
+            if (index(form%names, " "//element%name//" ") > 0) then
+               call read_entity(tree, at, form, entities, warnings, error)
+            else
+               call add_warning(warnings, "the element "//quoted(element%name) &
+                  & //" has no meaning in " &
+                  & //quoted(tree%element(list)%name)//" and is not read", tree%file, element%row)
+            end if
+         end associate
+         at = next_sibling(tree, at)
+      end do
+   end subroutine read_entities
+
+   !> Read one element of a list
+   pure subroutine read_entity(tree, at, form, entities, warnings, error)
+      !> The file's elements
+      type(xml_tree_t), intent(in) :: tree
+      !> Place of the element
+      integer, intent(in) :: at
+      !> What it is made of
+      type(form_t), intent(in) :: form
+      !> Receives it
+      type(entities_t), intent(inout) :: entities
+      !> Receives what the reader ignores
+      type(warnings_t), intent(inout) :: warnings
+      !> What is wrong
+      type(error_t), allocatable, intent(out) :: error
+      type(word_list_t) :: words
+      real(wp) :: place(4)
+      integer :: material
+
+      associate (element => tree%element(at))
+         material = merge(1, 0, form%has_material)
+         if (form%has_material .and. .not. (form%may_lack_type .and. &
+            & .not. has_attribute(tree, at, "type"))) then
+            call attribute_words(tree, at, "type", words, error)
+            if (.not. allocated(error)) &
+               & call take_material(words, "the type of "//element%name, material, error)
+            if (allocated(error)) return
+         end if
+         call split_words(element%text, tree%file, element%row, words)
+         if (element%name == "Point") then
+            call take_numbers(words, "a coordinate of "//element%name, largest_coordinate, &
+               & place(:2), error)
+            place(3:4) = place(1:2)
+         else
+            call take_numbers(words, "a coordinate of "//element%name, largest_coordinate, &
+               & place, error)
+         end if
+         if (allocated(error)) return
+         if (words_left(words) > 0) call add_warning(warnings, "nothing is wanted behind the " &
+            & //"coordinates of "//element%name//", what follows is not read: " &
+            & //quoted(this_word(words)), tree%file, this_row(words))
+         call add_entity(entities, place, material, element%row)
+      end associate
+   end subroutine read_entity
+end module dda_ddaml_geometry

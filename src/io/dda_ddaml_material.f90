@@ -1,0 +1,214 @@
+!> Materials and loads of an analysis file in DDAML
+module dda_ddaml_material
+   use dda_ddaml_geometry, only : attribute_words
+   use dda_error, only : error_t, fatal_error
+   use dda_kinds, only : wp
+   use dda_limerick_analysis, only : limerick_joint_t, limerick_material_t, load_history_t
+   use dda_plain_analysis, only : check_joint, check_material, largest_value
+   use dda_text, only : to_text
+   use dda_warnings, only : add_warning, warnings_t
+   use dda_word_list, only : quoted, split_words, take_numbers, take_whole, this_row, this_word, &
+      & word_list_t, words_left
+   use dda_xml_tree, only : find_child, first_child, next_sibling, xml_tree_t
+   implicit none
+   private
+
+   public :: read_material, read_joint, read_history
+
+   !> Weights that differ by less, relatively, are one weight with rounded digits
+   real(wp), parameter :: same_weight = 1.0e-6_wp
+
+contains
+
+   !> Read a Blockmaterial
+   pure subroutine read_material(tree, at, gravity, material, warnings, error)
+      !> The file's elements
+      type(xml_tree_t), intent(in) :: tree
+      !> Place of the element
+      integer, intent(in) :: at
+      !> Acceleration of gravity, for a weight that is not given
+      real(wp), intent(in) :: gravity
+      !> The material
+      type(limerick_material_t), intent(out) :: material
+      !> Receives what the reader ignores
+      type(warnings_t), intent(inout) :: warnings
+      !> What is wrong
+      type(error_t), allocatable, intent(out) :: error
+      real(wp) :: one(1), unused(1)
+
+      call tell_unknown(tree, at, " Unitmass Unitweight Youngsmod Poissonratio Damping Istress " &
+         & //"Ivelocity Istrain ", warnings)
+      call read_child(tree, at, "Unitmass", .true., one, warnings, error)
+      material%density = one(1)
+      if (.not. allocated(error)) call read_child(tree, at, "Youngsmod", .true., one, warnings, &
+         & error)
+      material%young = one(1)
+      if (.not. allocated(error)) &
+         & call read_child(tree, at, "Poissonratio", .true., one, warnings, error)
+      material%poisson = one(1)
+      one = min(material%density, largest_value)*gravity
+      if (.not. allocated(error)) &
+         & call read_child(tree, at, "Unitweight", .false., one, warnings, error)
+      material%unit_weight = one(1)
+      if (.not. allocated(error)) call check_weight(tree, at, gravity, material, warnings)
+      unused = 0.0_wp
+      if (.not. allocated(error)) &
+         & call read_child(tree, at, "Damping", .false., unused, warnings, error)
+      if (.not. allocated(error)) &
+         & call read_child(tree, at, "Istress", .false., material%stress, warnings, error)
+      if (.not. allocated(error)) &
+         & call read_child(tree, at, "Ivelocity", .false., material%velocity, warnings, error)
+      if (.not. allocated(error)) &
+         & call read_child(tree, at, "Istrain", .false., material%strain, warnings, error)
+      if (.not. allocated(error)) &
+         & call check_material(material, tree%file, tree%element(at)%row, error)
+   end subroutine read_material
+
+   !> The original weighs a block by unit mass times gravity, whatever the unit weight says
+   pure subroutine check_weight(tree, at, gravity, material, warnings)
+      !> The file's elements
+      type(xml_tree_t), intent(in) :: tree
+      !> Place of the element
+      integer, intent(in) :: at
+      !> Acceleration of gravity
+      real(wp), intent(in) :: gravity
+      !> The material
+      type(limerick_material_t), intent(inout) :: material
+      !> Receives a unit weight that is not taken
+      type(warnings_t), intent(inout) :: warnings
+      real(wp) :: weight
+
+      weight = material%density*gravity
+      if (abs(material%unit_weight - weight) <= same_weight*abs(weight)) return
+      call add_warning(warnings, "Unitweight = Unitmass*Gravaccel = "//to_text(weight) &
+         & //" is wanted and taken, found "//to_text(material%unit_weight), tree%file, &
+         & tree%element(at)%row)
+      material%unit_weight = weight
+   end subroutine check_weight
+
+   !> Read a Jointproperties
+   pure subroutine read_joint(tree, at, joint, warnings, error)
+      !> The file's elements
+      type(xml_tree_t), intent(in) :: tree
+      !> Place of the element
+      integer, intent(in) :: at
+      !> The material
+      type(limerick_joint_t), intent(out) :: joint
+      !> Receives what the reader ignores
+      type(warnings_t), intent(inout) :: warnings
+      !> What is wrong
+      type(error_t), allocatable, intent(out) :: error
+      real(wp) :: one(1)
+
+      call tell_unknown(tree, at, " Friction Cohesion Tensile ", warnings)
+      call read_child(tree, at, "Friction", .true., one, warnings, error)
+      joint%friction_deg = one(1)
+      one = 0.0_wp
+      if (.not. allocated(error)) call read_child(tree, at, "Cohesion", .false., one, warnings, &
+         & error)
+      joint%cohesion = one(1)
+      one = 0.0_wp
+      if (.not. allocated(error)) call read_child(tree, at, "Tensile", .false., one, warnings, &
+         & error)
+      joint%tension = one(1)
+      if (.not. allocated(error)) call check_joint(joint, tree%file, tree%element(at)%row, error)
+   end subroutine read_joint
+
+   !> Read the numbers of an element inside another
+   pure subroutine read_child(tree, at, name, needed, value, warnings, error)
+      !> The file's elements
+      type(xml_tree_t), intent(in) :: tree
+      !> Place of the outer element
+      integer, intent(in) :: at
+      !> Name of the inner element
+      character(len=*), intent(in) :: name
+      !> Whether it must be there
+      logical, intent(in) :: needed
+      !> Its numbers; left as they are if it is not there: (n)
+      real(wp), intent(inout) :: value(:)
+      !> Receives what the reader ignores
+      type(warnings_t), intent(inout) :: warnings
+      !> What is wrong
+      type(error_t), allocatable, intent(out) :: error
+      type(word_list_t) :: words
+      real(wp) :: number(size(value))
+      integer :: child
+
+      child = find_child(tree, at, name)
+      if (child == 0) then
+         if (needed) call fatal_error(error, "the element "//name//" is wanted in " &
+            & //tree%element(at)%name//", none was found", tree%file, tree%element(at)%row)
+         if (needed) value = 0.0_wp
+         return
+      end if
+      call split_words(tree%element(child)%text, tree%file, tree%element(child)%row, words)
+      call take_numbers(words, "a number of "//name, largest_value, number, error)
+      value = number
+      if (.not. allocated(error) .and. words_left(words) > 0) call add_warning(warnings, &
+         & "nothing is wanted behind the numbers of "//name//", what follows is not read: " &
+         & //quoted(this_word(words)), tree%file, this_row(words))
+   end subroutine read_child
+
+   !> Warn of elements without meaning
+   pure subroutine tell_unknown(tree, at, known, warnings)
+      !> The file's elements
+      type(xml_tree_t), intent(in) :: tree
+      !> Place of the outer element
+      integer, intent(in) :: at
+      !> Names that have a meaning, each between blanks
+      character(len=*), intent(in) :: known
+      !> Receives the warnings
+      type(warnings_t), intent(inout) :: warnings
+      integer :: child
+
+      child = first_child(tree, at)
+      do while (child > 0)
+         associate (element => tree%element(child))
+            if (index(known, " "//element%name//" ") == 0) call add_warning(warnings, &
+               & "the element "//quoted(element%name)//" has no meaning in " &
+               & //tree%element(at)%name//" and is not read", tree%file, element%row)
+         end associate
+         child = next_sibling(tree, child)
+      end do
+   end subroutine tell_unknown
+
+   !> Read a Loadpoint: records of time and force, parted by semicolons
+   pure subroutine read_history(tree, at, history, error)
+      !> The file's elements
+      type(xml_tree_t), intent(in) :: tree
+      !> Place of the element
+      integer, intent(in) :: at
+      !> The history
+      type(load_history_t), intent(out) :: history
+      !> What is wrong
+      type(error_t), allocatable, intent(out) :: error
+      type(word_list_t) :: words
+      integer, parameter :: most_records = 10000000
+      integer :: n, i, row
+
+      call attribute_words(tree, at, "numpoints", words, error)
+      if (.not. allocated(error)) &
+         & call take_whole(words, "the attribute numpoints", 2, most_records, n, error)
+      if (allocated(error)) return
+      call split_words(tree%element(at)%text, tree%file, tree%element(at)%row, words, &
+         & also_blank=";")
+      if (words%n /= 3*n) then
+         call fatal_error(error, to_text(n)//" records of 3 numbers are wanted in Loadpoint, " &
+            & //"found "//to_text(words%n)//" numbers", tree%file, tree%element(at)%row)
+         return
+      end if
+      allocate (history%record(3, n))
+      do i = 1, n
+         row = this_row(words)
+         call take_numbers(words, "a number of record "//to_text(i), largest_value, &
+            & history%record(:, i), error)
+         if (allocated(error)) return
+         if (i == 1) cycle
+         if (history%record(1, i) > history%record(1, i - 1)) cycle
+         call fatal_error(error, "times that increase are wanted in Loadpoint, found " &
+            & //to_text(history%record(1, i))//" after "//to_text(history%record(1, i - 1)), &
+            & tree%file, row)
+         return
+      end do
+   end subroutine read_history
+end module dda_ddaml_material

@@ -1,0 +1,101 @@
+!> The files that a deck of lines names: read, cut and checked with the deck
+module dda_deck_lines
+   use, intrinsic :: iso_fortran_env, only : int64
+   use dda_cutting, only : cut_blocks
+   use dda_deck, only : deck_error, deck_t, is_given, text_of, word_of
+   use dda_deck_keys, only : key_index
+   use dda_error, only : error_t
+   use dda_line_model, only : line_model_t
+   use dda_read_limerick, only : check_materials, read_analysis, read_geometry
+   use dda_text, only : to_text
+   use dda_text_file, only : read_text_file
+   implicit none
+   private
+
+   public :: read_lines
+
+contains
+
+   !> Read the files of a deck whose kind is 'lines'; any other deck is left as it is
+   subroutine read_lines(deck, error)
+      !> The deck, checked; receives blocks, analysis and warnings
+      type(deck_t), intent(inout) :: deck
+      !> What is wrong with the files, or with the two together
+      type(error_t), allocatable, intent(out) :: error
+      type(line_model_t) :: model
+      character(len=:), allocatable :: file
+
+      if (word_of(deck, "scene", "kind") /= "lines") return
+      file = beside_deck(deck, text_of(deck, "scene", "geometry"))
+      call read_geometry(file, model, deck%warnings, error)
+      if (allocated(error)) then
+         call name_key(deck, "geometry", error)
+         return
+      end if
+      call mark_file(deck, file)
+      allocate (deck%cut)
+      call cut_blocks(model, deck%cut, error)
+      if (allocated(error) .or. .not. is_given(deck, "scene", "analysis")) return
+      file = beside_deck(deck, text_of(deck, "scene", "analysis"))
+      allocate (deck%analysis)
+      call read_analysis(file, deck%analysis, deck%warnings, error)
+      if (allocated(error)) then
+         call name_key(deck, "analysis", error)
+         return
+      end if
+      call mark_file(deck, file)
+      call check_materials(model, deck%analysis, deck%warnings, error)
+   end subroutine read_lines
+
+   !> Remember what a file holds
+   subroutine mark_file(deck, file)
+      !> The deck
+      type(deck_t), intent(inout) :: deck
+      !> Name of the file
+      character(len=*), intent(in) :: file
+      ! two polynomials modulo primes below 2**31
+      integer(int64), parameter :: base(2) = [257_int64, 263_int64]
+      integer(int64), parameter :: prime(2) = [2147483629_int64, 2147483587_int64]
+      character(len=:), allocatable :: text
+      type(error_t), allocatable :: error
+      integer(int64) :: checksum(2)
+      integer :: i
+
+      call read_text_file(file, text, error)
+      checksum = 0
+      do i = 1, len(text)
+         checksum = modulo(checksum*base + ichar(text(i:i)), prime)
+      end do
+      if (.not. allocated(deck%file_mark)) deck%file_mark = ""
+      deck%file_mark = deck%file_mark//" "//to_text(len(text))//" "//to_text(int(checksum(1))) &
+         & //" "//to_text(int(checksum(2)))
+   end subroutine mark_file
+
+   !> Name of a file that a deck names; such names are relative to the deck
+   pure function beside_deck(deck, name) result(file)
+      !> The deck
+      type(deck_t), intent(in) :: deck
+      !> The name
+      character(len=*), intent(in) :: name
+      !> The file
+      character(len=:), allocatable :: file
+
+      file = name
+      if (index(name, "/") /= 1) file = deck%file(:index(deck%file, "/", back=.true.))//name
+   end function beside_deck
+
+   !> An error without a line speaks of a file that cannot be read: the line of the deck helps more
+   pure subroutine name_key(deck, key, error)
+      !> The deck
+      type(deck_t), intent(in) :: deck
+      !> The key of &scene that names the file
+      character(len=*), intent(in) :: key
+      !> The error
+      type(error_t), allocatable, intent(inout) :: error
+      character(len=:), allocatable :: message
+
+      if (error%line > 0) return
+      message = "scene%"//key//" = '"//text_of(deck, "scene", key)//"': "//error%message
+      call deck_error(error, message, deck, deck%value(key_index("scene", key))%place)
+   end subroutine name_key
+end module dda_deck_lines

@@ -1,0 +1,178 @@
+!> Geometry and analysis files of the Limerick line, plain or DDAML, told apart by their first word
+module dda_read_limerick
+   use dda_ddaml_analysis, only : read_ddaml_analysis
+   use dda_ddaml_geometry, only : read_ddaml_geometry
+   use dda_error, only : error_t, fatal_error
+   use dda_limerick_analysis, only : limerick_analysis_t
+   use dda_line_model, only : entities_t, line_model_t
+   use dda_plain_analysis, only : read_plain_analysis
+   use dda_plain_geometry, only : read_plain_geometry
+   use dda_text, only : to_text
+   use dda_text_file, only : read_text_file
+   use dda_warnings, only : add_warning, warnings_t
+   use dda_xml_parser, only : parse_xml
+   use dda_xml_tree, only : xml_tree_t
+   implicit none
+   private
+
+   public :: read_geometry, read_analysis, check_materials
+
+   !> Forms that a file can have
+   type :: form_enum
+      !> Numbers between blanks
+      integer :: plain = 1
+      !> XML
+      integer :: ddaml = 2
+      !> A form that the original announces and does not read either
+      integer :: extended = 3
+      !> Nothing but blanks
+      integer :: blank = 4
+   end type form_enum
+
+   !> Names of the forms
+   type(form_enum), parameter :: form = form_enum()
+
+contains
+
+   !> Read a geometry file
+   subroutine read_geometry(file, model, warnings, error)
+      !> Name of the file
+      character(len=*), intent(in) :: file
+      !> Lines and points
+      type(line_model_t), intent(out) :: model
+      !> Receives what the reader ignores
+      type(warnings_t), intent(inout) :: warnings
+      !> What is wrong, with file and line
+      type(error_t), allocatable, intent(out) :: error
+      character(len=:), allocatable :: text
+      type(xml_tree_t) :: tree
+
+      call read_text_file(file, text, error)
+      if (allocated(error)) return
+      select case (form_of(text))
+      case (form%ddaml)
+         call parse_xml(text, file, tree, error)
+         if (.not. allocated(error)) call read_ddaml_geometry(tree, model, warnings, error)
+      case (form%plain)
+         call read_plain_geometry(text, file, model, warnings, error)
+      case default
+         call refuse_form(text, file, error)
+      end select
+   end subroutine read_geometry
+
+   !> Read an analysis file
+   subroutine read_analysis(file, analysis, warnings, error)
+      !> Name of the file
+      character(len=*), intent(in) :: file
+      !> The analysis
+      type(limerick_analysis_t), intent(out) :: analysis
+      !> Receives what the reader ignores
+      type(warnings_t), intent(inout) :: warnings
+      !> What is wrong, with file and line
+      type(error_t), allocatable, intent(out) :: error
+      character(len=:), allocatable :: text
+      type(xml_tree_t) :: tree
+
+      call read_text_file(file, text, error)
+      if (allocated(error)) return
+      select case (form_of(text))
+      case (form%ddaml)
+         call parse_xml(text, file, tree, error)
+         if (.not. allocated(error)) call read_ddaml_analysis(tree, analysis, warnings, error)
+      case (form%plain)
+         call read_plain_analysis(text, file, analysis, warnings, error)
+      case default
+         call refuse_form(text, file, error)
+      end select
+   end subroutine read_analysis
+
+   !> Whether an analysis has a material for each block and joint, and a force for each load point
+   pure subroutine check_materials(model, analysis, warnings, error)
+      !> Lines and points
+      type(line_model_t), intent(in) :: model
+      !> The analysis
+      type(limerick_analysis_t), intent(in) :: analysis
+      !> Receives load points without a force
+      type(warnings_t), intent(inout) :: warnings
+      !> What is missing
+      type(error_t), allocatable, intent(out) :: error
+
+      call check_numbers(model%line, "joint", size(analysis%joint), model%file, analysis%file, &
+         & error)
+      if (.not. allocated(error)) call check_numbers(model%material_line, "block", &
+         & size(analysis%material), model%file, analysis%file, error)
+      if (allocated(error) .or. size(analysis%load) == model%load%n) return
+      if (size(analysis%load) == 0) then
+         call add_warning(warnings, "a load point has no force: "//analysis%file//" gives none", &
+            & model%file, model%load%row(1))
+      else
+         call fatal_error(error, "forces on "//to_text(model%load%n) &
+            & //" load points are wanted, as many as "//model%file//" has; found " &
+            & //to_text(size(analysis%load)), analysis%file, 1)
+      end if
+   end subroutine check_materials
+
+   !> Whether all materials of a list exist
+   pure subroutine check_numbers(entities, what, n, file, analysis_file, error)
+      !> The list
+      type(entities_t), intent(in) :: entities
+      !> What the materials are for
+      character(len=*), intent(in) :: what
+      !> How many materials there are
+      integer, intent(in) :: n
+      !> Name of the geometry file
+      character(len=*), intent(in) :: file
+      !> Name of the analysis file
+      character(len=*), intent(in) :: analysis_file
+      !> What is missing
+      type(error_t), allocatable, intent(out) :: error
+      integer :: i
+
+      do i = 1, entities%n
+         if (entities%material(i) <= n) cycle
+         call fatal_error(error, "one of the "//to_text(n)//" "//what//" materials of " &
+            & //analysis_file//" is wanted, found number "//to_text(entities%material(i)), file, &
+            & entities%row(i))
+         return
+      end do
+   end subroutine check_numbers
+
+   !> Place of the first character that is no blank; 0 if there is none
+   pure integer function first_letter(text)
+      !> The text
+      character(len=*), intent(in) :: text
+
+      first_letter = verify(text, " "//achar(9)//achar(10))
+   end function first_letter
+
+   !> Form of a file
+   pure integer function form_of(text)
+      !> Its text
+      character(len=*), intent(in) :: text
+      integer :: first
+
+      first = first_letter(text)
+      form_of = form%blank
+      if (first == 0) return
+      form_of = form%plain
+      if (text(first:first) == "<") form_of = form%ddaml
+      if (index(text(first:), "#!0xDDA-v1") == 1) form_of = form%extended
+   end function form_of
+
+   !> Say why a form is not read
+   pure subroutine refuse_form(text, file, error)
+      !> The file's text
+      character(len=*), intent(in) :: text
+      !> Name of the file
+      character(len=*), intent(in) :: file
+      !> The failure
+      type(error_t), allocatable, intent(out) :: error
+
+      if (form_of(text) == form%blank) then
+         call fatal_error(error, "numbers or XML are wanted, found only blanks", file, 1)
+      else
+         call fatal_error(error, "the plain form or DDAML is wanted, found the extended form " &
+            & //"#!0xDDA-v1, which is not read", file, 1)
+      end if
+   end subroutine refuse_form
+end module dda_read_limerick

@@ -1,0 +1,211 @@
+!> A text as words between blanks, each with its line, taken one after the other
+module dda_word_list
+   use dda_deck_token, only : shown
+   use dda_error, only : error_t, fatal_error
+   use dda_kinds, only : wp
+   use dda_text, only : read_number, to_text
+   implicit none
+   private
+
+   public :: word_list_t, split_words, words_left, this_word, this_row, take_number, take_whole
+   public :: take_numbers, take_material, largest_coordinate, quoted
+
+   !> Largest coordinate, so that no square overflows
+   real(wp), parameter :: largest_coordinate = 1.0e15_wp
+   !> Largest number of a material
+   integer, parameter :: largest_material = 1000000
+
+   !> Words of a text, and the one that is taken next
+   type :: word_list_t
+      !> The text
+      character(len=:), allocatable :: text
+      !> Name of its file
+      character(len=:), allocatable :: file
+      !> Number of words
+      integer :: n = 0
+      !> The word that is taken next
+      integer :: next = 1
+      !> First character of each word: (n)
+      integer, allocatable :: start(:)
+      !> Last character of each word: (n)
+      integer, allocatable :: finish(:)
+      !> Line of each word, and of the end of the text: (n + 1)
+      integer, allocatable :: row(:)
+   end type word_list_t
+
+contains
+
+   !> A piece of a file as a message may show it
+   pure function quoted(text) result(piece)
+      !> The piece
+      character(len=*), intent(in) :: text
+      !> Short, printable, in quotes
+      character(len=:), allocatable :: piece
+
+      piece = "'"//shown(text)//"'"
+   end function quoted
+
+   !> Find the words of a text
+   pure subroutine split_words(text, file, first_row, words, also_blank)
+      !> The text; its lines end in line feeds
+      character(len=*), intent(in) :: text
+      !> Name of its file, for messages
+      character(len=*), intent(in) :: file
+      !> Line of the file where the text begins
+      integer, intent(in) :: first_row
+      !> The words
+      type(word_list_t), intent(out) :: words
+      !> Characters that part words besides blanks, tabs and line ends
+      character(len=*), intent(in), optional :: also_blank
+      character(len=1), parameter :: lf = achar(10)
+      integer :: i, row, pass
+      logical :: blank, was_blank
+
+      words%text = text
+      words%file = file
+      do pass = 1, 2
+         words%n = 0
+         row = first_row
+         was_blank = .true.
+         do i = 1, len(text)
+            blank = text(i:i) == " " .or. text(i:i) == achar(9) .or. text(i:i) == lf
+            if (present(also_blank)) blank = blank .or. scan(text(i:i), also_blank) > 0
+            if (was_blank .and. .not. blank) then
+               words%n = words%n + 1
+               if (pass == 2) words%start(words%n) = i
+               if (pass == 2) words%row(words%n) = row
+            end if
+            if (pass == 2 .and. .not. blank) words%finish(words%n) = i
+            if (text(i:i) == lf) row = row + 1
+            was_blank = blank
+         end do
+         if (pass == 1) &
+            & allocate (words%start(words%n), words%finish(words%n), words%row(words%n + 1))
+      end do
+      words%row(words%n + 1) = row
+      if (len(text) > 1) then
+         if (text(len(text):) == lf) words%row(words%n + 1) = row - 1
+      end if
+   end subroutine split_words
+
+   !> Number of words that were not taken
+   pure integer function words_left(words)
+      !> The words
+      type(word_list_t), intent(in) :: words
+
+      words_left = words%n - words%next + 1
+   end function words_left
+
+   !> The next word, which stays
+   pure function this_word(words) result(word)
+      !> The words
+      type(word_list_t), intent(in) :: words
+      !> The word; empty at the end
+      character(len=:), allocatable :: word
+
+      word = ""
+      if (words%next <= words%n) word = words%text(words%start(words%next):words%finish(words%next))
+   end function this_word
+
+   !> Line of the next word, or of the end of the text
+   pure integer function this_row(words)
+      !> The words
+      type(word_list_t), intent(in) :: words
+
+      this_row = words%row(min(words%next, words%n + 1))
+   end function this_row
+
+   !> Take a number
+   pure subroutine take_number(words, what, value, error)
+      !> The words
+      type(word_list_t), intent(inout) :: words
+      !> What the number is, for the message
+      character(len=*), intent(in) :: what
+      !> The number
+      real(wp), intent(out) :: value
+      !> The end of the text, or no number
+      type(error_t), allocatable, intent(out) :: error
+      logical :: ok
+
+      value = 0.0_wp
+      if (words%next > words%n) then
+         call fatal_error(error, what//" is wanted, the text ends before it", words%file, &
+            & this_row(words))
+         return
+      end if
+      call read_number(words%text(words%start(words%next):words%finish(words%next)), value, ok)
+      if (.not. ok) call fatal_error(error, what//" is wanted, found " &
+         & //quoted(this_word(words)), words%file, this_row(words))
+      words%next = words%next + 1
+   end subroutine take_number
+
+   !> Take numbers that belong together, all within a bound
+   pure subroutine take_numbers(words, what, bound, value, error)
+      !> The words
+      type(word_list_t), intent(inout) :: words
+      !> What each of them is, for the message
+      character(len=*), intent(in) :: what
+      !> Largest magnitude
+      real(wp), intent(in) :: bound
+      !> The numbers: (n)
+      real(wp), intent(out) :: value(:)
+      !> What is wrong with the first bad one
+      type(error_t), allocatable, intent(out) :: error
+      integer :: i, row
+
+      value = 0.0_wp
+      do i = 1, size(value)
+         row = this_row(words)
+         call take_number(words, what, value(i), error)
+         if (allocated(error)) return
+         if (abs(value(i)) <= bound) cycle
+         call fatal_error(error, what//" of at most "//to_text(bound)//" in magnitude is wanted, " &
+            & //"found "//to_text(value(i)), words%file, row)
+         return
+      end do
+   end subroutine take_numbers
+
+   !> Take a whole number within bounds; 3.0 is one too
+   pure subroutine take_whole(words, what, low, high, value, error)
+      !> The words
+      type(word_list_t), intent(inout) :: words
+      !> What the number is, for the message
+      character(len=*), intent(in) :: what
+      !> Smallest value
+      integer, intent(in) :: low
+      !> Largest value
+      integer, intent(in) :: high
+      !> The number
+      integer, intent(out) :: value
+      !> The end of the text, or no such number
+      type(error_t), allocatable, intent(out) :: error
+      real(wp) :: number
+      integer :: row
+
+      value = low
+      row = this_row(words)
+      call take_number(words, what, number, error)
+      if (allocated(error)) return
+      if (number >= real(low, wp) .and. number <= real(high, wp) &
+         & .and. abs(number - aint(number)) <= 0.0_wp) then
+         value = nint(number)
+      else
+         call fatal_error(error, what//" from "//to_text(low)//" to "//to_text(high) &
+            & //" is wanted, a whole number, found "//to_text(number), words%file, row)
+      end if
+   end subroutine take_whole
+
+   !> Take the number of a material
+   pure subroutine take_material(words, what, value, error)
+      !> The words
+      type(word_list_t), intent(inout) :: words
+      !> What the number is, for the message
+      character(len=*), intent(in) :: what
+      !> The number
+      integer, intent(out) :: value
+      !> The end of the text, or no such number
+      type(error_t), allocatable, intent(out) :: error
+
+      call take_whole(words, what, 1, largest_material, value, error)
+   end subroutine take_material
+end module dda_word_list

@@ -1,0 +1,307 @@
+!> Geometry and analysis files of the Limerick line, plain and DDAML, as texts and on disk
+module dda_write_limerick
+   use dda_error, only : error_t
+   use dda_kinds, only : wp
+   use dda_limerick_analysis, only : limerick_analysis_t, limerick_material_t
+   use dda_line_model, only : entities_t, line_model_t
+   use dda_table_file, only : append_line, close_table, open_table, table_file_t
+   use dda_text, only : to_text
+   implicit none
+   private
+
+   public :: plain_geometry, plain_analysis, ddaml_geometry, ddaml_analysis, write_text
+
+   !> The end of a line
+   character(len=1), parameter :: lf = achar(10)
+   !> First lines of a DDAML file; the root is left open
+   character(len=*), parameter :: head = '<?xml version="1.0" standalone="no"?>'//lf &
+      & //'<Berkeley:DDA xmlns:Berkeley="http://www.tsoft.com/~bdoolin/dda">'//lf &
+      & //'<!-- voussoir -->'
+
+contains
+
+   !> Write a text to a file
+   subroutine write_text(file, text, error)
+      !> Name of the file; one that exists is replaced
+      character(len=*), intent(in) :: file
+      !> The text; its last line end is added
+      character(len=*), intent(in) :: text
+      !> Allocated if it cannot be written
+      type(error_t), allocatable, intent(out) :: error
+      type(table_file_t) :: table
+      integer :: first
+
+      first = index(text, lf)
+      call open_table(file, text(:first - 1), table, error)
+      if (.not. allocated(error)) call append_line(table, text(first + 1:), error)
+      call close_table(table)
+   end subroutine write_text
+
+   !> A geometry in the plain form
+   pure function plain_geometry(model) result(text)
+      !> Lines and points
+      type(line_model_t), intent(in) :: model
+      !> The file without its last line end
+      character(len=:), allocatable :: text
+
+      text = to_text(model%edge_node_ratio)//lf//to_text(model%line%n)//" " &
+         & //to_text(model%n_boundary)//lf//to_text(model%material_line%n)//lf//"0"//lf &
+         & //to_text(model%fixed%n)//lf//to_text(model%load%n)//lf//to_text(model%measured%n)//lf &
+         & //to_text(model%hole%n)//records(model%line, 4, .true.) &
+         & //records(model%material_line, 4, .true.)//records(model%fixed, 4, .false.) &
+         & //records(model%load, 2, .false.)//records(model%measured, 2, .false.) &
+         & //records(model%hole, 2, .false.)
+   end function plain_geometry
+
+   !> Records of one kind in the plain form
+   pure function records(entities, n_number, has_material) result(text)
+      !> The list
+      type(entities_t), intent(in) :: entities
+      !> Coordinates of each, 2 or 4
+      integer, intent(in) :: n_number
+      !> Whether a material follows
+      logical, intent(in) :: has_material
+      !> Lines, each with its line end before it
+      character(len=:), allocatable :: text
+      integer :: i
+
+      text = ""
+      do i = 1, entities%n
+         text = text//lf//numbers(entities%place(:n_number, i))
+         if (has_material) text = text//" "//to_text(entities%material(i))
+      end do
+   end function records
+
+   !> Numbers with blanks between
+   pure function numbers(value) result(text)
+      !> The numbers: (n)
+      real(wp), intent(in) :: value(:)
+      !> The text
+      character(len=:), allocatable :: text
+      integer :: i
+
+      text = to_text(value(1))
+      do i = 2, size(value)
+         text = text//" "//to_text(value(i))
+      end do
+   end function numbers
+
+   !> A geometry in DDAML
+   pure function ddaml_geometry(model) result(text)
+      !> Lines and points
+      type(line_model_t), intent(in) :: model
+      !> The file without its last line end
+      character(len=:), allocatable :: text
+
+      text = head//lf//"<Geometry>"//lf//empty("Edgenodedist", "distance", &
+         & to_text(model%edge_node_ratio)) &
+         & //list("Boundlist", "Line", model%line, 1, model%n_boundary) &
+         & //list("Jointlist", "Joint", model%line, model%n_boundary + 1, model%line%n) &
+         & //list("Matlinelist", "Line", model%material_line, 1, model%material_line%n) &
+         & //list("Fixedpointlist", "", model%fixed, 1, model%fixed%n) &
+         & //list("Loadpointlist", "Point", model%load, 1, model%load%n) &
+         & //list("Measuredpointlist", "Point", model%measured, 1, model%measured%n) &
+         & //list("Holepointlist", "Point", model%hole, 1, model%hole%n) &
+         & //"</Geometry>"//lf//"</Berkeley:DDA>"
+   end function ddaml_geometry
+
+   !> A list of DDAML
+   pure function list(name, item, entities, first, last) result(text)
+      !> Name of the list
+      character(len=*), intent(in) :: name
+      !> Name of its elements; empty where it is Point for points and Line for lines
+      character(len=*), intent(in) :: item
+      !> What it holds
+      type(entities_t), intent(in) :: entities
+      !> First of them
+      integer, intent(in) :: first
+      !> Last of them
+      integer, intent(in) :: last
+      !> Lines, each with its line end; empty for an empty list
+      character(len=:), allocatable :: text
+      character(len=:), allocatable :: kind
+      integer :: i
+
+      text = ""
+      if (last < first) return
+      text = "<"//name//">"//lf
+      do i = first, last
+         kind = item
+         if (item == "") kind = trim(merge("Point", "Line ", &
+            & all(abs(entities%place(3:4, i) - entities%place(1:2, i)) <= 0.0_wp)))
+         text = text//"<"//kind
+         if (entities%material(i) > 0) text = text//' type="'//to_text(entities%material(i))//'"'
+         text = text//"> "//numbers(entities%place(:merge(2, 4, kind == "Point"), i))//" </"//kind &
+            & //">"//lf
+      end do
+      text = text//"</"//name//">"//lf
+   end function list
+
+   !> An element without text
+   pure function empty(name, attribute, value, more) result(text)
+      !> Its name
+      character(len=*), intent(in) :: name
+      !> Name of its attribute
+      character(len=*), intent(in) :: attribute
+      !> Value of the attribute
+      character(len=*), intent(in) :: value
+      !> Further attributes, with a blank before each
+      character(len=*), intent(in), optional :: more
+      !> The element with its line end
+      character(len=:), allocatable :: text
+
+      text = "<"//name//" "//attribute//'="'//value//'"'
+      if (present(more)) text = text//more
+      text = text//"/>"//lf
+   end function empty
+
+   !> An element with text
+   pure function filled(name, inside) result(text)
+      !> Its name
+      character(len=*), intent(in) :: name
+      !> What stands inside
+      character(len=*), intent(in) :: inside
+      !> The element with its line end
+      character(len=:), allocatable :: text
+
+      text = "<"//name//"> "//inside//" </"//name//">"//lf
+   end function filled
+
+   !> An analysis in the plain form, which has no place for constants, flags and loads
+   pure function plain_analysis(analysis) result(text)
+      !> The analysis
+      type(limerick_analysis_t), intent(in) :: analysis
+      !> The file without its last line end
+      character(len=:), allocatable :: text
+      integer :: i
+
+      text = merge("1", "0", analysis%dynamic)//lf//to_text(analysis%steps)//lf &
+         & //to_text(size(analysis%material))//lf//to_text(size(analysis%joint))//lf &
+         & //to_text(analysis%displacement_ratio)//lf//to_text(analysis%max_time_step)
+      do i = 1, size(analysis%material)
+         associate (material => analysis%material(i))
+            text = text//lf//numbers([material%density, material%unit_weight, material%young, &
+               & material%poisson])//lf//numbers(material%stress)//lf &
+               & //numbers(material%stress_gradient)//lf//numbers(material%velocity)
+         end associate
+      end do
+      do i = 1, size(analysis%joint)
+         associate (joint => analysis%joint(i))
+            text = text//lf//numbers([joint%friction_deg, joint%cohesion, joint%tension])
+         end associate
+      end do
+   end function plain_analysis
+
+   !> An analysis in DDAML
+   pure function ddaml_analysis(analysis) result(text)
+      !> The analysis
+      type(limerick_analysis_t), intent(in) :: analysis
+      !> The file without its last line end
+      character(len=:), allocatable :: text
+      integer :: i
+
+      text = head//lf//"<Analysis>"//lf//switches(analysis)//constants(analysis)
+      do i = 1, size(analysis%material)
+         text = text//material_element(analysis%material(i), i)
+      end do
+      do i = 1, size(analysis%joint)
+         associate (joint => analysis%joint(i))
+            text = text//'<Jointproperties type="'//to_text(i)//'">'//lf &
+               & //filled("Friction", to_text(joint%friction_deg)) &
+               & //filled("Cohesion", to_text(joint%cohesion)) &
+               & //filled("Tensile", to_text(joint%tension))//"</Jointproperties>"//lf
+         end associate
+      end do
+      if (size(analysis%load) > 0) text = text//load_elements(analysis)
+      text = text//"</Analysis>"//lf//"</Berkeley:DDA>"
+   end function ddaml_analysis
+
+   !> The elements that choose and bound
+   pure function switches(analysis) result(text)
+      !> The analysis
+      type(limerick_analysis_t), intent(in) :: analysis
+      !> Elements, each with its line end
+      character(len=:), allocatable :: text
+
+      text = empty("Analysistype", "type", trim(merge("dynamic", "static ", analysis%dynamic))) &
+         & //empty("Rotation", "type", trim(merge("exact ", "linear", analysis%exact_rotation))) &
+         & //empty("Gravity", "flag", "no")//empty("Gravaccel", "value", &
+         & to_text(analysis%gravity)) &
+         & //empty("Autotimestep", "flag", yes_no(analysis%auto_time_step)) &
+         & //empty("Autopenalty", "flag", yes_no(analysis%auto_penalty), &
+         & ' pfactor="'//to_text(analysis%penalty_factor)//'"') &
+         & //empty("Planestrain", "flag", yes_no(analysis%plane_strain)) &
+         & //empty("Numtimesteps", "timesteps", to_text(analysis%steps)) &
+         & //empty("Maxtimestep", "maxtimestep", to_text(analysis%max_time_step)) &
+         & //empty("Mintimestep", "mintimestep", to_text(analysis%min_time_step)) &
+         & //empty("Maxdisplacement", "maxdisplacement", to_text(analysis%displacement_ratio)) &
+         & //empty("Opencloselimit", "maxopenclose", to_text(analysis%open_close_limit)) &
+         & //empty("Saveinterval", "step", to_text(analysis%save_interval)) &
+         & //empty("ContactDamping", "value", to_text(analysis%contact_damping))
+   end function switches
+
+   !> The constants of the scheme
+   pure function constants(analysis) result(text)
+      !> The analysis
+      type(limerick_analysis_t), intent(in) :: analysis
+      !> Elements, each with its line end
+      character(len=:), allocatable :: text
+
+      text = "<AConstants>"//lf//empty("Openclose", "value", to_text(analysis%close_limit)) &
+         & //empty("Opencriteria", "value", to_text(analysis%open_limit)) &
+         & //empty("NormSpringPen", "value", to_text(analysis%spring_penetration)) &
+         & //empty("AngleOverlap", "value", to_text(analysis%overlap_deg)) &
+         & //empty("ShearNormRatio", "value", to_text(analysis%shear_ratio)) &
+         & //"</AConstants>"//lf
+   end function constants
+
+   !> A block material
+   pure function material_element(material, number) result(text)
+      !> The material
+      type(limerick_material_t), intent(in) :: material
+      !> Its number
+      integer, intent(in) :: number
+      !> The element with its line end
+      character(len=:), allocatable :: text
+
+      text = '<Blockmaterial type="'//to_text(number)//'">'//lf &
+         & //filled("Unitmass", to_text(material%density)) &
+         & //filled("Unitweight", to_text(material%unit_weight)) &
+         & //filled("Youngsmod", to_text(material%young)) &
+         & //filled("Poissonratio", to_text(material%poisson))//filled("Damping", "0") &
+         & //filled("Istress", numbers(material%stress)) &
+         & //filled("Ivelocity", numbers(material%velocity)) &
+         & //filled("Istrain", numbers(material%strain))//"</Blockmaterial>"//lf
+   end function material_element
+
+   !> The forces on load points
+   pure function load_elements(analysis) result(text)
+      !> The analysis
+      type(limerick_analysis_t), intent(in) :: analysis
+      !> The list with its line end
+      character(len=:), allocatable :: text
+      integer :: i, k
+
+      text = "<Loadpointlist>"//lf
+      do i = 1, size(analysis%load)
+         associate (record => analysis%load(i)%record)
+            text = text//'<Loadpoint numpoints="'//to_text(size(record, 2))//'">'
+            do k = 1, size(record, 2)
+               text = text//" "//numbers(record(:, k))//";"
+            end do
+            text = text//" </Loadpoint>"//lf
+         end associate
+      end do
+      text = text//"</Loadpointlist>"//lf
+   end function load_elements
+
+   !> A flag in DDAML
+   pure function yes_no(flag) result(word)
+      !> The flag
+      logical, intent(in) :: flag
+      !> yes or no
+      character(len=:), allocatable :: word
+
+      word = trim(merge("yes", "no ", flag))
+   end function yes_no
+end module dda_write_limerick

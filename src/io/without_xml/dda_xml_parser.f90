@@ -1,0 +1,31 @@
+!> Stands in for the XML parser in builds without libxml2: says what is missing
+module dda_xml_parser
+   use dda_error, only : error_t, fatal_error
+   use dda_xml_tree, only : new_xml_tree, xml_tree_t
+   implicit none
+   private
+
+   public :: parse_xml, has_xml
+
+   !> Whether this build reads XML
+   logical, parameter :: has_xml = .false.
+
+contains
+
+   !> Refuse an XML file
+   subroutine parse_xml(text, file, tree, error)
+      !> The file's text
+      character(len=*), intent(in) :: text
+      !> Name of the file
+      character(len=*), intent(in) :: file
+      !> Left without elements
+      type(xml_tree_t), intent(out) :: tree
+      !> Always allocated
+      type(error_t), allocatable, intent(out) :: error
+
+      call new_xml_tree(file, tree)
+      if (len(text) >= 0) call fatal_error(error, "the plain form is wanted, found XML: this " &
+         & //"build has no libxml2 (on Debian: libxml2-dev); install it and configure again", &
+         & file, 1)
+   end subroutine parse_xml
+end module dda_xml_parser

@@ -1,0 +1,251 @@
+!> The equations of a step: pattern, blocks, contacts (Shi: df08, df10 to df18)
+module dda_limerick_assembly
+   use dda_block_factor, only : block_factor_t, plan_factor
+   use dda_block_matrix, only : block_matrix_t, set_pattern
+   use dda_block_system, only : n_unknown
+   use dda_elasticity, only : elastic_matrix, stress_load
+   use dda_inertia, only : mass_matrix
+   use dda_kinds, only : wp
+   use dda_limerick_contact, only : contact_list_t, contact_spring_t, generalised, &
+      & limerick_contact_t
+   use dda_limerick_model, only : force_at, limerick_model_t
+   use dda_limerick_state, only : contact_state, limerick_blocks_t, limerick_march_t
+   implicit none
+   private
+
+   public :: limerick_equations_t, couple_blocks, assemble_blocks, add_contacts
+
+   !> Matrix, loads and unknowns of a step
+   type :: limerick_equations_t
+      !> Coupled blocks that the pattern was made for: (2, n_pair)
+      integer, allocatable :: pair(:, :)
+      !> The matrix
+      type(block_matrix_t) :: matrix
+      !> Its factor
+      type(block_factor_t) :: factor
+      !> What the blocks give to the matrix: (6, 6, n_block)
+      real(wp), allocatable :: base(:, :, :)
+      !> What they give to the right-hand side: (6, n_block)
+      real(wp), allocatable :: load(:, :)
+      !> Right-hand side, then the motion of the step: (6, n_block)
+      real(wp), allocatable :: motion(:, :)
+   end type limerick_equations_t
+
+contains
+
+   !> Make the pattern, if other blocks are coupled than before, and tell each contact its entry
+   pure subroutine couple_blocks(contacts, n_block, equations, spring)
+      !> Contacts, those of the same two blocks one after the other
+      type(contact_list_t), intent(in) :: contacts
+      !> Number of blocks
+      integer, intent(in) :: n_block
+      !> The equations
+      type(limerick_equations_t), intent(inout) :: equations
+      !> Springs of the contacts; their entries are set: (at least contacts%n)
+      type(contact_spring_t), intent(inout) :: spring(:)
+      integer :: pair(2, contacts%n), c, n
+      logical :: same
+
+      n = 0
+      do c = 1, contacts%n
+         associate (block => contacts%item(c)%block)
+            if (n > 0) then
+               same = all(pair(:, n) == [minval(block), maxval(block)])
+            else
+               same = .false.
+            end if
+            if (.not. same) then
+               n = n + 1
+               pair(:, n) = [minval(block), maxval(block)]
+            end if
+         end associate
+         spring(c)%entry = n
+      end do
+      same = allocated(equations%pair)
+      if (same) same = size(equations%pair, 2) == n
+      if (same) same = all(equations%pair == pair(:, :n))
+      if (.not. same) then
+         equations%pair = pair(:, :n)
+         call set_pattern(equations%matrix, n_unknown, n_block, equations%pair)
+         call plan_factor(equations%matrix, equations%factor)
+      end if
+      do c = 1, contacts%n
+         spring(c)%first_is_row = equations%matrix%pair(1, spring(c)%entry) &
+            & == contacts%item(c)%block(1)
+      end do
+   end subroutine couple_blocks
+
+   !> Inertia, elasticity, stress, weight, fixed and loaded points
+   pure subroutine assemble_blocks(model, blocks, march, equations)
+      !> The model
+      type(limerick_model_t), intent(in) :: model
+      !> The blocks
+      type(limerick_blocks_t), intent(in) :: blocks
+      !> The march; its time step is the step's
+      type(limerick_march_t), intent(in) :: march
+      !> The equations; base and load are set
+      type(limerick_equations_t), intent(inout) :: equations
+      real(wp) :: mass(n_unknown, n_unknown), rate
+      integer :: b
+
+      rate = 2.0_wp/march%time_step
+      do b = 1, size(blocks%area)
+         associate (material => model%material(model%block_material(b)))
+            mass = mass_matrix(material%density, blocks%area(b), blocks%second(:, b))
+            equations%base(:, :, b) = rate/march%time_step*mass &
+               & + elastic_matrix(material%material_t, blocks%area(b))
+            equations%load(:, b) = stress_load(blocks%stress(:, b), blocks%area(b))
+            equations%load(1:2, b) = equations%load(1:2, b) &
+               & + material%unit_weight*blocks%area(b)*model%load_direction
+            if (model%constants%dynamic) equations%load(:, b) = equations%load(:, b) &
+               & + rate*matmul(mass, blocks%velocity(:, b))
+         end associate
+      end do
+      call add_points(model, blocks, march, equations)
+   end subroutine assemble_blocks
+
+   !> Springs at the fixed points, which pull back what has drifted, and forces at the load points
+   pure subroutine add_points(model, blocks, march, equations)
+      !> The model
+      type(limerick_model_t), intent(in) :: model
+      !> The blocks
+      type(limerick_blocks_t), intent(in) :: blocks
+      !> The march
+      type(limerick_march_t), intent(in) :: march
+      !> The equations
+      type(limerick_equations_t), intent(inout) :: equations
+      real(wp) :: row(n_unknown), axis(2)
+      integer :: b, i, k
+
+      do i = 1, size(model%fixed_block)
+         b = model%fixed_block(i)
+         do k = 1, 2
+            axis = 0.0_wp
+            axis(k) = 1.0_wp
+            row = generalised(axis, blocks%fixed_point(:, i), blocks%centroid(:, b))
+            call add_outer(march%fixed_stiffness, row, row, equations%base(:, :, b))
+            equations%load(:, b) = equations%load(:, b) &
+               & - march%fixed_stiffness*blocks%fixed_drift(k, i)*row
+         end do
+      end do
+      do i = 1, size(model%load_block)
+         b = model%load_block(i)
+         equations%load(:, b) = equations%load(:, b) &
+            & + generalised(force_at(model%load(i), march%time + march%time_step), &
+            & blocks%load_point(:, i), blocks%centroid(:, b))
+      end do
+   end subroutine add_points
+
+   !> Matrix and right-hand side with the springs and the friction of the contacts' states
+   pure subroutine add_contacts(model, contacts, spring, march, first_pass, equations)
+      !> The model
+      type(limerick_model_t), intent(in) :: model
+      !> The contacts
+      type(contact_list_t), intent(in) :: contacts
+      !> Their springs: (at least contacts%n)
+      type(contact_spring_t), intent(in) :: spring(:)
+      !> The march
+      type(limerick_march_t), intent(in) :: march
+      !> Whether nothing was solved in this step yet
+      logical, intent(in) :: first_pass
+      !> The equations; matrix and motion are set
+      type(limerick_equations_t), intent(inout) :: equations
+      integer :: c
+
+      equations%matrix%diagonal = equations%base
+      equations%matrix%coupling = 0.0_wp
+      equations%motion = equations%load
+      do c = 1, contacts%n
+         associate (contact => contacts%item(c))
+            select case (contact%state)
+            case (contact_state%open)
+               cycle
+            case (contact_state%second_line)
+               call add_spring(contact, spring(c), march%penalty, spring(c)%normal(:, :, 2), &
+                  & spring(c)%gap(2), equations)
+            case default
+               call add_spring(contact, spring(c), march%penalty, spring(c)%normal(:, :, 1), &
+                  & spring(c)%gap(1), equations)
+            end select
+            if (contact%corner) cycle
+            if (contact%state == contact_state%locked) then
+               call add_spring(contact, spring(c), &
+                  & march%penalty/model%constants%stiffness_ratio, spring(c)%along, &
+                  & spring(c)%shear, equations)
+            else if (first_pass .or. contact%before /= contact_state%open) then
+               call add_friction(model, contact, spring(c), march%used_penalty, &
+                  & equations%motion)
+            end if
+         end associate
+      end do
+   end subroutine add_contacts
+
+   !> One spring between two blocks
+   pure subroutine add_spring(contact, spring, stiffness, row, start, equations)
+      !> The contact
+      type(limerick_contact_t), intent(in) :: contact
+      !> Where it stands in the matrix
+      type(contact_spring_t), intent(in) :: spring
+      !> Stiffness [N/m2]
+      real(wp), intent(in) :: stiffness
+      !> Length of the spring per unknown: (6, 2)
+      real(wp), intent(in) :: row(:, :)
+      !> Its length at the beginning of the step [m]
+      real(wp), intent(in) :: start
+      !> The equations
+      type(limerick_equations_t), intent(inout) :: equations
+
+      associate (a => contact%block(1), b => contact%block(2), matrix => equations%matrix)
+         call add_outer(stiffness, row(:, 1), row(:, 1), matrix%diagonal(:, :, a))
+         call add_outer(stiffness, row(:, 2), row(:, 2), matrix%diagonal(:, :, b))
+         if (spring%first_is_row) then
+            call add_outer(stiffness, row(:, 1), row(:, 2), matrix%coupling(:, :, spring%entry))
+         else
+            call add_outer(stiffness, row(:, 2), row(:, 1), matrix%coupling(:, :, spring%entry))
+         end if
+         equations%motion(:, a) = equations%motion(:, a) - stiffness*start*row(:, 1)
+         equations%motion(:, b) = equations%motion(:, b) - stiffness*start*row(:, 2)
+      end associate
+   end subroutine add_spring
+
+   !> Add a multiple of the product of a column and a row
+   pure subroutine add_outer(factor, column, row, sum)
+      !> The multiple
+      real(wp), intent(in) :: factor
+      !> The column: (6)
+      real(wp), intent(in) :: column(n_unknown)
+      !> The row: (6)
+      real(wp), intent(in) :: row(n_unknown)
+      !> What is added to: (6, 6)
+      real(wp), intent(inout) :: sum(n_unknown, n_unknown)
+      integer :: j
+
+      do j = 1, n_unknown
+         sum(:, j) = sum(:, j) + (factor*row(j))*column
+      end do
+   end subroutine add_outer
+
+   !> Friction of a sliding contact against its last slip, from the last penetration
+   pure subroutine add_friction(model, contact, spring, penalty, load)
+      !> The model
+      type(limerick_model_t), intent(in) :: model
+      !> The contact
+      type(limerick_contact_t), intent(in) :: contact
+      !> Its springs
+      type(contact_spring_t), intent(in) :: spring
+      !> Stiffness of the contacts in the last solution [N/m2]
+      real(wp), intent(in) :: penalty
+      !> Right-hand side: (6, n_block)
+      real(wp), intent(inout) :: load(:, :)
+      real(wp) :: friction
+
+      if (.not. abs(contact%shear) > 0.0_wp) return
+      associate (law => model%law(model%edge_law(contact%vertex(3, 1))))
+         friction = max(0.0_wp, -contact%gap)*penalty*law%friction
+         if (contact%bonded) friction = friction + law%cohesion*contact%length
+      end associate
+      friction = sign(friction, contact%shear)
+      load(:, contact%block(1)) = load(:, contact%block(1)) - friction*spring%along(:, 1)
+      load(:, contact%block(2)) = load(:, contact%block(2)) + friction*spring%drag
+   end subroutine add_friction
+end module dda_limerick_assembly

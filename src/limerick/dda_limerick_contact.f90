@@ -1,0 +1,184 @@
+!> Contacts of the original's scheme: a vertex against an edge, or two corners with two lines
+module dda_limerick_contact
+   use dda_kinds, only : wp
+   use dda_limerick_state, only : contact_state, limerick_blocks_t
+   use dda_vector, only : cross
+   implicit none
+   private
+
+   public :: limerick_contact_t, contact_list_t, contact_spring_t
+   public :: append_contact, place_springs, place_shear_spring, projection, generalised
+
+   !> One contact
+   type :: limerick_contact_t
+      !> Whether two corners meet; otherwise a vertex and an edge
+      logical :: corner = .false.
+      !> Lines in use: two for corners, and where two edges lie together, whose second line is the
+      !> same contact seen from the other block
+      integer :: n_line = 1
+      !> Vertex, and ends of the edge against its sense round the block: the edge and its law are
+      !> those of the third vertex: (3, 2)
+      integer :: vertex(3, 2) = 0
+      !> Other end of the vertex's edge that lies along the contact's edge; 0 if none does
+      integer :: beside = 0
+      !> Block of the first line's vertex, block of its edge: (2)
+      integer :: block(2) = 0
+      !> One of contact_state
+      integer :: state = contact_state%open
+      !> State before the last solution
+      integer :: before = contact_state%open
+      !> Opening; negative is penetration [m]
+      real(wp) :: gap = 0.0_wp
+      !> Motion along the edge since the shear spring was set [m]
+      real(wp) :: shear = 0.0_wp
+      !> Where the shear spring was set: 0 at the first end of the edge, 1 at the second
+      real(wp) :: place = 0.0_wp
+      !> Half the length of edges that lie together: cohesion and tension act there [m]
+      real(wp) :: length = 0.0_wp
+      !> Whether cohesion and tension still hold
+      logical :: bonded = .false.
+   end type limerick_contact_t
+
+   !> Contacts of a step; the first n count
+   type :: contact_list_t
+      !> The contacts: (at least n)
+      type(limerick_contact_t), allocatable :: item(:)
+      !> How many there are
+      integer :: n = 0
+   end type contact_list_t
+
+   !> Springs of one contact at the beginning of a step: opening and slip from the unknowns
+   type :: contact_spring_t
+      !> Opening per unknown: (6, first and second block, line)
+      real(wp) :: normal(6, 2, 2)
+      !> Slip per unknown: (6, first and second block)
+      real(wp) :: along(6, 2)
+      !> Friction on the edge's block per unit of force: (6)
+      real(wp) :: drag(6)
+      !> Opening at the beginning of the step: (line) [m]
+      real(wp) :: gap(2)
+      !> Slip at the beginning of the step [m]
+      real(wp) :: shear
+      !> Length of the first line's edge [m]
+      real(wp) :: edge_length
+      !> Entry of the two blocks in the matrix
+      integer :: entry
+      !> Whether the rows of that entry are those of the contact's first block
+      logical :: first_is_row
+   end type contact_spring_t
+
+contains
+
+   !> Append a contact; the list grows by doubling
+   pure subroutine append_contact(list, contact)
+      !> The list
+      type(contact_list_t), intent(inout) :: list
+      !> The contact
+      type(limerick_contact_t), intent(in) :: contact
+      type(limerick_contact_t), allocatable :: longer(:)
+
+      if (.not. allocated(list%item)) allocate (list%item(64))
+      if (list%n == size(list%item)) then
+         allocate (longer(2*list%n))
+         longer(:list%n) = list%item
+         call move_alloc(longer, list%item)
+      end if
+      list%n = list%n + 1
+      list%item(list%n) = contact
+   end subroutine append_contact
+
+   !> Work of a force per unit of each unknown: the row f'T
+   pure function generalised(force, point, centroid) result(row)
+      !> Force: (2)
+      real(wp), intent(in) :: force(2)
+      !> Where it acts: (2) [m]
+      real(wp), intent(in) :: point(2)
+      !> Centre of gravity of the block: (2) [m]
+      real(wp), intent(in) :: centroid(2)
+      !> The row: (6)
+      real(wp) :: row(6)
+      real(wp) :: x, y
+
+      x = point(1) - centroid(1)
+      y = point(2) - centroid(2)
+      row(1) = force(1)
+      row(2) = force(2)
+      row(3) = force(2)*x - force(1)*y
+      row(4) = force(1)*x
+      row(5) = force(2)*y
+      row(6) = (force(1)*y + force(2)*x)/2.0_wp
+   end function generalised
+
+   !> Normal springs of all lines, and the shear spring of a vertex and an edge (Shi 1988, 4.11 to
+   !> 4.18)
+   pure subroutine place_springs(blocks, contact, spring)
+      !> The blocks
+      type(limerick_blocks_t), intent(in) :: blocks
+      !> The contact
+      type(limerick_contact_t), intent(in) :: contact
+      !> Its springs
+      type(contact_spring_t), intent(inout) :: spring
+      real(wp), dimension(2) :: p1, p2, p3, edge
+      real(wp) :: length
+      integer :: line, own, other
+
+      do line = 1, merge(2, 1, contact%corner)
+         p1 = blocks%vertex(:, contact%vertex(1, line))
+         p2 = blocks%vertex(:, contact%vertex(2, line))
+         p3 = blocks%vertex(:, contact%vertex(3, line))
+         edge = p3 - p2
+         length = sqrt(edge(1)**2 + edge(2)**2)
+         own = merge(1, 2, blocks%owner(contact%vertex(1, line)) == contact%block(1))
+         other = 3 - own
+         spring%gap(line) = cross(p2 - p1, p3 - p1)/length
+         spring%normal(:, own, line) = generalised([-edge(2), edge(1)]/length, p1, &
+            & blocks%centroid(:, contact%block(own)))
+         spring%normal(:, other, line) = &
+            & generalised([p3(2) - p1(2), p1(1) - p3(1)]/length, p2, &
+            & blocks%centroid(:, contact%block(other))) &
+            & + generalised([p1(2) - p2(2), p2(1) - p1(1)]/length, p3, &
+            & blocks%centroid(:, contact%block(other)))
+         if (line == 1) spring%edge_length = length
+      end do
+      if (.not. contact%corner) call place_shear_spring(blocks, contact, spring)
+   end subroutine place_springs
+
+   !> The shear spring between the vertex and the point of the edge where it was set (Ke 1995, 56 to
+   !> 59)
+   pure subroutine place_shear_spring(blocks, contact, spring)
+      !> The blocks
+      type(limerick_blocks_t), intent(in) :: blocks
+      !> The contact of a vertex and an edge
+      type(limerick_contact_t), intent(in) :: contact
+      !> Its springs; the shear spring is set
+      type(contact_spring_t), intent(inout) :: spring
+      real(wp), dimension(2) :: p1, p2, p3, set_at, away, tangent
+
+      p1 = blocks%vertex(:, contact%vertex(1, 1))
+      p2 = blocks%vertex(:, contact%vertex(2, 1))
+      p3 = blocks%vertex(:, contact%vertex(3, 1))
+      tangent = (p3 - p2)/spring%edge_length
+      set_at = (1.0_wp - contact%place)*p2 + contact%place*p3
+      away = (p1 - set_at)/spring%edge_length
+      spring%shear = (p1(1) - set_at(1))*tangent(1) + (p1(2) - set_at(2))*tangent(2)
+      spring%along(:, 1) = generalised(tangent, p1, blocks%centroid(:, contact%block(1)))
+      associate (centroid => blocks%centroid(:, contact%block(2)))
+         spring%drag = generalised(tangent, set_at, centroid)
+         spring%along(:, 2) = generalised(away, p3, centroid) - generalised(away, p2, centroid) &
+            & - spring%drag
+      end associate
+   end subroutine place_shear_spring
+
+   !> Foot of a point on a line: 0 at its first end, 1 at its second
+   pure real(wp) function projection(point, first, second)
+      !> The point: (2) [m]
+      real(wp), intent(in) :: point(2)
+      !> First end of the line: (2) [m]
+      real(wp), intent(in) :: first(2)
+      !> Second end, not the same: (2) [m]
+      real(wp), intent(in) :: second(2)
+
+      projection = dot_product(point - first, second - first) &
+         & /dot_product(second - first, second - first)
+   end function projection
+end module dda_limerick_contact

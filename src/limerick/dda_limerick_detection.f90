@@ -1,0 +1,274 @@
+!> Contacts by distance and by angle (Shi: df04, df05)
+module dda_limerick_detection
+   use dda_kinds, only : wp
+   use dda_limerick_contact, only : append_contact, contact_list_t, limerick_contact_t
+   use dda_limerick_corners, only : corners_t, entrance_lines, measure_corners, overlap, turn
+   use dda_limerick_state, only : limerick_blocks_t
+   implicit none
+   private
+
+   public :: find_contacts
+
+   !> Corners wider than this are concave [deg]
+   real(wp), parameter :: straight = 180.0001_wp
+
+contains
+
+   !> All contacts of the blocks where they are now, open, pair of blocks by pair of blocks
+   pure subroutine find_contacts(blocks, reach, overlap_deg, order, list)
+      !> The blocks
+      type(limerick_blocks_t), intent(in) :: blocks
+      !> Distance within which contacts are sought [m]
+      real(wp), intent(in) :: reach
+      !> Overlap of two corners that is overlooked [deg]
+      real(wp), intent(in) :: overlap_deg
+      !> Blocks from left to right, as near as the step before left them: (n_block)
+      integer, intent(inout) :: order(:)
+      !> The contacts
+      type(contact_list_t), intent(inout) :: list
+      type(corners_t) :: corners
+      real(wp) :: low(2, size(order)), high(2, size(order))
+      integer :: i, j, a, b
+
+      call measure_corners(blocks, corners)
+      do b = 1, size(order)
+         associate (corner => blocks%vertex(:, &
+            & blocks%first_vertex(b):blocks%first_vertex(b + 1) - 1))
+            low(:, b) = minval(corner, dim=2)
+            high(:, b) = maxval(corner, dim=2) + reach
+         end associate
+      end do
+      call sort_by(low(1, :), order)
+      list%n = 0
+      do i = 1, size(order)
+         a = order(i)
+         do j = i + 1, size(order)
+            b = order(j)
+            if (low(1, b) > high(1, a)) exit
+            if (low(2, b) > high(2, a) .or. low(2, a) > high(2, b)) cycle
+            call meet_blocks(blocks, corners, min(a, b), max(a, b), reach, overlap_deg, list)
+         end do
+      end do
+   end subroutine find_contacts
+
+   !> Put indices in the order of their keys; quick if they nearly are
+   pure subroutine sort_by(key, order)
+      !> Key of each index: (n)
+      real(wp), intent(in) :: key(:)
+      !> The indices: (n)
+      integer, intent(inout) :: order(:)
+      integer :: i, j, moving
+
+      do i = 2, size(order)
+         moving = order(i)
+         do j = i - 1, 1, -1
+            if (key(order(j)) <= key(moving)) exit
+            order(j + 1) = order(j)
+         end do
+         order(j + 1) = moving
+      end do
+   end subroutine sort_by
+
+   !> Contacts of two blocks whose boxes are near
+   pure subroutine meet_blocks(blocks, corners, a, b, reach, overlap_deg, list)
+      !> The blocks
+      type(limerick_blocks_t), intent(in) :: blocks
+      !> Their corners
+      type(corners_t), intent(in) :: corners
+      !> First block
+      integer, intent(in) :: a
+      !> Second block
+      integer, intent(in) :: b
+      !> Distance within which contacts are sought [m]
+      real(wp), intent(in) :: reach
+      !> Overlap that is overlooked [deg]
+      real(wp), intent(in) :: overlap_deg
+      !> Receives the contacts
+      type(contact_list_t), intent(inout) :: list
+      integer :: i, j
+
+      do i = blocks%first_vertex(a), blocks%first_vertex(a + 1) - 1
+         do j = blocks%first_vertex(b), blocks%first_vertex(b + 1) - 1
+            if (near(blocks, i, j, reach)) then
+               call meet_vertices(blocks, corners, i, j, overlap_deg, list)
+            else
+               if (above_edge(blocks, corners, i, j, reach)) &
+                  & call meet_edge(blocks, corners, i, j, overlap_deg, list)
+               if (above_edge(blocks, corners, j, i, reach)) &
+                  & call meet_edge(blocks, corners, j, i, overlap_deg, list)
+            end if
+         end do
+      end do
+   end subroutine meet_blocks
+
+   !> Whether two vertices lie near one another
+   pure logical function near(blocks, i, j, reach)
+      !> The blocks
+      type(limerick_blocks_t), intent(in) :: blocks
+      !> First vertex
+      integer, intent(in) :: i
+      !> Second vertex
+      integer, intent(in) :: j
+      !> Distance [m]
+      real(wp), intent(in) :: reach
+
+      near = (blocks%vertex(1, i) - blocks%vertex(1, j))**2 &
+         & + (blocks%vertex(2, i) - blocks%vertex(2, j))**2 <= reach**2
+   end function near
+
+   !> Whether a vertex, not near an edge's first end, is near the edge and far from its second end
+   pure logical function above_edge(blocks, corners, i, j, reach)
+      !> The blocks
+      type(limerick_blocks_t), intent(in) :: blocks
+      !> Their corners
+      type(corners_t), intent(in) :: corners
+      !> The vertex
+      integer, intent(in) :: i
+      !> Where the edge starts
+      integer, intent(in) :: j
+      !> Distance [m]
+      real(wp), intent(in) :: reach
+      real(wp) :: edge(2), arm(2), square
+
+      edge = blocks%vertex(:, blocks%next(j)) - blocks%vertex(:, j)
+      arm = blocks%vertex(:, i) - blocks%vertex(:, j)
+      square = corners%length(j)**2
+      above_edge = abs(edge(1)*arm(2) - edge(2)*arm(1)) <= reach*corners%length(j)
+      if (above_edge) above_edge = abs(edge(1)*arm(1) + edge(2)*arm(2) - square/2.0_wp) &
+         & <= square/2.0_wp
+      if (above_edge) above_edge = .not. near(blocks, i, blocks%next(j), reach)
+   end function above_edge
+
+   !> Two vertices near one another: two convex corners, or a corner in a concave one, which meets
+   !> both its edges
+   pure subroutine meet_vertices(blocks, corners, i, j, overlap_deg, list)
+      !> The blocks
+      type(limerick_blocks_t), intent(in) :: blocks
+      !> Their corners
+      type(corners_t), intent(in) :: corners
+      !> Vertex of the first block
+      integer, intent(in) :: i
+      !> Vertex of the second block
+      integer, intent(in) :: j
+      !> Overlap that is overlooked [deg]
+      real(wp), intent(in) :: overlap_deg
+      !> Receives the contacts
+      type(contact_list_t), intent(inout) :: list
+
+      if (corners%angle(i) >= straight) then
+         call meet_edge(blocks, corners, j, i, overlap_deg, list)
+         call meet_edge(blocks, corners, j, blocks%previous(i), overlap_deg, list)
+      else if (corners%angle(j) >= straight) then
+         call meet_edge(blocks, corners, i, j, overlap_deg, list)
+         call meet_edge(blocks, corners, i, blocks%previous(j), overlap_deg, list)
+      else
+         call meet_corner(blocks, corners, i, j, overlap_deg, list)
+      end if
+   end subroutine meet_vertices
+
+   !> A vertex and an edge become a contact unless the corner would have to lie inside the edge's
+   !> block
+   pure subroutine meet_edge(blocks, corners, i, j, overlap_deg, list)
+      !> The blocks
+      type(limerick_blocks_t), intent(in) :: blocks
+      !> Their corners
+      type(corners_t), intent(in) :: corners
+      !> The vertex
+      integer, intent(in) :: i
+      !> Where the edge starts
+      integer, intent(in) :: j
+      !> Overlap that is overlooked [deg]
+      real(wp), intent(in) :: overlap_deg
+      !> Receives the contact
+      type(contact_list_t), intent(inout) :: list
+      type(limerick_contact_t) :: contact
+      real(wp) :: between
+
+      if (overlap(corners%direction(i), corners%angle(i), corners%direction(j), 180.0_wp, &
+         & overlap_deg)) return
+      contact%vertex(:, 1) = [i, blocks%next(j), j]
+      between = turn(corners%direction(i), corners%direction(j))
+      if (between - corners%angle(i) < overlap_deg) contact%beside = blocks%previous(i)
+      if (180.0_wp - between < overlap_deg) contact%beside = blocks%next(i)
+      call settle(blocks, contact, list)
+   end subroutine meet_edge
+
+   !> Two convex corners: where edges of theirs lie together, a vertex and an edge each; otherwise a
+   !> contact of two corners
+   pure subroutine meet_corner(blocks, corners, i, j, overlap_deg, list)
+      !> The blocks
+      type(limerick_blocks_t), intent(in) :: blocks
+      !> Their corners
+      type(corners_t), intent(in) :: corners
+      !> Vertex of the first block
+      integer, intent(in) :: i
+      !> Vertex of the second block
+      integer, intent(in) :: j
+      !> Overlap that is overlooked [deg]
+      real(wp), intent(in) :: overlap_deg
+      !> Receives the contacts
+      type(contact_list_t), intent(inout) :: list
+      type(limerick_contact_t) :: contact
+      real(wp) :: between
+      logical :: parallel(2)
+
+      if (overlap(corners%direction(i), corners%angle(i), corners%direction(j), &
+         & corners%angle(j), overlap_deg)) return
+      between = turn(corners%direction(i), corners%direction(j))
+      parallel(1) = 360.0_wp - between - corners%angle(j) < overlap_deg
+      parallel(2) = between - corners%angle(i) < overlap_deg
+      contact%n_line = 2
+      if (parallel(1)) then
+         contact%vertex(:, 1) = [i, j, blocks%previous(j)]
+         contact%vertex(:, 2) = [j, blocks%next(i), i]
+         contact%beside = blocks%next(i)
+         call settle_pair(blocks, contact, list)
+      end if
+      if (parallel(2)) then
+         contact%vertex(:, 1) = [j, i, blocks%previous(i)]
+         contact%vertex(:, 2) = [i, blocks%next(j), j]
+         call settle_pair(blocks, contact, list)
+      end if
+      if (any(parallel)) return
+      contact%corner = .true.
+      contact%vertex = entrance_lines(blocks, corners, i, j, overlap_deg)
+      call settle(blocks, contact, list)
+   end subroutine meet_corner
+
+   !> Of two edges that lie together, the vertex whose foot lies on the other edge makes the contact
+   pure subroutine settle_pair(blocks, contact, list)
+      !> The blocks
+      type(limerick_blocks_t), intent(in) :: blocks
+      !> The contact, either line first
+      type(limerick_contact_t), intent(in) :: contact
+      !> Receives the contact
+      type(contact_list_t), intent(inout) :: list
+      type(limerick_contact_t) :: settled
+      real(wp), dimension(2) :: p1, p2, p3
+
+      settled = contact
+      p1 = blocks%vertex(:, contact%vertex(1, 1))
+      p2 = blocks%vertex(:, contact%vertex(2, 1))
+      p3 = blocks%vertex(:, contact%vertex(3, 1))
+      if (dot_product(p2 - p1, p3 - p1) > 0.0_wp) settled%vertex = contact%vertex(:, [2, 1])
+      associate (second => settled%vertex(:, 2))
+         settled%beside = merge(second(3), second(2), second(2) == settled%vertex(1, 1))
+      end associate
+      call settle(blocks, settled, list)
+   end subroutine settle_pair
+
+   !> Append a contact with its blocks
+   pure subroutine settle(blocks, contact, list)
+      !> The blocks
+      type(limerick_blocks_t), intent(in) :: blocks
+      !> The contact
+      type(limerick_contact_t), intent(in) :: contact
+      !> Receives the contact
+      type(contact_list_t), intent(inout) :: list
+      type(limerick_contact_t) :: settled
+
+      settled = contact
+      settled%block = blocks%owner(contact%vertex(1:2, 1))
+      call append_contact(list, settled)
+   end subroutine settle
+end module dda_limerick_detection

@@ -1,0 +1,203 @@
+!> The open-close loop of the original (Shi: df18 to df22)
+module dda_limerick_open_close
+   use dda_block_factor, only : factorise, substitute
+   use dda_kinds, only : wp
+   use dda_limerick_assembly, only : add_contacts, limerick_equations_t
+   use dda_limerick_contact, only : contact_list_t, contact_spring_t, limerick_contact_t, &
+      & place_shear_spring, projection
+   use dda_limerick_model, only : limerick_constants_t, limerick_model_t
+   use dda_limerick_state, only : contact_state, limerick_blocks_t, limerick_march_t
+   use dda_deformation, only : displacement_matrix
+   use dda_material, only : joint_law_t
+   implicit none
+   private
+
+   public :: iterate_open_close
+
+   !> Most passes of one attempt
+   integer, parameter :: max_passes = 8
+   !> Slip back by less than this share of the half size does not lock a sliding contact
+   real(wp), parameter :: reversal = 1.0e-7_wp
+   !> Joints of less friction stay sliding when they slip back: tangent of 0.9 degrees
+   real(wp), parameter :: slippery = 0.0157092553236649_wp
+
+contains
+
+   !> Solve and judge until no contact opens or closes
+   pure subroutine iterate_open_close(model, blocks, contacts, spring, march, first_pass, &
+      & equations, settled)
+      !> The model
+      type(limerick_model_t), intent(in) :: model
+      !> The blocks
+      type(limerick_blocks_t), intent(in) :: blocks
+      !> The contacts; their states are changed
+      type(contact_list_t), intent(inout) :: contacts
+      !> Their springs; a shear spring is set anew where a contact closes: (at least contacts%n)
+      type(contact_spring_t), intent(inout) :: spring(:)
+      !> The march
+      type(limerick_march_t), intent(inout) :: march
+      !> Whether nothing was solved in this step yet; then it was
+      logical, intent(inout) :: first_pass
+      !> The equations; the motion is set
+      type(limerick_equations_t), intent(inout) :: equations
+      !> Whether no contact opened or closed in the last pass
+      logical, intent(out) :: settled
+      integer :: pass, c
+
+      settled = .false.
+      do pass = 1, max_passes
+         call add_contacts(model, contacts, spring, march, first_pass, equations)
+         call factorise(equations%matrix, equations%factor)
+         if (.not. equations%factor%usable) return
+         call substitute(equations%factor, equations%motion)
+         first_pass = .false.
+         march%passes = march%passes + 1
+         ! the very first solution of a run never counts as settled
+         settled = march%passes > 1
+         do c = 1, contacts%n
+            associate (contact => contacts%item(c))
+               call judge_contact(model, blocks, equations%motion, march, contact, spring(c))
+               if ((contact%state == contact_state%open) &
+                  & .neqv. (contact%before == contact_state%open)) settled = .false.
+            end associate
+         end do
+         march%used_penalty = march%penalty
+         if (settled) return
+      end do
+   end subroutine iterate_open_close
+
+   !> The state of one contact after a solution
+   pure subroutine judge_contact(model, blocks, motion, march, contact, spring)
+      !> The model
+      type(limerick_model_t), intent(in) :: model
+      !> The blocks
+      type(limerick_blocks_t), intent(in) :: blocks
+      !> Motion of the blocks: (6, n_block)
+      real(wp), intent(in) :: motion(:, :)
+      !> The march
+      type(limerick_march_t), intent(in) :: march
+      !> The contact
+      type(limerick_contact_t), intent(inout) :: contact
+      !> Its springs
+      type(contact_spring_t), intent(inout) :: spring
+      real(wp) :: gap(2)
+
+      associate (a => motion(:, contact%block(1)), b => motion(:, contact%block(2)), &
+         & law => model%law(model%edge_law(contact%vertex(3, 1))))
+         contact%before = contact%state
+         gap(1) = spring%gap(1) + dot(spring%normal(:, 1, 1), a) + dot(spring%normal(:, 2, 1), b)
+         gap(2) = gap(1)
+         if (contact%corner) gap(2) = spring%gap(2) + dot(spring%normal(:, 1, 2), a) &
+            & + dot(spring%normal(:, 2, 2), b)
+         call judge_opening(model%constants, law, march, gap, contact)
+         if (contact%corner .or. contact%state == contact_state%open) return
+         if (contact%before == contact_state%open) &
+            & call set_shear_spring(blocks, motion, march%half_size, contact, spring)
+         call judge_slip(model%constants, law, march, &
+            & spring%shear + dot(spring%along(:, 1), a) + dot(spring%along(:, 2), b), contact)
+      end associate
+   end subroutine judge_contact
+
+   !> Open or closed; of two corners, at which line: that which is penetrated less
+   pure subroutine judge_opening(constants, law, march, gap, contact)
+      !> Constants of the scheme
+      type(limerick_constants_t), intent(in) :: constants
+      !> Law of the joint
+      type(joint_law_t), intent(in) :: law
+      !> The march
+      type(limerick_march_t), intent(in) :: march
+      !> Opening at both lines: (2) [m]
+      real(wp), intent(in) :: gap(2)
+      !> The contact; state and gap are set
+      type(limerick_contact_t), intent(inout) :: contact
+      real(wp) :: sprung, held
+      logical :: opens
+
+      contact%state = merge(contact_state%sliding, contact_state%second_line, gap(1) >= gap(2))
+      contact%gap = maxval(gap)
+      if (contact%before == contact_state%open) then
+         opens = contact%gap > -constants%close_ratio*march%half_size
+      else
+         ! judged at the line that has the spring
+         sprung = gap(merge(2, 1, contact%before == contact_state%second_line))
+         held = 0.0_wp
+         if (contact%bonded .and. .not. contact%corner) &
+            & held = law%tension*contact%length/march%penalty
+         opens = sprung > held + constants%open_ratio*march%half_size
+      end if
+      if (opens) contact%state = contact_state%open
+   end subroutine judge_opening
+
+   !> Locked or sliding: by the strength of a contact that closes or was locked, by the direction of
+   !> slip if it was sliding
+   pure subroutine judge_slip(constants, law, march, slip, contact)
+      !> Constants of the scheme
+      type(limerick_constants_t), intent(in) :: constants
+      !> Law of the joint
+      type(joint_law_t), intent(in) :: law
+      !> The march
+      type(limerick_march_t), intent(in) :: march
+      !> Slip since the shear spring was set [m]
+      real(wp), intent(in) :: slip
+      !> The contact of a vertex and an edge, closed; state and slip are set
+      type(limerick_contact_t), intent(inout) :: contact
+      real(wp) :: last, strength
+      logical :: locks
+
+      last = contact%shear
+      contact%shear = slip
+      select case (contact%before)
+      case (contact_state%open)
+         locks = abs(slip) < abs(law%friction*contact%gap)
+      case (contact_state%locked)
+         strength = max(0.0_wp, -contact%gap)*law%friction
+         if (contact%bonded) strength = strength + law%cohesion*contact%length/march%penalty
+         locks = strength > abs(slip)/constants%stiffness_ratio
+      case default
+         locks = law%friction > slippery .and. abs(slip) > reversal*march%half_size &
+            & .and. last*slip < 0.0_wp
+      end select
+      contact%state = merge(contact_state%locked, contact_state%sliding, locks)
+   end subroutine judge_slip
+
+   !> A contact that closes gets its shear spring where the vertex meets the edge
+   pure subroutine set_shear_spring(blocks, motion, half_size, contact, spring)
+      !> The blocks
+      type(limerick_blocks_t), intent(in) :: blocks
+      !> Motion of the blocks: (6, n_block)
+      real(wp), intent(in) :: motion(:, :)
+      !> Half the larger side of the model [m]
+      real(wp), intent(in) :: half_size
+      !> The contact; its place is set
+      type(limerick_contact_t), intent(inout) :: contact
+      !> Its springs; the shear spring is set
+      type(contact_spring_t), intent(inout) :: spring
+      real(wp) :: at(2, 3), share, closing
+      integer :: k, b, v
+
+      ! part of the step after which the opening is zero
+      closing = contact%gap - spring%gap(1)
+      share = 0.0_wp
+      if (spring%gap(1) >= 0.0_wp .and. &
+         & abs(closing)*spring%edge_length >= 1.0e-9_wp*half_size**2) &
+         & share = min(max(-spring%gap(1)/closing, 0.0_wp), 1.0_wp)
+      do k = 1, 3
+         v = contact%vertex(k, 1)
+         b = blocks%owner(v)
+         at(:, k) = blocks%vertex(:, v) + share*matmul( &
+            & displacement_matrix(blocks%vertex(:, v), blocks%centroid(:, b)), motion(:, b))
+      end do
+      contact%place = projection(at(:, 1), at(:, 2), at(:, 3))
+      call place_shear_spring(blocks, contact, spring)
+   end subroutine set_shear_spring
+
+   !> Scalar product of six numbers
+   pure real(wp) function dot(a, b)
+      !> First row: (6)
+      real(wp), intent(in) :: a(6)
+      !> Second row: (6)
+      real(wp), intent(in) :: b(6)
+
+      dot = a(1)*b(1) + a(2)*b(2) + a(3)*b(3) + a(4)*b(4) + a(5)*b(5) + a(6)*b(6)
+   end function dot
+end module dda_limerick_open_close

@@ -1,0 +1,281 @@
+!> An arch as lines, points and an analysis in the conventions of the Limerick line: abutments are
+!> blocks with fixed points, joints overshoot the ring a little
+module dda_arch_lines
+   use dda_arch_scene, only : arch_scene, unit_weight
+   use dda_block_system, only : block_system_t
+   use dda_deck, only : deck_error, deck_t, is_given, real_of, word_of
+   use dda_deck_keys, only : key_index
+   use dda_error, only : error_t
+   use dda_kinds, only : wp
+   use dda_limerick_analysis, only : limerick_analysis_t, limerick_joint_t, limerick_material_t
+   use dda_limerick_model, only : limerick_constants_t
+   use dda_limerick_scene, only : abutment_sides, set_constants
+   use dda_line_model, only : add_entity, line_model_t, new_entities
+   use dda_scene, only : scene_t
+   use dda_text, only : to_text
+   use dda_vector, only : along, right_normal
+   implicit none
+   private
+
+   public :: arch_lines, arch_analysis, what_is_lost
+
+   !> How far a joint overshoots the ring, over its length
+   real(wp), parameter :: overshoot = 0.02_wp
+   !> Where the fixed points of an abutment lie, over its sides
+   real(wp), parameter :: inset = 0.15_wp
+   !> Largest edge-node distance ratio that is written
+   real(wp), parameter :: largest_ratio = 0.01_wp
+   !> The angle that stands for joints that cannot slide [deg]
+   real(wp), parameter :: no_slip_deg = 89.9_wp
+
+contains
+
+   !> The lines and fixed points of an arch
+   pure subroutine arch_lines(deck, model, error)
+      !> The deck of a case, with an arch
+      type(deck_t), intent(in) :: deck
+      !> The lines
+      type(line_model_t), intent(out) :: model
+      !> Abutments that are too large to lie side by side
+      type(error_t), allocatable, intent(out) :: error
+      type(scene_t) :: scene
+      real(wp) :: depth, overhang, corner(2, 4, 2)
+      integer :: n, b, side
+
+      call arch_scene(deck, scene)
+      n = size(scene%system%area) - 2
+      call abutment_sides(deck, depth, overhang)
+      do side = 1, 2
+         corner(:, :, side) = abutment(scene%system, n + side, side == 2, depth, overhang)
+      end do
+      if (maxval(corner(1, :, 1)) >= 0.0_wp .or. minval(corner(1, :, 2)) <= 0.0_wp) then
+         call deck_error(error, "an abutment smaller than "//to_text(depth) &
+            & //" m is wanted: the two meet below the arch (arch%abutment_size)", deck, &
+            & deck%value(key_index("arch", "abutment_size"))%place)
+         return
+      end if
+      model%file = deck%file
+      call new_entities(model%line, 6*n)
+      call new_entities(model%fixed, 8)
+      call new_entities(model%material_line, 0)
+      call new_entities(model%load, 0)
+      call new_entities(model%measured, 0)
+      call new_entities(model%hole, 0)
+      call new_entities(model%seismic, 0)
+      do b = 1, n
+         call add_chords(scene%system, b, model)
+      end do
+      do b = 1, n - 1
+         call add_joint(scene%system, b, model)
+      end do
+      do side = 1, 2
+         call add_abutment(corner(:, :, side), face_material(deck), model)
+      end do
+      model%edge_node_ratio = edge_node_ratio(model)
+   end subroutine arch_lines
+
+   !> Corners of an abutment: the face first, from the intrados to the extrados, prolonged on both
+   !> sides
+   pure function abutment(system, springing, is_right, size, overhang) result(corner)
+      !> The blocks of the arch
+      type(block_system_t), intent(in) :: system
+      !> Number of the springing block, whose fourth edge is the joint
+      integer, intent(in) :: springing
+      !> Whether it is the right one
+      logical, intent(in) :: is_right
+      !> Its depth [m]
+      real(wp), intent(in) :: size
+      !> How far it reaches beyond the joint at either end [m]
+      real(wp), intent(in) :: overhang
+      !> The corners: (2, 4) [m]
+      real(wp) :: corner(2, 4)
+      real(wp) :: direction(2), depth(2)
+      integer :: first
+
+      first = system%first_vertex(springing)
+      corner(:, 1:2) = system%vertex(:, [first + 3, first])
+      ! the edge of the right springing runs from the extrados to the intrados
+      if (is_right) corner(:, 1:2) = corner(:, [2, 1])
+      direction = along(corner(:, 1), corner(:, 2))
+      depth = size*right_normal(direction)
+      if (.not. is_right) depth = -depth
+      corner(:, 1) = corner(:, 1) - overhang*direction
+      corner(:, 2) = corner(:, 2) + overhang*direction
+      corner(:, 3) = corner(:, 2) + depth
+      corner(:, 4) = corner(:, 1) + depth
+   end function abutment
+
+   !> Chords of a voussoir at the intrados and at the extrados
+   pure subroutine add_chords(system, block, model)
+      !> The blocks of the arch
+      type(block_system_t), intent(in) :: system
+      !> Number of the voussoir
+      integer, intent(in) :: block
+      !> Receives the chords
+      type(line_model_t), intent(inout) :: model
+      integer :: first, last, k
+
+      first = system%first_vertex(block)
+      last = system%first_vertex(block + 1) - 1
+      do k = 0, (last - first + 1)/2 - 2
+         call add_line(model, system%vertex(:, first + k), system%vertex(:, first + k + 1), 1)
+         call add_line(model, system%vertex(:, last - k), system%vertex(:, last - k - 1), 1)
+      end do
+   end subroutine add_chords
+
+   !> The joint between a voussoir and the next one, a little too long
+   pure subroutine add_joint(system, block, model)
+      !> The blocks of the arch
+      type(block_system_t), intent(in) :: system
+      !> Number of the voussoir on the left
+      integer, intent(in) :: block
+      !> Receives the joint
+      type(line_model_t), intent(inout) :: model
+      real(wp) :: intrados(2), extrados(2), more(2)
+      integer :: first, n
+
+      first = system%first_vertex(block)
+      n = system%first_vertex(block + 1) - first
+      intrados = system%vertex(:, first + n/2 - 1)
+      extrados = system%vertex(:, first + n/2)
+      more = overshoot*(extrados - intrados)
+      call add_line(model, intrados - more, extrados + more, 1)
+   end subroutine add_joint
+
+   !> An abutment with its four fixed points
+   pure subroutine add_abutment(corner, material, model)
+      !> Its corners, the face first: (2, 4) [m]
+      real(wp), intent(in) :: corner(2, 4)
+      !> Joint material of the face
+      integer, intent(in) :: material
+      !> Receives lines and points
+      type(line_model_t), intent(inout) :: model
+      real(wp) :: share(2), point(2)
+      integer :: k, i, j
+
+      do k = 1, 4
+         call add_line(model, corner(:, k), corner(:, 1 + mod(k, 4)), merge(material, 1, k == 1))
+      end do
+      do i = 0, 1
+         do j = 0, 1
+            share = inset + (1.0_wp - 2.0_wp*inset)*real([i, j], wp)
+            point = corner(:, 1) + share(1)*(corner(:, 2) - corner(:, 1)) &
+               & + share(2)*(corner(:, 4) - corner(:, 1))
+            call add_entity(model%fixed, [point, point], 0, 0)
+         end do
+      end do
+   end subroutine add_abutment
+
+   !> Add a line
+   pure subroutine add_line(model, start, finish, material)
+      !> Receives the line
+      type(line_model_t), intent(inout) :: model
+      !> Where it starts: (2) [m]
+      real(wp), intent(in) :: start(2)
+      !> Where it ends: (2) [m]
+      real(wp), intent(in) :: finish(2)
+      !> Joint material
+      integer, intent(in) :: material
+
+      call add_entity(model%line, [start, finish], material, 0)
+   end subroutine add_line
+
+   !> Joint material of the springings: another one where they alone cannot slide
+   pure integer function face_material(deck)
+      !> The deck
+      type(deck_t), intent(in) :: deck
+
+      face_material = 1
+      if (word_of(deck, "arch", "springing") == "no-slip") face_material = 2
+   end function face_material
+
+   !> An edge-node distance ratio that merges no two nodes of the arch: Shi's 0.01, or less where
+   !> edges are short
+   pure real(wp) function edge_node_ratio(model)
+      !> The lines
+      type(line_model_t), intent(in) :: model
+      real(wp) :: shortest, height, width
+      integer :: i
+
+      shortest = huge(shortest)
+      associate (place => model%line%place(:, :model%line%n))
+         do i = 1, model%line%n
+            shortest = min(shortest, norm2(place(3:4, i) - place(1:2, i)))
+         end do
+         width = maxval(place([1, 3], :)) - minval(place([1, 3], :))
+         height = maxval(place([2, 4], :)) - minval(place([2, 4], :))
+      end associate
+      edge_node_ratio = min(largest_ratio, 0.2_wp*shortest/(1.02_wp*max(height/2.0_wp, &
+         & width/2.6_wp)))
+   end function edge_node_ratio
+
+   !> The analysis of an arch, with the constants of the original
+   pure function arch_analysis(deck) result(analysis)
+      !> The deck of a case
+      type(deck_t), intent(in) :: deck
+      !> The analysis
+      type(limerick_analysis_t) :: analysis
+      type(limerick_material_t) :: stone
+      type(limerick_joint_t) :: joint
+
+      analysis%file = deck%file
+      call write_constants(deck, analysis)
+      analysis%plane_strain = word_of(deck, "material", "plane") == "strain"
+      stone%density = real_of(deck, "material", "density")
+      stone%unit_weight = unit_weight(deck)
+      stone%young = real_of(deck, "material", "young")
+      stone%poisson = real_of(deck, "material", "poisson")
+      analysis%gravity = stone%unit_weight/stone%density
+      joint%friction_deg = min(real_of(deck, "joint", "friction_deg"), no_slip_deg)
+      joint%cohesion = real_of(deck, "joint", "cohesion")
+      joint%tension = real_of(deck, "joint", "tension")
+      allocate (analysis%material(1), analysis%load(0))
+      analysis%material(1) = stone
+      allocate (analysis%joint(face_material(deck)))
+      analysis%joint = joint
+      analysis%joint(2:)%friction_deg = no_slip_deg
+   end function arch_analysis
+
+   !> The constants of the original's scheme, those of its own mode or its defaults
+   pure subroutine write_constants(deck, analysis)
+      !> The deck of a case
+      type(deck_t), intent(in) :: deck
+      !> Receives the constants
+      type(limerick_analysis_t), intent(inout) :: analysis
+      type(limerick_constants_t) :: constants
+
+      call set_constants(deck, constants)
+      analysis%close_limit = constants%close_ratio
+      analysis%open_limit = constants%open_ratio
+      analysis%spring_penetration = constants%penetration_ratio
+      analysis%overlap_deg = constants%overlap_deg
+      analysis%shear_ratio = constants%stiffness_ratio
+      analysis%auto_penalty = constants%auto_penalty
+      analysis%displacement_ratio = constants%max_displacement_ratio
+      analysis%max_time_step = constants%time_step
+      analysis%steps = constants%max_steps
+      analysis%dynamic = constants%dynamic .or. word_of(deck, "analysis", "mode") == "dynamic"
+      analysis%exact_rotation = constants%exact_rotation
+      if (word_of(deck, "analysis", "mode") /= "limerick") return
+      ! in the other modes these keys mean something else
+      analysis%auto_time_step = constants%auto_time_step
+      analysis%penalty_factor = constants%penalty_factor
+   end subroutine write_constants
+
+   !> What the files cannot carry
+   pure function what_is_lost(deck) result(text)
+      !> The deck of a case
+      type(deck_t), intent(in) :: deck
+      !> Keys, parted by commas; empty if nothing is lost
+      character(len=:), allocatable :: text
+
+      text = ""
+      if (abs(real_of(deck, "load", "gravity_direction_deg") + 90.0_wp) > 0.0_wp) &
+         & text = text//", load%gravity_direction_deg"
+      if (abs(real_of(deck, "load", "horizontal_coefficient")) > 0.0_wp) &
+         & text = text//", load%horizontal_coefficient"
+      if (is_given(deck, "analysis", "collapse_displacement")) &
+         & text = text//", analysis%collapse_displacement"
+      if (len(text) > 0) text = text(3:)
+   end function what_is_lost
+end module dda_arch_lines

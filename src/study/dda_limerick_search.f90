@@ -1,0 +1,131 @@
+!> Critical value under the original's scheme: a bracket of two runs, halved
+module dda_limerick_search
+   use dda_decision, only : decision_t
+   use dda_deck, only : deck_t
+   use dda_deck_scene, only : deck_family_t
+   use dda_deck_set, only : number_fits, put_number
+   use dda_error, only : error_t
+   use dda_kinds, only : wp
+   use dda_limerick_decision, only : decide_limerick
+   use dda_search, only : critical_t, search_t
+   use dda_verdict, only : verdict
+   implicit none
+   private
+
+   public :: find_limerick_critical
+
+   !> First step away from the start, over the start; the steps double
+   real(wp), parameter :: first_stride = 0.02_wp
+   !> Most runs of a search
+   integer, parameter :: max_runs = 100
+
+contains
+
+   !> Search the critical value
+   pure subroutine find_limerick_critical(family, search, critical)
+      !> The deck and its parameter
+      type(deck_family_t), intent(in) :: family
+      !> What is searched; where the far end needs no check, the search strides out from the start
+      type(search_t), intent(in) :: search
+      !> What was found
+      type(critical_t), intent(out) :: critical
+      integer :: answer
+
+      critical%current = .true.
+      if (search%check_far_end) then
+         call decide_at(family, search%low, critical, answer)
+         if (answer /= verdict%undecided) call decide_at(family, search%high, critical, answer)
+      else
+         call stride_out(family, search, critical, answer)
+      end if
+      do while (answer /= verdict%undecided .and. both_sides(critical))
+         critical%half = abs(critical%stands - critical%falls)/2.0_wp
+         if (critical%decisions >= max_runs) exit
+         if (2.0_wp*critical%half <= search%tolerance*abs(critical%stands)) then
+            critical%verdict = verdict%found
+            return
+         end if
+         call decide_at(family, (critical%stands + critical%falls)/2.0_wp, critical, answer)
+      end do
+      if (answer == verdict%undecided .or. both_sides(critical)) return
+      critical%verdict = merge(verdict%collapsed, verdict%stable, allocated(critical%fallen))
+   end subroutine find_limerick_critical
+
+   !> Whether a value stands and another falls
+   pure logical function both_sides(critical)
+      !> What was found so far
+      type(critical_t), intent(in) :: critical
+
+      both_sides = allocated(critical%fallen) .and. allocated(critical%standing)
+   end function both_sides
+
+   !> Go up from the start while it falls, or down while it stands, with steps that double
+   pure subroutine stride_out(family, search, critical, answer)
+      !> The deck and its parameter
+      type(deck_family_t), intent(in) :: family
+      !> What is searched
+      type(search_t), intent(in) :: search
+      !> Receives the decisions
+      type(critical_t), intent(inout) :: critical
+      !> The last of them, one of verdict
+      integer, intent(out) :: answer
+      real(wp) :: value, stride
+
+      value = search%start
+      stride = first_stride*search%start
+      do
+         call decide_at(family, value, critical, answer)
+         if (both_sides(critical) .or. answer == verdict%undecided) return
+         if (answer == verdict%collapsed) then
+            if (.not. value < search%high) return
+            value = min(search%high, value + stride)
+         else
+            if (.not. value > search%low) return
+            value = max(search%low, value - stride)
+         end if
+         stride = 2.0_wp*stride
+      end do
+   end subroutine stride_out
+
+   !> Run one value and keep the decision on its side of the bracket
+   pure subroutine decide_at(family, value, critical, answer)
+      !> The deck and its parameter
+      type(deck_family_t), intent(in) :: family
+      !> The value
+      real(wp), intent(in) :: value
+      !> Receives the decision
+      type(critical_t), intent(inout) :: critical
+      !> One of verdict
+      integer, intent(out) :: answer
+      type(decision_t), allocatable :: decision
+      type(error_t), allocatable :: error
+      type(deck_t) :: deck
+
+      answer = verdict%undecided
+      critical%decisions = critical%decisions + 1
+      critical%undecided_at = value
+      critical%reason = "the searched parameter cannot have this value"
+      if (.not. number_fits(family%parameter%key, value)) return
+      deck = family%deck
+      call put_number(deck, family%parameter, value, deck%value(family%parameter%key)%place, error)
+      if (allocated(error)) return
+      allocate (decision)
+      call decide_limerick(deck, decision)
+      critical%steps = critical%steps + decision%outcome%steps
+      critical%passes = critical%passes + decision%outcome%passes
+      critical%factorisations = critical%factorisations + decision%outcome%factorisations
+      answer = decision%outcome%verdict
+      if (allocated(decision%outcome%reason)) critical%reason = decision%outcome%reason
+      if (answer == verdict%completed) then
+         answer = verdict%undecided
+         critical%reason = "a dynamic run ends completed, neither standing nor fallen"
+      end if
+      if (answer == verdict%collapsed) then
+         critical%falls = value
+         call move_alloc(decision, critical%fallen)
+      else if (answer == verdict%stable) then
+         critical%stands = value
+         call move_alloc(decision, critical%standing)
+      end if
+   end subroutine decide_at
+end module dda_limerick_search

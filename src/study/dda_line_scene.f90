@@ -1,0 +1,237 @@
+!> From blocks that were cut from lines to a scene: edges that lie together are joints
+module dda_line_scene
+   use dda_arch_scene, only : joint_law, settings_of, unit_weight
+   use dda_block_system, only : block_system_t, new_block_system
+   use dda_constants, only : degree, pi
+   use dda_contact_detection, only : find_contacts
+   use dda_cut_model, only : cut_model_t, point_kind
+   use dda_deck, only : deck_error, deck_t, is_given, real_of, word_of
+   use dda_deck_keys, only : key_index
+   use dda_edge_split, only : split_edges
+   use dda_error, only : error_t
+   use dda_kinds, only : wp
+   use dda_limerick_analysis, only : limerick_joint_t, limerick_material_t
+   use dda_material, only : friction_coefficient, joint_law_t, material_t
+   use dda_scene, only : scene_t
+   use dda_text, only : to_text
+   implicit none
+   private
+
+   public :: line_scene, check_line_scene, law_of_joint
+
+   !> Friction angles from here on mean that a joint cannot slide [deg]
+   real(wp), parameter :: no_slip_deg = 89.9_wp
+
+contains
+
+   !> The scene of the blocks that a deck's files make
+   pure subroutine line_scene(deck, scene)
+      !> The deck of a case, with its blocks; checked
+      type(deck_t), intent(in) :: deck
+      !> The scene
+      type(scene_t), intent(out) :: scene
+      type(cut_model_t) :: split
+      type(joint_law_t), allocatable :: law(:)
+      integer, allocatable :: edge_pair(:, :)
+      integer :: j, n
+
+      call split_edges(deck%cut, split)
+      call make_system(deck, split, scene%system)
+      split%pair = pack(split%pair, scene%system%equation(split%pair%side(1)) > 0 &
+         & .or. scene%system%equation(split%pair%side(3)) > 0)
+      n = size(split%pair)
+      scene%settings = settings_of(deck, pi/2.0_wp, n)
+      allocate (law(n), edge_pair(4, n), scene%joint_angle_deg(n))
+      do j = 1, n
+         law(j) = law_of_joint(deck, split%pair(j)%joint)
+         edge_pair(:, j) = split%pair(j)%side
+         scene%joint_angle_deg(j) = inclination_deg(split%pair(j)%place)
+      end do
+      call find_contacts(scene%system, edge_pair, law, scene%settings%penalty_ratio, &
+         & scene%settings%n_dof, scene%contacts)
+   end subroutine line_scene
+
+   !> Whether this version can run the blocks of a deck
+   pure subroutine check_line_scene(deck, error)
+      !> The deck of a case
+      type(deck_t), intent(in) :: deck
+      !> What it cannot do
+      type(error_t), allocatable, intent(out) :: error
+      type(block_system_t) :: system
+      character(len=:), allocatable :: problem
+      integer :: b
+
+      problem = ""
+      b = pinned_block(deck%cut)
+      call make_system(deck, deck%cut, system)
+      if (b > 0) then
+         problem = "blocks held by two fixed points or more are wanted, block "//to_text(b) &
+            & //" has one: this version has no hinges"
+      else if (all(system%equation == 0)) then
+         problem = "a block that can move is wanted, all are held"
+      else if (has_forces(deck)) then
+         problem = "load points without forces are wanted: this version applies none"
+      else if (.not. any(system%equation(deck%cut%pair%side(1)) > 0 &
+         & .or. system%equation(deck%cut%pair%side(3)) > 0)) then
+         problem = "edges of blocks that lie together are wanted, none were found: this version " &
+            & //"finds no other contacts"
+      else if (word_of(deck, "analysis", "mode") == "static" &
+         & .and. .not. any(system%unit_weight > 0.0_wp .and. system%equation > 0)) then
+         problem = "a weight is wanted for a static analysis, no block that moves has one"
+      end if
+      if (len(problem) > 0) call deck_error(error, "scene%geometry: "//problem, deck, &
+         & deck%value(key_index("scene", "geometry"))%place)
+   end subroutine check_line_scene
+
+   !> The blocks with their materials, weights and states at the beginning
+   pure subroutine make_system(deck, cut, system)
+      !> The deck
+      type(deck_t), intent(in) :: deck
+      !> The blocks, perhaps with more corners than the deck's
+      type(cut_model_t), intent(in) :: cut
+      !> The system
+      type(block_system_t), intent(out) :: system
+      integer :: b, m
+
+      system = new_block_system(cut%first_vertex, cut%vertex, held_blocks(cut), deck_material(deck))
+      system%unit_weight = unit_weight(deck)
+      if (.not. allocated(deck%analysis)) return
+      associate (list => deck%analysis%material)
+         deallocate (system%materials)
+         allocate (system%materials(size(list)))
+         do m = 1, size(list)
+            system%materials(m) = file_material(deck, list(m))
+         end do
+         system%material = cut%material
+         do b = 1, size(cut%area)
+            m = cut%material(b)
+            system%density(b) = system%materials(m)%density
+            if (.not. weight_is_given(deck)) system%unit_weight(b) = list(m)%unit_weight
+            system%stress(:, b) = list(m)%stress + list(m)%stress_gradient &
+               & *(system%centroid(2, b) + cut%scale%origin(2))
+            system%velocity(1:3, b) = list(m)%velocity
+         end do
+      end associate
+   end subroutine make_system
+
+   !> Whether the deck itself says what the blocks weigh
+   pure logical function weight_is_given(deck)
+      !> The deck
+      type(deck_t), intent(in) :: deck
+
+      weight_is_given = is_given(deck, "material", "unit_weight") &
+         & .or. is_given(deck, "material", "density") .or. is_given(deck, "load", "gravity")
+   end function weight_is_given
+
+   !> The material of the deck's keys
+   pure function deck_material(deck) result(material)
+      !> The deck
+      type(deck_t), intent(in) :: deck
+      !> The material
+      type(material_t) :: material
+
+      material%density = real_of(deck, "material", "density")
+      material%young = real_of(deck, "material", "young")
+      material%poisson = real_of(deck, "material", "poisson")
+      material%plane_strain = word_of(deck, "material", "plane") == "strain"
+   end function deck_material
+
+   !> A material of the analysis file; keys that the deck gives go before
+   pure function file_material(deck, listed) result(material)
+      !> The deck
+      type(deck_t), intent(in) :: deck
+      !> What the file says
+      type(limerick_material_t), intent(in) :: listed
+      !> The material
+      type(material_t) :: material
+
+      material = deck_material(deck)
+      if (.not. is_given(deck, "material", "density")) material%density = listed%density
+      if (.not. is_given(deck, "material", "young")) material%young = listed%young
+      if (.not. is_given(deck, "material", "poisson")) material%poisson = listed%poisson
+      if (.not. is_given(deck, "material", "plane")) &
+         & material%plane_strain = deck%analysis%plane_strain
+   end function file_material
+
+   !> The law of a joint; keys that the deck gives go before the analysis file
+   pure function law_of_joint(deck, number) result(law)
+      !> The deck
+      type(deck_t), intent(in) :: deck
+      !> Number of the joint's material
+      integer, intent(in) :: number
+      !> The law
+      type(joint_law_t) :: law
+      type(limerick_joint_t) :: listed
+
+      law = joint_law(deck)
+      if (.not. allocated(deck%analysis)) return
+      listed = deck%analysis%joint(number)
+      if (.not. is_given(deck, "joint", "friction_deg")) then
+         law%no_slip = listed%friction_deg >= no_slip_deg
+         law%friction = 0.0_wp
+         if (.not. law%no_slip) law%friction = friction_coefficient(listed%friction_deg)
+      end if
+      if (.not. is_given(deck, "joint", "cohesion")) law%cohesion = listed%cohesion
+      if (.not. is_given(deck, "joint", "tension")) law%tension = listed%tension
+   end function law_of_joint
+
+   !> Whether forces act on load points
+   pure logical function has_forces(deck)
+      !> The deck
+      type(deck_t), intent(in) :: deck
+      integer :: i
+
+      has_forces = .false.
+      if (.not. allocated(deck%analysis)) return
+      do i = 1, size(deck%analysis%load)
+         if (any(abs(deck%analysis%load(i)%record(2:3, :)) > 0.0_wp)) has_forces = .true.
+      end do
+   end function has_forces
+
+   !> A block with fixed points in one place only, which may turn about it; 0 if there is none
+   pure integer function pinned_block(cut)
+      !> The blocks
+      type(cut_model_t), intent(in) :: cut
+      logical :: held(size(cut%area))
+      integer :: i
+
+      held = held_blocks(cut)
+      pinned_block = 0
+      do i = 1, size(cut%point)
+         if (cut%point(i)%kind == point_kind%fixed .and. .not. held(cut%point(i)%block)) &
+            & pinned_block = cut%point(i)%block
+      end do
+   end function pinned_block
+
+   !> Blocks that cannot move: those with two fixed points apart from one another
+   pure function held_blocks(cut) result(held)
+      !> The blocks
+      type(cut_model_t), intent(in) :: cut
+      !> Whether each is held: (n_block)
+      logical :: held(size(cut%area))
+      integer :: first(size(cut%area)), i
+
+      held = .false.
+      first = 0
+      do i = 1, size(cut%point)
+         if (cut%point(i)%kind /= point_kind%fixed) cycle
+         associate (b => cut%point(i)%block)
+            if (first(b) == 0) first(b) = i
+            if (norm2(cut%point(i)%place - cut%point(first(b))%place) > cut%scale%reach) &
+               & held(b) = .true.
+         end associate
+      end do
+   end function held_blocks
+
+   !> Angle of a joint from the upright, positive to the right, above -90 up to 90: what the angle
+   !> from the crown is to the joints of an arch
+   pure real(wp) function inclination_deg(place)
+      !> Ends of the joint: (4) [m]
+      real(wp), intent(in) :: place(4)
+      real(wp) :: way(2)
+
+      way = place(3:4) - place(1:2)
+      if (way(2) < 0.0_wp .or. (.not. way(2) > 0.0_wp .and. way(1) < 0.0_wp)) way = -way
+      inclination_deg = atan2(way(1), way(2))/degree
+   end function inclination_deg
+end module dda_line_scene

@@ -1,0 +1,247 @@
+#!/usr/bin/env python3
+"""Seeded mutation fuzzer of the readers of Limerick files, and of block cutting.
+
+usage: fuzz_limerick.py --dda build/bin/dda [--mutants N] [--seed N]
+
+Mutates good files of all four forms: geometry and analysis, plain and DDAML.
+Geometries go through `dda cut`, analyses through `dda check` with a deck that
+names them, many files a call. Every file must either be accepted or give one
+line FILE:LINE: error: ... with a line that the file has; the exit status must
+be 0 or 2; nothing may crash or take 10 seconds. The same seed makes the same
+mutants. Ends with status 1 and keeps the files that failed.
+"""
+
+from __future__ import annotations
+
+import argparse
+import random
+import re
+import shutil
+import sys
+import tempfile
+from pathlib import Path
+
+from fuzz_deck import ERROR, cut, run
+
+INPUT = Path(__file__).parents[2] / "input" / "limerick"
+SMALL = """<?xml version="1.0"?>
+<d:DDA xmlns:d="u"><Geometry><Edgenodedist distance="0.01"/>
+<Jointlist><Joint type="1">0 0 1 0</Joint><Joint type="1">1 0 1 1</Joint>
+<Joint type="1">1 1 0 1</Joint><Joint type="1">0 1 0 0</Joint></Jointlist>
+<Fixedpointlist><Line> -0.5 0.5 1.5 0.5 </Line></Fixedpointlist></Geometry></d:DDA>
+"""
+SQUARES = "0.01\n5 4\n0\n0\n1\n0\n0\n0\n0 0 2 0 1\n2 0 2 1 1\n2 1 0 1 1\n0 1 0 0 1\n1 0 1 1 2\n"
+FAN = "0.001\n12 0 0 0 0 0 0 0\n" + "".join(
+    f"{5 - dx} {5 - dy} {5 + dx} {5 + dy} 1\n" for dx, dy in ((5, 0), (5, 1), (5, 1e-4), (0, 5))
+) + "".join(f"{a} {b} {c} {d} 1\n" for a, b, c, d in (
+    (0, 0, 10, 0), (10, 0, 10, 10), (10, 10, 0, 10), (0, 10, 0, 0),
+    (1, 1, 9, 1), (1, 1, 1, 9), (9, 1, 9, 9), (1, 9, 9, 9)))
+SEEDS = {
+    "plain.geo": [(INPUT / "terrace.geo").read_bytes(), SQUARES.encode() + b"0.5 0.5 0.5 0.5\n",
+                  FAN.encode()],
+    "ddaml.geo": [(INPUT / "terrace_ddaml.geo").read_bytes(), SMALL.encode()],
+    "plain.ana": [(INPUT / "terrace.ana").read_bytes()],
+    "ddaml.ana": [(INPUT / "terrace_ddaml.ana").read_bytes()],
+}
+NUMBERS = b"""0 1 -1 2 3 17 0.5 1e-9 1e-300 1e300 1e308 1e309 -1e15 1e15 2e15 99999999 2147483648 nan
+inf -inf 1,5 1d3 0x10 1.2.3 1e 3.9999999 0.4999999 5.0000001 1e-16""".split()
+WORDS = b"""< > & / ; " ' <!-- --> <?x?> <![CDATA[ ]]> &amp; &e; &#48; type="1" type="0" type=""
+<Joint> </Joint> <Point/> <Line> </Line> <Geometry> </Geometry> <Analysis> </Analysis> <Boltlist>
+<Bolt> </Bolt> <Holepointlist> numpoints="2" flag="yes" flag="" value="nan" <!DOCTYPE]>
+<!DOCTYPE\x20a[<!ENTITY\x20e\x20"1">]> #!0xDDA-v1.5 \xc3\xa9 \xff \x00 \xef\xbb\xbf xmlns:q=""".split()
+WORDS += [b"\n", b"\r", b"\r\n", b"\t", b" ", b"\n\n"]
+
+
+def mutate_once(rng: random.Random, text: bytes, seeds: list[bytes]) -> bytes:
+    """Change a file once.
+
+    Parameters
+    ----------
+    rng
+        Source of all choices
+    text
+        The file
+    seeds
+        Good files of the same form
+
+    Returns
+    -------
+    bytes
+        The changed file
+    """
+    first, last = cut(rng, text)
+    kind = rng.randrange(22)
+    if kind == 0:
+        return text[:first] + text[last:]
+    if kind == 1:
+        return text[:last] + text[first:]
+    if kind == 2:
+        return text[:first] + bytes([rng.randrange(256)]) + text[first + 1:]
+    if kind == 3:
+        return text[:first] + rng.choice(WORDS) + text[rng.choice((first, last)):]
+    if kind == 4:
+        lines = text.split(b"\n")
+        rng.shuffle(lines)
+        return b"\n".join(lines)
+    if kind == 5:
+        other = rng.choice(seeds)
+        begin, end = cut(rng, other)
+        return text[:first] + other[begin:end] + text[last:]
+    if kind == 6:
+        return text[:first]
+    if kind == 7:
+        lines = text.split(b"\n")
+        lines.insert(rng.randrange(len(lines)), rng.choice(lines))
+        return b"\n".join(lines)
+    places = list(re.finditer(rb"[-+0-9.e]*[0-9]", text))
+    if not places:
+        return text
+    place = rng.choice(places)
+    new = rng.choice(NUMBERS)
+    if kind > 12:
+        # a number near that of another place, so that lines still meet, or nearly
+        near = rng.choice((0.0, 0.0, 1e-12, -1e-9, 1e-6, 1e-3, 0.01, -0.1, 1.0))
+        try:
+            new = repr(float(rng.choice(places)[0]) + near).encode()
+        except ValueError:
+            pass
+    return text[:place.start()] + new + text[place.end():]
+
+
+def mutant(rng: random.Random, seeds: list[bytes]) -> bytes:
+    """Make a file from a good one by one change or more.
+
+    Parameters
+    ----------
+    rng
+        Source of all choices
+    seeds
+        Good files of one form
+
+    Returns
+    -------
+    bytes
+        The file
+    """
+    text = rng.choice(seeds)
+    for _ in range(rng.choice([1, 1, 2, 3, 6, 12])):
+        text = mutate_once(rng, text, seeds)
+    return text
+
+
+def complaint(status: int | None, lines: list[str], files: list[Path]) -> tuple[str, int]:
+    """Judge the outcome of a call.
+
+    Parameters
+    ----------
+    status
+        Exit status; None for a hang
+    lines
+        What was printed
+    files
+        The mutants
+
+    Returns
+    -------
+    tuple
+        What is broken (empty if nothing is), and how many files were refused
+    """
+    if status is None:
+        return "hang", 0
+    if status not in (0, 2):
+        return f"status {status}: " + " | ".join(lines[-5:]), 0
+    names = {str(path): path for path in files}
+    refused = set()
+    for line in lines:
+        match = ERROR.match(line)
+        if not match:
+            if "error:" in line.lower() or "NaN" in line or "Infinity" in line:
+                return f"not FILE:LINE: error: {line}", 0
+            continue
+        if match["file"] in refused:
+            return f"not one line a file: {line}", 0
+        # a complaint of the geometry about its analysis counts for the analysis
+        text = names[match["file"]].read_bytes() if match["file"] in names else b"\n" * 10**4
+        refused.add(match["file"] if match["file"] in names else line)
+        ends = text.count(b"\n") + text.count(b"\r") - text.count(b"\r\n")
+        if not 1 <= int(match["line"]) <= ends + 1:
+            return f"no such line: {line}", 0
+    if (status == 2) != bool(refused):
+        return f"status {status} with {len(refused)} files refused", 0
+    return "", len(refused)
+
+
+def try_files(dda: str, form: str, files: list[Path], timeout: float) -> tuple[str, int]:
+    """Run the program on mutants of one form and judge it.
+
+    Parameters
+    ----------
+    dda
+        The program
+    form
+        A key of SEEDS
+    files
+        The mutants
+    timeout
+        Seconds that a call may take
+
+    Returns
+    -------
+    tuple
+        As `complaint`
+    """
+    if form.endswith(".geo"):
+        return complaint(*run([dda, "cut"], files, timeout), files)
+    decks = [path.with_suffix(".nml") for path in files]
+    for path, deck in zip(files, decks):
+        deck.write_text(f"&scene kind='lines', geometry='terrace.geo', analysis='{path.name}' /\n")
+    return complaint(*run([dda, "check"], decks, timeout), files)
+
+
+def main() -> int:
+    """Fuzz and report."""
+    parser = argparse.ArgumentParser(description=__doc__,
+                                     formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--dda", required=True, help="the program")
+    parser.add_argument("--mutants", type=int, default=20000)
+    parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--batch", type=int, default=25, help="files a call")
+    parser.add_argument("--timeout", type=float, default=10.0, help="seconds a call")
+    parser.add_argument("--keep", default="fuzz_failed", help="folder for files that failed")
+    options = parser.parse_args()
+    rng = random.Random(options.seed)
+    refused = failed = made = 0
+    with tempfile.TemporaryDirectory() as folder:
+        shutil.copy(INPUT / "terrace.geo", folder)
+        while made < options.mutants:
+            form = list(SEEDS)[made // options.batch % len(SEEDS)]
+            files = [Path(folder) / f"mutant{made + i}.{form}"
+                     for i in range(min(options.batch, options.mutants - made))]
+            made += len(files)
+            for path in files:
+                path.write_bytes(mutant(rng, SEEDS[form]))
+            trouble, count = try_files(options.dda, form, files, options.timeout)
+            if trouble:
+                count = before = 0
+                before = failed
+                for path in files:
+                    here, one = try_files(options.dda, form, [path], options.timeout)
+                    count += one
+                    if here:
+                        failed += 1
+                        Path(options.keep).mkdir(parents=True, exist_ok=True)
+                        shutil.copy(path, options.keep)
+                        print(f"{path.name}: {here}", flush=True)
+                if failed == before:
+                    failed += 1
+                    print(f"only together, from {files[0].name}: {trouble}", flush=True)
+            refused += count
+            for path in files:
+                path.unlink()
+    print(f"{made} mutants, seed {options.seed}: {refused} refused, "
+          f"{made - refused - failed} accepted, {failed} failed")
+    return 1 if failed else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

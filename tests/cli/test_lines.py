@@ -1,0 +1,228 @@
+"""Decks of lines: the same answers as decks of arches, files written by dda export."""
+
+from __future__ import annotations
+
+import csv
+from pathlib import Path
+
+import pytest
+from dda_command import run_dda
+from limerick_files import HAS_XML, HELD, INPUT, SQUARE
+
+
+def row_of(folder: Path, name: str, text: str) -> dict[str, str]:
+    """Run a deck of one case.
+
+    Parameters
+    ----------
+    folder
+        Where the deck goes
+    name
+        Name of the deck without its ending
+    text
+        The deck
+
+    Returns
+    -------
+    dict
+        Its row of results
+    """
+    (folder / f"{name}.nml").write_text(text)
+    done = run_dda("run", f"{name}.nml", cwd=folder)
+    assert done.returncode == 0, done.stderr
+    with (folder / name / "results.csv").open() as table:
+        return next(csv.DictReader(table))
+
+
+@pytest.mark.parametrize("geometry", ["reference", "current"])
+@pytest.mark.parametrize(
+    "arch",
+    [
+        "thickness_ratio=0.12, voussoirs=12",
+        "thickness_ratio=0.115, voussoirs=37, radius=3.7",
+        "thickness_ratio=0.2, joints_deg=0,54.5,90, facet_deg=5",
+        "thickness_ratio=0.06, half_angle_deg=60, voussoirs=24",
+        "thickness_ratio=0.4, half_angle_deg=100, voussoirs=20, abutment_size=1",
+        "thickness_ratio=0.2, voussoirs=15, springing='no-slip'",
+    ],
+)
+def test_an_arch_from_a_file_and_a_generated_one_agree_to_1e12(
+    tmp_path: Path, arch: str, geometry: str
+) -> None:
+    stone = "&material unit_weight=22000, young=5e10 /\n"
+    search = (
+        f"&analysis geometry='{geometry}' /\n"
+        "&search parameter='horizontal_coefficient', low=0, high=1, tolerance=1e-13 /\n"
+    )
+    (tmp_path / "ring.nml").write_text(f"&arch {arch} /\n{stone}")
+    assert run_dda("export", "ring.nml", cwd=tmp_path).returncode == 0
+    generated = row_of(tmp_path, "generated", f"&arch {arch} /\n{stone}{search}")
+    files = [("ring.geo", "ring_plain.ana")] + [("ring_ddaml.geo", "ring.ana")] * HAS_XML
+    for geo, ana in files:
+        scene = f"&scene kind='lines', geometry='{geo}', analysis='{ana}' /\n"
+        read = row_of(tmp_path, "read", scene + search)
+        assert read["verdict"] == generated["verdict"] == "found"
+        assert read["blocks"] == generated["blocks"]
+        assert float(read["critical"]) == pytest.approx(float(generated["critical"]), rel=1e-12)
+
+
+@pytest.mark.skipif(not HAS_XML, reason="this build reads no XML")
+@pytest.mark.parametrize("path", sorted(HELD.glob("arches/*.geo")))
+def test_arches_of_the_original_stand_when_rigid(tmp_path: Path, path: Path) -> None:
+    # both sides of the original's limit are thicker than the exact rigid value
+    ana = HELD / "arches" / "arch20000.ana"
+    text = f"&scene kind='lines', geometry='{path}', analysis='{ana}' /\n"
+    assert row_of(tmp_path, "held", text)["verdict"] == "stable"
+
+
+def test_held_arches_are_there() -> None:
+    if not list(HELD.glob("arches/*.geo")):
+        pytest.skip(f"{HELD} is not here: its arches and examples were not run")
+
+
+def test_a_deck_key_goes_before_the_file(tmp_path: Path) -> None:
+    (tmp_path / "ring.nml").write_text("&arch thickness_ratio=0.12, voussoirs=12 /\n")
+    assert run_dda("export", "ring.nml", cwd=tmp_path).returncode == 0
+    scene = "&scene kind='lines', geometry='ring.geo', analysis='ring_plain.ana' /\n"
+    assert row_of(tmp_path, "a", scene)["verdict"] == "stable"
+    low = row_of(tmp_path, "b", scene + "&joint friction_deg=10 /\n")
+    assert (low["verdict"], low["friction_deg"]) == ("collapsed", "10")
+    found = row_of(tmp_path, "c", scene + "&search parameter='friction_deg' /\n")
+    assert found["verdict"] == "found"
+    same = row_of(tmp_path, "d", "&arch thickness_ratio=0.12, voussoirs=12 /\n"
+                  "&search parameter='friction_deg' /\n")
+    assert float(found["critical"]) == pytest.approx(float(same["critical"]), rel=1e-8)
+
+
+def test_two_steps_and_a_parapet_stand(tmp_path: Path) -> None:
+    text = (INPUT / "terrace.nml").read_text()
+    for name in ("terrace.geo", "terrace.ana"):
+        (tmp_path / name).write_text((INPUT / name).read_text())
+    row = row_of(tmp_path, "terrace", text)
+    assert (row["verdict"], row["blocks"]) == ("stable", "7")
+    # the blocks at the bottom are held: the joints on them carry the weight of all the others
+    with (tmp_path / "terrace" / "joints.csv").open() as table:
+        joints = list(csv.DictReader(table))
+    base = [joint for joint in joints if joint["y_intrados"] == joint["y_extrados"] == "1"]
+    assert len(base) == 3
+    carried = sum(float(joint["normal_force"]) for joint in base)
+    assert carried == pytest.approx(21.9744 * 30.0, rel=1e-9)
+
+
+def test_check_accepts_a_deck_of_lines(tmp_path: Path) -> None:
+    done = run_dda("check", INPUT / "terrace.nml", cwd=tmp_path)
+    assert done.returncode == 0
+    assert "7 that move, 3 held" in done.stdout
+    assert "a load point has no force" in done.stderr
+    assert not list(tmp_path.iterdir())
+
+
+@pytest.mark.parametrize(
+    ("fixed", "loads", "wanted"),
+    [
+        ("0.5 0.5 0.5 0.5\n", 0, "two fixed points"),
+        ("0.2 0.5 0.2 0.5\n0.7 0.5 0.7 0.5\n", 0, "all are held"),
+        ("", 0, "lie together"),
+    ],
+)
+def test_what_cannot_be_run_is_checked_and_refused(
+    tmp_path: Path, fixed: str, loads: int, wanted: str
+) -> None:
+    lines = SQUARE.replace("0\n0\n0\n0 0 1", f"0\n{loads}\n0\n0 0 1", 1).splitlines(True)
+    lines[4] = f"{fixed.count(chr(10))}\n"
+    (tmp_path / "a.geo").write_text("".join(lines) + fixed)
+    (tmp_path / "a.nml").write_text("&scene kind='lines',\n geometry='a.geo' /\n")
+    done = run_dda("check", "a.nml", cwd=tmp_path)
+    assert done.returncode == 0, done.stderr
+    assert wanted in done.stdout
+    done = run_dda("run", "a.nml", cwd=tmp_path)
+    assert done.returncode == 2
+    assert done.stderr.startswith("a.nml:2: error: ")
+    assert wanted in done.stderr
+
+
+@pytest.mark.parametrize(
+    ("deck", "wanted"),
+    [
+        ("&scene kind='lines',\n geometry='b.geo' /", "a.nml:2: error: scene%geometry = 'b.geo': "),
+        ("&scene kind='lines', geometry='a.geo',\n analysis='b' /", "a.nml:2: error: scene%anal"),
+        ("&scene kind='lines', geometry='bad.geo' /", "bad.geo:2: error: "),
+        ("&scene kind='lines', geometry='a.geo', analysis='a.geo' /", "a.geo:1: error: "),
+        ("&scene kind='lines', geometry='two.geo', analysis='a.ana' /", "two.geo:12: error: one of"),
+    ],
+)
+def test_faults_of_the_files_have_their_line(tmp_path: Path, deck: str, wanted: str) -> None:
+    (tmp_path / "a.geo").write_text(SQUARE)
+    (tmp_path / "bad.geo").write_text(SQUARE.replace("4 0", "4 x", 1))
+    (tmp_path / "two.geo").write_text(SQUARE[:-2] + "2\n")
+    (tmp_path / "a.ana").write_text("0 9 1 1 0.01 0.01\n1 1 1 0 0 0 0 0 0 0 0 0 0\n30 0 0\n")
+    (tmp_path / "a.nml").write_text(deck)
+    done = run_dda("check", "a.nml", cwd=tmp_path)
+    assert done.returncode == 2
+    assert done.stderr.startswith(wanted)
+
+
+def test_names_of_files_are_relative_to_the_deck(tmp_path: Path) -> None:
+    (tmp_path / "deep").mkdir()
+    (tmp_path / "deep" / "a.geo").write_text(SQUARE)
+    (tmp_path / "deep" / "a.nml").write_text("&scene kind='lines', geometry='a.geo' /\n")
+    assert run_dda("check", "deep/a.nml", cwd=tmp_path).returncode == 0
+
+
+def test_export_writes_each_case_in_both_forms(tmp_path: Path) -> None:
+    text = "&arch abutment_size=1 /\n&sweep parameter='voussoirs', values=6, 12 /\n"
+    (tmp_path / "ring.nml").write_text(text + "&load horizontal_coefficient=0.1 /\n")
+    done = run_dda("export", "ring.nml", "--out", "files", cwd=tmp_path)
+    assert done.returncode == 0, done.stderr
+    endings = (".geo", "_ddaml.geo", ".ana", "_plain.ana")
+    names = {f"ring_{case}{ending}" for case in (1, 2) for ending in endings}
+    assert {path.name for path in (tmp_path / "files").iterdir()} == names
+    assert "has a place for load%horizontal_coefficient" in done.stdout
+    for case, blocks in ((1, 8), (2, 14)):
+        cut = run_dda("cut", tmp_path / "files" / f"ring_{case}.geo")
+        assert f"{blocks} blocks" in cut.stdout
+        assert "dropped     nothing" in cut.stdout
+
+
+def test_export_follows_the_conventions_of_the_held_arches(tmp_path: Path) -> None:
+    held = HELD / "arches" / "big4.3_N36_hi_0.115020.geo"
+    if not held.exists():
+        pytest.skip(f"{held} is not here")
+    (tmp_path / "a.nml").write_text("&arch thickness_ratio=0.115020, abutment_size=4.3 /\n")
+    assert run_dda("export", "a.nml", cwd=tmp_path).returncode == 0
+    ours, theirs = ((path.read_text().split()) for path in (tmp_path / "a.geo", held))
+    assert len(ours) == len(theirs)
+    assert ours[:9] == theirs[:9]
+    as_pairs = [
+        [sorted(zip(map(float, words[k : k + 4 : 2]), map(float, words[k + 1 : k + 4 : 2])))
+         for k in range(9, 9 + 5 * 115, 5)]
+        for words in (ours, theirs)
+    ]
+    for one, other in zip(*map(sorted, as_pairs)):
+        for a, b in zip(one, other):
+            assert a == pytest.approx(b, abs=1e-11)
+
+
+def test_export_refuses_what_it_cannot_write(tmp_path: Path) -> None:
+    (tmp_path / "a.nml").write_text("&arch\n half_angle_deg=130,\n abutment_size=8 /\n")
+    done = run_dda("export", "a.nml", cwd=tmp_path)
+    assert done.returncode == 2
+    assert done.stderr.startswith("a.nml:3: error: an abutment smaller than 8 m")
+    (tmp_path / "b.nml").write_text("&arch /\n")
+    (tmp_path / "b.geo").mkdir()
+    assert run_dda("export", "b.nml", cwd=tmp_path).returncode == 4
+    assert run_dda("export", INPUT / "terrace.nml", cwd=tmp_path).returncode == 2
+
+
+def test_a_changed_file_of_lines_is_computed_anew(tmp_path: Path) -> None:
+    (tmp_path / "ring.nml").write_text("&arch thickness_ratio=0.12, voussoirs=12 /\n")
+    assert run_dda("export", "ring.nml", cwd=tmp_path).returncode == 0
+    scene = "&scene kind='lines', geometry='ring.geo', analysis='ring_plain.ana' /\n"
+    assert row_of(tmp_path, "a", scene)["verdict"] == "stable"
+    kept = (tmp_path / "a" / "results.csv").read_text()
+    assert run_dda("run", "a.nml", "--resume", cwd=tmp_path).returncode == 0
+    assert (tmp_path / "a" / "results.csv").read_text() == kept
+    (tmp_path / "ring.nml").write_text("&arch thickness_ratio=0.10, voussoirs=12 /\n")
+    assert run_dda("export", "ring.nml", cwd=tmp_path).returncode == 0
+    assert run_dda("run", "a.nml", "--resume", cwd=tmp_path).returncode == 0
+    assert ",collapsed," in (tmp_path / "a" / "results.csv").read_text()
