@@ -3,7 +3,8 @@
 module dda_benchmark
    use couplet_heyman_discrete, only : discrete_critical_equal, discrete_solution_t
    use dda_arch, only : arch_blocks, arch_shape_t, equal_joints
-   use dda_assembly, only : assemble_blocks, equations_t, new_equations, solve_faces
+   use dda_assembly, only : equations_t, new_equations, solve_faces
+   use dda_block_inertia, only : assemble_blocks
    use dda_band_reference, only : band_job_t, new_band_job
    use dda_block_factor, only : factorise, substitute
    use dda_block_system, only : block_system_t

@@ -3,7 +3,7 @@ module dda_check
    use, intrinsic :: iso_fortran_env, only : error_unit, output_unit
    use dda_command_line, only : command_t, name_of
    use dda_deck, only : deck_t, flag_of, has_group, integer_of, text_of, word_of
-   use dda_deck_scene, only : check_deck_scene, deck_scene
+   use dda_deck_scene, only : check_lines, check_scene, deck_scene, warning_line
    use dda_deck_sweep, only : case_deck, n_cases, swept_names
    use dda_cut, only : print_warnings
    use dda_error, only : error_line, error_t
@@ -29,16 +29,20 @@ contains
       integer, intent(out) :: status
       type(deck_t) :: deck
       type(error_t), allocatable :: error
-      integer :: i
+      integer :: i, w
 
       status = exit_status%success
       do i = 1, size(command%name)
          call read_deck(name_of(command, i), command%setting, deck, error)
+         if (.not. allocated(error)) call check_scene(deck, error)
          if (allocated(error)) then
             write (error_unit, "(a)") error_line(error)
             status = exit_status%bad_input
          else if (.not. command%quiet) then
             call print_warnings(deck%warnings)
+            do w = 1, size(deck%plan%warning)
+               write (error_unit, "(a)") warning_line(deck, w)
+            end do
             call print_plan(name_of(command, i), deck)
          end if
       end do
@@ -55,7 +59,9 @@ contains
       type(error_t), allocatable :: error
       character(len=:), allocatable :: swept
       integer :: s, blocks
+      logical :: arch
 
+      arch = word_of(deck, "scene", "kind") == "arch"
       call case_deck(deck, 1, first, error)
       call deck_scene(first, scene)
       blocks = maxval(scene%system%equation)
@@ -73,7 +79,7 @@ contains
       else
          call tell("searched", "nothing: each case is decided as it is")
       end if
-      if (allocated(deck%cut)) call check_deck_scene(deck, error)
+      if (allocated(deck%cut)) call check_lines(deck, error)
       if (allocated(error)) call tell("not to run", error%message)
       write (output_unit, "(a)") "   the first case:"
       if (word_of(first, "analysis", "mode") == "limerick") then
@@ -81,9 +87,11 @@ contains
          return
       end if
       call tell("blocks", to_text(blocks)//" that move, "//to_text(size(scene%system%equation) &
-         & - blocks)//trim(merge(" held             ", " fixed springings ", allocated(deck%cut))))
-      call tell("joints", to_text(size(scene%contacts%joint))//" of two normal springs and one "// &
-         & "shear spring")
+         & - blocks)//trim(merge(" fixed springings", " held            ", arch)))
+      call tell("joints", joints_text(scene))
+      call tell("strength", merge("cohesion or tension, until a joint breaks", &
+         & "none: friction alone                     ", any(scene%contacts%springs%shift > 0.0) &
+         & .or. any(scene%contacts%joint%law%cohesion > 0.0)))
       call print_parts(first, blocks)
    end subroutine print_plan
 
@@ -111,6 +119,27 @@ contains
          & "none: every step starts at rest ", model%constants%dynamic))
    end subroutine print_limerick_plan
 
+   !> The joints and how long they last
+   pure function joints_text(scene) result(text)
+      !> The scene
+      type(scene_t), intent(in) :: scene
+      !> The text
+      character(len=:), allocatable :: text
+      integer :: singles
+
+      singles = count(scene%contacts%joint%n_contact == 1)
+      text = to_text(size(scene%contacts%joint) - singles)//" of two normal springs and one "// &
+         & "shear spring"
+      if (singles > 0) text = text//", "//to_text(singles)//" of one corner before an edge"
+      if (.not. scene%settings%current) then
+         text = text//"; fixed pairs, for the blocks do not move apart in reference geometry"
+      else if (scene%contacts%searched) then
+         text = text//"; searched anew in every step, for the blocks move"
+      else
+         text = text//"; fixed pairs that follow the blocks"
+      end if
+   end function joints_text
+
    !> Print which parts of the method a case needs, and why
    subroutine print_parts(deck, blocks)
       !> The deck of the case
@@ -124,11 +153,6 @@ contains
          & //" in all: "//trim(why(plan%reason)))
       call tell("velocities", trim(merge("kept: mode is dynamic                          ", &
          & "none: every step starts at rest, mode is static", plan%velocities)))
-      call tell("contacts", trim(merge( &
-         & "fixed pairs that follow their blocks: geometry is current", &
-         & "fixed pairs: no block moves in reference geometry        ", plan%moving)))
-      call tell("strength", trim(merge("cohesion or tension, until a joint breaks", &
-         & "none: friction alone                     ", plan%strength)))
       if (plan%shared_forces) then
          call tell("joints.csv", "forces of the arch found to stand once more with 6 unknowns, "// &
             & "for strain shares them out")
@@ -159,7 +183,7 @@ contains
       if (reason == strain_reason%strength) words = "strain, for it says which joint breaks first"
       if (reason == strain_reason%forces) words = "strain, for it shares out the forces of "// &
          & "joints.csv"
-      if (reason == strain_reason%lines) words = "strain, for blocks of lines may break apart"
+      if (reason == strain_reason%blocks) words = "strain, for joints of such blocks may break"
       if (reason == strain_reason%displacement) words = "strain, for it is part of the "// &
          & "displacement that means collapse"
    end function why

@@ -84,20 +84,7 @@ contains
       names = 0
       settings = 0
       takes_decks = .false.
-      if (size(argument) > 0) then
-         select case (argument(1))
-         case ("--help", "-h", "help")
-            command%verb = "help"
-         case ("--version")
-            command%verb = "version"
-         case ("run", "check", "cut", "export")
-            command%verb = argument(1)(:len(command%verb))
-            takes_decks = .true.
-         case default
-            call fatal_error(error, "wanted a subcommand, found '"//shown(trim(argument(1))) &
-               & //"'"//near_one(trim(argument(1)), subcommands)//"; 'dda help' lists all", line=1)
-         end select
-      end if
+      if (size(argument) > 0) call take_subcommand(argument(1), command, takes_decks, error)
       i = 2
       do while (i <= size(argument) .and. .not. allocated(error))
          if (takes_decks .and. argument(i) == "--set" .and. i < size(argument)) then
@@ -155,6 +142,32 @@ contains
          end if
       end if
    end subroutine check_cut
+
+   !> Understand the first argument
+   pure subroutine take_subcommand(word, command, takes_decks, error)
+      !> The argument
+      character(len=*), intent(in) :: word
+      !> Receives the subcommand
+      type(command_t), intent(inout) :: command
+      !> Whether decks and options follow
+      logical, intent(out) :: takes_decks
+      !> Allocated if there is no such subcommand
+      type(error_t), allocatable, intent(out) :: error
+
+      takes_decks = .false.
+      select case (word)
+      case ("--help", "-h", "help")
+         command%verb = "help"
+      case ("--version")
+         command%verb = "version"
+      case ("run", "check", "cut", "export")
+         command%verb = word(:len(command%verb))
+         takes_decks = .true.
+      case default
+         call fatal_error(error, "wanted a subcommand, found '"//shown(trim(word))//"'"// &
+            & near_one(trim(word), subcommands)//"; 'dda help' lists all", line=1)
+      end select
+   end subroutine take_subcommand
 
    !> Understand one option and its value
    pure subroutine take_option(argument, length, i, command, error)

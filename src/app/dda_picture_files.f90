@@ -1,7 +1,6 @@
 !> Pictures of a run as files: VTU with an index for ParaView, CSV for everything else
 module dda_picture_files
    use dda_block_system, only : block_system_t
-   use dda_contact_detection, only : contacts_t
    use dda_error, only : error_t
    use dda_frame_rows, only : contact_states, frame_joint_rows
    use dda_frames, only : album_t, frame_t
@@ -10,18 +9,20 @@ module dda_picture_files
    use dda_table_file, only : append_line, table_file_t
    use dda_text, only : to_text
    use dda_vtu_field, only : field_t, scalar_field, state_field, tensor_field, vector_field
-   use dda_write_frames, only : frame_joint_lines, frame_joint_row_t, frame_lines, frame_stamp_t
+   use dda_write_energy, only : energy_lines
+   use dda_write_frames, only : frame_joint_lines, frame_joint_row_t, frame_lines, frame_stamp_t, &
+      & point_lines
    use dda_write_pvd, only : add_to_index, close_index, open_index, pvd_index_t
    use dda_write_vtu, only : write_points, write_polygons
    implicit none
    private
 
-   public :: write_album
+   public :: write_album, write_track, write_energies
 
 contains
 
    !> Write all pictures of a case
-   subroutine write_album(folder, number, vtu, system, contacts, album, frames, joints, error)
+   subroutine write_album(folder, number, vtu, system, origin, album, frames, joints, error)
       !> Folder of the deck's results
       character(len=*), intent(in) :: folder
       !> Number of the case
@@ -30,8 +31,8 @@ contains
       logical, intent(in) :: vtu
       !> The blocks, for their shapes
       type(block_system_t), intent(in) :: system
-      !> The contacts, for what touches what
-      type(contacts_t), intent(in) :: contacts
+      !> Where the origin of their coordinates is: (2) [m]
+      real(wp), intent(in) :: origin(2)
       !> The pictures
       type(album_t), intent(in) :: album
       !> frames.csv
@@ -44,7 +45,7 @@ contains
       type(frame_stamp_t) :: stamp
       type(frame_joint_row_t), allocatable :: row(:)
       character(len=:), allocatable :: stem
-      integer :: i
+      integer :: i, j
 
       stem = "case_"//to_text(number)
       if (vtu) then
@@ -55,25 +56,80 @@ contains
          if (allocated(error)) return
          associate (frame => album%frame(i))
             stamp = frame_stamp_t(number, i - 1, frame%step, frame%time)
-            row = frame_joint_rows(system, contacts, frame)
-            call append_line(frames, frame_lines(stamp, system%first_vertex, frame%moved), error)
+            row = frame_joint_rows(system, frame)
+            do j = 1, size(row)
+               row(j)%point = row(j)%point + origin
+               row(j)%contact = row(j)%contact + spread(origin, 2, 2)
+            end do
+            call append_line(frames, frame_lines(stamp, system%first_vertex, &
+               & frame%moved + spread(origin, 2, size(frame%moved, 2))), error)
             if (.not. allocated(error)) &
                & call append_line(joints, frame_joint_lines(stamp, row), error)
             if (.not. allocated(error) .and. vtu) call write_picture(folder//"/frames/", &
-               & stem//"_"//to_text(i - 1), system, frame, row, index, real(i - 1, wp), error)
+               & stem//"_"//to_text(i - 1), system, origin, frame, row, index, real(i - 1, wp), &
+               & error)
          end associate
       end do
       if (.not. allocated(error) .and. vtu) call close_index(index, error)
    end subroutine write_album
 
+   !> Write the ways of the measured points of a case
+   subroutine write_track(number, origin, album, points, error)
+      !> Number of the case
+      integer, intent(in) :: number
+      !> Where the origin of the coordinates is: (2) [m]
+      real(wp), intent(in) :: origin(2)
+      !> Holds the ways
+      type(album_t), intent(in) :: album
+      !> points.csv
+      type(table_file_t), intent(in) :: points
+      !> Allocated if they cannot be written
+      type(error_t), allocatable, intent(out) :: error
+      real(wp) :: place(2, size(album%point))
+      integer :: i
+
+      if (album%n_track == 0 .or. size(album%point) == 0) return
+      do i = 1, size(place, 2)
+         place(:, i) = album%point(i)%point
+      end do
+      call append_line(points, point_lines(number, album%when(:, :album%n_track), place, &
+         & album%track(:, :, :album%n_track), origin), error)
+   end subroutine write_track
+
+   !> Write the energies of a case
+   subroutine write_energies(number, album, table, error)
+      !> Number of the case
+      integer, intent(in) :: number
+      !> Holds the energies
+      type(album_t), intent(in) :: album
+      !> energy.csv
+      type(table_file_t), intent(in) :: table
+      !> Allocated if they cannot be written
+      type(error_t), allocatable, intent(out) :: error
+      real(wp) :: value(10, album%audit%n)
+      integer :: i
+
+      if (album%audit%n == 0) return
+      do i = 1, size(value, 2)
+         associate (energy => album%audit%energy(i))
+            value(:, i) = [energy%time, energy%kinetic, energy%elastic, energy%contact, &
+               & energy%gravity, energy%work, energy%friction, energy%damping, energy%impact, &
+               & energy%numerical]
+         end associate
+      end do
+      call append_line(table, energy_lines(number, value), error)
+   end subroutine write_energies
+
    !> Write the blocks and the joint forces of one picture, and tell the index
-   subroutine write_picture(folder, stem, system, frame, row, index, time, error)
+   subroutine write_picture(folder, stem, system, origin, frame, row, index, time, error)
       !> Folder of the pictures, with a slash behind it
       character(len=*), intent(in) :: folder
       !> Name of the picture without ending
       character(len=*), intent(in) :: stem
       !> The blocks, for their shapes
       type(block_system_t), intent(in) :: system
+      !> Where the origin of their coordinates is: (2) [m]
+      real(wp), intent(in) :: origin(2)
       !> The picture
       type(frame_t), intent(in) :: frame
       !> Its joints: (n_joint)
@@ -100,7 +156,8 @@ contains
       of_joints(1) = vector_field("force", force)
       of_joints(2) = state_field("state_first", states(1, :))
       of_joints(3) = state_field("state_second", states(2, :))
-      call write_polygons(folder//stem//".vtu", frame%moved, system%first_vertex, of_corners, &
+      call write_polygons(folder//stem//".vtu", &
+         & frame%moved + spread(origin, 2, size(frame%moved, 2)), system%first_vertex, of_corners, &
          & of_blocks, error)
       if (.not. allocated(error)) &
          & call write_points(folder//stem//"_joints.vtu", place, of_joints, error)

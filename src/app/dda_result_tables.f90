@@ -1,13 +1,14 @@
 !> The tables of one deck's results: begun, added to case by case, closed
 module dda_result_tables
-   use dda_deck, only : deck_t, flag_of, integer_of
+   use dda_deck, only : deck_t, flag_of, has_group, integer_of
    use dda_deck_sweep, only : swept_names, swept_texts
    use dda_error, only : error_t
    use dda_process, only : make_folder
    use dda_table_file, only : append_line, close_table, open_table, remove_file, table_file_t
    use dda_text, only : to_text
    use dda_growing_text, only : add_line, growing_text_t, lines_of
-   use dda_write_frames, only : frame_joints_header, frames_header
+   use dda_write_energy, only : energy_header
+   use dda_write_frames, only : frame_joints_header, frames_header, points_header
    use dda_write_results, only : joint_line, joint_row_t, joints_header, result_row_t, &
       & results_header, results_line
    implicit none
@@ -28,6 +29,10 @@ module dda_result_tables
       integer :: frames = 4
       !> A row a joint of a picture
       integer :: frame_joints = 5
+      !> A row a measured point and step
+      integer :: points = 6
+      !> A row a step
+      integer :: energy = 7
    end type table_enum
 
    !> The places by name
@@ -50,7 +55,7 @@ module dda_result_tables
       !> Name of the folder
       character(len=:), allocatable :: folder
       !> The tables, by their places
-      type(result_table_t) :: at(5)
+      type(result_table_t) :: at(7)
       !> File that holds what was asked for
       character(len=:), allocatable :: record_file
       !> Whether pictures are wanted as VTU too
@@ -89,6 +94,13 @@ contains
       call name_table(tables%at(table%log), "/log.txt", "case verdict remark")
       call name_table(tables%at(table%frames), "/frames.csv", frames_header())
       call name_table(tables%at(table%frame_joints), "/frame_joints.csv", frame_joints_header())
+      call name_table(tables%at(table%points), "/points.csv", points_header())
+      tables%at(table%points)%wanted = .false.
+      if (allocated(deck%plan%boundary%measured)) tables%at(table%points)%wanted = &
+         & size(deck%plan%boundary%measured) > 0 .and. .not. has_group(deck, "search")
+      call name_table(tables%at(table%energy), "/energy.csv", energy_header())
+      tables%at(table%energy)%wanted = flag_of(deck, "output", "energy") &
+         & .and. .not. has_group(deck, "search")
       tables%at(table%joints)%wanted = flag_of(deck, "output", "joints")
       tables%at([table%frames, table%frame_joints])%wanted = &
          & integer_of(deck, "output", "frames") > 0

@@ -5,19 +5,20 @@ module dda_run
    use dda_case_choice, only : choose_cases
    use dda_command_line, only : command_t, name_of
    use dda_cut, only : print_warnings
-   use dda_deck, only : deck_t
+   use dda_deck, only : deck_t, flag_of
    use dda_deck_record, only : deck_record
-   use dda_deck_scene, only : check_deck_scene
    use dda_deck_sweep, only : case_deck, n_cases
+   use dda_deck_scene, only : check_lines, check_scene, warning_line
    use dda_error, only : error_line, error_t, fatal_error
    use dda_help, only : version
-   use dda_picture_files, only : write_album
+   use dda_picture_files, only : write_album, write_energies, write_track
    use dda_process, only : error_is_terminal, exit_status, worst_status
    use dda_progress, only : clear_progress, progress_t, report_progress
    use dda_read_deck, only : read_deck
    use dda_result_tables, only : close_tables, name_tables, open_tables, result_tables_t, &
       & swept_fields, table, write_case
    use dda_resume, only : find_finished, finished_t, reopen_tables
+   use dda_restart, only : save_restart
    use dda_summary, only : print_resumed, print_row, print_total
    use dda_text, only : to_text
    use dda_write_results, only : joint_row_t, result_row_t
@@ -41,19 +42,22 @@ contains
       type(error_t), allocatable :: error
       logical, allocatable :: chosen(:)
       logical :: good(size(command%name))
-      integer :: i, deck_status
+      integer :: i, deck_status, w
 
       allocate (deck(size(command%name)))
       status = exit_status%success
       do i = 1, size(deck)
          call read_deck(name_of(command, i), command%setting, deck(i), error)
-         if (.not. allocated(error) .and. allocated(deck(i)%cut)) &
-            & call check_deck_scene(deck(i), error)
+         if (.not. allocated(error)) call check_scene(deck(i), error)
+         if (.not. allocated(error)) call check_lines(deck(i), error)
          if (.not. command%quiet) call print_warnings(deck(i)%warnings)
          if (.not. allocated(error)) call check_folder(command, i, good(:i - 1), error)
          if (.not. allocated(error)) call choose_cases(command%cases, &
             & n_cases(deck(i)), chosen, error)
          good(i) = .not. allocated(error)
+         do w = 1, merge(size(deck(i)%plan%warning), 0, good(i) .and. .not. command%quiet)
+            write (error_unit, "(a)") warning_line(deck(i), w)
+         end do
          if (good(i)) cycle
          write (error_unit, "(a)") error_line(error)
          status = exit_status%bad_input
@@ -251,8 +255,13 @@ contains
          row%swept = swept_fields(deck, number)
          joint_row%number = number
          if (tables%at(table%frames)%wanted) call write_album(tables%folder, number, &
-            & tables%has_vtu, this%scene%system, this%scene%contacts, this%album, &
+            & tables%has_vtu, this%scene%system, this%scene%origin, this%album, &
             & tables%at(table%frames)%open, tables%at(table%frame_joints)%open, error)
+         if (tables%at(table%points)%wanted .and. .not. allocated(error)) call write_track( &
+            & number, this%scene%origin, this%album, tables%at(table%points)%open, error)
+         if (tables%at(table%energy)%wanted .and. .not. allocated(error)) call write_energies( &
+            & number, this%album, tables%at(table%energy)%open, error)
+         if (.not. allocated(error)) call write_end(tables%folder, number, this, error)
          if (.not. allocated(error)) call write_case(tables, row, joint_row, remark, error)
       end if
       if (.not. allocated(error)) then
@@ -265,4 +274,21 @@ contains
       end if
       !$omp end critical (texts)
    end subroutine run_one_case
+
+   !> Write the end of a dynamic case, to go on from there
+   subroutine write_end(folder, number, this, error)
+      !> Folder of the deck's results
+      character(len=*), intent(in) :: folder
+      !> Number of the case
+      integer, intent(in) :: number
+      !> The case, computed
+      type(case_t), intent(in) :: this
+      !> Allocated if it cannot be written
+      type(error_t), allocatable, intent(out) :: error
+
+      if (.not. flag_of(this%deck, "output", "restart")) return
+      if (.not. this%scene%settings%dynamic .or. allocated(this%error)) return
+      call save_restart(folder//"/case_"//to_text(number)//".restart", this%decision%system, &
+         & this%decision%contacts, this%onward, error)
+   end subroutine write_end
 end module dda_run

@@ -1,29 +1,48 @@
-!> The order of things that have a whole number and a real number each
+!> The order of many numbers
 module dda_sort
+   use, intrinsic :: iso_fortran_env, only : int64
    use dda_kinds, only : wp
    implicit none
    private
 
-   public :: sorted_order
+   public :: sorted_order, rising_order, place_in
 
 contains
 
-   !> Order by a whole number, then by a real one; what is equal keeps its order (merge sort)
+   !> Order by a whole number, then by a real one; what is equal keeps its order
    pure function sorted_order(major, minor) result(order)
       !> What counts first: (n)
       integer, intent(in) :: major(:)
       !> What counts where the first is equal: (n)
       real(wp), intent(in) :: minor(:)
       !> Places of the items, smallest first: (n)
-      integer, allocatable :: order(:)
-      integer, allocatable :: other(:)
-      integer :: i, n, width, start, middle, finish
+      integer :: order(size(major))
 
-      n = size(major)
-      allocate (order(n), other(n))
-      do i = 1, n
-         order(i) = i
-      end do
+      call merge_sort(int(major, int64), minor, order)
+   end function sorted_order
+
+   !> Places of numbers in rising order, equal ones as they came
+   pure function rising_order(number) result(order)
+      !> Any numbers: (n)
+      integer(int64), intent(in) :: number(:)
+      !> number(order) rises: (n)
+      integer :: order(size(number))
+
+      call merge_sort(number, spread(0.0_wp, 1, size(number)), order)
+   end function rising_order
+
+   !> Merge sort from runs of one
+   pure subroutine merge_sort(major, minor, order)
+      !> What counts first: (n)
+      integer(int64), intent(in) :: major(:)
+      !> What counts next: (n)
+      real(wp), intent(in) :: minor(:)
+      !> Places of the items, smallest first: (n)
+      integer, intent(out) :: order(:)
+      integer :: other(size(order)), i, n, width, start, middle, finish
+
+      n = size(order)
+      order = [(i, i=1, n)]
       width = 1
       do while (width < n)
          do start = 1, n, 2*width
@@ -31,17 +50,16 @@ contains
             finish = min(middle + width, n + 1)
             call merge_runs(major, minor, order, start, middle, finish, other)
          end do
-         call move_alloc(other, order)
-         allocate (other(n))
+         order = other
          if (width > n/2) exit
          width = 2*width
       end do
-   end function sorted_order
+   end subroutine merge_sort
 
    !> Merge two sorted runs that lie side by side
    pure subroutine merge_runs(major, minor, order, start, middle, finish, merged)
       !> What counts first: (n)
-      integer, intent(in) :: major(:)
+      integer(int64), intent(in) :: major(:)
       !> What counts next: (n)
       real(wp), intent(in) :: minor(:)
       !> The runs: places start to middle - 1 and middle to finish - 1
@@ -76,7 +94,7 @@ contains
    !> Whether one item comes strictly before another
    pure logical function is_before(major, minor, a, b)
       !> What counts first: (n)
-      integer, intent(in) :: major(:)
+      integer(int64), intent(in) :: major(:)
       !> What counts next: (n)
       real(wp), intent(in) :: minor(:)
       !> One item
@@ -86,4 +104,24 @@ contains
 
       is_before = major(a) < major(b) .or. (major(a) == major(b) .and. minor(a) < minor(b))
    end function is_before
+
+   !> First place of a number among rising ones, or of the next larger
+   pure integer function place_in(rising, number)
+      !> Rising numbers: (n)
+      integer(int64), intent(in) :: rising(:)
+      !> What is looked for
+      integer(int64), intent(in) :: number
+      integer :: above, middle
+
+      place_in = 1
+      above = size(rising) + 1
+      do while (place_in < above)
+         middle = (place_in + above)/2
+         if (rising(middle) < number) then
+            place_in = middle + 1
+         else
+            above = middle
+         end if
+      end do
+   end function place_in
 end module dda_sort

@@ -1,15 +1,16 @@
 !> The contacts of a system and what they carry from step to step (Shi: df04 to df07)
 module dda_contact_detection
    use dda_block_system, only : block_system_t
+   use dda_contact_search, only : joint_search_t
    use dda_contact_types, only : edge_to_edge_joint, joint_t, place_joint
    use dda_friction_cone, only : joint_face_t
-   use dda_joint_springs, only : joint_springs_t, new_joint_springs
+   use dda_joint_springs, only : joint_springs_t, mohr_coulomb, new_joint_springs
    use dda_kinds, only : wp
    use dda_material, only : joint_law_t
    implicit none
    private
 
-   public :: contacts_t, find_contacts, follow_contacts
+   public :: contacts_t, find_contacts, follow_contacts, set_joints, set_strength
 
    !> Joints with their springs, states and forces
    type :: contacts_t
@@ -31,6 +32,12 @@ module dda_contact_detection
       real(wp), allocatable :: past_slip(:)
       !> Contacts whose cohesion and tensile strength are spent: (2, n_joint)
       logical, allocatable :: broken(:, :)
+      !> Whether blocks that move are searched for new contacts; otherwise the joints stay as given
+      logical :: searched = .false.
+      !> Whether found contacts remember their slip; in time what sticks has no speed to slip with
+      logical :: remember = .true.
+      !> The search
+      type(joint_search_t) :: search
    end type contacts_t
 
 contains
@@ -50,24 +57,58 @@ contains
       integer, intent(in) :: n_dof
       !> The contacts
       type(contacts_t), intent(out) :: contacts
-      integer :: j, n
+      type(joint_t), allocatable :: joint(:)
+      integer :: j
 
-      n = size(edge_pair, 2)
-      allocate (contacts%joint(n), contacts%face(n), contacts%broken(2, n), contacts%past_slip(n))
-      allocate (contacts%trial(3, n), contacts%force(3, n), contacts%gap(3, n))
-      allocate (contacts%increment(3, n))
-      do j = 1, n
-         contacts%joint(j) = edge_to_edge_joint(system, edge_pair(:, j), law(j))
+      allocate (joint(size(edge_pair, 2)))
+      do j = 1, size(joint)
+         joint(j) = edge_to_edge_joint(system, edge_pair(:, j), law(j))
       end do
-      call new_joint_springs(system, system%centroid, contacts%joint, penalty_ratio, n_dof, &
-         & contacts%springs)
-      contacts%broken = .false.
-      contacts%past_slip = 0.0_wp
-      contacts%trial = 0.0_wp
-      contacts%force = 0.0_wp
-      contacts%gap = 0.0_wp
-      contacts%increment = 0.0_wp
+      call set_joints(system, system%centroid, joint, penalty_ratio, n_dof, contacts)
    end subroutine find_contacts
+
+   !> Take these joints, closed, whole and free of force
+   pure subroutine set_joints(system, centroid, joint, penalty_ratio, n_dof, contacts)
+      !> The blocks
+      type(block_system_t), intent(in) :: system
+      !> Their centres of gravity: (2, n_block) [m]
+      real(wp), intent(in) :: centroid(:, :)
+      !> The joints, placed: (n_joint)
+      type(joint_t), intent(in) :: joint(:)
+      !> Contact stiffness over the stiffness of the block across the joint
+      real(wp), intent(in) :: penalty_ratio
+      !> Unknowns of one block
+      integer, intent(in) :: n_dof
+      !> The contacts; their search is kept
+      type(contacts_t), intent(inout) :: contacts
+      type(contacts_t) :: fresh
+      integer :: n
+
+      n = size(joint)
+      fresh%searched = contacts%searched
+      fresh%remember = contacts%remember
+      fresh%search = contacts%search
+      allocate (fresh%joint, source=joint)
+      allocate (fresh%face(n), fresh%past_slip(n))
+      allocate (fresh%broken(2, n), source=.false.)
+      allocate (fresh%trial(3, n), source=0.0_wp)
+      allocate (fresh%force, fresh%gap, fresh%increment, source=fresh%trial)
+      fresh%past_slip = 0.0_wp
+      call new_joint_springs(system, centroid, joint, penalty_ratio, n_dof, fresh%springs)
+      contacts = fresh
+   end subroutine set_joints
+
+   !> Bounds of the forces by what is left of cohesion and tensile strength
+   pure subroutine set_strength(contacts)
+      !> The contacts
+      type(contacts_t), intent(inout) :: contacts
+      integer :: j
+
+      do j = 1, size(contacts%joint)
+         call mohr_coulomb(contacts%joint(j), contacts%broken(:, j), contacts%springs%cone(j), &
+            & contacts%springs%shift(:, j))
+      end do
+   end subroutine set_strength
 
    !> Joints where the blocks are now: rows anew, openings measured, and the forces of the step
    !> before

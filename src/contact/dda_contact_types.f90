@@ -8,7 +8,7 @@ module dda_contact_types
    implicit none
    private
 
-   public :: contact_t, joint_t, edge_to_edge_joint, place_joint, vertex_number
+   public :: contact_t, joint_t, edge_to_edge_joint, place_joint, slip_at, vertex_number
 
    !> A vertex of one block against an edge of another
    type :: contact_t
@@ -20,30 +20,44 @@ module dda_contact_types
       integer :: edge_block = 0
       !> Number of the edge within its block; edge k runs from vertex k to vertex k + 1
       integer :: edge = 0
+      !> Which of the joint's two blocks owns the edge
+      integer :: edge_side = 1
       !> Where the vertex is: (2) [m]
       real(wp) :: point(2) = 0.0_wp
       !> Foot of its perpendicular on the edge: (2) [m]
       real(wp) :: foot(2) = 0.0_wp
+      !> Unit normal of the edge, turned to point from the joint's first block to its second: (2)
+      real(wp) :: normal(2) = 0.0_wp
       !> Part of the joint's length that the contact stands for [m]
       real(wp) :: length = 0.0_wp
+      !> Part of the joint's shear force that is felt here; the parts of a joint make one
+      real(wp) :: share = 0.5_wp
+      !> Where on the edge the vertex has no slip, as a share of the edge from its start
+      real(wp) :: lock = 0.0_wp
+      !> Height of the vertex above the edge at which the contact is closed: what lies together at
+      !> the beginning but for rounded coordinates is closed there [m]
+      real(wp) :: closed_at = 0.0_wp
    end type contact_t
 
    !> One or two contacts with one shear spring
    type :: joint_t
-      !> Block that owns the edge, block that owns the vertices: (2)
+      !> The two blocks; of a joint of given edges the first owns the edge, the second the vertices:
+      !> (2)
       integer :: block(2) = 0
       !> Contacts; the second is unused where n_contact is 1: (2)
       type(contact_t) :: contact(2)
       !> Number of contacts, 1 or 2
       integer :: n_contact = 0
-      !> Points of the two blocks where the shear force acts, halfway along the edges: (2, 2) [m]
+      !> Points of the two blocks where the shear force acts: (2, 2) [m]
       real(wp) :: middle(2, 2) = 0.0_wp
-      !> Unit normal of the edge, from the first block to the second: (2)
+      !> Unit normal, from the first block to the second: (2)
       real(wp) :: normal(2) = 0.0_wp
-      !> Unit vector along the edge: (2)
+      !> Unit vector along the joint; edges of the first block run along it: (2)
       real(wp) :: tangent(2) = 0.0_wp
       !> Length over which the blocks touch [m]
       real(wp) :: length = 0.0_wp
+      !> Whether a search has found it; otherwise it was given and is kept
+      logical :: found = .false.
       !> Bounds of the joint force
       type(joint_law_t) :: law
    end type joint_t
@@ -88,6 +102,7 @@ contains
       joint%contact%edge_block = edge_pair(1)
       joint%contact%edge = edge_pair(2)
       joint%contact%length = joint%length/2.0_wp
+      joint%contact%lock = [0.0_wp, 1.0_wp]
       call place_joint(system, system%vertex, joint, gap)
    end function edge_to_edge_joint
 
@@ -97,33 +112,61 @@ contains
       type(block_system_t), intent(in) :: system
       !> Their corners: (2, n_vertex) [m]
       real(wp), intent(in) :: vertex(:, :)
-      !> The joint; normal, tangent and points are set
+      !> The joint; normals, tangent and points are set
       type(joint_t), intent(inout) :: joint
       !> Opening at the two contacts, and how far the second block lies ahead along the edge: (3)
       !> [m]
       real(wp), intent(out) :: gap(3)
-      real(wp) :: start(2), finish(2), corner(2, 2)
+      real(wp) :: start(2), finish(2), lock(2), tangent(2), slip
       integer :: k
 
-      associate (edge => joint%contact(1))
-         start = vertex(:, vertex_number(system, edge%edge_block, edge%edge))
-         finish = vertex(:, vertex_number(system, edge%edge_block, edge%edge + 1))
-      end associate
-      joint%tangent = along(start, finish)
-      joint%normal = right_normal(joint%tangent)
-      do k = 1, 2
-         associate (contact => joint%contact(k))
-            corner(:, k) = vertex(:, vertex_number(system, contact%vertex_block, contact%vertex))
-            gap(k) = dot_product(joint%normal, corner(:, k) - start)
-            contact%point = corner(:, k)
-            contact%foot = corner(:, k) - gap(k)*joint%normal
+      gap = 0.0_wp
+      joint%tangent = 0.0_wp
+      joint%middle = 0.0_wp
+      do k = 1, joint%n_contact
+         associate (c => joint%contact(k))
+            start = vertex(:, vertex_number(system, c%edge_block, c%edge))
+            finish = vertex(:, vertex_number(system, c%edge_block, c%edge + 1))
+            tangent = along(start, finish)
+            c%normal = right_normal(tangent)
+            c%point = vertex(:, vertex_number(system, c%vertex_block, c%vertex))
+            gap(k) = dot_product(c%normal, c%point - start)
+            c%foot = c%point - gap(k)*c%normal
+            gap(k) = gap(k) - c%closed_at
+            slip = slip_at(system, vertex, c)
+            gap(3) = gap(3) + c%share*slip
+            ! both blocks feel the shear force on the line of the edge: off it, an open joint would
+            ! turn them
+            lock = c%share*((1.0_wp - c%lock)*start + c%lock*finish)
+            joint%middle(:, c%edge_side) = joint%middle(:, c%edge_side) + lock
+            lock = lock + c%share*slip*tangent
+            joint%middle(:, 3 - c%edge_side) = joint%middle(:, 3 - c%edge_side) + lock
+            if (c%edge_side == 2) then
+               c%normal = -c%normal
+               tangent = -tangent
+            end if
+            joint%tangent = joint%tangent + c%share*tangent
          end associate
       end do
-      joint%middle(:, 1) = (start + finish)/2.0_wp
-      joint%middle(:, 2) = (corner(:, 1) + corner(:, 2))/2.0_wp
-      gap(3) = dot_product(joint%tangent, joint%middle(:, 2) - joint%middle(:, 1))
-      ! both blocks feel the shear force on the line of the edge: off it, an open joint would turn
-      ! them
-      joint%middle(:, 2) = joint%middle(:, 1) + gap(3)*joint%tangent
+      if (any(joint%contact%edge_side /= joint%contact(1)%edge_side)) &
+         & joint%tangent = joint%tangent/norm2(joint%tangent)
+      joint%normal = right_normal(joint%tangent)
    end subroutine place_joint
+
+   !> How far the joint's second block has slipped at a contact, along the edges of the first
+   pure real(wp) function slip_at(system, vertex, contact)
+      !> The blocks
+      type(block_system_t), intent(in) :: system
+      !> Their corners: (2, n_vertex) [m]
+      real(wp), intent(in) :: vertex(:, :)
+      !> The contact
+      type(contact_t), intent(in) :: contact
+      real(wp) :: edge(2), way(2)
+
+      associate (start => vertex(:, vertex_number(system, contact%edge_block, contact%edge)))
+         edge = vertex(:, vertex_number(system, contact%edge_block, contact%edge + 1)) - start
+         way = vertex(:, vertex_number(system, contact%vertex_block, contact%vertex)) - start
+      end associate
+      slip_at = dot_product(edge, way - contact%lock*edge)/norm2(edge)
+   end function slip_at
 end module dda_contact_types

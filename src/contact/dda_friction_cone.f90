@@ -28,6 +28,8 @@ module dda_friction_cone
       real(wp) :: friction = 0.0_wp
       !> Shear force that the joint carries without normal force [N/m]
       real(wp) :: limit = 0.0_wp
+      !> Whether the joint has one corner only: the second stays open
+      logical :: single = .false.
    end type cone_t
 
    !> Shi's states of a contact
@@ -60,6 +62,10 @@ contains
       force(1:2) = max(trial(1:2), 0.0_wp)
       force(3) = trial(3)
       face%open = trial(1:2) < 0.0_wp
+      if (cone%single) then
+         force(2) = 0.0_wp
+         face%open(2) = .true.
+      end if
       excess = abs(trial(3)) - cone%limit - cone%friction*(force(1) + force(2))
       if (.not. excess > 0.0_wp) return
       call return_to_limit(cone, trial, force, face)
@@ -82,13 +88,21 @@ contains
       mu = cone%friction
       high = maxval(trial(1:2))
       low = minval(trial(1:2))
+      if (cone%single) high = trial(1)
       excess = abs(trial(3)) - cone%limit
-      multiplier = (excess - mu*(high + low))/(1.0_wp + 2.0_wp*mu**2)
-      if (low + mu*multiplier < 0.0_wp) multiplier = (excess - mu*high)/(1.0_wp + mu**2)
+      multiplier = (excess - mu*high)/(1.0_wp + mu**2)
+      if (.not. cone%single) then
+         multiplier = (excess - mu*(high + low))/(1.0_wp + 2.0_wp*mu**2)
+         if (low + mu*multiplier < 0.0_wp) multiplier = (excess - mu*high)/(1.0_wp + mu**2)
+      end if
       if (high + mu*multiplier < 0.0_wp) multiplier = excess
       face%slip = merge(1, -1, trial(3) > 0.0_wp)
       face%open = trial(1:2) + mu*multiplier < 0.0_wp
       force(1:2) = max(trial(1:2) + mu*multiplier, 0.0_wp)
+      if (cone%single) then
+         force(2) = 0.0_wp
+         face%open(2) = .true.
+      end if
       force(3) = real(face%slip, wp)*(abs(trial(3)) - multiplier)
    end subroutine return_to_limit
 

@@ -26,11 +26,16 @@ module dda_joint_springs
       type(cone_t), allocatable :: cone(:)
       !> Tension that the contacts carry, by which the cone is moved, and a zero: (3, n_joint) [N/m]
       real(wp), allocatable :: shift(:, :)
+      !> Whether the springs give for good: joints that were found may be more than the blocks can
+      !> follow, and forces without give would then not be unique
+      logical :: give = .false.
    end type joint_springs_t
 
    !> Most that the stiffness of two joints may differ by: a joint between two slivers is stiff far
    !> beyond what the blocks around can feel, and would cut the longest step short
    real(wp), parameter :: stiffest = 1.0e2_wp
+   !> A block counts as no smaller across a joint than this share of the root of its area
+   real(wp), parameter :: least_size = 0.1_wp
 
 contains
 
@@ -53,11 +58,12 @@ contains
       n = size(joint)
       allocate (springs%equation(2, n), springs%row(n_dof, 3, 2, n), springs%stiffness(n))
       allocate (springs%cone(n), springs%shift(3, n))
+      springs%give = any(joint%found)
       do j = 1, n
          springs%equation(:, j) = system%equation(joint(j)%block)
          springs%row(:, :, 1, j) = -joint_rows(joint(j), 1, centroid(:, joint(j)%block(1)), n_dof)
          springs%row(:, :, 2, j) = joint_rows(joint(j), 2, centroid(:, joint(j)%block(2)), n_dof)
-         springs%stiffness(j) = penalty_ratio*block_stiffness(system, joint(j))
+         springs%stiffness(j) = penalty_ratio*block_stiffness(system, centroid, joint(j))
          call mohr_coulomb(joint(j), [.false., .false.], springs%cone(j), springs%shift(:, j))
       end do
       if (n > 0) springs%stiffness = min(springs%stiffness, stiffest*minval(springs%stiffness))
@@ -67,7 +73,7 @@ contains
    pure function joint_rows(joint, side, centroid, n_dof) result(row)
       !> The joint
       type(joint_t), intent(in) :: joint
-      !> 1 for the block that owns the edge, 2 for the one that owns the vertices
+      !> 1 or 2, which of the joint's blocks
       integer, intent(in) :: side
       !> Centre of gravity of the block: (2) [m]
       real(wp), intent(in) :: centroid(2)
@@ -80,19 +86,24 @@ contains
 
       row = 0.0_wp
       do k = 1, joint%n_contact
-         if (side == 1) t = displacement_matrix(joint%contact(k)%foot, centroid)
-         if (side == 2) t = displacement_matrix(joint%contact(k)%point, centroid)
-         row(:, k) = joint%normal(1)*t(1, :n_dof) + joint%normal(2)*t(2, :n_dof)
+         associate (contact => joint%contact(k))
+            t = displacement_matrix(merge(contact%foot, contact%point, &
+               & side == contact%edge_side), centroid)
+            row(:, k) = contact%normal(1)*t(1, :n_dof) + contact%normal(2)*t(2, :n_dof)
+         end associate
       end do
       t = displacement_matrix(joint%middle(:, side), centroid)
       row(:, 3) = joint%tangent(1)*t(1, :n_dof) + joint%tangent(2)*t(2, :n_dof)
    end function joint_rows
 
-   !> Stiffness E t/l of the softer of the movable blocks at a joint: t the joint's length, l the
-   !> block's size across it
-   pure function block_stiffness(system, joint) result(stiffness)
+   !> Stiffness E t/l = E area/l**2 of the softer of the movable blocks at a joint: l the block's
+   !> size across it, t that along it; of given edges t is their length, of found ones l is twice
+   !> the way from the centre
+   pure function block_stiffness(system, centroid, joint) result(stiffness)
       !> The blocks
       type(block_system_t), intent(in) :: system
+      !> Their centres of gravity: (2, n_block) [m]
+      real(wp), intent(in) :: centroid(:, :)
       !> The joint
       type(joint_t), intent(in) :: joint
       !> The stiffness [N/m per metre depth]
@@ -105,8 +116,14 @@ contains
          associate (b => joint%block(side))
             if (system%equation(b) == 0) cycle
             young = system%materials(system%material(b))%young
-            size_across = system%area(b)/joint%length
-            stiffness = min(stiffness, young*joint%length/size_across)
+            if (joint%found) then
+               size_across = max(least_size*sqrt(system%area(b)), &
+                  & 2.0_wp*abs(dot_product(joint%normal, joint%middle(:, side) - centroid(:, b))))
+               stiffness = min(stiffness, young*system%area(b)/size_across**2)
+            else
+               size_across = system%area(b)/joint%length
+               stiffness = min(stiffness, young*joint%length/size_across)
+            end if
          end associate
       end do
    end function block_stiffness
@@ -124,6 +141,7 @@ contains
       real(wp), intent(out) :: shift(3)
       real(wp) :: whole(2), cohesion
 
+      cone%single = joint%n_contact == 1
       whole = merge(0.0_wp, joint%contact%length, broken)
       shift = [joint%law%tension*whole, 0.0_wp]
       if (joint%law%no_slip) then

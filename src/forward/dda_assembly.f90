@@ -3,7 +3,9 @@ module dda_assembly
    use dda_block_factor, only : block_factor_t, factorise, plan_factor, substitute
    use dda_block_matrix, only : block_matrix_t, set_pattern
    use dda_block_system, only : block_system_t
-   use dda_elasticity, only : elastic_matrix, stress_load
+   use dda_boundary, only : held_point_t
+   use dda_elasticity, only : elastic_matrix
+   use dda_fixed_points, only : fixed_points_t, new_fixed_points
    use dda_friction_cone, only : apply_face, cone_t, is_stuck, joint_face_t
    use dda_inertia, only : mass_matrix
    use dda_joint_springs, only : joint_springs_t
@@ -13,7 +15,7 @@ module dda_assembly
    implicit none
    private
 
-   public :: equations_t, new_equations, take_springs, assemble_blocks, solve_faces
+   public :: equations_t, new_equations, renew_springs, take_springs, solve_faces
    public :: relative_displacement
 
    !> Matrix, loads and factor; the pattern and the mass are made once, the numbers where faces or
@@ -38,10 +40,18 @@ module dda_assembly
       real(wp), allocatable :: elastic(:, :, :)
       !> Matrix of the blocks without springs: elastic + 2*mass/dt**2: (n_dof, n_dof, n_equation)
       real(wp), allocatable :: base(:, :, :)
-      !> Loads from outside: (n_dof, n_equation)
+      !> Weight of the blocks: (n_dof, n_equation)
       real(wp), allocatable :: weight(:, :)
+      !> All loads from outside in this step: (n_dof, n_equation)
+      real(wp), allocatable :: outer(:, :)
       !> Loads of this step without springs: (n_dof, n_equation)
       real(wp), allocatable :: load(:, :)
+      !> Springs of the held points
+      type(fixed_points_t) :: fixed
+      !> Sum of the forces that bear on the blocks, which small forces are measured by [N/m]
+      real(wp) :: force_scale = 0.0_wp
+      !> What rounding of the corners' coordinates makes of a gap [m]
+      real(wp) :: gap_noise = 0.0_wp
       !> Faces that the couplings were made for: (n_joint)
       type(joint_face_t), allocatable :: held(:)
       !> Coefficients of friction that they were made for: (n_joint)
@@ -64,18 +74,16 @@ contains
       type(settings_t), intent(in) :: settings
       !> The equations
       type(equations_t), intent(out) :: equations
+      type(held_point_t) :: none(0)
       real(wp) :: full(6, 6), load(6)
       integer :: b, e, n, nd
 
       nd = settings%n_dof
       n = maxval(system%equation)
-      call list_joints(springs, nd, n, equations)
-      call plan_factor(equations%matrix, equations%factor)
       allocate (equations%mass(nd, nd, n), equations%elastic(nd, nd, n), equations%base(nd, nd, n))
-      allocate (equations%glued(nd, nd, n), equations%weight(nd, n), equations%load(nd, n))
-      allocate (equations%held_friction(size(springs%stiffness)), source=0.0_wp)
-      allocate (equations%held(size(springs%stiffness)), equations%changed(n))
-      call take_springs(springs, equations)
+      allocate (equations%glued(nd, nd, n), equations%weight(nd, n), equations%outer(nd, n))
+      allocate (equations%load(nd, n), equations%changed(n))
+      call new_springs(springs, nd, n, equations)
       do b = 1, size(system%equation)
          e = system%equation(b)
          if (e == 0) cycle
@@ -86,7 +94,51 @@ contains
          load = body_load(system%unit_weight(b)*settings%load_direction, system%area(b))
          equations%weight(:, e) = load(:nd)
       end do
+      if (allocated(settings%boundary%held)) then
+         equations%fixed = new_fixed_points(system, settings%boundary%held, nd)
+      else
+         equations%fixed = new_fixed_points(system, none, nd)
+      end if
    end subroutine new_equations
+
+   !> Take in new joints: lists, pattern, plan of the factor, springs
+   pure subroutine new_springs(springs, n_dof, n_equation, equations)
+      !> The springs of the joints
+      type(joint_springs_t), intent(in) :: springs
+      !> Unknowns of one block
+      integer, intent(in) :: n_dof
+      !> Number of movable blocks
+      integer, intent(in) :: n_equation
+      !> Receives them
+      type(equations_t), intent(inout) :: equations
+
+      call list_joints(springs, n_dof, n_equation, equations)
+      call plan_factor(equations%matrix, equations%factor)
+      if (allocated(equations%held)) deallocate (equations%held, equations%held_friction)
+      allocate (equations%held_friction(size(springs%stiffness)), source=0.0_wp)
+      allocate (equations%held(size(springs%stiffness)))
+      call take_springs(springs, equations)
+   end subroutine new_springs
+
+   !> Take over the springs of joints that may be others; the pattern is made anew only where other
+   !> blocks meet
+   pure subroutine renew_springs(before, springs, equations)
+      !> Equations of the blocks of each joint so far: (2, n_joint)
+      integer, intent(in) :: before(:, :)
+      !> The springs of the joints now
+      type(joint_springs_t), intent(in) :: springs
+      !> Receives pattern and stiffness
+      type(equations_t), intent(inout) :: equations
+      logical :: same
+
+      same = size(before, 2) == size(springs%equation, 2)
+      if (same) same = all(before == springs%equation)
+      if (same) then
+         call take_springs(springs, equations)
+      else
+         call new_springs(springs, size(equations%weight, 1), size(equations%weight, 2), equations)
+      end if
+   end subroutine renew_springs
 
    !> Which joints couple which blocks, and the joints of each block
    pure subroutine list_joints(springs, n_dof, n_equation, equations)
@@ -100,6 +152,8 @@ contains
       type(equations_t), intent(inout) :: equations
       integer :: e, j, side, pair(2, size(springs%equation, 2)), next(n_equation)
 
+      if (allocated(equations%entry)) &
+         & deallocate (equations%entry, equations%first_joint, equations%joint)
       allocate (equations%entry(size(pair, 2)), source=0)
       allocate (equations%first_joint(n_equation + 1), source=0)
       e = 0
@@ -154,32 +208,6 @@ contains
          call couple(springs, cone_t(), j, equations)
       end do
    end subroutine take_springs
-
-   !> Block part of matrix and load of one step of length dt
-   pure subroutine assemble_blocks(system, settings, dt, equations)
-      !> The blocks
-      type(block_system_t), intent(in) :: system
-      !> Settings of the run
-      type(settings_t), intent(in) :: settings
-      !> Length of the step [s]
-      real(wp), intent(in) :: dt
-      !> Receives base and load
-      type(equations_t), intent(inout) :: equations
-      real(wp) :: stress(6)
-      integer :: b, e, nd
-
-      nd = settings%n_dof
-      equations%changed = .true.
-      equations%base = equations%elastic + (2.0_wp/dt**2)*equations%mass
-      do b = 1, size(system%equation)
-         e = system%equation(b)
-         if (e == 0) cycle
-         stress = stress_load(system%stress(:, b), system%area(b))
-         equations%load(:, e) = equations%weight(:, e) + stress(:nd)
-         if (settings%dynamic) equations%load(:, e) = equations%load(:, e) &
-            & + (2.0_wp/dt)*matmul(equations%mass(:, :, e), system%velocity(:nd, b))
-      end do
-   end subroutine assemble_blocks
 
    !> Motion of all blocks if every joint keeps to its face
    pure subroutine solve_faces(equations, springs, cone, face, trial, motion)

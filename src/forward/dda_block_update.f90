@@ -11,12 +11,13 @@ module dda_block_update
    implicit none
    private
 
-   public :: update_blocks, update_contacts
+   public :: update_blocks, update_contacts, displaced_blocks
 
 contains
 
-   !> Add the motion of a step; stress follows the strain, velocity the constant acceleration. Where
-   !> blocks move, strain is kept in the block's own frame and the corners are built anew from it
+   !> Add the motion of a step; stress follows the strain, velocity the constant acceleration or the
+   !> law of impact. Where blocks move, strain is kept in the block's own frame and the corners are
+   !> built anew from it
    pure subroutine update_blocks(step, settings, system)
       !> The accepted step
       type(step_context_t), intent(in) :: step
@@ -33,7 +34,12 @@ contains
          if (e == 0) cycle
          motion = 0.0_wp
          motion(:nd) = step%state%motion(:, e)
-         if (settings%dynamic) system%velocity(:, b) = 2.0_wp*motion/step%dt - system%velocity(:, b)
+         if (settings%dynamic .and. settings%current) then
+            system%velocity(:nd, b) = step%velocity(:, e)
+            system%velocity(4:6, b) = turned_tensor(system%velocity(4:6, b), -motion(3), 2.0_wp)
+         else if (settings%dynamic) then
+            system%velocity(:, b) = 2.0_wp*motion/step%dt - system%velocity(:, b)
+         end if
          d = elasticity_matrix(system%materials(system%material(b)))
          if (settings%current) then
             call move_block(b, motion, d, system)
@@ -43,6 +49,30 @@ contains
          end if
       end do
    end subroutine update_blocks
+
+   !> Blocks where a motion carries them, where blocks move; velocities stay
+   pure function displaced_blocks(system, settings, motion) result(after)
+      !> The blocks
+      type(block_system_t), intent(in) :: system
+      !> Settings of the run
+      type(settings_t), intent(in) :: settings
+      !> The motion: (n_dof, n_equation)
+      real(wp), intent(in) :: motion(:, :)
+      !> The blocks after it
+      type(block_system_t) :: after
+      real(wp) :: of_block(6)
+      integer :: b, e
+
+      after = system
+      do b = 1, size(system%equation)
+         e = system%equation(b)
+         if (e == 0) cycle
+         of_block = 0.0_wp
+         of_block(:settings%n_dof) = motion(:, e)
+         call move_block(b, of_block, elasticity_matrix(system%materials(system%material(b))), &
+            & after)
+      end do
+   end function displaced_blocks
 
    !> Move one block by a finite motion
    pure subroutine move_block(block, motion, d, system)
@@ -59,7 +89,8 @@ contains
       associate (total => system%motion(:, block))
          total(4:6) = total(4:6) + turned_tensor(motion(4:6), total(3), 2.0_wp)
          total(1:3) = total(1:3) + motion(1:3)
-         system%stress(:, block) = turned_tensor(matmul(d, total(4:6)), -total(3), 1.0_wp)
+         system%stress(:, block) = turned_tensor(system%initial_stress(:, block) &
+            & + matmul(d, total(4:6)), -total(3), 1.0_wp)
          do v = system%first_vertex(block), system%first_vertex(block + 1) - 1
             system%moved(:, v) = moved_point(system%vertex(:, v), system%centroid(:, block), total)
          end do
@@ -67,7 +98,8 @@ contains
    end subroutine move_block
 
    !> Keep states, forces and gaps of a step; under Coulomb friction slip is plastic, so that the
-   !> springs start anew from the shear force that they could carry
+   !> springs start anew from the shear force that they could carry. Springs that give keep as much
+   !> of it as carries that force. Where blocks move in time no slip is kept
    pure subroutine update_contacts(step, settings, contacts, breaks)
       !> The accepted step
       type(step_context_t), intent(in) :: step
@@ -85,7 +117,13 @@ contains
       contacts%force = step%state%force
       contacts%increment = step%state%increment
       contacts%gap = contacts%gap + step%state%increment
-      if (settings%current) then
+      if (allocated(step%curve)) contacts%gap(1:2, :) = contacts%gap(1:2, :) + step%curve
+      if (settings%current .and. settings%dynamic) then
+         contacts%past_slip = contacts%past_slip + contacts%gap(3, :)
+      else if (settings%current .and. contacts%springs%give) then
+         where (contacts%face%slip /= 0) contacts%past_slip = contacts%past_slip &
+            & + contacts%gap(3, :) + contacts%force(3, :)/contacts%springs%stiffness
+      else if (settings%current) then
          where (contacts%face%slip /= 0) &
             & contacts%past_slip = contacts%past_slip + contacts%gap(3, :)
       else if (settings%flow == flow_rule%coulomb) then

@@ -7,7 +7,9 @@ module dda_decision
    use dda_block_system, only : block_system_t
    use dda_contact_detection, only : contacts_t
    use dda_forward, only : outcome_t, run_to_verdict
+   use dda_frames, only : album_t
    use dda_settings, only : flow_rule, settings_t
+   use dda_step_context, only : march_t
    use dda_verdict, only : verdict
    implicit none
    private
@@ -29,7 +31,7 @@ module dda_decision
 contains
 
    !> Decide a static structure, or run a dynamic one
-   pure subroutine decide(settings, system, contacts, decision)
+   pure subroutine decide(settings, system, contacts, decision, album, onward)
       !> Settings of the run
       type(settings_t), intent(in) :: settings
       !> The blocks at the beginning
@@ -38,10 +40,14 @@ contains
       type(contacts_t), intent(in) :: contacts
       !> The decision
       type(decision_t), intent(out) :: decision
+      !> Receives pictures of a dynamic run
+      type(album_t), intent(inout), optional :: album
+      !> Where a dynamic run goes on and where it ended
+      type(march_t), intent(inout), optional :: onward
       type(settings_t) :: convex
 
       if (settings%dynamic) then
-         call follow_coulomb(settings, system, contacts, decision)
+         call follow_coulomb(settings, system, contacts, decision, album, onward)
          return
       end if
       convex = settings
@@ -56,7 +62,7 @@ contains
    end subroutine decide
 
    !> Run a structure under Coulomb friction from its beginning
-   pure subroutine follow_coulomb(settings, system, contacts, decision)
+   pure subroutine follow_coulomb(settings, system, contacts, decision, album, onward)
       !> Settings of the run
       type(settings_t), intent(in) :: settings
       !> The blocks at the beginning
@@ -65,6 +71,10 @@ contains
       type(contacts_t), intent(in) :: contacts
       !> The decision; the counts of the run are added to those that it has
       type(decision_t), intent(inout) :: decision
+      !> Receives pictures
+      type(album_t), intent(inout), optional :: album
+      !> Where the run goes on and where it ended
+      type(march_t), intent(inout), optional :: onward
       type(settings_t) :: coulomb
       type(outcome_t) :: before
 
@@ -74,7 +84,8 @@ contains
       decision%flow = coulomb%flow
       decision%system = system
       decision%contacts = contacts
-      call run_to_verdict(coulomb, decision%system, decision%contacts, decision%outcome)
+      call run_to_verdict(coulomb, decision%system, decision%contacts, decision%outcome, album, &
+         & onward)
       associate (outcome => decision%outcome)
          outcome%steps = outcome%steps + before%steps
          outcome%passes = outcome%passes + before%passes

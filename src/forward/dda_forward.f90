@@ -1,18 +1,26 @@
 !> Forward analysis: one step as a transaction, and a run of steps to a verdict (Shi: df)
 module dda_forward
-   use dda_assembly, only : assemble_blocks, equations_t, new_equations, take_springs
+   use dda_assembly, only : equations_t, new_equations, renew_springs, take_springs
+   use dda_block_inertia, only : assemble_blocks, turn_masses
    use dda_block_system, only : block_system_t
    use dda_block_update, only : update_blocks, update_contacts
    use dda_condition, only : factored_condition
    use dda_contact_detection, only : contacts_t, follow_contacts
+   use dda_contact_transfer, only : renew_contacts
+   use dda_curved_motion, only : follow_curves
+   use dda_energy, only : audit_step, keep_energy
+   use dda_entry, only : refuse_entry
    use dda_error, only : error_t, fatal_error
-   use dda_frames, only : album_t, keep_frame
+   use dda_frames, only : album_t, keep_frame, keep_track
+   use dda_impact_time, only : meet_impact
    use dda_kinds, only : wp
    use dda_multipliers, only : settle_joints
    use dda_open_close, only : step_state_t
    use dda_settings, only : settings_t
    use dda_step_context, only : march_t, step_context_t
    use dda_step_interval, only : first_interval, judge_step, next_interval
+   use dda_step_reach, only : first_reach, judge_reach, next_reach, travel_of
+   use dda_velocity, only : settle_velocities, stiffen_contacts
    use dda_verdict, only : judge_verdict, largest_displacement, measure_step, verdict
    implicit none
    private
@@ -48,8 +56,8 @@ module dda_forward
 
 contains
 
-   !> Run a static analysis to its verdict, a dynamic one to its last step
-   pure subroutine run_to_verdict(settings, system, contacts, outcome, album)
+   !> Run a static analysis to its verdict, a dynamic one to its end
+   pure subroutine run_to_verdict(settings, system, contacts, outcome, album, onward)
       !> Settings of the run
       type(settings_t), intent(in) :: settings
       !> The blocks: at the beginning in, at the end out
@@ -60,30 +68,47 @@ contains
       type(outcome_t), intent(out) :: outcome
       !> Receives pictures of the run where blocks move
       type(album_t), intent(inout), optional :: album
+      !> The march of a run that goes on in, without steps for one that begins; where it ended out
+      type(march_t), intent(inout), optional :: onward
       type(equations_t) :: equations
       type(step_context_t) :: step
       type(march_t) :: march
       type(error_t), allocatable :: error
 
+      if (maxval(system%equation) == 0) then
+         ! nothing can move
+         outcome%verdict = merge(verdict%completed, verdict%stable, settings%dynamic)
+         allocate (outcome%motion(settings%n_dof, 0))
+         return
+      end if
       call new_equations(system, contacts%springs, settings, equations)
       call begin_step(contacts, size(equations%weight, 1), size(equations%weight, 2), step%state)
-      call first_interval(system, contacts%springs, settings, equations, step%state, march, error)
-      contacts%face = step%state%face
-      if (present(album)) call keep_frame(system, contacts, 0, 0.0_wp, 0.0_wp, .false., album)
+      if (present(onward)) march = onward
+      if (march%steps == 0) then
+         call first_interval(system, contacts%springs, settings, equations, step%state, march, &
+            & error)
+         contacts%face = step%state%face
+      end if
+      if (settings%dynamic .and. march%steps == 0) call audit_step(settings, system, equations, &
+         & contacts, step, 0.0_wp, march%energy)
+      if (present(album)) call keep_pictures(system, contacts, march, .false., album)
       do while (.not. allocated(error))
          if (march%steps == settings%max_steps) exit
          call advance(settings, system, contacts, equations, march, step, error)
          if (allocated(error)) exit
+         if (present(album)) call keep_energy(march%energy, album%audit)
          outcome%verdict = verdict%undecided
          if (settings%current .or. settings%collapse_displacement > 0.0_wp) &
             & march%displacement = largest_displacement(system, settings%current)
          if (step%whole .and. .not. settings%dynamic) &
             & outcome%verdict = judge_verdict(march, step, settings)
-         if (present(album)) call keep_frame(system, contacts, march%steps, march%time, &
-            & march%displacement, outcome%verdict /= verdict%undecided, album)
+         if (present(album)) call keep_pictures(system, contacts, march, &
+            & outcome%verdict /= verdict%undecided, album)
          if (outcome%verdict /= verdict%undecided) exit
-         call next_interval(settings, step, march)
+         if (settings%duration > 0.0_wp .and. march%time >= settings%duration) exit
+         call next_interval(settings, system, step, march)
       end do
+      if (present(onward)) onward = march
       outcome%rest_tolerance = settings%rest_tolerance
       outcome%steps = march%steps
       outcome%passes = march%passes
@@ -98,12 +123,32 @@ contains
       if (allocated(error)) then
          outcome%verdict = verdict%undecided
          outcome%reason = error%message
-      else if (settings%dynamic) then
+      else if (settings%dynamic .and. march%time >= settings%duration) then
          outcome%verdict = verdict%completed
+      else if (settings%dynamic) then
+         outcome%verdict = verdict%undecided
+         outcome%reason = "all steps are spent before the end of the run"
       else if (outcome%verdict == verdict%undecided) then
          outcome%reason = "all steps are spent and neither rest nor collapse is proven"
       end if
    end subroutine run_to_verdict
+
+   !> Keep a picture if one is due, and where the measured points are
+   pure subroutine keep_pictures(system, contacts, march, last, album)
+      !> The blocks
+      type(block_system_t), intent(in) :: system
+      !> The contacts
+      type(contacts_t), intent(in) :: contacts
+      !> The march
+      type(march_t), intent(in) :: march
+      !> Whether the run ends here
+      logical, intent(in) :: last
+      !> Receives the picture
+      type(album_t), intent(inout) :: album
+
+      call keep_frame(system, contacts, march%steps, march%time, march%displacement, last, album)
+      call keep_track(system, march%steps, march%time, album)
+   end subroutine keep_pictures
 
    !> One step: blocks and contacts change only when it is accepted
    pure subroutine advance(settings, system, contacts, equations, march, step, error)
@@ -122,33 +167,101 @@ contains
       !> Allocated if no step, however short, settles
       type(error_t), allocatable, intent(inout) :: error
       integer :: retry
-      logical :: breaks
+      logical :: breaks, in_time, widened
 
-      if (settings%current) then
-         call follow_contacts(system, settings%penalty_ratio, settings%n_dof, contacts)
-         call take_springs(contacts%springs, equations)
-      end if
+      in_time = settings%dynamic .and. settings%current
+      widened = settings%current
+      contacts%remember = .not. in_time
+      if (settings%current) call turn_masses(system, equations)
       step%was_cut = .false.
       do retry = 0, max_retries
+         if (widened) call place_contacts(settings, system, march, contacts, equations)
+         widened = .false.
          step%dt = march%dt
+         if (in_time) call stiffen_contacts(system, step%dt, contacts)
+         if (in_time) call take_springs(contacts%springs, equations)
          call begin_step(contacts, size(equations%weight, 1), size(equations%weight, 2), step%state)
-         call assemble_blocks(system, settings, step%dt, equations)
+         call assemble_blocks(system, settings, step%dt, equations, march%time)
          call settle_joints(settings, equations, contacts%springs, step%state)
+         if (in_time .and. step%state%settled) &
+            & call follow_curves(settings, system, contacts, equations, step)
          march%passes = march%passes + step%state%passes
          call judge_step(settings, system, march, step)
+         if (contacts%searched .and. settings%current) &
+            & call judge_reach(system, contacts, march, step, widened)
+         if (step%accepted .and. in_time) &
+            & call settle_impacts(settings, system, contacts, equations, march, step)
          if (step%accepted) exit
       end do
       if (.not. step%accepted) then
          call fatal_error(error, "the open-close loop settles at no length of the step")
          return
       end if
+      if (contacts%searched) call next_reach(system, step, march)
       call measure_step(system, contacts%springs, equations, contacts%force, step)
       call update_contacts(step, settings, contacts, breaks)
       call update_blocks(step, settings, system)
       step%whole = .not. breaks
       march%steps = march%steps + 1
       march%time = march%time + step%dt
+      if (settings%dynamic) call audit_step(settings, system, equations, contacts, step, &
+         & march%time, march%energy)
    end subroutine advance
+
+   !> Velocities after a settled step: cut it if blocks meet in it that rebound, or if the impulses
+   !> do not settle
+   pure subroutine settle_impacts(settings, system, contacts, equations, march, step)
+      !> Settings of the run
+      type(settings_t), intent(in) :: settings
+      !> The blocks before the step
+      type(block_system_t), intent(in) :: system
+      !> The contacts before the step
+      type(contacts_t), intent(in) :: contacts
+      !> The equations
+      type(equations_t), intent(inout) :: equations
+      !> The march; the length of the next try is set
+      type(march_t), intent(inout) :: march
+      !> The settled step; its velocities are set, and whether it counts
+      type(step_context_t), intent(inout) :: step
+
+      step%longest = march%longest
+      step%slowest_impact = 2.0_wp*march%free_acceleration*march%longest
+      call meet_impact(settings, system, contacts, equations, march, step)
+      if (.not. step%accepted) return
+      call settle_velocities(settings, system, contacts, equations, step)
+      if (step%accepted) then
+         if (contacts%searched) call refuse_entry(settings, system, contacts, march, step)
+      else
+         step%was_cut = .true.
+         march%dt = march%dt/2.0_wp
+      end if
+   end subroutine settle_impacts
+
+   !> Contacts where the blocks are now: those that were given, or those that a search finds
+   pure subroutine place_contacts(settings, system, march, contacts, equations)
+      !> Settings of the run
+      type(settings_t), intent(in) :: settings
+      !> The blocks
+      type(block_system_t), intent(in) :: system
+      !> The march; its reach is set where it was not
+      type(march_t), intent(inout) :: march
+      !> The contacts
+      type(contacts_t), intent(inout) :: contacts
+      !> The equations
+      type(equations_t), intent(inout) :: equations
+      integer, allocatable :: before(:, :)
+
+      if (contacts%searched) then
+         before = contacts%springs%equation
+         if (.not. allocated(march%reach)) march%reach = first_reach(system, settings, march)
+         call renew_contacts(system, travel_of(system, settings, march), march%reach, &
+            & settings%penalty_ratio, settings%n_dof, contacts)
+         call renew_springs(before, contacts%springs, equations)
+      else
+         call follow_contacts(system, settings%penalty_ratio, settings%n_dof, contacts)
+         call take_springs(contacts%springs, equations)
+      end if
+   end subroutine place_contacts
 
    !> The state that a step starts from: the joints as they are, no motion
    pure subroutine begin_step(contacts, n_dof, n_equation, state)
@@ -163,8 +276,13 @@ contains
       integer :: n
 
       n = size(contacts%joint)
-      if (.not. allocated(state%motion)) then
-         allocate (state%motion(n_dof, n_equation), state%increment(3, n), state%start(3, n))
+      if (.not. allocated(state%motion)) allocate (state%motion(n_dof, n_equation))
+      if (allocated(state%face)) then
+         if (size(state%face) /= n) deallocate (state%increment, state%start, state%trial, &
+            & state%force, state%face, state%cone, state%multiplier)
+      end if
+      if (.not. allocated(state%face)) then
+         allocate (state%increment(3, n), state%start(3, n))
          allocate (state%trial(3, n), state%force(3, n), state%face(n), state%cone(n))
          allocate (state%multiplier(3, n))
       end if

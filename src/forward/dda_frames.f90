@@ -1,13 +1,17 @@
 !> Pictures of a run: corners, stresses, joint forces and states at chosen steps
 module dda_frames
    use dda_block_system, only : block_system_t
+   use dda_boundary, only : measured_point_t
    use dda_contact_detection, only : contacts_t
+   use dda_contact_types, only : joint_t
+   use dda_deformation, only : moved_point
    use dda_friction_cone, only : joint_face_t
+   use dda_energy, only : audit_t
    use dda_kinds, only : wp
    implicit none
    private
 
-   public :: frame_t, album_t, keep_frame
+   public :: frame_t, album_t, keep_frame, keep_track
 
    !> One picture
    type :: frame_t
@@ -23,6 +27,8 @@ module dda_frames
       real(wp), allocatable :: motion(:, :)
       !> Stress sx, sy, txy of all blocks: (3, n_block) [Pa]
       real(wp), allocatable :: stress(:, :)
+      !> The joints, which come and go where they are searched: (n_joint)
+      type(joint_t), allocatable :: joint(:)
       !> Force N1, N2, T of all joints: (3, n_joint) [N/m]
       real(wp), allocatable :: force(:, :)
       !> Openings and slip of all joints: (3, n_joint) [m]
@@ -35,12 +41,24 @@ module dda_frames
    type :: album_t
       !> Displacement from one picture to the next; 0 to keep none [m]
       real(wp) :: spacing = 0.0_wp
+      !> Steps from one picture to the next, in time; 0 to go by displacement
+      integer :: every = 0
       !> Displacement at which the next one is due [m]
       real(wp) :: due = 0.0_wp
       !> Pictures kept
       integer :: n = 0
       !> The pictures, the first n of them
       type(frame_t), allocatable :: frame(:)
+      !> Energies of a dynamic run
+      type(audit_t) :: audit
+      !> Points whose way is kept in every step: (n_point)
+      type(measured_point_t), allocatable :: point(:)
+      !> Steps of which it is kept, the beginning among them
+      integer :: n_track = 0
+      !> Step and time of each, the first n_track of them: (2, :) [-, s]
+      real(wp), allocatable :: when(:, :)
+      !> Where the points are: (2, n_point, :) [m]
+      real(wp), allocatable :: track(:, :, :)
    end type album_t
 
 contains
@@ -62,9 +80,12 @@ contains
       !> Receives the picture
       type(album_t), intent(inout) :: album
       type(frame_t), allocatable :: longer(:)
+      logical :: is_due
 
-      if (.not. album%spacing > 0.0_wp) return
-      if (displacement < album%due .and. .not. last) return
+      if (.not. (album%spacing > 0.0_wp .or. album%every > 0)) return
+      is_due = displacement >= album%due
+      if (album%every > 0) is_due = modulo(step, album%every) == 0
+      if (.not. (is_due .or. last)) return
       if (.not. allocated(album%frame)) allocate (album%frame(8))
       if (album%n == size(album%frame)) then
          allocate (longer(2*album%n))
@@ -72,7 +93,8 @@ contains
          call move_alloc(longer, album%frame)
       end if
       album%n = album%n + 1
-      album%due = (aint(displacement/album%spacing) + 1.0_wp)*album%spacing
+      if (album%spacing > 0.0_wp) &
+         & album%due = (aint(displacement/album%spacing) + 1.0_wp)*album%spacing
       associate (frame => album%frame(album%n))
          frame%step = step
          frame%time = time
@@ -80,9 +102,44 @@ contains
          frame%moved = system%moved
          frame%motion = system%motion
          frame%stress = system%stress
+         frame%joint = contacts%joint
          frame%force = contacts%force
          frame%gap = contacts%gap
          frame%face = contacts%face
       end associate
    end subroutine keep_frame
+
+   !> Keep where the measured points are
+   pure subroutine keep_track(system, step, time, album)
+      !> The blocks
+      type(block_system_t), intent(in) :: system
+      !> Accepted steps so far
+      integer, intent(in) :: step
+      !> Sum of their lengths [s]
+      real(wp), intent(in) :: time
+      !> Receives the places
+      type(album_t), intent(inout) :: album
+      real(wp), allocatable :: when(:, :), track(:, :, :)
+      integer :: i, n
+
+      if (.not. allocated(album%point)) return
+      if (.not. allocated(album%when)) &
+         & allocate (album%when(2, 64), album%track(2, size(album%point), 64))
+      n = album%n_track
+      if (n == size(album%when, 2)) then
+         allocate (when(2, 2*n), track(2, size(album%point), 2*n))
+         when(:, :n) = album%when
+         track(:, :, :n) = album%track
+         call move_alloc(when, album%when)
+         call move_alloc(track, album%track)
+      end if
+      album%n_track = n + 1
+      album%when(:, n + 1) = [real(step, wp), time]
+      do i = 1, size(album%point)
+         associate (point => album%point(i))
+            album%track(:, i, n + 1) = moved_point(point%point, system%centroid(:, point%block), &
+               & system%motion(:, point%block))
+         end associate
+      end do
+   end subroutine keep_track
 end module dda_frames

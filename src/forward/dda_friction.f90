@@ -10,7 +10,7 @@ module dda_friction
    implicit none
    private
 
-   public :: iterate_friction
+   public :: iterate_friction, accelerated, coulomb_bound
 
    !> Most corrections of the bounds in one step
    integer, parameter :: max_corrections = 200
@@ -41,7 +41,7 @@ contains
       integer :: correction, kept, stale
       logical :: resolved
 
-      tolerance = 1.0e-11_wp*sum(abs(equations%weight(1:2, :)))
+      tolerance = 1.0e-11_wp*equations%force_scale
       state%cone = cone_t(friction=0.0_wp, limit=huge(1.0_wp))
       state%face%slip = 0
       call iterate_open_close(equations, springs, max_changes, state, one_by_one=.true.)

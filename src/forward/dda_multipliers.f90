@@ -3,10 +3,12 @@
 !> so that the penalty leaves no trace
 module dda_multipliers
    use dda_assembly, only : equations_t
+   use dda_fixed_points, only : correct_fixed_forces
    use dda_friction, only : iterate_friction
    use dda_joint_springs, only : joint_springs_t
    use dda_kinds, only : wp
    use dda_open_close, only : iterate_open_close, step_state_t
+   use dda_settle_in_time, only : settle_in_time
    use dda_settings, only : flow_rule, settings_t
    implicit none
    private
@@ -15,13 +17,13 @@ module dda_multipliers
 
    !> Most passes of the multipliers in one step
    integer, parameter :: max_multiplier_passes = 100
-   !> Change of a force that counts as none, over the sum of all weights
+   !> Change of a force that counts as none, over the sum of all that bear on the blocks
    real(wp), parameter :: force_tolerance = 1.0e-10_wp
 
 contains
 
-   !> Settle the joints of one step: once in reference geometry, where the penalty has no influence;
-   !> until the multipliers stay the same where blocks move
+   !> Settle the joints of one step: once in reference geometry, where the penalty has no influence,
+   !> and where springs give for good; until the multipliers stay the same where blocks move
    pure subroutine settle_joints(settings, equations, springs, state)
       !> Settings of the run
       type(settings_t), intent(in) :: settings
@@ -31,26 +33,57 @@ contains
       type(joint_springs_t), intent(in) :: springs
       !> Faces to begin with in, motion and joints out
       type(step_state_t), intent(inout) :: state
-      real(wp) :: multiplier(3, size(springs%stiffness)), opening(3, size(springs%stiffness))
-      real(wp) :: tolerance
-      integer :: pass
 
-      if (.not. settings%current) then
+      if (settings%current .and. settings%dynamic) then
+         call settle_in_time(settings, (equations%fixed%target), equations, springs, state)
+      else if (multiplies(settings, springs) .or. size(equations%fixed%point) > 0) then
+         call settle_exactly(settings, equations, springs, state)
+      else
          call settle_once(settings, equations, springs, state)
-         return
       end if
-      tolerance = force_tolerance*sum(abs(equations%weight(1:2, :)))
+   end subroutine settle_joints
+
+   !> Settle the joints until neither the multipliers nor the forces at the held points change
+   pure subroutine settle_exactly(settings, equations, springs, state)
+      !> Settings of the run
+      type(settings_t), intent(in) :: settings
+      !> Blocks assembled; matrix and factor are made anew
+      type(equations_t), intent(inout) :: equations
+      !> The springs of the joints
+      type(joint_springs_t), intent(in) :: springs
+      !> Faces to begin with in, motion and joints out
+      type(step_state_t), intent(inout) :: state
+      real(wp) :: multiplier(3, size(springs%stiffness)), opening(3, size(springs%stiffness))
+      real(wp) :: tolerance, change
+      integer :: pass
+      logical :: has_multipliers
+
+      has_multipliers = multiplies(settings, springs)
+      tolerance = force_tolerance*equations%force_scale
       multiplier = state%multiplier
       opening = state%start - multiplier
       do pass = 1, max_multiplier_passes
-         state%start = multiplier + opening
+         if (has_multipliers) state%start = multiplier + opening
          call settle_once(settings, equations, springs, state)
          if (.not. state%settled) return
-         if (maxval(abs(state%force - multiplier)) <= tolerance) return
+         call correct_fixed_forces((equations%fixed%target), state%motion, equations%fixed, &
+            & equations%load, change)
+         if (has_multipliers) change = max(change, maxval(abs(state%force - multiplier)))
+         if (change <= tolerance) return
          multiplier = state%force
       end do
       state%settled = .false.
-   end subroutine settle_joints
+   end subroutine settle_exactly
+
+   !> Whether the forces of the joints are multipliers; otherwise their springs are real
+   pure logical function multiplies(settings, springs)
+      !> Settings of the run
+      type(settings_t), intent(in) :: settings
+      !> The springs of the joints
+      type(joint_springs_t), intent(in) :: springs
+
+      multiplies = settings%current .and. .not. springs%give
+   end function multiplies
 
    !> Settle the joints for given multipliers
    pure subroutine settle_once(settings, equations, springs, state)

@@ -163,8 +163,9 @@ contains
       !> The force [N/m]
       real(wp) :: noise
 
-      noise = 1.0e-13_wp*sum(abs(equations%weight(1:2, :))) &
-         & + 8.0_wp*epsilon(1.0_wp)*maxval(springs%stiffness)*maxval(abs(state%motion(1:2, :)))
+      noise = 1.0e-13_wp*equations%force_scale &
+         & + 8.0_wp*epsilon(1.0_wp)*max(0.0_wp, &
+         & maxval(springs%stiffness))*maxval(abs(state%motion(1:2, :)))
    end function force_noise
 
    !> How far the force that each joint's face gives is from the admissible one, beyond rounding

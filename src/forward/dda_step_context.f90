@@ -5,14 +5,49 @@ module dda_step_context
    implicit none
    private
 
-   public :: step_context_t, march_t
+   public :: step_context_t, march_t, energy_t
+
+   !> Energies of a dynamic run; what is gone or brought in is a sum since the beginning [J/m]
+   type :: energy_t
+      !> Time [s]
+      real(wp) :: time = 0.0_wp
+      !> Of motion
+      real(wp) :: kinetic = 0.0_wp
+      !> Of strained blocks
+      real(wp) :: elastic = 0.0_wp
+      !> Of the joints' springs, where blocks do not move
+      real(wp) :: contact = 0.0_wp
+      !> Of height, zero at the beginning
+      real(wp) :: gravity = 0.0_wp
+      !> Brought in by forces on points, led points and the shaking ground
+      real(wp) :: work = 0.0_wp
+      !> Gone by sliding
+      real(wp) :: friction = 0.0_wp
+      !> Gone by damping
+      real(wp) :: damping = 0.0_wp
+      !> Gone by impacts
+      real(wp) :: impact = 0.0_wp
+      !> Gone by the time step
+      real(wp) :: numerical = 0.0_wp
+   end type energy_t
 
    !> One step
    type :: step_context_t
       !> Length of the step [s]
       real(wp) :: dt = 0.0_wp
+      !> Length of a step that nothing shortens [s]
+      real(wp) :: longest = 0.0_wp
       !> Motion of the blocks and states of the joints
       type(step_state_t) :: state
+      !> Gaps at its end beyond those of the linear motion, where blocks move in time:
+      !> (2, n_joint) [m]
+      real(wp), allocatable :: curve(:, :)
+      !> Velocities at its end, where blocks move in time: (n_dof, n_equation)
+      real(wp), allocatable :: velocity(:, :)
+      !> Energy that impacts took from the velocities [J/m]
+      real(wp) :: impact = 0.0_wp
+      !> Contacts that meet more slowly do not rebound [m/s]
+      real(wp) :: slowest_impact = 0.0_wp
       !> Whether the step counts
       logical :: accepted = .false.
       !> Whether a longer step did not settle
@@ -41,11 +76,17 @@ module dda_step_context
       real(wp) :: dt = 0.0_wp
       !> Most that a corner may move in a step, where blocks move [m]
       real(wp) :: allowed_motion = 0.0_wp
+      !> Most that the corners of each block may move before contacts are searched again, where they
+      !> are searched: (n_block) [m]
+      real(wp), allocatable :: reach(:)
       !> Largest motion of a corner since the beginning [m]
       real(wp) :: displacement = 0.0_wp
       !> Motion that the rounding of coordinates may feign, where blocks move [m]
       real(wp) :: rounding = 0.0_wp
-      !> Longest step that leaves the matrix well enough conditioned [s]
+      !> Motions that the coordinates of corners cannot tell from none [m]
+      real(wp) :: resolution = 0.0_wp
+      !> Longest step: the one that was asked for in a dynamic run; in a static one that which
+      !> leaves the matrix well enough conditioned [s]
       real(wp) :: longest = 0.0_wp
       !> Largest motion if every joint were glued: the scale of elastic motion [m]
       real(wp) :: elastic_motion = 0.0_wp
@@ -57,5 +98,7 @@ module dda_step_context
       real(wp), allocatable :: last_motion(:, :)
       !> Passes of the open-close loop so far
       integer :: passes = 0
+      !> Energies after the last step of a dynamic run
+      type(energy_t) :: energy
    end type march_t
 end module dda_step_context

@@ -1,6 +1,7 @@
 !> The length of a step (Shi: step)
 module dda_step_interval
-   use dda_assembly, only : assemble_blocks, equations_t, solve_faces
+   use dda_assembly, only : equations_t, solve_faces
+   use dda_block_inertia, only : assemble_blocks, packed_velocity
    use dda_block_system, only : block_system_t
    use dda_error, only : error_t, fatal_error
    use dda_friction_cone, only : cone_t, joint_face_t
@@ -56,7 +57,7 @@ contains
       type(error_t), allocatable, intent(out) :: error
       type(cone_t) :: glued(size(springs%stiffness))
       type(joint_face_t) :: closed(size(springs%stiffness))
-      real(wp) :: mean_mass
+      real(wp) :: mean_mass, stiffest
       integer :: e
 
       mean_mass = 0.0_wp
@@ -67,13 +68,19 @@ contains
       end do
       march%last_acceleration = march%free_acceleration
       if (settings%current) march%rounding = feigned_motion(system)
-      march%longest = sqrt(2.0_wp*mean_mass/(least_inertia*maxval(springs%stiffness)))
-      if (settings%dynamic) then
-         march%dt = dynamic_step(system, settings, march%free_acceleration)
-         return
-      end if
+      march%resolution = epsilon(1.0_wp)*maxval(abs(system%vertex))
       march%allowed_motion = settings%max_displacement_ratio &
          & *sqrt(minval(system%area, mask=system%equation > 0))
+      if (settings%dynamic) then
+         march%longest = dynamic_step(settings, march)
+         march%dt = march%longest
+         call fit_interval(settings, largest_motion(system, &
+            & packed_velocity(system, size(equations%weight, 1))), march)
+         return
+      end if
+      stiffest = maxval(system%materials%young)
+      if (size(springs%stiffness) > 0) stiffest = maxval(springs%stiffness)
+      march%longest = sqrt(2.0_wp*mean_mass/(least_inertia*stiffest))
       march%dt = march%longest
       call assemble_blocks(system, settings, march%dt, equations)
       call solve_faces(equations, springs, glued, closed, state%start, state%motion)
@@ -114,24 +121,37 @@ contains
 
    !> Length of a dynamic step: the one that was asked for, or that in which free fall from rest
    !> goes as far as a step may
-   pure function dynamic_step(system, settings, free_acceleration) result(dt)
-      !> The blocks
-      type(block_system_t), intent(in) :: system
+   pure function dynamic_step(settings, march) result(dt)
       !> Settings of the run
       type(settings_t), intent(in) :: settings
-      !> Acceleration that the loads would give to free blocks [m/s2]
-      real(wp), intent(in) :: free_acceleration
+      !> The march
+      type(march_t), intent(in) :: march
       !> The length [s]
       real(wp) :: dt
-      real(wp) :: farthest
 
       dt = settings%time_step
       if (dt > 0.0_wp) return
       dt = 1.0_wp
-      farthest = settings%max_displacement_ratio &
-         & *sqrt(minval(system%area, mask=system%equation > 0))
-      if (free_acceleration > 0.0_wp) dt = sqrt(2.0_wp*farthest/free_acceleration)
+      if (march%free_acceleration > 0.0_wp) &
+         & dt = sqrt(2.0_wp*march%allowed_motion/march%free_acceleration)
    end function dynamic_step
+
+   !> Shorten a dynamic step that would move too far, or beyond the end of the run
+   pure subroutine fit_interval(settings, speed, march)
+      !> Settings of the run
+      type(settings_t), intent(in) :: settings
+      !> Speed of the fastest point [m/s]
+      real(wp), intent(in) :: speed
+      !> The march; the length of the next step is set
+      type(march_t), intent(inout) :: march
+      real(wp) :: left
+
+      if (settings%current .and. speed*march%dt > march%allowed_motion) &
+         & march%dt = march%allowed_motion/speed
+      if (.not. settings%duration > 0.0_wp) return
+      left = settings%duration - march%time
+      if (left < march%dt*(1.0_wp + 1.0e-9_wp)) march%dt = left
+   end subroutine fit_interval
 
    !> Accept a step, or cut its length for another try: it must have settled and, where blocks move,
    !> not have moved too far for a linear step (Shi: df24)
@@ -161,9 +181,11 @@ contains
    !> Length of the step that follows an accepted one. Where blocks move it aims at the motion that
    !> a
    !> step may make, and shrinks where blocks rattle to and fro
-   pure subroutine next_interval(settings, step, march)
+   pure subroutine next_interval(settings, system, step, march)
       !> Settings of the run
       type(settings_t), intent(in) :: settings
+      !> The blocks
+      type(block_system_t), intent(in) :: system
       !> The accepted step
       type(step_context_t), intent(in) :: step
       !> The march
@@ -173,7 +195,14 @@ contains
 
       settles = step%acceleration < settling*march%last_acceleration
       march%last_acceleration = step%acceleration
-      if (settings%dynamic) return
+      if (settings%dynamic) then
+         march%dt = march%longest
+         if (step%was_cut) march%dt = min(march%longest, calm_growth*step%dt)
+         if (settings%current) call fit_interval(settings, largest_motion(system, step%velocity), &
+            & march)
+         if (.not. settings%current) call fit_interval(settings, 0.0_wp, march)
+         return
+      end if
       factor = merge(1.0_wp, growth, settles)
       if (settings%current) then
          if (step%farthest > 0.0_wp) factor = min(growth, &

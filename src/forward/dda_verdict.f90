@@ -67,7 +67,7 @@ contains
          step%acceleration = 2.0_wp*step%farthest/step%dt**2
          if (has_light_blocks(equations)) &
             & step%acceleration = felt_acceleration(system, equations, motion, step%dt)
-         step%work = sum(equations%weight*motion)
+         step%work = sum(equations%outer*motion)
          step%kinetic = 0.0_wp
          step%stored = sum(sum(step%state%force**2 - force_before**2, dim=1) &
             & /(2.0_wp*springs%stiffness))
@@ -173,7 +173,7 @@ contains
       stores_nothing = abs(step%stored) < 1.0e-3_wp*abs(step%work)
       ! where blocks move, a step that comes to rest has only proven the shape it started from
       if (settings%current) at_rest = at_rest .and. march%steps >= 2 &
-         & .and. step%farthest <= max(still*march%displacement, &
+         & .and. step%farthest <= max(still*march%displacement, march%resolution, &
          & min(march%rounding, barely*march%displacement))
       answer = verdict%undecided
       if (at_rest) then

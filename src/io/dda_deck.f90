@@ -1,6 +1,7 @@
 !> A deck in memory: a value for every key of the registry, and where each one came from
 module dda_deck
    use, intrinsic :: ieee_arithmetic, only : ieee_value, ieee_quiet_nan
+   use dda_block_input, only : block_plan_t, new_plan
    use dda_cut_model, only : cut_model_t
    use dda_kinds, only : wp
    use dda_error, only : error_t, fatal_error
@@ -73,7 +74,7 @@ module dda_deck
       type(deck_place_t), allocatable :: group(:)
       !> The sweeps in their order: (n)
       type(deck_sweep_t), allocatable :: sweep(:)
-      !> Blocks cut from the file that scene%geometry names; unallocated for other kinds of scenes
+      !> Blocks cut from the file that scene%geometry names; allocated for kind = 'lines' alone
       type(cut_model_t), allocatable :: cut
       !> What the file that scene%analysis names says; unallocated if none is named
       type(limerick_analysis_t), allocatable :: analysis
@@ -81,6 +82,10 @@ module dda_deck
       character(len=:), allocatable :: file_mark
       !> What those files hold that is not read
       type(warnings_t) :: warnings
+      !> Text of the file of blocks; allocated for kind = 'blocks' alone
+      character(len=:), allocatable :: geometry_text
+      !> The blocks of that file
+      type(block_plan_t) :: plan
    end type deck_t
 
 contains
@@ -94,6 +99,7 @@ contains
       integer :: i
 
       deck%file = file
+      call new_plan(deck%plan)
       allocate (deck%value(0:size(deck_key)), deck%group(size(deck_group)), deck%sweep(0))
       deck%value(0)%number = ieee_value(1.0_wp, ieee_quiet_nan)
       do i = 0, size(deck_key)

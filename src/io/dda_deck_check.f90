@@ -3,7 +3,7 @@ module dda_deck_check
    use dda_kinds, only : wp
    use dda_error, only : error_t
    use dda_text, only : to_text
-   use dda_deck_keys, only : key_t, deck_key, key_kind, key_index
+   use dda_deck_keys, only : key_t, deck_key, key_kind, key_index, group_index
    use dda_deck_words, only : full_name
    use dda_deck, only : deck_t, deck_place_t, parameter_t, deck_error, &
       integer_of, word_of, text_of, is_given, has_group, place_of
@@ -26,12 +26,43 @@ contains
       type(parameter_t) :: searched
       integer :: s
 
-      call check_search(deck, searched, error)
+      call check_kind(deck, error)
+      if (.not. allocated(error)) call check_search(deck, searched, error)
       do s = 1, size(deck%sweep)
          if (.not. allocated(error)) call check_sweep(deck, s, searched, error)
       end do
       if (.not. allocated(error)) call check_cases(deck, searched, error)
    end subroutine check_deck
+
+   !> Check that the deck says where its blocks come from, once
+   pure subroutine check_kind(deck, error)
+      !> The deck
+      type(deck_t), intent(in) :: deck
+      !> A file that is missing or has no use, or an arch beside it
+      type(error_t), allocatable, intent(out) :: error
+      character(len=8), parameter :: file_key(2) = ["geometry", "analysis"]
+      character(len=:), allocatable :: kind, problem
+      integer :: i
+
+      kind = trim(word_of(deck, "scene", "kind"))
+      if (kind /= "arch" .and. .not. is_given(deck, "scene", "geometry")) then
+         call deck_error(error, "scene%kind = '"//kind//"' wants scene%geometry, a file of "// &
+            kind//"; name one", deck, place_of(deck, key_index("scene", "kind")))
+      else if (kind /= "arch" .and. has_group(deck, "arch")) then
+         call deck_error(error, "&arch has no effect: scene%kind is '"//kind// &
+            "'; remove one of the two", deck, deck%group(group_index("arch")))
+      end if
+      do i = 1, 2
+         if (allocated(error) .or. .not. is_given(deck, "scene", file_key(i))) cycle
+         problem = ""
+         if (kind == "arch") problem = "'lines' or 'blocks'"
+         if (kind /= "lines" .and. file_key(i) == "analysis") problem = "'lines'"
+         if (len(problem) == 0) cycle
+         call deck_error(error, "scene%"//trim(file_key(i))//" wants scene%kind = "//problem// &
+            ", found '"//kind//"'; change the one or remove the other", deck, &
+            place_of(deck, key_index("scene", file_key(i))))
+      end do
+   end subroutine check_kind
 
    !> Where a search begins and ends
    pure subroutine search_bracket(deck, low, high)
@@ -148,7 +179,12 @@ contains
 
       is_weight = parameter%key == key_index("material", "density") .or. &
          parameter%key == key_index("load", "gravity")
-      if (deck%value(parameter%key)%place%from_command .and. parameter%item == 0) then
+      if (deck_key(parameter%key)%group == "arch" .and. &
+         word_of(deck, "scene", "kind") /= "arch") then
+         call deck_error(error, full_name(deck_key(parameter%key))//" is "//how// &
+            ", but it has no effect: scene%kind is '"// &
+            trim(word_of(deck, "scene", "kind"))//"'; name another key", deck, place)
+      else if (deck%value(parameter%key)%place%from_command .and. parameter%item == 0) then
          call deck_error(error, full_name(deck_key(parameter%key))//" cannot be set: it is "// &
             how//" in line "//to_text(place%line)//" of "//deck%file//"; remove the --set", deck, &
             deck%value(parameter%key)%place)
@@ -156,10 +192,6 @@ contains
          word_of(deck, "analysis", "mode") == "static") then
          call deck_error(error, full_name(deck_key(parameter%key))//" is "//how// &
             ", but it has no effect: material%unit_weight is given; remove that", deck, place)
-      else if (deck_key(parameter%key)%group == "arch" .and. &
-         word_of(deck, "scene", "kind") == "lines") then
-         call deck_error(error, full_name(deck_key(parameter%key))//" is "//how// &
-            ", but it has no effect: scene%kind is 'lines'; name another key", deck, place)
       end if
    end subroutine check_varied
 

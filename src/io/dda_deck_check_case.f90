@@ -26,14 +26,13 @@ contains
       type(parameter_t), intent(in) :: searched
       !> The first thing that is wrong
       type(error_t), allocatable, intent(out) :: error
-      logical :: is_static, is_limerick, has_weight, is_lines
+      logical :: is_static, is_limerick, has_weight
 
       is_limerick = word_of(deck, "analysis", "mode") == "limerick"
       is_static = word_of(deck, "analysis", "mode") == "static"
       if (is_limerick) is_static = .not. flag_of(deck, "limerick", "dynamic")
       has_weight = real_of(deck, "load", "gravity") > 0.0_wp .or. &
          is_given(deck, "material", "unit_weight") .or. is_given(deck, "scene", "analysis")
-      is_lines = word_of(deck, "scene", "kind") == "lines"
       if (is_static .and. .not. has_weight) then
          call deck_error(error, "a static analysis wants a weight: load%gravity is 0 and "// &
             "material%unit_weight is not given; give one of them", deck, &
@@ -49,11 +48,13 @@ contains
       else if (is_limerick .and. integer_of(deck, "output", "frames") > 0) then
          call deck_error(error, "output%frames wants another mode than 'limerick', which "// &
             "keeps no pictures", deck, place_of(deck, key_index("output", "frames")))
-      else if (.not. (is_static .or. is_limerick) .and. &
-         word_of(deck, "analysis", "geometry") == "current") then
-         call deck_error(error, "geometry = 'current' wants mode = 'static': this version "// &
-            "has no dynamics of moving blocks yet; change one of the two", deck, &
-            place_of(deck, key_index("analysis", "mode")))
+      else if (real_of(deck, "analysis", "restitution") > 0.0_wp .and. (is_static .or. &
+         word_of(deck, "analysis", "geometry") /= "current")) then
+         call deck_error(error, "restitution wants mode = 'dynamic' and geometry = 'current'", &
+            deck, place_of(deck, key_index("analysis", "restitution")))
+      else if (is_static .and. is_given(deck, "analysis", "duration")) then
+         call deck_error(error, "duration wants mode = 'dynamic': a static run has no time", &
+            deck, place_of(deck, key_index("analysis", "duration")))
       else if (integer_of(deck, "output", "frames") > 0 .and. &
          word_of(deck, "analysis", "geometry") /= "current") then
          call deck_error(error, "output%frames wants geometry = 'current': in reference "// &
@@ -64,39 +65,15 @@ contains
          call deck_error(error, "analysis%unknowns wants 3 or 6, found "// &
             to_text(integer_of(deck, "analysis", "unknowns"))//"; choose one of the two", deck, &
             place_of(deck, key_index("analysis", "unknowns")))
+      else if (is_static .and. is_given(deck, "analysis", "restart")) then
+         call deck_error(error, "analysis%restart wants mode = 'dynamic': a static run comes "// &
+            "to rest by itself", deck, place_of(deck, key_index("analysis", "restart")))
       else
-         call check_kind(deck, is_lines, error)
-         if (.not. (allocated(error) .or. is_lines)) call check_shape(deck, error)
+         if (word_of(deck, "scene", "kind") == "arch") call check_shape(deck, error)
          if (allocated(error) .or. searched%key == 0) return
          call check_bracket(deck, searched, error)
       end if
    end subroutine check_case
-
-   !> Check that the deck says where its blocks come from, and only once
-   pure subroutine check_kind(deck, is_lines, error)
-      !> The deck of one case
-      type(deck_t), intent(in) :: deck
-      !> Whether the blocks are cut from lines
-      logical, intent(in) :: is_lines
-      !> A key that is missing, or without effect
-      type(error_t), allocatable, intent(out) :: error
-      character(len=8), parameter :: file_key(2) = ["geometry", "analysis"]
-      integer :: i
-
-      if (is_lines .and. .not. is_given(deck, "scene", "geometry")) then
-         call deck_error(error, "scene%kind = 'lines' wants scene%geometry, a file of lines", &
-            & deck, &
-            place_of(deck, key_index("scene", "kind")))
-      else if (is_lines .and. has_group(deck, "arch")) then
-         call deck_error(error, "&arch has no effect: scene%kind is 'lines'", deck, &
-            deck%group(group_index("arch")))
-      end if
-      do i = 1, size(file_key)
-         if (allocated(error) .or. is_lines .or. .not. is_given(deck, "scene", file_key(i))) cycle
-         call deck_error(error, "scene%"//file_key(i)//" wants scene%kind = 'lines'", deck, &
-            place_of(deck, key_index("scene", file_key(i))))
-      end do
-   end subroutine check_kind
 
    !> Check the joints of the arch
    pure subroutine check_shape(deck, error)

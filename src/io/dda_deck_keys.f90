@@ -101,11 +101,11 @@ module dda_deck_keys
    type(key_t), parameter :: scene_keys(*) = [ &
       key_t(group="scene", name="title", kind=key_kind%text, default="''", varies=.false., &
             meaning="One line that says what the deck is about."), &
-      key_t(group="scene", name="kind", kind=key_kind%word, default="'arch'", words="arch lines", &
-            later="blocks", varies=.false., &
-            meaning="What the blocks are made from: the keys of &arch, or lines of a file."), &
-      key_t(group="scene", name="geometry", kind=key_kind%text, without="an arch", &
-            varies=.false., meaning="File of lines for kind = 'lines', beside the deck."), &
+      key_t(group="scene", name="kind", kind=key_kind%word, default="'arch'", &
+            words="arch lines blocks", varies=.false., meaning="What the blocks are made from: "// &
+            "the keys of &arch, lines of a file, or polygons of a file."), &
+      key_t(group="scene", name="geometry", kind=key_kind%text, without="an arch", varies=.false., &
+            meaning="File of lines or of blocks, beside the deck unless it begins with a slash."), &
       key_t(group="scene", name="analysis", kind=key_kind%text, &
             without="the keys of this deck", varies=.false., &
             meaning="File of materials and loads for kind = 'lines'; keys of the deck go before.")]
@@ -192,7 +192,15 @@ module dda_deck_keys
             meaning="Largest vertex displacement of a step over the size of the smallest block."), &
       key_t(group="analysis", name="time_step", unit="s", without="chosen by the program", &
             at_least=1.0e-15_wp, at_most=1.0e15_wp, &
-            meaning="First time step of a static run, every step of a dynamic one."), &
+            meaning="First time step of a static run, longest step of a dynamic one."), &
+      key_t(group="analysis", name="duration", unit="s", without="the run ends with its last step", &
+            at_least=1.0e-15_wp, at_most=1.0e15_wp, &
+            meaning="Time at which a dynamic run ends."), &
+      key_t(group="analysis", name="restitution", default="0.0", at_least=0.0_wp, at_most=1.0_wp, &
+            meaning="Speed after an impact over that before it, where blocks move in time."), &
+      key_t(group="analysis", name="damping", unit="1/s", default="0.0", &
+            at_least=0.0_wp, at_most=1.0e15_wp, &
+            meaning="Rate at which velocities decay in a dynamic run, whatever the block."), &
       key_t(group="analysis", name="penalty_ratio", default="100.0", &
             at_least=1.0e-6_wp, at_most=1.0e12_wp, &
             meaning="Normal stiffness of a contact over the block's own across the joint."), &
@@ -204,7 +212,10 @@ module dda_deck_keys
             meaning="Most open-close changes of a step before the line search takes over."), &
       key_t(group="analysis", name="unknowns", kind=key_kind%whole, &
             without="what the scene needs", at_least=3.0_wp, at_most=6.0_wp, &
-            meaning="Unknowns of a block: 6, or 3 for blocks without strain.")]
+            meaning="Unknowns of a block: 6, or 3 for blocks without strain."), &
+      key_t(group="analysis", name="restart", kind=key_kind%text, varies=.false., &
+            without="the run begins at the beginning", &
+            meaning="Restart file of a dynamic run that goes on; steps counts those before, too.")]
 
    !> Keys of &limerick
    type(key_t), parameter :: limerick_keys(*) = [ &
@@ -281,6 +292,10 @@ module dda_deck_keys
       key_t(group="output", name="frames", kind=key_kind%whole, default="0", varies=.false., &
             at_least=0.0_wp, at_most=10000.0_wp, &
             meaning="Pictures of moving blocks; a collapse is then followed for radius/10."), &
+      key_t(group="output", name="energy", kind=key_kind%flag, default=".false.", varies=.false., &
+            meaning="Write the energies after each step of a dynamic run to energy.csv."), &
+      key_t(group="output", name="restart", kind=key_kind%flag, default=".false.", varies=.false., &
+            meaning="Write the end of each dynamic case to case_N.restart, to go on from there."), &
       key_t(group="output", name="max_cases", kind=key_kind%whole, default="100000", &
             varies=.false., at_least=1.0_wp, at_most=1.0e7_wp, &
             meaning="Most cases that the &sweep groups may make; more is an error.")]

@@ -39,6 +39,7 @@ contains
          call add_sweep(lines, deck%sweep(i))
       end do
       if (allocated(deck%file_mark)) call add_line(lines, "files"//deck%file_mark)
+      if (allocated(deck%geometry_text)) call add_line(lines, deck%geometry_text)
       record = lines_of(lines)
    end function deck_record
 

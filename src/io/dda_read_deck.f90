@@ -7,17 +7,18 @@ module dda_read_deck
    use dda_deck_words, only : full_name, near_group, near_key
    use dda_deck_token, only : deck_scan_t, token_kind, token_text, shown
    use dda_deck_scan, only : scan_deck, scan_values
-   use dda_deck, only : deck_t, deck_place_t, parameter_t, new_deck, deck_error
+   use dda_deck, only : deck_t, deck_place_t, parameter_t, new_deck, deck_error, text_of, word_of
    use dda_deck_parameter, only : split_name
    use dda_deck_set, only : put_text
    use dda_deck_entry, only : read_values
    use dda_deck_sweep, only : add_sweep
    use dda_deck_check, only : check_deck
    use dda_deck_lines, only : read_lines
+   use dda_read_blocks, only : parse_blocks
    implicit none
    private
 
-   public :: read_deck, parse_deck
+   public :: read_deck, parse_deck, geometry_file, file_beside
 
 contains
 
@@ -31,12 +32,42 @@ contains
       type(deck_t), intent(out) :: deck
       !> Bad input, with file and line, or with --set and its number
       type(error_t), allocatable, intent(out) :: error
-      character(len=:), allocatable :: text
+      character(len=:), allocatable :: text, geometry
 
       call read_text_file(file, text, error)
       if (.not. allocated(error)) call parse_deck(text, file, settings, deck, error)
       if (.not. allocated(error)) call read_lines(deck, error)
+      if (allocated(error)) return
+      if (word_of(deck, "scene", "kind") /= "blocks") return
+      geometry = geometry_file(deck)
+      call read_text_file(geometry, text, error)
+      if (allocated(error)) return
+      deck%geometry_text = text
+      call parse_blocks(text, geometry, deck%plan, error)
    end subroutine read_deck
+
+   !> Name of the file of blocks: beside the deck unless it begins with a slash
+   pure function geometry_file(deck) result(path)
+      !> The deck
+      type(deck_t), intent(in) :: deck
+      !> The name
+      character(len=:), allocatable :: path
+
+      path = file_beside(deck, text_of(deck, "scene", "geometry"))
+   end function geometry_file
+
+   !> Name of a file that a deck names: beside the deck unless it begins with a slash
+   pure function file_beside(deck, name) result(path)
+      !> The deck
+      type(deck_t), intent(in) :: deck
+      !> The name in the deck
+      character(len=*), intent(in) :: name
+      !> The name for all
+      character(len=:), allocatable :: path
+
+      path = name
+      if (index(path, "/") /= 1) path = deck%file(:index(deck%file, "/", back=.true.))//path
+   end function file_beside
 
    !> Read and check a deck from its text
    pure subroutine parse_deck(text, file, settings, deck, error)

@@ -9,6 +9,7 @@ module dda_write_frames
 
    public :: frame_stamp_t, frame_joint_row_t
    public :: frames_header, frame_lines, frame_joints_header, frame_joint_lines
+   public :: points_header, point_lines
 
    !> What all rows of a frame have in common
    type :: frame_stamp_t
@@ -97,6 +98,41 @@ contains
       end do
       lines = lines_of(rows)
    end function frame_joint_lines
+
+   !> Names of the columns of points.csv
+   pure function points_header() result(line)
+      !> The line
+      character(len=:), allocatable :: line
+
+      line = "case,step,time,point,x,y,u,v"
+   end function points_header
+
+   !> Rows of the measured points of one case in points.csv
+   pure function point_lines(number, when, point, track, origin) result(lines)
+      !> Number of the case
+      integer, intent(in) :: number
+      !> Step and time: (2, n) [-, s]
+      real(wp), intent(in) :: when(:, :)
+      !> Where the points are in the reference shape: (2, n_point) [m]
+      real(wp), intent(in) :: point(:, :)
+      !> Where they are in each step: (2, n_point, n) [m]
+      real(wp), intent(in) :: track(:, :, :)
+      !> Where the origin of the coordinates is: (2) [m]
+      real(wp), intent(in) :: origin(2)
+      !> The rows, parted by line ends
+      character(len=:), allocatable :: lines
+      type(growing_text_t) :: rows
+      integer :: i, k
+
+      do k = 1, size(when, 2)
+         do i = 1, size(track, 2)
+            call add_line(rows, to_text(number)//","//to_text(nint(when(1, k)))//"," &
+               & //to_text(when(2, k))//","//to_text(i)//","//pair(track(:, i, k) + origin)//"," &
+               & //pair(track(:, i, k) - point(:, i)))
+         end do
+      end do
+      lines = lines_of(rows)
+   end function point_lines
 
    !> Case and frame as the first fields of a row
    pure function stamp_text(stamp) result(text)

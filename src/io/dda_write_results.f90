@@ -82,8 +82,8 @@ module dda_write_results
       integer :: number = 0
       !> Number of the joint, from 1 at the left springing
       integer :: joint = 0
-      !> Angle from the crown, positive to the right [deg]
-      real(wp) :: angle_deg = 0.0_wp
+      !> Angle from the crown, positive to the right; unknown where there is no arch [deg]
+      type(number_t) :: angle_deg
       !> Corner at the intrados: (2) [m]
       real(wp) :: intrados(2) = 0.0_wp
       !> Corner at the extrados: (2) [m]
@@ -170,7 +170,7 @@ contains
       !> The line
       character(len=:), allocatable :: line
 
-      line = to_text(row%number)//","//to_text(row%joint)//","//to_text(row%angle_deg)//"," &
+      line = to_text(row%number)//","//to_text(row%joint)//","//number_text(row%angle_deg)//"," &
          & //to_text(row%intrados(1))//","//to_text(row%intrados(2))//"," &
          & //to_text(row%extrados(1))//","//to_text(row%extrados(2))//"," &
          & //to_text(row%normal_force)//","//to_text(row%shear_force)//"," &

@@ -6,7 +6,7 @@ module dda_block_system
    implicit none
    private
 
-   public :: block_system_t, new_block_system, n_unknown
+   public :: block_system_t, new_block_system, n_unknown, set_initial_state
 
    !> Unknowns of a deformable block: u0, v0, r0, ex, ey, gxy
    integer, parameter :: n_unknown = 6
@@ -42,6 +42,9 @@ module dda_block_system
       real(wp), allocatable :: velocity(:, :)
       !> Stress sx, sy, txy: (3, n_block) [Pa]
       real(wp), allocatable :: stress(:, :)
+      !> Stress that the blocks have without strain, in the frame that turns with the block:
+      !> (3, n_block) [Pa]
+      real(wp), allocatable :: initial_stress(:, :)
    end type block_system_t
 
 contains
@@ -70,6 +73,7 @@ contains
       allocate (system%area(n), system%centroid(2, n), system%second(3, n))
       allocate (system%density(n), system%unit_weight(n), system%material(n), system%equation(n))
       allocate (system%motion(n_unknown, n), system%velocity(n_unknown, n), system%stress(3, n))
+      allocate (system%initial_stress(3, n), source=0.0_wp)
       system%motion = 0.0_wp
       system%velocity = 0.0_wp
       system%stress = 0.0_wp
@@ -86,4 +90,20 @@ contains
          system%equation(b) = merge(0, movable, fixed(b))
       end do
    end function new_block_system
+
+   !> Give a block velocity and stress to begin with
+   pure subroutine set_initial_state(system, block, velocity, stress)
+      !> The blocks, not yet moved
+      type(block_system_t), intent(inout) :: system
+      !> Number of the block
+      integer, intent(in) :: block
+      !> Velocity of its centre and spin: (3) [m/s, m/s, rad/s]
+      real(wp), intent(in) :: velocity(3)
+      !> Stress sx, sy, txy: (3) [Pa]
+      real(wp), intent(in) :: stress(3)
+
+      system%velocity(:, block) = [velocity, 0.0_wp, 0.0_wp, 0.0_wp]
+      system%stress(:, block) = stress
+      system%initial_stress(:, block) = stress
+   end subroutine set_initial_state
 end module dda_block_system

@@ -1,5 +1,6 @@
 !> What a run is told once
 module dda_settings
+   use dda_boundary, only : boundary_t
    use dda_kinds, only : wp
    implicit none
    private
@@ -36,12 +37,20 @@ module dda_settings
       integer :: max_changes = 400
       !> Length of the first static step or of every dynamic one; 0 to choose it [s]
       real(wp) :: time_step = 0.0_wp
+      !> Speed after an impact over that before it, where blocks move in time
+      real(wp) :: restitution = 0.0_wp
+      !> Rate at which velocities decay by damping in proportion to mass [1/s]
+      real(wp) :: damping = 0.0_wp
+      !> Time at which a dynamic run ends; 0 to end with its last step [s]
+      real(wp) :: duration = 0.0_wp
       !> Largest motion of a corner in a step over the size of the smallest block
       real(wp) :: max_displacement_ratio = 0.05_wp
       !> Motion of a corner that means collapse; 0 for a test without a length [m]
       real(wp) :: collapse_displacement = 0.0_wp
       !> Body force per unit of weight: direction of gravity and the horizontal coefficient: (2)
       real(wp) :: load_direction(2) = [0.0_wp, -1.0_wp]
+      !> Held, loaded and measured points, and the motion of the ground
+      type(boundary_t) :: boundary
       !> Remaining acceleration over that of the loads below which a structure is at rest
       real(wp) :: rest_tolerance = 1.0e-11_wp
       !> Whether the condition number of the last equations is wanted

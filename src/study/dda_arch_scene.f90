@@ -14,8 +14,8 @@ module dda_arch_scene
    implicit none
    private
 
-   public :: arch_scene, half_joints_deg, exact_thickness, search_start
-   public :: arch_resolution, joint_law, settings_of, unit_weight
+   public :: arch_scene, half_joints_deg, exact_thickness, search_start, arch_resolution
+   public :: joint_law, material_of, settings_of, unit_weight
 
    !> Friction angles from here on mean that no joint slides [deg]
    real(wp), parameter :: no_slip_deg = 89.9_wp
@@ -28,17 +28,12 @@ contains
       type(deck_t), intent(in) :: deck
       !> The scene
       type(scene_t), intent(out) :: scene
-      type(material_t) :: material
       type(joint_law_t), allocatable :: law(:)
       integer, allocatable :: edge_pair(:, :)
       real(wp), allocatable :: half(:)
       integer :: j, n
 
-      material%density = real_of(deck, "material", "density")
-      material%young = real_of(deck, "material", "young")
-      material%poisson = real_of(deck, "material", "poisson")
-      material%plane_strain = word_of(deck, "material", "plane") == "strain"
-      call arch_blocks(arch_shape(deck), material, scene%system, edge_pair)
+      call arch_blocks(arch_shape(deck), material_of(deck), scene%system, edge_pair)
       scene%system%unit_weight = unit_weight(deck)
       scene%settings = settings_of(deck, degree*real_of(deck, "arch", "half_angle_deg"), &
          & size(half_joints_deg(deck)))
@@ -55,6 +50,19 @@ contains
          scene%joint_angle_deg(n - size(half) + j) = half(j)
       end do
    end subroutine arch_scene
+
+   !> The blocks' material
+   pure function material_of(deck) result(material)
+      !> The deck
+      type(deck_t), intent(in) :: deck
+      !> The material
+      type(material_t) :: material
+
+      material%density = real_of(deck, "material", "density")
+      material%young = real_of(deck, "material", "young")
+      material%poisson = real_of(deck, "material", "poisson")
+      material%plane_strain = word_of(deck, "material", "plane") == "strain"
+   end function material_of
 
    !> The law of the joints
    pure function joint_law(deck) result(law)
@@ -146,6 +154,10 @@ contains
          & settings%time_step = real_of(deck, "analysis", "time_step")
       if (is_given(deck, "analysis", "collapse_displacement")) &
          & settings%collapse_displacement = real_of(deck, "analysis", "collapse_displacement")
+      if (is_given(deck, "analysis", "duration")) &
+         & settings%duration = real_of(deck, "analysis", "duration")
+      settings%restitution = real_of(deck, "analysis", "restitution")
+      settings%damping = real_of(deck, "analysis", "damping")
       settings%max_displacement_ratio = real_of(deck, "analysis", "max_displacement_ratio")
       settings%load_direction = [cos(direction), sin(direction)]
       ! the four main directions, free of rounding, so that a symmetric arch stays symmetric

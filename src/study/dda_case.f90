@@ -9,11 +9,14 @@ module dda_case
    use dda_deck, only : deck_t, flag_of, has_group, integer_of, is_given, parameter_t, real_of, &
       & text_of, word_of
    use dda_deck_check, only : search_bracket
-   use dda_deck_scene, only : deck_family_t, deck_scene
    use dda_deck_parameter, only : find_parameter, parameter_name
-   use dda_error, only : error_t
+   use dda_deck_scene, only : deck_family_t, deck_scene
+   use dda_error, only : error_line, error_t
    use dda_forward, only : outcome_t, run_to_verdict
    use dda_frames, only : album_t
+   use dda_restart, only : load_restart
+   use dda_read_deck, only : file_beside
+   use dda_step_context, only : march_t
    use dda_kinds, only : wp
    use dda_limerick_decision, only : decide_limerick
    use dda_limerick_search, only : find_limerick_critical
@@ -54,6 +57,12 @@ module dda_case
       type(decision_t) :: decision
       !> Scene of the collapse, or of the decision
       type(scene_t) :: scene
+      !> Where a dynamic run goes on, and where it ended
+      type(march_t) :: onward
+      !> Restart file that it goes on from; empty if there is none
+      character(len=:), allocatable :: restart_file
+      !> Why the case could not be computed
+      type(error_t), allocatable :: error
       !> Pictures of the collapse, or of the way to rest
       type(album_t) :: album
       !> Exact critical thickness ratio
@@ -79,12 +88,13 @@ contains
 
       this%deck = deck
       this%plan = plan_scene(deck)
+      this%restart_file = file_beside(deck, text_of(deck, "analysis", "restart"))
       this%searches = has_group(deck, "search")
       this%limerick = word_of(deck, "analysis", "mode") == "limerick"
       if (this%searches) call prepare_search(deck, this%family, this%search)
       searched = searched_name(deck)
       this%exact_known = (searched == "" .or. searched == "thickness_ratio") &
-         & .and. .not. allocated(deck%cut)
+         & .and. word_of(deck, "scene", "kind") == "arch"
    end subroutine prepare_case
 
    !> Compute a case
@@ -95,6 +105,7 @@ contains
       integer(int64) :: start, finish, rate
 
       call system_clock(start, rate)
+      call plan_album(this)
       if (this%exact_known) call exact_thickness(this%deck, this%exact, this%exact_known)
       if (this%searches .and. this%limerick) then
          ! the limit of this scheme lies somewhat above the exact value
@@ -114,12 +125,13 @@ contains
          call decide_limerick(this%deck, this%decision)
       else
          call deck_scene(this%deck, this%scene)
-         call decide(this%scene%settings, this%scene%system, this%scene%contacts, this%decision)
+         call compute_decision(this)
          if (this%decision%outcome%verdict == verdict%collapsed) &
             & call follow_collapse(this%scene, this%decision)
       end if
       if (this%plan%shared_forces) call share_told_forces(this)
-      if (integer_of(this%deck, "output", "frames") > 0) call take_pictures(this)
+      if (integer_of(this%deck, "output", "frames") > 0 .or. size(this%album%point) > 0) &
+         & call take_pictures(this)
       call system_clock(finish)
       this%seconds = real(finish - start, wp)/real(rate, wp)
    end subroutine compute_case
@@ -136,9 +148,42 @@ contains
       call share_forces(scene, this%critical%standing)
    end subroutine share_told_forces
 
-   !> Run the scene of the case once more for its pictures, a collapse until a corner has moved a
-   !> tenth
-   !> of the radius
+   !> Decide the scene, from its beginning or from where an earlier run has ended
+   subroutine compute_decision(this)
+      !> The case, its scene made
+      type(case_t), intent(inout) :: this
+      type(block_system_t) :: system
+      type(contacts_t) :: contacts
+
+      system = this%scene%system
+      contacts = this%scene%contacts
+      if (is_given(this%deck, "analysis", "restart")) then
+         call load_restart(this%restart_file, this%scene%settings, system, contacts, this%onward, &
+            & this%error)
+         if (allocated(this%error)) return
+      end if
+      call decide(this%scene%settings, system, contacts, this%decision, this%album, this%onward)
+   end subroutine compute_decision
+
+   !> What the album of the case is to hold
+   pure subroutine plan_album(this)
+      !> The case
+      type(case_t), intent(inout) :: this
+      integer :: frames
+
+      frames = integer_of(this%deck, "output", "frames")
+      allocate (this%album%point(0))
+      if (this%searches) return
+      this%album%audit%wanted = flag_of(this%deck, "output", "energy") &
+         & .and. word_of(this%deck, "analysis", "mode") == "dynamic"
+      if (allocated(this%deck%plan%boundary%measured)) &
+         & this%album%point = this%deck%plan%boundary%measured
+      if (frames > 0 .and. word_of(this%deck, "analysis", "mode") == "dynamic") &
+         & this%album%every = max(1, integer_of(this%deck, "analysis", "steps")/frames)
+   end subroutine plan_album
+
+   !> Run a static scene once more for its pictures, a collapse until a corner has moved a tenth of
+   !> the radius, or of the size of the blocks
    pure subroutine take_pictures(this)
       !> The case, computed
       type(case_t), intent(inout) :: this
@@ -149,6 +194,7 @@ contains
       type(contacts_t) :: contacts
       logical :: slides
 
+      if (this%scene%settings%dynamic) return
       slides = this%decision%flow == flow_rule%coulomb
       if (allocated(this%critical%fallen)) then
          slides = this%critical%fallen%flow == flow_rule%coulomb
@@ -160,22 +206,28 @@ contains
       settings = this%scene%settings
       settings%flow = merge(flow_rule%coulomb, flow_rule%associated, slides)
       if (.not. settings%collapse_displacement > 0.0_wp) &
-         & settings%collapse_displacement = 0.1_wp*size_of(this%deck)
-      this%album%spacing = settings%collapse_displacement &
+         & settings%collapse_displacement = 0.1_wp*scene_size(this)
+      if (integer_of(this%deck, "output", "frames") > 0) &
+         & this%album%spacing = settings%collapse_displacement &
          & /real(integer_of(this%deck, "output", "frames"), wp)
       system = this%scene%system
       contacts = this%scene%contacts
       call run_to_verdict(settings, system, contacts, outcome, this%album)
    end subroutine take_pictures
 
-   !> Size of the structure: the radius of an arch, else half of what is larger, width or height [m]
-   pure real(wp) function size_of(deck)
-      !> The deck
-      type(deck_t), intent(in) :: deck
+   !> Radius of an arch, half size of what was cut, or mean size of the blocks that move [m]
+   pure real(wp) function scene_size(this)
+      !> The case
+      type(case_t), intent(in) :: this
 
-      size_of = real_of(deck, "arch", "radius")
-      if (allocated(deck%cut)) size_of = deck%cut%scale%size
-   end function size_of
+      associate (system => this%scene%system)
+         scene_size = sqrt(sum(system%area, mask=system%equation > 0) &
+            & /real(max(1, count(system%equation > 0)), wp))
+      end associate
+      if (word_of(this%deck, "scene", "kind") == "arch") &
+         & scene_size = real_of(this%deck, "arch", "radius")
+      if (allocated(this%deck%cut)) scene_size = this%deck%cut%scale%size
+   end function scene_size
 
    !> Tell a case
    pure subroutine tell_case(this, row, joint_row, remark)
@@ -191,7 +243,10 @@ contains
       remark = ""
       allocate (joint_row(0))
       call describe(this, row)
-      if (this%searches) then
+      if (allocated(this%error)) then
+         row%verdict = verdict_name(verdict%undecided)
+         remark = error_line(this%error)
+      else if (this%searches) then
          call tell_search(this, row, joint_row, remark)
       else
          call tell_decision(this, row, joint_row, remark)
@@ -210,7 +265,7 @@ contains
       row%mode = word_of(this%deck, "analysis", "mode")
       row%geometry = word_of(this%deck, "analysis", "geometry")
       if (this%limerick) row%geometry = "current"
-      if (.not. allocated(this%deck%cut)) then
+      if (word_of(this%deck, "scene", "kind") == "arch") then
          row%half_angle_deg = given_number(this%deck, "arch", "half_angle_deg", searched)
          row%thickness_ratio = given_number(this%deck, "arch", "thickness_ratio", searched)
       end if
@@ -277,7 +332,7 @@ contains
          row%factorisations = outcome%factorisations
          call tell_condition(outcome, row)
       end associate
-      joint_row = joint_rows(this%decision%contacts, this%scene%joint_angle_deg)
+      joint_row = joint_rows(this%decision%contacts, this%scene%joint_angle_deg, this%scene%origin)
    end subroutine tell_decision
 
    !> Tell the search of a case
@@ -304,13 +359,15 @@ contains
          if (critical%verdict == verdict%found) call tell_bracket(critical, row)
          if (allocated(critical%fallen)) then
             call tell_mechanism(critical%fallen%contacts, this%scene%joint_angle_deg, row)
-            joint_row = joint_rows(critical%fallen%contacts, this%scene%joint_angle_deg)
+            joint_row = joint_rows(critical%fallen%contacts, this%scene%joint_angle_deg, &
+               & this%scene%origin)
          end if
          if (allocated(critical%standing)) then
             call this%family%build(critical%stands, scene, error)
-            joint_row = joint_rows(critical%standing%contacts, scene%joint_angle_deg)
+            joint_row = joint_rows(critical%standing%contacts, scene%joint_angle_deg, scene%origin)
          end if
-         row%blocks = max(0, size(joint_row) - 1)
+         if (allocated(critical%fallen)) row%blocks = maxval(critical%fallen%system%equation)
+         if (allocated(critical%standing)) row%blocks = maxval(critical%standing%system%equation)
          row%steps = critical%steps
          row%open_close_iterations = critical%passes
          row%factorisations = critical%factorisations
@@ -350,7 +407,7 @@ contains
       ! the original's own verdicts near the limit are no sharper
       if (word_of(deck, "analysis", "mode") == "limerick" &
          & .and. .not. is_given(deck, "search", "tolerance")) search%tolerance = 1.0e-4_wp
-      if (.not. allocated(deck%cut)) search%resolution = arch_resolution(deck)
+      if (word_of(deck, "scene", "kind") == "arch") search%resolution = arch_resolution(deck)
       search%start = search%low
       if (searched_name(deck) /= "thickness_ratio") return
       search%resolution_at = real_of(deck, "arch", "thickness_ratio")
@@ -405,20 +462,24 @@ contains
    end subroutine tell_mechanism
 
    !> Rows of all joints
-   pure function joint_rows(contacts, joint_angle_deg) result(row)
+   pure function joint_rows(contacts, joint_angle_deg, origin) result(row)
       !> The contacts
       type(contacts_t), intent(in) :: contacts
-      !> Angle of each joint from the crown: (n_joint) [deg]
+      !> Angle of each joint from the crown, or none: (n_joint) or (0) [deg]
       real(wp), intent(in) :: joint_angle_deg(:)
+      !> Where the origin of the blocks' coordinates is: (2) [m]
+      real(wp), intent(in) :: origin(2)
       !> The rows, without the number of the case: (n_joint)
-      type(joint_row_t) :: row(size(joint_angle_deg))
+      type(joint_row_t) :: row(size(contacts%joint))
       integer :: j
 
       do j = 1, size(row)
          row(j)%joint = j
-         row(j)%angle_deg = joint_angle_deg(j)
-         row(j)%intrados = contacts%joint(j)%contact(1)%point
-         row(j)%extrados = contacts%joint(j)%contact(2)%point
+         if (size(joint_angle_deg) > 0) row(j)%angle_deg = some_number(joint_angle_deg(j))
+         associate (joint => contacts%joint(j))
+            row(j)%intrados = joint%contact(1)%point + origin
+            row(j)%extrados = joint%contact(joint%n_contact)%point + origin
+         end associate
          row(j)%normal_force = sum(contacts%force(1:2, j))
          row(j)%shear_force = contacts%force(3, j)
          if (row(j)%normal_force > 0.0_wp) row(j)%eccentricity_ratio = some_number( &

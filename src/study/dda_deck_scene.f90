@@ -1,17 +1,23 @@
-!> From a deck of any kind to scenes
+!> From a deck of any kind to its scene
 module dda_deck_scene
-   use dda_arch_scene, only : arch_scene
-   use dda_deck, only : deck_t, parameter_t, word_of
+   use dda_arch_scene, only : arch_scene, material_of, settings_of, unit_weight
+   use dda_block_scene, only : base_t, block_scene, floating_block
+   use dda_constants, only : pi
+   use dda_deck, only : deck_error, deck_t, is_given, parameter_t, place_of, real_of, text_of, &
+      & word_of
+   use dda_deck_keys, only : key_index
    use dda_deck_set, only : number_fits, put_number
    use dda_error, only : error_t, fatal_error
    use dda_kinds, only : wp
    use dda_limerick_lines, only : check_limerick_lines
    use dda_line_scene, only : check_line_scene, line_scene
+   use dda_read_deck, only : file_beside, geometry_file
    use dda_scene, only : family_t, scene_t
+   use dda_text, only : to_text
    implicit none
    private
 
-   public :: deck_family_t, deck_scene, check_deck_scene
+   public :: check_lines, check_scene, deck_family_t, deck_scene, warning_line
 
    !> The scenes of one deck whose searched parameter varies
    type, extends(family_t) :: deck_family_t
@@ -25,35 +31,6 @@ module dda_deck_scene
    end type deck_family_t
 
 contains
-
-   !> The scene that the deck of one case describes
-   pure subroutine deck_scene(deck, scene)
-      !> The deck, checked
-      type(deck_t), intent(in) :: deck
-      !> The scene
-      type(scene_t), intent(out) :: scene
-
-      if (allocated(deck%cut)) then
-         call line_scene(deck, scene)
-      else
-         call arch_scene(deck, scene)
-      end if
-   end subroutine deck_scene
-
-   !> Whether this version can run the blocks of a deck
-   pure subroutine check_deck_scene(deck, error)
-      !> The deck of a case
-      type(deck_t), intent(in) :: deck
-      !> What it cannot do
-      type(error_t), allocatable, intent(out) :: error
-
-      if (.not. allocated(deck%cut)) return
-      if (word_of(deck, "analysis", "mode") == "limerick") then
-         call check_limerick_lines(deck, error)
-      else
-         call check_line_scene(deck, error)
-      end if
-   end subroutine check_deck_scene
 
    !> Make the scene of one value of the parameter
    pure subroutine build_deck_scene(family, value, scene, error)
@@ -75,4 +52,94 @@ contains
       call put_number(deck, family%parameter, value, deck%value(family%parameter%key)%place, error)
       if (.not. allocated(error)) call deck_scene(deck, scene)
    end subroutine build_deck_scene
+
+   !> The scene that the deck of one case describes
+   pure subroutine deck_scene(deck, scene)
+      !> The deck, checked
+      type(deck_t), intent(in) :: deck
+      !> The scene
+      type(scene_t), intent(out) :: scene
+
+      if (allocated(deck%cut)) then
+         call line_scene(deck, scene)
+      else if (word_of(deck, "scene", "kind") == "blocks") then
+         call plan_scene(deck, scene)
+      else
+         call arch_scene(deck, scene)
+      end if
+   end subroutine deck_scene
+
+   !> The scene of a deck's file of blocks
+   pure subroutine plan_scene(deck, scene)
+      !> The deck, checked
+      type(deck_t), intent(in) :: deck
+      !> The scene
+      type(scene_t), intent(out) :: scene
+      type(base_t) :: base
+
+      base%material = material_of(deck)
+      base%unit_weight = unit_weight(deck)
+      base%gravity = real_of(deck, "load", "gravity")
+      base%law = [real_of(deck, "joint", "friction_deg"), real_of(deck, "joint", "cohesion"), &
+         & real_of(deck, "joint", "tension")]
+      scene%settings = settings_of(deck, pi/2.0_wp, size(deck%plan%fixed))
+      call block_scene(deck%plan, base, scene)
+   end subroutine plan_scene
+
+   !> Whether this version can run the blocks that were cut from lines
+   pure subroutine check_lines(deck, error)
+      !> The deck of a case
+      type(deck_t), intent(in) :: deck
+      !> What it cannot do
+      type(error_t), allocatable, intent(inout) :: error
+
+      if (.not. allocated(deck%cut)) return
+      if (word_of(deck, "analysis", "mode") == "limerick") then
+         call check_limerick_lines(deck, error)
+      else
+         call check_line_scene(deck, error)
+      end if
+   end subroutine check_lines
+
+   !> A warning about the blocks as the line that a user sees
+   pure function warning_line(deck, i) result(line)
+      !> The deck
+      type(deck_t), intent(in) :: deck
+      !> Number of the warning
+      integer, intent(in) :: i
+      !> FILE:LINE: warning: message
+      character(len=:), allocatable :: line
+
+      line = geometry_file(deck)//":"//to_text(max(1, deck%plan%warning_line(i)))//": warning: " &
+         & //trim(deck%plan%warning(i))
+   end function warning_line
+
+   !> Check that a static scene can come to rest at all, and that a run that goes on has a file
+   subroutine check_scene(deck, error)
+      !> The deck, checked
+      type(deck_t), intent(in) :: deck
+      !> Allocated if nothing holds a block, or no file is there
+      type(error_t), allocatable, intent(out) :: error
+      type(scene_t) :: scene
+      integer :: b
+      logical :: exists
+
+      if (is_given(deck, "analysis", "restart")) then
+         inquire (file=file_beside(deck, text_of(deck, "analysis", "restart")), exist=exists)
+         if (.not. exists) then
+            call deck_error(error, "there is no restart file '"// &
+               & text_of(deck, "analysis", "restart")//"'", deck, &
+               & place_of(deck, key_index("analysis", "restart")))
+            return
+         end if
+      end if
+      if (word_of(deck, "scene", "kind") /= "blocks") return
+      if (word_of(deck, "analysis", "mode") /= "static") return
+      call deck_scene(deck, scene)
+      b = floating_block(scene)
+      if (b == 0) return
+      call fatal_error(error, "block "//to_text(b)//" rests on nothing: no chain of joints "// &
+         & "ties it to a fixed block, as mode = 'static' wants", geometry_file(deck), &
+         & deck%plan%line(b))
+   end subroutine check_scene
 end module dda_deck_scene

@@ -1,7 +1,6 @@
 !> The joints of a picture: where they are, their forces, and what their contacts do
 module dda_frame_rows
    use dda_block_system, only : block_system_t
-   use dda_contact_detection, only : contacts_t
    use dda_contact_types, only : joint_t, place_joint
    use dda_frames, only : frame_t
    use dda_friction_cone, only : contact_state
@@ -18,25 +17,23 @@ module dda_frame_rows
 contains
 
    !> Rows of all joints of a picture
-   pure function frame_joint_rows(system, contacts, frame) result(row)
+   pure function frame_joint_rows(system, frame) result(row)
       !> The blocks, for their shapes
       type(block_system_t), intent(in) :: system
-      !> The contacts, for what touches what
-      type(contacts_t), intent(in) :: contacts
       !> The picture
       type(frame_t), intent(in) :: frame
       !> The rows: (n_joint)
-      type(frame_joint_row_t) :: row(size(contacts%joint))
+      type(frame_joint_row_t) :: row(size(frame%joint))
       type(joint_t) :: joint
       real(wp) :: gap(3), normal_force
       integer :: j, states(2)
 
       do j = 1, size(row)
-         joint = contacts%joint(j)
+         joint = frame%joint(j)
          call place_joint(system, frame%moved, joint, gap)
          row(j)%joint = j
          row(j)%contact(:, 1) = joint%contact(1)%point
-         row(j)%contact(:, 2) = joint%contact(2)%point
+         row(j)%contact(:, 2) = joint%contact(joint%n_contact)%point
          normal_force = sum(frame%force(1:2, j))
          row(j)%force = normal_force*joint%normal + frame%force(3, j)*joint%tangent
          row(j)%point = (row(j)%contact(:, 1) + row(j)%contact(:, 2))/2.0_wp

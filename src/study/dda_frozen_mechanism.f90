@@ -1,7 +1,8 @@
 !> The power of the loads on a mechanism whose joints keep to their faces, as a smooth function of
 !> the parameter of a search: its zero is where the mechanism stops
 module dda_frozen_mechanism
-   use dda_assembly, only : assemble_blocks, equations_t, new_equations, solve_faces
+   use dda_assembly, only : equations_t, new_equations, solve_faces
+   use dda_block_inertia, only : assemble_blocks
    use dda_block_factor, only : substitute
    use dda_block_system, only : block_system_t
    use dda_friction_cone, only : joint_face_t

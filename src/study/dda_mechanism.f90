@@ -69,7 +69,7 @@ contains
    pure subroutine mechanism_of(contacts, joint_angle_deg, mechanism)
       !> Contacts at the end of the collapse
       type(contacts_t), intent(in) :: contacts
-      !> Angle of each joint from the crown: (n_joint) [deg]
+      !> Angle of each joint from the crown, or none where there is no arch: (n_joint) or (0) [deg]
       real(wp), intent(in) :: joint_angle_deg(:)
       !> The mechanism
       type(mechanism_t), intent(out) :: mechanism
@@ -77,16 +77,19 @@ contains
       real(wp) :: opening, slip
 
       role = role_of_joint(contacts)
-      n = size(role)
+      n = size(joint_angle_deg)
       slip = sum(abs(contacts%increment(3, :)), mask=contacts%face%slip /= 0)
       opening = sum(max(0.0_wp, contacts%increment(1, :)), mask=contacts%face%open(1)) &
          & + sum(max(0.0_wp, contacts%increment(2, :)), mask=contacts%face%open(2))
-      allocate (mechanism%intrados_deg, &
-         & source=each_once(abs(pack(joint_angle_deg, role == joint_role%hinge_first))))
-      allocate (mechanism%extrados_deg, &
-         & source=each_once(abs(pack(joint_angle_deg, role == joint_role%hinge_second))))
-      if (any(role([1, n]) == joint_role%hinge_first)) mechanism%springing = "intrados"
-      if (any(role([1, n]) == joint_role%hinge_second)) mechanism%springing = "extrados"
+      allocate (mechanism%intrados_deg(0), mechanism%extrados_deg(0))
+      if (n > 0) then
+         mechanism%intrados_deg = &
+            & each_once(abs(pack(joint_angle_deg, role == joint_role%hinge_first)))
+         mechanism%extrados_deg = &
+            & each_once(abs(pack(joint_angle_deg, role == joint_role%hinge_second)))
+         if (any(role([1, n]) == joint_role%hinge_first)) mechanism%springing = "intrados"
+         if (any(role([1, n]) == joint_role%hinge_second)) mechanism%springing = "extrados"
+      end if
       if (.not. slip + opening > 0.0_wp) return
       mechanism%sliding_share = slip/(slip + opening)
       mechanism%mode = "mixed"

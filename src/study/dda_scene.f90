@@ -18,6 +18,8 @@ module dda_scene
       type(block_system_t) :: system
       !> Contacts at the beginning
       type(contacts_t) :: contacts
+      !> Where the origin of the blocks' coordinates is in those of the user: (2) [m]
+      real(wp) :: origin(2) = 0.0_wp
       !> Angle of each joint from the crown, positive to the right; only for arches: (n_joint) [deg]
       real(wp), allocatable :: joint_angle_deg(:)
    end type scene_t

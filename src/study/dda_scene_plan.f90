@@ -32,8 +32,8 @@ module dda_scene_plan
       integer :: forces = 6
       !> The original's scheme has strain
       integer :: original = 7
-      !> Blocks cut from lines, whose joints have laws of their own
-      integer :: lines = 8
+      !> Blocks of any shape, whose joints may have laws of their own
+      integer :: blocks = 8
    end type strain_reason_enum
 
    !> Names of the reasons
@@ -82,7 +82,7 @@ contains
       if (plan%strength) plan%reason = strain_reason%strength
       if (plan%velocities) plan%reason = strain_reason%dynamic
       if (plan%moving) plan%reason = strain_reason%moving
-      if (allocated(deck%cut)) plan%reason = strain_reason%lines
+      if (word_of(deck, "scene", "kind") /= "arch") plan%reason = strain_reason%blocks
       if (word_of(deck, "analysis", "mode") == "limerick") plan%reason = strain_reason%original
       if (plan%reason == strain_reason%none) then
          plan%unknowns = n_rigid

@@ -1,12 +1,14 @@
 #!/usr/bin/env python3
 """Seeded mutation fuzzer of the deck reader.
 
-usage: fuzz_deck.py --command 'build/bin/dda check' [--mutants N] [--seed N]
+usage: fuzz_deck.py --command 'build/bin/dda check' [--mutants N] [--seed N] [--run PROGRAM]
 
 Mutates good decks and runs COMMAND on them, many decks a call. Every deck must
 either be accepted or give one line FILE:LINE: error: ...; the exit status must
 be 0 (all accepted) or 2 (some refused); nothing may crash or hang. The same
-seed makes the same mutants. Ends with status 1 and keeps the decks that failed.
+seed makes the same mutants. With --run, the first case of each small deck that is accepted is
+computed as well: status 0 or 3, one row, no message. Ends with status 1 and keeps the decks that
+failed.
 """
 import argparse
 import random
@@ -48,6 +50,10 @@ SEEDS = [
 &load gravity=9.81, gravity_direction_deg=-90, horizontal_coefficient=0.0 /
 &analysis mode='static', geometry='current', steps=400, max_displacement_ratio=0.05,
    time_step=1d-3, penalty_ratio=100, collapse_displacement=0.5, open_close_limit=400 &end
+""",
+    b"""&arch voussoirs=8, thickness_ratio=0.09 / &search parameter='horizontal_coefficient' /
+&joint friction_deg=35, cohesion=1e3, tension=5e2 / &material plane='strain' poisson=0.3 /
+&analysis geometry='current', steps=50 / &output frames=3, vtu=.true., joints=.true. /
 """,
     b"""\xef\xbb\xbf&arch thickness_ratio=0.3\r\n/\r\n&search parameter='friction_deg' /\r
 &sweep parameter='half_angle_deg', values=45, 60, 75 /\r
@@ -154,6 +160,29 @@ def complaint(status, lines, decks):
     return "", len(refused)
 
 
+def small(program, deck):
+    """Whether the first case of a deck is computed in no time: few blocks, few steps."""
+    text = deck.read_bytes().lower()
+    plan = subprocess.run([program, "check", deck], stdout=subprocess.PIPE, check=False).stdout
+    blocks = re.search(rb"blocks +(\d+) that move", plan)
+    numbers = [float(word) for word in re.findall(rb"(?:steps|frames|limit) *= *(\d+)", text)]
+    return blocks is not None and int(blocks[1]) <= 60 and max(numbers, default=0) <= 1000
+
+
+def run_first_case(program, deck, timeout):
+    """What computing the first case of a good deck breaks; empty if all is well."""
+    with tempfile.TemporaryDirectory() as folder:
+        words = [program, "run", deck, "--cases", "1", "--out", folder, "--quiet"]
+        try:
+            done = subprocess.run(words, timeout=timeout, capture_output=True, check=False)
+        except subprocess.TimeoutExpired:
+            return "hang of its first case"
+        if done.returncode not in (0, 3) or done.stderr:
+            return f"status {done.returncode} of its first case: {done.stderr[-300:]}"
+        rows = (Path(folder) / "results.csv").read_bytes().count(b"\n") - 1
+        return "" if rows == 1 else f"{rows} rows of its first case"
+
+
 def main():
     """Fuzz and report."""
     parser = argparse.ArgumentParser(description=__doc__,
@@ -163,11 +192,12 @@ def main():
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--batch", type=int, default=50, help="decks a call")
     parser.add_argument("--timeout", type=float, default=10.0, help="seconds a call")
+    parser.add_argument("--run", metavar="PROGRAM", help="dda, to compute good decks with")
     parser.add_argument("--keep", default="fuzz_failed", help="folder for decks that failed")
     options = parser.parse_args()
     command = shlex.split(options.command)
     rng = random.Random(options.seed)
-    refused = failed = 0
+    refused = failed = computed = 0
     with tempfile.TemporaryDirectory() as folder:
         for start in range(0, options.mutants, options.batch):
             decks = [Path(folder) / f"mutant{i}.nml"
@@ -189,10 +219,20 @@ def main():
                 failed += 1
                 print(f"only together, from {decks[0].name}: {trouble}", flush=True)
             refused += count
+            for deck in decks if options.run and not trouble else ():
+                if run(command, [deck], options.timeout)[0] == 0 and small(options.run, deck):
+                    computed += 1
+                    broken = run_first_case(options.run, deck, 60.0)
+                    if broken:
+                        failed += 1
+                        Path(options.keep).mkdir(parents=True, exist_ok=True)
+                        shutil.copy(deck, options.keep)
+                        print(f"{deck.name}: {broken}", flush=True)
             for deck in decks:
                 deck.unlink()
     print(f"{options.mutants} mutants, seed {options.seed}: {refused} refused, "
-          f"{options.mutants - refused - failed} accepted, {failed} failed")
+          f"{options.mutants - refused - failed} accepted, {failed} failed, "
+          f"{computed} computed")
     return 1 if failed else 0
 
 

@@ -10,7 +10,8 @@ from pathlib import Path
 import pytest
 from dda_command import run_dda
 
-SUBCOMMANDS = ["run", "check", "help"]
+SUBCOMMANDS = ["run", "check", "cut", "export", "help"]
+LINES = Path(__file__).parents[2] / "input" / "limerick" / "terrace.geo"
 SWEEP = "&arch thickness_ratio = 0.12 /\n&sweep parameter = 'radius', first = 1, last = 4, count = 4 /\n"
 
 
@@ -120,6 +121,38 @@ def check_quiet(folder: Path) -> None:
     assert (done.returncode, done.stdout, done.stderr) == (0, "", "")
 
 
+def cut_out(folder: Path) -> None:
+    assert run_dda("cut", LINES, "--out", "blocks.csv", cwd=folder).returncode == 0
+    assert (folder / "blocks.csv").read_text().count("\n") > 2
+
+
+def cut_quiet(folder: Path) -> None:
+    assert "terrace.geo: " in run_dda("cut", LINES, cwd=folder).stdout
+    done = run_dda("cut", LINES, "--quiet", cwd=folder)
+    assert (done.returncode, done.stdout, done.stderr) == (0, "", "")
+
+
+def export_out(folder: Path) -> None:
+    assert run_dda("export", "deck.nml", "--out", "files", cwd=folder).returncode == 0
+    assert len(list((folder / "files").glob("*.geo"))) == 8
+
+
+def export_set(folder: Path) -> None:
+    for name, count in (("few", "4"), ("many", "40")):
+        setting = f"arch%voussoirs={count}"
+        done = run_dda("export", "deck.nml", "--out", name, "--set", setting, cwd=folder)
+        assert done.returncode == 0
+    few, many = (sum(file.stat().st_size for file in (folder / name).glob("*.geo"))
+                 for name in ("few", "many"))
+    assert many > 2 * few
+
+
+def export_quiet(folder: Path) -> None:
+    done = run_dda("export", "deck.nml", "--quiet", cwd=folder)
+    assert (done.returncode, done.stdout, done.stderr) == (0, "", "")
+    assert list(folder.glob("*.geo"))
+
+
 #: Subcommand and option: what proves that the option works
 PROOFS: dict[tuple[str, str], Callable[[Path], None]] = {
     ("run", "--out"): run_out,
@@ -130,6 +163,11 @@ PROOFS: dict[tuple[str, str], Callable[[Path], None]] = {
     ("run", "--quiet"): run_quiet,
     ("check", "--set"): check_set,
     ("check", "--quiet"): check_quiet,
+    ("cut", "--out"): cut_out,
+    ("cut", "--quiet"): cut_quiet,
+    ("export", "--out"): export_out,
+    ("export", "--set"): export_set,
+    ("export", "--quiet"): export_quiet,
 }
 
 

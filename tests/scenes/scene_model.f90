@@ -2,6 +2,8 @@
 module scene_model
    use dda_block_system, only : new_block_system
    use dda_contact_detection, only : find_contacts
+   use dda_contact_search, only : new_joint_search
+   use dda_contact_transfer, only : search_contacts
    use dda_kinds, only : wp
    use dda_material, only : joint_law_t, material_t
    use dda_scene, only : scene_t
@@ -9,7 +11,7 @@ module scene_model
    implicit none
    private
 
-   public :: model_t, add_block, add_joint, scene_of, rectangle, turned
+   public :: model_t, add_block, add_joint, scene_of, searched_scene, rectangle, turned
 
    !> What a scene is made of
    type :: model_t
@@ -65,6 +67,24 @@ contains
       model%edge_pair = reshape([model%edge_pair, edge_pair], [4, size(model%edge_pair, 2) + 1])
       model%law = [model%law, law]
    end subroutine add_joint
+
+   !> The scene of a model whose joints are searched
+   pure function searched_scene(model, law) result(scene)
+      !> The model, with a block or more; its joints do not count
+      type(model_t), intent(in) :: model
+      !> Law of all joints
+      type(joint_law_t), intent(in) :: law
+      !> The scene
+      type(scene_t) :: scene
+
+      scene%settings = model%settings
+      scene%system = new_block_system(model%first_vertex, model%vertex, model%fixed, model%material)
+      scene%system%unit_weight = model%unit_weight
+      scene%contacts%searched = .true.
+      scene%contacts%search = new_joint_search(scene%system, reshape([law], [1, 1]))
+      call search_contacts(scene%system, scene%settings%penalty_ratio, scene%settings%n_dof, &
+         & scene%contacts)
+   end function searched_scene
 
    !> The scene of a model
    pure function scene_of(model) result(scene)

@@ -1,6 +1,7 @@
 !> One step of a scene, laid open: equations and state as a run makes them
 module scene_step
-   use dda_assembly, only : assemble_blocks, equations_t, new_equations
+   use dda_assembly, only : equations_t, new_equations
+   use dda_block_inertia, only : assemble_blocks
    use dda_friction_cone, only : joint_face_t, project
    use dda_joint_springs, only : joint_springs_t
    use dda_kinds, only : wp

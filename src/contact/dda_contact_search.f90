@@ -1,0 +1,155 @@
+!> What touches, or may touch in the coming step (Shi: df04): edges whose boxes come near one
+!> another are looked at pair of blocks by pair of blocks
+module dda_contact_search
+   use, intrinsic :: iso_fortran_env, only : int64
+   use dda_block_system, only : block_system_t
+   use dda_box_tree, only : box_pairs
+   use dda_contact_types, only : joint_t
+   use dda_entrance, only : add_joints, joint_list_t, neighbourhood_t
+   use dda_kinds, only : wp
+   use dda_material, only : joint_law_t
+   use dda_outline, only : outline_of, outline_t
+   use dda_sort, only : rising_order
+   implicit none
+   private
+
+   public :: joint_search_t, new_joint_search, touching_joints, near_joints
+
+   !> What a search needs of the scene, made once
+   type :: joint_search_t
+      !> How the corners follow one another
+      type(outline_t) :: outline
+      !> Law of the joints between two materials: (n_material, n_material)
+      type(joint_law_t), allocatable :: law(:, :)
+   end type joint_search_t
+
+   !> Gaps below this share of the smaller block's size count as closed at the beginning
+   real(wp), parameter :: touching = 1.0e-4_wp
+
+contains
+
+   !> Search for the joints of a system
+   pure function new_joint_search(system, law) result(search)
+      !> The blocks
+      type(block_system_t), intent(in) :: system
+      !> Law of the joints between two materials: (n_material, n_material)
+      type(joint_law_t), intent(in) :: law(:, :)
+      !> The search
+      type(joint_search_t) :: search
+
+      search%outline = outline_of(system)
+      allocate (search%law, source=law)
+   end function new_joint_search
+
+   !> Joints of blocks that touch in the reference shape
+   pure subroutine touching_joints(search, system, joint)
+      !> The search
+      type(joint_search_t), intent(in) :: search
+      !> The blocks
+      type(block_system_t), intent(in) :: system
+      !> The joints, in the order of their blocks: (n_joint)
+      type(joint_t), allocatable, intent(out) :: joint(:)
+      type(neighbourhood_t) :: near
+      real(wp) :: reach(size(system%area))
+
+      reach = touching*sqrt(system%area)
+      near%vertex = system%vertex
+      near%travel = 0.0_wp*system%vertex
+      near%beginning = .true.
+      allocate (near%closed(0))
+      call find_joints(search, system, reach, near, joint)
+   end subroutine touching_joints
+
+   !> Joints of blocks that touch where they are now, or come as near as they may in a step
+   pure subroutine near_joints(search, system, travel, closed, reach, joint)
+      !> The search
+      type(joint_search_t), intent(in) :: search
+      !> The blocks
+      type(block_system_t), intent(in) :: system
+      !> How the corners are about to move; only directions and ratios count: (2, n_vertex) [m]
+      real(wp), intent(in) :: travel(:, :)
+      !> Keys of the contacts that were closed, rising: (n_closed)
+      integer(int64), intent(in) :: closed(:)
+      !> Most that the corners of each block may move: (n_block) [m]
+      real(wp), intent(in) :: reach(:)
+      !> The joints, in the order of their blocks: (n_joint)
+      type(joint_t), allocatable, intent(out) :: joint(:)
+      type(neighbourhood_t) :: near
+
+      near%vertex = system%moved
+      near%travel = travel
+      near%closed = closed
+      call find_joints(search, system, reach, near, joint)
+   end subroutine near_joints
+
+   !> Joints of all pairs of blocks whose edges come near one another
+   pure subroutine find_joints(search, system, reach, near, joint)
+      !> The search
+      type(joint_search_t), intent(in) :: search
+      !> The blocks
+      type(block_system_t), intent(in) :: system
+      !> How far each block can reach; of two the smaller counts at the beginning, later the sum:
+      !> (n_block) [m]
+      real(wp), intent(in) :: reach(:)
+      !> Where the corners are; completed here
+      type(neighbourhood_t), intent(inout) :: near
+      !> The joints: (n_joint)
+      type(joint_t), allocatable, intent(out) :: joint(:)
+      type(joint_list_t) :: list
+      integer, allocatable :: pair(:, :)
+      integer :: block(2), first, last, j
+
+      near%outline = search%outline
+      near%first_vertex = system%first_vertex
+      call near_edges(near, system%equation, reach, pair)
+      first = 1
+      do while (first <= size(pair, 2))
+         block = near%outline%block(pair(:, first))
+         last = first
+         do while (last < size(pair, 2))
+            if (any(near%outline%block(pair(:, last + 1)) /= block)) exit
+            last = last + 1
+         end do
+         call add_joints(near, pair(:, first:last), &
+            & merge(minval(reach(block)), sum(reach(block)), near%beginning), list)
+         first = last + 1
+      end do
+      allocate (joint(list%n))
+      do j = 1, list%n
+         joint(j) = list%joint(j)
+         joint(j)%law = search%law(system%material(joint(j)%block(1)), &
+            & system%material(joint(j)%block(2)))
+      end do
+   end subroutine find_joints
+
+   !> Edges of different blocks whose boxes come near one another, in the order of their blocks
+   pure subroutine near_edges(near, equation, reach, pair)
+      !> Where the corners are
+      type(neighbourhood_t), intent(in) :: near
+      !> Number of each block in the equations; 0 for a block that cannot move: (n_block)
+      integer, intent(in) :: equation(:)
+      !> How far each block can reach: (n_block) [m]
+      real(wp), intent(in) :: reach(:)
+      !> The pairs, of two fixed blocks none: (2, n_pair)
+      integer, allocatable, intent(out) :: pair(:, :)
+      real(wp) :: low(2, size(near%vertex, 2)), high(2, size(near%vertex, 2))
+      integer :: group(size(near%vertex, 2)), e
+      integer(int64), allocatable :: key(:)
+      integer, allocatable :: found(:, :)
+
+      do e = 1, size(group)
+         associate (v => near%vertex, next => near%outline%next(e))
+            low(:, e) = min(v(:, e), v(:, next)) - reach(near%outline%block(e))
+            high(:, e) = max(v(:, e), v(:, next)) + reach(near%outline%block(e))
+            group(e) = merge(near%outline%block(e), 0, equation(near%outline%block(e)) > 0)
+         end associate
+      end do
+      call box_pairs(low, high, group, found)
+      associate (block => near%outline%block, n => size(equation) + 1)
+         allocate (key(size(found, 2)))
+         key = int(block(found(1, :)), int64)*n + int(block(found(2, :)), int64)
+         allocate (pair(2, size(found, 2)))
+         pair = found(:, rising_order(key))
+      end associate
+   end subroutine near_edges
+end module dda_contact_search

@@ -1,0 +1,416 @@
+!> What touched goes on touching (Shi: df06): forces, states, slip and strength pass from the
+!> contacts of the step before to those of the next
+module dda_contact_transfer
+   use, intrinsic :: iso_fortran_env, only : int64
+   use dda_block_system, only : block_system_t
+   use dda_contact_detection, only : contacts_t, set_joints, set_strength
+   use dda_contact_search, only : near_joints, touching_joints
+   use dda_contact_types, only : contact_t, joint_t, place_joint, slip_at, vertex_number
+   use dda_entrance, only : contact_key
+   use dda_kinds, only : wp
+   use dda_sort, only : place_in, rising_order
+   implicit none
+   private
+
+   public :: search_contacts, renew_contacts
+
+   !> One contact of the step before
+   type :: past_contact_t
+      !> The contact
+      type(contact_t) :: contact
+      !> The joint that it belonged to
+      integer :: joint = 0
+      !> Which of the joint's contacts it was
+      integer :: place = 0
+      !> Normal force, and its part of the joint's shear force: (2) [N/m]
+      real(wp) :: force(2) = 0.0_wp
+      !> Slip that the springs still feel [m]
+      real(wp) :: slip = 0.0_wp
+      !> Stiffness of the springs [N/m per metre depth]
+      real(wp) :: stiffness = 0.0_wp
+      !> Whether a contact of the next step has taken it over
+      logical :: passed_on = .false.
+   end type past_contact_t
+
+   !> An open end takes part in the slip of a joint as far as this share of its length allows
+   real(wp), parameter :: closeness = 1.0e-4_wp
+
+contains
+
+   !> Contacts of blocks that touch in the reference shape: closed, whole and free of force
+   pure subroutine search_contacts(system, penalty_ratio, n_dof, contacts)
+      !> The blocks
+      type(block_system_t), intent(in) :: system
+      !> Contact stiffness over the stiffness of the block across the joint
+      real(wp), intent(in) :: penalty_ratio
+      !> Unknowns of one block
+      integer, intent(in) :: n_dof
+      !> The contacts; their search is set
+      type(contacts_t), intent(inout) :: contacts
+      type(joint_t), allocatable :: joint(:)
+      real(wp) :: gap(3)
+      integer :: j
+
+      call touching_joints(contacts%search, system, joint)
+      do j = 1, size(joint)
+         call lock_joint(system, system%vertex, joint(j))
+         call place_joint(system, system%vertex, joint(j), gap)
+         joint(j)%contact%closed_at = gap(1:2)
+      end do
+      call set_joints(system, system%centroid, joint, penalty_ratio, n_dof, contacts)
+      do j = 1, size(joint)
+         contacts%face(j)%open(2) = joint(j)%n_contact == 1
+      end do
+   end subroutine search_contacts
+
+   !> Contacts where the blocks are now; their springs carry what openings and slip make of them
+   pure subroutine renew_contacts(system, travel, reach, penalty_ratio, n_dof, contacts)
+      !> The blocks
+      type(block_system_t), intent(in) :: system
+      !> How the corners are about to move; only directions and ratios count: (2, n_vertex) [m]
+      real(wp), intent(in) :: travel(:, :)
+      !> Most that the corners of each block may move in the step: (n_block) [m]
+      real(wp), intent(in) :: reach(:)
+      !> Contact stiffness over the stiffness of the block across the joint
+      real(wp), intent(in) :: penalty_ratio
+      !> Unknowns of one block
+      integer, intent(in) :: n_dof
+      !> The contacts of the step before in, those of the next out
+      type(contacts_t), intent(inout) :: contacts
+      type(past_contact_t), allocatable :: past(:)
+      type(contacts_t) :: before
+      type(joint_t), allocatable :: joint(:)
+      integer(int64), allocatable :: closed(:)
+      integer :: taken(2)
+      integer, allocatable :: source(:, :)
+      real(wp) :: gap(3)
+      integer :: j
+
+      call list_past(system, contacts, past, closed)
+      call near_joints(contacts%search, system, travel, closed, reach, joint)
+      allocate (source(2, size(joint)))
+      call match_contacts(system, joint, reach, past, source)
+      do j = 1, size(joint)
+         taken = source(:, j)
+         call take_over_slip(system, past, taken, joint(j))
+      end do
+      before = contacts
+      call set_joints(system, system%centroid + system%motion(1:2, :), joint, penalty_ratio, &
+         & n_dof, contacts)
+      do j = 1, size(joint)
+         call take_over_state(before, past, source(:, j), j, contacts)
+         call keep_shear(system, past, source(:, j), contacts%springs%stiffness(j), &
+            & contacts%joint(j))
+         call place_joint(system, system%moved, contacts%joint(j), gap)
+         contacts%gap(:, j) = gap
+         contacts%trial(:, j) = -contacts%springs%stiffness(j)*gap
+         call guess_face(source(:, j), j, contacts)
+      end do
+      call set_strength(contacts)
+   end subroutine renew_contacts
+
+   !> The contacts of the step before in the order of their keys, and the keys of the closed ones
+   pure subroutine list_past(system, contacts, past, closed)
+      !> The blocks
+      type(block_system_t), intent(in) :: system
+      !> The contacts of the step before
+      type(contacts_t), intent(in) :: contacts
+      !> The contacts one by one: (n_contact)
+      type(past_contact_t), allocatable, intent(out) :: past(:)
+      !> Keys of the closed ones, rising: (n_closed)
+      integer(int64), allocatable, intent(out) :: closed(:)
+      type(past_contact_t), allocatable :: list(:)
+      integer(int64), allocatable :: key(:)
+      integer, allocatable :: order(:)
+      integer :: j, k, n
+
+      allocate (list(sum(contacts%joint%n_contact)))
+      n = 0
+      do j = 1, size(contacts%joint)
+         associate (joint => contacts%joint(j), force => contacts%force(:, j))
+            do k = 1, joint%n_contact
+               n = n + 1
+               list(n)%contact = joint%contact(k)
+               list(n)%joint = j
+               list(n)%place = k
+               list(n)%force = [force(k), force(3)*joint%contact(k)%share]
+               if (sum(force(1:2)) > 0.0_wp) list(n)%force(2) = force(3)*force(k)/sum(force(1:2))
+               list(n)%slip = slip_at(system, system%moved, joint%contact(k)) &
+                  & - contacts%past_slip(j)
+               list(n)%stiffness = contacts%springs%stiffness(j)
+               if (.not. contacts%remember) list(n)%slip = 0.0_wp
+            end do
+         end associate
+      end do
+      key = contact_keys(system, list%contact)
+      order = rising_order(key)
+      allocate (past(n))
+      past = list(order)
+      key = key(order)
+      allocate (closed, source=pack(key, [(is_closed(past(j)), j=1, n)]))
+
+   contains
+
+      !> Whether a contact of the step before carried a force or touched
+      pure logical function is_closed(old)
+         !> The contact
+         type(past_contact_t), intent(in) :: old
+
+         is_closed = .not. contacts%face(old%joint)%open(old%place)
+      end function is_closed
+   end subroutine list_past
+
+   !> Keys of contacts
+   pure function contact_keys(system, contact) result(key)
+      !> The blocks
+      type(block_system_t), intent(in) :: system
+      !> The contacts: (n)
+      type(contact_t), intent(in) :: contact(:)
+      !> Their keys: (n)
+      integer(int64) :: key(size(contact))
+      integer :: i
+
+      do i = 1, size(contact)
+         key(i) = contact_key(vertex_number(system, contact(i)%vertex_block, contact(i)%vertex), &
+            & vertex_number(system, contact(i)%edge_block, contact(i)%edge), &
+            & size(system%vertex, 2))
+      end do
+   end function contact_keys
+
+   !> Find for each contact the one of the step before that it goes on: the same corner and edge, or
+   !> else the nearest of the same two blocks
+   pure subroutine match_contacts(system, joint, reach, past, source)
+      !> The blocks
+      type(block_system_t), intent(in) :: system
+      !> The joints
+      type(joint_t), intent(in) :: joint(:)
+      !> Contacts farther from one another than their blocks reach are different ones: (n_block) [m]
+      real(wp), intent(in) :: reach(:)
+      !> The contacts of the step before in the order of their keys; those taken over are marked
+      type(past_contact_t), intent(inout) :: past(:)
+      !> Places in past, 0 for none: (2, n_joint)
+      integer, intent(out) :: source(:, :)
+      integer(int64) :: past_key(size(past)), key(2)
+      integer :: order(size(past)), j, k
+
+      past_key = contact_keys(system, past%contact)
+      source = 0
+      do j = 1, size(joint)
+         key = contact_keys(system, joint(j)%contact)
+         do k = 1, joint(j)%n_contact
+            source(k, j) = same_contact(past, past_key, key(k))
+            if (source(k, j) > 0) past(source(k, j))%passed_on = .true.
+         end do
+      end do
+      past_key = pair_keys(past%contact, size(system%area))
+      order = rising_order(past_key)
+      past_key = past_key(order)
+      do j = 1, size(joint)
+         key = pair_keys(joint(j)%contact, size(system%area))
+         do k = 1, joint(j)%n_contact
+            if (source(k, j) > 0) cycle
+            source(k, j) = next_contact(system, past, order, past_key, joint(j)%contact(k), &
+               & key(k), sum(reach(joint(j)%block)))
+            if (source(k, j) > 0) past(source(k, j))%passed_on = .true.
+         end do
+      end do
+   end subroutine match_contacts
+
+   !> The contact of the step before of the same corner and edge that none has taken over, or 0
+   pure integer function same_contact(past, past_key, key)
+      !> The contacts of the step before
+      type(past_contact_t), intent(in) :: past(:)
+      !> Their keys, rising
+      integer(int64), intent(in) :: past_key(:)
+      !> Key of the contact that looks for one
+      integer(int64), intent(in) :: key
+      integer :: i
+
+      same_contact = 0
+      do i = place_in(past_key, key), size(past)
+         if (past_key(i) /= key) return
+         if (past(i)%passed_on) cycle
+         same_contact = i
+         return
+      end do
+   end function same_contact
+
+   !> The nearest contact of the same blocks that none has taken over and that carried a force, or 0
+   pure integer function next_contact(system, past, order, past_pair, contact, pair, reach)
+      !> The blocks
+      type(block_system_t), intent(in) :: system
+      !> The contacts of the step before
+      type(past_contact_t), intent(in) :: past(:)
+      !> Their order by blocks
+      integer, intent(in) :: order(:)
+      !> Keys of their blocks in that order, rising
+      integer(int64), intent(in) :: past_pair(:)
+      !> The contact that looks for one
+      type(contact_t), intent(in) :: contact
+      !> Key of its blocks
+      integer(int64), intent(in) :: pair
+      !> How far away it may lie [m]
+      real(wp), intent(in) :: reach
+      real(wp) :: least, distance, here(2), there(2)
+      integer :: m
+
+      next_contact = 0
+      least = reach
+      here = system%moved(:, vertex_number(system, contact%vertex_block, contact%vertex))
+      do m = place_in(past_pair, pair), size(past)
+         if (past_pair(m) /= pair) exit
+         associate (old => past(order(m)))
+            if (old%passed_on .or. .not. old%force(1) > 0.0_wp) cycle
+            there = system%moved(:, vertex_number(system, old%contact%vertex_block, &
+               & old%contact%vertex))
+         end associate
+         distance = norm2(there - here)
+         if (distance > least) cycle
+         least = distance
+         next_contact = order(m)
+      end do
+   end function next_contact
+
+   !> Numbers that tell pairs of blocks apart
+   elemental function pair_keys(contact, n_block) result(key)
+      !> A contact of the pair
+      type(contact_t), intent(in) :: contact
+      !> Number of all blocks
+      integer, intent(in) :: n_block
+      !> The number
+      integer(int64) :: key
+
+      key = int(min(contact%vertex_block, contact%edge_block), int64)*int(n_block + 1, int64) &
+         & + int(max(contact%vertex_block, contact%edge_block), int64)
+   end function pair_keys
+
+   !> Let a joint start with the slip that its contacts had, and measure it where it is closed
+   pure subroutine take_over_slip(system, past, source, joint)
+      !> The blocks
+      type(block_system_t), intent(in) :: system
+      !> The contacts of the step before
+      type(past_contact_t), intent(in) :: past(:)
+      !> Which of them go on, 0 for none: (2)
+      integer, intent(in) :: source(2)
+      !> The joint
+      type(joint_t), intent(inout) :: joint
+      real(wp) :: gap(3), apart(2), length
+      integer :: k
+
+      call lock_joint(system, system%moved, joint)
+      call place_joint(system, system%moved, joint, gap)
+      do k = 1, joint%n_contact
+         if (source(k) == 0) cycle
+         associate (contact => joint%contact(k))
+            length = edge_size(system, contact)
+            contact%lock = contact%lock - past(source(k))%slip/length
+            contact%closed_at = past(source(k))%contact%closed_at
+         end associate
+      end do
+      if (joint%n_contact == 2) then
+         apart = max(gap(1:2), 0.0_wp) + closeness*joint%length
+         joint%contact%share = apart([2, 1])/sum(apart)
+      end if
+      call place_joint(system, system%moved, joint, gap)
+   end subroutine take_over_slip
+
+   !> Let the shear force stay the same where the stiffness does not
+   pure subroutine keep_shear(system, past, source, stiffness, joint)
+      !> The blocks
+      type(block_system_t), intent(in) :: system
+      !> The contacts of the step before
+      type(past_contact_t), intent(in) :: past(:)
+      !> Which of them go on, 0 for none: (2)
+      integer, intent(in) :: source(2)
+      !> Stiffness now [N/m per metre depth]
+      real(wp), intent(in) :: stiffness
+      !> The joint
+      type(joint_t), intent(inout) :: joint
+      integer :: k
+
+      do k = 1, joint%n_contact
+         if (source(k) == 0) cycle
+         associate (contact => joint%contact(k), old => past(source(k)))
+            contact%lock = contact%lock + old%slip*(1.0_wp - old%stiffness/stiffness) &
+               & /edge_size(system, contact)
+         end associate
+      end do
+   end subroutine keep_shear
+
+   !> Let a joint have no slip where it is
+   pure subroutine lock_joint(system, vertex, joint)
+      !> The blocks
+      type(block_system_t), intent(in) :: system
+      !> Corners: (2, n_vertex) [m]
+      real(wp), intent(in) :: vertex(:, :)
+      !> The joint
+      type(joint_t), intent(inout) :: joint
+      real(wp) :: edge(2)
+      integer :: k
+
+      do k = 1, joint%n_contact
+         associate (c => joint%contact(k))
+            edge = vertex(:, vertex_number(system, c%edge_block, c%edge + 1)) &
+               & - vertex(:, vertex_number(system, c%edge_block, c%edge))
+            c%lock = 0.0_wp
+            c%lock = slip_at(system, vertex, c)/norm2(edge)
+         end associate
+      end do
+   end subroutine lock_joint
+
+   !> Length of a contact's edge where it is now [m]
+   pure real(wp) function edge_size(system, contact)
+      !> The blocks
+      type(block_system_t), intent(in) :: system
+      !> The contact
+      type(contact_t), intent(in) :: contact
+
+      edge_size = norm2(system%moved(:, vertex_number(system, contact%edge_block, &
+         & contact%edge + 1)) - system%moved(:, vertex_number(system, contact%edge_block, &
+         & contact%edge)))
+   end function edge_size
+
+   !> Forces, strength and direction of sliding of the contacts that go on
+   pure subroutine take_over_state(before, past, source, j, contacts)
+      !> The contacts of the step before
+      type(contacts_t), intent(in) :: before
+      !> The same one by one
+      type(past_contact_t), intent(in) :: past(:)
+      !> Which of them go on in the joint, 0 for none: (2)
+      integer, intent(in) :: source(2)
+      !> Number of the joint
+      integer, intent(in) :: j
+      !> Receives the joint's state
+      type(contacts_t), intent(inout) :: contacts
+      integer :: k
+
+      contacts%broken(:, j) = .true.
+      do k = 1, contacts%joint(j)%n_contact
+         if (source(k) == 0) cycle
+         associate (old => past(source(k)))
+            contacts%force(k, j) = old%force(1)
+            contacts%force(3, j) = contacts%force(3, j) + old%force(2)
+            contacts%broken(k, j) = before%broken(old%place, old%joint)
+            if (before%face(old%joint)%slip /= 0) &
+               & contacts%face(j)%slip = before%face(old%joint)%slip
+         end associate
+      end do
+   end subroutine take_over_state
+
+   !> The face that a joint is likely to have: contacts that go on closed, new ones as they are
+   pure subroutine guess_face(source, j, contacts)
+      !> Contacts of the step before that go on in the joint, 0 for none: (2)
+      integer, intent(in) :: source(2)
+      !> Number of the joint
+      integer, intent(in) :: j
+      !> The contacts
+      type(contacts_t), intent(inout) :: contacts
+
+      associate (face => contacts%face(j), trial => contacts%trial(:, j))
+         face%open = trial(1:2) < 0.0_wp
+         where (source == 0) face%open = .not. contacts%gap(1:2, j) <= 0.0_wp
+         if (contacts%joint(j)%n_contact == 1) face%open(2) = .true.
+         if (all(face%open)) face%slip = 0
+      end associate
+   end subroutine guess_face
+end module dda_contact_transfer

@@ -1,0 +1,393 @@
+!> From two blocks near one another to the joints between them (Shi: df05): edges that lie together,
+!> corners before edges, and corners before corners, for which one edge is the entrance
+module dda_entrance
+   use, intrinsic :: iso_fortran_env, only : int64
+   use dda_contact_types, only : contact_t, joint_t
+   use dda_kinds, only : wp
+   use dda_outline, only : corner_view_t, edge_length, is_convex, outline_t, view_corner
+   use dda_sort, only : place_in
+   use dda_vector, only : along, cross
+   implicit none
+   private
+
+   public :: neighbourhood_t, joint_list_t, add_joints, contact_key
+
+   !> What a search looks at
+   type :: neighbourhood_t
+      !> How the corners follow one another
+      type(outline_t) :: outline
+      !> First corner of each block, and one beyond the last: (n_block + 1)
+      integer, allocatable :: first_vertex(:)
+      !> Corners where the blocks are: (2, n_vertex) [m]
+      real(wp), allocatable :: vertex(:, :)
+      !> How they are about to move; only directions and ratios count: (2, n_vertex) [m]
+      real(wp), allocatable :: travel(:, :)
+      !> Whether nothing has touched before
+      logical :: beginning = .false.
+      !> Keys of the contacts that were closed, rising: (n_closed)
+      integer(int64), allocatable :: closed(:)
+   end type neighbourhood_t
+
+   !> Joints found so far
+   type :: joint_list_t
+      !> Number of joints
+      integer :: n = 0
+      !> The joints, the first n of them
+      type(joint_t), allocatable :: joint(:)
+   end type joint_list_t
+
+   !> Two edges lie together if their directions differ by no more than this sine
+   real(wp), parameter :: parallel = 0.1_wp
+   !> Edges that overlap by less than this share of the shorter one meet at corners only
+   real(wp), parameter :: least_overlap = 1.0e-6_wp
+   !> Corners nearer than this share of the shorter edge have met: what was the entrance remains it
+   real(wp), parameter :: met = 1.0e-3_wp
+
+contains
+
+   !> A number that tells contacts apart
+   elemental function contact_key(corner, edge, n_vertex) result(key)
+      !> Number of the corner among all
+      integer, intent(in) :: corner
+      !> Number of the edge among all
+      integer, intent(in) :: edge
+      !> Number of all corners
+      integer, intent(in) :: n_vertex
+      !> The number
+      integer(int64) :: key
+
+      key = int(corner, int64)*int(n_vertex + 1, int64) + int(edge, int64)
+   end function contact_key
+
+   !> Add the joints of two blocks
+   pure subroutine add_joints(near, edge_pair, reach, list)
+      !> The neighbourhood
+      type(neighbourhood_t), intent(in) :: near
+      !> Edges near one another, of the first block and of the second: (2, n_pair)
+      integer, intent(in) :: edge_pair(:, :)
+      !> Gaps wider than this are no matter [m]
+      real(wp), intent(in) :: reach
+      !> Receives the joints
+      type(joint_list_t), intent(inout) :: list
+      integer(int64) :: used(5*size(edge_pair, 2))
+      integer :: i, n_used
+
+      n_used = 0
+      do i = 1, size(edge_pair, 2)
+         call join_edges(near, edge_pair(:, i), reach, used, n_used, list)
+      end do
+      do i = 1, size(edge_pair, 2)
+         call join_corner(near, edge_pair(1, i), edge_pair(2, i), 2, reach, used, n_used, list)
+         call join_corner(near, edge_pair(2, i), edge_pair(1, i), 1, reach, used, n_used, list)
+      end do
+      do i = 1, size(edge_pair, 2)
+         call join_corners(near, edge_pair(:, i), reach, used, n_used, list)
+      end do
+   end subroutine add_joints
+
+   !> Join two edges that lie together: the overlap ends at a corner of the one or of the other
+   pure subroutine join_edges(near, pair, reach, used, n_used, list)
+      !> The neighbourhood
+      type(neighbourhood_t), intent(in) :: near
+      !> Edge of the first block, edge of the second: (2)
+      integer, intent(in) :: pair(2)
+      !> Gaps wider than this are no matter [m]
+      real(wp), intent(in) :: reach
+      !> Keys of the contacts that belong to a joint
+      integer(int64), intent(inout) :: used(:)
+      !> Their number
+      integer, intent(inout) :: n_used
+      !> Receives the joint
+      type(joint_list_t), intent(inout) :: list
+      type(joint_t) :: joint
+      type(corner_view_t) :: view
+      real(wp) :: first(2), second(2), direction(2), from(2), to(2), angle, length, shorter
+      integer :: corner(2), edge(2), k
+
+      associate (v => near%vertex, next => near%outline%next)
+         first = along(v(:, pair(1)), v(:, next(pair(1))))
+         second = along(v(:, pair(2)), v(:, next(pair(2))))
+         angle = abs(cross(first, second))
+         if (dot_product(first, second) > 0.0_wp .or. angle > parallel) return
+         direction = (first - second)/norm2(first - second)
+         ! places along the direction of both ends of both edges, from the start of the first
+         from(1) = 0.0_wp
+         to(1) = dot_product(direction, v(:, next(pair(1))) - v(:, pair(1)))
+         from(2) = dot_product(direction, v(:, next(pair(2))) - v(:, pair(1)))
+         to(2) = dot_product(direction, v(:, pair(2)) - v(:, pair(1)))
+         length = minval(to) - maxval(from)
+         shorter = minval(to - from)
+         if (.not. length > least_overlap*shorter) return
+         call choose_end(near, [pair(1), pair(2)], [next(pair(2)), pair(1)], from(1) - from(2), &
+            & min(met, angle)*shorter, corner(1), edge(1))
+         call choose_end(near, [next(pair(1)), pair(2)], [pair(2), pair(1)], to(2) - to(1), &
+            & min(met, angle)*shorter, corner(2), edge(2))
+      end associate
+      joint%n_contact = 2
+      joint%length = length
+      do k = 1, 2
+         view = view_corner(near%outline, near%vertex, corner(k), edge(k), reach)
+         if (abs(view%gap) > reach) return
+         joint%contact(k) = new_contact(near, corner(k), edge(k), &
+            & merge(1, 2, edge(k) == pair(1)), length/2.0_wp)
+         used(n_used + k) = contact_key(corner(k), edge(k), size(near%vertex, 2))
+      end do
+      n_used = n_used + 2
+      call add_joint(near, pair, joint, list)
+   end subroutine join_edges
+
+   !> Which corner ends the overlap of two edges: the inner one; where they have met, the one that
+   !> touched before
+   pure subroutine choose_end(near, of_first, of_second, ahead, zone, corner, edge)
+      !> The neighbourhood
+      type(neighbourhood_t), intent(in) :: near
+      !> Corner of the first block and edge of the second: (2)
+      integer, intent(in) :: of_first(2)
+      !> Corner of the second block and edge of the first: (2)
+      integer, intent(in) :: of_second(2)
+      !> How far the corner of the first block lies inside the other edge [m]
+      real(wp), intent(in) :: ahead
+      !> Corners that lie nearer have met [m]
+      real(wp), intent(in) :: zone
+      !> The corner
+      integer, intent(out) :: corner
+      !> The edge
+      integer, intent(out) :: edge
+      logical :: by_first
+
+      by_first = ahead >= 0.0_wp
+      if (abs(ahead) <= zone) then
+         if (was_closed(near, of_first(1), of_first(2))) by_first = .true.
+         if (was_closed(near, of_second(1), of_second(2))) by_first = .false.
+      end if
+      if (by_first) by_first = is_convex(near%outline, near%vertex, of_first(1))
+      corner = merge(of_first(1), of_second(1), by_first)
+      edge = merge(of_first(2), of_second(2), by_first)
+   end subroutine choose_end
+
+   !> Join a corner and an edge that it points to, away from the edge's own corners
+   pure subroutine join_corner(near, corner, edge, edge_side, reach, used, n_used, list)
+      !> The neighbourhood
+      type(neighbourhood_t), intent(in) :: near
+      !> Number of the corner
+      integer, intent(in) :: corner
+      !> Number of the edge
+      integer, intent(in) :: edge
+      !> 1 if the edge belongs to the first block, 2 if to the second
+      integer, intent(in) :: edge_side
+      !> Gaps wider than this are no matter [m]
+      real(wp), intent(in) :: reach
+      !> Keys of the contacts that belong to a joint
+      integer(int64), intent(inout) :: used(:)
+      !> Their number
+      integer, intent(inout) :: n_used
+      !> Receives the joint
+      type(joint_list_t), intent(inout) :: list
+      type(corner_view_t) :: view
+      real(wp) :: zone(2)
+      integer(int64) :: key
+
+      view = view_corner(near%outline, near%vertex, corner, edge, reach)
+      if (.not. view%faces) return
+      ! in a notch the edge ends at its wall, at a corner that sticks out another edge may be meant
+      zone = meeting_zone(near, corner, edge)
+      if (.not. is_convex(near%outline, near%vertex, edge)) zone(1) = -zone(1)
+      if (.not. is_convex(near%outline, near%vertex, near%outline%next(edge))) zone(2) = -zone(2)
+      if (view%way < zone(1) .or. view%way > view%length - zone(2)) return
+      key = contact_key(corner, edge, size(near%vertex, 2))
+      if (any(used(:n_used) == key)) return
+      call add_single(near, corner, edge, edge_side, used, n_used, list)
+   end subroutine join_corner
+
+   !> Join two corners: of the edges beside them, the one that the other corner would cross last is
+   !> the entrance. Corners that touch and nothing else have none
+   pure subroutine join_corners(near, pair, reach, used, n_used, list)
+      !> The neighbourhood
+      type(neighbourhood_t), intent(in) :: near
+      !> Corner of the first block, corner of the second: (2)
+      integer, intent(in) :: pair(2)
+      !> Gaps wider than this are no matter [m]
+      real(wp), intent(in) :: reach
+      !> Keys of the contacts that belong to a joint
+      integer(int64), intent(inout) :: used(:)
+      !> Their number
+      integer, intent(inout) :: n_used
+      !> Receives the joint
+      type(joint_list_t), intent(inout) :: list
+      type(corner_view_t) :: view
+      real(wp) :: distance, zone, level, time, best_gap, best_time
+      integer :: corner(4), edge(4), i, best, n_level
+      logical :: has_met
+
+      distance = norm2(near%vertex(:, pair(2)) - near%vertex(:, pair(1)))
+      if (distance > 2.0_wp*reach) return
+      corner = pair([1, 1, 2, 2])
+      edge = [pair(2), near%outline%previous(pair(2)), pair(1), near%outline%previous(pair(1))]
+      do i = 1, 4
+         if (any(used(:n_used) == contact_key(corner(i), edge(i), size(near%vertex, 2)))) return
+      end do
+      if (.not. is_convex(near%outline, near%vertex, pair(1))) return
+      if (.not. is_convex(near%outline, near%vertex, pair(2))) return
+      zone = minval([(maxval(meeting_zone(near, corner(i), edge(i))), i=1, 4)])
+      has_met = distance <= zone
+      level = merge(met*zone, zone, near%beginning)
+      best = 0
+      n_level = 0
+      best_gap = -huge(best_gap)
+      best_time = -huge(best_time)
+      do i = 1, 4
+         view = view_corner(near%outline, near%vertex, corner(i), edge(i), reach)
+         if (.not. view%faces) cycle
+         if (has_met .and. was_closed(near, corner(i), edge(i))) then
+            best = i
+            n_level = 0
+            exit
+         end if
+         if (has_met .and. abs(view%gap) <= level) n_level = n_level + 1
+         time = crossing_time(near, corner(i), edge(i), view, zone)
+         if (time < best_time .or. .not. time > best_time .and. .not. view%gap > best_gap) cycle
+         best = i
+         best_gap = view%gap
+         best_time = time
+      end do
+      if (best == 0 .or. n_level > 1) return
+      call add_single(near, corner(best), edge(best), merge(2, 1, best <= 2), used, n_used, list)
+   end subroutine join_corners
+
+   !> When a corner crosses the line of an edge, in lengths of its travel: never if it stays
+   !> outside, before all times if it is inside and stays there
+   pure real(wp) function crossing_time(near, corner, edge, view, slack)
+      !> The neighbourhood
+      type(neighbourhood_t), intent(in) :: near
+      !> Number of the corner
+      integer, intent(in) :: corner
+      !> Number of the edge
+      integer, intent(in) :: edge
+      !> The corner seen from the edge
+      type(corner_view_t), intent(in) :: view
+      !> A corner no deeper than this has not crossed: springs that carry give a little [m]
+      real(wp), intent(in) :: slack
+      real(wp) :: approach, gap
+
+      gap = view%gap + slack
+      approach = -dot_product(view%normal, near%travel(:, corner) - near%travel(:, edge))
+      if (approach*huge(1.0_wp)**0.5_wp > abs(gap)) then
+         crossing_time = gap/approach
+      else
+         crossing_time = sign(huge(1.0_wp), gap)
+      end if
+   end function crossing_time
+
+   !> How near to the ends of an edge a corner has met them, where they stick out [m]
+   pure function meeting_zone(near, corner, edge) result(zone)
+      !> The neighbourhood
+      type(neighbourhood_t), intent(in) :: near
+      !> Number of the corner
+      integer, intent(in) :: corner
+      !> Number of the edge
+      integer, intent(in) :: edge
+      !> At the start and at the end of the edge: (2) [m]
+      real(wp) :: zone(2)
+
+      associate (outline => near%outline, v => near%vertex)
+         zone = met*min(edge_length(outline, v, edge), edge_length(outline, v, corner), &
+            & edge_length(outline, v, outline%previous(corner)))
+      end associate
+   end function meeting_zone
+
+   !> Whether a contact was closed before
+   pure logical function was_closed(near, corner, edge)
+      !> The neighbourhood
+      type(neighbourhood_t), intent(in) :: near
+      !> Number of the corner
+      integer, intent(in) :: corner
+      !> Number of the edge
+      integer, intent(in) :: edge
+      integer(int64) :: key
+      integer :: place
+
+      key = contact_key(corner, edge, size(near%vertex, 2))
+      place = place_in(near%closed, key)
+      was_closed = .false.
+      if (place <= size(near%closed)) was_closed = near%closed(place) == key
+   end function was_closed
+
+   !> Add the joint of one corner and one edge
+   pure subroutine add_single(near, corner, edge, edge_side, used, n_used, list)
+      !> The neighbourhood
+      type(neighbourhood_t), intent(in) :: near
+      !> Number of the corner
+      integer, intent(in) :: corner
+      !> Number of the edge
+      integer, intent(in) :: edge
+      !> 1 if the edge belongs to the first block, 2 if to the second
+      integer, intent(in) :: edge_side
+      !> Keys of the contacts that belong to a joint
+      integer(int64), intent(inout) :: used(:)
+      !> Their number
+      integer, intent(inout) :: n_used
+      !> Receives the joint
+      type(joint_list_t), intent(inout) :: list
+      type(joint_t) :: joint
+      integer :: pair(2)
+
+      joint%n_contact = 1
+      joint%contact(1) = new_contact(near, corner, edge, edge_side, 0.0_wp)
+      joint%contact(1)%share = 1.0_wp
+      joint%contact(2) = joint%contact(1)
+      joint%contact(2)%share = 0.0_wp
+      n_used = n_used + 1
+      used(n_used) = contact_key(corner, edge, size(near%vertex, 2))
+      pair = merge([edge, corner], [corner, edge], edge_side == 1)
+      call add_joint(near, pair, joint, list)
+   end subroutine add_single
+
+   !> A contact of a corner and an edge
+   pure function new_contact(near, corner, edge, edge_side, length) result(contact)
+      !> The neighbourhood
+      type(neighbourhood_t), intent(in) :: near
+      !> Number of the corner
+      integer, intent(in) :: corner
+      !> Number of the edge
+      integer, intent(in) :: edge
+      !> 1 if the edge belongs to the first block, 2 if to the second
+      integer, intent(in) :: edge_side
+      !> Part of the joint's length that the contact stands for [m]
+      real(wp), intent(in) :: length
+      !> The contact
+      type(contact_t) :: contact
+
+      associate (block => near%outline%block, first => near%first_vertex)
+         contact%vertex_block = block(corner)
+         contact%vertex = corner - first(block(corner)) + 1
+         contact%edge_block = block(edge)
+         contact%edge = edge - first(block(edge)) + 1
+      end associate
+      contact%edge_side = edge_side
+      contact%length = length
+   end function new_contact
+
+   !> Put a joint into the list
+   pure subroutine add_joint(near, pair, joint, list)
+      !> The neighbourhood
+      type(neighbourhood_t), intent(in) :: near
+      !> A corner or edge of the first block and one of the second: (2)
+      integer, intent(in) :: pair(2)
+      !> The joint; its blocks are set
+      type(joint_t), intent(inout) :: joint
+      !> The list
+      type(joint_list_t), intent(inout) :: list
+      type(joint_t), allocatable :: longer(:)
+
+      joint%block = near%outline%block(pair)
+      joint%found = .true.
+      if (.not. allocated(list%joint)) allocate (list%joint(64))
+      if (list%n == size(list%joint)) then
+         allocate (longer(2*list%n))
+         longer(:list%n) = list%joint
+         call move_alloc(longer, list%joint)
+      end if
+      list%n = list%n + 1
+      list%joint(list%n) = joint
+   end subroutine add_joint
+end module dda_entrance

@@ -1,0 +1,119 @@
+!> Corners and edges of all blocks by one number each: edge i runs from corner i to the next corner
+module dda_outline
+   use dda_block_system, only : block_system_t
+   use dda_kinds, only : wp
+   use dda_vector, only : along, cross, right_normal
+   implicit none
+   private
+
+   public :: outline_t, outline_of, corner_view_t, view_corner, is_convex, edge_length
+
+   !> How corners follow one another: (n_vertex) each
+   type :: outline_t
+      !> Block that owns the corner
+      integer, allocatable :: block(:)
+      !> The next corner of the block, counter-clockwise
+      integer, allocatable :: next(:)
+      !> The corner before
+      integer, allocatable :: previous(:)
+   end type outline_t
+
+   !> A corner seen from an edge
+   type :: corner_view_t
+      !> Height above the edge's line; negative inside [m]
+      real(wp) :: gap = 0.0_wp
+      !> Way along the edge from its start [m]
+      real(wp) :: way = 0.0_wp
+      !> Length of the edge [m]
+      real(wp) :: length = 0.0_wp
+      !> Outward unit normal of the edge: (2)
+      real(wp) :: normal(2) = 0.0_wp
+      !> Whether the corner points to the edge, so that it is the first to touch
+      logical :: faces = .false.
+   end type corner_view_t
+
+   !> Sine of the angle by which the sides of a corner may dip below the edge that it points to
+   real(wp), parameter :: dip = 0.05_wp
+   !> A corner bent inwards by less than this sine counts as flat
+   real(wp), parameter :: flat = 1.0e-9_wp
+
+contains
+
+   !> The outline of a system
+   pure function outline_of(system) result(outline)
+      !> The blocks
+      type(block_system_t), intent(in) :: system
+      !> The outline
+      type(outline_t) :: outline
+      integer :: b, first, last, n, v
+
+      n = size(system%vertex, 2)
+      allocate (outline%block(n), outline%next(n), outline%previous(n))
+      do b = 1, size(system%first_vertex) - 1
+         first = system%first_vertex(b)
+         last = system%first_vertex(b + 1) - 1
+         do v = first, last
+            outline%block(v) = b
+            outline%next(v) = merge(first, v + 1, v == last)
+            outline%previous(v) = merge(last, v - 1, v == first)
+         end do
+      end do
+   end function outline_of
+
+   !> See a corner from an edge
+   pure function view_corner(outline, vertex, corner, edge, reach) result(view)
+      !> The outline
+      type(outline_t), intent(in) :: outline
+      !> Corners: (2, n_vertex) [m]
+      real(wp), intent(in) :: vertex(:, :)
+      !> Number of the corner
+      integer, intent(in) :: corner
+      !> Number of the edge
+      integer, intent(in) :: edge
+      !> A corner farther from the line does not face the edge [m]
+      real(wp), intent(in) :: reach
+      !> The view
+      type(corner_view_t) :: view
+      real(wp) :: tangent(2), sides(2)
+
+      associate (start => vertex(:, edge), finish => vertex(:, outline%next(edge)), &
+         & point => vertex(:, corner))
+         tangent = along(start, finish)
+         view%length = norm2(finish - start)
+         view%normal = right_normal(tangent)
+         view%gap = dot_product(view%normal, point - start)
+         view%way = dot_product(tangent, point - start)
+         if (abs(view%gap) > reach) return
+         sides(1) = dot_product(view%normal, along(point, vertex(:, outline%previous(corner))))
+         sides(2) = dot_product(view%normal, along(point, vertex(:, outline%next(corner))))
+      end associate
+      view%faces = all(sides > -dip) .and. is_convex(outline, vertex, corner)
+   end function view_corner
+
+   !> Whether a corner is no notch
+   pure logical function is_convex(outline, vertex, corner)
+      !> The outline
+      type(outline_t), intent(in) :: outline
+      !> Corners: (2, n_vertex) [m]
+      real(wp), intent(in) :: vertex(:, :)
+      !> Number of the corner
+      integer, intent(in) :: corner
+      real(wp) :: before(2), after(2)
+
+      before = vertex(:, corner) - vertex(:, outline%previous(corner))
+      after = vertex(:, outline%next(corner)) - vertex(:, corner)
+      is_convex = cross(before, after) > -flat*norm2(before)*norm2(after)
+   end function is_convex
+
+   !> Length of an edge [m]
+   pure real(wp) function edge_length(outline, vertex, edge)
+      !> The outline
+      type(outline_t), intent(in) :: outline
+      !> Corners: (2, n_vertex) [m]
+      real(wp), intent(in) :: vertex(:, :)
+      !> Number of the edge
+      integer, intent(in) :: edge
+
+      edge_length = norm2(vertex(:, outline%next(edge)) - vertex(:, edge))
+   end function edge_length
+end module dda_outline

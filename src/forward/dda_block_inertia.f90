@@ -1,0 +1,121 @@
+!> The part of the equations that blocks have without contacts: inertia, elasticity, loads
+!> (Shi: df11 to df16)
+module dda_block_inertia
+   use dda_assembly, only : equations_t
+   use dda_block_system, only : block_system_t
+   use dda_deformation, only : turned_tensor
+   use dda_elasticity, only : stress_load
+   use dda_fixed_points, only : add_fixed_springs, follow_fixed_points
+   use dda_inertia, only : mass_matrix
+   use dda_kinds, only : wp
+   use dda_outer_loads, only : outer_loads
+   use dda_settings, only : settings_t
+   implicit none
+   private
+
+   public :: assemble_blocks, damping_rate, turn_masses, kinetic_energy, packed_velocity
+
+contains
+
+   !> Block part of matrix and load of one step of length dt. Forces that change with time are those
+   !> of the middle of a dynamic step, of the end of a static one
+   pure subroutine assemble_blocks(system, settings, dt, equations, time)
+      !> The blocks
+      type(block_system_t), intent(in) :: system
+      !> Settings of the run
+      type(settings_t), intent(in) :: settings
+      !> Length of the step [s]
+      real(wp), intent(in) :: dt
+      !> Receives base and load
+      type(equations_t), intent(inout) :: equations
+      !> Time at the beginning of the step, zero if it is left out [s]
+      real(wp), intent(in), optional :: time
+      real(wp) :: stress(6), impetus(6), start, damping
+      integer :: b, e, nd
+
+      nd = settings%n_dof
+      equations%changed = .true.
+      start = 0.0_wp
+      if (present(time)) start = time
+      damping = damping_rate(settings, dt)
+      equations%base = equations%elastic + (2.0_wp/dt**2 + damping/dt)*equations%mass
+      call outer_loads(system, settings, start + merge(dt/2.0_wp, dt, settings%dynamic), &
+         & equations%weight, equations%outer)
+      equations%force_scale = sum(abs(equations%outer(1:2, :)))
+      equations%gap_noise = 16.0_wp*epsilon(1.0_wp)*maxval(abs(system%moved))
+      do b = 1, size(system%equation)
+         e = system%equation(b)
+         if (e == 0) cycle
+         stress = stress_load(system%stress(:, b), system%area(b))
+         equations%load(:, e) = equations%outer(:, e) + stress(:nd)
+         if (.not. settings%dynamic) cycle
+         impetus(:nd) = (2.0_wp/dt)*matmul(equations%mass(:, :, e), system%velocity(:nd, b))
+         equations%load(:, e) = equations%load(:, e) + impetus(:nd)
+         equations%force_scale = equations%force_scale + sum(abs(impetus(1:2)))
+      end do
+      call follow_fixed_points(system, settings, start, dt, equations%fixed)
+      call add_fixed_springs(equations%fixed, equations%fixed%target, equations%base, &
+         & equations%load)
+   end subroutine assemble_blocks
+
+   !> Rate of mass damping in a dynamic step: never more than what would stop a block within it
+   pure real(wp) function damping_rate(settings, dt)
+      !> Settings of the run
+      type(settings_t), intent(in) :: settings
+      !> Length of the step [s]
+      real(wp), intent(in) :: dt
+
+      damping_rate = 0.0_wp
+      if (settings%dynamic) damping_rate = min(settings%damping, 2.0_wp/dt)
+   end function damping_rate
+
+   !> Masses of blocks that have turned; only strain rates feel it
+   pure subroutine turn_masses(system, equations)
+      !> The blocks
+      type(block_system_t), intent(in) :: system
+      !> Receives the masses
+      type(equations_t), intent(inout) :: equations
+      real(wp) :: full(6, 6)
+      integer :: b, e
+
+      if (size(equations%mass, 1) < 6) return
+      do b = 1, size(system%equation)
+         e = system%equation(b)
+         if (e == 0) cycle
+         full = mass_matrix(system%density(b), system%area(b), &
+            & turned_tensor(system%second(:, b), -system%motion(3, b), 1.0_wp))
+         equations%mass(:, :, e) = full
+      end do
+   end subroutine turn_masses
+
+   !> Energy of motion
+   pure real(wp) function kinetic_energy(equations, velocity)
+      !> The equations, for the masses
+      type(equations_t), intent(in) :: equations
+      !> Velocities: (n_dof, n_equation)
+      real(wp), intent(in) :: velocity(:, :)
+      integer :: e
+
+      kinetic_energy = 0.0_wp
+      do e = 1, size(velocity, 2)
+         kinetic_energy = kinetic_energy + dot_product(velocity(:, e), &
+            & matmul(equations%mass(:, :, e), velocity(:, e)))/2.0_wp
+      end do
+   end function kinetic_energy
+
+   !> Velocities as the equations have them
+   pure function packed_velocity(system, n_dof) result(velocity)
+      !> The blocks
+      type(block_system_t), intent(in) :: system
+      !> Unknowns of a block
+      integer, intent(in) :: n_dof
+      !> The velocities: (n_dof, n_equation)
+      real(wp) :: velocity(n_dof, maxval(system%equation))
+      integer :: b
+
+      do b = 1, size(system%equation)
+         if (system%equation(b) > 0) &
+            & velocity(:, system%equation(b)) = system%velocity(:n_dof, b)
+      end do
+   end function packed_velocity
+end module dda_block_inertia

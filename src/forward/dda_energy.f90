@@ -1,0 +1,139 @@
+!> Where the energy of a dynamic run is, and where it went
+module dda_energy
+   use dda_assembly, only : equations_t
+   use dda_block_inertia, only : damping_rate, kinetic_energy, packed_velocity
+   use dda_block_system, only : block_system_t
+   use dda_contact_detection, only : contacts_t
+   use dda_kinds, only : wp
+   use dda_material, only : elasticity_matrix
+   use dda_settings, only : settings_t
+   use dda_step_context, only : energy_t, step_context_t
+   implicit none
+   private
+
+   public :: audit_t, audit_step, keep_energy
+
+   !> Energies after each step
+   type :: audit_t
+      !> Whether they are wanted
+      logical :: wanted = .false.
+      !> Steps kept
+      integer :: n = 0
+      !> The energies, the first n of them
+      type(energy_t), allocatable :: energy(:)
+   end type audit_t
+
+contains
+
+   !> Energies after a step, and what it took and brought added to what the steps before did; what
+   !> is left unexplained is numerical dissipation. A step of no length begins the audit
+   pure subroutine audit_step(settings, system, equations, contacts, step, time, energy)
+      !> Settings of the run
+      type(settings_t), intent(in) :: settings
+      !> The blocks after the step
+      type(block_system_t), intent(in) :: system
+      !> The equations of the step
+      type(equations_t), intent(in) :: equations
+      !> The contacts after the step
+      type(contacts_t), intent(in) :: contacts
+      !> The step
+      type(step_context_t), intent(in) :: step
+      !> Time after it [s]
+      real(wp), intent(in) :: time
+      !> Energies before the step in, after it out
+      type(energy_t), intent(inout) :: energy
+      type(energy_t) :: before
+
+      before = energy
+      call store_energy(settings, system, equations, contacts, energy)
+      energy%time = time
+      if (.not. step%dt > 0.0_wp) return
+      call spend_energy(settings, equations, step, energy)
+      energy%numerical = before%numerical + total(before) - total(energy)
+   end subroutine audit_step
+
+   !> Energy that is in the blocks and in the springs of the joints
+   pure subroutine store_energy(settings, system, equations, contacts, energy)
+      !> Settings of the run
+      type(settings_t), intent(in) :: settings
+      !> The blocks
+      type(block_system_t), intent(in) :: system
+      !> The equations, for masses and weights
+      type(equations_t), intent(in) :: equations
+      !> The contacts
+      type(contacts_t), intent(in) :: contacts
+      !> Receives the energies
+      type(energy_t), intent(inout) :: energy
+      real(wp) :: d(3, 3)
+      integer :: b, e
+
+      energy%kinetic = kinetic_energy(equations, packed_velocity(system, size(equations%weight, 1)))
+      energy%gravity = 0.0_wp
+      energy%elastic = 0.0_wp
+      if (.not. settings%current) energy%contact = &
+         & sum(sum(contacts%force**2, dim=1)/contacts%springs%stiffness)/2.0_wp
+      do b = 1, size(system%equation)
+         e = system%equation(b)
+         if (e == 0) cycle
+         d = elasticity_matrix(system%materials(system%material(b)))
+         associate (motion => system%motion(:, b))
+            energy%gravity = energy%gravity - dot_product(equations%weight(1:2, e), motion(1:2))
+            energy%elastic = energy%elastic + system%area(b)*(dot_product(motion(4:6), &
+               & system%initial_stress(:, b) + matmul(d, motion(4:6))/2.0_wp))
+         end associate
+      end do
+   end subroutine store_energy
+
+   !> Add what a step brought in and took
+   pure subroutine spend_energy(settings, equations, step, energy)
+      !> Settings of the run
+      type(settings_t), intent(in) :: settings
+      !> The equations of the step
+      type(equations_t), intent(in) :: equations
+      !> The step
+      type(step_context_t), intent(in) :: step
+      !> The sums
+      type(energy_t), intent(inout) :: energy
+      integer :: e
+
+      associate (motion => step%state%motion, fixed => equations%fixed)
+         energy%work = energy%work + sum((equations%outer - equations%weight)*motion) &
+            & + dot_product(fixed%force, fixed%target)
+         do e = 1, size(motion, 2)
+            energy%damping = energy%damping + damping_rate(settings, step%dt)/step%dt &
+               & *dot_product(motion(:, e), matmul(equations%mass(:, :, e), motion(:, e)))
+         end do
+      end associate
+      energy%friction = energy%friction - sum(step%state%force(3, :)*step%state%increment(3, :), &
+         & mask=step%state%face%slip /= 0)
+      energy%impact = energy%impact + step%impact
+   end subroutine spend_energy
+
+   !> What would stay the same without numerical dissipation
+   pure real(wp) function total(energy)
+      !> The energies
+      type(energy_t), intent(in) :: energy
+
+      total = energy%kinetic + energy%elastic + energy%contact + energy%gravity - energy%work &
+         & + energy%friction + energy%damping + energy%impact
+   end function total
+
+   !> Keep the energies after a step
+   pure subroutine keep_energy(energy, audit)
+      !> The energies
+      type(energy_t), intent(in) :: energy
+      !> Receives them if they are wanted
+      type(audit_t), intent(inout) :: audit
+      type(energy_t), allocatable :: longer(:)
+
+      if (.not. audit%wanted) return
+      if (.not. allocated(audit%energy)) allocate (audit%energy(64))
+      if (audit%n == size(audit%energy)) then
+         allocate (longer(2*audit%n))
+         longer(:audit%n) = audit%energy
+         call move_alloc(longer, audit%energy)
+      end if
+      audit%n = audit%n + 1
+      audit%energy(audit%n) = energy
+   end subroutine keep_energy
+end module dda_energy

@@ -1,0 +1,69 @@
+!> Corners that a step would leave inside a neighbour, because the edge that they go in by is
+!> another one than that which they were held off
+module dda_entry
+   use dda_block_system, only : block_system_t
+   use dda_block_update, only : update_blocks, update_contacts
+   use dda_contact_detection, only : contacts_t
+   use dda_contact_transfer, only : renew_contacts
+   use dda_kinds, only : wp
+   use dda_settings, only : settings_t
+   use dda_step_context, only : march_t, step_context_t
+   use dda_step_reach, only : travel_of
+   implicit none
+   private
+
+   public :: refuse_entry
+
+   !> Depth that counts as entered, over the size of the smaller block
+   real(wp), parameter :: deep = 2.0e-4_wp
+   !> Steps shorter than this share of the longest one are not cut further
+   real(wp), parameter :: shortest = 1.0e-3_wp
+
+contains
+
+   !> Cut a step at whose end a search finds corners deeper inside than they were at its beginning
+   pure subroutine refuse_entry(settings, system, contacts, march, step)
+      !> Settings of the run
+      type(settings_t), intent(in) :: settings
+      !> The blocks before the step
+      type(block_system_t), intent(in) :: system
+      !> The contacts before the step
+      type(contacts_t), intent(in) :: contacts
+      !> The march; the length of the next try is set
+      type(march_t), intent(inout) :: march
+      !> The settled step with its velocities; whether it counts is set
+      type(step_context_t), intent(inout) :: step
+      type(block_system_t) :: after
+      type(contacts_t) :: found
+      logical :: breaks
+
+      if (step%dt <= shortest*march%longest) return
+      after = system
+      found = contacts
+      call update_contacts(step, settings, found, breaks)
+      call update_blocks(step, settings, after)
+      call renew_contacts(after, travel_of(after, settings, march), march%reach, &
+         & settings%penalty_ratio, settings%n_dof, found)
+      step%accepted = depth(after, found) <= max(deep, 1.1_wp*depth(system, contacts))
+      if (step%accepted) return
+      step%was_cut = .true.
+      march%dt = step%dt/2.0_wp
+   end subroutine refuse_entry
+
+   !> How deep the deepest corner is, over the size of the smaller block
+   pure real(wp) function depth(system, contacts)
+      !> The blocks
+      type(block_system_t), intent(in) :: system
+      !> The contacts
+      type(contacts_t), intent(in) :: contacts
+      integer :: j
+
+      depth = 0.0_wp
+      do j = 1, size(contacts%joint)
+         associate (n => contacts%joint(j)%n_contact)
+            depth = max(depth, -minval(contacts%gap(:n, j)) &
+               & /sqrt(minval(system%area(contacts%joint(j)%block))))
+         end associate
+      end do
+   end function depth
+end module dda_entry

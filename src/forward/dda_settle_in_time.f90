@@ -1,0 +1,132 @@
+!> Contacts of blocks that move in time: multipliers and friction of one step, or of its impulses
+!>
+!> With given bounds of the shear forces the problem is convex, and the passes of the multipliers
+!> end quickly. Around them, the bounds follow the normal forces (Coulomb), beginning with those of the
+!> step before. Whatever the bounds are, friction takes energy and no momentum; so a step in which
+!> they change a little to the end counts.
+module dda_settle_in_time
+   use dda_assembly, only : equations_t
+   use dda_fixed_points, only : correct_fixed_forces
+   use dda_friction, only : accelerated, coulomb_bound
+   use dda_joint_springs, only : joint_springs_t
+   use dda_kinds, only : wp
+   use dda_open_close, only : iterate_open_close, step_state_t
+   use dda_settings, only : flow_rule, settings_t
+   implicit none
+   private
+
+   public :: settle_in_time
+
+   !> Most passes of the multipliers for given bounds
+   integer, parameter :: max_passes = 100
+   !> Most corrections of the bounds
+   integer, parameter :: max_corrections = 40
+   !> Corrections remembered by the acceleration
+   integer, parameter :: memory = 6
+   !> Change of a force that counts as none, over the sum of all that bear on the blocks
+   real(wp), parameter :: fine = 1.0e-10_wp
+   !> Change of a force that a step may end with
+   real(wp), parameter :: coarse = 1.0e-7_wp
+   !> Change of a bound that a step may end with
+   real(wp), parameter :: coarse_bound = 1.0e-4_wp
+
+contains
+
+   !> Settle multipliers and bounds
+   pure subroutine settle_in_time(settings, target, equations, springs, state)
+      !> Settings of the run
+      type(settings_t), intent(in) :: settings
+      !> How far the held points must go: (n_fixed) [m]
+      real(wp), intent(in) :: target(:)
+      !> Blocks assembled; matrix and factor are made anew
+      type(equations_t), intent(inout) :: equations
+      !> The springs of the joints
+      type(joint_springs_t), intent(in) :: springs
+      !> Forces and faces to begin with in, motion and joints out
+      type(step_state_t), intent(inout) :: state
+      real(wp), dimension(size(springs%stiffness)) :: bound, change, wrong
+      logical :: glued(size(springs%stiffness))
+      real(wp), dimension(size(springs%stiffness), memory + 1) :: bounds, changes
+      real(wp) :: opening(3, size(springs%stiffness)), least
+      integer :: correction, kept
+
+      opening = state%start - state%multiplier
+      if (settings%flow == flow_rule%associated) then
+         call settle_multipliers(settings, target, opening, equations, springs, state)
+         return
+      end if
+      glued = .not. springs%cone%limit < huge(1.0_wp)
+      state%force = state%multiplier
+      bound = bounds_now()
+      kept = 0
+      least = huge(least)
+      do correction = 1, max_corrections
+         state%cone%friction = 0.0_wp
+         state%cone%limit = bound
+         call settle_multipliers(settings, target, opening, equations, springs, state)
+         if (.not. state%settled) return
+         change = bounds_now() - bound
+         wrong = 0.0_wp
+         where (state%face%slip /= 0 .or. abs(state%force(3, :)) > bound + change) &
+            & wrong = abs(change)
+         if (maxval(wrong) <= fine*equations%force_scale) return
+         least = min(least, maxval(wrong))
+         if (kept == memory + 1) then
+            bounds(:, :memory) = bounds(:, 2:)
+            changes(:, :memory) = changes(:, 2:)
+            kept = memory
+         end if
+         kept = kept + 1
+         bounds(:, kept) = merge(0.0_wp, bound, glued)
+         changes(:, kept) = merge(0.0_wp, change, glued)
+         bound = max(0.0_wp, merge(bounds_now(), accelerated(bounds(:, :kept), &
+            & changes(:, :kept)), glued))
+      end do
+      state%settled = least <= coarse_bound*equations%force_scale
+
+   contains
+
+      !> What friction allows with the normal forces as they are; joints that cannot slide can part
+      pure function bounds_now() result(now)
+         !> The bounds: (n_joint) [N/m]
+         real(wp) :: now(size(glued))
+         integer :: j
+
+         now = coulomb_bound(springs, state)
+         do j = 1, size(now)
+            if (glued(j) .and. all(state%face(j)%open)) now(j) = 0.0_wp
+         end do
+      end function bounds_now
+   end subroutine settle_in_time
+
+   !> Settle the multipliers and the forces at the held points for given cones
+   pure subroutine settle_multipliers(settings, target, opening, equations, springs, state)
+      !> Settings of the run
+      type(settings_t), intent(in) :: settings
+      !> How far the held points must go: (n_fixed) [m]
+      real(wp), intent(in) :: target(:)
+      !> Trial forces at the beginning without multipliers: (3, n_joint) [N/m]
+      real(wp), intent(in) :: opening(:, :)
+      !> Blocks assembled; matrix and factor are made anew
+      type(equations_t), intent(inout) :: equations
+      !> The springs of the joints
+      type(joint_springs_t), intent(in) :: springs
+      !> Multipliers and faces to begin with in, motion and joints out
+      type(step_state_t), intent(inout) :: state
+      real(wp) :: change, noise(size(springs%stiffness))
+      integer :: pass
+
+      ! gaps that contradict one another by rounding let the multipliers grow without end
+      noise = springs%stiffness*equations%gap_noise
+      do pass = 1, max_passes
+         state%start = state%multiplier + opening
+         call iterate_open_close(equations, springs, settings%max_changes, state)
+         if (.not. state%settled) return
+         call correct_fixed_forces(target, state%motion, equations%fixed, equations%load, change)
+         change = max(change, maxval(maxval(abs(state%force - state%multiplier), dim=1) - noise))
+         state%multiplier = state%force
+         if (change <= fine*equations%force_scale) return
+      end do
+      state%settled = change <= coarse*equations%force_scale
+   end subroutine settle_multipliers
+end module dda_settle_in_time

@@ -1,0 +1,156 @@
+!> How far corners move in a step, so that nothing is met that was not looked for
+module dda_step_reach
+   use dda_block_system, only : block_system_t
+   use dda_contact_detection, only : contacts_t
+   use dda_deformation, only : displacement_matrix
+   use dda_kinds, only : wp
+   use dda_settings, only : settings_t
+   use dda_step_context, only : march_t, step_context_t
+   implicit none
+   private
+
+   public :: first_reach, judge_reach, next_reach, travel_of
+
+   !> Least reach of a block over its size: contacts nearer than this are always looked at
+   real(wp), parameter :: least_reach = 1.0e-3_wp
+   !> Reach over the motion that it is meant for
+   real(wp), parameter :: margin = 1.5_wp
+   !> A corner may move this multiple of what a step is meant to move it
+   real(wp), parameter :: too_far = 2.0_wp
+
+contains
+
+   !> Reach of the blocks before anything has moved: what speed and free fall make of a first step
+   pure function first_reach(system, settings, march) result(reach)
+      !> The blocks
+      type(block_system_t), intent(in) :: system
+      !> Settings of the run
+      type(settings_t), intent(in) :: settings
+      !> The march, with the length of the step
+      type(march_t), intent(in) :: march
+      !> Most that the corners of each block are expected to move: (n_block) [m]
+      real(wp) :: reach(size(system%area))
+      real(wp) :: radius
+      integer :: b, v
+
+      reach = least_reach*sqrt(system%area)
+      if (.not. settings%dynamic) return
+      do b = 1, size(reach)
+         radius = 0.0_wp
+         do v = system%first_vertex(b), system%first_vertex(b + 1) - 1
+            radius = max(radius, norm2(system%vertex(:, v) - system%centroid(:, b)))
+         end do
+         reach(b) = max(reach(b), margin*march%dt*(norm2(system%velocity(1:2, b)) &
+            & + radius*abs(system%velocity(3, b)) + march%free_acceleration*march%dt/2.0_wp))
+      end do
+      where (system%equation == 0) reach = 0.0_wp
+   end function first_reach
+
+   !> Reach in the step that follows an accepted one
+   pure subroutine next_reach(system, step, march)
+      !> The blocks
+      type(block_system_t), intent(in) :: system
+      !> The accepted step
+      type(step_context_t), intent(in) :: step
+      !> Receives the reach
+      type(march_t), intent(inout) :: march
+
+      march%reach = max(least_reach*sqrt(system%area), &
+         & margin*corner_motion(system, step%state%motion))
+      where (system%equation == 0) march%reach = 0.0_wp
+   end subroutine next_reach
+
+   !> A step in which a corner moves beyond the reach of its block does not count: it is made again
+   !> with a longer reach, and a block that may meet others there goes on in shorter steps
+   pure subroutine judge_reach(system, contacts, march, step, widened)
+      !> The blocks before the step
+      type(block_system_t), intent(in) :: system
+      !> The contacts of the step
+      type(contacts_t), intent(in) :: contacts
+      !> The march; reach and length of the next try are set
+      type(march_t), intent(inout) :: march
+      !> The step; whether it is accepted is set
+      type(step_context_t), intent(inout) :: step
+      !> Whether the contacts must be searched again
+      logical, intent(out) :: widened
+      real(wp) :: way(size(system%area)), farthest
+      logical :: may_meet(size(system%area))
+      integer :: j
+
+      widened = .false.
+      if (.not. step%accepted) return
+      way = corner_motion(system, step%state%motion)
+      may_meet = .false.
+      do j = 1, size(contacts%joint)
+         may_meet(contacts%joint(j)%block) = .true.
+      end do
+      farthest = maxval(way, mask=may_meet .and. system%equation > 0)
+      if (farthest > 2.0_wp*too_far*march%allowed_motion) then
+         step%accepted = .false.
+         march%dt = march%dt*max(0.1_wp, 0.8_wp*too_far*march%allowed_motion/farthest)
+         return
+      end if
+      widened = any(way > march%reach)
+      if (.not. widened) return
+      step%accepted = .false.
+      where (way > march%reach) march%reach = margin*way
+   end subroutine judge_reach
+
+   !> Most that a corner of each block moves
+   pure function corner_motion(system, motion) result(way)
+      !> The blocks
+      type(block_system_t), intent(in) :: system
+      !> Motion of the blocks: (n_dof, n_equation)
+      real(wp), intent(in) :: motion(:, :)
+      !> The way of the corner that moves farthest: (n_block) [m]
+      real(wp) :: way(size(system%area))
+      real(wp) :: t(2, 6), centroid(2)
+      integer :: b, e, n_dof, v
+
+      n_dof = size(motion, 1)
+      way = 0.0_wp
+      do b = 1, size(way)
+         e = system%equation(b)
+         if (e == 0) cycle
+         centroid = system%centroid(:, b) + system%motion(1:2, b)
+         do v = system%first_vertex(b), system%first_vertex(b + 1) - 1
+            t = displacement_matrix(system%moved(:, v), centroid)
+            way(b) = max(way(b), norm2(matmul(t(:, :n_dof), motion(:, e))))
+         end do
+      end do
+   end function corner_motion
+
+   !> How the corners are about to move: as their speed and the loads have it, or as they did in the
+   !> step before
+   pure function travel_of(system, settings, march) result(travel)
+      !> The blocks
+      type(block_system_t), intent(in) :: system
+      !> Settings of the run
+      type(settings_t), intent(in) :: settings
+      !> The march
+      type(march_t), intent(in) :: march
+      !> The motion: (2, n_vertex) [m]
+      real(wp) :: travel(2, size(system%vertex, 2))
+      real(wp) :: t(2, 6), motion(6), centroid(2)
+      integer :: b, e, v
+
+      travel = 0.0_wp
+      do b = 1, size(system%area)
+         e = system%equation(b)
+         if (e == 0) cycle
+         motion = 0.0_wp
+         if (settings%dynamic) then
+            motion = march%dt*system%velocity(:, b)
+            motion(1:2) = motion(1:2) + settings%load_direction*system%unit_weight(b) &
+               & *march%dt**2/(2.0_wp*system%density(b))
+         else if (allocated(march%last_motion)) then
+            motion(:size(march%last_motion, 1)) = march%last_motion(:, e)
+         end if
+         centroid = system%centroid(:, b) + system%motion(1:2, b)
+         do v = system%first_vertex(b), system%first_vertex(b + 1) - 1
+            t = displacement_matrix(system%moved(:, v), centroid)
+            travel(:, v) = matmul(t, motion)
+         end do
+      end do
+   end function travel_of
+end module dda_step_reach

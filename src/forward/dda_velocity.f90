@@ -1,0 +1,352 @@
+!> Velocities at the end of a dynamic step where blocks move: the law of impact
+!>
+!> The motion of the step says which contacts are closed. What their impulses make of the velocities
+!> is a problem of its own, with the same cones, in the metric of mass:
+!>
+!>    M (v1 - v0) = dt (f + B' N),   B v1 >= -e B v0,   N in its cone,   N = 0 where B v1 is more
+!>
+!> Impulses are total ones, those of persistent contacts included. So a closed contact ends at rest
+!> if e = 0, whatever the step: Shi's v1 = 2 D/dt - v0 would end with any restitution between 0 and
+!> 1, and has never less energy. Without contact the two are the same.
+module dda_velocity
+   use dda_assembly, only : equations_t, relative_displacement, take_springs
+   use dda_block_inertia, only : damping_rate, kinetic_energy, packed_velocity
+   use dda_block_system, only : block_system_t
+   use dda_contact_detection, only : contacts_t
+   use dda_elasticity, only : stress_load
+   use dda_fixed_points, only : add_fixed_springs
+   use dda_joint_springs, only : joint_springs_t
+   use dda_kinds, only : wp
+   use dda_material, only : elasticity_matrix
+   use dda_open_close, only : step_state_t
+   use dda_settle_in_time, only : settle_in_time
+   use dda_settings, only : settings_t
+   use dda_step_context, only : step_context_t
+   use dda_vector, only : cross
+   implicit none
+   private
+
+   public :: settle_velocities, near_gap, stiffen_contacts
+
+   !> A contact is closed if its gap is below this share of the smaller block
+   real(wp), parameter :: near = 1.0e-10_wp
+   !> Stiffness of the springs that stand for impulses, over the inertia m/dt**2
+   real(wp), parameter :: over_inertia = 1.0e3_wp
+   !> A block whose strain swings by more than this angle in the longest step [rad] has no strain
+   !> rate: its strain follows its load
+   real(wp), parameter :: resolved = 1.0_wp
+   !> Most tries with less restitution; the last one has none
+   integer, parameter :: max_tries = 8
+   !> Energy that counts as rounding, over that of motion
+   real(wp), parameter :: energy_noise = 1.0e-12_wp
+
+contains
+
+   !> Velocities of the blocks at the end of a settled step. Newton's restitution may bring in
+   !> energy where there is friction, or where blocks are hit in several places; then there is less of it
+   pure subroutine settle_velocities(settings, system, contacts, equations, step)
+      !> Settings of the run
+      type(settings_t), intent(in) :: settings
+      !> The blocks before the step
+      type(block_system_t), intent(in) :: system
+      !> The contacts before the step
+      type(contacts_t), intent(in) :: contacts
+      !> The equations; matrix and factor are made anew
+      type(equations_t), intent(inout) :: equations
+      !> The step; its velocities are set, and whether it counts
+      type(step_context_t), intent(inout) :: step
+      logical :: closed(2, size(contacts%joint))
+      real(wp) :: part(2, size(contacts%joint)), before
+      integer :: try
+
+      closed = closed_contacts(system, contacts, step)
+      part = parting_speed(settings, system, contacts, closed, step)
+      before = kinetic_energy(equations, 2.0_wp/step%dt*step%state%motion &
+         & - packed_velocity(system, size(step%state%motion, 1)))
+      do try = 0, max_tries
+         if (try == max_tries) part = 0.0_wp
+         call settle_impulses(settings, system, contacts, closed, part, equations, step)
+         if (.not. step%accepted) return
+         step%impact = before - kinetic_energy(equations, step%velocity)
+         if (step%impact >= -energy_noise*before .or. .not. any(part > 0.0_wp)) return
+         part = 0.8_wp*part
+      end do
+   end subroutine settle_velocities
+
+   !> Velocities for given speeds at which the contacts must part
+   pure subroutine settle_impulses(settings, system, contacts, closed, part, equations, step)
+      !> Settings of the run
+      type(settings_t), intent(in) :: settings
+      !> The blocks before the step
+      type(block_system_t), intent(in) :: system
+      !> The contacts before the step
+      type(contacts_t), intent(in) :: contacts
+      !> Contacts that are closed: (2, n_joint)
+      logical, intent(in) :: closed(:, :)
+      !> The speeds: (2, n_joint) [m/s]
+      real(wp), intent(in) :: part(:, :)
+      !> The equations; matrix and factor are made anew
+      type(equations_t), intent(inout) :: equations
+      !> The step; its velocities are set, and whether it counts
+      type(step_context_t), intent(inout) :: step
+      type(step_state_t) :: state
+      type(joint_springs_t) :: springs
+      logical :: follows(size(system%equation))
+      real(wp) :: held_force(size(equations%fixed%force))
+      integer :: j
+
+      follows = strain_follows(system, step%longest)
+      held_force = equations%fixed%force
+      call assemble_rates(settings, system, follows, step, equations)
+      state = step%state
+      springs = contacts%springs
+      do j = 1, size(contacts%joint)
+         springs%stiffness(j) = over_inertia*joint_mass(system, contacts%joint(j)%block)/step%dt**2
+         call keep_closed(closed(:, j), follows(contacts%joint(j)%block), j, springs, state)
+         state%start(1:2, j) = state%start(1:2, j) + springs%stiffness(j)*step%dt*part(:, j)
+      end do
+      call take_springs(springs, equations)
+      call settle_in_time(settings, step%dt*equations%fixed%rate, equations, springs, state)
+      equations%fixed%force = held_force
+      step%accepted = state%settled
+      if (.not. step%accepted) return
+      step%velocity = state%motion/step%dt
+      call keep_moment(system, contacts, springs, equations, state%force, step)
+   end subroutine settle_impulses
+
+   !> Contacts that are closed at the end of a step: those that carry a force, and those without a
+   !> gap
+   pure function closed_contacts(system, contacts, step) result(closed)
+      !> The blocks
+      type(block_system_t), intent(in) :: system
+      !> The contacts before the step
+      type(contacts_t), intent(in) :: contacts
+      !> The step
+      type(step_context_t), intent(in) :: step
+      !> For each contact of each joint: (2, n_joint)
+      logical :: closed(2, size(contacts%joint))
+      integer :: j, k
+
+      closed = .false.
+      do j = 1, size(contacts%joint)
+         do k = 1, contacts%joint(j)%n_contact
+            closed(k, j) = .not. step%state%face(j)%open(k) .or. contacts%gap(k, j) &
+               & + step%state%increment(k, j) + step%curve(k, j) &
+               & <= near_gap(system, contacts%joint(j)%block)
+         end do
+      end do
+   end function closed_contacts
+
+   !> Speed at which the contacts must part: restitution times the speed at which they have met, if
+   !> they have met at the very end of the step and faster than weight makes resting contacts meet
+   pure function parting_speed(settings, system, contacts, closed, step) result(speed)
+      !> Settings of the run
+      type(settings_t), intent(in) :: settings
+      !> The blocks before the step
+      type(block_system_t), intent(in) :: system
+      !> The contacts before the step
+      type(contacts_t), intent(in) :: contacts
+      !> Contacts that are closed at its end: (2, n_joint)
+      logical, intent(in) :: closed(:, :)
+      !> The step
+      type(step_context_t), intent(in) :: step
+      !> The speeds: (2, n_joint) [m/s]
+      real(wp) :: speed(2, size(contacts%joint))
+      real(wp) :: before(3, size(contacts%joint)), meeting
+      integer :: j, k
+
+      speed = 0.0_wp
+      if (.not. settings%restitution > 0.0_wp) return
+      before = relative_displacement(contacts%springs, packed_velocity(system, &
+         & size(step%state%motion, 1)))
+      do j = 1, size(contacts%joint)
+         do k = 1, 2
+            if (.not. closed(k, j) .or. .not. step%state%face(j)%open(k)) cycle
+            meeting = before(k, j) - 2.0_wp*step%state%increment(k, j)/step%dt
+            if (meeting > step%slowest_impact) speed(k, j) = settings%restitution*meeting
+         end do
+      end do
+   end function parting_speed
+
+   !> Blocks whose strain follows their load, as a step does not resolve its swinging. The fastest
+   !> is that across the narrow side of the block: A D11/(rho S)
+   pure function strain_follows(system, dt) result(follows)
+      !> The blocks
+      type(block_system_t), intent(in) :: system
+      !> Length of the longest step [s]
+      real(wp), intent(in) :: dt
+      !> The answer: (n_block)
+      logical :: follows(size(system%equation))
+      real(wp) :: d(3, 3), narrow
+      integer :: b
+
+      do b = 1, size(follows)
+         d = elasticity_matrix(system%materials(system%material(b)))
+         associate (s => system%second(:, b))
+            narrow = (s(1) + s(2))/2.0_wp - norm2([(s(1) - s(2))/2.0_wp, s(3)])
+            follows(b) = dt**2*system%area(b)*d(1, 1) > resolved**2*system%density(b)*narrow
+         end associate
+      end do
+   end function strain_follows
+
+   !> Equations of the velocities, as motions v1*dt: M/dt**2 (v1 dt) = M v0/dt + f
+   pure subroutine assemble_rates(settings, system, follows, step, equations)
+      !> Settings of the run
+      type(settings_t), intent(in) :: settings
+      !> The blocks before the step
+      type(block_system_t), intent(in) :: system
+      !> Blocks without strain rates: (n_block)
+      logical, intent(in) :: follows(:)
+      !> The step
+      type(step_context_t), intent(in) :: step
+      !> Receives base and load
+      type(equations_t), intent(inout) :: equations
+      real(wp) :: share, stress(6)
+      integer :: b, e, i, nd
+
+      nd = size(equations%load, 1)
+      share = damping_rate(settings, step%dt)*step%dt/2.0_wp
+      equations%base = (1.0_wp + share)/step%dt**2*equations%mass
+      do b = 1, size(system%equation)
+         e = system%equation(b)
+         if (e == 0) cycle
+         equations%load(:, e) = equations%outer(:, e) + (1.0_wp - share)/step%dt &
+            & *matmul(equations%mass(:, :, e), system%velocity(:nd, b))
+         if (nd < 6) cycle
+         if (follows(b)) then
+            equations%base(4:, :3, e) = 0.0_wp
+            equations%base(:3, 4:, e) = 0.0_wp
+            equations%load(4:, e) = 0.0_wp
+         else
+            stress = stress_load(system%stress(:, b), system%area(b))
+            equations%load(:, e) = equations%load(:, e) + stress &
+               & - matmul(equations%elastic(:, :, e), step%state%motion(:, e))
+         end if
+      end do
+      do i = 1, size(equations%fixed%point)
+         b = settings%boundary%held(equations%fixed%point(i))%block
+         if (follows(b)) equations%fixed%row(4:, i) = 0.0_wp
+      end do
+      call add_fixed_springs(equations%fixed, step%dt*equations%fixed%rate, equations%base, &
+         & equations%load)
+   end subroutine assemble_rates
+
+   !> Springs of one joint that only its closed contacts feel, and only motions without strain where
+   !> strain has no rate
+   pure subroutine keep_closed(closed, follows, j, springs, state)
+      !> Contacts that are closed: (2)
+      logical, intent(in) :: closed(2)
+      !> Blocks without strain rates: (2)
+      logical, intent(in) :: follows(2)
+      !> Number of the joint
+      integer, intent(in) :: j
+      !> The springs
+      type(joint_springs_t), intent(inout) :: springs
+      !> The state that the search for the velocities begins with
+      type(step_state_t), intent(inout) :: state
+      integer :: k, side
+
+      state%multiplier(:, j) = state%force(:, j)
+      state%start(:, j) = state%force(:, j)
+      do k = 1, 2
+         state%face(j)%open(k) = .not. closed(k)
+         if (closed(k)) cycle
+         springs%row(:, k, :, j) = 0.0_wp
+         springs%shift(k, j) = 0.0_wp
+         state%multiplier(k, j) = 0.0_wp
+         state%start(k, j) = -1.0_wp
+      end do
+      if (.not. any(closed)) then
+         springs%row(:, 3, :, j) = 0.0_wp
+         state%multiplier(3, j) = 0.0_wp
+         state%start(3, j) = 0.0_wp
+      end if
+      do side = 1, 2
+         if (follows(side)) springs%row(4:, :, side, j) = 0.0_wp
+      end do
+   end subroutine keep_closed
+
+   !> Keep the moment of momentum of each pair of blocks. The centres have moved while their
+   !> impulses acted as at the beginning: the pair's centres bring in
+   !> dt**2 (F/2 - N) x (v2 - v1), F the force of the motion, N that of the impulse; and the rows of
+   !> a joint between turned edges may lie off one line. The two blocks give it back by one change of
+   !> spin
+   pure subroutine keep_moment(system, contacts, springs, equations, impulse, step)
+      !> The blocks before the step
+      type(block_system_t), intent(in) :: system
+      !> The contacts before the step
+      type(contacts_t), intent(in) :: contacts
+      !> Springs that the impulses have acted by
+      type(joint_springs_t), intent(in) :: springs
+      !> The equations, for the moments of inertia
+      type(equations_t), intent(in) :: equations
+      !> Forces that stand for the impulses: (3, n_joint) [N/m]
+      real(wp), intent(in) :: impulse(:, :)
+      !> The step; its spins are changed
+      type(step_context_t), intent(inout) :: step
+      real(wp) :: change(size(step%velocity, 2)), force(2), excess(3), moment, turn(3)
+      integer :: b, j, one, other, side
+
+      change = 0.0_wp
+      do j = 1, size(contacts%joint)
+         one = contacts%springs%equation(1, j)
+         other = contacts%springs%equation(2, j)
+         if (one == 0 .or. other == 0) cycle
+         excess = step%state%force(:, j)/2.0_wp - impulse(:, j)
+         associate (joint => contacts%joint(j))
+            force = excess(1)*joint%contact(1)%normal + excess(2)*joint%contact(2)%normal &
+               & + excess(3)*joint%tangent
+         end associate
+         moment = step%dt**2*cross(force, step%velocity(1:2, other) - step%velocity(1:2, one))
+         do side = 1, 2
+            b = contacts%joint(j)%block(side)
+            turn = matmul(springs%row(1:3, :, side, j), impulse(:, j))
+            moment = moment + step%dt*(turn(3) + cross(system%centroid(:, b) &
+               & + system%motion(1:2, b), turn(1:2)))
+         end do
+         moment = moment/(equations%mass(3, 3, one) + equations%mass(3, 3, other))
+         change(one) = change(one) - moment
+         change(other) = change(other) - moment
+      end do
+      step%velocity(3, :) = step%velocity(3, :) + change
+   end subroutine keep_moment
+
+   !> Springs of contacts whose forces are multipliers: stiff beside inertia however short the step,
+   !> and without memory of slip, which would bring in work. What sticks has no speed to slip with
+   pure subroutine stiffen_contacts(system, dt, contacts)
+      !> The blocks
+      type(block_system_t), intent(in) :: system
+      !> Length of the step [s]
+      real(wp), intent(in) :: dt
+      !> The contacts; stiffness and trial forces are set
+      type(contacts_t), intent(inout) :: contacts
+      integer :: j
+
+      do j = 1, size(contacts%joint)
+         contacts%springs%stiffness(j) = max(contacts%springs%stiffness(j), &
+            & over_inertia*joint_mass(system, contacts%joint(j)%block)/dt**2)
+         contacts%trial(:, j) = contacts%force(:, j) &
+            & - contacts%springs%stiffness(j)*[contacts%gap(1:2, j), 0.0_wp]
+      end do
+   end subroutine stiffen_contacts
+
+   !> Gap below which two blocks count as touching
+   pure real(wp) function near_gap(system, pair)
+      !> The blocks
+      type(block_system_t), intent(in) :: system
+      !> The two blocks: (2)
+      integer, intent(in) :: pair(2)
+
+      near_gap = near*sqrt(minval(system%area(pair)))
+   end function near_gap
+
+   !> Mass of the lighter of the movable blocks of a pair [kg per metre depth]
+   pure real(wp) function joint_mass(system, pair)
+      !> The blocks
+      type(block_system_t), intent(in) :: system
+      !> The two blocks: (2)
+      integer, intent(in) :: pair(2)
+
+      joint_mass = minval(system%density(pair)*system%area(pair), mask=system%equation(pair) > 0)
+   end function joint_mass
+end module dda_velocity

@@ -1,0 +1,126 @@
+!> Lines of a file of blocks as words, and the words' numbers
+module dda_block_lines
+   use dda_error, only : error_t, fatal_error
+   use dda_kinds, only : wp
+   use dda_text, only : lower_case, read_number, to_text
+   implicit none
+   private
+
+   public :: entry_t, line_t, split_line, take_keys, take_numbers, word_size
+
+   !> Longest word of a line [characters]
+   integer, parameter :: word_size = 32
+   !> Most words of a line
+   integer, parameter :: max_words = 40
+   !> One line as words
+   type :: line_t
+      !> Number of the line
+      integer :: number = 0
+      !> Number of words
+      integer :: n = 0
+      !> The words
+      character(len=word_size) :: word(max_words) = ""
+   end type line_t
+
+   !> The entry that is being read
+   type :: entry_t
+      !> Its first line
+      type(line_t) :: head
+      !> Rows of numbers below it: (3, n)
+      real(wp), allocatable :: row(:, :)
+      !> Number of rows
+      integer :: n_row = 0
+      !> Numbers of each row
+      integer :: n_column = 0
+   end type entry_t
+
+contains
+
+   !> Part a line into words; what follows a ! is a comment
+   pure subroutine split_line(text, number, line, error)
+      !> The line
+      character(len=*), intent(in) :: text
+      !> Its number
+      integer, intent(in) :: number
+      !> The words
+      type(line_t), intent(out) :: line
+      !> Too many or too long words
+      type(error_t), allocatable, intent(out) :: error
+      integer :: i, last, first
+
+      line%number = number
+      last = index(text//"!", "!") - 1
+      first = 0
+      do i = 1, last + 1
+         if (i <= last) then
+            if (index(" "//achar(9), text(i:i)) == 0) then
+               if (first == 0) first = i
+               cycle
+            end if
+         end if
+         if (first == 0) cycle
+         if (line%n == max_words .or. i - first > word_size) then
+            call fatal_error(error, "wanted at most "//to_text(max_words)//" words of " &
+               & //to_text(word_size)//" characters, found more", line=number)
+            return
+         end if
+         line%n = line%n + 1
+         line%word(line%n) = lower_case(text(first:i - 1))
+         first = 0
+      end do
+   end subroutine split_line
+
+   !> Read the numbers behind a word
+   pure subroutine take_numbers(line, i, number, error)
+      !> The line
+      type(line_t), intent(in) :: line
+      !> Place of the word; then the place after the numbers
+      integer, intent(inout) :: i
+      !> The numbers: (n)
+      real(wp), intent(inout) :: number(:)
+      !> Anything else
+      type(error_t), allocatable, intent(out) :: error
+      logical :: ok
+      integer :: k
+
+      do k = 1, size(number)
+         ok = i + k <= line%n
+         if (ok) call read_number(trim(line%word(i + k)), number(k), ok)
+         if (ok) cycle
+         call fatal_error(error, "wanted "//to_text(size(number))//" numbers after '" &
+            & //trim(line%word(i))//"'", line=line%number)
+         return
+      end do
+      i = i + size(number) + 1
+   end subroutine take_numbers
+
+   !> Read words with a number each
+   pure subroutine take_keys(line, first, key, value, given, error)
+      !> The line
+      type(line_t), intent(in) :: line
+      !> Place of the first word
+      integer, intent(in) :: first
+      !> Words that may come: (n)
+      character(len=*), intent(in) :: key(:)
+      !> Their numbers: (n)
+      real(wp), intent(inout) :: value(:)
+      !> Which came: (n)
+      logical, intent(inout) :: given(:)
+      !> Anything wrong
+      type(error_t), allocatable, intent(out) :: error
+      integer :: i, k
+
+      i = first
+      do while (i <= line%n .and. .not. allocated(error))
+         k = findloc(key == line%word(i), .true., dim=1)
+         if (k == 0) then
+            call fatal_error(error, "unknown word '"//trim(line%word(i))//"'", line=line%number)
+         else if (given(k)) then
+            call fatal_error(error, trim(key(k))//" is given twice", line=line%number)
+         else
+            given(k) = .true.
+            call take_numbers(line, i, value(k:k), error)
+         end if
+      end do
+   end subroutine take_keys
+end module dda_block_lines

@@ -1,0 +1,137 @@
+!> What acts on points of the blocks, and how it changes with time (Shi: df09)
+module dda_boundary
+   use dda_kinds, only : wp
+   implicit none
+   private
+
+   public :: boundary_t, held_point_t, history_t, loaded_point_t, measured_point_t
+   public :: constant_history, rate_at, value_at
+
+   !> A vector given at some times, linear between them, constant before the first and after the
+   !> last of them; zero if nothing is given
+   type :: history_t
+      !> The times, increasing: (n) [s]
+      real(wp), allocatable :: time(:)
+      !> Components along x and y at these times: (2, n)
+      real(wp), allocatable :: value(:, :)
+   end type history_t
+
+   !> A point of a block that is held, or led along a path
+   type :: held_point_t
+      !> Number of the block
+      integer :: block = 0
+      !> Where the point is in the reference shape: (2) [m]
+      real(wp) :: point(2) = 0.0_wp
+      !> Whether it is held along x and along y: (2)
+      logical :: along(2) = .true.
+      !> Its displacement [m]
+      type(history_t) :: path
+   end type held_point_t
+
+   !> A force on a point of a block; it goes with the point and keeps its direction
+   type :: loaded_point_t
+      !> Number of the block
+      integer :: block = 0
+      !> Where the point is in the reference shape: (2) [m]
+      real(wp) :: point(2) = 0.0_wp
+      !> The force [N per metre depth]
+      type(history_t) :: force
+   end type loaded_point_t
+
+   !> A point of a block whose motion is told
+   type :: measured_point_t
+      !> Number of the block
+      integer :: block = 0
+      !> Where the point is in the reference shape: (2) [m]
+      real(wp) :: point(2) = 0.0_wp
+   end type measured_point_t
+
+   !> All of a scene; an array that is not allocated has no points
+   type :: boundary_t
+      !> Held points
+      type(held_point_t), allocatable :: held(:)
+      !> Loaded points
+      type(loaded_point_t), allocatable :: loaded(:)
+      !> Measured points
+      type(measured_point_t), allocatable :: measured(:)
+      !> Acceleration of the ground [m/s2]; motions are relative to the ground, so that all blocks
+      !> feel its inertia
+      type(history_t) :: base_acceleration
+   end type boundary_t
+
+contains
+
+   !> A history that is the same at all times
+   pure function constant_history(value) result(history)
+      !> Components along x and y: (2)
+      real(wp), intent(in) :: value(2)
+      !> The history
+      type(history_t) :: history
+
+      allocate (history%time(1), source=0.0_wp)
+      allocate (history%value(2, 1))
+      history%value(:, 1) = value
+   end function constant_history
+
+   !> Value of a history at a time
+   pure function value_at(history, time) result(value)
+      !> The history
+      type(history_t), intent(in) :: history
+      !> The time [s]
+      real(wp), intent(in) :: time
+      !> Components along x and y: (2)
+      real(wp) :: value(2)
+      real(wp) :: share
+      integer :: i
+
+      value = 0.0_wp
+      if (.not. allocated(history%time)) return
+      i = segment_before(history%time, time)
+      if (i == 0) then
+         value = history%value(:, 1)
+      else if (i == size(history%time)) then
+         value = history%value(:, i)
+      else
+         share = (time - history%time(i))/(history%time(i + 1) - history%time(i))
+         value = (1.0_wp - share)*history%value(:, i) + share*history%value(:, i + 1)
+      end if
+   end function value_at
+
+   !> Rate of a history just before a time
+   pure function rate_at(history, time) result(rate)
+      !> The history
+      type(history_t), intent(in) :: history
+      !> The time [s]
+      real(wp), intent(in) :: time
+      !> Components along x and y, per second: (2)
+      real(wp) :: rate(2)
+      integer :: i
+
+      rate = 0.0_wp
+      if (.not. allocated(history%time)) return
+      i = segment_before(history%time, time)
+      if (i == 0 .or. i == size(history%time)) return
+      rate = (history%value(:, i + 1) - history%value(:, i)) &
+         & /(history%time(i + 1) - history%time(i))
+   end function rate_at
+
+   !> Number of the last of some increasing times that lies before a time, 0 if none does
+   pure integer function segment_before(times, time)
+      !> The times: (n) [s]
+      real(wp), intent(in) :: times(:)
+      !> The time [s]
+      real(wp), intent(in) :: time
+      integer :: high, middle
+
+      segment_before = 0
+      high = size(times) + 1
+      do while (high - segment_before > 1)
+         middle = (segment_before + high)/2
+         if (times(middle) < time) then
+            segment_before = middle
+         else
+            high = middle
+         end if
+      end do
+   end function segment_before
+end module dda_boundary

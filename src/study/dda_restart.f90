@@ -1,0 +1,142 @@
+!> The state of a run as a file, from which it goes on to the last bit as if it had not been broken
+module dda_restart
+   use dda_block_system, only : block_system_t
+   use dda_contact_detection, only : contacts_t, set_joints
+   use dda_contact_types, only : joint_t
+   use dda_error, only : error_t, fatal_error
+   use dda_kinds, only : wp
+   use dda_settings, only : settings_t
+   use dda_step_context, only : march_t
+   implicit none
+   private
+
+   public :: load_restart, save_restart
+
+   !> First bytes of the file; another layout wants another number
+   character(len=*), parameter :: magic = "voussoir restart 1"
+
+contains
+
+   !> Write blocks, contacts and march at the end of a step
+   subroutine save_restart(file, system, contacts, march, error)
+      !> Name of the file
+      character(len=*), intent(in) :: file
+      !> The blocks
+      type(block_system_t), intent(in) :: system
+      !> The contacts
+      type(contacts_t), intent(in) :: contacts
+      !> The march
+      type(march_t), intent(in) :: march
+      !> Allocated if it cannot be written
+      type(error_t), allocatable, intent(out) :: error
+      integer :: unit, stat
+      character(len=200) :: reason
+
+      open (newunit=unit, file=file, access="stream", form="unformatted", status="replace", &
+         & action="write", iostat=stat, iomsg=reason)
+      if (stat == 0) write (unit, iostat=stat, iomsg=reason) magic, size(system%area), &
+         & size(system%vertex, 2), size(contacts%joint), system%vertex, system%moved, &
+         & system%motion, system%velocity, system%stress, system%initial_stress
+      if (stat == 0) write (unit, iostat=stat, iomsg=reason) contacts%joint, contacts%face, &
+         & contacts%trial, contacts%force, contacts%gap, contacts%increment, contacts%past_slip, &
+         & contacts%broken, contacts%springs%stiffness, contacts%springs%cone, &
+         & contacts%springs%shift
+      if (stat == 0) write (unit, iostat=stat, iomsg=reason) march%steps, march%time, march%dt, &
+         & march%allowed_motion, march%resolution, march%displacement, march%longest, &
+         & march%elastic_motion, march%free_acceleration, march%last_acceleration, march%passes, &
+         & march%energy, allocated(march%reach), allocated(march%last_motion)
+      if (stat == 0 .and. allocated(march%reach)) &
+         & write (unit, iostat=stat, iomsg=reason) march%reach
+      if (stat == 0 .and. allocated(march%last_motion)) &
+         & write (unit, iostat=stat, iomsg=reason) shape(march%last_motion), march%last_motion
+      if (stat == 0) close (unit, iostat=stat, iomsg=reason)
+      if (stat /= 0) call fatal_error(error, "the restart file cannot be written: "// &
+         & trim(reason), file)
+   end subroutine save_restart
+
+   !> Put blocks, contacts and march into the state of a file
+   subroutine load_restart(file, settings, system, contacts, march, error)
+      !> Name of the file
+      character(len=*), intent(in) :: file
+      !> Settings of the run
+      type(settings_t), intent(in) :: settings
+      !> The blocks at their beginning in, those of the file out
+      type(block_system_t), intent(inout) :: system
+      !> The contacts likewise
+      type(contacts_t), intent(inout) :: contacts
+      !> The march of the file
+      type(march_t), intent(out) :: march
+      !> Allocated if the file is missing, broken or of another scene
+      type(error_t), allocatable, intent(out) :: error
+      character(len=len(magic)) :: found
+      real(wp) :: vertex(2, size(system%vertex, 2))
+      integer :: unit, stat, n(3)
+      logical :: has(2)
+
+      open (newunit=unit, file=file, access="stream", form="unformatted", status="old", &
+         & action="read", iostat=stat)
+      if (stat /= 0) then
+         call fatal_error(error, "the restart file cannot be opened", file)
+         return
+      end if
+      found = ""
+      n = 0
+      read (unit, iostat=stat) found, n
+      if (stat == 0 .and. found == magic .and. all(n(:2) == [size(system%area), &
+         & size(system%vertex, 2)])) read (unit, iostat=stat) vertex
+      if (stat /= 0 .or. found /= magic) then
+         call fatal_error(error, "wanted a restart file of this version, found another file", file)
+      else if (any(n(:2) /= [size(system%area), size(system%vertex, 2)])) then
+         call fatal_error(error, "the restart file is that of other blocks", file)
+      else if (any(abs(vertex - system%vertex) > 0.0_wp)) then
+         call fatal_error(error, "the restart file is that of other blocks", file)
+      end if
+      if (.not. allocated(error)) then
+         call read_state(unit, n(3), settings, system, contacts, stat)
+         if (stat == 0) read (unit, iostat=stat) march%steps, march%time, march%dt, &
+            & march%allowed_motion, march%resolution, march%displacement, march%longest, &
+            & march%elastic_motion, march%free_acceleration, march%last_acceleration, &
+            & march%passes, march%energy, has
+         if (stat == 0 .and. has(1)) then
+            allocate (march%reach(size(system%area)))
+            read (unit, iostat=stat) march%reach
+         end if
+         if (stat == 0 .and. has(2)) then
+            read (unit, iostat=stat) n(:2)
+            if (stat == 0) allocate (march%last_motion(n(1), n(2)))
+            if (stat == 0) read (unit, iostat=stat) march%last_motion
+         end if
+         if (stat /= 0) call fatal_error(error, "the restart file ends too early", file)
+      end if
+      close (unit)
+   end subroutine load_restart
+
+   !> Read the state of blocks and contacts
+   subroutine read_state(unit, n_joint, settings, system, contacts, stat)
+      !> Unit of the file
+      integer, intent(in) :: unit
+      !> Number of joints in the file
+      integer, intent(in) :: n_joint
+      !> Settings of the run
+      type(settings_t), intent(in) :: settings
+      !> Receives the blocks
+      type(block_system_t), intent(inout) :: system
+      !> Receives the contacts
+      type(contacts_t), intent(inout) :: contacts
+      !> 0 if all is well
+      integer, intent(out) :: stat
+      type(joint_t) :: joint(n_joint)
+      real(wp) :: centroid(2, size(system%area))
+
+      read (unit, iostat=stat) system%moved, system%motion, system%velocity, system%stress, &
+         & system%initial_stress
+      if (stat == 0) read (unit, iostat=stat) joint
+      if (stat /= 0) return
+      centroid = system%centroid
+      if (settings%current) centroid = centroid + system%motion(1:2, :)
+      call set_joints(system, centroid, joint, settings%penalty_ratio, settings%n_dof, contacts)
+      read (unit, iostat=stat) contacts%face, contacts%trial, contacts%force, contacts%gap, &
+         & contacts%increment, contacts%past_slip, contacts%broken, contacts%springs%stiffness, &
+         & contacts%springs%cone, contacts%springs%shift
+   end subroutine read_state
+end module dda_restart

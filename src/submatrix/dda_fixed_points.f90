@@ -1,0 +1,156 @@
+!> Points of the blocks that are held or led along a path: stiff springs (Shi: df12)
+!>
+!> A spring pulls its point to where it ought to be at the end of the step, with the force that it
+!> had before; what it lacks is added until nothing changes, so that its stiffness leaves no trace.
+module dda_fixed_points
+   use dda_block_system, only : block_system_t
+   use dda_boundary, only : held_point_t, rate_at, value_at
+   use dda_deformation, only : displacement_matrix, moved_point
+   use dda_kinds, only : wp
+   use dda_settings, only : settings_t
+   implicit none
+   private
+
+   public :: fixed_points_t, new_fixed_points, follow_fixed_points, add_fixed_springs
+   public :: correct_fixed_forces
+
+   !> Stiffness of a spring over the inertia 2m/dt**2 of its block, at the least
+   real(wp), parameter :: over_inertia = 1.0e3_wp
+
+   !> One spring for each direction in which a point of a movable block is held
+   type :: fixed_points_t
+      !> Number of the held point: (n)
+      integer, allocatable :: point(:)
+      !> Direction, 1 or 2 for x or y: (n)
+      integer, allocatable :: axis(:)
+      !> Equation of its block: (n)
+      integer, allocatable :: equation(:)
+      !> What the spring sees of the block's unknowns: (n_dof, n)
+      real(wp), allocatable :: row(:, :)
+      !> Stiffness: (n) [N/m per metre depth]
+      real(wp), allocatable :: stiffness(:)
+      !> How far the point must go in the step: (n) [m]
+      real(wp), allocatable :: target(:)
+      !> How fast it must be at the end of the step: (n) [m/s]
+      real(wp), allocatable :: rate(:)
+      !> Force of the spring: (n) [N/m]
+      real(wp), allocatable :: force(:)
+   end type fixed_points_t
+
+contains
+
+   !> Springs of all held points, free of force
+   pure function new_fixed_points(system, held, n_dof) result(fixed)
+      !> The blocks
+      type(block_system_t), intent(in) :: system
+      !> The held points
+      type(held_point_t), intent(in) :: held(:)
+      !> Unknowns of a block
+      integer, intent(in) :: n_dof
+      !> The springs
+      type(fixed_points_t) :: fixed
+      integer :: axis, h, n, number(2*size(held)), direction(2*size(held))
+
+      n = 0
+      do h = 1, size(held)
+         if (system%equation(held(h)%block) == 0) cycle
+         do axis = 1, 2
+            if (.not. held(h)%along(axis)) cycle
+            n = n + 1
+            number(n) = h
+            direction(n) = axis
+         end do
+      end do
+      allocate (fixed%point, source=number(:n))
+      allocate (fixed%axis, source=direction(:n))
+      allocate (fixed%equation(n), fixed%stiffness(n), fixed%row(n_dof, n))
+      allocate (fixed%target(n), fixed%rate(n))
+      allocate (fixed%force(n), source=0.0_wp)
+      fixed%equation = [(system%equation(held(number(h))%block), h=1, n)]
+   end function new_fixed_points
+
+   !> Rows and targets for one step from where the blocks are
+   pure subroutine follow_fixed_points(system, settings, time, dt, fixed)
+      !> The blocks
+      type(block_system_t), intent(in) :: system
+      !> Settings of the run
+      type(settings_t), intent(in) :: settings
+      !> Time at the beginning of the step [s]
+      real(wp), intent(in) :: time
+      !> Length of the step [s]
+      real(wp), intent(in) :: dt
+      !> The springs; forces are kept
+      type(fixed_points_t), intent(inout) :: fixed
+      real(wp) :: t(2, 6), place(2), centre(2), path(2), rate(2)
+      integer :: i
+
+      do i = 1, size(fixed%point)
+         associate (held => settings%boundary%held(fixed%point(i)), axis => fixed%axis(i), &
+            & b => settings%boundary%held(fixed%point(i))%block)
+            t = displacement_matrix(held%point, system%centroid(:, b))
+            place = held%point + matmul(t, system%motion(:, b))
+            if (settings%current) then
+               centre = system%centroid(:, b) + system%motion(1:2, b)
+               place = moved_point(held%point, system%centroid(:, b), system%motion(:, b))
+               t = displacement_matrix(place, centre)
+            end if
+            path = value_at(held%path, time + dt)
+            rate = rate_at(held%path, time + dt)
+            fixed%row(:, i) = t(axis, :size(fixed%row, 1))
+            fixed%target(i) = held%point(axis) + path(axis) - place(axis)
+            fixed%rate(i) = rate(axis)
+            fixed%stiffness(i) = max( &
+               & settings%penalty_ratio*system%materials(system%material(b))%young, &
+               & over_inertia*2.0_wp*system%density(b)*system%area(b)/dt**2)
+         end associate
+      end do
+   end subroutine follow_fixed_points
+
+   !> Add the springs to matrix and load of the blocks
+   pure subroutine add_fixed_springs(fixed, target, matrix, load)
+      !> The springs
+      type(fixed_points_t), intent(in) :: fixed
+      !> How far the points must go: (n) [m]
+      real(wp), intent(in) :: target(:)
+      !> Receives the stiffness: (n_dof, n_dof, n_equation)
+      real(wp), intent(inout) :: matrix(:, :, :)
+      !> Receives the forces: (n_dof, n_equation)
+      real(wp), intent(inout) :: load(:, :)
+      integer :: c, i
+
+      do i = 1, size(fixed%point)
+         associate (row => fixed%row(:, i), e => fixed%equation(i), p => fixed%stiffness(i))
+            do c = 1, size(row)
+               matrix(:, c, e) = matrix(:, c, e) + p*row(c)*row
+            end do
+            load(:, e) = load(:, e) + (p*target(i) + fixed%force(i))*row
+         end associate
+      end do
+   end subroutine add_fixed_springs
+
+   !> Add to the forces, and to the load, what the springs carry after a motion
+   pure subroutine correct_fixed_forces(target, motion, fixed, load, change)
+      !> How far the points must go: (n) [m]
+      real(wp), intent(in) :: target(:)
+      !> Motion of the blocks: (n_dof, n_equation)
+      real(wp), intent(in) :: motion(:, :)
+      !> The springs; their forces are corrected
+      type(fixed_points_t), intent(inout) :: fixed
+      !> The load of the blocks: (n_dof, n_equation)
+      real(wp), intent(inout) :: load(:, :)
+      !> Largest correction [N/m]
+      real(wp), intent(out) :: change
+      real(wp) :: more
+      integer :: i
+
+      change = 0.0_wp
+      do i = 1, size(fixed%point)
+         associate (row => fixed%row(:, i), e => fixed%equation(i))
+            more = fixed%stiffness(i)*(target(i) - dot_product(row, motion(:, e)))
+            fixed%force(i) = fixed%force(i) + more
+            load(:, e) = load(:, e) + more*row
+            change = max(change, abs(more))
+         end associate
+      end do
+   end subroutine correct_fixed_forces
+end module dda_fixed_points

@@ -1,0 +1,60 @@
+!> Loads from outside on all blocks at a time: weight, forces on points, a ground that shakes
+!> (Shi: df09, df15, df16)
+module dda_outer_loads
+   use dda_block_system, only : block_system_t
+   use dda_boundary, only : value_at
+   use dda_deformation, only : moved_point
+   use dda_kinds, only : wp
+   use dda_loads, only : body_load, point_load
+   use dda_settings, only : settings_t
+   implicit none
+   private
+
+   public :: outer_loads
+
+contains
+
+   !> Loads that change with time added to those that do not
+   pure subroutine outer_loads(system, settings, time, weight, load)
+      !> The blocks
+      type(block_system_t), intent(in) :: system
+      !> Settings of the run
+      type(settings_t), intent(in) :: settings
+      !> The time [s]
+      real(wp), intent(in) :: time
+      !> Weight of the blocks: (n_dof, n_equation)
+      real(wp), intent(in) :: weight(:, :)
+      !> Sum of all loads: (n_dof, n_equation)
+      real(wp), intent(out) :: load(:, :)
+      real(wp) :: of_block(6), centre(2), place(2), shaking(2)
+      integer :: b, e, i, nd
+
+      nd = size(load, 1)
+      load = weight
+      shaking = -value_at(settings%boundary%base_acceleration, time)
+      if (any(abs(shaking) > 0.0_wp)) then
+         do b = 1, size(system%equation)
+            e = system%equation(b)
+            if (e == 0) cycle
+            of_block = body_load(system%density(b)*shaking, system%area(b))
+            load(:, e) = load(:, e) + of_block(:nd)
+         end do
+      end if
+      if (.not. allocated(settings%boundary%loaded)) return
+      do i = 1, size(settings%boundary%loaded)
+         associate (point => settings%boundary%loaded(i)%point, &
+            & b => settings%boundary%loaded(i)%block)
+            e = system%equation(b)
+            if (e == 0) cycle
+            centre = system%centroid(:, b)
+            place = point
+            if (settings%current) then
+               place = moved_point(point, centre, system%motion(:, b))
+               centre = centre + system%motion(1:2, b)
+            end if
+            of_block = point_load(value_at(settings%boundary%loaded(i)%force, time), place, centre)
+            load(:, e) = load(:, e) + of_block(:nd)
+         end associate
+      end do
+   end subroutine outer_loads
+end module dda_outer_loads

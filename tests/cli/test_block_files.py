@@ -1,0 +1,142 @@
+"""Files of blocks at the command line: plans, refusals, measured points, pictures, restart files."""
+
+from __future__ import annotations
+
+import csv
+from pathlib import Path
+
+import pytest
+from dda_command import run_dda
+
+BASE = "block fixed\n-1 -1\n2 -1\n2 0\n-1 0\n"
+BLOCK = "block\n0 0\n1 0\n1 2\n0 2\n"
+
+
+def write(folder: Path, blocks: str, groups: str = "", name: str = "x") -> Path:
+    """Write a deck and its file of blocks."""
+    (folder / "x.blocks").write_text(blocks)
+    deck = folder / f"{name}.nml"
+    deck.write_text(f"&scene kind = 'blocks', geometry = 'x.blocks' /\n{groups}\n")
+    return deck
+
+
+def table(path: Path) -> list[dict[str, str]]:
+    """Rows of a result table."""
+    with path.open() as lines:
+        return list(csv.DictReader(lines))
+
+
+def test_check_tells_what_was_found(tmp_path: Path) -> None:
+    tip = "block\n0.5 2\n1 3\n0 3\n"
+    done = run_dda("check", write(tmp_path, BASE + BLOCK + tip))
+    assert done.returncode == 0
+    assert "2 that move, 1 held" in done.stdout
+    assert "1 of two normal springs and one shear spring, 1 of one corner before an edge" in done.stdout
+
+
+def test_warnings_name_file_and_line(tmp_path: Path) -> None:
+    clockwise = "block\n0 0\n0 2\n1 2\n1 0\n"
+    deck = write(tmp_path, BASE + clockwise)
+    for command in ("check", "run"):
+        done = run_dda(command, deck, cwd=tmp_path)
+        assert done.returncode == 0
+        assert done.stderr.splitlines()[0].endswith(
+            "x.blocks:6: warning: block 2: clockwise corners are turned"
+        )
+
+
+@pytest.mark.parametrize(
+    "blocks, line, words",
+    [
+        (BASE + BLOCK.replace("0 0\n1 0", "0 0.1\n1 0.1"), 6, "block 2 rests on nothing"),
+        (BLOCK, 1, "block 1 rests on nothing"),
+        (BASE + BLOCK.replace("0 0\n", "0 -0.2\n"), 6, "blocks 1 and 2 overlap"),
+        (BASE + "block\n0 -0.8\n1 -0.8\n1 -0.2\n", 6, "block 2 lies inside block 1"),
+        (BASE + "block\n0 0\n1 1\n1 0\n0 1\n", 6, "its edges 1 and 3 meet at"),
+        (BASE + BLOCK + "fix 5 5\n", 11, "lies in none"),
+        (BASE + BLOCK + "material 2 density 0\n", 11, "above 0"),
+        (BASE + BLOCK.replace("1 2", "1,5 2"), 9, "a corner x y"),
+    ],
+)
+def test_bad_blocks_are_refused_with_file_and_line(
+    tmp_path: Path, blocks: str, line: int, words: str
+) -> None:
+    done = run_dda("run", write(tmp_path, blocks), cwd=tmp_path)
+    assert done.returncode == 2
+    (message,) = done.stderr.splitlines()
+    assert f"x.blocks:{line}: error: " in message
+    assert words in message
+    assert not (tmp_path / "x").exists()
+
+
+def test_a_missing_file_is_bad_input(tmp_path: Path) -> None:
+    deck = tmp_path / "y.nml"
+    deck.write_text("&scene kind = 'blocks', geometry = 'none.blocks' /\n")
+    done = run_dda("check", deck)
+    assert done.returncode == 2
+    assert "none.blocks" in done.stderr and "no such file" in done.stderr
+
+
+def test_blocks_that_are_all_fixed_stand_where_they_are(tmp_path: Path) -> None:
+    done = run_dda("run", write(tmp_path, BASE), "--out", tmp_path / "out", "--quiet")
+    assert done.returncode == 0
+    assert table(tmp_path / "out" / "results.csv")[0]["verdict"] == "stable"
+
+
+def test_measured_point_sinks_by_the_strain_of_its_block(tmp_path: Path) -> None:
+    """w H^2/2E and the give of the two corner springs, W/2p with p = 100 E t/l."""
+    groups = "&material unit_weight = 25000.0, poisson = 0.0 /\n&analysis geometry = 'current' /"
+    deck = write(tmp_path, BASE + BLOCK + "measure 0.5 2\n", groups)
+    assert run_dda("run", deck, "--out", tmp_path / "out", "--quiet").returncode == 0
+    last = table(tmp_path / "out" / "points.csv")[-1]
+    sinks = 25000.0 * 2.0**2 / (2.0 * 5e9) + 50000.0 / (2.0 * 100.0 * 5e9 * 0.5)
+    assert float(last["v"]) == pytest.approx(-sinks, rel=1e-5)
+    assert float(last["u"]) == pytest.approx(0.0, abs=1e-12)
+
+
+def test_pictures_show_joints_that_come_and_go(tmp_path: Path) -> None:
+    """A block slides off its base: the joint is there and then it is not."""
+    groups = "&joint friction_deg = 0 /\n&load horizontal_coefficient = 1 /\n"
+    groups += "&analysis geometry = 'current', collapse_displacement = 3.0 /\n&output frames = 6 /"
+    deck = write(tmp_path, BASE + "block\n0 0\n1 0\n1 0.5\n0 0.5\n", groups)
+    done = run_dda("run", deck, "--out", tmp_path / "out", "--quiet")
+    assert done.returncode == 0, done.stderr
+    frames = table(tmp_path / "out" / "frames.csv")
+    numbers = sorted({int(row["frame"]) for row in frames})
+    assert len(numbers) >= 4
+    assert len(list((tmp_path / "out" / "frames").glob("case_1_*_joints.vtu"))) == len(numbers)
+    joints = table(tmp_path / "out" / "frame_joints.csv")
+    assert {row["frame"] for row in joints} < {str(number) for number in numbers}
+
+
+def test_dynamic_run_goes_on_from_its_restart_file_to_the_last_bit(tmp_path: Path) -> None:
+    groups = "&joint friction_deg = 20 /\n&load horizontal_coefficient = 0.5 /\n"
+    groups += "&analysis mode = 'dynamic', time_step = 0.01, steps = {} /\n&output restart = .true. /"
+    blocks = BASE + BLOCK + "measure 0.5 1\n"
+    whole = write(tmp_path, blocks, groups.format(80), "whole")
+    first = write(tmp_path, blocks, groups.format(30), "first")
+    rest = write(tmp_path, blocks, groups.format("80, restart = 'first/case_1.restart'"), "rest")
+    for deck in (whole, first, rest):
+        done = run_dda("run", deck, "--quiet", cwd=tmp_path)
+        assert done.returncode == 0, done.stderr
+    assert (tmp_path / "whole/case_1.restart").read_bytes() == (
+        tmp_path / "rest/case_1.restart"
+    ).read_bytes()
+    assert table(tmp_path / "whole/points.csv")[30:] == table(tmp_path / "rest/points.csv")
+
+
+def test_a_restart_file_that_is_not_there_is_bad_input(tmp_path: Path) -> None:
+    groups = "&analysis mode = 'dynamic',\n restart = 'none.restart' /"
+    done = run_dda("run", write(tmp_path, BASE + BLOCK, groups), cwd=tmp_path)
+    assert done.returncode == 2
+    assert "x.nml:3: error: there is no restart file 'none.restart'" in done.stderr
+
+
+def test_resume_notices_that_the_blocks_have_changed(tmp_path: Path) -> None:
+    deck = write(tmp_path, BASE + BLOCK)
+    assert run_dda("run", deck, "--out", tmp_path / "out").returncode == 0
+    again = run_dda("run", deck, "--out", tmp_path / "out", "--resume")
+    assert "1 of 1" in again.stdout + again.stderr or "skipped" in again.stdout + again.stderr
+    (tmp_path / "x.blocks").write_text(BASE + BLOCK.replace("2\n", "3\n"))
+    changed = run_dda("run", deck, "--out", tmp_path / "out", "--resume")
+    assert changed.stdout != again.stdout

@@ -1,0 +1,68 @@
+"""The documentation site: one command, every page, every key, every public procedure."""
+
+from __future__ import annotations
+
+import os
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).resolve().parents[2]
+DDA = os.environ.get("DDA", "")
+
+
+@pytest.fixture(scope="module")
+def site(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The site, built."""
+    for package in ("mkdocs", "ford"):
+        pytest.importorskip(package, reason=f"the site wants {package}: skipped")
+    out = tmp_path_factory.mktemp("site")
+    script = ROOT / "docs/site/build_site.py"
+    done = subprocess.run(
+        [sys.executable, script, "--dda", DDA, "--out", out], capture_output=True, text=True
+    )
+    assert done.returncode == 0, done.stdout + done.stderr
+    return out
+
+
+def test_every_page_is_there(site: Path) -> None:
+    pages = {path.stem for path in (ROOT / "docs").glob("*.md")} | {"index", "keys", "python"}
+    assert pages <= {path.stem for path in site.glob("*.html")}
+
+
+def test_every_key_is_there(site: Path) -> None:
+    text = (site / "keys.html").read_text(encoding="utf-8")
+    help_text = subprocess.run([DDA, "help", "keys"], capture_output=True, text=True).stdout
+    names = re.findall(r"^   (\w+)", help_text, flags=re.MULTILINE)
+    assert len(names) > 40
+    assert [name for name in names if f"<code>{name}</code>" not in text] == []
+
+
+def test_every_public_procedure_is_there(site: Path) -> None:
+    folder = site / "fortran"
+    found = {path.stem.partition("~")[0] for kind in ("proc", "interface", "type") for path in
+             (folder / kind).glob("*.html")}
+    missing = []
+    for source in sorted((ROOT / "src").rglob("*.f90")):
+        text = re.sub(r"&\s*\n\s*&?", "", source.read_text(encoding="utf-8"))
+        public = {
+            name.strip()
+            for names in re.findall(r"^ *public ::(.*)$", text, flags=re.M)
+            for name in names.split(",")
+        }
+        named = re.findall(r"^ *(?:pure |elemental )*(?:subroutine|function) (\w+)", text, re.M)
+        missing += [f"{source.name}: {name}" for name in named if name in public - found]
+    assert len(found) > 150
+    assert missing == []
+
+
+def test_missing_packages_are_told(tmp_path: Path) -> None:
+    script = ROOT / "docs/site/build_site.py"
+    done = subprocess.run(
+        [sys.executable, "-S", "-E", script, "--out", tmp_path], capture_output=True, text=True
+    )
+    assert done.returncode == 2
+    assert "wanted the packages mkdocs and ford" in done.stderr
