@@ -95,8 +95,8 @@ contains
       if (settings%time_step > 0.0_wp) march%dt = min(march%longest, settings%time_step)
    end subroutine first_interval
 
-   !> Motion that the rounding of coordinates feigns: a corner off by eps of the model's size tilts a
-   !> block, and that moves its far end by the block's aspect ratio times as much; errors of
+   !> Motion that the rounding of coordinates feigns: a corner off by eps of the model's size tilts
+   !> a block, and that moves its far end by the block's aspect ratio times as much; errors of
    !> many blocks add up by chance
    pure function feigned_motion(system) result(motion)
       !> The blocks
