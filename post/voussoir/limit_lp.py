@@ -1,8 +1,8 @@
 """Limit analysis of arches as linear programs, solved by HiGHS through scipy: the peer in time.
 
 Two programs say whether an arch of rigid blocks can stand. The general one has three contact
-forces a joint and three balances a block, sparse. The compact one has two unknowns in all, the crown thrust
-and its place, and holds for symmetric arches with a joint at the crown only.
+forces a joint and three balances a block, sparse. The compact one has two unknowns in all, the
+crown thrust and its place, and holds for symmetric arches with a joint at the crown only.
 """
 
 from __future__ import annotations

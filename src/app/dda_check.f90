@@ -89,6 +89,9 @@ contains
       call tell("blocks", to_text(blocks)//" that move, "//to_text(size(scene%system%equation) &
          & - blocks)//trim(merge(" fixed springings", " held            ", arch)))
       call tell("joints", joints_text(scene))
+      call tell("strength", merge("cohesion or tension, until a joint breaks", &
+         & "none: friction alone                     ", any(scene%contacts%springs%shift > 0.0) &
+         & .or. any(scene%contacts%joint%law%cohesion > 0.0)))
       call print_parts(first, blocks)
    end subroutine print_plan
 
@@ -150,8 +153,6 @@ contains
          & //" in all: "//trim(why(plan%reason)))
       call tell("velocities", trim(merge("kept: mode is dynamic                          ", &
          & "none: every step starts at rest, mode is static", plan%velocities)))
-      call tell("strength", trim(merge("cohesion or tension, until a joint breaks", &
-         & "none: friction alone                     ", plan%strength)))
       if (plan%shared_forces) then
          call tell("joints.csv", "forces of the arch found to stand once more with 6 unknowns, "// &
             & "for strain shares them out")
@@ -182,7 +183,8 @@ contains
       if (reason == strain_reason%strength) words = "strain, for it says which joint breaks first"
       if (reason == strain_reason%forces) words = "strain, for it shares out the forces of "// &
          & "joints.csv"
-      if (reason == strain_reason%files) words = "strain, for blocks of a file have laws and stress of their own"
+      if (reason == strain_reason%files) words = "strain, for blocks of a file have "// &
+         & "laws and stress of their own"
       if (reason == strain_reason%displacement) words = "strain, for it is part of the "// &
          & "displacement that means collapse"
    end function why

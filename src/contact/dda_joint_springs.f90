@@ -66,7 +66,8 @@ contains
          springs%stiffness(j) = penalty_ratio*block_stiffness(system, centroid, joint(j))
          call mohr_coulomb(joint(j), [.false., .false.], springs%cone(j), springs%shift(:, j))
       end do
-      if (n > 0 .and. .not. springs%give) springs%stiffness = min(springs%stiffness, stiffest*minval(springs%stiffness))
+      if (n > 0 .and. .not. springs%give) &
+         & springs%stiffness = min(springs%stiffness, stiffest*minval(springs%stiffness))
    end subroutine new_joint_springs
 
    !> What the joint sees of one block's unknowns

@@ -1,4 +1,5 @@
-!> Condition number of a factored matrix, estimated with its own factor: a case that runs beside others
+!> Condition number of a factored matrix, estimated with its own factor: a case that runs beside
+!> others
 !> must not call LAPACK
 module dda_condition
    use dda_block_factor, only : block_factor_t, substitute

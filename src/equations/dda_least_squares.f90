@@ -11,7 +11,8 @@ module dda_least_squares
 
 contains
 
-   !> The x that makes |A x - b| least, by modified Gram-Schmidt with the largest column first (Golub
+   !> The x that makes |A x - b| least, by modified Gram-Schmidt with the largest column first
+   !> (Golub
    !> and Van Loan, Matrix Computations, 5.2.8 and 5.4.1)
    pure function least_squares(a, b, drop) result(x)
       !> Matrix A: (m, n)

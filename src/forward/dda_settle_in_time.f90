@@ -1,7 +1,8 @@
 !> Contacts of blocks that move in time: multipliers and friction of one step, or of its impulses
 !>
 !> With given bounds of the shear forces the problem is convex, and the passes of the multipliers
-!> end quickly. Around them, the bounds follow the normal forces (Coulomb), beginning with those of the
+!> end quickly. Around them, the bounds follow the normal forces (Coulomb), beginning with those of
+!> the
 !> step before. Whatever the bounds are, friction takes energy and no momentum; so a step in which
 !> they change a little to the end counts.
 module dda_settle_in_time

@@ -49,7 +49,8 @@ contains
       type(settings_t), intent(in) :: settings
       !> The equations; matrix and factor are made anew
       type(equations_t), intent(inout) :: equations
-      !> The step's state; its motion becomes that of the glued system, its faces those to begin with
+      !> The step's state; its motion becomes that of the glued system, its faces those to
+      !> begin with
       type(step_state_t), intent(inout) :: state
       !> The march, made new
       type(march_t), intent(out) :: march
@@ -95,7 +96,8 @@ contains
       if (settings%time_step > 0.0_wp) march%dt = min(march%longest, settings%time_step)
    end subroutine first_interval
 
-   !> Motion that the rounding of coordinates feigns: a corner off by eps of the model's size tilts a
+   !> Motion that the rounding of coordinates feigns: a corner off by eps of the model's size tilts
+   !> a
    !> block, and that moves its far end by the block's aspect ratio times as much; errors of
    !> many blocks add up by chance
    pure function feigned_motion(system) result(motion)

@@ -43,7 +43,8 @@ module dda_velocity
 contains
 
    !> Velocities of the blocks at the end of a settled step. Newton's restitution may bring in
-   !> energy where there is friction, or where blocks are hit in several places; then there is less of it
+   !> energy where there is friction, or where blocks are hit in several places; then there is
+   !> less of it
    pure subroutine settle_velocities(settings, system, contacts, equations, step)
       !> Settings of the run
       type(settings_t), intent(in) :: settings
@@ -269,8 +270,8 @@ contains
    !> Keep the moment of momentum of each pair of blocks. The centres have moved while their
    !> impulses acted as at the beginning: the pair's centres bring in
    !> dt**2 (F/2 - N) x (v2 - v1), F the force of the motion, N that of the impulse; and the rows of
-   !> a joint between turned edges may lie off one line. The two blocks give it back by one change of
-   !> spin
+   !> a joint between turned edges may lie off one line. The two blocks give it back by one change
+   !> of spin
    pure subroutine keep_moment(system, contacts, springs, equations, impulse, step)
       !> The blocks before the step
       type(block_system_t), intent(in) :: system

@@ -180,7 +180,7 @@ module dda_deck_keys
    type(key_t), parameter :: analysis_keys(*) = [ &
       key_t(group="analysis", name="mode", kind=key_kind%word, default="'static'", &
             words="static dynamic limerick", &
-            meaning="Velocity put to zero at each step, or carried on, or the original's scheme."), &
+            meaning="Velocity put to zero at each step or carried on; or the original's scheme."), &
       key_t(group="analysis", name="geometry", kind=key_kind%word, default="'reference'", &
             words="reference current", &
             meaning="Small displacements on the undeformed shape, or blocks that move."), &
@@ -193,7 +193,8 @@ module dda_deck_keys
       key_t(group="analysis", name="time_step", unit="s", without="chosen by the program", &
             at_least=1.0e-15_wp, at_most=1.0e15_wp, &
             meaning="First time step of a static run, longest step of a dynamic one."), &
-      key_t(group="analysis", name="duration", unit="s", without="the run ends with its last step", &
+      key_t(group="analysis", name="duration", unit="s", &
+            without="the run ends with its last step", &
             at_least=1.0e-15_wp, at_most=1.0e15_wp, &
             meaning="Time at which a dynamic run ends."), &
       key_t(group="analysis", name="restitution", default="0.0", at_least=0.0_wp, at_most=1.0_wp, &
@@ -212,7 +213,7 @@ module dda_deck_keys
             meaning="Most open-close changes of a step before the line search takes over."), &
       key_t(group="analysis", name="restart", kind=key_kind%text, varies=.false., &
             without="the run begins at the beginning", &
-            meaning="Restart file of a dynamic run that goes on; steps counts those before, too."), &
+            meaning="Restart file of a dynamic run that goes on; steps counts those before."), &
       key_t(group="analysis", name="unknowns", kind=key_kind%whole, &
             without="what the scene needs", at_least=3.0_wp, at_most=6.0_wp, &
             meaning="Unknowns of a block: 6, or 3 for blocks without strain.")]

@@ -169,16 +169,13 @@ contains
       end if
    end subroutine decide_at
 
-   !> Give back what a search does not ask a kept decision for: its springs and its blocks but for
-   !> their numbers, which the family makes anew at any value
+   !> Give back what a search does not ask a kept decision for: its blocks and springs, which the
+   !> family makes anew at any value
    pure subroutine shed(decision)
       !> The decision
       type(decision_t), intent(inout) :: decision
-      integer, allocatable :: equation(:)
 
-      call move_alloc(decision%system%equation, equation)
       decision%system = block_system_t()
-      call move_alloc(equation, decision%system%equation)
       decision%contacts%springs = joint_springs_t()
       if (decision%outcome%verdict == verdict%stable) deallocate (decision%outcome%motion)
    end subroutine shed

@@ -42,9 +42,9 @@ contains
          & contacts%broken, contacts%springs%stiffness, contacts%springs%cone, &
          & contacts%springs%shift
       if (stat == 0) write (unit, iostat=stat, iomsg=reason) march%steps, march%time, march%dt, &
-         & march%allowed_motion, march%resolution, march%rounding, march%displacement, march%longest, &
-         & march%elastic_motion, march%free_acceleration, march%last_acceleration, march%passes, &
-         & march%energy, allocated(march%reach), allocated(march%last_motion)
+         & march%allowed_motion, march%resolution, march%rounding, march%displacement, &
+         & march%longest, march%elastic_motion, march%free_acceleration, march%last_acceleration, &
+         & march%passes, march%energy, allocated(march%reach), allocated(march%last_motion)
       if (stat == 0 .and. allocated(march%reach)) &
          & write (unit, iostat=stat, iomsg=reason) march%reach
       if (stat == 0 .and. allocated(march%last_motion)) &
@@ -94,9 +94,9 @@ contains
       if (.not. allocated(error)) then
          call read_state(unit, n(3), settings, system, contacts, stat)
          if (stat == 0) read (unit, iostat=stat) march%steps, march%time, march%dt, &
-            & march%allowed_motion, march%resolution, march%rounding, march%displacement, march%longest, &
-            & march%elastic_motion, march%free_acceleration, march%last_acceleration, &
-            & march%passes, march%energy, has
+            & march%allowed_motion, march%resolution, march%rounding, march%displacement, &
+            & march%longest, march%elastic_motion, march%free_acceleration, &
+            & march%last_acceleration, march%passes, march%energy, has
          if (stat == 0 .and. has(1)) then
             allocate (march%reach(size(system%area)))
             read (unit, iostat=stat) march%reach
