@@ -61,9 +61,9 @@ module dda_benchmark
    !> Decisions at four distances from the critical thickness
    type, extends(job_t) :: decisions_job_t
       !> The arches: (4)
-      type(scene_t) :: scene(4)
+      type(scene_t), allocatable :: scene(:)
       !> Their decisions after a run: (4)
-      type(decision_t) :: decision(4)
+      type(decision_t), allocatable :: decision(:)
    contains
       !> Decide all four
       procedure :: run => run_decisions
@@ -173,6 +173,7 @@ contains
       integer :: answer(4), i
 
       figures%voussoirs = voussoirs
+      allocate (decisions%scene(size(distance)), decisions%decision(size(distance)))
       search%family%voussoirs = voussoirs
       call discrete_critical_equal(voussoirs, half_angle, pi, .true., exact)
       do i = 1, size(distance)
