@@ -1,6 +1,6 @@
 !> From blocks that were cut from lines to a scene: edges that lie together are joints
 module dda_line_scene
-   use dda_arch_scene, only : joint_law, settings_of, unit_weight
+   use dda_arch_scene, only : joint_law, material_of, settings_of, unit_weight
    use dda_block_system, only : block_system_t, new_block_system
    use dda_constants, only : degree, pi
    use dda_contact_detection, only : find_contacts
@@ -93,7 +93,7 @@ contains
       type(block_system_t), intent(out) :: system
       integer :: b, m
 
-      system = new_block_system(cut%first_vertex, cut%vertex, held_blocks(cut), deck_material(deck))
+      system = new_block_system(cut%first_vertex, cut%vertex, held_blocks(cut), material_of(deck))
       system%unit_weight = unit_weight(deck)
       if (.not. allocated(deck%analysis)) return
       associate (list => deck%analysis%material)
@@ -123,19 +123,6 @@ contains
          & .or. is_given(deck, "material", "density") .or. is_given(deck, "load", "gravity")
    end function weight_is_given
 
-   !> The material of the deck's keys
-   pure function deck_material(deck) result(material)
-      !> The deck
-      type(deck_t), intent(in) :: deck
-      !> The material
-      type(material_t) :: material
-
-      material%density = real_of(deck, "material", "density")
-      material%young = real_of(deck, "material", "young")
-      material%poisson = real_of(deck, "material", "poisson")
-      material%plane_strain = word_of(deck, "material", "plane") == "strain"
-   end function deck_material
-
    !> A material of the analysis file; keys that the deck gives go before
    pure function file_material(deck, listed) result(material)
       !> The deck
@@ -145,7 +132,7 @@ contains
       !> The material
       type(material_t) :: material
 
-      material = deck_material(deck)
+      material = material_of(deck)
       if (.not. is_given(deck, "material", "density")) material%density = listed%density
       if (.not. is_given(deck, "material", "young")) material%young = listed%young
       if (.not. is_given(deck, "material", "poisson")) material%poisson = listed%poisson
