@@ -128,7 +128,7 @@ contains
          inquire (file=file_beside(deck, text_of(deck, "analysis", "restart")), exist=exists)
          if (.not. exists) then
             call deck_error(error, "there is no restart file '"// &
-               & text_of(deck, "analysis", "restart")//"'", deck, &
+               & text_of(deck, "analysis", "restart")//"'; check the name", deck, &
                & place_of(deck, key_index("analysis", "restart")))
             return
          end if
@@ -139,7 +139,7 @@ contains
       b = floating_block(scene)
       if (b == 0) return
       call fatal_error(error, "block "//to_text(b)//" rests on nothing: no chain of joints "// &
-         & "ties it to a fixed block, as mode = 'static' wants", geometry_file(deck), &
-         & deck%plan%line(b))
+         & "ties it to a fixed block, as mode = 'static' wants; add a joint or remove it", &
+         & geometry_file(deck), deck%plan%line(b))
    end subroutine check_scene
 end module dda_deck_scene

@@ -65,19 +65,21 @@ contains
       b = pinned_block(deck%cut)
       call make_system(deck, deck%cut, system)
       if (b > 0) then
-         problem = "blocks held by two fixed points or more are wanted, block "//to_text(b) &
-            & //" has one: this version has no hinges"
+         problem = "blocks held by two fixed points or more are wanted, found that block " &
+            & //to_text(b)//" has one: this version has no hinges; add a fixed point"
       else if (all(system%equation == 0)) then
-         problem = "a block that can move is wanted, all are held"
+         problem = "a block that can move is wanted, found that all are held; remove fixed points"
       else if (has_forces(deck)) then
-         problem = "load points without forces are wanted: this version applies none"
+         problem = "load points without forces are wanted, found forces; remove them " &
+            & //"or choose mode = 'limerick'"
       else if (.not. any(system%equation(deck%cut%pair%side(1)) > 0 &
          & .or. system%equation(deck%cut%pair%side(3)) > 0)) then
          problem = "edges of blocks that lie together are wanted, none were found: this version " &
-            & //"finds no other contacts"
+            & //"finds no other contacts; choose mode = 'limerick'"
       else if (word_of(deck, "analysis", "mode") == "static" &
          & .and. .not. any(system%unit_weight > 0.0_wp .and. system%equation > 0)) then
-         problem = "a weight is wanted for a static analysis, no block that moves has one"
+         problem = "a weight is wanted for a static analysis, none was found on blocks that " &
+            & //"move; give one"
       end if
       if (len(problem) > 0) call deck_error(error, "scene%geometry: "//problem, deck, &
          & deck%value(key_index("scene", "geometry"))%place)
