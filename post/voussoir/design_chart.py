@@ -18,6 +18,7 @@ MEANINGS = {
     "thickness_ratio": "thickness over radius $t/r$",
     "radius": "radius $r$ [m]",
     "horizontal_coefficient": "horizontal force over weight",
+    "penetration_ratio": "penetration over half size $g_3$",
 }
 #: Columns that a sweep may run over although they are not its own
 _SHARED = ("half_angle_deg", "blocks", "friction_deg", "thickness_ratio", "geometry")

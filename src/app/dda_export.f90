@@ -35,7 +35,7 @@ contains
       do i = 1, size(command%name)
          call read_deck(name_of(command, i), command%setting, deck, error)
          if (.not. allocated(error) .and. allocated(deck%cut)) call fatal_error(error, &
-            & "a deck with an arch is wanted, this one names files already", deck%file, 1)
+            & "a deck with an arch is wanted, found one that names files; copy those", deck%file, 1)
          if (allocated(error)) then
             write (error_unit, "(a)") error_line(error)
             deck_status = exit_status%bad_input

@@ -333,8 +333,8 @@ contains
       !> Its number in the list
       integer, intent(in) :: i
 
-      call fatal_error(error, "a "//what//" in a block is wanted, (" &
+      call fatal_error(error, "a "//what//" in a block is wanted, found one at (" &
          & //to_text(entities%place(1, i))//", "//to_text(entities%place(2, i)) &
-         & //") lies in none", model%file, entities%row(i))
+         & //") in none; move it into one or remove it", model%file, entities%row(i))
    end subroutine no_block
 end module dda_cut_points

@@ -37,7 +37,7 @@ contains
       call blocks_of_loops(network, loops, model%line%material(:model%line%n), cut)
       cut%n_merged = network%n_merged
       if (size(cut%area) == 0) call fatal_error(error, "lines that enclose a block are wanted, " &
-         & //"the "//to_text(model%line%n)//" lines of this file enclose none", model%file, 1)
+         & //"found "//to_text(model%line%n)//" that enclose none; join their ends", model%file, 1)
       if (.not. allocated(error)) call check_areas(loops, cut, model%file, error)
       if (.not. allocated(error)) call check_nesting(model, network, loops, cut, error)
       if (.not. allocated(error)) call remove_holes(model, cut, error)
@@ -61,8 +61,8 @@ contains
 
       if (model%line%n > 0) cut%scale = cut_scale(model)
       if (.not. cut%scale%size > 0.0_wp) then
-         call fatal_error(error, "at least one line with a length is wanted, none was found", &
-            & model%file, 1)
+         call fatal_error(error, "at least one line with a length is wanted, none was found; " &
+            & //"add it", model%file, 1)
          return
       end if
       allocate (line, source=model%line%place(:, :model%line%n))
@@ -79,8 +79,8 @@ contains
       call drop_crossing_edges(network, cut%scale, cut%remarks, crossing)
       if (all(crossing > 0)) then
          call fatal_error(error, "boundary lines without a crossing between their nodes are " &
-            & //"wanted, lines "//to_text(crossing(1))//" and "//to_text(crossing(2)) &
-            & //" still cross: the edge-node distance is too large", model%file, &
+            & //"wanted, found that lines "//to_text(crossing(1))//" and "//to_text(crossing(2)) &
+            & //" still cross; make the edge-node distance smaller", model%file, &
             & model%line%row(crossing(2)))
          return
       end if

@@ -46,7 +46,7 @@ contains
          call cross_in_cell(line, reach, grid, cell, crossings)
          if (crossings%n <= max_crossings) cycle
          call fatal_error(error, "fewer than "//to_text(max_crossings) &
-            & //" crossings of lines are wanted, these lines cross more often")
+            & //" crossings of lines are wanted, found more; remove lines")
          return
       end do
       associate (n => crossings%n)

@@ -31,9 +31,9 @@ contains
       enclosed = -sum(loops%area, loops%area < 0.0_wp)
       room = 1.0e-9_wp*enclosed + 10.0_wp*cut%scale%reach*cut%scale%size
       if (abs(sum(cut%area) - enclosed) <= room) return
-      call fatal_error(error, "the blocks' areas make "//to_text(sum(cut%area)) &
-         & //", but the lines enclose "//to_text(enclosed) &
-         & //": lines cross without a node, or the edge-node distance is too large", file, 1)
+      call fatal_error(error, "blocks of the area that the lines enclose, "//to_text(enclosed) &
+         & //", are wanted, found "//to_text(sum(cut%area)) &
+         & //": lines cross without a node; make the edge-node distance smaller", file, 1)
    end subroutine check_areas
 
    !> No group of blocks may lie inside a block of another group, unless that block is taken out: a
@@ -97,11 +97,12 @@ contains
 
       h = loops%half_edge(loops%first(inner))
       line = network%line((h + 1)/2)
-      call fatal_error(error, "a block without holes is wanted: line "//to_text(line) &
+      call fatal_error(error, "a block without holes is wanted, found that line "//to_text(line) &
          & //" belongs to blocks that lie wholly inside block "//to_text(block) &
          & //", whose corner 1 "// &
          & "is at ("//to_text(cut%vertex(1, cut%first_vertex(block)) + cut%scale%origin(1))//", " &
-         & //to_text(cut%vertex(2, cut%first_vertex(block)) + cut%scale%origin(2))//")", &
+         & //to_text(cut%vertex(2, cut%first_vertex(block)) + cut%scale%origin(2)) &
+         & //"); join the two by a line or put a hole point into the outer block", &
          & model%file, model%line%row(line))
    end subroutine tell_nested
 end module dda_mesh_check

@@ -247,7 +247,7 @@ contains
       yes = len(word) > 0 .and. index(" "//words_for_yes//" ", " "//word//" ") > 0
       if (.not. yes .and. word /= word_for_no) call fatal_error(error, "the attribute "//name &
          & //" of "//quoted(tree%element(at)%name)//" wants one of "//words_for_yes//" " &
-         & //word_for_no//", found "//quoted(word), tree%file, tree%element(at)%row)
+         & //word_for_no//", found "//quoted(word)//"; choose one", tree%file, tree%element(at)%row)
    end subroutine choose
 
    !> Read an attribute that is a number
@@ -273,7 +273,7 @@ contains
       if (allocated(error)) return
       value = number(1)
       if (value < low) call fatal_error(error, "the attribute "//name//" from "//to_text(low) &
-         & //" is wanted, found "//to_text(value), tree%file, tree%element(at)%row)
+         & //" is wanted, found "//to_text(value)//"; correct it", tree%file, tree%element(at)%row)
    end subroutine read_number
 
    !> Read an attribute that is a whole number
@@ -316,7 +316,7 @@ contains
       do i = 1, size(wanted)
          if (find_child(tree, part, trim(wanted(i))) > 0) cycle
          call fatal_error(error, "the element "//trim(wanted(i))//" is wanted in Analysis, none " &
-            & //"was found", tree%file, tree%element(part)%row)
+            & //"was found; add it", tree%file, tree%element(part)%row)
          return
       end do
       if (find_child(tree, part, "Autopenalty") == 0) call add_warning(warnings, "Autopenalty is " &

@@ -80,7 +80,7 @@ contains
       if (tree%element(1)%name == name) return
       part = find_child(tree, 1, name)
       if (part == 0) call fatal_error(error, "an element "//name//" inside the root is wanted, " &
-         & //"none was found", tree%file, tree%element(1)%row)
+         & //"none was found; add it", tree%file, tree%element(1)%row)
    end subroutine find_part
 
    !> Read one child of Geometry
@@ -125,7 +125,7 @@ contains
                & "seismic points have no effect", tree%file, element%row)
          case ("Boltlist")
             if (first_child(tree, at) > 0) call fatal_error(error, "a model without bolts is " &
-               & //"wanted: this program has no bolts", tree%file, &
+               & //"wanted, found some: this program has no bolts; remove them", tree%file, &
                & tree%element(first_child(tree, at))%row)
          case default
             call add_warning(warnings, "the element "//quoted(element%name) &
@@ -151,7 +151,8 @@ contains
       if (allocated(error)) return
       if (ratio < 0.0_wp .or. ratio > 0.5_wp) call fatal_error(error, &
          & "an edge-node distance from 0 " &
-         & //"to 0.5 is wanted, found "//to_text(ratio), tree%file, tree%element(at)%row)
+         & //"to 0.5 is wanted, found "//to_text(ratio)//"; correct it", tree%file, &
+         & tree%element(at)%row)
    end subroutine read_ratio
 
    !> The words of an attribute that must be there
@@ -172,7 +173,7 @@ contains
          words%row = element%row
          if (words%n /= 1) call fatal_error(error, "the attribute "//name//" with one value is " &
             & //"wanted in "//quoted(element%name)//", found " &
-            & //quoted(attribute_of(tree, at, name)), tree%file, element%row)
+            & //quoted(attribute_of(tree, at, name))//"; write one value", tree%file, element%row)
       end associate
    end subroutine attribute_words
 

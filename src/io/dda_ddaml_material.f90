@@ -137,7 +137,7 @@ contains
       child = find_child(tree, at, name)
       if (child == 0) then
          if (needed) call fatal_error(error, "the element "//name//" is wanted in " &
-            & //tree%element(at)%name//", none was found", tree%file, tree%element(at)%row)
+            & //tree%element(at)%name//", none was found; add it", tree%file, tree%element(at)%row)
          if (needed) value = 0.0_wp
          return
       end if
@@ -194,7 +194,8 @@ contains
          & also_blank=";")
       if (words%n /= 3*n) then
          call fatal_error(error, to_text(n)//" records of 3 numbers are wanted in Loadpoint, " &
-            & //"found "//to_text(words%n)//" numbers", tree%file, tree%element(at)%row)
+            & //"found "//to_text(words%n)//" numbers; correct numpoints or the records", &
+            & tree%file, tree%element(at)%row)
          return
       end if
       allocate (history%record(3, n))
@@ -206,8 +207,8 @@ contains
          if (i == 1) cycle
          if (history%record(1, i) > history%record(1, i - 1)) cycle
          call fatal_error(error, "times that increase are wanted in Loadpoint, found " &
-            & //to_text(history%record(1, i))//" after "//to_text(history%record(1, i - 1)), &
-            & tree%file, row)
+            & //to_text(history%record(1, i))//" after "//to_text(history%record(1, i - 1)) &
+            & //"; sort the records", tree%file, row)
          return
       end do
    end subroutine read_history

@@ -14,7 +14,7 @@ module dda_deck
 
    public :: deck_t, deck_value_t, deck_sweep_t, deck_place_t, parameter_t, new_deck
    public :: real_of, integer_of, word_of, text_of, flag_of, list_of
-   public :: is_given, has_group, line_of, place_of, deck_error
+   public :: is_given, has_group, line_of, place_of, deck_error, file_beside
 
    !> Where a value was written
    type :: deck_place_t
@@ -300,4 +300,17 @@ contains
          call fatal_error(error, message, file=deck%file, line=max(place%line, 1))
       end if
    end subroutine deck_error
+
+   !> Name of a file that a deck names: beside the deck unless it begins with a slash
+   pure function file_beside(deck, name) result(path)
+      !> The deck
+      type(deck_t), intent(in) :: deck
+      !> The name in the deck
+      character(len=*), intent(in) :: name
+      !> The name for all
+      character(len=:), allocatable :: path
+
+      path = name
+      if (index(path, "/") /= 1) path = deck%file(:index(deck%file, "/", back=.true.))//path
+   end function file_beside
 end module dda_deck

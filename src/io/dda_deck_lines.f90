@@ -2,7 +2,7 @@
 module dda_deck_lines
    use, intrinsic :: iso_fortran_env, only : int64
    use dda_cutting, only : cut_blocks
-   use dda_deck, only : deck_error, deck_t, is_given, text_of, word_of
+   use dda_deck, only : deck_error, deck_t, file_beside, is_given, text_of, word_of
    use dda_deck_keys, only : key_index
    use dda_error, only : error_t
    use dda_line_model, only : line_model_t
@@ -26,7 +26,7 @@ contains
       character(len=:), allocatable :: file
 
       if (word_of(deck, "scene", "kind") /= "lines") return
-      file = beside_deck(deck, text_of(deck, "scene", "geometry"))
+      file = file_beside(deck, text_of(deck, "scene", "geometry"))
       call read_geometry(file, model, deck%warnings, error)
       if (allocated(error)) then
          call name_key(deck, "geometry", error)
@@ -36,7 +36,7 @@ contains
       allocate (deck%cut)
       call cut_blocks(model, deck%cut, error)
       if (allocated(error) .or. .not. is_given(deck, "scene", "analysis")) return
-      file = beside_deck(deck, text_of(deck, "scene", "analysis"))
+      file = file_beside(deck, text_of(deck, "scene", "analysis"))
       allocate (deck%analysis)
       call read_analysis(file, deck%analysis, deck%warnings, error)
       if (allocated(error)) then
@@ -70,19 +70,6 @@ contains
       deck%file_mark = deck%file_mark//" "//to_text(len(text))//" "//to_text(int(checksum(1))) &
          & //" "//to_text(int(checksum(2)))
    end subroutine mark_file
-
-   !> Name of a file that a deck names; such names are relative to the deck
-   pure function beside_deck(deck, name) result(file)
-      !> The deck
-      type(deck_t), intent(in) :: deck
-      !> The name
-      character(len=*), intent(in) :: name
-      !> The file
-      character(len=:), allocatable :: file
-
-      file = name
-      if (index(name, "/") /= 1) file = deck%file(:index(deck%file, "/", back=.true.))//name
-   end function beside_deck
 
    !> An error without a line speaks of a file that cannot be read: the line of the deck helps more
    pure subroutine name_key(deck, key, error)

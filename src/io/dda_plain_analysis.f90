@@ -92,9 +92,9 @@ contains
       integer :: i, row
 
       if (words_left(words) < 13*n) then
-         call fatal_error(error, to_text(n)//" block materials of 13 numbers are wanted, the " &
-            & //"file holds "//to_text(words_left(words))//" more words", words%file, &
-            & this_row(words))
+         call fatal_error(error, to_text(n)//" block materials of 13 numbers are wanted, " &
+            & //"found "//to_text(words_left(words))//" more words; add what is missing", &
+            & words%file, this_row(words))
          return
       end if
       allocate (list(n))
@@ -126,8 +126,9 @@ contains
       integer :: i, row
 
       if (words_left(words) < 3*n) then
-         call fatal_error(error, to_text(n)//" joint materials of 3 numbers are wanted, the file " &
-            & //"holds "//to_text(words_left(words))//" more words", words%file, this_row(words))
+         call fatal_error(error, to_text(n)//" joint materials of 3 numbers are wanted, found " &
+            & //to_text(words_left(words))//" more words; add what is missing", words%file, &
+            & this_row(words))
          return
       end if
       allocate (list(n))
@@ -156,16 +157,16 @@ contains
 
       if (.not. material%density > 0.0_wp) then
          call fatal_error(error, "a unit mass above 0 is wanted, found " &
-            & //to_text(material%density), file, row)
+            & //to_text(material%density)//"; correct it", file, row)
       else if (material%unit_weight < 0.0_wp) then
          call fatal_error(error, "a unit weight from 0 is wanted, found " &
-            & //to_text(material%unit_weight), file, row)
+            & //to_text(material%unit_weight)//"; correct it", file, row)
       else if (.not. material%young > 0.0_wp) then
          call fatal_error(error, "Young's modulus above 0 is wanted, found " &
-            & //to_text(material%young), file, row)
+            & //to_text(material%young)//"; correct it", file, row)
       else if (material%poisson <= -1.0_wp .or. material%poisson >= 0.5_wp) then
          call fatal_error(error, "Poisson's ratio between -1 and 0.5 is wanted, found " &
-            & //to_text(material%poisson), file, row)
+            & //to_text(material%poisson)//"; correct it", file, row)
       end if
    end subroutine check_material
 
@@ -182,10 +183,10 @@ contains
 
       if (joint%friction_deg < 0.0_wp .or. joint%friction_deg > 90.0_wp) then
          call fatal_error(error, "a friction angle from 0 to 90 degrees is wanted, found " &
-            & //to_text(joint%friction_deg), file, row)
+            & //to_text(joint%friction_deg)//"; correct it", file, row)
       else if (joint%cohesion < 0.0_wp .or. joint%tension < 0.0_wp) then
          call fatal_error(error, "cohesion and tensile strength from 0 are wanted, found " &
-            & //to_text(min(joint%cohesion, joint%tension)), file, row)
+            & //to_text(min(joint%cohesion, joint%tension))//"; correct it", file, row)
       end if
    end subroutine check_joint
 
@@ -202,10 +203,10 @@ contains
 
       if (.not. analysis%displacement_ratio > 0.0_wp .or. analysis%displacement_ratio > 1.0_wp) then
          call fatal_error(error, "the largest displacement ratio above 0 and at most 1 is " &
-            & //"wanted, found "//to_text(analysis%displacement_ratio), file, row)
+            & //"wanted, found "//to_text(analysis%displacement_ratio)//"; correct it", file, row)
       else if (.not. analysis%max_time_step > 0.0_wp) then
          call fatal_error(error, "a largest time step above 0 is wanted, found " &
-            & //to_text(analysis%max_time_step), file, row)
+            & //to_text(analysis%max_time_step)//"; correct it", file, row)
       end if
    end subroutine check_steps
 end module dda_plain_analysis

@@ -55,7 +55,7 @@ contains
       if (allocated(error)) return
       if (model%edge_node_ratio < 0.0_wp .or. model%edge_node_ratio > 0.5_wp) then
          call fatal_error(error, "the edge-node distance ratio e00 from 0 to 0.5 is wanted, " &
-            & //"found "//to_text(model%edge_node_ratio), file, words%row(1))
+            & //"found "//to_text(model%edge_node_ratio)//"; correct it", file, words%row(1))
          return
       end if
       call read_counts(words, n, error)
@@ -99,7 +99,7 @@ contains
          & call take_whole(words, "the number of bolts", 0, most, n%bolts, error)
       if (.not. allocated(error) .and. n%bolts > 0) call fatal_error(error, &
          & "a model without bolts is wanted, found "//to_text(n%bolts)//" of them: this program " &
-         & //"has no bolts", words%file, row)
+         & //"has no bolts; remove them", words%file, row)
       if (.not. allocated(error)) &
          & call take_whole(words, "the number of fixed points", 0, most, n%fixed, error)
       if (.not. allocated(error)) &

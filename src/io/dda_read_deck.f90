@@ -7,7 +7,8 @@ module dda_read_deck
    use dda_deck_words, only : full_name, near_group, near_key
    use dda_deck_token, only : deck_scan_t, token_kind, token_text, shown
    use dda_deck_scan, only : scan_deck, scan_values
-   use dda_deck, only : deck_t, deck_place_t, parameter_t, new_deck, deck_error, text_of, word_of
+   use dda_deck, only : deck_t, deck_place_t, parameter_t, new_deck, deck_error, file_beside, &
+      & text_of, word_of
    use dda_deck_parameter, only : split_name
    use dda_deck_set, only : put_text
    use dda_deck_entry, only : read_values
@@ -18,7 +19,7 @@ module dda_read_deck
    implicit none
    private
 
-   public :: read_deck, parse_deck, geometry_file, file_beside
+   public :: read_deck, parse_deck, geometry_file
 
 contains
 
@@ -55,19 +56,6 @@ contains
 
       path = file_beside(deck, text_of(deck, "scene", "geometry"))
    end function geometry_file
-
-   !> Name of a file that a deck names: beside the deck unless it begins with a slash
-   pure function file_beside(deck, name) result(path)
-      !> The deck
-      type(deck_t), intent(in) :: deck
-      !> The name in the deck
-      character(len=*), intent(in) :: name
-      !> The name for all
-      character(len=:), allocatable :: path
-
-      path = name
-      if (index(path, "/") /= 1) path = deck%file(:index(deck%file, "/", back=.true.))//path
-   end function file_beside
 
    !> Read and check a deck from its text
    pure subroutine parse_deck(text, file, settings, deck, error)

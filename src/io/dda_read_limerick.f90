@@ -108,7 +108,7 @@ contains
       else
          call fatal_error(error, "forces on "//to_text(model%load%n) &
             & //" load points are wanted, as many as "//model%file//" has; found " &
-            & //to_text(size(analysis%load)), analysis%file, 1)
+            & //to_text(size(analysis%load))//"; add or remove forces", analysis%file, 1)
       end if
    end subroutine check_materials
 
@@ -131,8 +131,8 @@ contains
       do i = 1, entities%n
          if (entities%material(i) <= n) cycle
          call fatal_error(error, "one of the "//to_text(n)//" "//what//" materials of " &
-            & //analysis_file//" is wanted, found number "//to_text(entities%material(i)), file, &
-            & entities%row(i))
+            & //analysis_file//" is wanted, found number "//to_text(entities%material(i)) &
+            & //"; correct it or add the material", file, entities%row(i))
          return
       end do
    end subroutine check_numbers
@@ -169,10 +169,12 @@ contains
       type(error_t), allocatable, intent(out) :: error
 
       if (form_of(text) == form%blank) then
-         call fatal_error(error, "numbers or XML are wanted, found only blanks", file, 1)
+         call fatal_error(error, "numbers or XML are wanted, found only blanks; write into it", &
+            & file, 1)
       else
          call fatal_error(error, "the plain form or DDAML is wanted, found the extended form " &
-            & //"#!0xDDA-v1, which is not read", file, 1)
+            & //"#!0xDDA-v1, which is not read; save it as one of the two", &
+            & file, 1)
       end if
    end subroutine refuse_form
 end module dda_read_limerick

@@ -129,13 +129,14 @@ contains
 
       value = 0.0_wp
       if (words%next > words%n) then
-         call fatal_error(error, what//" is wanted, the text ends before it", words%file, &
-            & this_row(words))
+         call fatal_error(error, what//" is wanted, found the end of the text; add it", &
+            & words%file, this_row(words))
          return
       end if
       call read_number(words%text(words%start(words%next):words%finish(words%next)), value, ok)
       if (.not. ok) call fatal_error(error, what//" is wanted, found " &
-         & //quoted(this_word(words)), words%file, this_row(words))
+         & //quoted(this_word(words))//"; write a number, with a point for decimals", words%file, &
+         & this_row(words))
       words%next = words%next + 1
    end subroutine take_number
 
@@ -160,7 +161,7 @@ contains
          if (allocated(error)) return
          if (abs(value(i)) <= bound) cycle
          call fatal_error(error, what//" of at most "//to_text(bound)//" in magnitude is wanted, " &
-            & //"found "//to_text(value(i)), words%file, row)
+            & //"found "//to_text(value(i))//"; correct it or change the unit", words%file, row)
          return
       end do
    end subroutine take_numbers
@@ -191,7 +192,8 @@ contains
          value = nint(number)
       else
          call fatal_error(error, what//" from "//to_text(low)//" to "//to_text(high) &
-            & //" is wanted, a whole number, found "//to_text(number), words%file, row)
+            & //" is wanted, a whole number, found "//to_text(number)//"; correct it", &
+            & words%file, row)
       end if
    end subroutine take_whole
 

@@ -49,8 +49,8 @@ contains
          corner(:, :, side) = abutment(scene%system, n + side, side == 2, depth, overhang)
       end do
       if (maxval(corner(1, :, 1)) >= 0.0_wp .or. minval(corner(1, :, 2)) <= 0.0_wp) then
-         call deck_error(error, "an abutment smaller than "//to_text(depth) &
-            & //" m is wanted: the two meet below the arch (arch%abutment_size)", deck, &
+         call deck_error(error, "arch%abutment_size wants abutments apart, found that those " &
+            & //"of "//to_text(depth)//" m meet below the arch; make it smaller", deck, &
             & deck%value(key_index("arch", "abutment_size"))%place)
          return
       end if

@@ -6,8 +6,8 @@ module dda_case
    use dda_contact_detection, only : contacts_t
    use dda_critical, only : critical_t, find_critical, search_t
    use dda_decision, only : decide, decision_t
-   use dda_deck, only : deck_t, flag_of, has_group, integer_of, is_given, parameter_t, real_of, &
-      & text_of, word_of
+   use dda_deck, only : deck_t, file_beside, flag_of, has_group, integer_of, is_given, &
+      & parameter_t, real_of, text_of, word_of
    use dda_deck_check, only : search_bracket
    use dda_deck_parameter, only : find_parameter, parameter_name
    use dda_deck_scene, only : deck_family_t, deck_scene
@@ -15,7 +15,6 @@ module dda_case
    use dda_forward, only : outcome_t, run_to_verdict
    use dda_frames, only : album_t
    use dda_restart, only : load_restart
-   use dda_read_deck, only : file_beside
    use dda_step_context, only : march_t
    use dda_kinds, only : wp
    use dda_limerick_decision, only : decide_limerick

@@ -3,15 +3,15 @@ module dda_deck_scene
    use dda_arch_scene, only : arch_scene, material_of, settings_of, unit_weight
    use dda_block_scene, only : base_t, block_scene, floating_block
    use dda_constants, only : pi
-   use dda_deck, only : deck_error, deck_t, is_given, parameter_t, place_of, real_of, text_of, &
-      & word_of
+   use dda_deck, only : deck_error, deck_t, file_beside, is_given, parameter_t, place_of, &
+      & real_of, text_of, word_of
    use dda_deck_keys, only : key_index
    use dda_deck_set, only : number_fits, put_number
    use dda_error, only : error_t, fatal_error
    use dda_kinds, only : wp
    use dda_limerick_lines, only : check_limerick_lines
    use dda_line_scene, only : check_line_scene, line_scene
-   use dda_read_deck, only : file_beside, geometry_file
+   use dda_read_deck, only : geometry_file
    use dda_scene, only : family_t, scene_t
    use dda_text, only : to_text
    implicit none
@@ -128,7 +128,7 @@ contains
          inquire (file=file_beside(deck, text_of(deck, "analysis", "restart")), exist=exists)
          if (.not. exists) then
             call deck_error(error, "there is no restart file '"// &
-               & text_of(deck, "analysis", "restart")//"'", deck, &
+               & text_of(deck, "analysis", "restart")//"'; check the name", deck, &
                & place_of(deck, key_index("analysis", "restart")))
             return
          end if
@@ -139,7 +139,7 @@ contains
       b = floating_block(scene)
       if (b == 0) return
       call fatal_error(error, "block "//to_text(b)//" rests on nothing: no chain of joints "// &
-         & "ties it to a fixed block, as mode = 'static' wants", geometry_file(deck), &
-         & deck%plan%line(b))
+         & "ties it to a fixed block, as mode = 'static' wants; add a joint or remove it", &
+         & geometry_file(deck), deck%plan%line(b))
    end subroutine check_scene
 end module dda_deck_scene

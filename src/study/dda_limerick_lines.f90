@@ -10,6 +10,7 @@ module dda_limerick_lines
    use dda_line_scene, only : law_of_joint, line_scene
    use dda_material, only : friction_coefficient
    use dda_scene, only : scene_t
+   use dda_text, only : to_text
    implicit none
    private
 
@@ -173,7 +174,8 @@ contains
 
       if (.not. allocated(deck%analysis)) return
       if (abs(deck%analysis%contact_damping) > 0.0_wp) call deck_error(error, &
-         & "scene%analysis: contacts without damping are wanted: this version has none", deck, &
+         & "scene%analysis: contacts without damping are wanted, found damping of " &
+         & //to_text(deck%analysis%contact_damping)//"; remove it", deck, &
          & deck%value(key_index("scene", "analysis"))%place)
    end subroutine check_limerick_lines
 end module dda_limerick_lines

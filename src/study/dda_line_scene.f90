@@ -1,6 +1,6 @@
 !> From blocks that were cut from lines to a scene: edges that lie together are joints
 module dda_line_scene
-   use dda_arch_scene, only : joint_law, settings_of, unit_weight
+   use dda_arch_scene, only : joint_law, material_of, settings_of, unit_weight
    use dda_block_system, only : block_system_t, new_block_system
    use dda_constants, only : degree, pi
    use dda_contact_detection, only : find_contacts
@@ -65,19 +65,21 @@ contains
       b = pinned_block(deck%cut)
       call make_system(deck, deck%cut, system)
       if (b > 0) then
-         problem = "blocks held by two fixed points or more are wanted, block "//to_text(b) &
-            & //" has one: this version has no hinges"
+         problem = "blocks held by two fixed points or more are wanted, found that block " &
+            & //to_text(b)//" has one: this version has no hinges; add a fixed point"
       else if (all(system%equation == 0)) then
-         problem = "a block that can move is wanted, all are held"
+         problem = "a block that can move is wanted, found that all are held; remove fixed points"
       else if (has_forces(deck)) then
-         problem = "load points without forces are wanted: this version applies none"
+         problem = "load points without forces are wanted, found forces; remove them " &
+            & //"or choose mode = 'limerick'"
       else if (.not. any(system%equation(deck%cut%pair%side(1)) > 0 &
          & .or. system%equation(deck%cut%pair%side(3)) > 0)) then
          problem = "edges of blocks that lie together are wanted, none were found: this version " &
-            & //"finds no other contacts"
+            & //"finds no other contacts; choose mode = 'limerick'"
       else if (word_of(deck, "analysis", "mode") == "static" &
          & .and. .not. any(system%unit_weight > 0.0_wp .and. system%equation > 0)) then
-         problem = "a weight is wanted for a static analysis, no block that moves has one"
+         problem = "a weight is wanted for a static analysis, none was found on blocks that " &
+            & //"move; give one"
       end if
       if (len(problem) > 0) call deck_error(error, "scene%geometry: "//problem, deck, &
          & deck%value(key_index("scene", "geometry"))%place)
@@ -93,7 +95,7 @@ contains
       type(block_system_t), intent(out) :: system
       integer :: b, m
 
-      system = new_block_system(cut%first_vertex, cut%vertex, held_blocks(cut), deck_material(deck))
+      system = new_block_system(cut%first_vertex, cut%vertex, held_blocks(cut), material_of(deck))
       system%unit_weight = unit_weight(deck)
       if (.not. allocated(deck%analysis)) return
       associate (list => deck%analysis%material)
@@ -123,19 +125,6 @@ contains
          & .or. is_given(deck, "material", "density") .or. is_given(deck, "load", "gravity")
    end function weight_is_given
 
-   !> The material of the deck's keys
-   pure function deck_material(deck) result(material)
-      !> The deck
-      type(deck_t), intent(in) :: deck
-      !> The material
-      type(material_t) :: material
-
-      material%density = real_of(deck, "material", "density")
-      material%young = real_of(deck, "material", "young")
-      material%poisson = real_of(deck, "material", "poisson")
-      material%plane_strain = word_of(deck, "material", "plane") == "strain"
-   end function deck_material
-
    !> A material of the analysis file; keys that the deck gives go before
    pure function file_material(deck, listed) result(material)
       !> The deck
@@ -145,7 +134,7 @@ contains
       !> The material
       type(material_t) :: material
 
-      material = deck_material(deck)
+      material = material_of(deck)
       if (.not. is_given(deck, "material", "density")) material%density = listed%density
       if (.not. is_given(deck, "material", "young")) material%young = listed%young
       if (.not. is_given(deck, "material", "poisson")) material%poisson = listed%poisson

@@ -5,6 +5,7 @@ from __future__ import annotations
 import csv
 import math
 import re
+import statistics
 from pathlib import Path
 
 import pytest
@@ -104,6 +105,24 @@ def test_less_penetration_brings_the_limit_to_the_exact_value(tmp_path: Path) ->
     (fine,) = results_of(tmp_path, deck + "&limerick penetration_ratio = 1e-4 /\n")
     # the excess grows with the penetration: eight times as much, about eight times the excess
     assert 6.0 < float(coarse["relative_error"]) / float(fine["relative_error"]) < 10.0
+
+
+def test_limit_is_linear_in_the_penetration_and_exact_without_any(tmp_path: Path) -> None:
+    done = run_dda("run", DECKS / "penetration.nml", "--out", tmp_path, "--quiet", "--set",
+                   "search%tolerance=1e-3")
+    assert done.returncode == 0, done.stderr
+    slopes = []
+    for voussoirs in ("12", "36"):
+        rows = [row for row in read_rows(tmp_path / "results.csv") if row["voussoirs"] == voussoirs]
+        ratio = [float(row["penetration_ratio"]) for row in rows]
+        limit = [float(row["critical"]) / float(row["exact"]) for row in rows]
+        line = statistics.linear_regression(ratio, limit)
+        assert len(rows) == 6
+        assert line.intercept == pytest.approx(1.0, abs=0.005)
+        assert limit == pytest.approx([line.slope * x + line.intercept for x in ratio], abs=0.004)
+        slopes.append(line.slope)
+    # more joints close more
+    assert slopes[1] > 1.5 * slopes[0]
 
 
 def test_search_whose_ends_agree_ends_with_their_verdict(tmp_path: Path) -> None:

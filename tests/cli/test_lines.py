@@ -207,7 +207,7 @@ def test_export_refuses_what_it_cannot_write(tmp_path: Path) -> None:
     (tmp_path / "a.nml").write_text("&arch\n half_angle_deg=130,\n abutment_size=8 /\n")
     done = run_dda("export", "a.nml", cwd=tmp_path)
     assert done.returncode == 2
-    assert done.stderr.startswith("a.nml:3: error: an abutment smaller than 8 m")
+    assert done.stderr.startswith("a.nml:3: error: arch%abutment_size wants")
     (tmp_path / "b.nml").write_text("&arch /\n")
     (tmp_path / "b.geo").mkdir()
     assert run_dda("export", "b.nml", cwd=tmp_path).returncode == 4

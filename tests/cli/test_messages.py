@@ -9,6 +9,7 @@ from pathlib import Path
 
 import pytest
 from dda_command import run_dda
+from limerick_files import HAS_XML, INPUT, SQUARE
 from test_bad_input import COMMAND_LINES, GOOD, MISTAKES, SETTINGS
 
 #: What was wanted or is wrong; what was found; after the semicolon, what to do, as an order
@@ -109,6 +110,87 @@ def test_misspelt_name_is_told_the_nearest(tmp_path: Path, text: str) -> None:
 )
 def test_misspelt_command_is_told_the_nearest(arguments: list[str], meant: str) -> None:
     assert f"did you mean '{meant}'?" in run_dda(*arguments).stderr
+
+
+#: A square in DDAML; what stands before the end of its geometry
+JOINTS = "<Joint type='1'>0 0 1 0</Joint><Joint type='1'>1 0 1 1</Joint>"
+JOINTS += "<Joint type='1'>1 1 0 1</Joint><Joint type='1'>0 1 0 0</Joint>"
+SQUARE_XML = f"<DDA><Geometry><Jointlist>{JOINTS}</Jointlist></Geometry></DDA>"
+GROWN = SQUARE.replace("4 0\n", "8 0\n", 1)
+GEOMETRIES = {
+    "only blanks": " \n",
+    "extended form": "#!0xDDA-v1.5\n",
+    "end of the text": SQUARE[:-4],
+    "no number": SQUARE.replace("1 1 0 1", "1 1 0 1;"),
+    "far away": SQUARE.replace("1 0 1 1", "1 0 2e15 1"),
+    "not whole": SQUARE.replace("1 1 0 1 1", "1 1 0 1 1.5"),
+    "ratio": SQUARE.replace("0.01", "0.6", 1),
+    "bolts": SQUARE.replace("4 0\n0\n0\n", "4 0\n0\n1\n", 1),
+    "no length": "0.01 1 0 0 0 0 0 0 0\n1 1 1 1 1\n",
+    "no block": SQUARE.replace("4 0\n", "3 0\n", 1)[:-10],
+    "point outside": SQUARE.replace("0\n0\n0\n0 0 1", "1\n0\n0\n0 0 1", 1) + "5 5\n",
+    "block in a block": GROWN + ".4 .4 .6 .4 1 .6 .4 .6 .6 1 .6 .6 .4 .6 1 .4 .6 .4 .4 1",
+}
+GEOMETRIES_XML = {
+    "broken": SQUARE_XML[:-2],
+    "no geometry": "<DDA><Other/></DDA>",
+    "no type": SQUARE_XML.replace("type='1'", "", 1),
+    "too few": SQUARE_XML.replace("0 0 1 0", "0 0 1"),
+    "ratio": SQUARE_XML.replace("<Jointlist>", "<Edgenodedist distance='1'/><Jointlist>"),
+    "bolts": SQUARE_XML.replace("<Jointlist>", "<Boltlist><Bolt/></Boltlist><Jointlist>"),
+    "entity": "<!DOCTYPE a [<!ENTITY e '0'>]>" + SQUARE_XML.replace("0 0 1 0", "0 &e; 1 0"),
+    "too deep": "<a>" * 110 + "</a>" * 110,
+}
+STONE = "1 1 1 0.2 0 0 0 0 0 0 0 0 0\n"
+TERRACE = (INPUT / "terrace_ddaml.ana").read_text()
+ANALYSES = {
+    "type": "2 5 1 1 0.01 0.01\n" + STONE + "30 0 0\n",
+    "displacement": "0 5 1 1 0 0.01\n" + STONE + "30 0 0\n",
+    "time step": "0 5 1 1 0.01 0\n" + STONE + "30 0 0\n",
+    "block materials": "0 5 9 1 0.01 0.01\n" + STONE + "30 0 0\n",
+    "joint materials": "0 5 1 9 0.01 0.01\n" + STONE + "30 0 0\n",
+    "density": "0 5 1 1 0.01 0.01\n0" + STONE[1:] + "30 0 0\n",
+    "weight": "0 5 1 1 0.01 0.01\n1 -1" + STONE[3:] + "30 0 0\n",
+    "young": "0 5 1 1 0.01 0.01\n1 1 0" + STONE[5:] + "30 0 0\n",
+    "poisson": "0 5 1 1 0.01 0.01\n" + STONE.replace("0.2", "0.5") + "30 0 0\n",
+    "friction": "0 5 1 1 0.01 0.01\n" + STONE + "91 0 0\n",
+    "cohesion": "0 5 1 1 0.01 0.01\n" + STONE + "30 -1 0\n",
+    "joint number": "0 5 2 1 0.01 0.01\n" + STONE + STONE + "30 0 0\n",
+}
+ANALYSES_XML = {
+    "no steps": TERRACE.replace("Numtimesteps", "Steps"),
+    "no mass": TERRACE.replace("Unitmass", "Mass"),
+    "word": TERRACE.replace("<Analysistype type=\"", "<Analysistype type=\"un"),
+    "below": re.sub(r'maxtimestep="[^"]*"', 'maxtimestep="-1"', TERRACE),
+    "two values": re.sub(r'maxtimestep="[^"]*"', 'maxtimestep="1 2"', TERRACE),
+    "records": re.sub(r'numpoints="\d+"', 'numpoints="77"', TERRACE),
+    "times": re.sub(
+        r'numpoints="\d+">[^<]*<', 'numpoints="2"> 1 0 0; 0 0 0; <', TERRACE, count=1),
+    "forces": TERRACE.replace(
+        "</Loadpointlist>", '<Loadpoint numpoints="2">0 0 0 1 0 0</Loadpoint></Loadpointlist>'),
+}
+
+
+@pytest.mark.parametrize("mistake", [*GEOMETRIES, *(f"xml {k}" for k in GEOMETRIES_XML)])
+def test_message_about_lines_is_whole(tmp_path: Path, mistake: str) -> None:
+    if mistake.startswith("xml ") and not HAS_XML:
+        pytest.skip("this build reads no XML")
+    text = GEOMETRIES_XML[mistake[4:]] if mistake.startswith("xml ") else GEOMETRIES[mistake]
+    (tmp_path / "a.geo").write_text(text)
+    assert assert_whole(run_dda("cut", "a.geo", cwd=tmp_path).stderr)["file"] == "a.geo"
+
+
+@pytest.mark.parametrize("mistake", [*ANALYSES, *(f"xml {k}" for k in ANALYSES_XML)])
+def test_message_about_an_analysis_is_whole(tmp_path: Path, mistake: str) -> None:
+    if mistake.startswith("xml ") and not HAS_XML:
+        pytest.skip("this build reads no XML")
+    text = ANALYSES_XML[mistake[4:]] if mistake.startswith("xml ") else ANALYSES[mistake]
+    (tmp_path / "a.ana").write_text(text)
+    (tmp_path / "a.geo").write_text((INPUT / "terrace.geo").read_text())
+    (tmp_path / "a.nml").write_text("&scene kind='lines', geometry='a.geo', analysis='a.ana' /\n")
+    stderr = run_dda("check", "a.nml", cwd=tmp_path).stderr
+    errors = [line for line in stderr.splitlines(keepends=True) if " warning: " not in line]
+    assert_whole("".join(errors))
 
 
 def test_deck_without_its_ending_is_told_the_ending(tmp_path: Path) -> None:

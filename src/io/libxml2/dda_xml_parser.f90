@@ -230,7 +230,7 @@ contains
       if (allocated(error)) error%line = error%line + skipped
       tree%element(:tree%n)%row = tree%element(:tree%n)%row + skipped
       if (.not. allocated(error) .and. tree%n == 0) &
-         & call fatal_error(error, "an XML element is wanted, none was found", file, 1)
+         & call fatal_error(error, "an XML element is wanted, none was found; write one", file, 1)
    end subroutine parse_xml
 
    !> Take what the reader stands on
@@ -253,7 +253,7 @@ contains
          call open_element(tree, fortran_text(local_name(reader)), row, at)
          depth = depth + 1
          if (depth > max_depth) call fatal_error(error, "elements at most "// &
-            & "100 deep are wanted, here they are deeper", tree%file, row)
+            & "100 deep are wanted, found deeper ones; remove some", tree%file, row)
          at = tree%n
          if (is_empty(reader) == 1) then
             at = tree%element(at)%parent
@@ -267,7 +267,8 @@ contains
          return
       else if (kind == node%entity) then
          call fatal_error(error, "text without entities is wanted, found &" &
-            & //fortran_text(local_name(reader))//";", tree%file, tree%element(at)%row)
+            & //fortran_text(local_name(reader))//"; write what it stands for", tree%file, &
+            & tree%element(at)%row)
       else if (kind == node%comment .or. kind == node%instruction) then
          tree%element(at)%text = tree%element(at)%text &
             & //line_ends(fortran_text(node_value(reader)))
@@ -318,8 +319,8 @@ contains
          line = int(said%line)
       end if
       if (index(message, achar(10)) > 0) message = message(:index(message, achar(10)) - 1)
-      call fatal_error(error, "well-formed XML is wanted, libxml2 says "//quoted(message), file, &
-         & line)
+      call fatal_error(error, "well-formed XML is wanted, libxml2 found "//quoted(message) &
+         & //"; correct it", file, line)
    end subroutine tell_error
 
    !> A C text as Fortran's
