@@ -31,6 +31,7 @@ PAGES = {
     "paper.md": "The paper",
     "theory.md": "Theory",
     "method.md": "Method",
+    "validation.md": "Validation",
     "performance.md": "Performance",
     "scaling.md": "Scaling",
     "architecture.md": "Architecture",

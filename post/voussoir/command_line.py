@@ -22,10 +22,17 @@ COMMANDS = {
     "theory": ("voussoir.theory_command", "the three analytic solutions at given half angles"),
     "work-precision": ("voussoir.work_precision", "error against run time"),
     "stability": ("voussoir.stability", "stiff and extreme scenes, judged by exact answers"),
+    "validation": (
+        "voussoir.validation_command",
+        "scenes with exact answers beside what the program computes",
+    ),
 }
 
 
-EXIT_STATUS = "Exit status: 0 done; 2 bad input; 4 a result could not be written."
+EXIT_STATUS = (
+    "Exit status: 0 done; 1 validation: a value is not accepted; 2 bad input; "
+    "4 a result could not be written."
+)
 
 
 class Formatter(argparse.RawDescriptionHelpFormatter):
@@ -84,7 +91,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
     Returns
     -------
     int
-        Exit status: 0, 2 for bad input, 4 where a result could not be written.
+        Exit status: 0, 1 where a value of the validation is not accepted, 2 for bad input, 4 where a
+        result could not be written.
     """
     words = list(sys.argv[1:] if arguments is None else arguments)
     if words[:1] in ([], ["help"]):
