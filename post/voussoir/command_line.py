@@ -30,7 +30,7 @@ COMMANDS = {
 
 
 EXIT_STATUS = (
-    "Exit status: 0 done; 1 validation: a value is not accepted; 2 bad input; "
+    "Exit status: 0 done; 1 a value of validation or stability is wrong; 2 bad input; "
     "4 a result could not be written."
 )
 
@@ -91,8 +91,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
     Returns
     -------
     int
-        Exit status: 0, 1 where a value of the validation is not accepted, 2 for bad input, 4 where a
-        result could not be written.
+        Exit status: 0, 1 where a value of validation or stability is wrong, 2 for bad input, 4
+        where a result could not be written.
     """
     words = list(sys.argv[1:] if arguments is None else arguments)
     if words[:1] in ([], ["help"]):

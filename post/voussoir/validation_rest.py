@@ -164,7 +164,8 @@ def _assemblies() -> list[Scene]:
     scenes.append(Scene(ASSEMBLIES, "four_corners", "stands", four))
     for deck, limit in (("dry_wall_2x4", 34.6551), ("dry_wall_4x8", 31.2911)):
         what = "tilt, Coulomb friction 0 to 2 deg below the dilatant limit [deg]"
-        wall = (Check(what, limit, _tilt, 2.0, scale=1.0),)
+        above = Check("tilt beyond that limit [deg]", 0.0, _beyond(limit), 1e-3, scale=1.0)
+        wall = (Check(what, limit, _tilt, 2.0, scale=1.0), above)
         scenes.append(Scene(ASSEMBLIES, deck, "limit analysis", wall, slow=deck.endswith("4x8")))
     return scenes
 
@@ -172,6 +173,11 @@ def _assemblies() -> list[Scene]:
 def _tilt(outcome: Outcome) -> float:
     """Critical push as the tilt of a table [deg]."""
     return math.degrees(math.atan(outcome.critical))
+
+
+def _beyond(limit: float):
+    """Measure of by how much the critical tilt is more than a limit [deg]."""
+    return lambda outcome: max(0.0, _tilt(outcome) - limit)
 
 
 def _normal(joint: int):
