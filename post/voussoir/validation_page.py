@@ -48,7 +48,7 @@ _TAIL = """
 - A rate near 0 is an error that is not one of the step. On slopes it is the strain of the block
   that settles when its weight comes on (1e-7 to 1e-6 m). Newmark's decks give the ground's motion
   at points 4 or 5 ms apart; with points at every ms their errors are near 1e-4. In `toppling_onset`
-  above phi_c it is the strain of the block; ten thousand times as stiff it errs by 1e-6.
+  above phi_c it is the strain of the block; ten thousand times as stiff it errs by 3e-6.
 
 ## Not in the suite
 
