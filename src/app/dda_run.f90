@@ -1,7 +1,8 @@
 !> dda run: decks to results
 module dda_run
    use, intrinsic :: iso_fortran_env, only : error_unit
-   use dda_case, only : case_t, compute_case, prepare_case, tell_case
+   use dda_case, only : case_t, compute_case, prepare_case
+   use dda_case_rows, only : tell_case
    use dda_case_choice, only : choose_cases
    use dda_command_line, only : command_t, name_of
    use dda_cut, only : print_warnings

@@ -10,13 +10,14 @@ module dda_block_rows_3
 
    !> Unknowns of one block
    integer, parameter :: nd = 3
-   integer :: row, column
+   !> Their numbers
+   integer, parameter :: number(nd) = [1, 2, 3]
    !> Ones on the diagonal
-   real(wp), parameter :: unit_matrix(nd, nd) = reshape([((merge(1.0_wp, 0.0_wp, row == column), &
-      & row=1, nd), column=1, nd)], [nd, nd])
+   real(wp), parameter :: unit_matrix(nd, nd) = merge(1.0_wp, 0.0_wp, &
+      & spread(number, 2, nd) == spread(number, 1, nd))
    !> Ones below the diagonal
-   real(wp), parameter :: below(nd, nd) = reshape([((merge(1.0_wp, 0.0_wp, row > column), &
-      & row=1, nd), column=1, nd)], [nd, nd])
+   real(wp), parameter :: below(nd, nd) = merge(1.0_wp, 0.0_wp, &
+      & spread(number, 2, nd) > spread(number, 1, nd))
 
 contains
 

@@ -1,4 +1,4 @@
-!> One case of a deck: prepared, computed, and told as rows of the result tables
+!> One case of a deck: prepared and computed
 module dda_case
    use, intrinsic :: iso_fortran_env, only : int64
    use dda_arch_scene, only : arch_resolution, exact_thickness, search_start
@@ -11,7 +11,7 @@ module dda_case
    use dda_deck_check, only : search_bracket
    use dda_deck_parameter, only : find_parameter, parameter_name
    use dda_deck_scene, only : deck_family_t, deck_scene
-   use dda_error, only : error_line, error_t
+   use dda_error, only : error_t
    use dda_forward, only : outcome_t, run_to_verdict
    use dda_frames, only : album_t
    use dda_restart, only : load_restart
@@ -19,18 +19,16 @@ module dda_case
    use dda_kinds, only : wp
    use dda_limerick_decision, only : decide_limerick
    use dda_limerick_search, only : find_limerick_critical
-   use dda_mechanism, only : follow_collapse, mechanism_of, mechanism_t
+   use dda_mechanism, only : follow_collapse
    use dda_scene, only : scene_t
    use dda_scene_plan, only : plan_scene, scene_plan_t
    use dda_settings, only : flow_rule, settings_t
    use dda_shared_forces, only : share_forces
-   use dda_text, only : to_text
    use dda_verdict, only : verdict
-   use dda_write_results, only : joint_row_t, number_t, result_row_t, some_number
    implicit none
    private
 
-   public :: case_t, prepare_case, compute_case, tell_case, verdict_name
+   public :: case_t, prepare_case, compute_case, searched_name
 
    !> One case in three stages: prepared, computed, told. Only the second may run beside other
    !> cases:
@@ -71,9 +69,6 @@ module dda_case
       !> Wall time of the computation [s]
       real(wp) :: seconds = 0.0_wp
    end type case_t
-
-   !> A bracket whose middle is off by more than this share of its half is lopsided
-   real(wp), parameter :: lopsided = 0.05_wp
 
 contains
 
@@ -228,56 +223,6 @@ contains
       if (allocated(this%deck%cut)) scene_size = this%deck%cut%scale%size
    end function scene_size
 
-   !> Tell a case
-   pure subroutine tell_case(this, row, joint_row, remark)
-      !> The case, computed
-      type(case_t), intent(in) :: this
-      !> Its row; the fields deck, number and swept are left to the caller
-      type(result_row_t), intent(out) :: row
-      !> Rows of the joints: (n_joint), or (0) if there is nothing to tell
-      type(joint_row_t), allocatable, intent(out) :: joint_row(:)
-      !> What the user should know beside the row; empty if nothing
-      character(len=:), allocatable, intent(out) :: remark
-
-      remark = ""
-      allocate (joint_row(0))
-      call describe(this, row)
-      if (allocated(this%error)) then
-         row%verdict = verdict_name(verdict%undecided)
-         remark = error_line(this%error)
-      else if (this%searches) then
-         call tell_search(this, row, joint_row, remark)
-      else
-         call tell_decision(this, row, joint_row, remark)
-      end if
-   end subroutine tell_case
-
-   !> Fill the columns that are known before anything is computed
-   pure subroutine describe(this, row)
-      !> The case
-      type(case_t), intent(in) :: this
-      !> The row
-      type(result_row_t), intent(inout) :: row
-      character(len=:), allocatable :: searched
-
-      searched = searched_name(this%deck)
-      row%mode = word_of(this%deck, "analysis", "mode")
-      row%geometry = word_of(this%deck, "analysis", "geometry")
-      if (this%limerick) row%geometry = "current"
-      if (word_of(this%deck, "scene", "kind") == "arch") then
-         row%half_angle_deg = given_number(this%deck, "arch", "half_angle_deg", searched)
-         row%thickness_ratio = given_number(this%deck, "arch", "thickness_ratio", searched)
-      end if
-      if (.not. allocated(this%deck%analysis) .or. is_given(this%deck, "joint", "friction_deg")) &
-         & row%friction_deg = given_number(this%deck, "joint", "friction_deg", searched)
-      row%collapse_mode = "none"
-      row%springing_hinge = "none"
-      if (this%exact_known) row%exact = some_number(this%exact)
-      row%seconds = this%seconds
-      row%unknowns = this%plan%unknowns
-      row%tells_condition = flag_of(this%deck, "output", "condition")
-   end subroutine describe
-
    !> Name of the searched parameter, empty if nothing is searched
    pure function searched_name(deck) result(name)
       !> The deck of the case
@@ -292,102 +237,6 @@ contains
       call find_parameter(text_of(deck, "search", "parameter"), parameter, problem)
       name = trim(parameter_name(parameter))
    end function searched_name
-
-   !> A number of the deck, unknown if it is searched
-   pure function given_number(deck, group, key, searched) result(number)
-      !> The deck of the case
-      type(deck_t), intent(in) :: deck
-      !> Group of the key
-      character(len=*), intent(in) :: group
-      !> The key
-      character(len=*), intent(in) :: key
-      !> Name of the searched parameter
-      character(len=*), intent(in) :: searched
-      !> The number
-      type(number_t) :: number
-
-      if (key /= searched) number = some_number(real_of(deck, group, key))
-   end function given_number
-
-   !> Tell a case that searches nothing
-   pure subroutine tell_decision(this, row, joint_row, remark)
-      !> The case
-      type(case_t), intent(in) :: this
-      !> Its row
-      type(result_row_t), intent(inout) :: row
-      !> Rows of the joints
-      type(joint_row_t), allocatable, intent(inout) :: joint_row(:)
-      !> Why the verdict is undecided
-      character(len=:), allocatable, intent(inout) :: remark
-
-      associate (outcome => this%decision%outcome)
-         row%verdict = verdict_name(outcome%verdict)
-         if (allocated(outcome%reason)) remark = outcome%reason
-         if (outcome%verdict == verdict%collapsed) &
-            & call tell_mechanism(this%decision%contacts, this%scene%joint_angle_deg, row)
-         row%blocks = maxval(this%scene%system%equation)
-         row%steps = outcome%steps
-         row%open_close_iterations = outcome%passes
-         row%factorisations = outcome%factorisations
-         call tell_condition(outcome, row)
-      end associate
-      joint_row = joint_rows(this%decision%contacts, this%scene%joint_angle_deg, this%scene%origin)
-   end subroutine tell_decision
-
-   !> Tell the search of a case
-   pure subroutine tell_search(this, row, joint_row, remark)
-      !> The case
-      type(case_t), intent(in) :: this
-      !> Its row
-      type(result_row_t), intent(inout) :: row
-      !> Rows of the joints: of the decision nearest to critical that stands, else of that which
-      !> falls
-      type(joint_row_t), allocatable, intent(inout) :: joint_row(:)
-      !> Why the verdict is undecided
-      character(len=:), allocatable, intent(inout) :: remark
-      type(scene_t) :: scene
-      type(error_t), allocatable :: error
-
-      associate (critical => this%critical)
-         row%verdict = verdict_name(critical%verdict)
-         if (critical%verdict == verdict%undecided) then
-            remark = "the bracket cannot be closed further"
-            if (allocated(critical%reason)) &
-               & remark = "at "//to_text(critical%undecided_at)//" "//critical%reason
-         end if
-         if (critical%verdict == verdict%found) call tell_bracket(critical, row)
-         if (allocated(critical%fallen)) then
-            call tell_mechanism(critical%fallen%contacts, this%scene%joint_angle_deg, row)
-            joint_row = joint_rows(critical%fallen%contacts, this%scene%joint_angle_deg, &
-               & this%scene%origin)
-            row%blocks = maxval(this%scene%system%equation)
-         end if
-         if (allocated(critical%standing)) then
-            call this%family%build(critical%stands, scene, error)
-            joint_row = joint_rows(critical%standing%contacts, scene%joint_angle_deg, scene%origin)
-            row%blocks = maxval(scene%system%equation)
-         end if
-         row%steps = critical%steps
-         row%open_close_iterations = critical%passes
-         row%factorisations = critical%factorisations
-         if (allocated(critical%standing)) then
-            call tell_condition(critical%standing%outcome, row)
-         else if (allocated(critical%fallen)) then
-            call tell_condition(critical%fallen%outcome, row)
-         end if
-      end associate
-   end subroutine tell_search
-
-   !> Fill the column of the condition number, if it was estimated
-   pure subroutine tell_condition(outcome, row)
-      !> How the decision ended
-      type(outcome_t), intent(in) :: outcome
-      !> The row
-      type(result_row_t), intent(inout) :: row
-
-      if (outcome%condition > 0.0_wp .and. outcome%condition < huge(1.0_wp)) &
-         & row%condition = some_number(outcome%condition)
-   end subroutine tell_condition
 
    !> What a deck asks to be searched
    pure subroutine prepare_search(deck, family, search)
@@ -416,95 +265,4 @@ contains
       if (.not. search%check_far_end) search%high = 1.99_wp
       search%start = min(max(search%start, search%low), search%high)
    end subroutine prepare_search
-
-   !> Fill the columns of a closed bracket. Where its ends lie lopsided about the value at which the
-   !> collapse stops, that value is its middle; where they lie closer than rounding can tell apart,
-   !> it is told as wide as that
-   pure subroutine tell_bracket(critical, row)
-      !> What was found
-      type(critical_t), intent(in) :: critical
-      !> The row
-      type(result_row_t), intent(inout) :: row
-
-      real(wp) :: middle, half, off
-
-      middle = (critical%falls + critical%stands)/2.0_wp
-      half = abs(critical%stands - critical%falls)/2.0_wp
-      off = abs(critical%stop - middle)
-      if (critical%stops .and. off > lopsided*half .and. off < 2.0_wp*half) &
-         & middle = critical%stop
-      half = max(abs(critical%stands - middle), abs(critical%falls - middle), critical%half)
-      row%critical = some_number(middle)
-      row%critical_low = some_number(middle - half)
-      row%critical_high = some_number(middle + half)
-      row%collapses_at = merge("low ", "high", critical%falls < critical%stands)
-      if (row%exact%known) row%relative_error = &
-         & some_number((row%critical%value - row%exact%value)/row%exact%value)
-   end subroutine tell_bracket
-
-   !> Fill the columns of a collapse
-   pure subroutine tell_mechanism(contacts, joint_angle_deg, row)
-      !> Contacts at the end of the collapse
-      type(contacts_t), intent(in) :: contacts
-      !> Angle of each joint from the crown: (n_joint) [deg]
-      real(wp), intent(in) :: joint_angle_deg(:)
-      !> The row
-      type(result_row_t), intent(inout) :: row
-      type(mechanism_t) :: mechanism
-
-      call mechanism_of(contacts, joint_angle_deg, mechanism)
-      row%collapse_mode = mechanism%mode
-      row%sliding_share = some_number(mechanism%sliding_share)
-      row%intrados_hinge_deg = mechanism%intrados_deg
-      row%extrados_hinge_deg = mechanism%extrados_deg
-      row%springing_hinge = mechanism%springing
-   end subroutine tell_mechanism
-
-   !> Rows of all joints
-   pure function joint_rows(contacts, joint_angle_deg, origin) result(row)
-      !> The contacts
-      type(contacts_t), intent(in) :: contacts
-      !> Angle of each joint from the crown, or none: (n_joint) or (0) [deg]
-      real(wp), intent(in) :: joint_angle_deg(:)
-      !> Where the origin of the blocks' coordinates is: (2) [m]
-      real(wp), intent(in) :: origin(2)
-      !> The rows, without the number of the case: (n_joint)
-      type(joint_row_t) :: row(size(contacts%joint))
-      integer :: j
-
-      do j = 1, size(row)
-         row(j)%joint = j
-         if (size(joint_angle_deg) > 0) row(j)%angle_deg = some_number(joint_angle_deg(j))
-         associate (joint => contacts%joint(j))
-            row(j)%intrados = joint%contact(1)%point + origin
-            row(j)%extrados = joint%contact(joint%n_contact)%point + origin
-         end associate
-         row(j)%normal_force = sum(contacts%force(1:2, j))
-         row(j)%shear_force = contacts%force(3, j)
-         if (row(j)%normal_force > 0.0_wp) row(j)%eccentricity_ratio = some_number( &
-            & (contacts%force(1, j) - contacts%force(2, j))/row(j)%normal_force)
-         row(j)%opening_intrados = contacts%gap(1, j)
-         row(j)%opening_extrados = contacts%gap(2, j)
-         row(j)%slip = contacts%gap(3, j)
-         row(j)%state = "locked"
-         if (contacts%face(j)%open(2)) row(j)%state = "hinge_intrados"
-         if (contacts%face(j)%open(1)) row(j)%state = "hinge_extrados"
-         if (contacts%face(j)%slip /= 0) row(j)%state = "sliding"
-         if (all(contacts%face(j)%open)) row(j)%state = "open"
-      end do
-   end function joint_rows
-
-   !> A verdict in a word
-   pure function verdict_name(answer) result(name)
-      !> One of verdict
-      integer, intent(in) :: answer
-      !> The word
-      character(len=10) :: name
-
-      name = "undecided"
-      if (answer == verdict%stable) name = "stable"
-      if (answer == verdict%collapsed) name = "collapsed"
-      if (answer == verdict%completed) name = "completed"
-      if (answer == verdict%found) name = "found"
-   end function verdict_name
 end module dda_case
