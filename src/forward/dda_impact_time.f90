@@ -1,6 +1,6 @@
 !> Where blocks rebound, a step ends before they meet: the speed at that very moment counts
 module dda_impact_time
-   use dda_assembly, only : equations_t, relative_displacement
+   use dda_assembly, only : equations_t
    use dda_block_inertia, only : packed_velocity
    use dda_block_system, only : block_system_t
    use dda_contact_detection, only : contacts_t
@@ -8,6 +8,7 @@ module dda_impact_time
    use dda_settings, only : settings_t
    use dda_step_context, only : march_t, step_context_t
    use dda_velocity, only : near_gap
+   use dda_spring_products, only : relative_displacement
    implicit none
    private
 

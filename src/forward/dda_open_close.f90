@@ -7,11 +7,12 @@
 !> takes over, which must end.
 module dda_open_close
    use, intrinsic :: iso_fortran_env, only : int64
-   use dda_assembly, only : equations_t, relative_displacement, solve_faces
+   use dda_assembly, only : equations_t, solve_faces
    use dda_block_factor, only : substitute
    use dda_friction_cone, only : apply_face, cone_t, is_stuck, joint_face_t, project
    use dda_joint_springs, only : joint_springs_t
    use dda_kinds, only : wp
+   use dda_spring_products, only : relative_displacement
    implicit none
    private
 

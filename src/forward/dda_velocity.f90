@@ -9,7 +9,7 @@
 !> if e = 0, whatever the step: Shi's v1 = 2 D/dt - v0 would end with any restitution between 0 and
 !> 1, and has never less energy. Without contact the two are the same.
 module dda_velocity
-   use dda_assembly, only : equations_t, relative_displacement, take_springs
+   use dda_assembly, only : equations_t, take_springs
    use dda_block_inertia, only : damping_rate, kinetic_energy, packed_velocity
    use dda_block_system, only : block_system_t
    use dda_contact_detection, only : contacts_t
@@ -23,6 +23,7 @@ module dda_velocity
    use dda_settings, only : settings_t
    use dda_step_context, only : step_context_t
    use dda_vector, only : cross
+   use dda_spring_products, only : relative_displacement
    implicit none
    private
 

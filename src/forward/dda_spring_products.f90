@@ -1,0 +1,113 @@
+!> Products with the rows of the springs: stiffness and load of a joint on its face, openings and
+!> slips by a motion (Shi: df18)
+module dda_spring_products
+   use dda_friction_cone, only : apply_face, cone_t, is_stuck, joint_face_t
+   use dda_joint_springs, only : joint_springs_t
+   use dda_kinds, only : wp
+   implicit none
+   private
+
+   public :: projected, add_product, add_load, relative_displacement
+
+contains
+
+   !> Rows of one side of a joint, projected on its face: p R P
+   pure function projected(springs, cone, face, side, j) result(steep)
+      !> The springs of the joints
+      type(joint_springs_t), intent(in) :: springs
+      !> Bounds of the joint's force
+      type(cone_t), intent(in) :: cone
+      !> Its face
+      type(joint_face_t), intent(in) :: face
+      !> Side of the joint, 1 or 2
+      integer, intent(in) :: side
+      !> Number of the joint
+      integer, intent(in) :: j
+      !> The projected rows: (n_dof, 3)
+      real(wp) :: steep(size(springs%row, 1), 3)
+      real(wp) :: tangent(3, 3), constant(3)
+
+      steep = springs%stiffness(j)*springs%row(:, :, side, j)
+      if (is_stuck(face)) return
+      call apply_face(cone, face, tangent, constant)
+      steep = matmul(steep, tangent)
+   end function projected
+
+   !> c = c + a b' of three columns
+   pure subroutine add_product(a, b, c)
+      !> First factor: (n, 3)
+      real(wp), intent(in) :: a(:, :)
+      !> Second factor: (n, 3)
+      real(wp), intent(in) :: b(:, :)
+      !> What the product is added to: (n, n)
+      real(wp), intent(inout) :: c(:, :)
+      integer :: k
+
+      do k = 1, size(b, 1)
+         c(:, k) = c(:, k) + a(:, 1)*b(k, 1) + a(:, 2)*b(k, 2) + a(:, 3)*b(k, 3)
+      end do
+   end subroutine add_product
+
+   !> Add the load of one joint: R (P z + c)
+   pure subroutine add_load(springs, cone, face, trial, j, load)
+      !> The springs of the joints
+      type(joint_springs_t), intent(in) :: springs
+      !> Bounds of the joint's force
+      type(cone_t), intent(in) :: cone
+      !> Its face
+      type(joint_face_t), intent(in) :: face
+      !> Its trial force before the motion: (3) [N/m]
+      real(wp), intent(in) :: trial(3)
+      !> Number of the joint
+      integer, intent(in) :: j
+      !> Receives the load: (n_dof, n_equation)
+      real(wp), intent(inout) :: load(:, :)
+      real(wp) :: tangent(3, 3), constant(3)
+      integer :: c, e, side
+
+      constant = trial
+      if (.not. is_stuck(face)) then
+         call apply_face(cone, face, tangent, constant)
+         constant = constant + matmul(tangent, trial + springs%shift(:, j)) - springs%shift(:, j)
+      end if
+      if (.not. any(abs(constant) > 0.0_wp)) return
+      do side = 1, 2
+         e = springs%equation(side, j)
+         if (e == 0) cycle
+         ! blocks have 3 or 6 unknowns: three at a time, so that the compiler knows the length
+         do c = 1, size(load, 1), 3
+            load(c:c + 2, e) = load(c:c + 2, e) + springs%row(c:c + 2, 1, side, j)*constant(1) &
+               & + springs%row(c:c + 2, 2, side, j)*constant(2) &
+               & + springs%row(c:c + 2, 3, side, j)*constant(3)
+         end do
+      end do
+   end subroutine add_load
+
+   !> Openings and slips of the joints by a motion of the blocks
+   pure function relative_displacement(springs, motion) result(increment)
+      !> The springs of the joints
+      type(joint_springs_t), intent(in) :: springs
+      !> The motion: (n_dof, n_equation)
+      real(wp), intent(in) :: motion(:, :)
+      !> Opening at the two contacts and slip: (3, n_joint) [m]
+      real(wp) :: increment(3, size(springs%equation, 2))
+      real(wp) :: seen(3)
+      integer :: c, e, j, k, side
+
+      do j = 1, size(springs%equation, 2)
+         seen = 0.0_wp
+         do side = 1, 2
+            e = springs%equation(side, j)
+            if (e == 0) cycle
+            do c = 1, size(motion, 1), 3
+               do k = 1, 3
+                  seen(k) = seen(k) + springs%row(c, k, side, j)*motion(c, e) &
+                     & + springs%row(c + 1, k, side, j)*motion(c + 1, e) &
+                     & + springs%row(c + 2, k, side, j)*motion(c + 2, e)
+               end do
+            end do
+         end do
+         increment(:, j) = seen
+      end do
+   end function relative_displacement
+end module dda_spring_products
