@@ -31,9 +31,6 @@ two are. This page is written by `voussoir validation` from a run of the decks i
 _TAIL = """
 ## What the lines that miss tell
 
-- **uniaxial, bar_own_weight** with blocks that move. Hooke's law is that of small strains. Loads
-  on the strained block strain it otherwise, by as much as the strain itself: 2e-4 and 2.5e-5
-  here. The bar a hundred times as stiff is a hundred times nearer.
 - **dry walls.** The limit is that of dilatant friction, an upper bound for Coulomb's;
   [limits.md](limits.md) says what was found.
 

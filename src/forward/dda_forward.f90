@@ -84,6 +84,11 @@ contains
       call new_equations(system, contacts%springs, settings, equations)
       call begin_step(contacts, size(equations%weight, 1), size(equations%weight, 2), step%state)
       if (present(onward)) march = onward
+      if (allocated(march%held_force)) then
+         ! points held otherwise than before begin without force
+         if (size(march%held_force) == size(equations%fixed%force)) &
+            & equations%fixed%force = march%held_force
+      end if
       if (march%steps == 0) then
          call first_interval(system, contacts%springs, settings, equations, step%state, march, &
             & error)
@@ -108,6 +113,7 @@ contains
          if (settings%duration > 0.0_wp .and. march%time >= settings%duration) exit
          call next_interval(settings, system, step, march)
       end do
+      march%held_force = equations%fixed%force
       if (present(onward)) onward = march
       outcome%rest_tolerance = settings%rest_tolerance
       outcome%steps = march%steps

@@ -5,7 +5,7 @@
 module dda_fixed_points
    use dda_block_system, only : block_system_t
    use dda_boundary, only : held_point_t, rate_at, value_at
-   use dda_deformation, only : displacement_matrix, moved_point
+   use dda_deformation, only : displacement_matrix, moved_point, tangent_matrix
    use dda_kinds, only : wp
    use dda_settings, only : settings_t
    implicit none
@@ -92,7 +92,7 @@ contains
             if (settings%current) then
                centre = system%centroid(:, b) + system%motion(1:2, b)
                place = moved_point(held%point, system%centroid(:, b), system%motion(:, b))
-               t = displacement_matrix(place, centre)
+               t = tangent_matrix(place, centre, system%motion(:, b))
             end if
             path = value_at(held%path, time + dt)
             rate = rate_at(held%path, time + dt)

@@ -26,7 +26,7 @@ contains
       real(wp), intent(in) :: weight(:, :)
       !> Sum of all loads: (n_dof, n_equation)
       real(wp), intent(out) :: load(:, :)
-      real(wp) :: of_block(6), centre(2), place(2), shaking(2)
+      real(wp) :: of_block(6), centre(2), place(2), force(2), shaking(2)
       integer :: b, e, i, nd
 
       nd = size(load, 1)
@@ -47,12 +47,14 @@ contains
             e = system%equation(b)
             if (e == 0) cycle
             centre = system%centroid(:, b)
-            place = point
+            force = value_at(settings%boundary%loaded(i)%force, time)
             if (settings%current) then
                place = moved_point(point, centre, system%motion(:, b))
-               centre = centre + system%motion(1:2, b)
+               of_block = point_load(force, place, centre + system%motion(1:2, b), &
+                  & system%motion(:, b))
+            else
+               of_block = point_load(force, point, centre)
             end if
-            of_block = point_load(value_at(settings%boundary%loaded(i)%force, time), place, centre)
             load(:, e) = load(:, e) + of_block(:nd)
          end associate
       end do
