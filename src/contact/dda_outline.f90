@@ -102,7 +102,8 @@ contains
 
       before = vertex(:, corner) - vertex(:, outline%previous(corner))
       after = vertex(:, outline%next(corner)) - vertex(:, corner)
-      is_convex = cross(before, after) > -flat*norm2(before)*norm2(after)
+      is_convex = cross(before, after) > 0.0_wp
+      if (.not. is_convex) is_convex = cross(before, after) > -flat*norm2(before)*norm2(after)
    end function is_convex
 
    !> Length of an edge [m]
