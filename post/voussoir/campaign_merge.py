@@ -11,7 +11,7 @@ import os
 import re
 import shutil
 import uuid
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
 from typing import BinaryIO
@@ -189,7 +189,7 @@ def merged(out: Path) -> Summary:
     return Summary(len(verdicts), verdicts.count("undecided"))
 
 
-def replace(path: Path, write) -> None:
+def replace(path: Path, write: Callable[[BinaryIO], object]) -> None:
     """Write a file under another name, then give it its own: it is never there by halves.
 
     Parameters

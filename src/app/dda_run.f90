@@ -255,13 +255,7 @@ contains
          row%number = number
          row%swept = swept_fields(deck, number)
          joint_row%number = number
-         if (tables%at(table%frames)%wanted) call write_album(tables%folder, number, &
-            & tables%has_vtu, this%scene%system, this%scene%origin, this%album, &
-            & tables%at(table%frames)%open, tables%at(table%frame_joints)%open, error)
-         if (tables%at(table%points)%wanted .and. .not. allocated(error)) call write_track( &
-            & number, this%scene%origin, this%album, tables%at(table%points)%open, error)
-         if (tables%at(table%energy)%wanted .and. .not. allocated(error)) call write_energies( &
-            & number, this%album, tables%at(table%energy)%open, error)
+         call write_pictures(tables, number, this, error)
          if (.not. allocated(error)) call write_end(tables%folder, number, this, error)
          if (.not. allocated(error)) call write_case(tables, row, joint_row, remark, error)
       end if
@@ -275,6 +269,26 @@ contains
       end if
       !$omp end critical (texts)
    end subroutine run_one_case
+
+   !> Write what is seen of a case on its way: pictures, measured points, energies
+   subroutine write_pictures(tables, number, this, error)
+      !> Where the results go
+      type(result_tables_t), intent(in) :: tables
+      !> Number of the case
+      integer, intent(in) :: number
+      !> The case, computed
+      type(case_t), intent(in) :: this
+      !> Allocated if something cannot be written
+      type(error_t), allocatable, intent(inout) :: error
+
+      if (tables%at(table%frames)%wanted) call write_album(tables%folder, number, &
+         & tables%has_vtu, this%scene%system, this%scene%origin, this%album, &
+         & tables%at(table%frames)%open, tables%at(table%frame_joints)%open, error)
+      if (tables%at(table%points)%wanted .and. .not. allocated(error)) call write_track( &
+         & number, this%scene%origin, this%album, tables%at(table%points)%open, error)
+      if (tables%at(table%energy)%wanted .and. .not. allocated(error)) call write_energies( &
+         & number, this%album, tables%at(table%energy)%open, error)
+   end subroutine write_pictures
 
    !> Write the end of a dynamic case, to go on from there
    subroutine write_end(folder, number, this, error)

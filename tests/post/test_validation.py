@@ -14,9 +14,10 @@ pytest.importorskip("voussoir", reason="PYTHONPATH wants the build's python fold
 pytest.importorskip("numpy")
 
 from voussoir.command_line import main  # noqa: E402
+from voussoir.dda_program import find_input  # noqa: E402
 from voussoir.validation_impact import next_amplitude, quarter_period  # noqa: E402
 from voussoir.validation_rest import foot_acceleration  # noqa: E402
-from voussoir.validation_run import Line, all_scenes, find_decks, run_scene  # noqa: E402
+from voussoir.validation_run import Line, all_scenes, run_scene  # noqa: E402
 from voussoir.validation_scene import Check, Scene  # noqa: E402
 
 REPOSITORY = Path(__file__).resolve().parents[2]
@@ -120,4 +121,4 @@ def test_page_of_the_documents_has_every_scene() -> None:
 
 def test_every_deck_of_the_benchmarks_is_a_scene() -> None:
     assert {deck.stem for deck in DECKS.glob("*.nml")} == {scene.deck for scene in SCENES}
-    assert find_decks().name == DECKS.name
+    assert find_input("benchmarks").name == DECKS.name
