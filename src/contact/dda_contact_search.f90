@@ -8,7 +8,7 @@ module dda_contact_search
    use dda_entrance, only : add_joints, joint_list_t, neighbourhood_t
    use dda_kinds, only : wp
    use dda_material, only : joint_law_t
-   use dda_outline, only : outline_of, outline_t
+   use dda_outline, only : measure_edges, outline_of, outline_t
    implicit none
    private
 
@@ -114,6 +114,7 @@ contains
       integer :: block(2), first, last, j
 
       near%outline = search%outline
+      call measure_edges(near%vertex, near%outline)
       near%first_vertex = system%first_vertex
       call find_edge_pairs(search%near, search%outline, system%equation, near%vertex, reach, pair)
       first = 1

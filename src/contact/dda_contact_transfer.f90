@@ -77,7 +77,8 @@ contains
          taken = source(:, j)
          call take_over_slip(system, past, taken, joint(j))
       end do
-      before = contacts
+      before%face = contacts%face
+      before%broken = contacts%broken
       call set_joints(system, system%motion, joint, penalty_ratio, n_dof, contacts)
       do j = 1, size(joint)
          call take_over_state(before, past, source(:, j), j, contacts)
