@@ -56,12 +56,14 @@ contains
          if (.not. allocated(error)) call choose_cases(command%cases, &
             & n_cases(deck(i)), chosen, error)
          good(i) = .not. allocated(error)
-         do w = 1, merge(size(deck(i)%plan%warning), 0, good(i) .and. .not. command%quiet)
-            write (error_unit, "(a)") warning_line(deck(i), w)
-         end do
-         if (good(i)) cycle
-         write (error_unit, "(a)") error_line(error)
-         status = exit_status%bad_input
+         if (good(i) .and. .not. command%quiet) then
+            do w = 1, size(deck(i)%plan%warning)
+               write (error_unit, "(a)") warning_line(deck(i), w)
+            end do
+         else if (.not. good(i)) then
+            write (error_unit, "(a)") error_line(error)
+            status = exit_status%bad_input
+         end if
       end do
       do i = 1, size(deck)
          if (.not. good(i)) cycle
