@@ -16,8 +16,18 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import BinaryIO
 
+from voussoir.campaign_part import finished_by
+
 #: Tables with a case in each row
-TABLES = ("joints.csv", "log.txt", "frames.csv", "frame_joints.csv", "results.csv")
+TABLES = (
+    "joints.csv",
+    "log.txt",
+    "frames.csv",
+    "frame_joints.csv",
+    "points.csv",
+    "energy.csv",
+    "results.csv",
+)
 
 
 @dataclass(frozen=True)
@@ -43,8 +53,9 @@ def merge(parts: Path, out: Path) -> None:
     attempts = sorted(path for path in parts.iterdir() if (path / "results.csv").exists())
     owner: dict[int, Path] = {}
     for attempt in attempts:
-        for case, *_ in slices_of(attempt / "results.csv"):
+        for case in finished_by(attempt):
             owner.setdefault(case, attempt)
+    (out / "disk.record").unlink(missing_ok=True)  # of another run: these tables are written whole
     for name in TABLES:
         merge_table(name, attempts, owner, out)
     copy_pictures(attempts, owner, out)

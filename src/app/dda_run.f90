@@ -17,7 +17,7 @@ module dda_run
    use dda_progress, only : clear_progress, progress_t, report_progress
    use dda_read_deck, only : read_deck
    use dda_result_tables, only : close_tables, name_tables, open_tables, result_tables_t, &
-      & swept_fields, table, write_case
+      & swept_fields, sync_when_due, table, write_case
    use dda_resume, only : find_finished, finished_t, reopen_tables
    use dda_restart, only : save_restart
    use dda_summary, only : print_resumed, print_row, print_total
@@ -56,12 +56,14 @@ contains
          if (.not. allocated(error)) call choose_cases(command%cases, &
             & n_cases(deck(i)), chosen, error)
          good(i) = .not. allocated(error)
-         do w = 1, merge(size(deck(i)%plan%warning), 0, good(i) .and. .not. command%quiet)
-            write (error_unit, "(a)") warning_line(deck(i), w)
-         end do
-         if (good(i)) cycle
-         write (error_unit, "(a)") error_line(error)
-         status = exit_status%bad_input
+         if (good(i) .and. .not. command%quiet) then
+            do w = 1, size(deck(i)%plan%warning)
+               write (error_unit, "(a)") warning_line(deck(i), w)
+            end do
+         else if (.not. good(i)) then
+            write (error_unit, "(a)") error_line(error)
+            status = exit_status%bad_input
+         end if
       end do
       do i = 1, size(deck)
          if (.not. good(i)) cycle
@@ -165,7 +167,7 @@ contains
       end do
       !$omp end parallel do
       call clear_progress(progress)
-      call close_tables(tables)
+      call close_tables(tables, error)
       count = count + [finished%count, sum(finished%count)]
       status = exit_status%success
       if (count(2) > 0) status = exit_status%undecided
@@ -224,7 +226,7 @@ contains
       !> Number of cases
       integer, intent(in) :: total
       !> Where the results go
-      type(result_tables_t), intent(in) :: tables
+      type(result_tables_t), intent(inout) :: tables
       !> What was told so far
       type(progress_t), intent(inout) :: progress
       !> Cases decided, undecided, written: (3)
@@ -258,6 +260,7 @@ contains
          call write_pictures(tables, number, this, error)
          if (.not. allocated(error)) call write_end(tables%folder, number, this, error)
          if (.not. allocated(error)) call write_case(tables, row, joint_row, remark, error)
+         if (.not. allocated(error)) call sync_when_due(tables, error)
       end if
       if (.not. allocated(error)) then
          count(3) = count(3) + 1
