@@ -17,7 +17,16 @@ from pathlib import Path
 from typing import BinaryIO
 
 #: Tables with a case in each row
-TABLES = ("joints.csv", "log.txt", "frames.csv", "frame_joints.csv", "results.csv")
+TABLES = (
+    "joints.csv",
+    "blocks.csv",
+    "log.txt",
+    "frames.csv",
+    "frame_joints.csv",
+    "points.csv",
+    "energy.csv",
+    "results.csv",
+)
 
 
 @dataclass(frozen=True)
