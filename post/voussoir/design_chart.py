@@ -118,12 +118,8 @@ def _draw(run: Results, groups: list[tuple[str, Table]], column: str) -> Figure:
 
 
 def _searched(run: Results) -> str:
-    """What was searched: the record of the deck tells, else the column that is empty."""
-    record = run.folder / "deck.record"
-    lines = record.read_text(encoding="utf-8").splitlines() if record.is_file() else []
-    name = "thickness_ratio"
-    if "search%parameter" in lines:
-        name = lines[lines.index("search%parameter") + 1].strip()
+    """What was searched."""
+    name = run.searched or "thickness_ratio"
     return "critical " + MEANINGS.get(name, name)
 
 
