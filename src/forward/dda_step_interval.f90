@@ -166,6 +166,7 @@ contains
       type(march_t), intent(inout) :: march
       !> The step; whether it is accepted is set
       type(step_context_t), intent(inout) :: step
+      real(wp) :: before, factor
 
       step%accepted = step%state%settled
       if (.not. step%accepted) then
@@ -173,11 +174,15 @@ contains
          step%was_cut = .true.
          return
       end if
+      before = step%farthest
       step%farthest = largest_motion(system, step%state%motion)
       if (.not. settings%current) return
       step%accepted = step%farthest <= too_far*march%allowed_motion
-      if (.not. step%accepted) &
-         & march%dt = march%dt*0.8_wp*sqrt(too_far*march%allowed_motion/step%farthest)
+      if (step%accepted) return
+      factor = 0.8_wp*sqrt(too_far*march%allowed_motion/step%farthest)
+      ! what strain alone holds goes as far in a step a little shorter
+      if (before > too_far*march%allowed_motion) factor = min(cut, factor)
+      march%dt = factor*march%dt
    end subroutine judge_step
 
    !> Length of the step that follows an accepted one. Where blocks move it aims at the motion that

@@ -2,9 +2,10 @@
 module dda_block_points
    use dda_block_input, only : block_at, block_plan_t
    use dda_block_lines, only : entry_t, take_numbers
-   use dda_boundary, only : held_point_t, history_t, loaded_point_t, measured_point_t, value_at
+   use dda_boundary, only : held_point_t, history_t, loaded_point_t, measured_point_t
    use dda_error, only : error_t, fatal_error
    use dda_ground_motion, only : acceleration_of_displacement, acceleration_of_velocity
+   use dda_held_paths, only : contradicts
    use dda_kinds, only : wp
    use dda_polygon, only : parts_inside
    use dda_text, only : to_text
@@ -187,7 +188,7 @@ contains
          & line=entry%head%number)
    end subroutine take_directions
 
-   !> Add a held point, unless the same point is held to go elsewhere
+   !> Add a held point, unless others hold the block in its way
    pure subroutine add_held(entry, held, plan, error)
       !> Its entry
       type(entry_t), intent(in) :: entry
@@ -195,10 +196,9 @@ contains
       type(held_point_t), intent(in) :: held
       !> Receives it
       type(block_plan_t), intent(inout) :: plan
-      !> A fixed block that is to move, or a point that is led to two places
+      !> A fixed block that is to move, or a point that cannot go its way
       type(error_t), allocatable, intent(out) :: error
-      real(wp) :: reach
-      integer :: i
+      real(wp) :: size_of_block
 
       if (plan%fixed(held%block) .and. allocated(held%path%value)) then
          if (any(abs(held%path%value) > 0.0_wp)) then
@@ -209,39 +209,15 @@ contains
       end if
       associate (vertex => plan%vertex(:, plan%first_vertex(held%block): &
          & plan%first_vertex(held%block + 1) - 1))
-         reach = touching*norm2(maxval(vertex, dim=2) - minval(vertex, dim=2))
+         size_of_block = norm2(maxval(vertex, dim=2) - minval(vertex, dim=2))
       end associate
-      do i = 1, size(plan%boundary%held)
-         associate (other => plan%boundary%held(i))
-            if (other%block /= held%block) cycle
-            if (norm2(other%point - held%point) > reach) cycle
-            if (.not. paths_differ(held, other)) cycle
-            call fatal_error(error, "the point is held or led already, and otherwise", &
-               & line=entry%head%number)
-            return
-         end associate
-      end do
+      if (contradicts(plan%boundary%held, held, size_of_block)) then
+         call fatal_error(error, "wanted a way that the block can go with the points of it that " &
+            & //"are held or led already, found another", line=entry%head%number)
+         return
+      end if
       plan%boundary%held = [plan%boundary%held, held]
    end subroutine add_held
-
-   !> Whether two held points want the same point at different places
-   pure logical function paths_differ(first, second)
-      !> One point
-      type(held_point_t), intent(in) :: first
-      !> The other
-      type(held_point_t), intent(in) :: second
-      real(wp), allocatable :: time(:)
-      integer :: i
-
-      allocate (time(0))
-      if (allocated(first%path%time)) time = [time, first%path%time]
-      if (allocated(second%path%time)) time = [time, second%path%time]
-      paths_differ = .false.
-      do i = 1, size(time)
-         paths_differ = paths_differ .or. any(first%along .and. second%along .and. &
-            & abs(value_at(first%path, time(i)) - value_at(second%path, time(i))) > 0.0_wp)
-      end do
-   end function paths_differ
 
    !> A vector in time: one value behind the word, or rows of time and components below it
    pure subroutine read_history(entry, has_value, value, history, error)
