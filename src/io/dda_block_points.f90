@@ -3,6 +3,7 @@ module dda_block_points
    use dda_block_input, only : block_at, block_plan_t
    use dda_block_lines, only : entry_t, take_numbers
    use dda_boundary, only : held_point_t, history_t, loaded_point_t, measured_point_t
+   use dda_deck_token, only : shown
    use dda_error, only : error_t, fatal_error
    use dda_kinds, only : wp
    use dda_text, only : to_text
@@ -94,7 +95,8 @@ contains
             boundary%measured = [boundary%measured, measured_point_t(block, point)]
          end select
       end associate
-      if (has_word) call fatal_error(error, "unknown word '"//trim(entry%head%word(i))//"'", &
+      if (has_word) call fatal_error(error, "unknown word '" &
+         & //shown(trim(entry%head%word(i)))//"'", &
          & line=entry%head%number)
    end subroutine keep_point
 
