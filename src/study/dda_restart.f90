@@ -11,7 +11,7 @@ module dda_restart
    implicit none
    private
 
-   public :: load_restart, save_restart
+   public :: check_restart, load_restart, save_restart
 
    !> First bytes of the file; another layout wants another number
    character(len=*), parameter :: magic = "voussoir restart 2"
@@ -75,23 +75,66 @@ contains
       type(error_t), allocatable, intent(out) :: error
       integer :: unit, stat, n_joint
 
-      open (newunit=unit, file=file, access="stream", form="unformatted", status="old", &
-         & action="read", iostat=stat)
-      if (stat /= 0) then
-         call fatal_error(error, "the restart file cannot be opened", file)
-         return
-      end if
-      call check_beginning(unit, file, system, n_joint, error)
+      call open_restart(file, unit, error)
+      if (allocated(error)) return
+      call read_beginning(unit, file, system, n_joint, error)
       if (.not. allocated(error)) then
          call read_state(unit, n_joint, settings, system, contacts, stat)
          if (stat == 0) call read_march(unit, size(system%area), march, stat)
-         if (stat /= 0) call fatal_error(error, "the restart file ends too early", file)
+         if (stat /= 0) call fatal_error(error, "wanted a restart file of the same settings, "// &
+            & "found one of others; make it anew", file, 1)
       end if
       close (unit)
    end subroutine load_restart
 
-   !> Check that a file is whole and tells of the same blocks
-   subroutine check_beginning(unit, file, system, n_joint, error)
+   !> Check that a run can go on from a file
+   subroutine check_restart(file, system, error)
+      !> Name of the file
+      character(len=*), intent(in) :: file
+      !> The blocks at their beginning; without them whose blocks the file tells of is not checked
+      type(block_system_t), intent(in), optional :: system
+      !> Allocated if the file is missing, broken or of other blocks
+      type(error_t), allocatable, intent(out) :: error
+      integer :: unit, n_joint
+
+      call open_restart(file, unit, error)
+      if (allocated(error)) return
+      if (present(system)) call read_beginning(unit, file, system, n_joint, error)
+      close (unit)
+   end subroutine check_restart
+
+   !> Open a file that is whole
+   subroutine open_restart(file, unit, error)
+      !> Name of the file
+      character(len=*), intent(in) :: file
+      !> Its unit, open unless there is an error
+      integer, intent(out) :: unit
+      !> Allocated if the file is missing or damaged
+      type(error_t), allocatable, intent(out) :: error
+      character(len=len(magic)) :: found
+      integer :: stat
+
+      open (newunit=unit, file=file, access="stream", form="unformatted", status="old", &
+         & action="read", iostat=stat)
+      if (stat /= 0) then
+         call fatal_error(error, "wanted a restart file that can be read, found none; "// &
+            & "check its name", file, 1)
+         return
+      end if
+      found = ""
+      read (unit, iostat=stat) found
+      if (stat /= 0 .or. found /= magic) then
+         call fatal_error(error, "wanted a restart file of this version, found another file; "// &
+            & "make it anew", file, 1)
+      else if (.not. seal_holds(unit)) then
+         call fatal_error(error, "wanted a restart file as it was written, found a damaged one; " &
+            & //"make it anew", file, 1)
+      end if
+      if (allocated(error)) close (unit)
+   end subroutine open_restart
+
+   !> Read the beginning of a file, which must tell of the same blocks
+   subroutine read_beginning(unit, file, system, n_joint, error)
       !> Unit of the file; its state comes next afterwards
       integer, intent(in) :: unit
       !> Name of the file
@@ -100,30 +143,20 @@ contains
       type(block_system_t), intent(in) :: system
       !> Number of joints in the file
       integer, intent(out) :: n_joint
-      !> Allocated if the file is damaged or another one
+      !> Allocated if the file is that of other blocks
       type(error_t), allocatable, intent(inout) :: error
       character(len=len(magic)) :: found
       real(wp) :: vertex(2, size(system%vertex, 2))
       integer :: stat, n(2)
 
-      found = ""
-      n_joint = 0
-      read (unit, iostat=stat) found
-      if (stat /= 0 .or. found /= magic) then
-         call fatal_error(error, "wanted a restart file of this version, found another file", file)
-         return
-      else if (.not. seal_holds(unit)) then
-         call fatal_error(error, "wanted a restart file as it was written, found a damaged one; " &
-            & //"make it anew", file)
-         return
-      end if
       rewind (unit)
       read (unit, iostat=stat) found, n, n_joint
       vertex = huge(vertex)
       if (all(n == [size(system%area), size(system%vertex, 2)])) read (unit, iostat=stat) vertex
       if (any(abs(vertex - system%vertex) > 0.0_wp)) &
-         & call fatal_error(error, "the restart file is that of other blocks", file)
-   end subroutine check_beginning
+         & call fatal_error(error, "wanted a restart file of these blocks, found one of other "// &
+         & "blocks; check its name", file, 1)
+   end subroutine read_beginning
 
    !> Read the march
    subroutine read_march(unit, n_block, march, stat)
