@@ -87,7 +87,7 @@ def draw_case(
     draw_scale(axes, low, high)
     axes.set_title(title_of(row, run), fontsize=11)
     figure.legend(
-        handles=entries, loc="upper center", bbox_to_anchor=(0.5, 0.0), ncols=2, fontsize=9
+        handles=entries, loc="upper center", bbox_to_anchor=(0.5, -0.02), ncols=2, fontsize=9
     )
     return figure
 
