@@ -61,8 +61,8 @@ module dda_help
       & "               the undecided ones of more, and progress where a terminal shows it)", &
       & "   --help, -h  this page", &
       & "", &
-      & "Writes results.csv (a row a case), joints.csv (a row a joint), log.txt, and", &
-      & "deck.record, by which --resume knows the deck again.", &
+      & "Writes results.csv (a row a case), joints.csv (a row a joint), blocks.csv (a row a", &
+      & "corner), log.txt, and deck.record, by which --resume knows the deck again.", &
       & "'dda help' lists the exit statuses, 'dda help keys' what a deck may say."]
 
    !> dda help check
