@@ -178,6 +178,23 @@ def test_scenes_of_lines_and_of_the_original_scheme_are_drawn(tmp_path: Path) ->
         assert (out / "plots" / "case_1.svg").stat().st_size > 5000
 
 
+@pytest.mark.parametrize(
+    ("groups", "words"),
+    [
+        ("&search low = 0.2, high = 0.5 /", "line of thrust"),  # stands at both ends
+        ("&search low = 0.02, high = 0.05 /", "collapse mechanism"),  # falls at both
+        ("&analysis steps = 1 /", "displaced shape"),  # is undecided
+        ("&analysis geometry = 'current' /\n&search /", "collapse mechanism"),
+        ("&analysis mode = 'limerick' /\n&search /", "collapse mechanism"),
+    ],
+)
+def test_cases_of_any_end_are_drawn(tmp_path: Path, groups: str, words: str) -> None:
+    (tmp_path / "deck.nml").write_text(f"&arch voussoirs = 8 /\n{groups}\n")
+    subprocess.run([DDA, "run", "deck.nml", "--quiet"], cwd=tmp_path)
+    with house_style():
+        assert words in legend_of(draw_case(results.read(tmp_path / "deck"), 1))
+
+
 def test_what_is_not_told_is_not_drawn(tmp_path: Path, capsys) -> None:
     run = benchmark(tmp_path, "stack", "output%joints=.false.")
     with house_style():
