@@ -87,7 +87,7 @@ def draw_case(
     draw_scale(axes, low, high)
     axes.set_title(title_of(row, run), fontsize=11)
     figure.legend(
-        handles=entries, loc="upper center", bbox_to_anchor=(0.5, 0.0), ncols=2, fontsize=9
+        handles=entries, loc="upper center", bbox_to_anchor=(0.5, -0.02), ncols=2, fontsize=9
     )
     return figure
 
@@ -129,7 +129,11 @@ def title_of(row: Row, run: Results | None = None) -> str:
             given.append(words.format(row[name]))
     names = list(row)
     own = names[names.index("case") + 1 : names.index("blocks")]
-    given += [f"{name} = {row[name]}" for name in own if name != "voussoirs"]
+    given += [
+        f"{name} = {row[name]:g}" if isinstance(row[name], float) else f"{name} = {row[name]}"
+        for name in own
+        if name != "voussoirs"
+    ]
     end = f"{row['verdict']}"
     if row["verdict"] == "found":
         what = run.searched if run is not None and run.searched else "value"

@@ -48,6 +48,8 @@ class CaseScene:
 
     def shapes(self, factor: float) -> list[np.ndarray]:
         """Corners of the blocks that can move, with so many times their displacements."""
+        if factor == 0.0:  # where displacements are not known, too
+            return [block.corners for block in self.blocks]
         return [block.corners + factor * block.displacement for block in self.blocks]
 
 

@@ -88,6 +88,8 @@ def animate(
     shape = max((high[1] - low[1]) / (high[0] - low[0]) for low, high in boxes)
     timed = any(run.case(number)["mode"] == "dynamic" for number in numbers)
     words = [title(run.case(number)) for number in numbers]
+    if run.kind != "arch" and magnify == 1.0:
+        words = [text + "\ncontacts: crosses slide, dots stick" for text in words]
     room = 0.2 * (1 + max(text.count("\n") for text in words) + timed) + 0.15
     lines = -(-len(numbers) // columns)
     figure, grid = plt.subplots(

@@ -24,9 +24,9 @@ module dda_step_interval
    real(wp), parameter :: growth = 10.0_wp
    !> Steps whose motions point as far against one another as this cosine rattle
    real(wp), parameter :: rattling = -0.3_wp
-   !> Growth of the step after one that was cut: by no more than one cut takes back, so that the next
-   !> one does not fail twice; and where blocks move, less than the cut after rattling, so that this
-   !> bears fruit
+   !> Growth of the step after one that was cut: by no more than one cut takes back, so that the
+   !> next one does not fail twice; and where blocks move, less than the cut after rattling, so that
+   !> this bears fruit
    real(wp), parameter :: calm_growth = 3.0_wp
    !> Rattling below this share of the displacement is no matter
    real(wp), parameter :: rattle_share = 1.0e-4_wp

@@ -154,7 +154,7 @@ contains
       if (entry%head%word(1) == "fix") then
          call take_directions(entry, i, held%along, error)
       else if (i <= entry%head%n) then
-         call fatal_error(error, "unknown word '"//trim(entry%head%word(i))//"'", &
+         call fatal_error(error, "unknown word '"//shown(trim(entry%head%word(i)))//"'", &
             & line=entry%head%number)
       end if
       if (allocated(error)) return
@@ -185,7 +185,8 @@ contains
       if (i > entry%head%n) return
       along = entry%head%word(i) == ["x", "y"]
       if (.not. any(along) .or. i < entry%head%n) call fatal_error(error, &
-         & "wanted x, y or nothing after the numbers, found '"//shown(trim(entry%head%word(i)))//"'", &
+         & "wanted x, y or nothing after the numbers, found '" &
+         & //shown(trim(entry%head%word(i)))//"'", &
          & line=entry%head%number)
    end subroutine take_directions
 

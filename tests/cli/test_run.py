@@ -218,7 +218,7 @@ def test_out_may_be_absolute_and_end_in_a_slash(tmp_path: Path) -> None:
 
 def test_results_of_an_earlier_run_are_replaced(tmp_path: Path) -> None:
     sweep = "&sweep parameter = 'radius', values = 5, 10, 20 /\n"
-    write_decks(tmp_path, many=STABLE + sweep, one=STABLE + "&output joints = .false. /\n")
+    write_decks(tmp_path, many=STABLE + sweep, one=STABLE + "&output joints = .false., blocks = .false. /\n")
     assert run_dda("run", "many.nml", "--out", "results", cwd=tmp_path).returncode == 0
     assert run_dda("run", "one.nml", "--out", "results", cwd=tmp_path).returncode == 0
     assert len(rows_of(tmp_path / "results")) == 1

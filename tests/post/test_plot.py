@@ -178,6 +178,23 @@ def test_scenes_of_lines_and_of_the_original_scheme_are_drawn(tmp_path: Path) ->
         assert (out / "plots" / "case_1.svg").stat().st_size > 5000
 
 
+@pytest.mark.parametrize(
+    ("groups", "words"),
+    [
+        ("&search low = 0.2, high = 0.5 /", "line of thrust"),  # stands at both ends
+        ("&search low = 0.02, high = 0.05 /", "collapse mechanism"),  # falls at both
+        ("&analysis steps = 1 /", "displaced shape"),  # is undecided
+        ("&analysis geometry = 'current' /\n&search /", "collapse mechanism"),
+        ("&analysis mode = 'limerick' /\n&search /", "collapse mechanism"),
+    ],
+)
+def test_cases_of_any_end_are_drawn(tmp_path: Path, groups: str, words: str) -> None:
+    (tmp_path / "deck.nml").write_text(f"&arch voussoirs = 8 /\n{groups}\n")
+    subprocess.run([DDA, "run", "deck.nml", "--quiet"], cwd=tmp_path)
+    with house_style():
+        assert words in legend_of(draw_case(results.read(tmp_path / "deck"), 1))
+
+
 def test_what_is_not_told_is_not_drawn(tmp_path: Path, capsys) -> None:
     run = benchmark(tmp_path, "stack", "output%joints=.false.")
     with house_style():
@@ -282,15 +299,45 @@ def test_folder_that_cannot_be_written_is_status_4(arches, tmp_path: Path, capsy
     assert "taken" in capsys.readouterr().err
 
 
+def test_many_curves_of_one_number_are_told_apart_by_colour(tmp_path: Path) -> None:
+    run = compute(
+        tmp_path,
+        "&search /\n&arch voussoirs = 12 /\n&output joints = .false. /\n"
+        "&sweep parameter = 'half_angle_deg', first = 60, last = 90, count = 10 /\n"
+        "&sweep parameter = 'friction_deg', first = 25, last = 50, count = 9 /\n",
+    )
+    with house_style():
+        for column, other, curves in (
+            ("friction_deg", "half_angle_deg", 10), ("half_angle_deg", "friction_deg", 9)
+        ):
+            axes, bar = draw_chart(run, column).axes
+            assert len(axes.lines) == curves
+            low, high = min(run.cases[other]), max(run.cases[other])
+            assert bar.get_ylim() == pytest.approx((low, high))
+            for line in axes.lines:
+                assert len(line.get_xdata()) == 19 - curves
+
+
 def test_too_many_curves_are_refused(tmp_path: Path) -> None:
     run = compute(
         tmp_path,
-        "&search /\n&output joints = .false. /\n"
-        "&sweep parameter = 'half_angle_deg', first = 60, last = 90, count = 9 /\n"
-        "&sweep parameter = 'friction_deg', values = 40, 50 /\n",
+        "&search /\n&arch voussoirs = 8 /\n&output joints = .false. /\n"
+        "&sweep parameter = 'half_angle_deg', first = 60, last = 90, count = 5 /\n"
+        "&sweep parameter = 'springing', texts = 'frictional', 'no-slip' /\n"
+        "&sweep parameter = 'friction_deg', values = 40, 50, 60 /\n",
     )
-    with pytest.raises(ChartError, match="at most 8 curves"):
+    with pytest.raises(ChartError, match="found 10 curves of .*; sweep fewer values"):
         draw_chart(run, "friction_deg")
+
+
+def test_cases_without_a_critical_value_are_told(tmp_path: Path) -> None:
+    run = compute(
+        tmp_path,
+        "&search /\n&arch voussoirs = 8 /\n&sweep parameter = 'friction_deg', values = 5, 40, 50 /\n",
+    )
+    with house_style():
+        title = draw_chart(run).axes[0].get_title()
+    assert title == "1 of 3 cases have no critical value"
 
 
 def test_motion_is_animated(motion: results.Results, tmp_path: Path, capsys) -> None:
