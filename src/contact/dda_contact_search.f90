@@ -9,6 +9,8 @@ module dda_contact_search
    use dda_kinds, only : wp
    use dda_material, only : joint_law_t
    use dda_outline, only : measure_edges, outline_of, outline_t
+   use dda_parting_line, only : add_parted_joint
+   use dda_sort, only : rising_order
    implicit none
    private
 
@@ -75,7 +77,7 @@ contains
    end subroutine look_around
 
    !> Joints of blocks that touch where they are now, or come as near as they may in a step
-   pure subroutine near_joints(search, system, travel, closed, reach, joint)
+   pure subroutine near_joints(search, system, travel, closed, reach, in_time, joint)
       !> The search
       type(joint_search_t), intent(in) :: search
       !> The blocks
@@ -86,12 +88,15 @@ contains
       integer(int64), intent(in) :: closed(:)
       !> Most that the corners of each block may move: (n_block) [m]
       real(wp), intent(in) :: reach(:)
+      !> Whether blocks move in time: then a line parts convex blocks
+      logical, intent(in) :: in_time
       !> The joints, in the order of their blocks: (n_joint)
       type(joint_t), allocatable, intent(out) :: joint(:)
       type(neighbourhood_t) :: near
 
       near%vertex = system%moved
       near%travel = travel
+      if (in_time) near%ahead = system%moved + travel
       near%closed = closed
       call find_joints(search, system, reach, near, joint)
    end subroutine near_joints
@@ -111,6 +116,7 @@ contains
       type(joint_t), allocatable, intent(out) :: joint(:)
       type(joint_list_t) :: list
       integer, allocatable :: pair(:, :)
+      real(wp) :: far
       integer :: block(2), first, last, j
 
       near%outline = search%outline
@@ -125,8 +131,12 @@ contains
             if (any(near%outline%block(pair(:, last + 1)) /= block)) exit
             last = last + 1
          end do
-         call add_joints(near, pair(:, first:last), &
-            & merge(minval(reach(block)), sum(reach(block)), near%beginning), list)
+         far = merge(minval(reach(block)), sum(reach(block)), near%beginning)
+         if (allocated(near%ahead) .and. all(near%outline%convex(block))) then
+            call add_parted_joint(near, pair(:, first:last), far, list)
+         else
+            call add_joints(near, pair(:, first:last), far, list)
+         end if
          first = last + 1
       end do
       allocate (joint(list%n))
