@@ -10,7 +10,6 @@ module dda_contact_search
    use dda_material, only : joint_law_t
    use dda_outline, only : measure_edges, outline_of, outline_t
    use dda_parting_line, only : add_parted_joint
-   use dda_sort, only : rising_order
    implicit none
    private
 
