@@ -2,7 +2,7 @@
 module dda_block_points
    use dda_block_input, only : block_at, block_plan_t
    use dda_block_lines, only : entry_t, take_numbers
-   use dda_boundary, only : held_point_t, history_t, loaded_point_t, measured_point_t
+   use dda_boundary, only : boundary_t, held_point_t, history_t, loaded_point_t, measured_point_t
    use dda_error, only : error_t, fatal_error
    use dda_kinds, only : wp
    use dda_text, only : to_text
@@ -85,18 +85,46 @@ contains
             held = held_point_t(block, point, [.true., .true.], history)
             if (has_word) held%along = entry%head%word(i) == ["x", "y"]
             has_word = has_word .and. .not. any(held%along)
-            boundary%held = [boundary%held, held]
+            call keep_held(held, entry%head%number, boundary, error)
          case ("displacement")
-            boundary%held = [boundary%held, held_point_t(block, point, [.true., .true.], history)]
+            held = held_point_t(block, point, [.true., .true.], history)
+            call keep_held(held, entry%head%number, boundary, error)
          case ("load")
             boundary%loaded = [boundary%loaded, loaded_point_t(block, point, history)]
          case ("measure")
             boundary%measured = [boundary%measured, measured_point_t(block, point)]
          end select
       end associate
+      if (allocated(error)) return
       if (has_word) call fatal_error(error, "unknown word '"//trim(entry%head%word(i))//"'", &
          & line=entry%head%number)
    end subroutine keep_point
+
+   !> Keep a held point, unless it is held already otherwise than by a path of its own
+   pure subroutine keep_held(held, line, boundary, error)
+      !> The point
+      type(held_point_t), intent(in) :: held
+      !> Its line
+      integer, intent(in) :: line
+      !> Receives it
+      type(boundary_t), intent(inout) :: boundary
+      !> Allocated if the point would be held in two ways
+      type(error_t), allocatable, intent(out) :: error
+      integer :: i
+
+      do i = 1, size(boundary%held)
+         associate (other => boundary%held(i))
+            if (other%block /= held%block) cycle
+            if (norm2(other%point - held%point) > spacing(maxval(abs(held%point)))) cycle
+            if (.not. any(other%along .and. held%along)) cycle
+            if (.not. (allocated(other%path%time) .or. allocated(held%path%time))) cycle
+            call fatal_error(error, "the point is held or led already; remove one of the two", &
+               & line=line)
+            return
+         end associate
+      end do
+      boundary%held = [boundary%held, held]
+   end subroutine keep_held
 
    !> A vector in time: one value behind the word, or rows of time and components below it
    pure subroutine read_history(entry, has_value, value, history, error)
