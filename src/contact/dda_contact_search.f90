@@ -23,7 +23,8 @@ module dda_contact_search
       type(joint_law_t), allocatable :: law(:, :)
    end type joint_search_t
 
-   !> Gaps below this share of the smaller block's size count as closed at the beginning
+   !> Gaps below this share of the smallest block's size, of the two and of those that lie between
+   !> them, count as closed at the beginning
    real(wp), parameter :: touching = 1.0e-4_wp
 
 contains
@@ -57,8 +58,38 @@ contains
       near%travel = 0.0_wp*system%vertex
       near%beginning = .true.
       allocate (near%closed(0))
-      call find_joints(search, system, reach, near, joint)
+      call find_joints(search, system, reach, near, joint, least_beside(system, reach))
    end subroutine touching_joints
+
+   !> The least reach of all blocks that a block meets, its own among them: a sheet between two
+   !> blocks is thicker than its own reach, not than theirs
+   pure function least_beside(system, reach) result(least)
+      !> The blocks
+      type(block_system_t), intent(in) :: system
+      !> How far each block can reach: (n_block) [m]
+      real(wp), intent(in) :: reach(:)
+      !> The least reach: (n_block) [m]
+      real(wp) :: least(size(reach))
+      real(wp) :: high(2, size(reach)), low(2, size(reach))
+      integer, allocatable :: pair(:, :)
+      integer :: b, k
+
+      do b = 1, size(reach)
+         associate (vertex => system%vertex(:, &
+            & system%first_vertex(b):system%first_vertex(b + 1) - 1))
+            low(:, b) = minval(vertex, dim=2) - reach(b)
+            high(:, b) = maxval(vertex, dim=2) + reach(b)
+         end associate
+      end do
+      call box_pairs(low, high, [(b, b=1, size(reach))], pair)
+      least = reach
+      do k = 1, size(pair, 2)
+         associate (i => pair(1, k), j => pair(2, k))
+            least(i) = min(least(i), reach(j))
+            least(j) = min(least(j), reach(i))
+         end associate
+      end do
+   end function least_beside
 
    !> Joints of blocks that touch where they are now, or come as near as they may in a step
    pure subroutine near_joints(search, system, travel, closed, reach, joint)
@@ -83,7 +114,7 @@ contains
    end subroutine near_joints
 
    !> Joints of all pairs of blocks whose edges come near one another
-   pure subroutine find_joints(search, system, reach, near, joint)
+   pure subroutine find_joints(search, system, reach, near, joint, beside)
       !> The search
       type(joint_search_t), intent(in) :: search
       !> The blocks
@@ -95,9 +126,13 @@ contains
       type(neighbourhood_t), intent(inout) :: near
       !> The joints: (n_joint)
       type(joint_t), allocatable, intent(out) :: joint(:)
+      !> Least reach beside each block; one that lies beside both counts at the beginning, too:
+      !> (n_block) [m]
+      real(wp), intent(in), optional :: beside(:)
       type(joint_list_t) :: list
       integer, allocatable :: pair(:, :)
       integer :: block(2), first, last, j
+      real(wp) :: least
 
       near%outline = search%outline
       near%first_vertex = system%first_vertex
@@ -110,8 +145,9 @@ contains
             if (any(near%outline%block(pair(:, last + 1)) /= block)) exit
             last = last + 1
          end do
-         call add_joints(near, pair(:, first:last), &
-            & merge(minval(reach(block)), sum(reach(block)), near%beginning), list)
+         least = sum(reach(block))
+         if (present(beside)) least = min(minval(reach(block)), maxval(beside(block)))
+         call add_joints(near, pair(:, first:last), least, list)
          first = last + 1
       end do
       allocate (joint(list%n))

@@ -37,6 +37,8 @@ module dda_verdict
    real(wp), parameter :: beyond_any = 100.0_wp
    !> Where blocks move, collapse is a displacement of this multiple of the elastic motion
    real(wp), parameter :: collapse_multiple = 100.0_wp
+   !> What has moved as far and loses more than half of its acceleration in a step may come to rest
+   real(wp), parameter :: slowing = 0.5_wp
    !> A block of less than this share of the mean mass is light
    real(wp), parameter :: light = 1.0e-2_wp
    !> Share of the whole weight to which joint forces are balanced, with a margin of ten
@@ -157,7 +159,7 @@ contains
       !> One of verdict
       integer :: answer
       logical :: at_rest, far_beyond_elastic, all_work_is_speed, steady, most_work_is_speed
-      logical :: stores_nothing
+      logical :: goes_on, stores_nothing
       real(wp) :: far, fall
 
       far = settings%collapse_displacement
@@ -171,6 +173,9 @@ contains
       most_work_is_speed = step%kinetic > 0.9_wp*step%work
       steady = abs(step%acceleration - march%last_acceleration) < 0.01_wp*march%last_acceleration
       stores_nothing = abs(step%stored) < 1.0e-3_wp*abs(step%work)
+      ! blocks that slip far into a notch come to rest there
+      goes_on = settings%collapse_displacement > 0.0_wp &
+         & .or. step%acceleration > slowing*march%last_acceleration
       ! where blocks move, a step that comes to rest has only proven the shape it started from
       if (settings%current) at_rest = at_rest .and. march%steps >= 2 &
          & .and. step%farthest <= max(still*march%displacement, march%resolution, &
@@ -179,7 +184,8 @@ contains
       if (at_rest) then
          answer = verdict%stable
       else if (far > 0.0_wp) then
-         if (march%displacement > far .and. march%steps >= 2) answer = verdict%collapsed
+         if (march%displacement > far .and. march%steps >= 2 .and. goes_on) &
+            & answer = verdict%collapsed
       else if (march%steps >= 2 .and. far_beyond_elastic) then
          if (all_work_is_speed .or. steady .and. (most_work_is_speed .or. stores_nothing)) &
             & answer = verdict%collapsed
