@@ -25,7 +25,6 @@ module dda_critical
    !> Most undecided values in a row on the way to a decided one
    integer, parameter :: max_undecided = 6
 
-
    !> A bracket wider than this share of its value is no answer, unless a wider one was asked for
    real(wp), parameter :: widest = 1.0e-4_wp
 
@@ -40,7 +39,7 @@ contains
       !> What was found
       type(critical_t), intent(out) :: critical
       type(proposal_t) :: proposal
-      real(wp) :: limit
+      real(wp) :: limit, value
       integer :: answer, undecided
 
       call find_collapse(family, search, limit, critical)
@@ -63,7 +62,9 @@ contains
             critical%stops = proposal%usable .and. .not. critical%current
             return
          end if
-         call decide_at(family, candidate(critical, proposal, limit), critical, answer)
+         value = candidate(critical, proposal, limit)
+         if (undecided > 0) value = not_again(value, critical, undecided)
+         call decide_at(family, value, critical, answer)
          if (answer == verdict%undecided) then
             undecided = undecided + 1
             proposal%half = 4.0_wp*proposal%half
@@ -223,6 +224,24 @@ contains
          inside = toward*(x - critical%falls) > 0.0_wp .and. toward*(far - x) > 0.0_wp
       end function inside
    end function candidate
+
+   !> A value beside the one that has just been undecided: the middle of a bracket may be critical to
+   !> the last digit, where nothing rests and nothing moves
+   pure real(wp) function not_again(value, critical, undecided)
+      !> The value to decide next
+      real(wp), intent(in) :: value
+      !> What was found so far
+      type(critical_t), intent(in) :: critical
+      !> How many values in a row were undecided
+      integer, intent(in) :: undecided
+      real(wp) :: share
+
+      not_again = value
+      if (abs(value - critical%undecided_at) > 0.0_wp) return
+      if (.not. allocated(critical%standing)) return
+      share = 0.5_wp + 0.1_wp*real(merge(1, -1, mod(undecided, 2) == 0)*((undecided + 1)/2), wp)
+      not_again = critical%falls + share*(critical%stands - critical%falls)
+   end function not_again
 
    !> Middle of a bracket; the geometric one where the ends are of different magnitude
    pure real(wp) function middle(a, b)

@@ -85,3 +85,15 @@ def test_long_steps_let_nothing_through_the_floor(tmp_path: Path, step: float) -
     slide = 9.81 * (0.5 - math.cos(math.pi / 6.0) * math.tan(math.radians(20.0)))
     assert float(last["u"]) == pytest.approx(slide * 1.5**2 / 2.0, rel=1e-3)
     assert abs(float(last["v"])) < 1e-5
+
+
+def test_a_search_steps_aside_of_the_value_that_is_critical_to_the_last_digit(
+    tmp_path: Path,
+) -> None:
+    """The middle of the bracket about tan(phi) is tan(phi): nothing rests there, nothing moves."""
+    blocks = BASE + rectangle(-0.345, 0.0, 0.62, 0.941) + rectangle(-0.516, 0.941, 0.778, 1.047)
+    groups = "&joint friction_deg = 7.61 /\n&material young = 5e13 /\n"
+    groups += "&analysis geometry = 'current' /\n&search parameter = 'horizontal_coefficient' /"
+    (row,) = run(tmp_path, blocks, groups)
+    assert row["verdict"] == "found"
+    assert float(row["critical"]) == pytest.approx(math.tan(math.radians(7.61)), rel=1e-7)
