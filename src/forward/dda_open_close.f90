@@ -36,6 +36,8 @@ module dda_open_close
       type(joint_face_t), allocatable :: face(:)
       !> Bounds of the forces: (n_joint)
       type(cone_t), allocatable :: cone(:)
+      !> Work of what the bounds of the shear forces would still change by [J/m]
+      real(wp) :: unsettled_work = 0.0_wp
       !> Passes of the loop so far
       integer :: passes = 0
       !> Whether every joint's force agrees with its face

@@ -185,7 +185,8 @@ contains
          & march%dt = march%allowed_motion/speed
       if (.not. settings%duration > 0.0_wp) return
       left = settings%duration - march%time
-      if (left < march%dt*(1.0_wp + 1.0e-9_wp)) march%dt = left
+      ! what many rounded steps leave over is no step of its own
+      if (left < march%dt*(1.0_wp + 1.0e-6_wp)) march%dt = left
    end subroutine fit_interval
 
    !> Accept a step, or cut its length for another try: it must have settled and, where blocks move,
