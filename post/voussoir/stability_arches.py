@@ -1,16 +1,16 @@
-"""The catalogue of stiff and extreme scenes: decks of arches with exact answers."""
+"""Stiff and extreme arches, whose critical thickness limit analysis knows."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Iterator
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
 from voussoir import theory
 from voussoir.stability_judge import Critical, Expectation, Refused, Same, Shifted, Verdict
+from voussoir.stability_scene import Bare, Scene
 
 #: Weight of a cubic metre of the decks' default masonry [N/m3]
 UNIT_WEIGHT = 2240.0 * 9.81
@@ -20,51 +20,6 @@ NEARLY_RIGID = 5e12
 NO_SLIP_DEG = 89.9
 
 _SEARCH: dict[str, Any] = {"search": {"parameter": "thickness_ratio"}}
-
-
-@dataclass(frozen=True)
-class Scene:
-    """One scene.
-
-    Attributes
-    ----------
-    group
-        What is extreme about it.
-    name
-        Its place in the group.
-    deck
-        Groups of the deck: keys and values.
-    expectation
-        What it must answer.
-    guard
-        What keeps the answer right.
-    """
-
-    group: str
-    name: str
-    deck: dict[str, dict[str, Any]]
-    expectation: Expectation
-    guard: str
-
-    def text(self) -> str:
-        """The deck as text."""
-        groups = {**self.deck, "output": {"vtu": False, "condition": True}}
-        lines = []
-        for group, keys in groups.items():
-            values = ", ".join(f"{key} = {_written(value)}" for key, value in keys.items())
-            lines.append(f"&{group.split('#')[0]} {values} /")
-        return "\n".join(lines) + "\n"
-
-
-def _written(value: Any) -> str:
-    """A value as a deck writes it."""
-    if isinstance(value, bool):
-        return ".true." if value else ".false."
-    if isinstance(value, str):
-        return value if value.startswith("=") else f"'{value}'"
-    if isinstance(value, (list, tuple, np.ndarray)):
-        return ", ".join(_written(item) for item in value)
-    return repr(value)
 
 
 def exact_thickness(arch: dict[str, Any], friction_deg: float = 50.0) -> float | None:
@@ -137,8 +92,8 @@ def searched(
     return Scene(group, name + (", moving" if current else ""), deck, expectation, guard)
 
 
-def catalogue() -> Iterator[Scene]:
-    """All scenes but the random ones.
+def arches() -> Iterator[Scene]:
+    """All arches but the random ones.
 
     Yields
     ------
@@ -337,21 +292,11 @@ def _refused() -> Iterator[Scene]:
         deck = {"arch": {"thickness_ratio": 0.15}, group: {key: value}}
         yield Scene("bad input", f"{key} {value}", deck, Refused(key), "ranges of the deck's keys")
     for word in ("NaN", "Inf", "1e999"):
-        deck = {"material": {"young": _Bare(word)}}
+        deck = {"material": {"young": Bare(word)}}
         yield Scene("bad input", f"young {word}", deck, Refused("young"), "numbers are finite")
 
 
-class _Bare:
-    """A word written without quotes."""
-
-    def __init__(self, word: str) -> None:
-        self.word = word
-
-    def __repr__(self) -> str:
-        return self.word
-
-
-def random_scenes(count: int, seed: int) -> Iterator[Scene]:
+def random_arches(count: int, seed: int) -> Iterator[Scene]:
     """Arches that nobody has listed.
 
     Parameters
