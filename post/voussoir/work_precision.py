@@ -12,6 +12,7 @@ from voussoir.dda_program import DdaError, find_dda
 from voussoir.work_precision_motion import MotionPoint, motion_points
 from voussoir.work_precision_motion_page import draw_motion, motion_table, write_motion_csv
 from voussoir.work_precision_page import best_table, draw, race_table, write_csv
+from voussoir.work_precision_plan import cost_table, plan_costs
 from voussoir.work_precision_runs import Arch, Point, Race, bisected, dda_points, race
 
 
@@ -50,6 +51,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     part.add_argument(
         "--motion", action="store_true", help="only blocks that move in time, no arches"
     )
+    part.add_argument(
+        "--plan", action="store_true", help="only what parts of the scene plan cost if forced in"
+    )
 
 
 def run(arguments: argparse.Namespace) -> int:
@@ -73,6 +77,12 @@ def run(arguments: argparse.Namespace) -> int:
     arches = [Arch(angle, count) for count in arguments.voussoirs for angle in arguments.angles]
     arguments.out.mkdir(parents=True, exist_ok=True)
     runs = arguments.out / "runs"
+    if arguments.plan:
+        costs = plan_costs(arguments.voussoirs, runs, arguments.repeats)
+        table = "\n".join(cost_table(list(costs))) + "\n"
+        (arguments.out / "plan_costs.md").write_text(table, encoding="utf-8")
+        sys.stdout.write(table)
+        return 0
     races: list[Race] = []
     points: list[Point] = []
     motion: list[MotionPoint] = []

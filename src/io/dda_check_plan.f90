@@ -153,8 +153,6 @@ contains
             return
          end associate
       end do
-      if (.not. any(plan%fixed) .and. .not. allocated(plan%boundary%held)) &
-         & call warn(plan, 1, "nothing is fixed")
       if (all(plan%fixed)) call warn(plan, 1, "all blocks are fixed: nothing can move")
    end subroutine check_plan
 

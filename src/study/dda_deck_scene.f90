@@ -140,17 +140,19 @@ contains
       end if
       if (word_of(deck, "scene", "kind") /= "blocks") return
       call deck_scene(deck, scene)
-      call doubt_units(deck, scene)
       b = floating_block(scene)
-      if (b == 0) return
-      if (word_of(deck, "analysis", "mode") == "static") then
+      if (b > 0 .and. word_of(deck, "analysis", "mode") == "static") then
          call fatal_error(error, "block "//to_text(b)//" rests on nothing: no chain of joints "// &
             & "ties it to a fixed block, as mode = 'static' wants; add a joint or remove it", &
             & geometry_file(deck), deck%plan%line(b))
-      else if (any(deck%plan%fixed)) then
-         call add_warning(deck%warnings, "block "//to_text(b)//" rests on nothing, and will fall", &
-            & geometry_file(deck), deck%plan%line(b))
+         return
       end if
+      call doubt_units(deck, scene)
+      if (b > 0 .and. any(deck%plan%fixed)) call add_warning(deck%warnings, "block " &
+         & //to_text(b)//" rests on nothing, and will fall", geometry_file(deck), &
+         & deck%plan%line(b))
+      if (.not. any(deck%plan%fixed) .and. .not. allocated(deck%plan%boundary%held)) &
+         & call add_warning(deck%warnings, "nothing is fixed", geometry_file(deck), 1)
    end subroutine check_scene
 
    !> Warn where the weight of the blocks would strain them as no masonry is strained: lengths are

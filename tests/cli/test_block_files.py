@@ -34,6 +34,18 @@ def test_check_tells_what_was_found(tmp_path: Path) -> None:
     assert "1 of two normal springs and one shear spring, 1 of one corner before an edge" in done.stdout
 
 
+def test_check_tells_the_points(tmp_path: Path) -> None:
+    deck = write(tmp_path, BLOCK + "fix 0 0\nfix 1 0\nmeasure 0.5 1\nload 0.5 2 1 0\n")
+    done = run_dda("check", deck)
+    assert done.returncode == 0 and done.stderr == ""
+    assert "2 held, 1 loaded, 1 measured" in done.stdout
+
+
+def test_nothing_fixed_is_warned_of(tmp_path: Path) -> None:
+    deck = write(tmp_path, BLOCK, "&analysis mode = 'dynamic' /")
+    assert "x.blocks:1: warning: nothing is fixed" in run_dda("check", deck).stderr
+
+
 def test_warnings_name_file_and_line(tmp_path: Path) -> None:
     clockwise = "block\n0 0\n0 2\n1 2\n1 0\n"
     deck = write(tmp_path, BASE + clockwise)
