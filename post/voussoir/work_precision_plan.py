@@ -31,7 +31,7 @@ PARTS: tuple[tuple[str, str | None], ...] = (
     ("blocks that move, contacts that follow", "&analysis geometry = 'current' /\n"),
 )
 #: Blocks that move are left out beyond this number of voussoirs: they take minutes
-MOST_MOVING = 1000
+MOST_MOVING = 100
 
 
 @dataclass(frozen=True)

@@ -152,7 +152,9 @@ def test_scenes_are_run_and_told(tmp_path, capsys):
     assert {line["result"] for line in rows} == {"right"}
     assert all(float(line["condition"]) > 1.0 and int(line["passes"]) > 0 for line in rows)
     assert "0 WRONG" in (tmp_path / "stability.md").read_text()
-    assert (tmp_path / "stability.html").read_text().count("class='right'") == 4
+    page = (tmp_path / "stability.html").read_text()
+    assert page.count("<td class='right'>") == 4 and "class='number right'>4<" in page
+    assert "not right" not in page
 
 
 @pytest.mark.skipif("DDA" not in os.environ, reason="the program is named by DDA")

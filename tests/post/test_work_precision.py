@@ -130,3 +130,19 @@ def test_race_alone_writes_no_diagram(tmp_path, capsys):
     printed = capsys.readouterr().out
     assert "| 60 | 4 |" in printed and "| 60 | 8 |" in printed
     assert not (tmp_path / "work_precision.csv").exists()
+
+
+@needs_dda
+def test_what_the_plan_saves_is_told_and_the_answer_stays(tmp_path, capsys):
+    words = ["work-precision", "--plan", "--voussoirs", "12", "--repeats", "2", "--out"]
+    assert main([*words, str(tmp_path)]) == 0
+    printed = capsys.readouterr().out
+    assert printed == (tmp_path / "plan_costs.md").read_text()
+    rows = [line.strip("| ").split(" | ") for line in printed.splitlines()[2:]]
+    answers = {row[1]: row[-1] for row in rows}
+    assert answers["joints searched among polygons"] == "stable"
+    for part in ("strain: 6 unknowns a block", "strength that can break", "condition"):
+        assert float(answers[part]) < 1e-10
+    # moving blocks differ by what elasticity makes of them
+    assert 1e-5 < float(answers["blocks that move, contacts that follow"]) < 1e-2
+    assert all(float(row[2]) > 0.0 for row in rows)
