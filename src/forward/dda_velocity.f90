@@ -15,7 +15,7 @@ module dda_velocity
    use dda_contact_detection, only : contacts_t
    use dda_deformation, only : displacement_matrix, moved_point
    use dda_elasticity, only : stress_load
-   use dda_fixed_points, only : add_fixed_springs
+   use dda_fixed_points, only : add_fixed_springs, hold_rigidly
    use dda_joint_springs, only : joint_springs_t
    use dda_kinds, only : wp
    use dda_material, only : elasticity_matrix
@@ -228,8 +228,13 @@ contains
       end do
       do i = 1, size(equations%fixed%point)
          b = settings%boundary%held(equations%fixed%point(i))%block
-         if (follows(b)) equations%fixed%row(4:, i) = 0.0_wp
          call turn_held_row(settings, system, b, i, step%state%motion, equations)
+      end do
+      do b = 1, size(follows)
+         e = system%equation(b)
+         if (e == 0 .or. .not. follows(b)) cycle
+         call hold_rigidly(e, equations%fixed)
+         equations%load(4:, e) = 0.0_wp
       end do
       call add_fixed_springs(equations%fixed, step%dt*equations%fixed%rate, equations%base, &
          & equations%load)

@@ -7,11 +7,13 @@ module dda_deck_scene
       & real_of, text_of, word_of
    use dda_deck_keys, only : key_index
    use dda_deck_set, only : number_fits, put_number
+   use dda_deck_sweep, only : n_cases
    use dda_error, only : error_t, fatal_error
    use dda_kinds, only : wp
    use dda_limerick_lines, only : check_limerick_lines
    use dda_line_scene, only : check_line_scene, line_scene
    use dda_read_deck, only : geometry_file
+   use dda_restart, only : check_restart
    use dda_scene, only : family_t, scene_t
    use dda_text, only : to_text
    use dda_warnings, only : add_warning
@@ -137,6 +139,14 @@ contains
                & place_of(deck, key_index("analysis", "restart")))
             return
          end if
+         call deck_scene(deck, scene)
+         if (n_cases(deck) == 1) then
+            call check_restart(file_beside(deck, text_of(deck, "analysis", "restart")), &
+               & scene%system, error)
+         else
+            call check_restart(file_beside(deck, text_of(deck, "analysis", "restart")), error=error)
+         end if
+         if (allocated(error)) return
       end if
       if (word_of(deck, "scene", "kind") /= "blocks") return
       call deck_scene(deck, scene)
@@ -151,8 +161,10 @@ contains
       if (b > 0 .and. any(deck%plan%fixed)) call add_warning(deck%warnings, "block " &
          & //to_text(b)//" rests on nothing, and will fall", geometry_file(deck), &
          & deck%plan%line(b))
-      if (.not. any(deck%plan%fixed) .and. .not. allocated(deck%plan%boundary%held)) &
-         & call add_warning(deck%warnings, "nothing is fixed", geometry_file(deck), 1)
+      if (any(deck%plan%fixed)) return
+      b = 0
+      if (allocated(deck%plan%boundary%held)) b = size(deck%plan%boundary%held)
+      if (b == 0) call add_warning(deck%warnings, "nothing is fixed", geometry_file(deck), 1)
    end subroutine check_scene
 
    !> Warn where the weight of the blocks would strain them as no masonry is strained: lengths are
