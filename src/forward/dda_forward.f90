@@ -327,6 +327,7 @@ contains
       state%start = contacts%trial
       state%face = contacts%face
       state%cone = contacts%springs%cone
+      state%unsettled_work = 0.0_wp
       state%passes = 0
    end subroutine begin_step
 end module dda_forward

@@ -38,6 +38,8 @@ module dda_open_close
       type(cone_t), allocatable :: cone(:)
       !> How much smaller than usual gaps must be that sweeps leave
       real(wp) :: fineness = 1.0_wp
+      !> Work of what the bounds of the shear forces would still change by [J/m]
+      real(wp) :: unsettled_work = 0.0_wp
       !> Passes of the loop so far
       integer :: passes = 0
       !> Whether every joint's force agrees with its face
