@@ -39,7 +39,7 @@ contains
          call place_joint(system, system%vertex, joint(j), gap)
          joint(j)%contact%closed_at = gap(1:2)
       end do
-      call set_joints(system, system%centroid, joint, penalty_ratio, n_dof, contacts)
+      call set_joints(system, 0.0_wp*system%motion, joint, penalty_ratio, n_dof, contacts)
       do j = 1, size(joint)
          contacts%face(j)%open(2) = joint(j)%n_contact == 1
       end do
@@ -79,8 +79,7 @@ contains
       end do
       before%face = contacts%face
       before%broken = contacts%broken
-      call set_joints(system, system%centroid + system%motion(1:2, :), joint, penalty_ratio, &
-         & n_dof, contacts)
+      call set_joints(system, system%motion, joint, penalty_ratio, n_dof, contacts)
       do j = 1, size(joint)
          call take_over_state(before, past, source(:, j), j, contacts)
          call keep_shear(system, past, source(:, j), contacts%springs%stiffness(j), &

@@ -1,8 +1,8 @@
 !> An order of the blocks that parts them again and again: nested dissection (A. George, 1973)
 !>
 !> The few blocks that part a group in two are eliminated after both parts. Elimination then costs
-!> n**1.5 for n blocks in a plane, where a narrow order of a square wall costs n**2. Where to part is
-!> read from the steps that a search in breadth takes from a block at the rim (A. George and
+!> n**1.5 for n blocks in a plane, where a narrow order of a square wall costs n**2. Where to part
+!> is read from the steps that a search in breadth takes from a block at the rim (A. George and
 !> J. W. H. Liu, 1978).
 module dda_block_dissection
    use dda_block_order, only : neighbour_lists
