@@ -10,7 +10,7 @@ import matplotlib.pyplot as plt
 from matplotlib.animation import FFMpegWriter, FuncAnimation, PillowWriter
 from matplotlib.figure import Figure
 
-from voussoir.collapse_picture import draw_frame, limits, set_limits
+from voussoir.collapse_picture import draw_frame, limits, pictures_of, set_limits
 from voussoir.results import Results
 
 #: Pictures a second, and how many times the last one is shown
@@ -83,13 +83,16 @@ def animate(
     """
     check_ending(file)
     columns = min(columns, len(numbers))
-    frames = [run.frames_of(number) for number in numbers]
+    frames = [pictures_of(run, number) for number in numbers]
     boxes = [limits(run, [number], magnify) for number in numbers]
     shape = max((high[1] - low[1]) / (high[0] - low[0]) for low, high in boxes)
     timed = any(run.case(number)["mode"] == "dynamic" for number in numbers)
     words = [title(run.case(number)) for number in numbers]
-    if run.kind != "arch" and magnify == 1.0:
-        words = [text + "\ncontacts: crosses slide, dots stick" for text in words]
+    for place, number in enumerate(numbers):
+        if len(run.frames_of(number)) < 2:
+            words[place] += "\nthe collapse mechanism, at a size of its own"
+        elif run.kind != "arch" and magnify == 1.0:
+            words[place] += "\ncontacts: crosses slide, dots stick"
     room = 0.2 * (1 + max(text.count("\n") for text in words) + timed) + 0.15
     lines = -(-len(numbers) // columns)
     figure, grid = plt.subplots(
