@@ -62,7 +62,8 @@ module dda_help
       & "   --help, -h  this page", &
       & "", &
       & "Writes results.csv (a row a case), joints.csv (a row a joint), blocks.csv (a row a", &
-      & "corner), log.txt, and deck.record, by which --resume knows the deck again.", &
+      & "corner), log.txt, deck.record, by which --resume knows the deck again, and", &
+      & "disk.record, by which it knows after a loss of power which rows to trust.", &
       & "'dda help' lists the exit statuses, 'dda help keys' what a deck may say."]
 
    !> dda help check

@@ -1,10 +1,13 @@
 !> The tables of one deck's results: begun, added to case by case, closed
 module dda_result_tables
+   use, intrinsic :: iso_fortran_env, only : int64
    use dda_deck, only : deck_t, flag_of, has_group, integer_of, is_given
    use dda_deck_sweep, only : n_cases, swept_names, swept_texts
+   use dda_disk_record, only : write_disk_record
    use dda_error, only : error_t
    use dda_process, only : make_folder
-   use dda_table_file, only : append_line, close_table, open_table, remove_file, table_file_t
+   use dda_table_file, only : append_line, close_table, length_of, open_table, remove_file, &
+      & sync_table, table_file_t
    use dda_text, only : to_text
    use dda_growing_text, only : add_line, growing_text_t, lines_of
    use dda_write_blocks, only : block_lines, blocks_header, told_blocks_t
@@ -17,6 +20,7 @@ module dda_result_tables
 
    public :: result_tables_t, result_table_t, table, table_enum
    public :: name_tables, open_tables, close_tables, write_case, swept_fields, write_record
+   public :: sync_tables, sync_when_due
 
    !> Places of the tables in result_tables_t
    type :: table_enum
@@ -61,9 +65,17 @@ module dda_result_tables
       type(result_table_t) :: at(8)
       !> File that holds what was asked for
       character(len=:), allocatable :: record_file
+      !> File that holds how much of results.csv is on the disk
+      character(len=:), allocatable :: disk_file
+      !> Clock at which the tables are brought to the disk again
+      integer(int64) :: due = 0
       !> Whether pictures are wanted as VTU too
       logical :: has_vtu = .false.
    end type result_tables_t
+
+   !> Time between two occasions to bring the tables to the disk, at least and beside the time that
+   !> it takes: on a slow disk no more than a twentieth of a run goes into it
+   integer, parameter :: sync_seconds = 1, sync_ratio = 20
 
    !> Columns of results.csv that a swept parameter shares
    character(len=*), parameter :: own_column(*) = [character(len=16) :: "half_angle_deg", &
@@ -93,6 +105,7 @@ contains
       end associate
       tables%folder = folder
       tables%record_file = folder//"/deck.record"
+      tables%disk_file = folder//"/disk.record"
       tables%has_vtu = flag_of(deck, "output", "vtu")
       call name_table(tables%at(table%results), "/results.csv", results_header(names, &
          & flag_of(deck, "output", "condition")))
@@ -139,11 +152,13 @@ contains
       character(len=*), intent(in) :: record
       !> Allocated if they cannot be written
       type(error_t), allocatable, intent(out) :: error
+      integer(int64) :: now, rate
       integer :: i
 
       call make_folder(tables%folder)
       ! killed on the way, old rows must not pass for those of this deck
       call remove_file(tables%record_file)
+      call remove_file(tables%disk_file)
       do i = 1, size(tables%at)
          associate (this => tables%at(i))
             if (this%wanted) then
@@ -154,7 +169,10 @@ contains
          end associate
          if (allocated(error)) return
       end do
-      call write_record(tables, record, error)
+      call write_disk_record(tables%disk_file, 0_int64, error)
+      if (.not. allocated(error)) call write_record(tables, record, error)
+      call system_clock(now, rate)
+      tables%due = now + sync_seconds*rate
    end subroutine open_tables
 
    !> Write down what was asked for
@@ -171,12 +189,47 @@ contains
       call close_table(file)
    end subroutine write_record
 
-   !> Close all tables
-   subroutine close_tables(tables)
+   !> Bring all tables to the disk, results.csv last, and write down how long it is
+   subroutine sync_tables(tables, error)
       !> The tables
       type(result_tables_t), intent(inout) :: tables
+      !> Allocated if they cannot be written
+      type(error_t), allocatable, intent(inout) :: error
+      integer(int64) :: start, end, rate
       integer :: i
 
+      if (allocated(error)) return
+      call system_clock(start, rate)
+      do i = size(tables%at), 1, -1
+         call sync_table(tables%at(i)%open, error)
+      end do
+      if (allocated(error)) return
+      call write_disk_record(tables%disk_file, length_of(tables%at(table%results)%open), error)
+      call system_clock(end)
+      tables%due = end + max(sync_seconds*rate, sync_ratio*(end - start))
+   end subroutine sync_tables
+
+   !> Bring all tables to the disk if the last time is long ago
+   subroutine sync_when_due(tables, error)
+      !> The tables
+      type(result_tables_t), intent(inout) :: tables
+      !> Allocated if they cannot be written
+      type(error_t), allocatable, intent(inout) :: error
+      integer(int64) :: now
+
+      call system_clock(now)
+      if (now >= tables%due) call sync_tables(tables, error)
+   end subroutine sync_when_due
+
+   !> Bring all tables to the disk and close them
+   subroutine close_tables(tables, error)
+      !> The tables
+      type(result_tables_t), intent(inout) :: tables
+      !> Allocated if they cannot be written
+      type(error_t), allocatable, intent(inout) :: error
+      integer :: i
+
+      call sync_tables(tables, error)
       do i = 1, size(tables%at)
          call close_table(tables%at(i)%open)
       end do

@@ -159,3 +159,16 @@ def test_links_between_pages_lead_somewhere() -> None:
             if not (page.parent / target).exists():
                 broken.append(f"{page.name}: {target}")
     assert broken == []
+
+
+def test_flaws_that_are_cured_name_modules_and_tests_that_exist() -> None:
+    page = (ROOT / "docs" / "limits.md").read_text(encoding="utf-8")
+    rows = [line for line in page.splitlines() if line.startswith("| ") and "cured" in line]
+    names = re.findall(r"`(test_[a-z0-9_]+)`", page)
+    assert len(rows) >= 15 and all("`test_" in row for row in rows)
+    suites = [*(ROOT / "tests").rglob("*.pf"), *(ROOT / "tests").rglob("*.py")]
+    whole = "\n".join(path.read_text(encoding="utf-8") for path in suites)
+    for name in names:
+        assert re.search(rf"(subroutine|def) {name}\(", whole), name
+    for name in re.findall(r"`(dda_[a-z_]+)`", page):
+        assert list((ROOT / "src").rglob(f"{name}.f90")), name

@@ -214,6 +214,40 @@ def test_rows_that_were_cut_off_are_not_taken(tmp_path: Path) -> None:
     assert finished_by(attempt) == {2}
 
 
+def test_rows_that_a_loss_of_power_may_have_spoiled_are_not_taken(tmp_path: Path) -> None:
+    text = "deck,case,verdict,seconds\na,1,stable,0.1\na,2,stable,0.1\n"
+    (tmp_path / "results.csv").write_text(text)
+    for record, cases in (
+        (f"0 {campaign_part.start_name()}\n", {1, 2}),
+        ("0 another start\n", set()),
+        (f"{text.index('a,2')} another start\n", {1}),
+        ("", set()),
+    ):
+        (tmp_path / "disk.record").write_text(record)
+        assert finished_by(tmp_path) == cases
+
+
+def test_every_table_of_a_run_is_merged(tmp_path: Path) -> None:
+    (tmp_path / "drop.blocks").write_text(
+        "block fixed\n-1 -1\n1 -1\n1 0\n-1 0\nblock\n-0.5 0\n0.5 0\n0.5 1\n-0.5 1\n"
+        "measure 0 0.5\n"
+    )
+    deck = tmp_path / "drop.nml"
+    deck.write_text(
+        "&scene kind = 'blocks', geometry = 'drop.blocks' /\n"
+        "&analysis mode = 'dynamic', geometry = 'current', duration = 0.02, time_step = 0.01 /\n"
+        "&output frames = 2, energy = .true. /\n"
+        "&sweep parameter = 'friction_deg', values = 20, 30, 40 /\n"
+    )
+    subprocess.run([DDA, "run", deck, "--out", tmp_path / "one", "--quiet"], check=True)
+    out = tmp_path / "out"
+    assert main(["campaign", str(deck), "--out", str(out), "--workers", "2", "--quiet"]) == 0
+    for table in (tmp_path / "one").glob("*.csv"):
+        if table.name != "results.csv":
+            assert (out / table.name).read_text() == table.read_text(), table.name
+    assert {"points.csv", "energy.csv", "frames.csv"} <= {path.name for path in out.iterdir()}
+
+
 def test_ranges_read_back() -> None:
     assert ranges_of([1, 2, 3, 7, 9, 10]) == "1-3,7,9-10"
     assert ranges_of([5]) == "5"
