@@ -98,12 +98,10 @@ def animate(
             axes.clear()
             draw_frame(axes, run, number, frame, size=4.0, magnify=magnify)
             set_limits(axes, box)
-            if timed:
-                text += f"\nt = {frame.time:.3f} s"
-            axes.set_title(text, fontsize=9)
+            clock = f"\nt = {frame.time:.3f} s" if timed else ""
+            axes.set_title(text + clock, fontsize=9)
 
-    length = max(map(len, frames))
-    written = write(figure, draw, length, file)
+    written = write(figure, draw, max(map(len, frames)), file)
     plt.close(figure)
     return written
 
