@@ -74,23 +74,22 @@ contains
       type(block_plan_t), intent(inout) :: plan
       !> A word too many
       type(error_t), allocatable, intent(out) :: error
-      type(held_point_t) :: held
-      logical :: has_word
+      logical :: along(2), has_word
 
       has_word = i <= entry%head%n
+      along = .true.
       associate (boundary => plan%boundary)
          if (.not. allocated(boundary%held)) &
             & allocate (boundary%held(0), boundary%loaded(0), boundary%measured(0))
          select case (entry%head%word(1))
          case ("fix")
-            held = held_point_t(block, point, [.true., .true.], history)
-            if (has_word) held%along = entry%head%word(i) == ["x", "y"]
-            has_word = has_word .and. .not. any(held%along)
-            boundary%held = [boundary%held, held]
+            if (has_word) along = entry%head%word(i) == ["x", "y"]
+            has_word = has_word .and. .not. any(along)
+            call keep_held(boundary%held, block, point, along, history)
          case ("displacement")
-            boundary%held = [boundary%held, held_point_t(block, point, [.true., .true.], history)]
+            call keep_held(boundary%held, block, point, along, history)
          case ("load")
-            boundary%loaded = [boundary%loaded, loaded_point_t(block, point, history)]
+            call keep_load(boundary%loaded, block, point, history)
          case ("measure")
             boundary%measured = [boundary%measured, measured_point_t(block, point)]
          end select
@@ -99,6 +98,53 @@ contains
          & //shown(trim(entry%head%word(i)))//"'", &
          & line=entry%head%number)
    end subroutine keep_point
+
+   !> Add a held point to a list; gfortran's array constructors would lose the memory of histories
+   pure subroutine keep_held(list, block, point, along, history)
+      !> The list
+      type(held_point_t), allocatable, intent(inout) :: list(:)
+      !> Block that owns the point
+      integer, intent(in) :: block
+      !> The point: (2) [m]
+      real(wp), intent(in) :: point(2)
+      !> Directions that are held: (2)
+      logical, intent(in) :: along(2)
+      !> Its displacement in time
+      type(history_t), intent(in) :: history
+      type(held_point_t), allocatable :: longer(:)
+      integer :: n
+
+      n = size(list) + 1
+      allocate (longer(n))
+      longer(:n - 1) = list
+      longer(n)%block = block
+      longer(n)%point = point
+      longer(n)%along = along
+      longer(n)%path = history
+      call move_alloc(longer, list)
+   end subroutine keep_held
+
+   !> Add a loaded point to a list
+   pure subroutine keep_load(list, block, point, history)
+      !> The list
+      type(loaded_point_t), allocatable, intent(inout) :: list(:)
+      !> Block that owns the point
+      integer, intent(in) :: block
+      !> The point: (2) [m]
+      real(wp), intent(in) :: point(2)
+      !> Its force in time
+      type(history_t), intent(in) :: history
+      type(loaded_point_t), allocatable :: longer(:)
+      integer :: n
+
+      n = size(list) + 1
+      allocate (longer(n))
+      longer(:n - 1) = list
+      longer(n)%block = block
+      longer(n)%point = point
+      longer(n)%force = history
+      call move_alloc(longer, list)
+   end subroutine keep_load
 
    !> A vector in time: one value behind the word, or rows of time and components below it
    pure subroutine read_history(entry, has_value, value, history, error)
