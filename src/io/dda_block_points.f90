@@ -163,7 +163,7 @@ contains
          case ("fix", "displacement")
             call add_held(entry, held, plan, error)
          case ("load")
-            boundary%loaded = [boundary%loaded, loaded_point_t(block, point, history)]
+            call keep_load(boundary%loaded, block, point, history)
          case ("measure")
             boundary%measured = [boundary%measured, measured_point_t(block, point)]
          end select
@@ -218,8 +218,46 @@ contains
             & //"are held or led already, found another", line=entry%head%number)
          return
       end if
-      plan%boundary%held = [plan%boundary%held, held]
+      call keep_held(plan%boundary%held, held)
    end subroutine add_held
+
+   !> Add a held point to a list; gfortran's array constructors would lose the memory of histories
+   pure subroutine keep_held(list, held)
+      !> The list
+      type(held_point_t), allocatable, intent(inout) :: list(:)
+      !> The point
+      type(held_point_t), intent(in) :: held
+      type(held_point_t), allocatable :: longer(:)
+      integer :: n
+
+      n = size(list) + 1
+      allocate (longer(n))
+      longer(:n - 1) = list
+      longer(n) = held
+      call move_alloc(longer, list)
+   end subroutine keep_held
+
+   !> Add a loaded point to a list
+   pure subroutine keep_load(list, block, point, history)
+      !> The list
+      type(loaded_point_t), allocatable, intent(inout) :: list(:)
+      !> Block that owns the point
+      integer, intent(in) :: block
+      !> The point: (2) [m]
+      real(wp), intent(in) :: point(2)
+      !> Its force in time
+      type(history_t), intent(in) :: history
+      type(loaded_point_t), allocatable :: longer(:)
+      integer :: n
+
+      n = size(list) + 1
+      allocate (longer(n))
+      longer(:n - 1) = list
+      longer(n)%block = block
+      longer(n)%point = point
+      longer(n)%force = history
+      call move_alloc(longer, list)
+   end subroutine keep_load
 
    !> A vector in time: one value behind the word, or rows of time and components below it
    pure subroutine read_history(entry, has_value, value, history, error)
