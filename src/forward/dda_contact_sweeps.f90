@@ -39,8 +39,12 @@ module dda_contact_sweeps
    real(wp), parameter :: no_matter = 1.0e-9_wp
    !> Multiple of it that will do where more sweeps bring no less
    real(wp), parameter :: coarse = 1.0e2_wp
+   !> The same where they bring no less without haste either
+   real(wp), parameter :: coarsest = 1.0e4_wp
    !> Most passes over the forces of one joint
    integer, parameter :: max_passes = 1
+   !> After this many sweeps a change that falls no more ends them
+   integer, parameter :: plain_sweeps = 1000
    !> Most sweeps
    integer, parameter :: max_sweeps = 4000
    !> After this many sweeps the joints without force are looked at again
@@ -100,8 +104,8 @@ contains
          if (hasty) call go_on(springs, view, force - before, square, way, force, motion)
          if (modulo(sweep, patience) /= 0 .or. sweep == 0) cycle
          if (.not. change(2) < falling*last) then
-            state%settled = change(2) <= coarse*enough(2)
-            if (state%settled .or. .not. hasty) exit
+            state%settled = change(2) <= merge(coarse, coarsest, hasty)*enough(2)
+            if (state%settled .or. sweep >= plain_sweeps) exit
             hasty = .false.
          end if
          last = change(2)
