@@ -84,11 +84,6 @@ def all_scenes() -> tuple[Scene, ...]:
     return tuple(sorted(scenes, key=lambda scene: sections.index(scene.section)))
 
 
-def find_decks() -> Path:
-    """The folder of the suite's decks in the source."""
-    return Path(__file__).resolve().parents[2] / "input" / "benchmarks"
-
-
 def run_scene(dda: Path, decks: Path, scene: Scene, halvings: int) -> list[Line]:
     """Run a scene, in ever shorter steps where it has a rate.
 

@@ -269,7 +269,7 @@ contains
       integer, allocatable :: before(:, :)
 
       if (contacts%searched) then
-         before = contacts%springs%equation
+         allocate (before, source=contacts%springs%equation)
          if (.not. allocated(march%reach)) march%reach = first_reach(system, settings, march)
          call renew_contacts(system, travel_of(system, settings, march), march%reach, &
             & settings%penalty_ratio, settings%n_dof, contacts)

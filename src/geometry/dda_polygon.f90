@@ -184,8 +184,9 @@ contains
             cut(n) = min(max(cross(other(:, j) - a, c)/area, 0.0_wp), 1.0_wp)
          end do
          do j = 1, n
-            middle = a + b*(cut(j) + minval(cut(:n), mask=cut(:n) > cut(j)))/2.0_wp
-            if (.not. cut(j) < 1.0_wp) middle = a + b
+            middle = a + b
+            if (cut(j) < 1.0_wp) &
+               & middle = a + b*(cut(j) + minval(cut(:n), mask=cut(:n) > cut(j)))/2.0_wp
             depth = depth_in(other, middle)
             if (.not. depth > deepest) cycle
             deepest = depth

@@ -3,6 +3,7 @@ module dda_block_points
    use dda_block_input, only : block_at, block_plan_t
    use dda_block_lines, only : entry_t, take_numbers
    use dda_boundary, only : held_point_t, history_t, loaded_point_t, measured_point_t
+   use dda_deck_token, only : shown
    use dda_error, only : error_t, fatal_error
    use dda_ground_motion, only : acceleration_of_displacement, acceleration_of_velocity
    use dda_held_paths, only : contradicts
@@ -158,7 +159,7 @@ contains
       if (entry%head%word(1) == "fix") then
          call take_directions(entry, i, held%along, error)
       else if (i <= entry%head%n) then
-         call fatal_error(error, "unknown word '"//trim(entry%head%word(i))//"'", &
+         call fatal_error(error, "unknown word '"//shown(trim(entry%head%word(i)))//"'", &
             & line=entry%head%number)
       end if
       if (allocated(error)) return
@@ -189,7 +190,8 @@ contains
       if (i > entry%head%n) return
       along = entry%head%word(i) == ["x", "y"]
       if (.not. any(along) .or. i < entry%head%n) call fatal_error(error, &
-         & "wanted x, y or nothing after the numbers, found '"//trim(entry%head%word(i))//"'", &
+         & "wanted x, y or nothing after the numbers, found '" &
+         & //shown(trim(entry%head%word(i)))//"'", &
          & line=entry%head%number)
    end subroutine take_directions
 

@@ -14,11 +14,12 @@ pytest.importorskip("voussoir", reason="PYTHONPATH wants the build's python fold
 pytest.importorskip("numpy")
 
 from voussoir.command_line import main  # noqa: E402
+from voussoir.dda_program import find_input  # noqa: E402
 from voussoir.validation_assemblies import roof_wedge, snap_load  # noqa: E402
 from voussoir.validation_impact import next_amplitude, quarter_period  # noqa: E402
 from voussoir.validation_motion import stick_slip  # noqa: E402
 from voussoir.validation_rest import ONSETS, foot_acceleration  # noqa: E402
-from voussoir.validation_run import Line, all_scenes, find_decks, run_scene  # noqa: E402
+from voussoir.validation_run import Line, all_scenes, run_scene  # noqa: E402
 from voussoir.validation_scene import Check, Scene  # noqa: E402
 from voussoir.validation_strain import chain_frequency  # noqa: E402
 
@@ -157,4 +158,4 @@ def test_page_of_the_documents_has_every_scene() -> None:
 
 def test_every_deck_of_the_benchmarks_is_a_scene() -> None:
     assert {deck.stem for deck in DECKS.glob("*.nml")} == {scene.deck for scene in SCENES}
-    assert find_decks().name == DECKS.name
+    assert find_input("benchmarks").name == DECKS.name
