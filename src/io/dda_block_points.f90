@@ -63,6 +63,11 @@ contains
       i = 1
       if (has_value) call take_numbers(entry%head, i, value, error)
       if (allocated(error)) return
+      if (has_value .and. i <= entry%head%n) then
+         call fatal_error(error, "unknown word '"//trim(entry%head%word(i))//"'", &
+            & line=entry%head%number)
+         return
+      end if
       call read_history(entry, has_value, value, history, error)
       if (allocated(error)) return
       if (entry%head%word(1) == "base_acceleration") then
