@@ -52,8 +52,7 @@ module dda_open_close
    !> Joints whose disagreement is below this share of the largest wait for their turn
    real(wp), parameter :: notable = 0.1_wp
 
-   !> Changes of faces before Newton's method takes over where blocks make no chain: faces of a wall
-   !> depend on one another too much for each to be judged alone
+   !> Changes of faces before Newton's method takes over where blocks make no chain
    integer, parameter :: few_changes = 1
    !> Most passes of Newton's method: where it needs more, a shorter step is cheaper
    integer, parameter :: max_newton = 80
@@ -79,8 +78,7 @@ contains
       integer :: change, most, since
       logical :: peaks
 
-      most = max_changes
-      if (equations%matrix%width > 1) most = min(most, few_changes)
+      most = merge(max_changes, min(max_changes, few_changes), equations%matrix%width <= 1)
       peaks = .true.
       if (present(one_by_one)) peaks = .not. one_by_one
       since = 1
