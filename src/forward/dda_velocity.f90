@@ -13,9 +13,8 @@ module dda_velocity
    use dda_block_inertia, only : damping_rate, kinetic_energy, packed_velocity
    use dda_block_system, only : block_system_t
    use dda_contact_detection, only : contacts_t
-   use dda_deformation, only : displacement_matrix, moved_point
    use dda_elasticity, only : stress_load
-   use dda_fixed_points, only : add_fixed_springs, hold_rigidly
+   use dda_fixed_points, only : add_fixed_springs, hold_rigidly, turn_fixed_row
    use dda_joint_springs, only : joint_springs_t
    use dda_kinds, only : wp
    use dda_material, only : elasticity_matrix
@@ -264,8 +263,9 @@ contains
          end if
       end do
       do i = 1, size(equations%fixed%point)
-         b = settings%boundary%held(equations%fixed%point(i))%block
-         call turn_held_row(settings, system, b, i, step%state%motion, equations)
+         e = equations%fixed%equation(i)
+         call turn_fixed_row(system, settings, i, step%state%motion(:, e), equations%fixed, &
+            & equations%load(:, e))
       end do
       do b = 1, size(follows)
          e = system%equation(b)
@@ -276,36 +276,6 @@ contains
       call add_fixed_springs(equations%fixed, step%dt*equations%fixed%rate, equations%base, &
          & equations%load)
    end subroutine assemble_rates
-
-   !> Let half the force that held a point in the motion act as it did, and half where the point is
-   !> at the end, as its velocity needs: with all of it along the old row a pendulum would gain
-   !> energy (Andersen 1983, J. Comput. Phys. 52:24)
-   pure subroutine turn_held_row(settings, system, block, i, motion, equations)
-      !> Settings of the run
-      type(settings_t), intent(in) :: settings
-      !> The blocks before the step
-      type(block_system_t), intent(in) :: system
-      !> Number of the block
-      integer, intent(in) :: block
-      !> Number of the spring
-      integer, intent(in) :: i
-      !> Motion of the step: (n_dof, n_equation)
-      real(wp), intent(in) :: motion(:, :)
-      !> Receives force and row
-      type(equations_t), intent(inout) :: equations
-      real(wp) :: end_motion(6), place(2), t(2, 6)
-
-      associate (fixed => equations%fixed, e => system%equation(block))
-         equations%load(:, e) = equations%load(:, e) + fixed%force(i)/2.0_wp*fixed%row(:, i)
-         fixed%force(i) = 0.0_wp
-         end_motion = system%motion(:, block)
-         end_motion(:3) = end_motion(:3) + motion(:3, e)
-         place = moved_point(settings%boundary%held(fixed%point(i))%point, &
-            & system%centroid(:, block), end_motion)
-         t = displacement_matrix(place, system%centroid(:, block) + end_motion(1:2))
-         fixed%row(:3, i) = t(fixed%axis(i), :3)
-      end associate
-   end subroutine turn_held_row
 
    !> Springs of one joint that only its closed contacts feel, and only motions without strain where
    !> strain has no rate
