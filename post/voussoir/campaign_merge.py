@@ -21,6 +21,7 @@ from voussoir.campaign_part import finished_by
 #: Tables with a case in each row
 TABLES = (
     "joints.csv",
+    "blocks.csv",
     "log.txt",
     "frames.csv",
     "frame_joints.csv",

@@ -1,8 +1,8 @@
 !> The tables of one deck's results: begun, added to case by case, closed
 module dda_result_tables
    use, intrinsic :: iso_fortran_env, only : int64
-   use dda_deck, only : deck_t, flag_of, has_group, integer_of
-   use dda_deck_sweep, only : swept_names, swept_texts
+   use dda_deck, only : deck_t, flag_of, has_group, integer_of, is_given
+   use dda_deck_sweep, only : n_cases, swept_names, swept_texts
    use dda_disk_record, only : write_disk_record
    use dda_error, only : error_t
    use dda_process, only : make_folder
@@ -10,6 +10,7 @@ module dda_result_tables
       & sync_table, table_file_t
    use dda_text, only : to_text
    use dda_growing_text, only : add_line, growing_text_t, lines_of
+   use dda_write_blocks, only : block_lines, blocks_header, told_blocks_t
    use dda_write_energy, only : energy_header
    use dda_write_frames, only : frame_joints_header, frames_header, points_header
    use dda_write_results, only : joint_line, joint_row_t, joints_header, result_row_t, &
@@ -37,6 +38,8 @@ module dda_result_tables
       integer :: points = 6
       !> A row a step
       integer :: energy = 7
+      !> A row a corner of a block
+      integer :: blocks = 8
    end type table_enum
 
    !> The places by name
@@ -59,7 +62,7 @@ module dda_result_tables
       !> Name of the folder
       character(len=:), allocatable :: folder
       !> The tables, by their places
-      type(result_table_t) :: at(7)
+      type(result_table_t) :: at(8)
       !> File that holds what was asked for
       character(len=:), allocatable :: record_file
       !> File that holds how much of results.csv is on the disk
@@ -77,6 +80,9 @@ module dda_result_tables
    !> Columns of results.csv that a swept parameter shares
    character(len=*), parameter :: own_column(*) = [character(len=16) :: "half_angle_deg", &
       & "thickness_ratio", "friction_deg", "mode", "geometry", "unknowns"]
+
+   !> Corners of the blocks are written unasked for at most so many cases
+   integer, parameter :: few_cases = 100
 
 contains
 
@@ -114,6 +120,10 @@ contains
       call name_table(tables%at(table%energy), "/energy.csv", energy_header())
       tables%at(table%energy)%wanted = flag_of(deck, "output", "energy") &
          & .and. .not. has_group(deck, "search")
+      call name_table(tables%at(table%blocks), "/blocks.csv", blocks_header())
+      tables%at(table%blocks)%wanted = n_cases(deck) <= few_cases
+      if (is_given(deck, "output", "blocks")) &
+         & tables%at(table%blocks)%wanted = flag_of(deck, "output", "blocks")
       tables%at(table%joints)%wanted = flag_of(deck, "output", "joints")
       tables%at([table%frames, table%frame_joints])%wanted = &
          & integer_of(deck, "output", "frames") > 0
@@ -244,13 +254,15 @@ contains
    end function swept_fields
 
    !> Write the rows of one case: that of results.csv last, so that a case with a row is whole
-   subroutine write_case(tables, row, joint_row, remark, error)
+   subroutine write_case(tables, row, joint_row, blocks, remark, error)
       !> The tables
       type(result_tables_t), intent(in) :: tables
       !> Row of the case
       type(result_row_t), intent(in) :: row
       !> Rows of its joints
       type(joint_row_t), intent(in) :: joint_row(:)
+      !> Its blocks
+      type(told_blocks_t), intent(in) :: blocks
       !> What goes to the log
       character(len=*), intent(in) :: remark
       !> Allocated if they cannot be written
@@ -263,6 +275,10 @@ contains
             call add_line(lines, joint_line(joint_row(j)))
          end do
          call append_line(tables%at(table%joints)%open, lines_of(lines), error)
+         if (allocated(error)) return
+      end if
+      if (tables%at(table%blocks)%wanted .and. allocated(blocks%state)) then
+         call append_line(tables%at(table%blocks)%open, block_lines(row%number, blocks), error)
          if (allocated(error)) return
       end if
       call append_line(tables%at(table%log)%open, to_text(row%number)//" " &

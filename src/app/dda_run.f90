@@ -22,6 +22,7 @@ module dda_run
    use dda_restart, only : save_restart
    use dda_summary, only : print_resumed, print_row, print_total
    use dda_text, only : to_text
+   use dda_write_blocks, only : told_blocks_t
    use dda_write_results, only : joint_row_t, result_row_t
    implicit none
    private
@@ -238,6 +239,7 @@ contains
       type(error_t), allocatable :: problem
       type(result_row_t) :: row
       type(joint_row_t), allocatable :: joint_row(:)
+      type(told_blocks_t) :: blocks
       character(len=:), allocatable :: remark
       logical :: failed
 
@@ -252,14 +254,15 @@ contains
       call compute_case(this)
       !$omp critical (texts)
       if (.not. allocated(error)) then
-         call tell_case(this, row, joint_row, remark)
+         call tell_case(this, row, joint_row, blocks, remark)
          row%deck = deck_stem(name)
          row%number = number
          row%swept = swept_fields(deck, number)
          joint_row%number = number
          call write_pictures(tables, number, this, error)
          if (.not. allocated(error)) call write_end(tables%folder, number, this, error)
-         if (.not. allocated(error)) call write_case(tables, row, joint_row, remark, error)
+         if (.not. allocated(error)) call write_case(tables, row, joint_row, &
+            & blocks, remark, error)
          if (.not. allocated(error)) call sync_when_due(tables, error)
       end if
       if (.not. allocated(error)) then

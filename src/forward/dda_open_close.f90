@@ -1,10 +1,9 @@
 !> The open-close loop: an active-set method on the faces of the friction cones (Shi: df18 to df22)
 !>
 !> One step minimises a convex, piecewise quadratic energy. With the faces fixed the minimum is a
-!> linear system; each joint whose force disagrees with its face more than its neighbours' do then
-!> changes its face, as the simplex method pivots. Should a set of faces come again, only the joint
-!> that disagrees most does; should one come again then, Newton's method with an exact line search
-!> takes over, which must end.
+!> linear system; each joint that disagrees with its face more than its neighbours do then changes
+!> it, as the simplex method pivots. Should a set of faces come again, only the worst joint does;
+!> should one come again then, Newton's method with an exact line search, which must end.
 module dda_open_close
    use, intrinsic :: iso_fortran_env, only : int64
    use dda_assembly, only : equations_t, solve_faces
@@ -48,8 +47,11 @@ module dda_open_close
    !> Joints whose disagreement is below this share of the largest wait for their turn
    real(wp), parameter :: notable = 0.1_wp
 
+   !> Changes of faces before Newton's method takes over where blocks make no chain: faces of a wall
+   !> depend on one another too much for each to be judged alone
+   integer, parameter :: few_changes = 1
    !> Most passes of Newton's method: where it needs more, a shorter step is cheaper
-   integer, parameter :: max_newton = 40
+   integer, parameter :: max_newton = 80
 
 contains
 
@@ -59,7 +61,7 @@ contains
       type(equations_t), intent(inout) :: equations
       !> The springs of the joints
       type(joint_springs_t), intent(in) :: springs
-      !> Most changes of faces before Newton's method takes over
+      !> Most changes of faces of a chain before Newton's method takes over
       integer, intent(in) :: max_changes
       !> Faces to begin with in, motion and joints out
       type(step_state_t), intent(inout) :: state
@@ -69,16 +71,18 @@ contains
       real(wp) :: gap(size(state%face))
       real(wp) :: best(size(state%motion, 1), size(state%motion, 2)), least
       integer(int64) :: seen(max_changes + 1)
-      integer :: change, since
+      integer :: change, most, since
       logical :: peaks
 
+      most = max_changes
+      if (equations%matrix%width > 1) most = min(most, few_changes)
       peaks = .true.
       if (present(one_by_one)) peaks = .not. one_by_one
       since = 1
       state%settled = .false.
       best = 0.0_wp
       least = huge(least)
-      do change = 1, max_changes + 1
+      do change = 1, most + 1
          seen(change) = hash(state%face)
          if (any(seen(since:change - 1) == seen(change))) then
             if (.not. peaks) exit
@@ -164,8 +168,7 @@ contains
       !> The force [N/m]
       real(wp) :: noise
 
-      noise = 1.0e-13_wp*equations%force_scale &
-         & + 8.0_wp*epsilon(1.0_wp)*max(0.0_wp, &
+      noise = 1.0e-13_wp*equations%force_scale + 8.0_wp*epsilon(1.0_wp)*max(0.0_wp, &
          & maxval(springs%stiffness))*maxval(abs(state%motion(1:2, :)))
    end function force_noise
 

@@ -20,8 +20,8 @@ module dda_read_blocks
    character(len=word_size), parameter :: law_key(3) = [character(len=word_size) :: &
       & "friction_deg", "cohesion", "tension"]
    !> Words that begin an entry
-   character(len=*), parameter :: entries = "block, material, joint, fix, measure, load, "// &
-      & "displacement, base_acceleration"
+   character(len=*), parameter :: entries = "block, material, joint, fix, fix_line, "// &
+      & "measure, load, displacement, base_acceleration, base_velocity, base_displacement"
 
    !> A point entry, kept until all blocks are known
    type :: point_entry_t
@@ -142,9 +142,9 @@ contains
       select case (line%word(1))
       case ("block")
          entry%n_column = 2
-      case ("load", "displacement", "base_acceleration")
+      case ("load", "displacement", "base_acceleration", "base_velocity", "base_displacement")
          entry%n_column = 3
-      case ("material", "joint", "fix", "measure")
+      case ("material", "joint", "fix", "fix_line", "measure")
          entry%n_column = 0
       case default
          call fatal_error(error, "wanted one of "//entries//", found '" &
@@ -173,7 +173,8 @@ contains
          call add_material(entry%head, plan, error)
       case ("joint")
          call add_law(entry%head, plan, error)
-      case ("fix", "measure", "load", "displacement", "base_acceleration")
+      case ("fix", "fix_line", "measure", "load", "displacement", "base_acceleration", &
+         & "base_velocity", "base_displacement")
          point%entry = entry
          later = [later, point]
       end select

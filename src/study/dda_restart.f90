@@ -45,11 +45,14 @@ contains
       if (stat == 0) write (unit, iostat=stat, iomsg=reason) march%steps, march%time, march%dt, &
          & march%allowed_motion, march%resolution, march%rounding, march%displacement, &
          & march%longest, march%elastic_motion, march%free_acceleration, march%last_acceleration, &
-         & march%passes, march%energy, allocated(march%reach), allocated(march%last_motion)
+         & march%passes, march%energy, allocated(march%reach), allocated(march%last_motion), &
+         & allocated(march%held_force)
       if (stat == 0 .and. allocated(march%reach)) &
          & write (unit, iostat=stat, iomsg=reason) march%reach
       if (stat == 0 .and. allocated(march%last_motion)) &
          & write (unit, iostat=stat, iomsg=reason) shape(march%last_motion), march%last_motion
+      if (stat == 0 .and. allocated(march%held_force)) &
+         & write (unit, iostat=stat, iomsg=reason) size(march%held_force), march%held_force
       if (stat == 0) call seal_file(unit, stat, reason)
       if (stat == 0) close (unit, iostat=stat, iomsg=reason)
       if (stat /= 0) call fatal_error(error, "the restart file cannot be written: "// &
@@ -166,7 +169,7 @@ contains
       !> 0 if all is well
       integer, intent(out) :: stat
       integer :: n(2)
-      logical :: has(2)
+      logical :: has(3)
 
       read (unit, iostat=stat) march%steps, march%time, march%dt, march%allowed_motion, &
          & march%resolution, march%rounding, march%displacement, march%longest, &
@@ -176,10 +179,15 @@ contains
          allocate (march%reach(n_block))
          read (unit, iostat=stat) march%reach
       end if
-      if (stat /= 0 .or. .not. has(2)) return
-      read (unit, iostat=stat) n
-      if (stat == 0) allocate (march%last_motion(n(1), n(2)))
-      if (stat == 0) read (unit, iostat=stat) march%last_motion
+      if (stat == 0 .and. has(2)) then
+         read (unit, iostat=stat) n
+         if (stat == 0) allocate (march%last_motion(n(1), n(2)))
+         if (stat == 0) read (unit, iostat=stat) march%last_motion
+      end if
+      if (stat /= 0 .or. .not. has(3)) return
+      read (unit, iostat=stat) n(1)
+      if (stat == 0) allocate (march%held_force(n(1)))
+      if (stat == 0) read (unit, iostat=stat) march%held_force
    end subroutine read_march
 
    !> Read the state of blocks and contacts
@@ -197,15 +205,14 @@ contains
       !> 0 if all is well
       integer, intent(out) :: stat
       type(joint_t) :: joint(n_joint)
-      real(wp) :: centroid(2, size(system%area))
+      real(wp) :: motion(6, size(system%area))
 
       read (unit, iostat=stat) system%moved, system%motion, system%velocity, system%stress, &
          & system%initial_stress
       if (stat == 0) read (unit, iostat=stat) joint
       if (stat /= 0) return
-      centroid = system%centroid
-      if (settings%current) centroid = centroid + system%motion(1:2, :)
-      call set_joints(system, centroid, joint, settings%penalty_ratio, settings%n_dof, contacts)
+      motion = merge(1.0_wp, 0.0_wp, settings%current)*system%motion
+      call set_joints(system, motion, joint, settings%penalty_ratio, settings%n_dof, contacts)
       read (unit, iostat=stat) contacts%face, contacts%trial, contacts%force, contacts%gap, &
          & contacts%increment, contacts%past_slip, contacts%broken, contacts%springs%stiffness, &
          & contacts%springs%cone, contacts%springs%shift

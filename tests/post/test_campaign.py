@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import csv
 import os
+import re
 import signal
 import subprocess
 import sys
@@ -16,7 +17,7 @@ pytest.importorskip("voussoir", reason="PYTHONPATH wants the build's python fold
 
 from voussoir import campaign_part  # noqa: E402
 from voussoir.campaign import share  # noqa: E402
-from voussoir.campaign_merge import merge, slices_of  # noqa: E402
+from voussoir.campaign_merge import TABLES, merge, slices_of  # noqa: E402
 from voussoir.campaign_part import finished_by, finished_in, ranges_of  # noqa: E402
 from voussoir.command_line import main  # noqa: E402
 
@@ -28,6 +29,13 @@ DECK = """&arch voussoirs = 12 /
 &sweep parameter = 'half_angle_deg', first = 60, last = 90, count = {angles} /
 &sweep parameter = 'friction_deg', values = 20, 30, 50 /
 """
+
+
+def test_every_table_of_a_run_is_merged() -> None:
+    source = Path(__file__).resolve().parents[2] / "src/app/dda_result_tables.f90"
+    if not source.is_file():
+        pytest.skip("the sources are not here: skipped")
+    assert set(re.findall(r'"/(\w+\.(?:csv|txt))"', source.read_text())) == set(TABLES)
 
 
 @pytest.fixture(autouse=True)
