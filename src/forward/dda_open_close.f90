@@ -1,10 +1,9 @@
 !> The open-close loop: an active-set method on the faces of the friction cones (Shi: df18 to df22)
 !>
 !> One step minimises a convex, piecewise quadratic energy. With the faces fixed the minimum is a
-!> linear system; each joint whose force disagrees with its face more than its neighbours' do then
-!> changes its face, as the simplex method pivots. Should a set of faces come again, only the joint
-!> that disagrees most does; should one come again then, Newton's method with an exact line search
-!> takes over, which must end.
+!> linear system; each joint that disagrees with its face more than its neighbours do then changes
+!> it, as the simplex method pivots. Should a set of faces come again, only the worst joint does;
+!> should one come again then, Newton's method with an exact line search, which must end.
 module dda_open_close
    use, intrinsic :: iso_fortran_env, only : int64
    use dda_assembly, only : equations_t, solve_faces
@@ -171,8 +170,7 @@ contains
       !> The force [N/m]
       real(wp) :: noise
 
-      noise = 1.0e-13_wp*equations%force_scale &
-         & + 8.0_wp*epsilon(1.0_wp)*max(0.0_wp, &
+      noise = 1.0e-13_wp*equations%force_scale + 8.0_wp*epsilon(1.0_wp)*max(0.0_wp, &
          & maxval(springs%stiffness))*maxval(abs(state%motion(1:2, :)))
    end function force_noise
 

@@ -155,7 +155,9 @@ contains
             & //"), which lies in none", line=entry%head%number)
          return
       end if
-      held = held_point_t(block, point, [.true., .true.], history)
+      held%block = block
+      held%point = point
+      held%path = history
       if (entry%head%word(1) == "fix") then
          call take_directions(entry, i, held%along, error)
       else if (i <= entry%head%n) then
@@ -235,14 +237,14 @@ contains
       type(held_point_t), allocatable :: longer(:)
       integer :: n
 
-      n = size(list) + 1
-      allocate (longer(n))
-      longer(:n - 1) = list
-      longer(n) = held
+      n = size(list)
+      allocate (longer(n + 1))
+      longer(:n) = list
+      longer(n + 1) = held
       call move_alloc(longer, list)
    end subroutine keep_held
 
-   !> Add a loaded point to a list
+   !> Add a loaded point to a list likewise
    pure subroutine keep_load(list, block, point, history)
       !> The list
       type(loaded_point_t), allocatable, intent(inout) :: list(:)
