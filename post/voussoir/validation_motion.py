@@ -117,6 +117,33 @@ def _momentum_checks() -> tuple[Check, ...]:
     )
 
 
+def _spins(*checks: Check) -> tuple[Scene, ...]:
+    """Scenes of a block that spins; the checks are those of a spin alone."""
+    return (
+        Scene(
+            FLIGHT,
+            "spin",
+            "angle w t, nothing else",
+            (
+                Check("angle after 10000 steps [rad]", 300.0, _turned, 1e-10),
+                Check("way of the centre [m]", 0.0, _moving(0), 1e-10, scale=1.0),
+                *checks,
+            ),
+            slow=True,
+        ),
+        Scene(
+            FLIGHT,
+            "spin_and_fall",
+            "both of them",
+            (
+                Check("v after 2 s [m]", 10.0 - 2.0 * GRAVITY, _moving(1), 1e-9),
+                Check("angle after 2 s [rad]", 0.5, _turned, 1e-9),
+            ),
+            rate=True,
+        ),
+    )
+
+
 def _flights() -> list[Scene]:
     """Scenes without contact, and one in which blocks meet freely."""
     thrown = 5.0 - GRAVITY / 2.0
@@ -150,28 +177,7 @@ def _flights() -> list[Scene]:
             ),
             rate=True,
         ),
-        Scene(
-            FLIGHT,
-            "spin",
-            "angle w t, nothing else",
-            (
-                Check("angle after 10000 steps [rad]", 300.0, _turned, 1e-10),
-                Check("way of the centre [m]", 0.0, _moving(0), 1e-10, scale=1.0),
-                strain,
-                area,
-            ),
-            slow=True,
-        ),
-        Scene(
-            FLIGHT,
-            "spin_and_fall",
-            "both of them",
-            (
-                Check("v after 2 s [m]", 10.0 - 2.0 * GRAVITY, _moving(1), 1e-9),
-                Check("angle after 2 s [rad]", 0.5, _turned, 1e-9),
-            ),
-            rate=True,
-        ),
+        *_spins(strain, area),
         Scene(
             FLIGHT,
             "damped_fall",

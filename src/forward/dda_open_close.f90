@@ -45,8 +45,7 @@ module dda_open_close
       logical :: settled = .false.
    end type step_state_t
 
-   !> Joints whose disagreement is as large as the largest but for rounding change together, which
-   !> keeps the mirror images of a symmetric scene alike
+   !> Joints that disagree as much as the worst but for rounding change with it: mirror images do
    real(wp), parameter :: tie = 1.0e-9_wp
    !> Joints whose disagreement is below this share of the largest wait for their turn
    real(wp), parameter :: notable = 0.1_wp
@@ -220,10 +219,9 @@ contains
       end do
    end subroutine joint_forces
 
-   !> Newton's method on the step's energy from the motion of the state; each direction is followed
-   !> to the lowest point. The direction corrects what the blocks lack in balance, so that its
-   !> rounding is that of a correction, and a motion in balance is the answer even where rounding
-   !> lets no face agree
+   !> Newton's method on the step's energy from the motion of the state, to the lowest point of each
+   !> direction. That corrects what the blocks lack in balance, so that its rounding is small; a
+   !> motion in balance is the answer even where rounding lets no face agree
    pure subroutine iterate_newton(equations, springs, state)
       !> Blocks assembled; matrix and factor are made anew
       type(equations_t), intent(inout) :: equations
