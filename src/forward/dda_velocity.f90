@@ -49,7 +49,9 @@ contains
 
    !> Velocities of the blocks at the end of a settled step. Newton's restitution may bring in
    !> energy where there is friction, or where blocks are hit in several places; then there is
-   !> less of it. What contacts have done to the energy of the motion is no part of what is allowed
+   !> less of it. What contacts have done to the energy of the motion is no part of what is allowed.
+   !> Held points turn with their block, which constant acceleration does not know: no contact, no
+   !> bound
    pure subroutine settle_velocities(settings, system, contacts, equations, step)
       !> Settings of the run
       type(settings_t), intent(in) :: settings
@@ -82,7 +84,8 @@ contains
          part = (1.0_wp - less)*part
          less = min(20.0_wp*less, 0.2_wp)
       end do
-      call hold_energy(equations, steady, allowed + energy_noise*before, step%velocity)
+      if (any(closed)) &
+         & call hold_energy(equations, steady, allowed + energy_noise*before, step%velocity)
       step%impact = before - kinetic_energy(equations, step%velocity)
    end subroutine settle_velocities
 
