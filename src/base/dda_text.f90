@@ -13,6 +13,10 @@ module dda_text
       module procedure integer_to_text
    end interface to_text
 
+   !> Formats of 15, 16 and 17 significant digits
+   character(len=11), parameter :: scientific_form(15:17) = &
+      & ["(es24.14e3)", "(es24.15e3)", "(es24.16e3)"]
+
 contains
 
    !> Shortest decimal text that reads back as the same double
@@ -21,15 +25,13 @@ contains
       real(wp), intent(in) :: value
       !> Text without blanks
       character(len=:), allocatable :: text
-      character(len=40) :: buffer
-      character(len=12) :: form
+      character(len=24) :: buffer
       real(wp) :: again
       integer :: digits, stat
 
       do digits = 15, 17
-         write (form, "('(es40.', i0, 'e3)')") digits - 1
-         write (buffer, form) value
-         read (buffer, *, iostat=stat) again
+         write (buffer, scientific_form(digits)) value
+         read (buffer, "(f24.0)", iostat=stat) again
          if (stat /= 0) exit
          if (.not. abs(again - value) > 0.0_wp) exit
       end do
@@ -50,7 +52,7 @@ contains
       e = scan(scientific, "E")
       text = scientific
       if (e == 0 .or. .not. ieee_is_finite(value)) return
-      read (scientific(e + 1:), *, iostat=stat) exponent
+      read (scientific(e + 1:), "(i4)", iostat=stat) exponent
       if (stat /= 0) return
       sign = ""
       if (scientific(1:1) == "-") sign = "-"

@@ -160,8 +160,12 @@ contains
          & .and. word_of(this%deck, "analysis", "mode") == "dynamic"
       if (allocated(this%deck%plan%boundary%measured)) &
          & this%album%point = this%deck%plan%boundary%measured
-      if (frames > 0 .and. word_of(this%deck, "analysis", "mode") == "dynamic") &
-         & this%album%every = max(1, integer_of(this%deck, "analysis", "steps")/frames)
+      if (frames == 0 .or. word_of(this%deck, "analysis", "mode") /= "dynamic") return
+      if (is_given(this%deck, "analysis", "duration")) then
+         this%album%interval = real_of(this%deck, "analysis", "duration")/real(frames, wp)
+      else
+         this%album%every = max(1, integer_of(this%deck, "analysis", "steps")/frames)
+      end if
    end subroutine plan_album
 
    !> Share out the joint forces of the arch nearest to critical that was found to stand
