@@ -80,7 +80,9 @@ contains
          if (record%march%steps == 0) then
             record%fall = sum(system%unit_weight*system%area*system%centroid(2, :), &
                & mask=system%equation > 0)
-            record%total = record%fall
+            record%total = record%fall + sum(system%density*(system%area &
+               & *sum(system%velocity(1:2, :)**2, dim=1) + sum(system%second(1:2, :), dim=1) &
+               & *system%velocity(3, :)**2))/2.0_wp
          end if
          scene%settings%max_steps = record%march%steps + 1
          call run_to_verdict(scene%settings, system, scene%contacts, outcome, album, record%march)
