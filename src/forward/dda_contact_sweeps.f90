@@ -15,6 +15,7 @@ module dda_contact_sweeps
    use dda_joint_springs, only : joint_springs_t
    use dda_kinds, only : wp
    use dda_open_close, only : step_state_t
+   use dda_small_cholesky, only : cholesky, solved
    use dda_spring_products, only : relative_displacement
    implicit none
    private
@@ -70,7 +71,7 @@ contains
       real(wp) :: change(2), enough(2), last, noise, square
       real(wp) :: motion(size(state%motion, 1), 0:size(state%motion, 2))
       logical :: active(size(springs%stiffness)), hasty
-      integer :: i, j, k, sweep
+      integer :: sweep
 
       call see_joints(equations, springs, state, view)
       force = state%multiplier
@@ -88,16 +89,7 @@ contains
          change = 0.0_wp
          if (modulo(sweep, round) == 0) active = .true.
          before = force
-         do i = 1, 2*size(active)
-            j = merge(i, 2*size(active) + 1 - i, i <= size(active))
-            if (.not. active(j)) cycle
-            if (size(motion, 1) == 3) then
-               call relax(3, springs, view, j, noise, force(:, j), motion, change)
-            else
-               call relax(6, springs, view, j, noise, force(:, j), motion, change)
-            end if
-            active(j) = any(abs(force(:, j)) > 0.0_wp)
-         end do
+         call sweep_twice(springs, view, noise, active, force, motion, change)
          state%settled = modulo(sweep, round) == 0 .and. (change(1) <= enough(1) &
             & .or. sweep >= strictly .and. change(2) <= enough(2))
          if (state%settled) exit
@@ -110,19 +102,66 @@ contains
          end if
          last = change(2)
       end do
+      call keep_forces(equations, springs, view, force, state)
+   end subroutine sweep_contacts
+
+   !> One sweep over the joints forwards and one backwards
+   pure subroutine sweep_twice(springs, view, noise, active, force, motion, change)
+      !> The springs of the joints
+      type(joint_springs_t), intent(in) :: springs
+      !> What the sweeps need of the joints
+      type(view_t), intent(in) :: view
+      !> Gap that rounding can make [m]
+      real(wp), intent(in) :: noise
+      !> Joints that are looked at; after it, those that carry a force: (n_joint)
+      logical, intent(inout) :: active(:)
+      !> Forces of the joints: (3, n_joint) [N/m]
+      real(wp), intent(inout) :: force(:, :)
+      !> Motion of the blocks, of those that do not move first: (n_dof, 0:n_equation)
+      real(wp), intent(inout) :: motion(:, 0:)
+      !> Largest change of a force [N/m] and of a gap [m]: (2)
+      real(wp), intent(inout) :: change(2)
+      integer :: i, j
+
+      do i = 1, 2*size(active)
+         j = merge(i, 2*size(active) + 1 - i, i <= size(active))
+         if (.not. active(j)) cycle
+         if (size(motion, 1) == 3) then
+            call relax(3, springs, view, j, noise, force(:, j), motion, change)
+         else
+            call relax(6, springs, view, j, noise, force(:, j), motion, change)
+         end if
+         active(j) = any(abs(force(:, j)) > 0.0_wp)
+      end do
+   end subroutine sweep_twice
+
+   !> Forces and motion where the sweeps have ended, as the open-close loop knows them
+   pure subroutine keep_forces(equations, springs, view, force, state)
+      !> The equations
+      type(equations_t), intent(in) :: equations
+      !> The springs of the joints
+      type(joint_springs_t), intent(in) :: springs
+      !> What the sweeps need of the joints
+      type(view_t), intent(in) :: view
+      !> Forces of the joints: (3, n_joint) [N/m]
+      real(wp), intent(in) :: force(:, :)
+      !> Receives them
+      type(step_state_t), intent(inout) :: state
+      integer :: j, k
+
       call move_blocks(equations, springs, force, state%motion)
       state%passes = state%passes + 1
       state%increment = relative_displacement(springs, state%motion)
       state%multiplier = force
       state%force = force
-      do j = 1, size(active)
+      do j = 1, size(force, 2)
          state%face(j) = face_of(springs%cone(j), force(:, j), springs%shift(:, j))
          do k = 1, 3
             state%start(k, j) = force(k, j) - springs%stiffness(j)*view%gap(k, j)
          end do
          state%trial(:, j) = state%start(:, j) - springs%stiffness(j)*state%increment(:, j)
       end do
-   end subroutine sweep_contacts
+   end subroutine keep_forces
 
    !> Radius of gyration of the smallest block [m]
    pure real(wp) function smallest(equations)
@@ -339,40 +378,4 @@ contains
          & face%slip = merge(1, -1, force(3) > 0.0_wp)
       if (all(face%open) .and. .not. abs(force(3)) > 0.0_wp) face%slip = 0
    end function face_of
-
-   !> Lower triangle L of a = L L'
-   pure function cholesky(a) result(lower)
-      !> Symmetric and positive definite: (n, n)
-      real(wp), intent(in) :: a(:, :)
-      !> The triangle: (n, n)
-      real(wp) :: lower(size(a, 1), size(a, 1))
-      integer :: c, r
-
-      lower = 0.0_wp
-      do c = 1, size(a, 1)
-         lower(c, c) = sqrt(a(c, c) - sum(lower(c, :c - 1)**2))
-         do r = c + 1, size(a, 1)
-            lower(r, c) = (a(r, c) - dot_product(lower(r, :c - 1), lower(c, :c - 1)))/lower(c, c)
-         end do
-      end do
-   end function cholesky
-
-   !> x of L L' x = b
-   pure function solved(lower, b) result(x)
-      !> Lower triangle: (n, n)
-      real(wp), intent(in) :: lower(:, :)
-      !> Right-hand side: (n)
-      real(wp), intent(in) :: b(:)
-      !> Solution: (n)
-      real(wp) :: x(size(b))
-      integer :: r
-
-      x = b
-      do r = 1, size(b)
-         x(r) = (x(r) - dot_product(lower(r, :r - 1), x(:r - 1)))/lower(r, r)
-      end do
-      do r = size(b), 1, -1
-         x(r) = (x(r) - dot_product(lower(r + 1:, r), x(r + 1:)))/lower(r, r)
-      end do
-   end function solved
 end module dda_contact_sweeps

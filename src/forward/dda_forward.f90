@@ -200,16 +200,7 @@ contains
          if (widened) call place_contacts(settings, system, travel, march, contacts, equations)
          widened = .false.
          again = .false.
-         step%dt = march%dt
-         if (in_time) call stiffen_contacts(system, step%dt, contacts)
-         if (in_time) call take_springs(contacts%springs, equations)
-         call begin_step(contacts, size(equations%weight, 1), size(equations%weight, 2), step%state)
-         call assemble_blocks(system, settings, step%dt, equations, march%time)
-         call settle_joints(settings, equations, contacts%springs, step%state)
-         if (in_time .and. step%state%settled) &
-            & call follow_curves(settings, system, contacts, equations, step)
-         march%passes = march%passes + step%state%passes
-         call judge_step(settings, system, march, step)
+         call find_motion(settings, system, in_time, contacts, equations, march, step)
          if (contacts%searched .and. settings%current) &
             & call judge_reach(system, contacts, march, step, widened)
          if (step%accepted .and. in_time) &
@@ -233,6 +224,35 @@ contains
       if (settings%dynamic) call audit_step(settings, system, equations, contacts, step, &
          & march%time, march%energy)
    end subroutine advance
+
+   !> The motion of one try, and whether it is short enough
+   pure subroutine find_motion(settings, system, in_time, contacts, equations, march, step)
+      !> Settings of the run
+      type(settings_t), intent(in) :: settings
+      !> The blocks
+      type(block_system_t), intent(in) :: system
+      !> Whether blocks move in time
+      logical, intent(in) :: in_time
+      !> The contacts
+      type(contacts_t), intent(inout) :: contacts
+      !> The equations
+      type(equations_t), intent(inout) :: equations
+      !> The march; the length of the next try is set
+      type(march_t), intent(inout) :: march
+      !> The step
+      type(step_context_t), intent(inout) :: step
+
+      step%dt = march%dt
+      if (in_time) call stiffen_contacts(system, step%dt, contacts)
+      if (in_time) call take_springs(contacts%springs, equations)
+      call begin_step(contacts, size(equations%weight, 1), size(equations%weight, 2), step%state)
+      call assemble_blocks(system, settings, step%dt, equations, march%time)
+      call settle_joints(settings, equations, contacts%springs, step%state)
+      if (in_time .and. step%state%settled) &
+         & call follow_curves(settings, system, contacts, equations, step)
+      march%passes = march%passes + step%state%passes
+      call judge_step(settings, system, march, step)
+   end subroutine find_motion
 
    !> Velocities after a settled step: cut it if blocks meet in it that rebound, or if the impulses
    !> do not settle

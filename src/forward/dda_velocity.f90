@@ -49,9 +49,8 @@ contains
 
    !> Velocities of the blocks at the end of a settled step. Newton's restitution may bring in
    !> energy where there is friction, or where blocks are hit in several places; then there is
-   !> less of it. What contacts have done to the energy of the motion is no part of what is allowed.
-   !> Held points turn with their block, which constant acceleration does not know: no contact, no
-   !> bound
+   !> less of it. What contacts have done to the energy of the motion is no part of what is allowed;
+   !> without contacts only held points change it, which turn with their blocks
    pure subroutine settle_velocities(settings, system, contacts, equations, step)
       !> Settings of the run
       type(settings_t), intent(in) :: settings
