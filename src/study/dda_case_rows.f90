@@ -104,7 +104,7 @@ contains
          if (allocated(outcome%reason)) remark = outcome%reason
          if (outcome%verdict == verdict%collapsed) &
             & call tell_mechanism(this%decision%contacts, this%scene%joint_angle_deg, row)
-         row%blocks = maxval(this%scene%system%equation)
+         row%blocks = block_count(this%scene, this%decision%contacts)
          row%steps = outcome%steps
          row%open_close_iterations = outcome%passes
          row%factorisations = outcome%factorisations
@@ -139,12 +139,15 @@ contains
             call tell_mechanism(critical%fallen%contacts, this%scene%joint_angle_deg, row)
             joint_row = joint_rows(critical%fallen%contacts, this%scene%joint_angle_deg, &
                & this%scene%origin)
-            row%blocks = maxval(this%scene%system%equation)
+            row%blocks = block_count(this%scene, critical%fallen%contacts)
          end if
          if (allocated(critical%standing)) then
-            call this%family%build(critical%stands, scene, error)
-            joint_row = joint_rows(critical%standing%contacts, scene%joint_angle_deg, scene%origin)
-            row%blocks = maxval(scene%system%equation)
+            if (allocated(critical%standing%contacts%joint)) then
+               call this%family%build(critical%stands, scene, error)
+               joint_row = joint_rows(critical%standing%contacts, scene%joint_angle_deg, &
+                  & scene%origin)
+            end if
+            row%blocks = block_count(scene, critical%standing%contacts)
          end if
          row%steps = critical%steps
          row%open_close_iterations = critical%passes
@@ -156,6 +159,20 @@ contains
          end if
       end associate
    end subroutine tell_search
+
+   !> Number of movable blocks: of the scene, or where there was none, of a chain by its joints
+   pure integer function block_count(scene, contacts)
+      !> The scene, which may be empty
+      type(scene_t), intent(in) :: scene
+      !> Contacts of its decision
+      type(contacts_t), intent(in) :: contacts
+
+      if (allocated(scene%system%equation)) then
+         block_count = maxval(scene%system%equation)
+      else
+         block_count = size(contacts%face) - 1
+      end if
+   end function block_count
 
    !> Fill the column of the condition number, if it was estimated
    pure subroutine tell_condition(outcome, row)
@@ -219,10 +236,13 @@ contains
       real(wp), intent(in) :: joint_angle_deg(:)
       !> Where the origin of the blocks' coordinates is: (2) [m]
       real(wp), intent(in) :: origin(2)
-      !> The rows, without the number of the case: (n_joint)
-      type(joint_row_t) :: row(size(contacts%joint))
-      integer :: j
+      !> The rows, without the number of the case: (n_joint), or (0) where no scene was made
+      type(joint_row_t), allocatable :: row(:)
+      integer :: j, n
 
+      n = 0
+      if (allocated(contacts%joint)) n = size(contacts%joint)
+      allocate (row(n))
       do j = 1, size(row)
          row(j)%joint = j
          if (size(joint_angle_deg) > 0) row(j)%angle_deg = some_number(joint_angle_deg(j))

@@ -5,6 +5,8 @@
 !> prove it. Where the joints tell nothing, the bracket is halved.
 module dda_critical
    use dda_block_system, only : block_system_t
+   use dda_chain, only : chain_t
+   use dda_chain_decision, only : decide_chain
    use dda_collapse_trace, only : proposal_t, trace
    use dda_decision, only : decide, decision_t
    use dda_error, only : error_t
@@ -12,6 +14,7 @@ module dda_critical
    use dda_kinds, only : wp
    use dda_scene, only : family_t, scene_t
    use dda_search, only : critical_t, search_t
+   use dda_settings, only : settings_t
    use dda_verdict, only : verdict
    implicit none
    private
@@ -140,18 +143,25 @@ contains
       type(decision_t), allocatable :: decision
       type(error_t), allocatable :: error
       type(scene_t) :: scene
+      type(chain_t) :: chain
+      type(settings_t) :: settings
+      logical :: decided
 
       answer = verdict%undecided
       critical%decisions = critical%decisions + 1
-      call family%build(value, scene, error)
-      if (allocated(error)) then
-         critical%reason = error%message
-         critical%undecided_at = value
-         return
-      end if
-      critical%current = scene%settings%current
       allocate (decision)
-      call decide(scene%settings, scene%system, scene%contacts, decision)
+      call family%link(value, settings, chain, decided)
+      if (decided) call decide_chain(settings, chain, decision, decided)
+      if (.not. decided) then
+         call family%build(value, scene, error)
+         if (allocated(error)) then
+            critical%reason = error%message
+            critical%undecided_at = value
+            return
+         end if
+         critical%current = scene%settings%current
+         call decide(scene%settings, scene%system, scene%contacts, decision)
+      end if
       critical%steps = critical%steps + decision%outcome%steps
       critical%passes = critical%passes + decision%outcome%passes
       critical%factorisations = critical%factorisations + decision%outcome%factorisations

@@ -51,6 +51,9 @@ module dda_scene_plan
       logical :: moving = .false.
       !> Whether joints have cohesion or tensile strength, and may lose it
       logical :: strength = .false.
+      !> Whether the blocks are a chain: rigid, unmoved, each touching its two neighbours alone,
+      !> which flat arrays without pattern and search can hold
+      logical :: chain = .false.
       !> Whether the forces of the arch that a search found to stand are computed with strain
       logical :: shared_forces = .false.
    end type scene_plan_t
@@ -71,6 +74,7 @@ contains
       if (is_given(deck, "analysis", "unknowns")) then
          plan%reason = strain_reason%forced
          plan%unknowns = integer_of(deck, "analysis", "unknowns")
+         plan%chain = is_chain(deck, plan)
          return
       end if
       plan%reason = strain_reason%none
@@ -89,5 +93,20 @@ contains
       else
          plan%shared_forces = .false.
       end if
+      plan%chain = is_chain(deck, plan)
    end function plan_scene
+
+   !> Whether an arch needs no more than a chain: the condition number is one of the equations with
+   !> a pattern, and a displacement that means collapse is one of corners
+   pure logical function is_chain(deck, plan)
+      !> The deck of the case
+      type(deck_t), intent(in) :: deck
+      !> The other parts of its plan
+      type(scene_plan_t), intent(in) :: plan
+
+      is_chain = plan%unknowns == n_rigid .and. word_of(deck, "scene", "kind") == "arch" &
+         & .and. word_of(deck, "analysis", "mode") == "static" &
+         & .and. .not. (plan%moving .or. plan%strength .or. flag_of(deck, "output", "condition") &
+         & .or. is_given(deck, "analysis", "collapse_displacement"))
+   end function is_chain
 end module dda_scene_plan
