@@ -48,6 +48,8 @@ module dda_chain_thrust
    real(wp), parameter :: barely = 1.0e-4_wp
    !> Relative error that rounding makes of the function
    real(wp), parameter :: rounding = 1.0e-11_wp
+   !> Chains of more joints are first looked at with about as many
+   integer, parameter :: coarse = 60
    !> Most places tried along a direction
    integer, parameter :: max_tries = 10
 
@@ -61,9 +63,8 @@ contains
       type(thrust_t), intent(out) :: thrust
       !> Sum of the loads on the blocks before each joint, force and moment: (3, n + 1)
       real(wp), intent(out) :: load(:, :)
-      type(energy_t) :: glued, here, there
-      real(wp) :: direction(3), way, fall
-      integer :: try
+      type(energy_t) :: glued
+      integer :: stride
 
       call sum_loads(chain, load)
       glued = glued_energy(chain, load)
@@ -71,15 +72,36 @@ contains
       thrust%elastic_motion = (2.0_wp*glued%value + dot_product(glued%slope, thrust%reaction)) &
          & /sum(sqrt(chain%weight(1, :)**2 + chain%weight(2, :)**2))
       glued = energy_t(share*glued%value, share*glued%slope, share*glued%curvature)
-      call find_energy(chain, load, glued, thrust%reaction, here)
-      do while (thrust%passes < max_passes)
+      stride = 1 + size(chain%half)/coarse
+      if (stride > 1) call descend(chain, load, glued, stride, thrust)
+      call descend(chain, load, glued, 1, thrust)
+   end subroutine find_thrust
+
+   !> Newton's method on the energy of every so many joints
+   pure subroutine descend(chain, load, glued, stride, thrust)
+      !> The chain
+      type(chain_t), intent(in) :: chain
+      !> Sums of the loads: (3, n + 1)
+      real(wp), intent(in) :: load(:, :)
+      !> Energy if no joint could fail, at zero
+      type(energy_t), intent(in) :: glued
+      !> One joint in so many counts
+      integer, intent(in) :: stride
+      !> The forces
+      type(thrust_t), intent(inout) :: thrust
+      type(energy_t) :: here, there
+      real(wp) :: direction(3), way, fall
+      integer :: pass, try
+
+      call find_energy(chain, load, glued, stride, thrust%reaction, here)
+      do pass = 1, max_passes
          thrust%passes = thrust%passes + 1
          call solve_3(here%curvature, -here%slope, direction)
          fall = -dot_product(here%slope, direction)
          if (.not. fall > little*here%value) exit
          way = 1.0_wp
          do try = 1, max_tries
-            call find_energy(chain, load, glued, thrust%reaction + way*direction, there)
+            call find_energy(chain, load, glued, stride, thrust%reaction + way*direction, there)
             if (there%value <= here%value*(1.0_wp + rounding) - barely*way*fall) exit
             way = shorter(way, dot_product(there%slope, direction), &
                & dot_product(direction, matmul(there%curvature, direction)))
@@ -87,7 +109,7 @@ contains
          thrust%reaction = thrust%reaction + way*direction
          here = there
       end do
-   end subroutine find_thrust
+   end subroutine descend
 
    !> Where along a direction to try next: Newton's method on the slope, which rises
    pure real(wp) function shorter(way, slope, curvature)
@@ -103,20 +125,22 @@ contains
    end function shorter
 
    !> The function that is made least, at one place
-   pure subroutine find_energy(chain, load, glued, reaction, energy)
+   pure subroutine find_energy(chain, load, glued, stride, reaction, energy)
       !> The chain
       type(chain_t), intent(in) :: chain
       !> Sums of the loads: (3, n + 1)
       real(wp), intent(in) :: load(:, :)
       !> Its part if no joint could fail, at zero
       type(energy_t), intent(in) :: glued
+      !> One joint in so many counts
+      integer, intent(in) :: stride
       !> The place
       real(wp), intent(in) :: reaction(3)
       !> The function with its derivatives
       type(energy_t), intent(out) :: energy
       real(wp) :: slope(3)
 
-      call add_failing(chain, load, reaction, energy)
+      call add_failing(chain, load, stride, reaction, energy)
       slope = matmul(glued%curvature, reaction)
       energy%value = energy%value + glued%value &
          & + dot_product(reaction, glued%slope + slope/2.0_wp)
@@ -214,11 +238,13 @@ contains
    end function glued_energy
 
    !> Half the squared distance of the forces from the cones, over the stiffness
-   pure subroutine add_failing(chain, load, reaction, energy)
+   pure subroutine add_failing(chain, load, stride, reaction, energy)
       !> The chain
       type(chain_t), intent(in) :: chain
       !> Sums of the loads: (3, n + 1)
       real(wp), intent(in) :: load(:, :)
+      !> One joint in so many counts
+      integer, intent(in) :: stride
       !> The place
       real(wp), intent(in) :: reaction(3)
       !> What it is added to
@@ -228,7 +254,7 @@ contains
       real(wp) :: force(3), admissible(3), tangent(3, 3), constant(3), g(3, 3), rest(3)
       integer :: j
 
-      do j = 1, size(chain%half)
+      do j = 1, size(chain%half), stride
          force = joint_force(chain, load, reaction, j)
          if (holds(chain, force, j)) cycle
          cone = cone_t(friction=chain%friction(j), limit=chain%limit(j))

@@ -47,6 +47,9 @@ module dda_collapse_trace
    real(wp), parameter :: noise_margin = 20.0_wp
    !> Roots whose mean is taken where rounding is more than the tolerance
    integer, parameter :: n_roots = 32
+   !> How much of what the parabola corrects it may leave itself, over the relative width of the
+   !> values that it goes through
+   real(wp), parameter :: curving = 1.0e3_wp
    !> Most passes of the secant method
    integer, parameter :: max_passes = 20
    !> Free fall over elastic motion in the step that traces a mechanism
@@ -54,7 +57,8 @@ module dda_collapse_trace
 
 contains
 
-   !> Trace the last collapse to where it stops, by the secant method on the power of the loads
+   !> Trace the last collapse to where it stops, by the secant method on the power of the loads;
+   !> from the third value on the parabola through three tells what the secant leaves
    pure subroutine trace(family, search, limit, critical, proposal)
       !> The family
       class(family_t), intent(in) :: family
@@ -68,6 +72,7 @@ contains
       type(proposal_t), intent(out) :: proposal
       type(frozen_t) :: mechanism
       real(wp) :: x(2), power(2), first_power, noise, next, slope, coarse_slope, step
+      real(wp) :: bend, last_slope, off, x_before
       integer :: pass
       logical :: usable, stopped, only_noise
 
@@ -81,16 +86,26 @@ contains
       step = min(0.3_wp, max(1.0e-3_wp, 1.25_wp*critical%fallen%outcome%acceleration_ratio))
       step = min(step*max(abs(x(1)), 0.01_wp*abs(limit - x(1))), abs(limit - x(1)))
       x(2) = x(1) + sign(step, limit - x(1))
+      last_slope = 0.0_wp
+      x_before = x(1)
       do pass = 1, max_passes
          call power_at(family, mechanism, x(2), critical, power(2), noise, usable)
          if (.not. usable .or. .not. abs(power(2) - power(1)) > 0.0_wp) return
          slope = (power(2) - power(1))/(x(2) - x(1))
          if (pass == 1) coarse_slope = slope
          next = x(2) - power(2)/slope
+         bend = 0.0_wp
+         if (pass > 1) bend = (slope - last_slope)/slope*(next - x(2))*(next - x(1)) &
+            & /(x(2) - x_before)
+         next = next - bend
          if (next < search%low .or. next > search%high) return
-         stopped = abs(next - x(2)) < 0.02_wp*least_half(search, critical)*abs(next)
+         off = abs(next - x(2))
+         if (pass > 1) off = min(off, abs(bend*(x(2) - x(1)))*curving/abs(next))
+         stopped = off < 0.02_wp*least_half(search, critical)*abs(next)
          only_noise = abs(power(2)) < 1.0e-3_wp*abs(first_power) .and. abs(power(2)) > abs(power(1))
          if (stopped .or. only_noise) exit
+         last_slope = slope
+         x_before = x(1)
          x = [x(2), next]
          power(1) = power(2)
       end do

@@ -58,7 +58,8 @@ contains
             critical%verdict = verdict%collapsed
             return
          end if
-         if (answer == verdict%collapsed) call trace(family, search, limit, critical, proposal)
+         if (answer == verdict%collapsed .and. .not. proved(search, critical, proposal)) &
+            & call trace(family, search, limit, critical, proposal)
          if (closed(search, critical, proposal)) then
             critical%verdict = verdict%found
             critical%half = proposal%half
@@ -244,6 +245,23 @@ contains
       middle = (a + b)/2.0_wp
       if (min(a, b) > 0.0_wp .and. max(a, b) > 4.0_wp*min(a, b)) middle = sqrt(a*b)
    end function middle
+
+   !> Whether the last two decisions are those that the proposal asked for, at the tolerance, so that
+   !> another trace would tell nothing new
+   pure logical function proved(search, critical, proposal)
+      !> What is searched
+      type(search_t), intent(in) :: search
+      !> What was found so far
+      type(critical_t), intent(in) :: critical
+      !> Where the collapse before the last stops
+      type(proposal_t), intent(in) :: proposal
+
+      proved = proposal%usable
+      if (proved) proved = closed(search, critical, proposal) &
+         & .and. proposal%half <= 0.5001_wp*search%tolerance*abs(critical%stands) &
+         & .and. abs((critical%stands + critical%falls)/2.0_wp - proposal%value) &
+         & < 1.0e-3_wp*proposal%half
+   end function proved
 
    !> Whether the bracket is as narrow as the proposal asks for
    pure logical function closed(search, critical, proposal)
