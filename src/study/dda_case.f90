@@ -147,7 +147,9 @@ contains
       type(chain_t) :: chain
       logical :: decided
 
-      call this%family%link(real_of(this%deck, "arch", "thickness_ratio"), settings, chain, decided)
+      decided = this%family%decides_chains
+      if (decided) call this%family%link(real_of(this%deck, "arch", "thickness_ratio"), settings, &
+         & chain, decided)
       if (decided) call decide_chain(settings, chain, this%decision, decided)
       if (decided) return
       call deck_scene(this%deck, this%scene)
@@ -173,9 +175,9 @@ contains
       type(error_t), allocatable :: error
       logical :: wanted
 
-      if (this%family%chains) this%scene%joint_angle_deg = this%family%joint_angle_deg
+      if (this%family%decides_chains) this%scene%joint_angle_deg = this%family%joint_angle_deg
       wanted = this%searches
-      if (this%family%chains) wanted = flag_of(this%deck, "output", "joints") &
+      if (this%family%decides_chains) wanted = flag_of(this%deck, "output", "joints") &
          & .or. integer_of(this%deck, "output", "frames") > 0 &
          & .or. any(decision%contacts%face%slip /= 0)
       if (wanted .and. .not. allocated(this%scene%contacts%joint)) &
@@ -301,7 +303,7 @@ contains
       search%start = search%low
       if (searched_name(deck) /= "thickness_ratio") return
       search%resolution_at = real_of(deck, "arch", "thickness_ratio")
-      if (family%chains) then
+      if (family%decides_chains) then
          search%resolution = chain_resolution(deck)
          search%resolution_at = 0.0_wp
       end if

@@ -151,7 +151,8 @@ contains
       answer = verdict%undecided
       critical%decisions = critical%decisions + 1
       allocate (decision)
-      call family%link(value, settings, chain, decided)
+      decided = family%decides_chains
+      if (decided) call family%link(value, settings, chain, decided)
       if (decided) call decide_chain(settings, chain, decision, decided)
       if (.not. decided) then
          call family%build(value, scene, error)
@@ -246,8 +247,8 @@ contains
       if (min(a, b) > 0.0_wp .and. max(a, b) > 4.0_wp*min(a, b)) middle = sqrt(a*b)
    end function middle
 
-   !> Whether the last two decisions are those that the proposal asked for, at the tolerance, so that
-   !> another trace would tell nothing new
+   !> Whether the last two decisions are those that the proposal asked for, at the tolerance, so
+   !> that another trace would tell nothing new
    pure logical function proved(search, critical, proposal)
       !> What is searched
       type(search_t), intent(in) :: search

@@ -30,7 +30,7 @@ module dda_deck_scene
       type(deck_t) :: deck
       !> The parameter
       type(parameter_t) :: parameter
-      !> Whether its scenes are chains that differ by their thickness ratio alone
+      !> Whether its scenes are chains but for strain, and differ by their thickness ratio alone
       logical :: chains = .false.
       !> Then: what the arches are made from
       type(arch_numbers_t) :: numbers
@@ -62,7 +62,8 @@ contains
       family%deck = deck
       family%parameter = parameter
       plan = plan_scene(deck)
-      family%chains = plan%chain .and. parameter%key == key_index("arch", "thickness_ratio")
+      family%chains = plan%row .and. parameter%key == key_index("arch", "thickness_ratio")
+      family%decides_chains = family%chains .and. plan%chain
       if (.not. family%chains) return
       family%settings = settings_of(deck, degree*real_of(deck, "arch", "half_angle_deg"), &
          & size(half_joints_deg(deck)))

@@ -27,10 +27,13 @@ module dda_scene
 
    !> Scenes that differ by the value of one parameter
    type, abstract :: family_t
+      !> Whether its chains, if there are any, are decided as such; otherwise collapses alone are
+      !> traced on them
+      logical :: decides_chains = .false.
    contains
       !> Make the scene of one value
       procedure(build_scene), deferred :: build
-      !> Make the scene of one value as a chain, where that is all it needs
+      !> Make the scene of one value as a chain of rigid blocks, where it is one but for strain
       procedure :: link => link_nothing
    end type family_t
 
@@ -64,6 +67,9 @@ contains
       !> Whether there is one
       logical, intent(out) :: linked
 
-      linked = .false. .and. same_type_as(family, family) .and. value > 0.0_wp
+      settings = settings_t()
+      chain = chain_t()
+      ! what is asked of the arguments cannot be
+      linked = .not. same_type_as(family, family) .and. value > 0.0_wp
    end subroutine link_nothing
 end module dda_scene
