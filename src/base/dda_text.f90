@@ -1,6 +1,7 @@
 !> Numbers to text, text to numbers, small words on strings
 module dda_text
    use, intrinsic :: ieee_arithmetic, only : ieee_is_finite
+   use, intrinsic :: iso_fortran_env, only : int64
    use dda_kinds, only : wp
    implicit none
    private
@@ -13,6 +14,11 @@ module dda_text
       module procedure integer_to_text
    end interface to_text
 
+   !> Numbers below this have no more than the digits that every number may have
+   real(wp), parameter :: most_whole = 1.0e15_wp
+   !> Scientific notation with so many digits
+   character(len=11), parameter :: form(15:17) = ["(es40.14e3)", "(es40.15e3)", "(es40.16e3)"]
+
 contains
 
    !> Shortest decimal text that reads back as the same double
@@ -22,14 +28,20 @@ contains
       !> Text without blanks
       character(len=:), allocatable :: text
       character(len=40) :: buffer
-      character(len=12) :: form
       real(wp) :: again
       integer :: digits, stat
 
+      if (abs(value) > 0.0_wp .and. abs(value) < most_whole) then
+         if (.not. abs(value - anint(value)) > 0.0_wp) then
+            ! most numbers that a user gives are whole
+            write (buffer, "(i0)") nint(value, int64)
+            text = trim(buffer)
+            return
+         end if
+      end if
       do digits = 15, 17
-         write (form, "('(es40.', i0, 'e3)')") digits - 1
-         write (buffer, form) value
-         read (buffer, *, iostat=stat) again
+         write (buffer, form(digits)) value
+         read (buffer, "(f40.0)", iostat=stat) again
          if (stat /= 0) exit
          if (.not. abs(again - value) > 0.0_wp) exit
       end do
@@ -47,7 +59,7 @@ contains
       character(len=:), allocatable :: digits, sign
       integer :: e, exponent, stat
 
-      e = scan(scientific, "E")
+      e = index(scientific, "E")
       text = scientific
       if (e == 0 .or. .not. ieee_is_finite(value)) return
       read (scientific(e + 1:), *, iostat=stat) exponent
