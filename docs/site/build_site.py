@@ -19,25 +19,62 @@ import tempfile
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
-#: Pages in the order of the menu; others of docs/ follow
-PAGES = {
-    "index.md": "Overview",
-    "getting-started.md": "Getting started",
-    "installation.md": "Installation",
-    "howto.md": "How to",
-    "input.md": "The input deck",
-    "keys.md": "Every key",
-    "messages.md": "Messages",
-    "paper.md": "The paper",
-    "theory.md": "Theory",
-    "method.md": "Method",
-    "validation.md": "Validation",
-    "performance.md": "Performance",
-    "scaling.md": "Scaling",
-    "architecture.md": "Architecture",
-    "shi.md": "Shi's routines",
-    "python.md": "Python interfaces",
+#: Pages in the order of the menu, by chapter; others of docs/ follow
+CHAPTERS = {
+    "Start": {
+        "index.md": "Overview",
+        "getting-started.md": "Getting started",
+        "installation.md": "Installation",
+    },
+    "How to": {
+        "howto.md": "Arches, studies, results, pictures",
+        "howto_blocks.md": "My own blocks",
+        "howto_limerick.md": "A Limerick model",
+    },
+    "Reference": {
+        "input.md": "The input deck",
+        "keys.md": "Every key",
+        "messages.md": "Messages",
+        "python.md": "Python interfaces",
+        "fortran/index.html": "Fortran interfaces",
+    },
+    "Theory and method": {
+        "theory.md": "Theory",
+        "method.md": "Method",
+        "limits.md": "Limits",
+        "limerick.md": "Files of the Limerick line",
+        "limerick_scheme.md": "The original's scheme",
+        "shi.md": "Shi's routines",
+    },
+    "Evidence": {
+        "paper.md": "The paper",
+        "validation.md": "Validation",
+        "accuracy.md": "Accuracy",
+        "performance.md": "Performance",
+        "scaling.md": "Scaling",
+    },
+    "Inside": {"architecture.md": "Architecture"},
 }
+#: Formulas in a line that are longer than so many characters of TeX scroll on narrow screens
+LONG = 30
+#: Packages that build the site
+PACKAGES = ("mkdocs", "ford", "latex2mathml")
+#: What the theme lacks: room for tables, which wrap, and names that break where they must
+STYLE = """.wy-nav-content { max-width: 1060px; }
+.wy-table-responsive table td, .wy-table-responsive table th { white-space: normal; }
+.wy-table-responsive table { min-width: 100%; }
+.wy-table-responsive td code { white-space: normal; overflow-wrap: normal; }
+.wy-table-responsive td:first-child > code { white-space: nowrap; }
+.rst-content h2, .rst-content h3, .rst-content h3 code, .rst-content p code, .rst-content li code
+{ white-space: normal; overflow-wrap: anywhere; }
+.rst-content img { background: #fff; max-width: 100%; }
+pre code.language-message { white-space: pre-wrap; }
+math { font-size: 1.1em; }
+span.formula { display: inline-block; max-width: 100%; overflow-x: auto; vertical-align: middle; }
+td span.formula { display: inline; }
+div.formula { overflow-x: auto; padding: 0.4em 0; margin-bottom: 1em; }
+@media (max-width: 768px) { .wy-table-responsive table:has(th:nth-child(4)) { min-width: 44rem; } }
+"""
 
 
 def main() -> int:
@@ -46,11 +83,11 @@ def main() -> int:
     parser.add_argument("--dda", type=Path, default=ROOT / "build/bin/dda", help="the program")
     parser.add_argument("--out", type=Path, default=ROOT / "build/site", help="where the site goes")
     arguments = parser.parse_args()
-    missing = [name for name in ("mkdocs", "ford") if not importlib.util.find_spec(name)]
+    missing = [name for name in PACKAGES if not importlib.util.find_spec(name)]
     if missing:
         print(
-            f"build_site.py:1: error: wanted the packages mkdocs and ford, found no "
-            f"{' and no '.join(missing)}; pip install mkdocs ford",
+            f"build_site.py:1: error: wanted the packages {', '.join(PACKAGES)}, found no "
+            f"{' and no '.join(missing)}; pip install {' '.join(PACKAGES)}",
             file=sys.stderr,
         )
         return 2
@@ -71,18 +108,21 @@ def main() -> int:
 
 def settings(docs: Path) -> dict:
     """Settings of MkDocs (JSON is YAML)."""
-    others = {path.name: path.stem for path in sorted(docs.glob("*.md"))}
-    pages = {name: title for name, title in PAGES.items() if name in others} | {
-        name: stem for name, stem in others.items() if name not in PAGES
-    }
+    found = {path.name for path in docs.glob("*.md")} | {"fortran/index.html"}
+    nav = [
+        {chapter: [{title: name} for name, title in pages.items() if name in found]}
+        for chapter, pages in CHAPTERS.items()
+    ]
+    known = {name for pages in CHAPTERS.values() for name in pages}
+    nav[-1]["Inside"] += [{Path(name).stem: name} for name in sorted(found - known)]
     return {
         "site_name": "voussoir",
         "docs_dir": str(docs),
         "use_directory_urls": False,
         "theme": {"name": "readthedocs", "highlightjs": False},
         "markdown_extensions": ["tables", "fenced_code", "toc"],
-        "nav": [{title: name} for name, title in pages.items()]
-        + [{"Fortran interfaces": "fortran/index.html"}],
+        "extra_css": ["style.css"],
+        "nav": nav,
         "validation": {"nav": {"not_found": "ignore"}, "links": {"anchors": "ignore"}},
     }
 
@@ -97,10 +137,31 @@ def write_pages(docs: Path, dda: Path) -> None:
     for page in docs.glob("*.md"):
         text = page.read_text(encoding="utf-8").replace("](../README.md)", "](index.md)")
         text = re.sub(r"\[([^\]]*)\]\(\.\./[^)]*\)", r"\1", text)
-        page.write_text(re.sub(r"^```sh install$|^```message$", "```text", text, flags=re.M))
+        text = re.sub(r"^```sh install$", "```text", text, flags=re.M)
+        page.write_text(with_formulas(text), encoding="utf-8")
+    (docs / "style.css").write_text(STYLE, encoding="utf-8")
     done = subprocess.run([dda, "help", "keys"], capture_output=True, text=True, check=True)
     (docs / "keys.md").write_text(keys_page(done.stdout), encoding="utf-8")
     (docs / "python.md").write_text(python_page(), encoding="utf-8")
+
+
+def with_formulas(text: str) -> str:
+    """A page whose TeX formulas, between dollars, are MathML; code stays as it is."""
+    from latex2mathml.converter import convert
+
+    def formula(match: re.Match) -> str:
+        if match["code"]:
+            return match["code"]
+        shown = match["shown"] is not None
+        mathml = convert(match["shown"] or match["inline"], display="block" if shown else "inline")
+        mathml = mathml.replace("|", "&#124;")  # a bar would part the cells of a table
+        if shown:
+            return f'<div class="formula">{mathml}</div>'
+        return f'<span class="formula">{mathml}</span>' if len(match["inline"]) > LONG else mathml
+
+    code = r"(?P<code>^ *```.*?^ *```|`[^`\n]+`)"
+    pattern = code + r"|\$\$(?P<shown>[^$]+)\$\$|\$(?P<inline>[^$\n]+(?:\n[^$\n]+)?)\$"
+    return re.sub(pattern, formula, text, flags=re.M | re.S)
 
 
 def keys_page(help_text: str) -> str:
@@ -120,8 +181,12 @@ def keys_page(help_text: str) -> str:
 
 def python_page() -> str:
     """Public functions and classes of the Python package, with their docstrings."""
-    lines = ["# Python interfaces", ""]
-    for path in sorted((ROOT / "post/voussoir").glob("*.py")):
+    lines = [
+        "# Python interfaces", "",
+        "What scripts import comes first: results and theory. The other modules are those of the commands.", "",
+    ]
+    modules = (ROOT / "post/voussoir").glob("*.py")
+    for path in sorted(modules, key=lambda path: (path.stem not in ("results", "theory"), path.stem)):
         tree = ast.parse(path.read_text(encoding="utf-8"))
         if path.stem.startswith("_") or not ast.get_docstring(tree):
             continue

@@ -1,12 +1,14 @@
-"""`voussoir animate`: the motion of cases as a GIF."""
+"""`voussoir animate`: the motion of cases as a GIF, an MP4 or pictures."""
 
 from __future__ import annotations
 
 import argparse
 import sys
 from pathlib import Path
+from typing import Any
 
 from voussoir import results
+from voussoir.plot_command import magnification
 
 #: Most cases that move side by side without being named
 MOST_CASES = 6
@@ -22,7 +24,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     """
     parser.description = (
         "Animate cases of a folder that dda run has written with geometry = 'current' and "
-        "output frames, side by side."
+        "output frames, side by side: arches and blocks, collapses and dynamic runs."
     )
     parser.add_argument("folder", metavar="DIR", type=Path, help="folder of the results")
     parser.add_argument(
@@ -33,7 +35,18 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         help=f"cases to animate (default: the first {MOST_CASES} that have frames)",
     )
     parser.add_argument(
-        "--out", metavar="FILE", type=Path, help="the GIF (default: DIR/plots/motion.gif)"
+        "--out",
+        metavar="FILE",
+        type=Path,
+        help="a .gif, an .mp4 (wants ffmpeg), or a .png for one numbered file a picture "
+        "(default: DIR/plots/motion.gif)",
+    )
+    parser.add_argument(
+        "--magnify",
+        metavar="M",
+        type=magnification,
+        default=1.0,
+        help="magnification of the displacements, stated in the title (default: 1, true scale)",
     )
 
 
@@ -84,12 +97,19 @@ def _run(arguments: argparse.Namespace) -> int:
             "'current' / and &output frames = 20 /"
         )
     from voussoir.case_picture import title_of
-    from voussoir.collapse_animation import animate
+    from voussoir.collapse_animation import animate, check_ending
     from voussoir.figure_style import house_style
 
     file = arguments.out or arguments.folder / "plots" / "motion.gif"
+    check_ending(file)
     file.parent.mkdir(parents=True, exist_ok=True)
     shown = moving if arguments.case else moving[:MOST_CASES]
+    factor = arguments.magnify
+
+    def title(row: dict[str, Any]) -> str:
+        return title_of(row) + (f"\ndisplacements × {factor:g}" if factor != 1.0 else "")
+
     with house_style():
-        print(animate(read, shown, title_of, file, width=5.6 if len(shown) > 1 else 6.4))
+        width = 5.6 if len(shown) > 1 else 6.4
+        print(animate(read, shown, title, file, width=width, magnify=factor))
     return 0

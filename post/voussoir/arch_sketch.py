@@ -12,7 +12,7 @@ from voussoir.figure_style import DASHES, INK, STONE
 STATIONS = 400
 
 
-def on_circle(radius, angle) -> np.ndarray:
+def on_circle(radius: float | np.ndarray, angle: float | np.ndarray) -> np.ndarray:
     """Points at angles from the crown, clockwise.
 
     Parameters

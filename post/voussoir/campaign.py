@@ -90,7 +90,8 @@ def open_campaign(dda: Path, deck: Path, settings: list[str], out: Path, anew: b
         file.unlink(missing_ok=True)
     campaign.parts.mkdir(parents=True, exist_ok=True)
     if not file.exists():
-        (out / "results.csv").unlink(missing_ok=True)  # of whatever was there before
+        for name in ("results.csv", "disk.record"):  # of whatever was there before
+            (out / name).unlink(missing_ok=True)
         text = json.dumps(identity, indent=1) + "\n"
         replace(file, lambda opened: opened.write(text.encode()))
         return campaign

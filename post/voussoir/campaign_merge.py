@@ -11,13 +11,24 @@ import os
 import re
 import shutil
 import uuid
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
 from typing import BinaryIO
 
+from voussoir.campaign_part import finished_by
+
 #: Tables with a case in each row
-TABLES = ("joints.csv", "log.txt", "frames.csv", "frame_joints.csv", "results.csv")
+TABLES = (
+    "joints.csv",
+    "blocks.csv",
+    "log.txt",
+    "frames.csv",
+    "frame_joints.csv",
+    "points.csv",
+    "energy.csv",
+    "results.csv",
+)
 
 
 @dataclass(frozen=True)
@@ -43,8 +54,9 @@ def merge(parts: Path, out: Path) -> None:
     attempts = sorted(path for path in parts.iterdir() if (path / "results.csv").exists())
     owner: dict[int, Path] = {}
     for attempt in attempts:
-        for case, *_ in slices_of(attempt / "results.csv"):
+        for case in finished_by(attempt):
             owner.setdefault(case, attempt)
+    (out / "disk.record").unlink(missing_ok=True)  # of another run: these tables are written whole
     for name in TABLES:
         merge_table(name, attempts, owner, out)
     copy_pictures(attempts, owner, out)
@@ -189,7 +201,7 @@ def merged(out: Path) -> Summary:
     return Summary(len(verdicts), verdicts.count("undecided"))
 
 
-def replace(path: Path, write) -> None:
+def replace(path: Path, write: Callable[[BinaryIO], object]) -> None:
     """Write a file under another name, then give it its own: it is never there by halves.
 
     Parameters

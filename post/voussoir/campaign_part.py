@@ -131,13 +131,45 @@ def finished_by(attempt: Path) -> set[int]:
         Numbers of its cases.
     """
     try:
-        text = (attempt / "results.csv").read_text(encoding="utf-8", errors="replace")
+        with (attempt / "results.csv").open("rb") as file:
+            text = file.read(trusted_length(attempt)).decode("utf-8", errors="replace")
     except OSError:
         return set()
     rows = csv.reader(text[: text.rfind("\n") + 1].splitlines())
     header = next(rows, ["case"])
     place = header.index("case")
     return {int(row[place]) for row in rows if len(row) == len(header)}
+
+
+def trusted_length(attempt: Path) -> int:
+    """Up to where the rows of results.csv count.
+
+    Parameters
+    ----------
+    attempt : Path
+        Folder of the attempt.
+
+    Returns
+    -------
+    int
+        Bytes: -1 for all of them, unless disk.record tells of another machine, or of this one
+        before it was started anew: then what was on the disk for certain.
+    """
+    try:
+        length, _, start = (attempt / "disk.record").read_text(encoding="utf-8").partition(" ")
+    except FileNotFoundError:
+        return -1
+    if start.strip() == start_name():
+        return -1
+    return int(length) if length.isdigit() else 0
+
+
+def start_name() -> str:
+    """What the system calls the time since its start; a dash where it has no name for it."""
+    try:
+        return Path("/proc/sys/kernel/random/boot_id").read_text(encoding="utf-8").strip()
+    except OSError:
+        return "-"
 
 
 def ranges_of(cases: list[int]) -> str:

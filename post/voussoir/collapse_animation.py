@@ -1,4 +1,4 @@
-"""Collapses as GIF animations."""
+"""Motions as animations: GIF, MP4, or numbered PNG files."""
 
 from __future__ import annotations
 
@@ -7,13 +7,40 @@ from pathlib import Path
 from typing import Any
 
 import matplotlib.pyplot as plt
-from matplotlib.animation import FuncAnimation, PillowWriter
+from matplotlib.animation import FFMpegWriter, FuncAnimation, PillowWriter
+from matplotlib.figure import Figure
 
 from voussoir.collapse_picture import draw_frame, limits, set_limits
 from voussoir.results import Results
 
 #: Pictures a second, and how many times the last one is shown
 _RATE, _REST = 6, 6
+#: Endings of animations
+ENDINGS = (".gif", ".mp4", ".png")
+
+
+class WriterError(ValueError):
+    """An animation of this kind cannot be written here: why, and what to do."""
+
+
+def check_ending(file: Path) -> None:
+    """Check that an animation of this name can be written.
+
+    Parameters
+    ----------
+    file : Path
+        Its name.
+
+    Raises
+    ------
+    WriterError
+        If the ending is unknown or its program is missing.
+    """
+    ending = file.suffix.lower()
+    if ending not in ENDINGS:
+        raise WriterError(f"wanted a file .gif, .mp4 or .png, found '{file.name}'; change its ending")
+    if ending == ".mp4" and not FFMpegWriter.isAvailable():
+        raise WriterError("wanted the program ffmpeg for .mp4, found none; install it, or choose .gif or .png")
 
 
 def animate(
@@ -23,8 +50,9 @@ def animate(
     file: Path,
     columns: int = 2,
     width: float = 5.6,
+    magnify: float = 1.0,
 ) -> Path:
-    """Write the motion of some cases, side by side, as one GIF.
+    """Write the motion of some cases, side by side.
 
     Parameters
     ----------
@@ -35,38 +63,70 @@ def animate(
     title : callable
         From the row of a case to the words above its picture.
     file : Path
-        Where to write.
+        Where to write: .gif, .mp4, or .png for one file a picture, `name_001.png` and so on.
     columns : int, optional
         Pictures in a row, at most as many as cases.
     width : float, optional
         Of the animation [inch], at 100 dots an inch.
+    magnify : float, optional
+        Magnification of the displacements.
 
     Returns
     -------
     Path
-        The file.
+        The file, or the first of them.
+
+    Raises
+    ------
+    WriterError
+        If such a file cannot be written here.
     """
+    check_ending(file)
     columns = min(columns, len(numbers))
     frames = [run.frames_of(number) for number in numbers]
-    boxes = [limits(run, [number]) for number in numbers]
+    boxes = [limits(run, [number], magnify) for number in numbers]
     shape = max((high[1] - low[1]) / (high[0] - low[0]) for low, high in boxes)
+    timed = any(run.case(number)["mode"] == "dynamic" for number in numbers)
+    words = [title(run.case(number)) for number in numbers]
+    if run.kind != "arch" and magnify == 1.0:
+        words = [text + "\ncontacts: crosses slide, dots stick" for text in words]
+    room = 0.2 * (1 + max(text.count("\n") for text in words) + timed) + 0.15
     lines = -(-len(numbers) // columns)
     figure, grid = plt.subplots(
         lines,
         columns,
-        figsize=(width, lines * (width / columns * shape + 0.35)),
+        figsize=(width, lines * (width / columns * shape + room)),
         layout="constrained",
         squeeze=False,
     )
+    for axes in grid.flat[len(numbers) :]:
+        axes.set_axis_off()
 
     def draw(moment: int) -> None:
-        for axes, number, pictures, box in zip(grid.flat, numbers, frames, boxes):
+        for axes, number, pictures, box, text in zip(grid.flat, numbers, frames, boxes, words):
+            frame = pictures[min(moment, len(pictures) - 1)]
             axes.clear()
-            draw_frame(axes, run, number, pictures[min(moment, len(pictures) - 1)], size=4.0)
+            draw_frame(axes, run, number, frame, size=4.0, magnify=magnify)
             set_limits(axes, box)
-            axes.set_title(title(run.case(number)), fontsize=9)
+            if timed:
+                text += f"\nt = {frame.time:.3f} s"
+            axes.set_title(text, fontsize=9)
 
-    length = max(map(len, frames)) + _REST
-    FuncAnimation(figure, draw, frames=length).save(file, writer=PillowWriter(fps=_RATE), dpi=100)
+    length = max(map(len, frames))
+    written = write(figure, draw, length, file)
     plt.close(figure)
-    return file
+    return written
+
+
+def write(figure: Figure, draw: Callable[[int], None], length: int, file: Path) -> Path:
+    """Write the pictures of a figure that is drawn anew for each of them; gives the first file."""
+    if file.suffix.lower() != ".png":
+        writer = FFMpegWriter if file.suffix.lower() == ".mp4" else PillowWriter
+        motion = FuncAnimation(figure, draw, frames=length + _REST)
+        motion.save(file, writer=writer(fps=_RATE), dpi=100)
+        return file
+    names = [file.with_name(f"{file.stem}_{moment + 1:03d}.png") for moment in range(length)]
+    for moment, name in enumerate(names):
+        draw(moment)
+        figure.savefig(name, dpi=100, metadata={"Software": None})
+    return names[0]

@@ -1,4 +1,4 @@
-"""Pictures of blocks that have moved: outlines, hinges and slips."""
+"""Pictures of blocks that have moved: outlines, supports, hinges, slips and contacts."""
 
 from __future__ import annotations
 
@@ -8,24 +8,33 @@ from matplotlib.collections import PolyCollection
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
+from voussoir.case_scene import CaseScene, scene_of, view
 from voussoir.figure_style import INK, STONE
 from voussoir.results import Frame, Results
 
-#: Marks: hinge at the intrados, hinge at the extrados, slip
+#: Marks of hinges, of joints that part, and of slip
 MARKS = {
     "intrados": {"marker": "o", "markerfacecolor": INK[1], "markeredgecolor": INK[0]},
     "extrados": {"marker": "s", "markerfacecolor": "white", "markeredgecolor": INK[2]},
+    "hinge": {"marker": "o", "markerfacecolor": INK[1], "markeredgecolor": INK[0]},
+    "open": {"marker": "D", "markerfacecolor": "white", "markeredgecolor": INK[0]},
     "slip": {"marker": "x", "markerfacecolor": INK[0], "markeredgecolor": INK[0]},
+    "closed": {"marker": ".", "markerfacecolor": INK[1], "markeredgecolor": INK[1]},
 }
 #: What the marks mean
 MEANINGS = {
     "intrados": "hinge at the intrados",
     "extrados": "hinge at the extrados",
+    "hinge": "hinge",
+    "open": "open joint",
     "slip": "sliding joint",
+    "closed": "contact that sticks",
 }
 
 
-def draw_frame(axes: Axes, run: Results, number: int, frame: Frame, size: float = 5.0) -> Axes:
+def draw_frame(
+    axes: Axes, run: Results, number: int, frame: Frame, size: float = 5.0, magnify: float = 1.0
+) -> Axes:
     """Draw one picture of a case, its first one faint behind it.
 
     Parameters
@@ -40,6 +49,8 @@ def draw_frame(axes: Axes, run: Results, number: int, frame: Frame, size: float 
         The picture.
     size : float, optional
         Size of the marks [points].
+    magnify : float, optional
+        Magnification of the displacements; marks are drawn at true scale only.
 
     Returns
     -------
@@ -47,78 +58,44 @@ def draw_frame(axes: Axes, run: Results, number: int, frame: Frame, size: float 
         The same.
     """
     first = run.frames_of(number)[0]
-    supports, blocks = parted(first, frame)
+    scene = scene_of(run, number)
+    before = shapes_of(scene, first, first, 1.0)
     if frame.number > 0:
         axes.add_collection(
-            PolyCollection(
-                first.blocks[:-2], facecolors="none", edgecolors="#c4c4c4", linewidths=0.5
-            )
+            PolyCollection(before, facecolors="none", edgecolors="#c4c4c4", linewidths=0.5)
         )
     axes.add_collection(
         PolyCollection(
-            supports, facecolors="white", edgecolors=INK[3], linewidths=0.6, hatch="////"
+            [block.corners for block in scene.supports],
+            facecolors="white", edgecolors=INK[3], linewidths=0.6, hatch="////",
         )
     )
+    blocks = shapes_of(scene, first, frame, magnify)
     axes.add_collection(PolyCollection(blocks, facecolors=STONE, edgecolors=INK[0], linewidths=0.6))
-    if frame.number > 0:
-        for kind, points in marks_of(run, number, frame).items():
+    if frame.number > 0 and magnify == 1.0:
+        marks = marks_of(run, number, frame) if scene.is_arch else contacts_of(frame)
+        for kind, points in marks.items():
             axes.plot(*points, linestyle="none", markersize=size, zorder=5, **MARKS[kind])
     axes.set_aspect("equal")
     axes.set_axis_off()
     return axes
 
 
-def parted(first: Frame, frame: Frame) -> tuple[list[np.ndarray], list[np.ndarray]]:
-    """Supports and blocks of a picture of an arch: its last two blocks are the supports.
-
-    Parameters
-    ----------
-    first : Frame
-        The first picture, before any motion.
-    frame : Frame
-        The picture.
-
-    Returns
-    -------
-    tuple
-        The supports, cut off a little below their joints so that no two overlap; the blocks.
-    """
-    left, right = first.blocks[-2:]
-    return [shortened(left, first, 0), shortened(right, first, -1)], frame.blocks[:-2]
-
-
-def shortened(support: np.ndarray, frame: Frame, joint: int, share: float = 0.3) -> np.ndarray:
-    """A support of which only the part next to its joint is left.
-
-    Parameters
-    ----------
-    support : ndarray
-        Its corners: (n, 2).
-    frame : Frame
-        A picture before any motion.
-    joint : int
-        Place of its joint among those of the picture.
-    share : float, optional
-        How much of its depth is left.
-
-    Returns
-    -------
-    ndarray
-        Corners: (n, 2).
-    """
-    ends = [
-        np.array([frame.joints["x" + end][joint], frame.joints["y" + end][joint]])
-        for end in ("_1", "_2")
+def shapes_of(
+    scene: CaseScene, first: Frame, frame: Frame, magnify: float
+) -> list[np.ndarray]:
+    """Corners of the blocks that can move in a picture, their displacements magnified."""
+    return [
+        before + magnify * (now - before)
+        for before, now in (
+            (first.blocks[block.number - 1], frame.blocks[block.number - 1])
+            for block in scene.blocks
+        )
     ]
-    along = (ends[1] - ends[0]) / np.linalg.norm(ends[1] - ends[0])
-    normal = np.array([-along[1], along[0]])
-    depth = (support - ends[0]) @ normal
-    far = np.abs(depth) > 0.5 * np.abs(depth).max()
-    return support - np.outer((1.0 - share) * depth * far, normal)
 
 
 def marks_of(run: Results, number: int, frame: Frame) -> dict[str, np.ndarray]:
-    """Where a picture has hinges and slips.
+    """Where a picture of an arch has hinges and slips.
 
     Hinges are those of the row of the case; a joint slips that does so in some picture up to this.
 
@@ -145,6 +122,23 @@ def marks_of(run: Results, number: int, frame: Frame) -> dict[str, np.ndarray]:
     }
 
 
+def contacts_of(frame: Frame) -> dict[str, np.ndarray]:
+    """Where blocks slide on one another in a picture, and where they stick.
+
+    Returns
+    -------
+    dict
+        Corners of each kind: (2, n).
+    """
+    joints = frame.joints
+    points: dict[str, list[np.ndarray]] = {"slip": [], "closed": []}
+    for kind, word in (("slip", "sliding"), ("closed", "locked")):
+        for end in ("_1", "_2"):
+            mask = joints["state" + end] == word
+            points[kind].append(np.array([joints["x" + end][mask], joints["y" + end][mask]]))
+    return {kind: np.hstack(parts) for kind, parts in points.items()}
+
+
 def mark_legend(figure: Figure, kinds: tuple[str, ...] = ("intrados", "extrados")) -> Figure:
     """Explain the marks below a figure."""
     entries = [
@@ -155,17 +149,32 @@ def mark_legend(figure: Figure, kinds: tuple[str, ...] = ("intrados", "extrados"
     return figure
 
 
-def limits(run: Results, numbers: list[int], margin: float = 0.06) -> tuple[np.ndarray, np.ndarray]:
-    """Least and greatest coordinates of the last pictures of some cases, and a margin [m]."""
-    points = []
+def limits(
+    run: Results, numbers: list[int], magnify: float = 1.0
+) -> tuple[np.ndarray, np.ndarray]:
+    """The piece of plane that shows all pictures of some cases [m].
+
+    Parameters
+    ----------
+    run : Results
+        The results of the deck.
+    numbers : list of int
+        Numbers of the cases.
+    magnify : float, optional
+        Magnification of the displacements.
+
+    Returns
+    -------
+    tuple of ndarray
+        Lower left and upper right corner.
+    """
+    shapes, supports = [], []
     for number in numbers:
-        first, *_, last = run.frames_of(number)
-        for frame in (first, last):
-            points += [corner for blocks in parted(first, frame) for corner in blocks]
-    corners = np.vstack(points)
-    low, high = corners.min(axis=0), corners.max(axis=0)
-    room = margin * (high - low).max()
-    return low - room, high + room
+        scene, frames = scene_of(run, number), run.frames_of(number)
+        supports += [block.corners for block in scene.supports]
+        for frame in frames:
+            shapes += shapes_of(scene, frames[0], frame, magnify)
+    return view(shapes, supports)
 
 
 def set_limits(axes: Axes, box: tuple[np.ndarray, np.ndarray]) -> None:

@@ -1,4 +1,4 @@
-"""The Fortran program: where it is, and running it."""
+"""The Fortran program and its decks: where they are, and running it."""
 
 from __future__ import annotations
 
@@ -18,27 +18,63 @@ class DdaError(Exception):
         self.status = status
 
 
-def find_dda() -> Path:
+def find_dda(named: Path | None = None) -> Path:
     """Find the program `dda`.
+
+    Parameters
+    ----------
+    named : Path, optional
+        The program that a user has named; no other one will do then.
 
     Returns
     -------
     Path
-        What the environment variable VOUSSOIR_DDA names (the command `voussoir` of a build or an
-        installation sets it), else the `dda` beside the interpreter, else the first on the path.
+        The one named, else what the environment variable VOUSSOIR_DDA names (the command `voussoir`
+        of a build or an installation sets it), else the `dda` of the build that this package
+        belongs to, else the one beside the interpreter, else the first on the path.
 
     Raises
     ------
     DdaError
         If there is none.
     """
-    named = os.environ.get("VOUSSOIR_DDA", "")
-    beside = shutil.which("dda", path=str(Path(sys.executable).parent))
-    found = shutil.which(named) if named else beside or shutil.which("dda")
-    if not found:
-        wanted = f"VOUSSOIR_DDA names '{named}', which is no program" if named else "none was found"
-        raise DdaError(f"wanted the program dda, {wanted}; put it on the path or set VOUSSOIR_DDA")
-    return Path(found).resolve()
+    wish = str(named or os.environ.get("VOUSSOIR_DDA", ""))
+    build = Path(__file__).absolute().parents[2] / "bin"
+    places = [str(build), str(Path(sys.executable).parent), None]
+    found = [shutil.which(wish)] if wish else [shutil.which("dda", path=path) for path in places]
+    if not any(found):
+        wanted = f"'{wish}' is no program" if wish else "none was found"
+        raise DdaError(
+            f"wanted the program dda, {wanted}; put it on the path, or name it with VOUSSOIR_DDA"
+        )
+    return Path(next(filter(None, found))).resolve()
+
+
+def find_input(name: str) -> Path:
+    """Find a folder of decks that belongs to this package.
+
+    Parameters
+    ----------
+    name : str
+        Its name: "paper" or "benchmarks".
+
+    Returns
+    -------
+    Path
+        The folder in the package (`pip install`), in the prefix (`cmake --install`), or in the
+        source (a build's package is made of links to it).
+
+    Raises
+    ------
+    DdaError
+        If it is in none of these.
+    """
+    here = Path(__file__)
+    roots = [here.absolute().parent, *(up / "share/voussoir" for up in here.absolute().parents)]
+    for root in [*roots, here.resolve().parents[2]]:
+        if (root / "input" / name).is_dir():
+            return root / "input" / name
+    raise DdaError(f"wanted the decks input/{name}, found none; name their folder with --decks")
 
 
 def version_of(dda: Path) -> str:

@@ -6,7 +6,7 @@ import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib.figure import Figure
 
-from voussoir.figure_style import INK
+from voussoir.figure_style import DASHES, INK
 from voussoir.results import Results, Table
 
 #: What columns mean, for the axes
@@ -88,12 +88,21 @@ def draw_chart(run: Results, column: str | None = None) -> Figure:
         raise ChartError("wanted two critical values or more, found fewer; give the deck &search")
     others = [name for name in swept if name != column and not _follows(found, name, column)]
     groups = _groups(found, others)
-    if len(groups) > MOST_CURVES:
+    if len(groups) <= MOST_CURVES:
+        figure = _draw(run, groups, column)
+    elif len(others) == 1 and others[0] in numeric:
+        figure = _draw_by_colour(run, groups, column, others[0])
+    else:
         raise ChartError(
-            f"wanted at most {MOST_CURVES} curves, found {len(groups)}; chart another column of "
-            + ", ".join(numeric)
+            f"wanted at most {MOST_CURVES} curves or one number beside {column}, found "
+            f"{len(groups)} curves of {', '.join(others)}; sweep fewer values, or fewer keys"
         )
-    return _draw(run, groups, column)
+    missing = len(run.cases) - len(found)
+    if missing:
+        figure.axes[0].set_title(
+            f"{missing} of {len(run.cases)} cases have no critical value", fontsize=9, color="#555555"
+        )
+    return figure
 
 
 def _draw(run: Results, groups: list[tuple[str, Table]], column: str) -> Figure:
@@ -106,8 +115,9 @@ def _draw(run: Results, groups: list[tuple[str, Table]], column: str) -> Figure:
         exact |= bool(known.any())
         axes.plot(rows[column][known], rows["exact"][known], color=color, linewidth=1.2)
         axes.plot(
-            rows[column], rows["critical"], linestyle="none", marker=_MARKERS[number],
-            markerfacecolor="white", markeredgecolor=color, markersize=6, label=label or "DDA",
+            rows[column], rows["critical"], linestyle="none" if known.any() else DASHES[3],
+            linewidth=1.0, color=color, marker=_MARKERS[number], markerfacecolor="white",
+            markeredgecolor=color, markersize=6, label=label or "DDA",
         )
     axes.set_xlabel(MEANINGS.get(column, column))
     axes.set_ylabel(_searched(run))
@@ -117,13 +127,28 @@ def _draw(run: Results, groups: list[tuple[str, Table]], column: str) -> Figure:
     return figure
 
 
+def _draw_by_colour(
+    run: Results, groups: list[tuple[str, Table]], column: str, other: str
+) -> Figure:
+    """Curves too many for marks: their colour tells the second parameter."""
+    figure, axes = plt.subplots(figsize=(6.8, 4.4), layout="constrained")
+    values = [float(rows[other][0]) for _, rows in groups]
+    scale = plt.cm.ScalarMappable(plt.Normalize(min(values), max(values)), "viridis")
+    for value, (_, rows) in zip(values, groups):
+        rows = rows.take(np.argsort(rows[column], kind="stable"))
+        axes.plot(
+            rows[column], rows["critical"], color=scale.to_rgba(value), linewidth=1.2,
+            marker=".", markersize=4,
+        )
+    axes.set_xlabel(MEANINGS.get(column, column))
+    axes.set_ylabel(_searched(run))
+    figure.colorbar(scale, ax=axes, label=MEANINGS.get(other, other))
+    return figure
+
+
 def _searched(run: Results) -> str:
-    """What was searched: the record of the deck tells, else the column that is empty."""
-    record = run.folder / "deck.record"
-    lines = record.read_text(encoding="utf-8").splitlines() if record.is_file() else []
-    name = "thickness_ratio"
-    if "search%parameter" in lines:
-        name = lines[lines.index("search%parameter") + 1].strip()
+    """What was searched."""
+    name = run.searched or "thickness_ratio"
     return "critical " + MEANINGS.get(name, name)
 
 

@@ -46,28 +46,8 @@ def stands_by_general(half_angle: float, voussoirs: int, ratio: float, friction:
     from scipy.optimize import linprog
     from scipy.sparse import coo_array
 
-    angle, inner, outer, weight, centre = _blocks(half_angle, voussoirs, ratio)
     joints = voussoirs + 1
-    # forces N1 at the intrados, N2 at the extrados, T along the joint towards the extrados, on the
-    # block to the right of the joint; the block to its left feels the opposite
-    normal = np.column_stack([np.cos(angle), -np.sin(angle)])
-    along = np.column_stack([np.sin(angle), np.cos(angle)])
-    rows, columns, values = [], [], []
-    for side, sign in ((0, 1.0), (1, -1.0)):
-        block = np.arange(voussoirs)
-        joint = block + side
-        for kind, (force, place) in enumerate(((normal, inner), (normal, outer), (along, inner))):
-            arm = place[joint] - centre
-            moment = arm[:, 0] * force[joint, 1] - arm[:, 1] * force[joint, 0]
-            for balance, part in enumerate((force[joint, 0], force[joint, 1], moment)):
-                rows.append(3 * block + balance)
-                columns.append(3 * joint + kind)
-                values.append(sign * part)
-    shape = (3 * voussoirs, 3 * joints)
-    entries = np.concatenate(values), (np.concatenate(rows), np.concatenate(columns))
-    balance = coo_array(entries, shape=shape).tocsr()
-    loads = np.zeros(3 * voussoirs)
-    loads[1::3] = weight
+    balance, loads = _balance(half_angle, voussoirs, ratio)
     number = np.arange(2 * joints)
     first = 3 * (number // 2)
     sign = np.where(number % 2 == 0, 1.0, -1.0)
@@ -88,6 +68,34 @@ def stands_by_general(half_angle: float, voussoirs: int, ratio: float, friction:
             method="highs",
         )
     )
+
+
+def _balance(half_angle: float, voussoirs: int, ratio: float) -> tuple[Any, np.ndarray]:
+    """Equilibrium of the blocks: matrix of the joint forces' share (sparse), and the loads."""
+    from scipy.sparse import coo_array
+
+    angle, inner, outer, weight, centre = _blocks(half_angle, voussoirs, ratio)
+    joints = voussoirs + 1
+    # forces N1 at the intrados, N2 at the extrados, T along the joint towards the extrados, on the
+    # block to the right of the joint; the block to its left feels the opposite
+    normal = np.column_stack([np.cos(angle), -np.sin(angle)])
+    along = np.column_stack([np.sin(angle), np.cos(angle)])
+    rows, columns, values = [], [], []
+    for side, sign in ((0, 1.0), (1, -1.0)):
+        block = np.arange(voussoirs)
+        joint = block + side
+        for kind, (force, place) in enumerate(((normal, inner), (normal, outer), (along, inner))):
+            arm = place[joint] - centre
+            moment = arm[:, 0] * force[joint, 1] - arm[:, 1] * force[joint, 0]
+            for balance, part in enumerate((force[joint, 0], force[joint, 1], moment)):
+                rows.append(3 * block + balance)
+                columns.append(3 * joint + kind)
+                values.append(sign * part)
+    shape = (3 * voussoirs, 3 * joints)
+    entries = np.concatenate(values), (np.concatenate(rows), np.concatenate(columns))
+    loads = np.zeros(3 * voussoirs)
+    loads[1::3] = weight
+    return coo_array(entries, shape=shape).tocsr(), loads
 
 
 def stands_by_compact(half_angle: float, voussoirs: int, ratio: float, friction: float) -> bool:

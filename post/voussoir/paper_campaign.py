@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-import shutil
 import subprocess
 import time
 from collections.abc import Callable, Iterator
@@ -215,24 +214,3 @@ def _order(stem: str) -> tuple[str, int, str]:
     word = stem.rstrip("0123456789") if stem[-1:].isdigit() else stem.partition("_")[0]
     digits = "".join(sign for sign in stem.partition("_")[0] if sign.isdigit())
     return ("a" if word.startswith("table") else "b", int(digits or 0), stem)
-
-
-def find_dda(named: Path | None = None) -> Path:
-    """The program dda: the one named, that of the variable DDA, of the build, or on the PATH.
-
-    Raises
-    ------
-    FileNotFoundError
-        If there is none.
-    """
-    build = Path(__file__).absolute().parents[2] / "bin" / "dda"
-    candidates = [named] if named else [os.environ.get("DDA"), build, shutil.which("dda")]
-    for candidate in candidates:
-        if candidate and os.access(candidate, os.X_OK) and Path(candidate).is_file():
-            return Path(candidate).absolute()
-    raise FileNotFoundError("the program dda was not found; --dda FILE names it")
-
-
-def find_decks() -> Path:
-    """The folder of the paper's decks in the source."""
-    return Path(__file__).resolve().parents[2] / "input" / "paper"

@@ -10,7 +10,8 @@ import time
 from pathlib import Path
 
 from voussoir import paper_tables
-from voussoir.paper_campaign import TOGETHER, Campaign, Clock, Timing, find_dda, find_decks, weights
+from voussoir.dda_program import DdaError, find_dda, find_input
+from voussoir.paper_campaign import TOGETHER, Campaign, Clock, Timing, weights
 
 _PARTS = ["figures", "animations"]
 
@@ -49,10 +50,10 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "--decks",
         metavar="DIR",
         type=Path,
-        help="folder of the decks (default: that of the source)",
+        help="folder of the decks (default: those that came with the program)",
     )
     parser.add_argument(
-        "--dda", metavar="FILE", type=Path, help="the program dda (default: that of the build)"
+        "--dda", metavar="FILE", type=Path, help="the program dda (default: the one beside `voussoir`)"
     )
     parser.add_argument("--quiet", action="store_true", help="print nothing but errors")
 
@@ -77,11 +78,11 @@ def run(arguments: argparse.Namespace) -> int:
     int
         Exit status: that of dda, or 2 if it or the decks are missing, 4 if nothing can be written.
     """
-    campaign = Campaign(arguments.decks or find_decks(), arguments.out)
     try:
+        campaign = Campaign(arguments.decks or find_input("paper"), arguments.out)
         dda = find_dda(arguments.dda)
         decks = campaign.deck_files(arguments.limerick)
-    except FileNotFoundError as problem:
+    except (DdaError, FileNotFoundError) as problem:
         print(f"voussoir: error: {problem}", file=sys.stderr)
         return 2
     try:

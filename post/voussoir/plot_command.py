@@ -23,8 +23,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         Parser of the subcommand.
     """
     parser.description = (
-        "Draw the cases of a folder that dda run has written: blocks, line of thrust, hinges, "
-        "slips, forces, displaced shape; or chart the critical values of a sweep."
+        "Draw the cases of a folder that dda run has written, arches and blocks alike: line of "
+        "thrust, hinges, slips, contact forces, displaced shape, ways of measured points; or "
+        "chart the critical values of a sweep."
     )
     parser.add_argument("folder", metavar="DIR", type=Path, help="folder of the results")
     parser.add_argument(
@@ -56,7 +57,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--magnify",
         metavar="M",
-        type=_magnification,
+        type=magnification,
         help="magnification of the displaced shape, 0 for none (default: chosen, and stated)",
     )
     parser.add_argument(
@@ -129,8 +130,24 @@ def _cases(arguments: argparse.Namespace, read: results.Results) -> list[int]:
     return drawn
 
 
-def _magnification(word: str) -> float:
-    """A finite number from 0."""
+def magnification(word: str) -> float:
+    """A finite number from 0.
+
+    Parameters
+    ----------
+    word : str
+        As given on the command line.
+
+    Returns
+    -------
+    float
+        The number.
+
+    Raises
+    ------
+    argparse.ArgumentTypeError
+        If it is none.
+    """
     try:
         number = float(word)
     except ValueError:

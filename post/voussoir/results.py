@@ -21,14 +21,14 @@ import numpy as np
 _WHOLE = frozenset(
     (
         "case blocks voussoirs steps open_close_iterations factorisations"
-        " joint frame step block vertex"
+        " joint frame step block vertex point block_1 block_2"
     ).split()
 )
 #: Columns of words; what is left are numbers
 _WORDS = frozenset(
     (
         "deck mode geometry verdict collapses_at collapse_mode springing_hinge"
-        " state state_1 state_2"
+        " state state_1 state_2 mechanism"
     ).split()
 )
 #: Columns of several angles joined by semicolons
@@ -112,6 +112,28 @@ class Frame:
 
 
 @dataclass(frozen=True)
+class Block:
+    """One block of a case.
+
+    Attributes
+    ----------
+    number : int
+        Its number, from 1.
+    state : str
+        "fixed", "held" (by points) or "free".
+    corners : ndarray
+        Where its corners are at the beginning, anticlockwise: (n, 2) [m].
+    displacement : ndarray
+        Displacements of the corners: (n, 2) [m]; NaN where none are known.
+    """
+
+    number: int
+    state: str
+    corners: np.ndarray
+    displacement: np.ndarray
+
+
+@dataclass(frozen=True)
 class Results:
     """The results of one deck.
 
@@ -125,6 +147,8 @@ class Results:
         joints.csv, likewise; None if the deck did not want it.
     frames, frame_joints : Table or None
         frames.csv and frame_joints.csv, likewise.
+    blocks, points : Table or None
+        blocks.csv and points.csv, likewise.
     """
 
     folder: Path
@@ -132,6 +156,30 @@ class Results:
     joints: Table | None
     frames: Table | None
     frame_joints: Table | None
+    blocks: Table | None = None
+    points: Table | None = None
+
+    def setting(self, name: str) -> str | None:
+        """What the deck says of a key such as "arch%radius"; None if it leaves it out."""
+        lines = self._record()
+        return lines[lines.index(name) + 1].strip() if name in lines else None
+
+    @property
+    def kind(self) -> str:
+        """Kind of the scene: "arch", "lines" or "blocks"."""
+        return self.setting("scene%kind") or "arch"
+
+    @property
+    def searched(self) -> str | None:
+        """Parameter that was searched, None if none was."""
+        if "&search" not in self._record():
+            return None
+        return self.setting("search%parameter") or "thickness_ratio"
+
+    def _record(self) -> list[str]:
+        """Lines of deck.record: what the deck asks for."""
+        record = self.folder / "deck.record"
+        return record.read_text(encoding="utf-8").splitlines() if record.is_file() else []
 
     def case(self, number: int) -> dict[str, Any]:
         """Row of one case.
@@ -150,6 +198,37 @@ class Results:
         if self.joints is None:
             raise KeyError(f"no joints.csv in {self.folder}")
         return self.joints.where(case=number)
+
+    def blocks_of(self, number: int) -> list[Block]:
+        """Blocks of one case.
+
+        Raises
+        ------
+        KeyError
+            If they were not written.
+        """
+        rows = None if self.blocks is None else self.blocks.where(case=number)
+        if not rows:
+            raise KeyError(
+                f"no blocks of case {number} in {self.folder}: run the deck again with "
+                f"--set output%blocks=.true. --cases {number}"
+            )
+        corners = np.column_stack((rows["x"], rows["y"]))
+        moves = np.column_stack((rows["u"], rows["v"]))
+        starts = np.flatnonzero(np.diff(rows["block"])) + 1
+        return [
+            Block(int(rows["block"][first]), str(rows["state"][first]), shape, motion)
+            for first, shape, motion in zip(
+                [0, *starts], np.split(corners, starts), np.split(moves, starts)
+            )
+        ]
+
+    def points_of(self, number: int) -> list[Table]:
+        """Ways of the measured points of one case, a table each; none where none were written."""
+        if self.points is None:
+            return []
+        rows = self.points.where(case=number)
+        return [rows.where(point=point) for point in np.unique(rows["point"])]
 
     def frames_of(self, number: int) -> list[Frame]:
         """Pictures of one case in their order; none where none were written."""
@@ -209,6 +288,8 @@ def read(folder: str | Path) -> Results:
         joints=_read_table(folder / "joints.csv"),
         frames=_read_table(folder / "frames.csv"),
         frame_joints=_read_table(folder / "frame_joints.csv"),
+        blocks=_read_table(folder / "blocks.csv"),
+        points=_read_table(folder / "points.csv"),
     )
 
 

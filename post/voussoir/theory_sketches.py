@@ -106,7 +106,7 @@ def notation(alpha_deg: float = 120.0, beta_deg: float = 58.0, eta: float = 0.4)
     for label, spot, shift in (
         ("$A$", crown, (-0.05, 0.04)),
         ("$D$", meeting, (0.0, 0.05)),
-        ("$P$", point, (0.04, 0.03)),
+        ("$P$", point, (0.06, -0.015)),
         ("$O$", np.zeros(2), (-0.08, -0.06)),
     ):
         axes.plot(*spot, marker="o", color=INK[0], markersize=4, zorder=6)

@@ -6,9 +6,9 @@ import argparse
 import sys
 from pathlib import Path
 
-from voussoir.dda_program import DdaError, find_dda, version_of
+from voussoir.dda_program import DdaError, find_dda, find_input, version_of
 from voussoir.validation_page import csv_text, page, told
-from voussoir.validation_run import Line, all_scenes, find_decks, run_scene
+from voussoir.validation_run import Line, all_scenes, run_scene
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -40,7 +40,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "--decks",
         metavar="DIR",
         type=Path,
-        help="folder of the decks (default: that of the source)",
+        help="folder of the decks (default: those that came with the program)",
     )
     parser.add_argument("--quiet", action="store_true", help="print nothing but errors")
 
@@ -90,11 +90,12 @@ def _lines(arguments: argparse.Namespace, dda: Path) -> list[Line]:
     if unknown:
         known = ", ".join(sorted(names))
         raise DdaError(f"wanted a scene, found '{unknown[0]}'; the scenes are {known}")
+    decks = arguments.decks or find_input("benchmarks")
     lines = []
     for scene in scenes:
         if arguments.scenes and scene.deck not in arguments.scenes:
             continue
-        for line in run_scene(dda, arguments.decks or find_decks(), scene, arguments.halvings):
+        for line in run_scene(dda, decks, scene, arguments.halvings):
             lines.append(line)
             if not arguments.quiet:
                 print(told(line), flush=True)

@@ -100,14 +100,37 @@ def _rocking() -> list[Scene]:
     pulses = (("pulse_rocks", 0.98, "stands"), ("pulse_overturns", 1.02, "fallen"))
     for deck, share, falls in pulses:
         what = f"0.3 g for {share} of 0.40905 s"
-        scenes.append(Scene(ROCKING, deck, "nonlinear, integrated", (Check(what, falls, _fate),)))
-    return scenes
+        check = Check(what, falls, _fate(1, 0.2, 1.0))
+        scenes.append(Scene(ROCKING, deck, "nonlinear, integrated", (check,)))
+    checks = []
+    for k, (b, h, push, time) in enumerate(PULSES):
+        for i, (share, falls) in enumerate(((0.98, "stands"), (1.02, "fallen")), 1):
+            what = f"{2 * b:g} x {2 * h:g} m: {push:g} g for {share} of {time} s"
+            checks.append(Check(what, falls, _fate(2 * k + i, b, h)))
+    return [*scenes, Scene(ROCKING, "pulses", "nonlinear, integrated", tuple(checks), slow=True)]
 
 
-def _fate(outcome: Outcome) -> str:
-    """Whether the block is tilted beyond its angle at the end."""
-    tilt = abs(outcome.direction(1, 2)[-1] - math.pi / 2.0)
-    return "stands" if tilt < math.atan2(0.2, 1.0) else "fallen"
+#: Half width, half height [m], push [g] and the time that overturns the block [s]
+PULSES = (
+    (0.2, 1.0, 0.3, 0.40905),
+    (0.2, 1.0, 0.4, 0.25843),
+    (0.2, 1.0, 0.6, 0.15135),
+    (0.25, 1.0, 0.375, 0.41125),
+    (0.25, 1.0, 0.5, 0.26001),
+    (0.25, 1.0, 0.75, 0.15238),
+    (0.25, 0.5, 0.75, 0.30266),
+    (0.25, 0.5, 1.0, 0.19242),
+)
+
+
+def _fate(block: int, b: float, h: float):
+    """Measure of whether a block has ever been tilted far beyond its angle."""
+
+    def measure(outcome: Outcome) -> str:
+        tilt = outcome.direction(2 * block - 1, 2 * block) - math.pi / 2.0
+        return "fallen" if np.abs(tilt).max() > 1.5 * math.atan2(b, h) else "stands"
+
+    return measure
 
 
 def _bounces() -> list[Scene]:

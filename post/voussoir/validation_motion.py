@@ -45,6 +45,16 @@ def _moving(axis: int, point: int = 1):
     return lambda outcome: float(outcome.end(point)[axis])
 
 
+def _way_at(time: float):
+    """Measure of the way of point 1 along x at a time at which a step ends."""
+
+    def measure(outcome: Outcome) -> float:
+        track = outcome.track(1)
+        return float(np.interp(time, track[0], track[3]))
+
+    return measure
+
+
 def _turned(outcome: Outcome) -> float:
     """Angle that the line from point 1 to point 2 has turned since it was that of the deck."""
     tracks = outcome.track(1), outcome.track(2)
@@ -163,7 +173,10 @@ def _slides() -> list[Scene]:
     cases = ((30.0, 0.0), (30.0, 20.0), (20.0, 10.0), (28.0, 22.0))
     s = "s(1 s), {:.0f} deg, friction {:.0f} deg [m]"
     rows = tuple(
-        Check(s.format(*row), slide(*row) / 2.0, _moving(0), 1e-3, case)
+        Check(s.format(*row), slide(*row) / 2.0, _way_at(1.0), 1e-3, case)
+        for case, row in enumerate(cases, 1)
+    ) + tuple(
+        Check(s.format(*row).replace("1 s", "2 s"), slide(*row) * 2.0, _way_at(2.0), 1e-3, case)
         for case, row in enumerate(cases, 1)
     )
     stop = -4.0 / (2.0 * slide(20.0, 30.0, up=True))
@@ -194,24 +207,76 @@ def _slides() -> list[Scene]:
 
 
 def _shaken() -> list[Scene]:
-    """Scenes of Newmark's block; the ways were integrated by two methods at steps of 2e-6 s."""
+    """Scenes of Newmark's block; the ways were integrated by two methods at steps of 2e-6 s.
+
+    One ground is given by its acceleration, its velocity and its displacement.
+    """
+    way = "way down the slope at the end [m]"
     rows = (
-        ("newmark_flat", 0.0, -0.007708),
-        ("newmark_slope", 20.0, 0.018257),
-        ("newmark_fast", 20.0, 0.496482),
-        ("newmark_rough", 20.0, 0.023078),
+        ("newmark_flat", 0.0, -0.007708, 0.235090),
+        ("newmark_periodic", 0.0, -0.007708, 0.235090),
+        ("newmark_slope", 20.0, 0.018257, 0.0),
+        ("newmark_velocity", 20.0, 0.018257, 0.0),
+        ("newmark_displacement", 20.0, 0.018257, 0.0),
+        ("newmark_fast", 20.0, 0.496482, 0.246839),
+        ("newmark_rough", 20.0, 0.023078, 0.0),
     )
     return [
         Scene(
             SLIDING,
             deck,
             "Newmark 1965, integrated",
-            (Check("way down the slope at the end [m]", way, _along(dip), 1e-2),),
+            (
+                Check(way, exact, _along(dip), 1e-2),
+                Check("speed at the end [m/s]", speed, _speed_along(dip), 1e-2, scale=0.24),
+            ),
             rate=True,
         )
-        for deck, dip, way in rows
+        for deck, dip, exact, speed in rows
     ]
 
 
+def _speed_along(slope_deg: float):
+    """Measure of the speed of point 1 down a slope to the right."""
+    slope = math.radians(slope_deg)
+    return lambda outcome: float(outcome.speed(1) @ (math.cos(slope), -math.sin(slope)))
+
+
+def stick_slip(rub: float, push: float, end: float, steps: int = 400000) -> float:
+    """Way of a block on a table after a time, by small steps of a motion that sticks and slips [m].
+
+    Its acceleration is push cos t less that of friction (Potra et al. 2006 compare such a block).
+
+    Parameters
+    ----------
+    rub, push : float
+        Accelerations that friction and the force can give [m/s2].
+    end : float
+        The time [s].
+    steps : int
+        Number of steps.
+    """
+    step = end / steps
+    way = speed = 0.0
+    for i in range(steps):
+        force = push * math.cos((i + 0.5) * step)
+        direction = speed if speed != 0.0 else force
+        if speed == 0.0 and abs(force) <= rub:
+            continue
+        after = speed + step * (force - math.copysign(rub, direction))
+        if after * speed < 0.0:
+            after = 0.0
+        way += step * (speed + after) / 2.0
+        speed = after
+    return way
+
+
+def _sticking() -> Scene:
+    """A block that a periodic force moves to and fro."""
+    exact = stick_slip(5.0, 8.0, 10.0)
+    check = Check("way after 10 s [m]", exact, _moving(0), 1e-2)
+    return Scene(SLIDING, "stick_slip", "F cos t against friction, integrated", (check,), rate=True)
+
+
 #: Every scene of this module
-SCENES = (*_flights(), *_slides(), *_shaken())
+SCENES = (*_flights(), *_slides(), *_shaken(), _sticking())

@@ -31,11 +31,8 @@ two are. This page is written by `voussoir validation` from a run of the decks i
 _TAIL = """
 ## What the lines that miss tell
 
-- **uniaxial, bar_own_weight** with blocks that move. Hooke's law is that of small strains. Loads
-  on the strained block strain it otherwise, by as much as the strain itself: 2e-4 and 2.5e-5
-  here. The bar a hundred times as stiff is a hundred times nearer.
-- **dry walls.** The limit is that of dilatant friction, an upper bound for Coulomb's;
-  [limits.md](limits.md) says what was found.
+- **dry walls.** The limit is that of dilatant friction, an upper bound for Coulomb's. The answer
+  under Coulomb friction depends on the way of the loads; [limits.md](limits.md) says what was found.
 
 ## What the rates tell
 
@@ -52,9 +49,10 @@ _TAIL = """
 
 ## Not in the suite
 
-Scenes of the literature with exact answers that no deck has yet: a block jammed between walls,
-the roof wedge, snap-through of two blocks, the wave along a chain of blocks, stick and slip under
-a periodic force, an arch under a point load, an arch on buttresses.
+- **Newton's cradle.** Blows at the same time have no one answer.
+- **The cantilever of one block.** A block has one strain and does not bend ([limits.md](limits.md)).
+- **Sliding of a flat arch** between walls that do not yield: its thrust may grow, so there is no
+  one coefficient of friction at which it slips.
 """
 
 

@@ -10,7 +10,14 @@ import time
 from dataclasses import dataclass
 from pathlib import Path
 
-from voussoir import validation_impact, validation_motion, validation_rest
+from voussoir import (
+    validation_arches,
+    validation_assemblies,
+    validation_impact,
+    validation_motion,
+    validation_rest,
+    validation_strain,
+)
 from voussoir.dda_program import DdaError, set_options
 from voussoir.validation_scene import Check, Outcome, Scene
 
@@ -56,23 +63,25 @@ class Line:
 
 def all_scenes() -> tuple[Scene, ...]:
     """Every scene, those of one section together."""
-    scenes = (*validation_motion.SCENES, *validation_rest.SCENES, *validation_impact.SCENES)
+    scenes = (
+        *validation_motion.SCENES,
+        *validation_rest.SCENES,
+        *validation_impact.SCENES,
+        *validation_strain.SCENES,
+        *validation_assemblies.SCENES,
+        *validation_arches.SCENES,
+    )
     sections = (
         validation_motion.FLIGHT,
         validation_motion.SLIDING,
         validation_rest.TOPPLING,
         validation_impact.ROCKING,
         validation_impact.IMPACT,
-        validation_rest.STRAIN,
-        validation_rest.ASSEMBLIES,
-        validation_rest.ARCHES,
+        validation_strain.STRAIN,
+        validation_assemblies.ASSEMBLIES,
+        validation_arches.ARCHES,
     )
     return tuple(sorted(scenes, key=lambda scene: sections.index(scene.section)))
-
-
-def find_decks() -> Path:
-    """The folder of the suite's decks in the source."""
-    return Path(__file__).resolve().parents[2] / "input" / "benchmarks"
 
 
 def run_scene(dda: Path, decks: Path, scene: Scene, halvings: int) -> list[Line]:

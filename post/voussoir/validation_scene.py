@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+import dataclasses
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -10,6 +11,8 @@ from functools import cached_property
 from pathlib import Path
 
 import numpy as np
+
+from voussoir.vtu_cells import cell_field
 
 #: Acceleration of gravity of the decks [m/s2]
 GRAVITY = 9.81
@@ -60,6 +63,21 @@ class Outcome:
     def end(self, point: int) -> np.ndarray:
         """Displacement of a measured point at the end: (2) [m]."""
         return self.track(point)[3:, -1]
+
+    def stress(self, block: int) -> np.ndarray:
+        """Stress xx, yy, xy of a block in the last picture: (3) [Pa]."""
+        pictures = (self.folder / "frames").glob(f"case_{self.case}_*.vtu")
+        blocks = [path for path in pictures if not path.stem.endswith("_joints")]
+        last = max(blocks, key=lambda path: int(path.stem.rpartition("_")[2]))
+        return cell_field(last, "stress")[block - 1]
+
+    def speed(self, point: int) -> np.ndarray:
+        """Velocity of a measured point at the end, by a parabola through three steps: (2) [m/s]."""
+        time, _, _, u, v = self.track(point)[:, -3:]
+        late, early = time[2] - time[1], time[1] - time[0]
+        last = np.array([u[2] - u[1], v[2] - v[1]]) / late
+        before = np.array([u[1] - u[0], v[1] - v[0]]) / early
+        return last + (last - before) * late / (late + early)
 
     def velocity(self, point: int) -> np.ndarray:
         """Mean velocity of a measured point in the last step: (2) [m/s]."""
@@ -156,3 +174,24 @@ def verdict(exact: str, what: str, case: int = 1) -> Check:
 def critical(what: str, exact: float, accept: float, case: int = 1) -> Check:
     """A check of a critical value."""
     return Check(what, exact, lambda outcome: outcome.critical, accept, case)
+
+
+#: Settings of a scene with blocks that move
+MOVED = ("analysis%geometry=current",)
+
+
+def rigid_and_moving(section: str, deck: str, source: str, checks, moved: float) -> list[Scene]:
+    """A critical deck in reference geometry, and with blocks that move and strain.
+
+    Parameters
+    ----------
+    section, deck, source : str
+        As of a scene.
+    checks : sequence of (str, float)
+        Quantity and exact value of each case.
+    moved : float
+        Error that is accepted where blocks move.
+    """
+    rigid = tuple(critical(what, exact, 2e-8, case) for case, (what, exact) in enumerate(checks, 1))
+    elastic = tuple(dataclasses.replace(check, accept=moved) for check in rigid)
+    return [Scene(section, deck, source, rigid), Scene(section, deck, source, elastic, MOVED)]

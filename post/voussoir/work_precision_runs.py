@@ -42,7 +42,7 @@ class Arch:
         """Groups of a deck that all runs share."""
         return (
             f"&arch half_angle_deg = {self.half_angle_deg}, voussoirs = {self.voussoirs} /\n"
-            f"&joint friction_deg = {FRICTION_DEG} /\n&output joints = .false., vtu = .false. /\n"
+            f"&joint friction_deg = {FRICTION_DEG} /\n&output joints = .false., blocks = .false. /\n"
         )
 
 

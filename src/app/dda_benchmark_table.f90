@@ -25,8 +25,8 @@ contains
 
       write (output_unit, "(a)") machine_line(), ""
       call print_row([character(len=cell) :: "voussoirs", "unknowns", "decision us", "right", &
-         & "search us", "error", "decisions", "passes", "factorisations", "memory kB", "LAPACK us", &
-         & "decision/LAP."], markdown, head=.true.)
+         & "search us", "error", "decisions", "passes", "factorisations", "memory kB", &
+         & "LAPACK us", "decision/LAP."], markdown, head=.true.)
       do i = 1, size(figures)
          call print_row(figure_cells(figures(i)), markdown, head=.false.)
       end do

@@ -152,8 +152,8 @@ contains
       call tell("unknowns", to_text(plan%unknowns)//" a block, "//to_text(plan%unknowns*blocks) &
          & //" in all: "//trim(why(plan%reason)))
       if (plan%chain) then
-         call tell("equations", "a chain, without pattern and contact search: each block touches "// &
-            & "its two neighbours alone")
+         call tell("equations", "a chain, without pattern and contact search: each block "// &
+            & "touches its two neighbours alone")
       else
          call tell("equations", "those of any blocks that touch")
       end if

@@ -87,6 +87,11 @@ contains
       if (size(argument) > 0) call take_subcommand(argument(1), command, takes_decks, error)
       i = 2
       do while (i <= size(argument) .and. .not. allocated(error))
+         if (takes_decks) call check_option(argument(i), command, error)
+         if (allocated(error)) then
+            error%line = i
+            exit
+         end if
          if (takes_decks .and. argument(i) == "--set" .and. i < size(argument)) then
             settings = settings + 1
             i = i + 1
@@ -129,9 +134,7 @@ contains
       type(error_t), allocatable, intent(out) :: error
       integer :: n
 
-      if (size(command%setting) > 0) then
-         call fatal_error(error, "dda cut reads no deck, found --set; leave it away", line=1)
-      else if (allocated(command%out)) then
+      if (allocated(command%out)) then
          n = len(command%out)
          if (size(command%name) > 1) then
             call fatal_error(error, "--out wants a single file of lines, found " &
@@ -168,6 +171,31 @@ contains
             & near_one(trim(word), subcommands)//"; 'dda help' lists all", line=1)
       end select
    end subroutine take_subcommand
+
+   !> Whether a subcommand takes an option that others take
+   pure subroutine check_option(option, command, error)
+      !> An argument; one that no subcommand takes as an option is not judged here
+      character(len=*), intent(in) :: option
+      !> Holds the subcommand
+      type(command_t), intent(in) :: command
+      !> Allocated if it does not
+      type(error_t), allocatable, intent(out) :: error
+      character(len=:), allocatable :: own
+
+      select case (command%verb)
+      case ("check")
+         own = "--set --quiet --help"
+      case ("cut")
+         own = "--out --quiet --help"
+      case ("export")
+         own = "--out --set --quiet --help"
+      case default
+         return
+      end select
+      if (all(options /= option) .or. index(own, trim(option)) > 0) return
+      call fatal_error(error, "wanted an option of dda "//trim(command%verb)//", found "// &
+         & trim(option)//", which dda run takes; leave it away")
+   end subroutine check_option
 
    !> Understand one option and its value
    pure subroutine take_option(argument, length, i, command, error)

@@ -61,8 +61,9 @@ module dda_help
       & "               the undecided ones of more, and progress where a terminal shows it)", &
       & "   --help, -h  this page", &
       & "", &
-      & "Writes results.csv (a row a case), joints.csv (a row a joint), log.txt, and", &
-      & "deck.record, by which --resume knows the deck again.", &
+      & "Writes results.csv (a row a case), joints.csv (a row a joint), blocks.csv (a row a", &
+      & "corner), log.txt, deck.record, by which --resume knows the deck again, and", &
+      & "disk.record, by which it knows after a loss of power which rows to trust.", &
       & "'dda help' lists the exit statuses, 'dda help keys' what a deck may say."]
 
    !> dda help check

@@ -45,6 +45,7 @@ contains
       type(frame_stamp_t) :: stamp
       type(frame_joint_row_t), allocatable :: row(:)
       character(len=:), allocatable :: stem
+      real(wp) :: moment
       integer :: i, j
 
       stem = "case_"//to_text(number)
@@ -56,6 +57,8 @@ contains
          if (allocated(error)) return
          associate (frame => album%frame(i))
             stamp = frame_stamp_t(number, i - 1, frame%step, frame%time)
+            ! the steps of a static run have lengths, but no time passes in them
+            moment = merge(real(i - 1, wp), frame%time, album%spacing > 0.0_wp)
             row = frame_joint_rows(system, frame)
             do j = 1, size(row)
                row(j)%point = row(j)%point + origin
@@ -66,8 +69,7 @@ contains
             if (.not. allocated(error)) &
                & call append_line(joints, frame_joint_lines(stamp, row), error)
             if (.not. allocated(error) .and. vtu) call write_picture(folder//"/frames/", &
-               & stem//"_"//to_text(i - 1), system, origin, frame, row, index, real(i - 1, wp), &
-               & error)
+               & stem//"_"//to_text(i - 1), system, origin, frame, row, index, moment, error)
          end associate
       end do
       if (.not. allocated(error) .and. vtu) call close_index(index, error)
@@ -136,7 +138,7 @@ contains
       type(frame_joint_row_t), intent(in) :: row(:)
       !> Receives the names of the files
       type(pvd_index_t), intent(inout) :: index
-      !> Number of the picture, as a time
+      !> Time of the picture [s]; of a static run its number
       real(wp), intent(in) :: time
       !> Allocated if something cannot be written
       type(error_t), allocatable, intent(out) :: error

@@ -1,12 +1,16 @@
 !> The tables of one deck's results: begun, added to case by case, closed
 module dda_result_tables
-   use dda_deck, only : deck_t, flag_of, has_group, integer_of
-   use dda_deck_sweep, only : swept_names, swept_texts
+   use, intrinsic :: iso_fortran_env, only : int64
+   use dda_deck, only : deck_t, flag_of, has_group, integer_of, is_given
+   use dda_deck_sweep, only : n_cases, swept_names, swept_texts
+   use dda_disk_record, only : write_disk_record
    use dda_error, only : error_t
    use dda_process, only : make_folder
-   use dda_table_file, only : append_line, close_table, open_table, remove_file, table_file_t
+   use dda_table_file, only : append_line, close_table, length_of, open_table, remove_file, &
+      & sync_table, table_file_t
    use dda_text, only : to_text
    use dda_growing_text, only : add_line, growing_text_t, lines_of
+   use dda_write_blocks, only : block_lines, blocks_header, told_blocks_t
    use dda_write_energy, only : energy_header
    use dda_write_frames, only : frame_joints_header, frames_header, points_header
    use dda_write_results, only : joint_line, joint_row_t, joints_header, result_row_t, &
@@ -16,6 +20,7 @@ module dda_result_tables
 
    public :: result_tables_t, result_table_t, table, table_enum
    public :: name_tables, open_tables, close_tables, write_case, swept_fields, write_record
+   public :: sync_tables, sync_when_due
 
    !> Places of the tables in result_tables_t
    type :: table_enum
@@ -33,6 +38,8 @@ module dda_result_tables
       integer :: points = 6
       !> A row a step
       integer :: energy = 7
+      !> A row a corner of a block
+      integer :: blocks = 8
    end type table_enum
 
    !> The places by name
@@ -55,16 +62,27 @@ module dda_result_tables
       !> Name of the folder
       character(len=:), allocatable :: folder
       !> The tables, by their places
-      type(result_table_t) :: at(7)
+      type(result_table_t) :: at(8)
       !> File that holds what was asked for
       character(len=:), allocatable :: record_file
+      !> File that holds how much of results.csv is on the disk
+      character(len=:), allocatable :: disk_file
+      !> Clock at which the tables are brought to the disk again
+      integer(int64) :: due = 0
       !> Whether pictures are wanted as VTU too
       logical :: has_vtu = .false.
    end type result_tables_t
 
+   !> Time between two occasions to bring the tables to the disk, at least and beside the time that
+   !> it takes: on a slow disk no more than a twentieth of a run goes into it
+   integer, parameter :: sync_seconds = 1, sync_ratio = 20
+
    !> Columns of results.csv that a swept parameter shares
    character(len=*), parameter :: own_column(*) = [character(len=16) :: "half_angle_deg", &
       & "thickness_ratio", "friction_deg", "mode", "geometry", "unknowns"]
+
+   !> Corners of the blocks are written unasked for at most so many cases
+   integer, parameter :: few_cases = 100
 
 contains
 
@@ -87,6 +105,7 @@ contains
       end associate
       tables%folder = folder
       tables%record_file = folder//"/deck.record"
+      tables%disk_file = folder//"/disk.record"
       tables%has_vtu = flag_of(deck, "output", "vtu")
       call name_table(tables%at(table%results), "/results.csv", results_header(names, &
          & flag_of(deck, "output", "condition")))
@@ -101,6 +120,10 @@ contains
       call name_table(tables%at(table%energy), "/energy.csv", energy_header())
       tables%at(table%energy)%wanted = flag_of(deck, "output", "energy") &
          & .and. .not. has_group(deck, "search")
+      call name_table(tables%at(table%blocks), "/blocks.csv", blocks_header())
+      tables%at(table%blocks)%wanted = n_cases(deck) <= few_cases
+      if (is_given(deck, "output", "blocks")) &
+         & tables%at(table%blocks)%wanted = flag_of(deck, "output", "blocks")
       tables%at(table%joints)%wanted = flag_of(deck, "output", "joints")
       tables%at([table%frames, table%frame_joints])%wanted = &
          & integer_of(deck, "output", "frames") > 0
@@ -129,11 +152,13 @@ contains
       character(len=*), intent(in) :: record
       !> Allocated if they cannot be written
       type(error_t), allocatable, intent(out) :: error
+      integer(int64) :: now, rate
       integer :: i
 
       call make_folder(tables%folder)
       ! killed on the way, old rows must not pass for those of this deck
       call remove_file(tables%record_file)
+      call remove_file(tables%disk_file)
       do i = 1, size(tables%at)
          associate (this => tables%at(i))
             if (this%wanted) then
@@ -144,7 +169,10 @@ contains
          end associate
          if (allocated(error)) return
       end do
-      call write_record(tables, record, error)
+      call write_disk_record(tables%disk_file, 0_int64, error)
+      if (.not. allocated(error)) call write_record(tables, record, error)
+      call system_clock(now, rate)
+      tables%due = now + sync_seconds*rate
    end subroutine open_tables
 
    !> Write down what was asked for
@@ -161,12 +189,47 @@ contains
       call close_table(file)
    end subroutine write_record
 
-   !> Close all tables
-   subroutine close_tables(tables)
+   !> Bring all tables to the disk, results.csv last, and write down how long it is
+   subroutine sync_tables(tables, error)
       !> The tables
       type(result_tables_t), intent(inout) :: tables
+      !> Allocated if they cannot be written
+      type(error_t), allocatable, intent(inout) :: error
+      integer(int64) :: start, end, rate
       integer :: i
 
+      if (allocated(error)) return
+      call system_clock(start, rate)
+      do i = size(tables%at), 1, -1
+         call sync_table(tables%at(i)%open, error)
+      end do
+      if (allocated(error)) return
+      call write_disk_record(tables%disk_file, length_of(tables%at(table%results)%open), error)
+      call system_clock(end)
+      tables%due = end + max(sync_seconds*rate, sync_ratio*(end - start))
+   end subroutine sync_tables
+
+   !> Bring all tables to the disk if the last time is long ago
+   subroutine sync_when_due(tables, error)
+      !> The tables
+      type(result_tables_t), intent(inout) :: tables
+      !> Allocated if they cannot be written
+      type(error_t), allocatable, intent(inout) :: error
+      integer(int64) :: now
+
+      call system_clock(now)
+      if (now >= tables%due) call sync_tables(tables, error)
+   end subroutine sync_when_due
+
+   !> Bring all tables to the disk and close them
+   subroutine close_tables(tables, error)
+      !> The tables
+      type(result_tables_t), intent(inout) :: tables
+      !> Allocated if they cannot be written
+      type(error_t), allocatable, intent(inout) :: error
+      integer :: i
+
+      call sync_tables(tables, error)
       do i = 1, size(tables%at)
          call close_table(tables%at(i)%open)
       end do
@@ -191,13 +254,15 @@ contains
    end function swept_fields
 
    !> Write the rows of one case: that of results.csv last, so that a case with a row is whole
-   subroutine write_case(tables, row, joint_row, remark, error)
+   subroutine write_case(tables, row, joint_row, blocks, remark, error)
       !> The tables
       type(result_tables_t), intent(in) :: tables
       !> Row of the case
       type(result_row_t), intent(in) :: row
       !> Rows of its joints
       type(joint_row_t), intent(in) :: joint_row(:)
+      !> Its blocks
+      type(told_blocks_t), intent(in) :: blocks
       !> What goes to the log
       character(len=*), intent(in) :: remark
       !> Allocated if they cannot be written
@@ -210,6 +275,10 @@ contains
             call add_line(lines, joint_line(joint_row(j)))
          end do
          call append_line(tables%at(table%joints)%open, lines_of(lines), error)
+         if (allocated(error)) return
+      end if
+      if (tables%at(table%blocks)%wanted .and. allocated(blocks%state)) then
+         call append_line(tables%at(table%blocks)%open, block_lines(row%number, blocks), error)
          if (allocated(error)) return
       end if
       call append_line(tables%at(table%log)%open, to_text(row%number)//" " &

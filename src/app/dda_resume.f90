@@ -3,9 +3,11 @@
 !> A case is finished where its row in results.csv is whole: that row is written last. Everything
 !> else of that run, rows cut off by a kill among them, is left out of the tables.
 module dda_resume
+   use, intrinsic :: iso_fortran_env, only : int64
+   use dda_disk_record, only : trusted_length
    use dda_error, only : error_t
    use dda_kinds, only : wp
-   use dda_result_tables, only : result_table_t, result_tables_t, table
+   use dda_result_tables, only : result_table_t, result_tables_t, sync_tables, table
    use dda_table_file, only : keep_line, open_part, settle_part
    use dda_table_lines, only : close_lines, field, n_fields, next_line, open_lines, table_lines_t
    use dda_text, only : read_integer, read_number
@@ -59,13 +61,16 @@ contains
       if (.not. finished%same_deck) return
       allocate (joints(total), source=1)
       if (tables%at(table%joints)%wanted) call count_joints(tables%at(table%joints), joints)
-      call read_results(tables%at(table%results), joints, finished)
+      call read_results(tables%at(table%results), trusted_length(tables%disk_file), joints, &
+         & finished)
    end subroutine find_finished
 
    !> Read which cases have a whole row in results.csv, and their joints in joints.csv
-   subroutine read_results(this, joints, finished)
+   subroutine read_results(this, length, joints, finished)
       !> The table
       type(result_table_t), intent(in) :: this
+      !> Length up to which its rows count [bytes]
+      integer(int64), intent(in) :: length
       !> Rows of each case in joints.csv: (n)
       integer, intent(in) :: joints(:)
       !> Receives the cases
@@ -79,7 +84,7 @@ contains
       layout = layout_of(this%header)
       blocks = column(this%header, "blocks")
       verdict = column(this%header, "verdict")
-      call open_lines(this%file, lines)
+      call open_lines(this%file, lines, length)
       do
          call next_line(lines, line, found)
          if (.not. found) exit
@@ -109,6 +114,7 @@ contains
             & finished%case, error)
          if (allocated(error)) return
       end do
+      call sync_tables(tables, error)
    end subroutine reopen_tables
 
    !> Write a table anew with the rows of finished cases alone

@@ -17,11 +17,12 @@ module dda_run
    use dda_progress, only : clear_progress, progress_t, report_progress
    use dda_read_deck, only : read_deck
    use dda_result_tables, only : close_tables, name_tables, open_tables, result_tables_t, &
-      & swept_fields, table, write_case
+      & swept_fields, sync_when_due, table, write_case
    use dda_resume, only : find_finished, finished_t, reopen_tables
    use dda_restart, only : save_restart
    use dda_summary, only : print_resumed, print_row, print_total
    use dda_text, only : to_text
+   use dda_write_blocks, only : told_blocks_t
    use dda_write_results, only : joint_row_t, result_row_t
    implicit none
    private
@@ -56,12 +57,14 @@ contains
          if (.not. allocated(error)) call choose_cases(command%cases, &
             & n_cases(deck(i)), chosen, error)
          good(i) = .not. allocated(error)
-         do w = 1, merge(size(deck(i)%plan%warning), 0, good(i) .and. .not. command%quiet)
-            write (error_unit, "(a)") warning_line(deck(i), w)
-         end do
-         if (good(i)) cycle
-         write (error_unit, "(a)") error_line(error)
-         status = exit_status%bad_input
+         if (good(i) .and. .not. command%quiet) then
+            do w = 1, size(deck(i)%plan%warning)
+               write (error_unit, "(a)") warning_line(deck(i), w)
+            end do
+         else if (.not. good(i)) then
+            write (error_unit, "(a)") error_line(error)
+            status = exit_status%bad_input
+         end if
       end do
       do i = 1, size(deck)
          if (.not. good(i)) cycle
@@ -162,7 +165,7 @@ contains
       call run_cases(command, name, deck, chosen, next, tables, progress, count, error)
       !$omp end parallel
       call clear_progress(progress)
-      call close_tables(tables)
+      call close_tables(tables, error)
       count = count + [finished%count, sum(finished%count)]
       status = exit_status%success
       if (count(2) > 0) status = exit_status%undecided
@@ -222,7 +225,7 @@ contains
       !> The last case that was begun by any thread
       integer, intent(inout) :: next
       !> Where the results go
-      type(result_tables_t), intent(in) :: tables
+      type(result_tables_t), intent(inout) :: tables
       !> What was told so far
       type(progress_t), intent(inout) :: progress
       !> Cases decided, undecided, written: (3)
@@ -245,6 +248,7 @@ contains
             next = number
             call case_deck(deck, number, case_of_deck, problem)
             call prepare_case(case_of_deck, this)
+            this%tells_tables = any(tables%at([table%joints, table%blocks])%wanted)
          end if
          !$omp end critical (texts)
          if (number == 0) exit
@@ -278,7 +282,7 @@ contains
       !> The case
       type(case_t), intent(in) :: this
       !> Where the results go
-      type(result_tables_t), intent(in) :: tables
+      type(result_tables_t), intent(inout) :: tables
       !> What was told so far
       type(progress_t), intent(inout) :: progress
       !> Cases decided, undecided, written: (3)
@@ -287,22 +291,18 @@ contains
       type(error_t), allocatable, intent(inout) :: error
       type(result_row_t) :: row
       type(joint_row_t), allocatable :: joint_row(:)
+      type(told_blocks_t) :: blocks
       character(len=:), allocatable :: remark
 
-      call tell_case(this, row, joint_row, remark)
+      call tell_case(this, row, joint_row, blocks, remark)
       row%deck = deck_stem(name)
       row%number = number
       row%swept = swept_fields(deck, number)
       joint_row%number = number
-      if (tables%at(table%frames)%wanted) call write_album(tables%folder, number, &
-         & tables%has_vtu, this%scene%system, this%scene%origin, this%album, &
-         & tables%at(table%frames)%open, tables%at(table%frame_joints)%open, error)
-      if (tables%at(table%points)%wanted .and. .not. allocated(error)) call write_track( &
-         & number, this%scene%origin, this%album, tables%at(table%points)%open, error)
-      if (tables%at(table%energy)%wanted .and. .not. allocated(error)) call write_energies( &
-         & number, this%album, tables%at(table%energy)%open, error)
+      call write_pictures(tables, number, this, error)
       if (.not. allocated(error)) call write_end(tables%folder, number, this, error)
-      if (.not. allocated(error)) call write_case(tables, row, joint_row, remark, error)
+      if (.not. allocated(error)) call write_case(tables, row, joint_row, blocks, remark, error)
+      if (.not. allocated(error)) call sync_when_due(tables, error)
       if (allocated(error)) return
       count(3) = count(3) + 1
       count(merge(2, 1, row%verdict == "undecided")) = &
@@ -311,6 +311,26 @@ contains
       if (.not. command%quiet) call print_row(row, remark, n_cases(deck), count(3))
       call report_progress(progress)
    end subroutine write_down
+
+   !> Write what is seen of a case on its way: pictures, measured points, energies
+   subroutine write_pictures(tables, number, this, error)
+      !> Where the results go
+      type(result_tables_t), intent(in) :: tables
+      !> Number of the case
+      integer, intent(in) :: number
+      !> The case, computed
+      type(case_t), intent(in) :: this
+      !> Allocated if something cannot be written
+      type(error_t), allocatable, intent(inout) :: error
+
+      if (tables%at(table%frames)%wanted) call write_album(tables%folder, number, &
+         & tables%has_vtu, this%scene%system, this%scene%origin, this%album, &
+         & tables%at(table%frames)%open, tables%at(table%frame_joints)%open, error)
+      if (tables%at(table%points)%wanted .and. .not. allocated(error)) call write_track( &
+         & number, this%scene%origin, this%album, tables%at(table%points)%open, error)
+      if (tables%at(table%energy)%wanted .and. .not. allocated(error)) call write_energies( &
+         & number, this%album, tables%at(table%energy)%open, error)
+   end subroutine write_pictures
 
    !> Write the end of a dynamic case, to go on from there
    subroutine write_end(folder, number, this, error)

@@ -1,7 +1,6 @@
 !> Numbers to text, text to numbers, small words on strings
 module dda_text
    use, intrinsic :: ieee_arithmetic, only : ieee_is_finite
-   use, intrinsic :: iso_fortran_env, only : int64
    use dda_kinds, only : wp
    implicit none
    private
@@ -14,10 +13,9 @@ module dda_text
       module procedure integer_to_text
    end interface to_text
 
-   !> Numbers below this have no more than the digits that every number may have
-   real(wp), parameter :: most_whole = 1.0e15_wp
-   !> Scientific notation with so many digits
-   character(len=11), parameter :: form(15:17) = ["(es40.14e3)", "(es40.15e3)", "(es40.16e3)"]
+   !> Formats of 15, 16 and 17 significant digits
+   character(len=11), parameter :: scientific_form(15:17) = &
+      & ["(es24.14e3)", "(es24.15e3)", "(es24.16e3)"]
 
 contains
 
@@ -27,21 +25,13 @@ contains
       real(wp), intent(in) :: value
       !> Text without blanks
       character(len=:), allocatable :: text
-      character(len=40) :: buffer
+      character(len=24) :: buffer
       real(wp) :: again
       integer :: digits, stat
 
-      if (abs(value) > 0.0_wp .and. abs(value) < most_whole) then
-         if (.not. abs(value - anint(value)) > 0.0_wp) then
-            ! most numbers that a user gives are whole
-            write (buffer, "(i0)") nint(value, int64)
-            text = trim(buffer)
-            return
-         end if
-      end if
       do digits = 15, 17
-         write (buffer, form(digits)) value
-         read (buffer, "(f40.0)", iostat=stat) again
+         write (buffer, scientific_form(digits)) value
+         read (buffer, "(f24.0)", iostat=stat) again
          if (stat /= 0) exit
          if (.not. abs(again - value) > 0.0_wp) exit
       end do
@@ -59,10 +49,10 @@ contains
       character(len=:), allocatable :: digits, sign
       integer :: e, exponent, stat
 
-      e = index(scientific, "E")
+      e = scan(scientific, "E")
       text = scientific
       if (e == 0 .or. .not. ieee_is_finite(value)) return
-      read (scientific(e + 1:), *, iostat=stat) exponent
+      read (scientific(e + 1:), "(i4)", iostat=stat) exponent
       if (stat /= 0) return
       sign = ""
       if (scientific(1:1) == "-") sign = "-"

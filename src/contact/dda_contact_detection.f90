@@ -64,15 +64,15 @@ contains
       do j = 1, size(joint)
          joint(j) = edge_to_edge_joint(system, edge_pair(:, j), law(j))
       end do
-      call set_joints(system, system%centroid, joint, penalty_ratio, n_dof, contacts)
+      call set_joints(system, 0.0_wp*system%motion, joint, penalty_ratio, n_dof, contacts)
    end subroutine find_contacts
 
    !> Take these joints, closed, whole and free of force
-   pure subroutine set_joints(system, centroid, joint, penalty_ratio, n_dof, contacts)
+   pure subroutine set_joints(system, motion, joint, penalty_ratio, n_dof, contacts)
       !> The blocks
       type(block_system_t), intent(in) :: system
-      !> Their centres of gravity: (2, n_block) [m]
-      real(wp), intent(in) :: centroid(:, :)
+      !> How they have moved where the joints are placed: (6, n_block)
+      real(wp), intent(in) :: motion(:, :)
       !> The joints, placed: (n_joint)
       type(joint_t), intent(in) :: joint(:)
       !> Contact stiffness over the stiffness of the block across the joint
@@ -94,7 +94,7 @@ contains
       allocate (fresh%trial(3, n), source=0.0_wp)
       allocate (fresh%force, fresh%gap, fresh%increment, source=fresh%trial)
       fresh%past_slip = 0.0_wp
-      call new_joint_springs(system, centroid, joint, penalty_ratio, n_dof, fresh%springs)
+      call new_joint_springs(system, motion, joint, penalty_ratio, n_dof, fresh%springs)
       contacts = fresh
    end subroutine set_joints
 
@@ -131,8 +131,8 @@ contains
          contacts%gap(:, j) = gap - [0.0_wp, 0.0_wp, contacts%past_slip(j)]
       end do
       before = contacts%springs
-      call new_joint_springs(system, system%centroid + system%motion(1:2, :), contacts%joint, &
-         & penalty_ratio, n_dof, contacts%springs)
+      call new_joint_springs(system, system%motion, contacts%joint, penalty_ratio, n_dof, &
+         & contacts%springs)
       contacts%springs%cone = before%cone
       contacts%springs%shift = before%shift
       do j = 1, size(contacts%joint)

@@ -3,24 +3,25 @@
 module dda_contact_search
    use, intrinsic :: iso_fortran_env, only : int64
    use dda_block_system, only : block_system_t
-   use dda_box_tree, only : box_pairs
    use dda_contact_types, only : joint_t
+   use dda_edge_pairs, only : edge_pairs_t, find_edge_pairs, remember_edge_pairs
    use dda_entrance, only : add_joints, joint_list_t, neighbourhood_t
    use dda_kinds, only : wp
    use dda_material, only : joint_law_t
-   use dda_outline, only : outline_of, outline_t
-   use dda_sort, only : rising_order
+   use dda_outline, only : measure_edges, outline_of, outline_t
    implicit none
    private
 
-   public :: joint_search_t, new_joint_search, touching_joints, near_joints
+   public :: joint_search_t, new_joint_search, look_around, touching_joints, near_joints
 
-   !> What a search needs of the scene, made once
+   !> What a search needs of the scene, made once, and what it remembers
    type :: joint_search_t
       !> How the corners follow one another
       type(outline_t) :: outline
       !> Law of the joints between two materials: (n_material, n_material)
       type(joint_law_t), allocatable :: law(:, :)
+      !> Where to look; joints do not depend on it
+      type(edge_pairs_t) :: near
    end type joint_search_t
 
    !> Gaps below this share of the smaller block's size count as closed at the beginning
@@ -59,6 +60,19 @@ contains
       allocate (near%closed(0))
       call find_joints(search, system, reach, near, joint)
    end subroutine touching_joints
+
+   !> Look around for edges that may come near one another in this step and those that follow
+   pure subroutine look_around(search, system, reach)
+      !> The search
+      type(joint_search_t), intent(inout) :: search
+      !> The blocks
+      type(block_system_t), intent(in) :: system
+      !> Most that the corners of each block may move in this step: (n_block) [m]
+      real(wp), intent(in) :: reach(:)
+
+      call remember_edge_pairs(search%outline, system%equation, system%area, system%moved, reach, &
+         & search%near)
+   end subroutine look_around
 
    !> Joints of blocks that touch where they are now, or come as near as they may in a step
    pure subroutine near_joints(search, system, travel, closed, reach, joint)
@@ -100,8 +114,9 @@ contains
       integer :: block(2), first, last, j
 
       near%outline = search%outline
+      call measure_edges(near%vertex, near%outline)
       near%first_vertex = system%first_vertex
-      call near_edges(near, system%equation, reach, pair)
+      call find_edge_pairs(search%near, search%outline, system%equation, near%vertex, reach, pair)
       first = 1
       do while (first <= size(pair, 2))
          block = near%outline%block(pair(:, first))
@@ -121,35 +136,4 @@ contains
             & system%material(joint(j)%block(2)))
       end do
    end subroutine find_joints
-
-   !> Edges of different blocks whose boxes come near one another, in the order of their blocks
-   pure subroutine near_edges(near, equation, reach, pair)
-      !> Where the corners are
-      type(neighbourhood_t), intent(in) :: near
-      !> Number of each block in the equations; 0 for a block that cannot move: (n_block)
-      integer, intent(in) :: equation(:)
-      !> How far each block can reach: (n_block) [m]
-      real(wp), intent(in) :: reach(:)
-      !> The pairs, of two fixed blocks none: (2, n_pair)
-      integer, allocatable, intent(out) :: pair(:, :)
-      real(wp) :: low(2, size(near%vertex, 2)), high(2, size(near%vertex, 2))
-      integer :: group(size(near%vertex, 2)), e
-      integer(int64), allocatable :: key(:)
-      integer, allocatable :: found(:, :)
-
-      do e = 1, size(group)
-         associate (v => near%vertex, next => near%outline%next(e))
-            low(:, e) = min(v(:, e), v(:, next)) - reach(near%outline%block(e))
-            high(:, e) = max(v(:, e), v(:, next)) + reach(near%outline%block(e))
-            group(e) = merge(near%outline%block(e), 0, equation(near%outline%block(e)) > 0)
-         end associate
-      end do
-      call box_pairs(low, high, group, found)
-      associate (block => near%outline%block, n => size(equation) + 1)
-         allocate (key(size(found, 2)))
-         key = int(block(found(1, :)), int64)*n + int(block(found(2, :)), int64)
-         allocate (pair(2, size(found, 2)))
-         pair = found(:, rising_order(key))
-      end associate
-   end subroutine near_edges
 end module dda_contact_search

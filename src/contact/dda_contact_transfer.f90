@@ -5,7 +5,7 @@ module dda_contact_transfer
    use dda_block_system, only : block_system_t
    use dda_contact_detection, only : contacts_t, set_joints, set_strength
    use dda_contact_match, only : past_contact_t, contact_keys, match_contacts
-   use dda_contact_search, only : near_joints, touching_joints
+   use dda_contact_search, only : look_around, near_joints, touching_joints
    use dda_contact_types, only : contact_t, joint_t, place_joint, slip_at, vertex_number
    use dda_kinds, only : wp
    use dda_sort, only : rising_order
@@ -39,7 +39,7 @@ contains
          call place_joint(system, system%vertex, joint(j), gap)
          joint(j)%contact%closed_at = gap(1:2)
       end do
-      call set_joints(system, system%centroid, joint, penalty_ratio, n_dof, contacts)
+      call set_joints(system, 0.0_wp*system%motion, joint, penalty_ratio, n_dof, contacts)
       do j = 1, size(joint)
          contacts%face(j)%open(2) = joint(j)%n_contact == 1
       end do
@@ -69,6 +69,7 @@ contains
       integer :: j
 
       call list_past(system, contacts, past, closed)
+      call look_around(contacts%search, system, reach)
       call near_joints(contacts%search, system, travel, closed, reach, joint)
       allocate (source(2, size(joint)))
       call match_contacts(system, joint, reach, past, source)
@@ -76,9 +77,9 @@ contains
          taken = source(:, j)
          call take_over_slip(system, past, taken, joint(j))
       end do
-      before = contacts
-      call set_joints(system, system%centroid + system%motion(1:2, :), joint, penalty_ratio, &
-         & n_dof, contacts)
+      before%face = contacts%face
+      before%broken = contacts%broken
+      call set_joints(system, system%motion, joint, penalty_ratio, n_dof, contacts)
       do j = 1, size(joint)
          call take_over_state(before, past, source(:, j), j, contacts)
          call keep_shear(system, past, source(:, j), contacts%springs%stiffness(j), &

@@ -4,9 +4,10 @@ module dda_entrance
    use, intrinsic :: iso_fortran_env, only : int64
    use dda_contact_types, only : contact_t, joint_t
    use dda_kinds, only : wp
-   use dda_outline, only : corner_view_t, edge_length, is_convex, outline_t, view_corner
+   use dda_outline, only : corner_view_t, edge_direction, edge_length, is_convex, outline_t
+   use dda_outline, only : view_corner
    use dda_sort, only : place_in
-   use dda_vector, only : along, cross
+   use dda_vector, only : cross
    implicit none
    private
 
@@ -105,8 +106,8 @@ contains
       integer :: corner(2), edge(2), k
 
       associate (v => near%vertex, next => near%outline%next)
-         first = along(v(:, pair(1)), v(:, next(pair(1))))
-         second = along(v(:, pair(2)), v(:, next(pair(2))))
+         first = edge_direction(near%outline, v, pair(1))
+         second = edge_direction(near%outline, v, pair(2))
          angle = abs(cross(first, second))
          if (dot_product(first, second) > 0.0_wp .or. angle > parallel) return
          direction = (first - second)/norm2(first - second)

@@ -5,7 +5,7 @@
 module dda_joint_springs
    use dda_block_system, only : block_system_t
    use dda_contact_types, only : joint_t
-   use dda_deformation, only : displacement_matrix
+   use dda_deformation, only : tangent_matrix
    use dda_friction_cone, only : cone_t
    use dda_kinds, only : wp
    implicit none
@@ -40,11 +40,11 @@ module dda_joint_springs
 contains
 
    !> Springs of all joints
-   pure subroutine new_joint_springs(system, centroid, joint, penalty_ratio, n_dof, springs)
+   pure subroutine new_joint_springs(system, motion, joint, penalty_ratio, n_dof, springs)
       !> The blocks
       type(block_system_t), intent(in) :: system
-      !> Their centres of gravity: (2, n_block) [m]
-      real(wp), intent(in) :: centroid(:, :)
+      !> How they have moved where the joints are placed: (6, n_block)
+      real(wp), intent(in) :: motion(:, :)
       !> The joints: (n_joint)
       type(joint_t), intent(in) :: joint(:)
       !> Contact stiffness over the stiffness of the block across the joint
@@ -53,16 +53,22 @@ contains
       integer, intent(in) :: n_dof
       !> The springs
       type(joint_springs_t), intent(out) :: springs
+      real(wp) :: centroid(2, size(system%area))
       integer :: j, n
 
+      centroid = system%centroid + motion(1:2, :)
       n = size(joint)
       allocate (springs%equation(2, n), springs%row(n_dof, 3, 2, n), springs%stiffness(n))
       allocate (springs%cone(n), springs%shift(3, n))
       springs%give = any(joint%found)
       do j = 1, n
          springs%equation(:, j) = system%equation(joint(j)%block)
-         springs%row(:, :, 1, j) = -joint_rows(joint(j), 1, centroid(:, joint(j)%block(1)), n_dof)
-         springs%row(:, :, 2, j) = joint_rows(joint(j), 2, centroid(:, joint(j)%block(2)), n_dof)
+         associate (first => joint(j)%block(1), second => joint(j)%block(2))
+            springs%row(:, :, 1, j) = -joint_rows(joint(j), 1, centroid(:, first), &
+               & motion(:, first), n_dof)
+            springs%row(:, :, 2, j) = joint_rows(joint(j), 2, centroid(:, second), &
+               & motion(:, second), n_dof)
+         end associate
          springs%stiffness(j) = penalty_ratio*block_stiffness(system, centroid, joint(j))
          call mohr_coulomb(joint(j), [.false., .false.], springs%cone(j), springs%shift(:, j))
       end do
@@ -71,13 +77,15 @@ contains
    end subroutine new_joint_springs
 
    !> What the joint sees of one block's unknowns
-   pure function joint_rows(joint, side, centroid, n_dof) result(row)
+   pure function joint_rows(joint, side, centroid, motion, n_dof) result(row)
       !> The joint
       type(joint_t), intent(in) :: joint
       !> 1 or 2, which of the joint's blocks
       integer, intent(in) :: side
       !> Centre of gravity of the block: (2) [m]
       real(wp), intent(in) :: centroid(2)
+      !> How the block has moved: (6)
+      real(wp), intent(in) :: motion(6)
       !> Unknowns of the block
       integer, intent(in) :: n_dof
       !> Displacement along the normal at both contacts, along the edge halfway: (n_dof, 3)
@@ -88,12 +96,12 @@ contains
       row = 0.0_wp
       do k = 1, joint%n_contact
          associate (contact => joint%contact(k))
-            t = displacement_matrix(merge(contact%foot, contact%point, &
-               & side == contact%edge_side), centroid)
+            t = tangent_matrix(merge(contact%foot, contact%point, side == contact%edge_side), &
+               & centroid, motion)
             row(:, k) = contact%normal(1)*t(1, :n_dof) + contact%normal(2)*t(2, :n_dof)
          end associate
       end do
-      t = displacement_matrix(joint%middle(:, side), centroid)
+      t = tangent_matrix(joint%middle(:, side), centroid, motion)
       row(:, 3) = joint%tangent(1)*t(1, :n_dof) + joint%tangent(2)*t(2, :n_dof)
    end function joint_rows
 

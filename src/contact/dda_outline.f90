@@ -6,7 +6,8 @@ module dda_outline
    implicit none
    private
 
-   public :: outline_t, outline_of, corner_view_t, view_corner, is_convex, edge_length
+   public :: outline_t, outline_of, measure_edges, corner_view_t, view_corner, is_convex
+   public :: edge_direction, edge_length
 
    !> How corners follow one another: (n_vertex) each
    type :: outline_t
@@ -16,6 +17,10 @@ module dda_outline
       integer, allocatable :: next(:)
       !> The corner before
       integer, allocatable :: previous(:)
+      !> Unit vector along each edge where the corners are, once it is measured: (2, n_vertex)
+      real(wp), allocatable :: direction(:, :)
+      !> Length of each edge, once it is measured: (n_vertex) [m]
+      real(wp), allocatable :: length(:)
    end type outline_t
 
    !> A corner seen from an edge
@@ -60,6 +65,24 @@ contains
       end do
    end function outline_of
 
+   !> Measure all edges, which are asked for again and again
+   pure subroutine measure_edges(vertex, outline)
+      !> Corners: (2, n_vertex) [m]
+      real(wp), intent(in) :: vertex(:, :)
+      !> Receives directions and lengths
+      type(outline_t), intent(inout) :: outline
+      integer :: e
+
+      if (allocated(outline%length)) deallocate (outline%direction, outline%length)
+      allocate (outline%direction(2, size(vertex, 2)), outline%length(size(vertex, 2)))
+      do e = 1, size(vertex, 2)
+         associate (next => outline%next(e))
+            outline%direction(:, e) = along(vertex(:, e), vertex(:, next))
+            outline%length(e) = norm2(vertex(:, next) - vertex(:, e))
+         end associate
+      end do
+   end subroutine measure_edges
+
    !> See a corner from an edge
    pure function view_corner(outline, vertex, corner, edge, reach) result(view)
       !> The outline
@@ -76,17 +99,15 @@ contains
       type(corner_view_t) :: view
       real(wp) :: tangent(2), sides(2)
 
-      associate (start => vertex(:, edge), finish => vertex(:, outline%next(edge)), &
-         & point => vertex(:, corner))
-         tangent = along(start, finish)
-         view%length = norm2(finish - start)
-         view%normal = right_normal(tangent)
-         view%gap = dot_product(view%normal, point - start)
-         view%way = dot_product(tangent, point - start)
-         if (abs(view%gap) > reach) return
-         sides(1) = dot_product(view%normal, along(point, vertex(:, outline%previous(corner))))
-         sides(2) = dot_product(view%normal, along(point, vertex(:, outline%next(corner))))
-      end associate
+      tangent = edge_direction(outline, vertex, edge)
+      view%length = edge_length(outline, vertex, edge)
+      view%normal = right_normal(tangent)
+      view%gap = dot_product(view%normal, vertex(:, corner) - vertex(:, edge))
+      view%way = dot_product(tangent, vertex(:, corner) - vertex(:, edge))
+      if (abs(view%gap) > reach) return
+      sides(1) = -dot_product(view%normal, edge_direction(outline, vertex, &
+         & outline%previous(corner)))
+      sides(2) = dot_product(view%normal, edge_direction(outline, vertex, corner))
       view%faces = all(sides > -dip) .and. is_convex(outline, vertex, corner)
    end function view_corner
 
@@ -102,8 +123,27 @@ contains
 
       before = vertex(:, corner) - vertex(:, outline%previous(corner))
       after = vertex(:, outline%next(corner)) - vertex(:, corner)
-      is_convex = cross(before, after) > -flat*norm2(before)*norm2(after)
+      is_convex = cross(before, after) > 0.0_wp
+      if (.not. is_convex) is_convex = cross(before, after) > -flat*norm2(before)*norm2(after)
    end function is_convex
+
+   !> Unit vector along an edge
+   pure function edge_direction(outline, vertex, edge) result(direction)
+      !> The outline
+      type(outline_t), intent(in) :: outline
+      !> Corners: (2, n_vertex) [m]
+      real(wp), intent(in) :: vertex(:, :)
+      !> Number of the edge
+      integer, intent(in) :: edge
+      !> The vector: (2)
+      real(wp) :: direction(2)
+
+      if (allocated(outline%direction)) then
+         direction = outline%direction(:, edge)
+      else
+         direction = along(vertex(:, edge), vertex(:, outline%next(edge)))
+      end if
+   end function edge_direction
 
    !> Length of an edge [m]
    pure real(wp) function edge_length(outline, vertex, edge)
@@ -114,6 +154,10 @@ contains
       !> Number of the edge
       integer, intent(in) :: edge
 
-      edge_length = norm2(vertex(:, outline%next(edge)) - vertex(:, edge))
+      if (allocated(outline%length)) then
+         edge_length = outline%length(edge)
+      else
+         edge_length = norm2(vertex(:, outline%next(edge)) - vertex(:, edge))
+      end if
    end function edge_length
 end module dda_outline

@@ -3,7 +3,7 @@ module dda_block_order
    implicit none
    private
 
-   public :: narrow_order
+   public :: narrow_order, neighbour_lists
 
 contains
 
@@ -19,7 +19,7 @@ contains
       integer :: queue(n_block), head, tail, root
       logical :: queued(n_block)
 
-      call neighbours(n_block, pair, start, neighbour)
+      call neighbour_lists(n_block, pair, start, neighbour)
       queued = .false.
       head = 0
       tail = 0
@@ -37,7 +37,7 @@ contains
    end function narrow_order
 
    !> Neighbour lists of all blocks
-   pure subroutine neighbours(n_block, pair, start, neighbour)
+   pure subroutine neighbour_lists(n_block, pair, start, neighbour)
       !> Number of blocks
       integer, intent(in) :: n_block
       !> Coupled blocks: (2, n_pair)
@@ -64,7 +64,7 @@ contains
             fill(pair(side, i)) = fill(pair(side, i)) + 1
          end do
       end do
-   end subroutine neighbours
+   end subroutine neighbour_lists
 
    !> A block at the rim of the group that a block belongs to: the last one that a search in
    !> breadth reaches, searched again from there until it gets no farther

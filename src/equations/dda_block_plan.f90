@@ -1,11 +1,12 @@
 !> The factor of a symmetric matrix of small blocks, and which of its blocks are not zero
 module dda_block_plan
+   use dda_block_dissection, only : dissected_order
    use dda_block_matrix, only : block_matrix_t
    use dda_kinds, only : wp
    implicit none
    private
 
-   public :: block_factor_t, plan_factor
+   public :: block_factor_t, plan_factor, products
 
    !> Factor of a block matrix; "place" is a place in the order of elimination
    type :: block_factor_t
@@ -13,17 +14,23 @@ module dda_block_plan
       integer :: n_dof = 0
       !> Block at each place: (n_block)
       integer, allocatable :: block(:)
-      !> First entry below the diagonal of each row, by place, and one beyond: (n_block + 1)
+      !> First entry of each column below the diagonal, by place, and one beyond: (n_block + 1)
+      integer, allocatable :: first_below(:)
+      !> Row of each entry, as a place, rising within a column: (n_lower)
+      integer, allocatable :: row(:)
+      !> First place of each row in the two lists that follow, and one beyond: (n_block + 1)
       integer, allocatable :: start(:)
-      !> Column of each entry, as a place, rising within a row: (n_lower)
+      !> Columns of the entries of a row, as places, rising: (n_lower)
       integer, allocatable :: column(:)
+      !> Entries of a row: (n_lower)
+      integer, allocatable :: entry(:)
       !> First coupling of the matrix that lies in each row, and one beyond the last: (n_block + 1)
       integer, allocatable :: first_given(:)
       !> Couplings of the matrix by rows, negative where transposed: (n_entry)
       integer, allocatable :: given(:)
-      !> Entry that each of these adds to: (n_entry)
-      integer, allocatable :: target(:)
-      !> Entries of L below the diagonal: (n_dof, n_dof, n_lower)
+      !> Column that each of these lies in: (n_entry)
+      integer, allocatable :: given_column(:)
+      !> Entries of L below the diagonal, column by column: (n_dof, n_dof, n_lower)
       real(wp), allocatable :: lower(:, :, :)
       !> Inverse of the diagonal blocks of L, by place: (n_dof, n_dof, n_block)
       real(wp), allocatable :: inverse(:, :, :)
@@ -33,27 +40,66 @@ module dda_block_plan
       logical :: usable = .false.
    end type block_factor_t
 
+   !> A matrix that is no wider than this in the narrow order is eliminated in it without a thought:
+   !> no other order does with much less
+   integer, parameter :: narrow = 8
+
 contains
 
-   !> Lay out the factor of a matrix: order of elimination, and the entries that it fills
+   !> Lay out the factor of a matrix: order of elimination, and the entries that it fills. The
+   !> narrow order is eliminated from both ends to the middle; where dissection does with fewer
+   !> products, it gives the order
    pure subroutine plan_factor(matrix, factor)
       !> The matrix, of which the pattern counts
       type(block_matrix_t), intent(in) :: matrix
       !> The factor, without numbers
       type(block_factor_t), intent(out) :: factor
-      integer :: place(size(matrix%place)), n
+      type(block_factor_t) :: other
+      integer :: n
 
-      n = size(place)
+      n = size(matrix%place)
       factor%n_dof = matrix%n_dof
-      place = merge(2*matrix%place - 1, 2*(n + 1 - matrix%place), 2*matrix%place <= n + 1)
-      allocate (factor%block(n))
-      factor%block(place) = [(n, n=1, size(place))]
-      call list_couplings(matrix, place, factor)
-      call fill_rows(matrix, place, factor)
-      n = size(place)
-      allocate (factor%lower(matrix%n_dof, matrix%n_dof, size(factor%column)))
+      call lay_out(matrix, merge(2*matrix%place - 1, 2*(n + 1 - matrix%place), &
+         & 2*matrix%place <= n + 1), factor)
+      if (matrix%width > narrow) then
+         other%n_dof = matrix%n_dof
+         call lay_out(matrix, dissected_order(n, matrix%pair), other)
+         if (products(other) < products(factor)) factor = other
+      end if
+      call list_rows(factor)
+      allocate (factor%lower(matrix%n_dof, matrix%n_dof, size(factor%row)))
       allocate (factor%inverse(matrix%n_dof, matrix%n_dof, n), factor%pivot(matrix%n_dof, n))
    end subroutine plan_factor
+
+   !> Products of two blocks that a factorisation takes
+   pure real(wp) function products(factor)
+      !> The factor, of which the columns count
+      type(block_factor_t), intent(in) :: factor
+      integer :: j
+
+      products = 0.0_wp
+      do j = 1, size(factor%block)
+         associate (below => real(factor%first_below(j + 1) - factor%first_below(j), wp))
+            products = products + below*(below + 3.0_wp)/2.0_wp
+         end associate
+      end do
+   end function products
+
+   !> Couplings and columns of the factor in an order of elimination
+   pure subroutine lay_out(matrix, place, factor)
+      !> The matrix
+      type(block_matrix_t), intent(in) :: matrix
+      !> Place of each block: (n_block)
+      integer, intent(in) :: place(:)
+      !> Receives them
+      type(block_factor_t), intent(inout) :: factor
+      integer :: i
+
+      allocate (factor%block(size(place)))
+      factor%block(place) = [(i, i=1, size(place))]
+      call list_couplings(matrix, place, factor)
+      call fill_columns(matrix, place, factor)
+   end subroutine lay_out
 
    !> The couplings of the matrix by the rows of the factor
    pure subroutine list_couplings(matrix, place, factor)
@@ -82,65 +128,73 @@ contains
       end do
    end subroutine list_couplings
 
-   !> Entries of each row: its couplings, and what the elimination of these columns fills, which is
-   !> the way from each to the root of the tree of eliminations (J. W. H. Liu, 1990)
-   pure subroutine fill_rows(matrix, place, factor)
+   !> Rows of each column: the couplings, and what elimination fills. A row has its couplings, and
+   !> from the column of each the way to the root of the tree of eliminations (J. W. H. Liu, 1990);
+   !> it is gone twice, to count and to list
+   pure subroutine fill_columns(matrix, place, factor)
       !> The matrix
       type(block_matrix_t), intent(in) :: matrix
       !> Place of each block: (n_block)
       integer, intent(in) :: place(:)
-      !> Receives the entries
+      !> Receives the rows of the columns
       type(block_factor_t), intent(inout) :: factor
-      integer :: parent(size(place)), seen(size(place))
-      integer :: g, i, j, m, at
+      integer :: parent(size(place)), seen(size(place)), next(size(place))
+      integer :: g, i, j, pass
 
-      allocate (factor%start(size(place) + 1), factor%column(size(factor%given)))
-      allocate (factor%target(size(factor%given)))
+      allocate (factor%first_below(size(place) + 1), factor%given_column(size(factor%given)))
+      do g = 1, size(factor%given)
+         factor%given_column(g) = minval(place(matrix%pair(:, abs(factor%given(g)))))
+      end do
       parent = 0
-      seen = 0
+      next = 0
+      do pass = 1, 2
+         seen = 0
+         do i = 1, size(place)
+            do g = factor%first_given(i), factor%first_given(i + 1) - 1
+               j = factor%given_column(g)
+               do while (seen(j) /= i .and. j /= i)
+                  seen(j) = i
+                  if (parent(j) == 0) parent(j) = i
+                  if (pass == 2) factor%row(next(j)) = i
+                  next(j) = next(j) + 1
+                  j = parent(j)
+               end do
+            end do
+         end do
+         if (pass == 2) exit
+         factor%first_below(1) = 1
+         do i = 1, size(place)
+            factor%first_below(i + 1) = factor%first_below(i) + next(i)
+         end do
+         next = factor%first_below(:size(place))
+         allocate (factor%row(factor%first_below(size(place) + 1) - 1))
+      end do
+   end subroutine fill_columns
+
+   !> The entries by rows
+   pure subroutine list_rows(factor)
+      !> The factor with its columns
+      type(block_factor_t), intent(inout) :: factor
+      integer :: next(size(factor%block)), i, j, k, n
+
+      n = size(factor%block)
+      allocate (factor%start(n + 1), source=0)
+      allocate (factor%column(size(factor%row)), factor%entry(size(factor%row)))
+      do k = 1, size(factor%row)
+         factor%start(factor%row(k) + 1) = factor%start(factor%row(k) + 1) + 1
+      end do
       factor%start(1) = 1
-      do i = 1, size(place)
-         at = factor%start(i)
-         do g = factor%first_given(i), factor%first_given(i + 1) - 1
-            j = minval(place(matrix%pair(:, abs(factor%given(g)))))
-            do while (seen(j) /= i .and. j /= i)
-               seen(j) = i
-               call insert(j, factor%start(i), at, factor%column)
-               if (parent(j) == 0) parent(j) = i
-               j = parent(j)
-            end do
-         end do
-         factor%start(i + 1) = at
-         do g = factor%first_given(i), factor%first_given(i + 1) - 1
-            j = minval(place(matrix%pair(:, abs(factor%given(g)))))
-            do m = factor%start(i), at - 1
-               if (factor%column(m) == j) factor%target(g) = m
-            end do
+      do i = 1, n
+         factor%start(i + 1) = factor%start(i) + factor%start(i + 1)
+      end do
+      next = factor%start(:n)
+      do j = 1, n
+         do k = factor%first_below(j), factor%first_below(j + 1) - 1
+            i = factor%row(k)
+            factor%column(next(i)) = j
+            factor%entry(next(i)) = k
+            next(i) = next(i) + 1
          end do
       end do
-      factor%column = factor%column(:factor%start(size(place) + 1) - 1)
-   end subroutine fill_rows
-
-   !> Insert a number into the rising end of a list, which grows where it is too short
-   pure subroutine insert(number, first, next, list)
-      !> The number
-      integer, intent(in) :: number
-      !> Where the rising end begins
-      integer, intent(in) :: first
-      !> Where the list is free; moves on
-      integer, intent(inout) :: next
-      !> The list
-      integer, allocatable, intent(inout) :: list(:)
-      integer :: at
-
-      if (next > size(list)) list = [list, spread(0, 1, size(list) + 1)]
-      at = next
-      do while (at > first)
-         if (list(at - 1) < number) exit
-         list(at) = list(at - 1)
-         at = at - 1
-      end do
-      list(at) = number
-      next = next + 1
-   end subroutine insert
+   end subroutine list_rows
 end module dda_block_plan

@@ -17,8 +17,8 @@ module dda_block_inertia
 
 contains
 
-   !> Block part of matrix and load of one step of length dt. Forces that change with time are those
-   !> of the middle of a dynamic step, of the end of a static one
+   !> Block part of matrix and load of one step of length dt. Forces that change with time are their
+   !> mean over a dynamic step, those of the end of a static one
    pure subroutine assemble_blocks(system, settings, dt, equations, time)
       !> The blocks
       type(block_system_t), intent(in) :: system
@@ -39,8 +39,7 @@ contains
       if (present(time)) start = time
       damping = damping_rate(settings, dt)
       equations%base = equations%elastic + (2.0_wp/dt**2 + damping/dt)*equations%mass
-      call outer_loads(system, settings, start + merge(dt/2.0_wp, dt, settings%dynamic), &
-         & equations%weight, equations%outer)
+      call outer_loads(system, settings, start, dt, equations%weight, equations%outer)
       equations%force_scale = sum(abs(equations%outer(1:2, :)))
       equations%gap_noise = 16.0_wp*epsilon(1.0_wp)*maxval(abs(system%moved))
       do b = 1, size(system%equation)

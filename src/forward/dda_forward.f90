@@ -83,7 +83,7 @@ contains
       end if
       call new_equations(system, contacts%springs, settings, equations)
       call begin_step(contacts, size(equations%weight, 1), size(equations%weight, 2), step%state)
-      if (present(onward)) march = onward
+      if (present(onward)) call go_on(onward, march, equations)
       if (march%steps == 0) then
          call first_interval(system, contacts%springs, settings, equations, step%state, march, &
             & error)
@@ -108,6 +108,7 @@ contains
          if (settings%duration > 0.0_wp .and. march%time >= settings%duration) exit
          call next_interval(settings, system, step, march)
       end do
+      march%held_force = equations%fixed%force
       if (present(onward)) onward = march
       outcome%rest_tolerance = settings%rest_tolerance
       outcome%steps = march%steps
@@ -132,6 +133,22 @@ contains
          outcome%reason = "all steps are spent and neither rest nor collapse is proven"
       end if
    end subroutine run_to_verdict
+
+   !> Take over the march of a run that goes on, and the forces at its held points; points that are
+   !> held otherwise than before begin without force
+   pure subroutine go_on(onward, march, equations)
+      !> Where the run ended
+      type(march_t), intent(in) :: onward
+      !> The march
+      type(march_t), intent(out) :: march
+      !> Receives the forces
+      type(equations_t), intent(inout) :: equations
+
+      march = onward
+      if (.not. allocated(march%held_force)) return
+      if (size(march%held_force) == size(equations%fixed%force)) &
+         & equations%fixed%force = march%held_force
+   end subroutine go_on
 
    !> Keep a picture if one is due, and where the measured points are
    pure subroutine keep_pictures(system, contacts, march, last, album)
@@ -252,7 +269,7 @@ contains
       integer, allocatable :: before(:, :)
 
       if (contacts%searched) then
-         before = contacts%springs%equation
+         allocate (before, source=contacts%springs%equation)
          if (.not. allocated(march%reach)) march%reach = first_reach(system, settings, march)
          call renew_contacts(system, travel_of(system, settings, march), march%reach, &
             & settings%penalty_ratio, settings%n_dof, contacts)

@@ -43,7 +43,9 @@ module dda_frames
       real(wp) :: spacing = 0.0_wp
       !> Steps from one picture to the next, in time; 0 to go by displacement
       integer :: every = 0
-      !> Displacement at which the next one is due [m]
+      !> Time from one picture to the next; 0 to go by steps or displacement [s]
+      real(wp) :: interval = 0.0_wp
+      !> Displacement or time at which the next one is due [m or s]
       real(wp) :: due = 0.0_wp
       !> Pictures kept
       integer :: n = 0
@@ -60,6 +62,9 @@ module dda_frames
       !> Where the points are: (2, n_point, :) [m]
       real(wp), allocatable :: track(:, :, :)
    end type album_t
+
+   !> What is so near to being due is: sums of steps are rounded
+   real(wp), parameter :: almost = 1.0_wp - 1.0e-9_wp
 
 contains
 
@@ -80,10 +85,17 @@ contains
       !> Receives the picture
       type(album_t), intent(inout) :: album
       type(frame_t), allocatable :: longer(:)
+      real(wp) :: spacing, way
       logical :: is_due
 
-      if (.not. (album%spacing > 0.0_wp .or. album%every > 0)) return
-      is_due = displacement >= album%due
+      way = displacement
+      spacing = album%spacing
+      if (album%interval > 0.0_wp) then
+         way = time
+         spacing = album%interval
+      end if
+      if (.not. (spacing > 0.0_wp .or. album%every > 0)) return
+      is_due = way >= album%due*almost
       if (album%every > 0) is_due = modulo(step, album%every) == 0
       if (.not. (is_due .or. last)) return
       if (.not. allocated(album%frame)) allocate (album%frame(8))
@@ -93,8 +105,7 @@ contains
          call move_alloc(longer, album%frame)
       end if
       album%n = album%n + 1
-      if (album%spacing > 0.0_wp) &
-         & album%due = (aint(displacement/album%spacing) + 1.0_wp)*album%spacing
+      if (spacing > 0.0_wp) album%due = (aint(way/(spacing*almost)) + 1.0_wp)*spacing
       associate (frame => album%frame(album%n))
          frame%step = step
          frame%time = time

@@ -14,6 +14,9 @@ module dda_friction
 
    !> Most corrections of the bounds in one step
    integer, parameter :: max_corrections = 200
+   !> Corrections without a smaller change than before after which the bounds will hardly settle: a
+   !> shorter step is cheaper
+   integer, parameter :: max_stale = 25
    !> Corrections remembered by the acceleration
    integer, parameter :: memory = 6
    !> Remembered changes that differ by less than this share of the largest difference say nothing
@@ -65,6 +68,7 @@ contains
             best = bound
             stale = 0
          end if
+         if (stale > max_stale) exit
          resolved = stale >= memory .and. least <= force_noise(equations, springs, state)
          if (resolved) then
             bound = best

@@ -54,12 +54,11 @@ contains
       !> Faces to begin with in, motion and joints out
       type(step_state_t), intent(inout) :: state
       real(wp) :: multiplier(3, size(springs%stiffness)), opening(3, size(springs%stiffness))
-      real(wp) :: tolerance, change
+      real(wp) :: change, scale
       integer :: pass
       logical :: has_multipliers
 
       has_multipliers = multiplies(settings, springs)
-      tolerance = force_tolerance*equations%force_scale
       multiplier = state%multiplier
       opening = state%start - multiplier
       do pass = 1, max_multiplier_passes
@@ -69,7 +68,8 @@ contains
          call correct_fixed_forces((equations%fixed%target), state%motion, equations%fixed, &
             & equations%load, change)
          if (has_multipliers) change = max(change, maxval(abs(state%force - multiplier)))
-         if (change <= tolerance) return
+         scale = equations%force_scale + sum(abs(equations%fixed%force))
+         if (change <= force_tolerance*scale) return
          multiplier = state%force
       end do
       state%settled = .false.

@@ -48,8 +48,11 @@ module dda_open_close
    !> Joints whose disagreement is below this share of the largest wait for their turn
    real(wp), parameter :: notable = 0.1_wp
 
+   !> Changes of faces before Newton's method takes over where blocks make no chain: faces of a wall
+   !> depend on one another too much for each to be judged alone
+   integer, parameter :: few_changes = 1
    !> Most passes of Newton's method: where it needs more, a shorter step is cheaper
-   integer, parameter :: max_newton = 40
+   integer, parameter :: max_newton = 80
 
 contains
 
@@ -59,7 +62,7 @@ contains
       type(equations_t), intent(inout) :: equations
       !> The springs of the joints
       type(joint_springs_t), intent(in) :: springs
-      !> Most changes of faces before Newton's method takes over
+      !> Most changes of faces of a chain before Newton's method takes over
       integer, intent(in) :: max_changes
       !> Faces to begin with in, motion and joints out
       type(step_state_t), intent(inout) :: state
@@ -69,16 +72,18 @@ contains
       real(wp) :: gap(size(state%face))
       real(wp) :: best(size(state%motion, 1), size(state%motion, 2)), least
       integer(int64) :: seen(max_changes + 1)
-      integer :: change, since
+      integer :: change, most, since
       logical :: peaks
 
+      most = max_changes
+      if (equations%matrix%width > 1) most = min(most, few_changes)
       peaks = .true.
       if (present(one_by_one)) peaks = .not. one_by_one
       since = 1
       state%settled = .false.
       best = 0.0_wp
       least = huge(least)
-      do change = 1, max_changes + 1
+      do change = 1, most + 1
          seen(change) = hash(state%face)
          if (any(seen(since:change - 1) == seen(change))) then
             if (.not. peaks) exit

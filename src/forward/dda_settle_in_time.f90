@@ -114,7 +114,7 @@ contains
       type(joint_springs_t), intent(in) :: springs
       !> Multipliers and faces to begin with in, motion and joints out
       type(step_state_t), intent(inout) :: state
-      real(wp) :: change, noise(size(springs%stiffness))
+      real(wp) :: change, scale, noise(size(springs%stiffness))
       integer :: pass
 
       ! gaps that contradict one another by rounding let the multipliers grow without end
@@ -126,8 +126,10 @@ contains
          call correct_fixed_forces(target, state%motion, equations%fixed, equations%load, change)
          change = max(change, maxval(maxval(abs(state%force - state%multiplier), dim=1) - noise))
          state%multiplier = state%force
-         if (change <= fine*equations%force_scale) return
+         ! without loads the forces of held points alone bear on the blocks
+         scale = equations%force_scale + sum(abs(equations%fixed%force))
+         if (change <= fine*scale) return
       end do
-      state%settled = change <= coarse*equations%force_scale
+      state%settled = change <= coarse*scale
    end subroutine settle_multipliers
 end module dda_settle_in_time

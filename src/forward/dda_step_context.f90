@@ -96,6 +96,8 @@ module dda_step_context
       real(wp) :: last_acceleration = 0.0_wp
       !> Motion of the step before, where blocks move: (n_dof, n_equation)
       real(wp), allocatable :: last_motion(:, :)
+      !> Forces of the springs at held points, which the next step begins with: (n_spring) [N/m]
+      real(wp), allocatable :: held_force(:)
       !> Passes of the open-close loop so far
       integer :: passes = 0
       !> Energies after the last step of a dynamic run

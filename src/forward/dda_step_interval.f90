@@ -25,8 +25,9 @@ module dda_step_interval
    real(wp), parameter :: growth = 10.0_wp
    !> Steps whose motions point as far against one another as this cosine rattle
    real(wp), parameter :: rattling = -0.3_wp
-   !> Growth of the step where blocks move: less than the cut after rattling, so that this bears
-   !> fruit
+   !> Growth of the step after one that was cut: by no more than one cut takes back, so that the
+   !> next one does not fail twice; and where blocks move, less than the cut after rattling, so that
+   !> this bears fruit
    real(wp), parameter :: calm_growth = 3.0_wp
    !> Rattling below this share of the displacement is no matter
    real(wp), parameter :: rattle_share = 1.0e-4_wp
@@ -187,6 +188,7 @@ contains
       type(march_t), intent(inout) :: march
       !> The step; whether it is accepted is set
       type(step_context_t), intent(inout) :: step
+      real(wp) :: before, factor
 
       step%accepted = step%state%settled
       if (.not. step%accepted) then
@@ -194,11 +196,15 @@ contains
          step%was_cut = .true.
          return
       end if
+      before = step%farthest
       step%farthest = largest_motion(system, step%state%motion)
       if (.not. settings%current) return
       step%accepted = step%farthest <= too_far*march%allowed_motion
-      if (.not. step%accepted) &
-         & march%dt = march%dt*0.8_wp*sqrt(too_far*march%allowed_motion/step%farthest)
+      if (step%accepted) return
+      factor = 0.8_wp*sqrt(too_far*march%allowed_motion/step%farthest)
+      ! what strain alone holds goes as far in a step a little shorter
+      if (before > too_far*march%allowed_motion) factor = min(cut, factor)
+      march%dt = factor*march%dt
    end subroutine judge_step
 
    !> Length of the step that follows an accepted one. Where blocks move it aims at the motion that
@@ -225,6 +231,7 @@ contains
          if (.not. settings%current) call fit_interval(settings, 0.0_wp, march)
          return
       end if
+      if (step%was_cut) factor = min(factor, calm_growth)
       if (settings%current) then
          if (step%farthest > 0.0_wp) factor = min(growth, &
             & 0.8_wp*sqrt(too_far*march%allowed_motion/step%farthest))

@@ -14,7 +14,7 @@ module dda_velocity
    use dda_block_system, only : block_system_t
    use dda_contact_detection, only : contacts_t
    use dda_elasticity, only : stress_load
-   use dda_fixed_points, only : add_fixed_springs
+   use dda_fixed_points, only : add_fixed_springs, hold_rigidly
    use dda_joint_springs, only : joint_springs_t
    use dda_kinds, only : wp
    use dda_material, only : elasticity_matrix
@@ -204,7 +204,7 @@ contains
       !> Receives base and load
       type(equations_t), intent(inout) :: equations
       real(wp) :: share, stress(6)
-      integer :: b, e, i, nd
+      integer :: b, e, nd
 
       nd = size(equations%load, 1)
       share = damping_rate(settings, step%dt)*step%dt/2.0_wp
@@ -225,9 +225,9 @@ contains
                & - matmul(equations%elastic(:, :, e), step%state%motion(:, e))
          end if
       end do
-      do i = 1, size(equations%fixed%point)
-         b = settings%boundary%held(equations%fixed%point(i))%block
-         if (follows(b)) equations%fixed%row(4:, i) = 0.0_wp
+      do b = 1, size(follows)
+         if (follows(b) .and. system%equation(b) > 0) &
+            & call hold_rigidly(system%equation(b), equations%fixed)
       end do
       call add_fixed_springs(equations%fixed, step%dt*equations%fixed%rate, equations%base, &
          & equations%load)

@@ -2,12 +2,12 @@
 module dda_polygon
    use dda_box_tree, only : box_pairs
    use dda_kinds, only : wp
-   use dda_segment, only : segment_distance
+   use dda_segment, only : meeting_points, segment_distance
    use dda_vector, only : cross
    implicit none
    private
 
-   public :: contains_point, polygon_distance, depth_in, find_crossing, find_overlap
+   public :: contains_point, polygon_distance, depth_in, find_crossing, find_overlap, parts_inside
 
 contains
 
@@ -59,6 +59,50 @@ contains
       depth_in = polygon_distance(vertex, point)
       if (.not. contains_point(vertex, point)) depth_in = -depth_in
    end function depth_in
+
+   !> Ends of the parts of a segment that lie in a polygon or on its outline, in order along it;
+   !> parts that follow one another count as one
+   pure function parts_inside(vertex, segment, reach) result(part)
+      !> Corners in order: (2, n) [m]
+      real(wp), intent(in) :: vertex(:, :)
+      !> Ends of the segment: (4) [m]
+      real(wp), intent(in) :: segment(4)
+      !> Distance within which things touch [m]
+      real(wp), intent(in) :: reach
+      !> Ends of each part: (2, 2*n_part) [m]
+      real(wp), allocatable :: part(:, :)
+      real(wp) :: place(2*size(vertex, 2) + 2), point(2, 2), along(2), length, from
+      integer :: i, j, n, met
+
+      along = segment(3:4) - segment(1:2)
+      length = norm2(along)
+      along = along/length
+      place(1:2) = [0.0_wp, length]
+      n = 2
+      do i = 1, size(vertex, 2)
+         j = modulo(i, size(vertex, 2)) + 1
+         call meeting_points(segment, [vertex(:, i), vertex(:, j)], reach, met, point)
+         do j = 1, met
+            n = n + 1
+            place(n) = dot_product(point(:, j) - segment(1:2), along)
+         end do
+      end do
+      do i = 1, n - 1
+         j = i - 1 + minloc(place(i:n), dim=1)
+         place([i, j]) = place([j, i])
+      end do
+      allocate (part(2, 0))
+      from = -1.0_wp
+      do i = 2, n
+         if (place(i) - place(i - 1) <= reach) cycle
+         if (depth_in(vertex, segment(1:2) + (place(i) + place(i - 1))/2.0_wp*along) < -reach) cycle
+         if (.not. abs(from - place(i - 1)) <= reach) &
+            & part = reshape([part, segment(1:2) + place(i - 1)*along], [2, size(part, 2) + 1])
+         if (abs(from - place(i - 1)) <= reach) part = part(:, :size(part, 2) - 1)
+         part = reshape([part, segment(1:2) + place(i)*along], [2, size(part, 2) + 1])
+         from = place(i)
+      end do
+   end function parts_inside
 
    !> The first two edges of a polygon that cross, or touch where they do not follow one another
    pure subroutine find_crossing(vertex, edge, point)
@@ -140,8 +184,9 @@ contains
             cut(n) = min(max(cross(other(:, j) - a, c)/area, 0.0_wp), 1.0_wp)
          end do
          do j = 1, n
-            middle = a + b*(cut(j) + minval(cut(:n), mask=cut(:n) > cut(j)))/2.0_wp
-            if (.not. cut(j) < 1.0_wp) middle = a + b
+            middle = a + b
+            if (cut(j) < 1.0_wp) &
+               & middle = a + b*(cut(j) + minval(cut(:n), mask=cut(:n) > cut(j)))/2.0_wp
             depth = depth_in(other, middle)
             if (.not. depth > deepest) cycle
             deepest = depth

@@ -9,7 +9,7 @@ module dda_binary_file
    implicit none
    private
 
-   public :: binary_file_t, open_binary, flush_binary, close_binary, go_to
+   public :: binary_file_t, open_binary, flush_binary, sync_binary, close_binary, go_to, place_of
    public :: append_text, append_reals, append_integers, append_length
 
    !> A file open for writing
@@ -70,6 +70,33 @@ module dda_binary_file
          integer(c_int) :: failed
       end function c_fseek
 
+      !> C: the place that is written next
+      function c_ftell(handle) bind(c, name="ftell") result(place)
+         import :: c_long, c_ptr
+         !> The file
+         type(c_ptr), intent(in), value :: handle
+         !> Bytes before it
+         integer(c_long) :: place
+      end function c_ftell
+
+      !> C: the system's number of a file
+      function c_fileno(handle) bind(c, name="fileno") result(descriptor)
+         import :: c_int, c_ptr
+         !> The file
+         type(c_ptr), intent(in), value :: handle
+         !> Its number
+         integer(c_int) :: descriptor
+      end function c_fileno
+
+      !> C: wait until the disk has what the system was given
+      function c_fsync(descriptor) bind(c, name="fsync") result(failed)
+         import :: c_int
+         !> The system's number of the file
+         integer(c_int), intent(in), value :: descriptor
+         !> 0 if all is well
+         integer(c_int) :: failed
+      end function c_fsync
+
       !> C: whether anything has failed since the file was opened
       function c_ferror(handle) bind(c, name="ferror") result(failed)
          import :: c_int, c_ptr
@@ -120,6 +147,29 @@ contains
          & call fatal_error(error, "wanted room for the results, found "// &
          & "none; make room or choose another folder with --out", file%name, 1)
    end subroutine flush_binary
+
+   !> Write so that all up to here survives a loss of power
+   subroutine sync_binary(file, error)
+      !> The file; nothing happens to one that is not open
+      type(binary_file_t), intent(in) :: file
+      !> Allocated if anything could not be written since the file was opened
+      type(error_t), allocatable, intent(inout) :: error
+
+      if (.not. c_associated(file%handle) .or. allocated(error)) return
+      call flush_binary(file, error)
+      if (allocated(error)) return
+      if (c_fsync(c_fileno(file%handle)) /= 0) call fatal_error(error, "wanted the results on "// &
+         & "the disk, found one that does not take them; choose another folder with --out", &
+         & file%name, 1)
+   end subroutine sync_binary
+
+   !> Bytes written so far
+   integer(int64) function place_of(file)
+      !> The file, open
+      type(binary_file_t), intent(in) :: file
+
+      place_of = int(c_ftell(file%handle), int64)
+   end function place_of
 
    !> Close a file
    subroutine close_binary(file, error)

@@ -1,5 +1,6 @@
 !> Lines of a file of blocks as words, and the words' numbers
 module dda_block_lines
+   use dda_deck_token, only : shown
    use dda_error, only : error_t, fatal_error
    use dda_kinds, only : wp
    use dda_text, only : lower_case, read_number, to_text
@@ -88,7 +89,7 @@ contains
          if (ok) call read_number(trim(line%word(i + k)), number(k), ok)
          if (ok) cycle
          call fatal_error(error, "wanted "//to_text(size(number))//" numbers after '" &
-            & //trim(line%word(i))//"'", line=line%number)
+            & //shown(trim(line%word(i)))//"'", line=line%number)
          return
       end do
       i = i + size(number) + 1
@@ -114,7 +115,8 @@ contains
       do while (i <= line%n .and. .not. allocated(error))
          k = findloc(key == line%word(i), .true., dim=1)
          if (k == 0) then
-            call fatal_error(error, "unknown word '"//trim(line%word(i))//"'", line=line%number)
+            call fatal_error(error, "unknown word '"//shown(trim(line%word(i)))//"'", &
+               & line=line%number)
          else if (given(k)) then
             call fatal_error(error, trim(key(k))//" is given twice", line=line%number)
          else

@@ -3,17 +3,24 @@ module dda_block_points
    use dda_block_input, only : block_at, block_plan_t
    use dda_block_lines, only : entry_t, take_numbers
    use dda_boundary, only : held_point_t, history_t, loaded_point_t, measured_point_t
+   use dda_deck_token, only : shown
    use dda_error, only : error_t, fatal_error
+   use dda_ground_motion, only : acceleration_of_displacement, acceleration_of_velocity
+   use dda_held_paths, only : contradicts
    use dda_kinds, only : wp
+   use dda_polygon, only : parts_inside
    use dda_text, only : to_text
    implicit none
    private
 
    public :: add_point
 
+   !> Points nearer than this share of the block's size are one
+   real(wp), parameter :: touching = 1.0e-8_wp
+
 contains
 
-   !> Take in a point, or the motion of the ground, once all blocks are known
+   !> Take in a point, a line that is held, or the motion of the ground, once all blocks are known
    pure subroutine add_point(entry, plan, error)
       !> The entry
       type(entry_t), intent(in) :: entry
@@ -21,16 +28,111 @@ contains
       type(block_plan_t), intent(inout) :: plan
       !> Anything wrong
       type(error_t), allocatable, intent(out) :: error
+
+      if (.not. allocated(plan%boundary%held)) allocate (plan%boundary%held(0), &
+         & plan%boundary%loaded(0), plan%boundary%measured(0))
+      select case (entry%head%word(1))
+      case ("base_acceleration", "base_velocity", "base_displacement")
+         call take_ground(entry, plan, error)
+      case ("fix_line")
+         call hold_line(entry, plan, error)
+      case default
+         call take_point(entry, plan, error)
+      end select
+   end subroutine add_point
+
+   !> Take in the motion of the ground
+   pure subroutine take_ground(entry, plan, error)
+      !> The entry
+      type(entry_t), intent(in) :: entry
+      !> Receives it
+      type(block_plan_t), intent(inout) :: plan
+      !> Given twice, or not as it must be
+      type(error_t), allocatable, intent(out) :: error
       type(history_t) :: history
+      real(wp) :: value(2)
+      logical :: has_value
+      integer :: i
+
+      if (allocated(plan%boundary%base_acceleration%time)) then
+         call fatal_error(error, "wanted the motion of the ground once, found it a second time", &
+            & line=entry%head%number)
+         return
+      end if
+      has_value = entry%head%n > 1
+      i = 1
+      if (has_value) call take_numbers(entry%head, i, value, error)
+      if (allocated(error)) return
+      call read_history(entry, has_value, value, history, error)
+      if (allocated(error)) return
+      if (entry%head%word(1) == "base_acceleration") then
+         plan%boundary%base_acceleration = history
+      else if (size(history%time) < 2) then
+         call fatal_error(error, "wanted two rows of time and components or more below " &
+            & //trim(entry%head%word(1)), line=entry%head%number)
+      else if (entry%head%word(1) == "base_velocity") then
+         plan%boundary%base_acceleration = acceleration_of_velocity(history)
+      else
+         plan%boundary%base_acceleration = acceleration_of_displacement(history)
+      end if
+   end subroutine take_ground
+
+   !> Hold a line: the ends of its part in each block that it crosses or runs along
+   pure subroutine hold_line(entry, plan, error)
+      !> The entry
+      type(entry_t), intent(in) :: entry
+      !> Receives the held points
+      type(block_plan_t), intent(inout) :: plan
+      !> A line without length or in no block, or an unknown word
+      type(error_t), allocatable, intent(out) :: error
+      type(held_point_t) :: held
+      real(wp), allocatable :: part(:, :)
+      real(wp) :: ends(4), size_of_block
+      integer :: b, i, k, n_before
+
+      i = 1
+      ends = 0.0_wp
+      call take_numbers(entry%head, i, ends, error)
+      if (allocated(error)) return
+      call take_directions(entry, i, held%along, error)
+      if (allocated(error)) return
+      ends = ends - [plan%origin, plan%origin]
+      n_before = size(plan%boundary%held)
+      do b = 1, size(plan%fixed)
+         if (.not. norm2(ends(3:4) - ends(1:2)) > 0.0_wp) exit
+         associate (vertex => plan%vertex(:, plan%first_vertex(b):plan%first_vertex(b + 1) - 1))
+            size_of_block = norm2(maxval(vertex, dim=2) - minval(vertex, dim=2))
+            part = parts_inside(vertex, ends, touching*size_of_block)
+         end associate
+         do k = 1, size(part, 2)
+            held%block = b
+            held%point = part(:, k)
+            call add_held(entry, held, plan, error)
+            if (allocated(error)) return
+         end do
+      end do
+      if (size(plan%boundary%held) == n_before) call fatal_error(error, &
+         & "wanted a line that crosses a block or runs along its edge, found none", &
+         & line=entry%head%number)
+   end subroutine hold_line
+
+   !> Take in a point of a block
+   pure subroutine take_point(entry, plan, error)
+      !> The entry
+      type(entry_t), intent(in) :: entry
+      !> Receives it
+      type(block_plan_t), intent(inout) :: plan
+      !> Anything wrong
+      type(error_t), allocatable, intent(out) :: error
+      type(history_t) :: history
+      type(held_point_t) :: held
       real(wp) :: point(2), value(2)
       integer :: block, i
-      logical :: is_ground, has_value
+      logical :: has_value
 
-      is_ground = entry%head%word(1) == "base_acceleration"
       i = 1
       point = 0.0_wp
-      if (.not. is_ground) call take_numbers(entry%head, i, point, error)
-      if (is_ground) i = 2
+      call take_numbers(entry%head, i, point, error)
       if (allocated(error)) return
       has_value = entry%n_column == 3 .and. entry%head%n >= i
       if (has_value) then
@@ -38,14 +140,8 @@ contains
          call take_numbers(entry%head, i, value, error)
       end if
       if (allocated(error)) return
-      if (entry%n_column == 3) then
-         call read_history(entry, has_value, value, history, error)
-         if (allocated(error)) return
-      end if
-      if (is_ground) then
-         plan%boundary%base_acceleration = history
-         return
-      end if
+      if (entry%n_column == 3) call read_history(entry, has_value, value, history, error)
+      if (allocated(error)) return
       point = point - plan%origin
       block = block_at(plan, point)
       if (block == 0) then
@@ -54,49 +150,76 @@ contains
             & //"), which lies in none", line=entry%head%number)
          return
       end if
-      call keep_point(entry, i, block, point, history, plan, error)
-   end subroutine add_point
-
-   !> Put a point where it belongs
-   pure subroutine keep_point(entry, i, block, point, history, plan, error)
-      !> The entry
-      type(entry_t), intent(in) :: entry
-      !> Place of the word after the numbers
-      integer, intent(in) :: i
-      !> Block that owns the point
-      integer, intent(in) :: block
-      !> The point: (2) [m]
-      real(wp), intent(in) :: point(2)
-      !> Its force or displacement in time
-      type(history_t), intent(in) :: history
-      !> Receives it
-      type(block_plan_t), intent(inout) :: plan
-      !> A word too many
-      type(error_t), allocatable, intent(out) :: error
-      type(held_point_t) :: held
-      logical :: has_word
-
-      has_word = i <= entry%head%n
+      held = held_point_t(block, point, [.true., .true.], history)
+      if (entry%head%word(1) == "fix") then
+         call take_directions(entry, i, held%along, error)
+      else if (i <= entry%head%n) then
+         call fatal_error(error, "unknown word '"//shown(trim(entry%head%word(i)))//"'", &
+            & line=entry%head%number)
+      end if
+      if (allocated(error)) return
       associate (boundary => plan%boundary)
-         if (.not. allocated(boundary%held)) &
-            & allocate (boundary%held(0), boundary%loaded(0), boundary%measured(0))
          select case (entry%head%word(1))
-         case ("fix")
-            held = held_point_t(block, point, [.true., .true.], history)
-            if (has_word) held%along = entry%head%word(i) == ["x", "y"]
-            has_word = has_word .and. .not. any(held%along)
-            boundary%held = [boundary%held, held]
-         case ("displacement")
-            boundary%held = [boundary%held, held_point_t(block, point, [.true., .true.], history)]
+         case ("fix", "displacement")
+            call add_held(entry, held, plan, error)
          case ("load")
             boundary%loaded = [boundary%loaded, loaded_point_t(block, point, history)]
          case ("measure")
             boundary%measured = [boundary%measured, measured_point_t(block, point)]
          end select
       end associate
-      if (has_word) call fatal_error(error, "unknown word '"//trim(entry%head%word(i))//"'", &
+   end subroutine take_point
+
+   !> Directions in which something is held: both, or the one that is named
+   pure subroutine take_directions(entry, i, along, error)
+      !> The entry
+      type(entry_t), intent(in) :: entry
+      !> Place of the word after the numbers
+      integer, intent(in) :: i
+      !> Whether it is held along x and along y: (2)
+      logical, intent(out) :: along(2)
+      !> Another word, or one too many
+      type(error_t), allocatable, intent(out) :: error
+
+      along = .true.
+      if (i > entry%head%n) return
+      along = entry%head%word(i) == ["x", "y"]
+      if (.not. any(along) .or. i < entry%head%n) call fatal_error(error, &
+         & "wanted x, y or nothing after the numbers, found '" &
+         & //shown(trim(entry%head%word(i)))//"'", &
          & line=entry%head%number)
-   end subroutine keep_point
+   end subroutine take_directions
+
+   !> Add a held point, unless others hold the block in its way
+   pure subroutine add_held(entry, held, plan, error)
+      !> Its entry
+      type(entry_t), intent(in) :: entry
+      !> The point
+      type(held_point_t), intent(in) :: held
+      !> Receives it
+      type(block_plan_t), intent(inout) :: plan
+      !> A fixed block that is to move, or a point that cannot go its way
+      type(error_t), allocatable, intent(out) :: error
+      real(wp) :: size_of_block
+
+      if (plan%fixed(held%block) .and. allocated(held%path%value)) then
+         if (any(abs(held%path%value) > 0.0_wp)) then
+            call fatal_error(error, "block "//to_text(held%block)//" is fixed and cannot be led", &
+               & line=entry%head%number)
+            return
+         end if
+      end if
+      associate (vertex => plan%vertex(:, plan%first_vertex(held%block): &
+         & plan%first_vertex(held%block + 1) - 1))
+         size_of_block = norm2(maxval(vertex, dim=2) - minval(vertex, dim=2))
+      end associate
+      if (contradicts(plan%boundary%held, held, size_of_block)) then
+         call fatal_error(error, "wanted a way that the block can go with the points of it that " &
+            & //"are held or led already, found another", line=entry%head%number)
+         return
+      end if
+      plan%boundary%held = [plan%boundary%held, held]
+   end subroutine add_held
 
    !> A vector in time: one value behind the word, or rows of time and components below it
    pure subroutine read_history(entry, has_value, value, history, error)

@@ -199,7 +199,7 @@ contains
       character(len=160) :: text
 
       text = message
-      plan%warning = [plan%warning, text]
+      plan%warning = [character(len=len(text)) :: plan%warning, text]
       plan%warning_line = [plan%warning_line, line]
    end subroutine warn
 

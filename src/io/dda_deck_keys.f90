@@ -284,9 +284,12 @@ module dda_deck_keys
    !> Keys of &output
    type(key_t), parameter :: output_keys(*) = [ &
       key_t(group="output", name="vtu", kind=key_kind%flag, default=".true.", varies=.false., &
-            meaning="Write the blocks of each case for ParaView."), &
+            meaning="Write the pictures of output%frames for ParaView too."), &
       key_t(group="output", name="joints", kind=key_kind%flag, default=".true.", varies=.false., &
             meaning="Write forces, openings and states of the joints to joints.csv."), &
+      key_t(group="output", name="blocks", kind=key_kind%flag, varies=.false., &
+            without="up to 100 cases", &
+            meaning="Write corners and displacements of the blocks to blocks.csv."), &
       key_t(group="output", name="condition", kind=key_kind%flag, default=".false.", &
             varies=.false., &
             meaning="Estimate the condition number of the last equations of each case."), &

@@ -4,6 +4,7 @@ module dda_read_blocks
    use dda_block_lines, only : entry_t, line_t, split_line, take_keys, take_numbers, word_size
    use dda_block_points, only : add_point
    use dda_check_plan, only : add_plan_block, check_plan
+   use dda_deck_token, only : shown
    use dda_error, only : error_t, fatal_error
    use dda_kinds, only : wp
    use dda_text, only : read_integer, read_number, to_text
@@ -19,8 +20,8 @@ module dda_read_blocks
    character(len=word_size), parameter :: law_key(3) = [character(len=word_size) :: &
       & "friction_deg", "cohesion", "tension"]
    !> Words that begin an entry
-   character(len=*), parameter :: entries = "block, material, joint, fix, measure, load, "// &
-      & "displacement, base_acceleration"
+   character(len=*), parameter :: entries = "block, material, joint, fix, fix_line, "// &
+      & "measure, load, displacement, base_acceleration, base_velocity, base_displacement"
 
    !> A point entry, kept until all blocks are known
    type :: point_entry_t
@@ -103,8 +104,8 @@ contains
       do i = 1, line%n
          call read_number(trim(line%word(i)), value, ok)
          if (.not. ok) then
-            call fatal_error(error, row_wanted(entry)//", found '"//trim(line%word(i))//"'", &
-               & line=line%number)
+            call fatal_error(error, row_wanted(entry)//", found '" &
+               & //shown(trim(line%word(i)))//"'", line=line%number)
             return
          end if
          entry%row(i, entry%n_row) = value
@@ -141,12 +142,13 @@ contains
       select case (line%word(1))
       case ("block")
          entry%n_column = 2
-      case ("load", "displacement", "base_acceleration")
+      case ("load", "displacement", "base_acceleration", "base_velocity", "base_displacement")
          entry%n_column = 3
-      case ("material", "joint", "fix", "measure")
+      case ("material", "joint", "fix", "fix_line", "measure")
          entry%n_column = 0
       case default
-         call fatal_error(error, "wanted one of "//entries//", found '"//trim(line%word(1))//"'", &
+         call fatal_error(error, "wanted one of "//entries//", found '" &
+            & //shown(trim(line%word(1)))//"'", &
             & line=line%number)
       end select
    end subroutine open_entry
@@ -171,7 +173,8 @@ contains
          call add_material(entry%head, plan, error)
       case ("joint")
          call add_law(entry%head, plan, error)
-      case ("fix", "measure", "load", "displacement", "base_acceleration")
+      case ("fix", "fix_line", "measure", "load", "displacement", "base_acceleration", &
+         & "base_velocity", "base_displacement")
          point%entry = entry
          later = [later, point]
       end select
@@ -208,7 +211,7 @@ contains
             call take_numbers(entry%head, i, stress, error)
          case default
             call fatal_error(error, "wanted fixed, material, velocity or stress, found '" &
-               & //trim(entry%head%word(i))//"'", line=entry%head%number)
+               & //shown(trim(entry%head%word(i)))//"'", line=entry%head%number)
          end select
       end do
       if (allocated(error)) return
@@ -240,7 +243,7 @@ contains
       call read_integer(trim(line%word(2)), material%number, ok)
       if (.not. ok .or. material%number < 2 .or. material%number > 1000) then
          call fatal_error(error, "wanted the number of a material from 2 to 1000 (1 is that of " &
-            & //"the deck), found '"//trim(line%word(2))//"'", line=line%number)
+            & //"the deck), found '"//shown(trim(line%word(2)))//"'", line=line%number)
          return
       else if (any(plan%materials%number == material%number)) then
          call fatal_error(error, "material "//to_text(material%number)//" is given twice", &

@@ -1,13 +1,15 @@
 !> Tables written line by line, each line safe on its own
 module dda_table_file
    use, intrinsic :: iso_c_binding, only : c_char, c_int, c_null_char
-   use dda_binary_file, only : append_text, binary_file_t, close_binary, flush_binary, open_binary
+   use, intrinsic :: iso_fortran_env, only : int64
+   use dda_binary_file, only : append_text, binary_file_t, close_binary, flush_binary, &
+      & open_binary, place_of, sync_binary
    use dda_error, only : error_t, fatal_error
    implicit none
    private
 
    public :: table_file_t, open_table, append_line, close_table, remove_file
-   public :: open_part, keep_line, settle_part
+   public :: open_part, keep_line, settle_part, rename_part, sync_table, length_of
 
    !> Ending of a table that is not whole yet
    character(len=*), parameter :: part = ".part"
@@ -71,6 +73,24 @@ contains
       call flush_binary(table%file, error)
    end subroutine append_line
 
+   !> Write so that every line up to here survives a loss of power
+   subroutine sync_table(table, error)
+      !> The table; nothing happens to one that is not open
+      type(table_file_t), intent(in) :: table
+      !> Allocated if it cannot be written
+      type(error_t), allocatable, intent(inout) :: error
+
+      call sync_binary(table%file, error)
+   end subroutine sync_table
+
+   !> Length of an open table [bytes]
+   integer(int64) function length_of(table)
+      !> The table
+      type(table_file_t), intent(in) :: table
+
+      length_of = place_of(table%file)
+   end function length_of
+
    !> Close a table
    subroutine close_table(table)
       !> The table; nothing happens to one that is not open
@@ -113,11 +133,21 @@ contains
       !> Allocated if the file cannot be written
       type(error_t), allocatable, intent(out) :: error
 
-      call flush_binary(table%file, error)
-      if (allocated(error)) return
+      ! on the disk first: its name must not outlive its lines
+      call sync_binary(table%file, error)
+      if (.not. allocated(error)) call rename_part(file, error)
+   end subroutine settle_part
+
+   !> Give a file begun beside another one the other's name
+   subroutine rename_part(file, error)
+      !> Name of the file that is replaced
+      character(len=*), intent(in) :: file
+      !> Allocated if it cannot be replaced
+      type(error_t), allocatable, intent(out) :: error
+
       if (c_rename(file//part//c_null_char, file//c_null_char) /= 0) &
          & call fatal_error(error, "a file that can be replaced is wanted, this one cannot", file)
-   end subroutine settle_part
+   end subroutine rename_part
 
    !> Remove a file of an earlier run; one that is not there is no failure
    subroutine remove_file(file)

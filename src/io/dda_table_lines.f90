@@ -27,15 +27,18 @@ module dda_table_lines
 contains
 
    !> Begin to read; a file that is not there has no lines
-   subroutine open_lines(file, lines)
+   subroutine open_lines(file, lines, most)
       !> Name of the file
       character(len=*), intent(in) :: file
       !> Its lines
       type(table_lines_t), intent(out) :: lines
+      !> How much of it is read at most [bytes]; all of it without this
+      integer(int64), intent(in), optional :: most
       integer :: stat
 
       lines%ahead = ""
       inquire (file=file, size=lines%left)
+      if (present(most)) lines%left = min(lines%left, most)
       open (newunit=lines%unit, file=file, access="stream", form="unformatted", status="old", &
          & action="read", iostat=stat)
       lines%is_open = stat == 0

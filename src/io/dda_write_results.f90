@@ -102,6 +102,16 @@ module dda_write_results
       real(wp) :: slip = 0.0_wp
       !> What the joint does, in a word
       character(len=14) :: state = ""
+      !> Its two blocks: (2)
+      integer :: block(2) = 0
+      !> Where the force acts; of no force, the middle of the joint: (2) [m]
+      real(wp) :: point(2) = 0.0_wp
+      !> Force on the second block: (2) [N/m]
+      real(wp) :: force(2) = 0.0_wp
+      !> What the joint does in the collapse, in a word
+      character(len=14) :: mechanism = "none"
+      !> Unit vector in which the second block slides past the first, unknown where none slides: (2)
+      type(number_t) :: slides(2)
    end type joint_row_t
 
 contains
@@ -160,7 +170,8 @@ contains
       character(len=:), allocatable :: line
 
       line = "case,joint,angle_deg,x_intrados,y_intrados,x_extrados,y_extrados,normal_force," &
-         & //"shear_force,eccentricity_ratio,opening_intrados,opening_extrados,slip,state"
+         & //"shear_force,eccentricity_ratio,opening_intrados,opening_extrados,slip,state," &
+         & //"block_1,block_2,x,y,force_x,force_y,mechanism,slides_x,slides_y"
    end function joints_header
 
    !> One row of joints.csv
@@ -175,7 +186,11 @@ contains
          & //to_text(row%extrados(1))//","//to_text(row%extrados(2))//"," &
          & //to_text(row%normal_force)//","//to_text(row%shear_force)//"," &
          & //number_text(row%eccentricity_ratio)//","//to_text(row%opening_intrados)//"," &
-         & //to_text(row%opening_extrados)//","//to_text(row%slip)//","//trim(row%state)
+         & //to_text(row%opening_extrados)//","//to_text(row%slip)//","//trim(row%state)//"," &
+         & //to_text(row%block(1))//","//to_text(row%block(2))//","//to_text(row%point(1))//"," &
+         & //to_text(row%point(2))//","//to_text(row%force(1))//","//to_text(row%force(2))//"," &
+         & //trim(row%mechanism)//","//number_text(row%slides(1))//"," &
+         & //number_text(row%slides(2))
    end function joint_line
 
    !> A number as text, nothing if it is unknown

@@ -5,7 +5,7 @@ module dda_boundary
    private
 
    public :: boundary_t, held_point_t, history_t, loaded_point_t, measured_point_t
-   public :: constant_history, rate_at, value_at
+   public :: constant_history, mean_over, rate_at, value_at
 
    !> A vector given at some times, linear between them, constant before the first and after the
    !> last of them; zero if nothing is given
@@ -96,6 +96,39 @@ contains
          value = (1.0_wp - share)*history%value(:, i) + share*history%value(:, i + 1)
       end if
    end function value_at
+
+   !> Mean of a history over a time, so that short pulses bring in their whole impulse
+   pure function mean_over(history, start, finish) result(mean)
+      !> The history
+      type(history_t), intent(in) :: history
+      !> Beginning of the time [s]
+      real(wp), intent(in) :: start
+      !> End of the time, after its beginning [s]
+      real(wp), intent(in) :: finish
+      !> Components along x and y: (2)
+      real(wp) :: mean(2)
+      real(wp) :: before(2), after(2), left, right
+      integer :: i
+
+      mean = value_at(history, (start + finish)/2.0_wp)
+      if (.not. allocated(history%time)) return
+      i = segment_before(history%time, start) + 1
+      if (i > size(history%time)) return
+      if (.not. history%time(i) < finish) return
+      mean = 0.0_wp
+      left = start
+      before = value_at(history, left)
+      do
+         right = finish
+         if (i <= size(history%time)) right = min(right, history%time(i))
+         after = value_at(history, right)
+         mean = mean + (right - left)/(finish - start)*(before + after)/2.0_wp
+         if (.not. right < finish) exit
+         left = right
+         before = after
+         i = i + 1
+      end do
+   end function mean_over
 
    !> Rate of a history just before a time
    pure function rate_at(history, time) result(rate)

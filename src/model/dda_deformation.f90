@@ -4,7 +4,7 @@ module dda_deformation
    implicit none
    private
 
-   public :: displacement_matrix, moved_point, turned_tensor
+   public :: displacement_matrix, moved_point, tangent_matrix, turned_tensor
 
 contains
 
@@ -23,6 +23,32 @@ contains
       t(1, :) = [1.0_wp, 0.0_wp, -y, x, 0.0_wp, y/2.0_wp]
       t(2, :) = [0.0_wp, 1.0_wp, x, 0.0_wp, y, x/2.0_wp]
    end function displacement_matrix
+
+   !> Matrix T of a block that has moved and strained: the exact derivative of `moved_point`, its
+   !> strain in the directions of now. The strain acts on the arm that the point has in the block
+   !> without strain, so that the work of dead loads is linear in it and Hooke's law is that of
+   !> small strains
+   pure function tangent_matrix(place, centre, motion) result(t)
+      !> Where the point is now: (2) [m]
+      real(wp), intent(in) :: place(2)
+      !> Where the centre of gravity is now: (2) [m]
+      real(wp), intent(in) :: centre(2)
+      !> Translation, rotation, strain ex, ey, gxy in the block's own frame: (6)
+      real(wp), intent(in) :: motion(6)
+      !> Rows u, v; columns u0, v0, r0, ex, ey, gxy: (2, 6)
+      real(wp) :: t(2, 6)
+      real(wp) :: arm(2), strain(3), unstrained(2, 6)
+
+      strain = turned_tensor(motion(4:6), -motion(3), 2.0_wp)
+      strain(3) = strain(3)/2.0_wp
+      arm = place - centre
+      arm = [(1.0_wp + strain(2))*arm(1) - strain(3)*arm(2), &
+         & (1.0_wp + strain(1))*arm(2) - strain(3)*arm(1)] &
+         & /((1.0_wp + strain(1))*(1.0_wp + strain(2)) - strain(3)**2)
+      t = displacement_matrix(place, centre)
+      unstrained = displacement_matrix(arm, [0.0_wp, 0.0_wp])
+      t(:, 4:6) = unstrained(:, 4:6)
+   end function tangent_matrix
 
    !> Where a point of a block is after a finite motion: strain in the block's own frame, then exact
    !> rotation, then translation; built from the reference shape, so that no error adds up

@@ -270,8 +270,8 @@ contains
 
    !> The same for a chain, whose voussoirs are seen from their own joints: masses are wrong by some
    !> eps n, the place of the thrust by alpha^2/8 of that, to be compared with alpha^4/48; and an
-   !> arch that lacks as much of its thickness, and accelerates by 0.4 alpha^2 of that, must not pass
-   !> for one at rest, which it may at 16 eps n/alpha (n joints in half an arch)
+   !> arch that lacks as much of its thickness, and accelerates by 0.4 alpha^2 of that, must not
+   !> pass for one at rest, which it may at 16 eps n/alpha (n joints in half an arch)
    pure real(wp) function chain_resolution(deck)
       !> The deck of one case
       type(deck_t), intent(in) :: deck

@@ -46,6 +46,8 @@ module dda_case
       type(scene_plan_t) :: plan
       !> Whether a critical value is searched
       logical :: searches = .false.
+      !> Whether tables of joints or blocks are told, for which a scene is made
+      logical :: tells_tables = .true.
       !> Whether the original's scheme decides
       logical :: limerick = .false.
       !> The scenes of the search
@@ -129,6 +131,9 @@ contains
          if (.not. allocated(this%error)) call see_collapse(this, &
             & real_of(this%deck, "arch", "thickness_ratio"), this%decision)
       end if
+      if (this%searches .and. .not. this%family%decides_chains &
+         & .and. .not. allocated(this%critical%fallen) .and. allocated(this%critical%standing)) &
+         & call this%family%build(this%critical%stands, this%scene, error)
       if (this%plan%shared_forces) call share_told_forces(this)
       if (integer_of(this%deck, "output", "frames") > 0 .or. size(this%album%point) > 0) &
          & call take_pictures(this)
@@ -147,7 +152,8 @@ contains
       type(chain_t) :: chain
       logical :: decided
 
-      decided = this%family%decides_chains
+      ! tables tell displacements at the end, which a chain does not keep
+      decided = this%family%decides_chains .and. .not. this%tells_tables
       if (decided) call this%family%link(real_of(this%deck, "arch", "thickness_ratio"), settings, &
          & chain, decided)
       if (decided) call decide_chain(settings, chain, this%decision, decided)
@@ -177,7 +183,7 @@ contains
 
       if (this%family%decides_chains) this%scene%joint_angle_deg = this%family%joint_angle_deg
       wanted = this%searches
-      if (this%family%decides_chains) wanted = flag_of(this%deck, "output", "joints") &
+      if (this%family%decides_chains) wanted = this%tells_tables &
          & .or. integer_of(this%deck, "output", "frames") > 0 &
          & .or. any(decision%contacts%face%slip /= 0)
       if (wanted .and. .not. allocated(this%scene%contacts%joint)) &
@@ -201,8 +207,12 @@ contains
          & .and. word_of(this%deck, "analysis", "mode") == "dynamic"
       if (allocated(this%deck%plan%boundary%measured)) &
          & this%album%point = this%deck%plan%boundary%measured
-      if (frames > 0 .and. word_of(this%deck, "analysis", "mode") == "dynamic") &
-         & this%album%every = max(1, integer_of(this%deck, "analysis", "steps")/frames)
+      if (frames == 0 .or. word_of(this%deck, "analysis", "mode") /= "dynamic") return
+      if (is_given(this%deck, "analysis", "duration")) then
+         this%album%interval = real_of(this%deck, "analysis", "duration")/real(frames, wp)
+      else
+         this%album%every = max(1, integer_of(this%deck, "analysis", "steps")/frames)
+      end if
    end subroutine plan_album
 
    !> Share out the joint forces of the arch nearest to critical that was found to stand

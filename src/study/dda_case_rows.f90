@@ -3,14 +3,19 @@ module dda_case_rows
    use dda_case, only : case_t, searched_name
    use dda_contact_detection, only : contacts_t
    use dda_critical, only : critical_t
+   use dda_decision, only : decision_t
    use dda_deck, only : deck_t, flag_of, is_given, real_of, word_of
    use dda_error, only : error_line, error_t
    use dda_forward, only : outcome_t
+   use dda_joint_rows, only : joint_rows, tell_roles
    use dda_kinds, only : wp
    use dda_mechanism, only : mechanism_of, mechanism_t
    use dda_scene, only : scene_t
    use dda_text, only : to_text
+   use dda_told_blocks, only : scale_to_one, tell_blocks, tell_mechanism_motion, &
+      & tell_total_motion
    use dda_verdict, only : verdict
+   use dda_write_blocks, only : told_blocks_t
    use dda_write_results, only : joint_row_t, number_t, result_row_t, some_number
    implicit none
    private
@@ -23,13 +28,15 @@ module dda_case_rows
 contains
 
    !> Tell a case
-   pure subroutine tell_case(this, row, joint_row, remark)
+   pure subroutine tell_case(this, row, joint_row, blocks, remark)
       !> The case, computed
       type(case_t), intent(in) :: this
       !> Its row; the fields deck, number and swept are left to the caller
       type(result_row_t), intent(out) :: row
       !> Rows of the joints: (n_joint), or (0) if there is nothing to tell
       type(joint_row_t), allocatable, intent(out) :: joint_row(:)
+      !> Its blocks; nothing is allocated if there is nothing to tell
+      type(told_blocks_t), intent(out) :: blocks
       !> What the user should know beside the row; empty if nothing
       character(len=:), allocatable, intent(out) :: remark
 
@@ -40,9 +47,9 @@ contains
          row%verdict = verdict_name(verdict%undecided)
          remark = error_line(this%error)
       else if (this%searches) then
-         call tell_search(this, row, joint_row, remark)
+         call tell_search(this, row, joint_row, blocks, remark)
       else
-         call tell_decision(this, row, joint_row, remark)
+         call tell_decision(this, row, joint_row, blocks, remark)
       end if
    end subroutine tell_case
 
@@ -89,32 +96,55 @@ contains
    end function given_number
 
    !> Tell a case that searches nothing
-   pure subroutine tell_decision(this, row, joint_row, remark)
+   pure subroutine tell_decision(this, row, joint_row, blocks, remark)
       !> The case
       type(case_t), intent(in) :: this
       !> Its row
       type(result_row_t), intent(inout) :: row
       !> Rows of the joints
       type(joint_row_t), allocatable, intent(inout) :: joint_row(:)
+      !> Its blocks
+      type(told_blocks_t), intent(inout) :: blocks
       !> Why the verdict is undecided
       character(len=:), allocatable, intent(inout) :: remark
 
       associate (outcome => this%decision%outcome)
          row%verdict = verdict_name(outcome%verdict)
          if (allocated(outcome%reason)) remark = outcome%reason
-         if (outcome%verdict == verdict%collapsed) &
-            & call tell_mechanism(this%decision%contacts, this%scene%joint_angle_deg, row)
+         if (allocated(this%decision%contacts%joint)) joint_row = &
+            & joint_rows(this%decision%contacts, this%scene%joint_angle_deg, this%scene%origin)
+         if (outcome%verdict == verdict%collapsed) then
+            call tell_mechanism(this%decision%contacts, this%scene%joint_angle_deg, row)
+            if (size(joint_row) > 0) call tell_roles(this%decision%contacts, joint_row)
+         end if
+         if (allocated(this%decision%system%equation)) call tell_end(this, blocks)
          row%blocks = block_count(this%scene, this%decision%contacts)
          row%steps = outcome%steps
          row%open_close_iterations = outcome%passes
          row%factorisations = outcome%factorisations
          call tell_condition(outcome, row)
       end associate
-      joint_row = joint_rows(this%decision%contacts, this%scene%joint_angle_deg, this%scene%origin)
    end subroutine tell_decision
 
+   !> Tell the blocks at the end of a decision
+   pure subroutine tell_end(this, blocks)
+      !> The case
+      type(case_t), intent(in) :: this
+      !> Its blocks
+      type(told_blocks_t), intent(inout) :: blocks
+      logical :: moves
+
+      moves = this%limerick .or. this%scene%settings%current
+      call tell_blocks(this%scene, blocks)
+      if (this%decision%outcome%verdict == verdict%collapsed .and. .not. moves) then
+         call tell_mechanism_motion(this%scene%system, this%decision%outcome%motion, blocks)
+      else
+         call tell_total_motion(this%decision%system, moves, blocks)
+      end if
+   end subroutine tell_end
+
    !> Tell the search of a case
-   pure subroutine tell_search(this, row, joint_row, remark)
+   pure subroutine tell_search(this, row, joint_row, blocks, remark)
       !> The case
       type(case_t), intent(in) :: this
       !> Its row
@@ -122,10 +152,10 @@ contains
       !> Rows of the joints: of the decision nearest to critical that stands, else of that which
       !> falls
       type(joint_row_t), allocatable, intent(inout) :: joint_row(:)
+      !> Its blocks
+      type(told_blocks_t), intent(inout) :: blocks
       !> Why the verdict is undecided
       character(len=:), allocatable, intent(inout) :: remark
-      type(scene_t) :: scene
-      type(error_t), allocatable :: error
 
       associate (critical => this%critical)
          row%verdict = verdict_name(critical%verdict)
@@ -137,18 +167,11 @@ contains
          if (critical%verdict == verdict%found) call tell_bracket(critical, row)
          if (allocated(critical%fallen)) then
             call tell_mechanism(critical%fallen%contacts, this%scene%joint_angle_deg, row)
-            joint_row = joint_rows(critical%fallen%contacts, this%scene%joint_angle_deg, &
-               & this%scene%origin)
             row%blocks = block_count(this%scene, critical%fallen%contacts)
+         else if (allocated(critical%standing)) then
+            row%blocks = block_count(this%scene, critical%standing%contacts)
          end if
-         if (allocated(critical%standing)) then
-            if (allocated(critical%standing%contacts%joint)) then
-               call this%family%build(critical%stands, scene, error)
-               joint_row = joint_rows(critical%standing%contacts, scene%joint_angle_deg, &
-                  & scene%origin)
-            end if
-            row%blocks = block_count(scene, critical%standing%contacts)
-         end if
+         if (this%tells_tables) call tell_nearest(this, joint_row, blocks)
          row%steps = critical%steps
          row%open_close_iterations = critical%passes
          row%factorisations = critical%factorisations
@@ -159,6 +182,33 @@ contains
          end if
       end associate
    end subroutine tell_search
+
+   !> Joints and blocks of the decision nearest to critical that stands, else of that which falls
+   pure subroutine tell_nearest(this, joint_row, blocks)
+      !> The case
+      type(case_t), intent(in) :: this
+      !> Rows of the joints
+      type(joint_row_t), allocatable, intent(inout) :: joint_row(:)
+      !> The blocks
+      type(told_blocks_t), intent(inout) :: blocks
+      type(scene_t) :: scene
+      type(error_t), allocatable :: error
+
+      associate (critical => this%critical)
+         scene = this%scene
+         if (allocated(critical%standing)) then
+            call this%family%build(critical%stands, scene, error)
+            if (allocated(critical%standing%contacts%joint)) joint_row = &
+               & joint_rows(critical%standing%contacts, scene%joint_angle_deg, scene%origin)
+         else if (allocated(critical%fallen)) then
+            joint_row = joint_rows(critical%fallen%contacts, scene%joint_angle_deg, scene%origin)
+         end if
+         if (allocated(scene%system%equation)) call tell_blocks(scene, blocks)
+         if (.not. allocated(critical%fallen)) return
+         if (size(joint_row) > 0) call tell_roles(critical%fallen%contacts, joint_row)
+         call tell_fall(critical%fallen, scene, blocks)
+      end associate
+   end subroutine tell_nearest
 
    !> Number of movable blocks: of the scene, or where there was none, of a chain by its joints
    pure integer function block_count(scene, contacts)
@@ -173,6 +223,24 @@ contains
          block_count = size(contacts%face) - 1
       end if
    end function block_count
+
+   !> Displacements of the blocks in the collapse nearest to critical
+   pure subroutine tell_fall(fallen, scene, blocks)
+      !> The collapse
+      type(decision_t), intent(in) :: fallen
+      !> The scene that is told, at the value that stands if one does
+      type(scene_t), intent(in) :: scene
+      !> Its blocks; displacements are set where they are known
+      type(told_blocks_t), intent(inout) :: blocks
+
+      if (allocated(fallen%outcome%motion)) then
+         call tell_mechanism_motion(scene%system, fallen%outcome%motion, blocks)
+      else if (allocated(fallen%system%moved)) then
+         if (size(fallen%system%moved) /= size(blocks%corner)) return
+         call tell_total_motion(fallen%system, .true., blocks)
+         call scale_to_one(blocks%displacement)
+      end if
+   end subroutine tell_fall
 
    !> Fill the column of the condition number, if it was estimated
    pure subroutine tell_condition(outcome, row)
@@ -227,43 +295,6 @@ contains
       row%extrados_hinge_deg = mechanism%extrados_deg
       row%springing_hinge = mechanism%springing
    end subroutine tell_mechanism
-
-   !> Rows of all joints
-   pure function joint_rows(contacts, joint_angle_deg, origin) result(row)
-      !> The contacts
-      type(contacts_t), intent(in) :: contacts
-      !> Angle of each joint from the crown, or none: (n_joint) or (0) [deg]
-      real(wp), intent(in) :: joint_angle_deg(:)
-      !> Where the origin of the blocks' coordinates is: (2) [m]
-      real(wp), intent(in) :: origin(2)
-      !> The rows, without the number of the case: (n_joint), or (0) where no scene was made
-      type(joint_row_t), allocatable :: row(:)
-      integer :: j, n
-
-      n = 0
-      if (allocated(contacts%joint)) n = size(contacts%joint)
-      allocate (row(n))
-      do j = 1, size(row)
-         row(j)%joint = j
-         if (size(joint_angle_deg) > 0) row(j)%angle_deg = some_number(joint_angle_deg(j))
-         associate (joint => contacts%joint(j))
-            row(j)%intrados = joint%contact(1)%point + origin
-            row(j)%extrados = joint%contact(joint%n_contact)%point + origin
-         end associate
-         row(j)%normal_force = sum(contacts%force(1:2, j))
-         row(j)%shear_force = contacts%force(3, j)
-         if (row(j)%normal_force > 0.0_wp) row(j)%eccentricity_ratio = some_number( &
-            & (contacts%force(1, j) - contacts%force(2, j))/row(j)%normal_force)
-         row(j)%opening_intrados = contacts%gap(1, j)
-         row(j)%opening_extrados = contacts%gap(2, j)
-         row(j)%slip = contacts%gap(3, j)
-         row(j)%state = "locked"
-         if (contacts%face(j)%open(2)) row(j)%state = "hinge_intrados"
-         if (contacts%face(j)%open(1)) row(j)%state = "hinge_extrados"
-         if (contacts%face(j)%slip /= 0) row(j)%state = "sliding"
-         if (all(contacts%face(j)%open)) row(j)%state = "open"
-      end do
-   end function joint_rows
 
    !> A verdict in a word
    pure function verdict_name(answer) result(name)

@@ -109,6 +109,28 @@ contains
          x = [x(2), next]
          power(1) = power(2)
       end do
+      call propose(family, search, mechanism, next, coarse_slope, noise, critical, proposal)
+   end subroutine trace
+
+   !> Where a mechanism stops, and how near to that to decide
+   pure subroutine propose(family, search, mechanism, next, coarse_slope, noise, critical, proposal)
+      !> The family
+      class(family_t), intent(in) :: family
+      !> What is searched
+      type(search_t), intent(in) :: search
+      !> The mechanism
+      type(frozen_t), intent(in) :: mechanism
+      !> Where it stops
+      real(wp), intent(in) :: next
+      !> Change of its power with the value
+      real(wp), intent(in) :: coarse_slope
+      !> Noise of the power; raised where rounding shows
+      real(wp), intent(inout) :: noise
+      !> What was found so far; the factorisations are counted
+      type(critical_t), intent(inout) :: critical
+      !> The proposal
+      type(proposal_t), intent(inout) :: proposal
+
       proposal%usable = .true.
       proposal%value = next
       if (critical%current) then
@@ -122,7 +144,7 @@ contains
       proposal%reach = proposal%half
       if (proposal%half > search%tolerance*abs(next)) &
          & call average_root(family, mechanism, coarse_slope, critical, proposal)
-   end subroutine trace
+   end subroutine propose
 
    !> Freeze the last collapse
    pure function frozen(family, critical) result(mechanism)

@@ -10,11 +10,13 @@ module dda_deck_scene
       & real_of, text_of, word_of
    use dda_deck_keys, only : key_index
    use dda_deck_set, only : number_fits, put_number
+   use dda_deck_sweep, only : n_cases
    use dda_error, only : error_t, fatal_error
    use dda_kinds, only : wp
    use dda_limerick_lines, only : check_limerick_lines
    use dda_line_scene, only : check_line_scene, line_scene
    use dda_read_deck, only : geometry_file
+   use dda_restart, only : check_restart
    use dda_scene, only : family_t, scene_t
    use dda_scene_plan, only : plan_scene, scene_plan_t
    use dda_settings, only : settings_t
@@ -192,6 +194,14 @@ contains
                & place_of(deck, key_index("analysis", "restart")))
             return
          end if
+         call deck_scene(deck, scene)
+         if (n_cases(deck) == 1) then
+            call check_restart(file_beside(deck, text_of(deck, "analysis", "restart")), &
+               & scene%system, error)
+         else
+            call check_restart(file_beside(deck, text_of(deck, "analysis", "restart")), error=error)
+         end if
+         if (allocated(error)) return
       end if
       if (word_of(deck, "scene", "kind") /= "blocks") return
       if (word_of(deck, "analysis", "mode") /= "static") return

@@ -58,7 +58,7 @@ contains
       if (scene%settings%n_dof == settings%n_dof) then
          springs = scene%contacts%springs
       else
-         call new_joint_springs(scene%system, scene%system%centroid, scene%contacts%joint, &
+         call new_joint_springs(scene%system, 0.0_wp*scene%system%motion, scene%contacts%joint, &
             & settings%penalty_ratio, settings%n_dof, springs)
       end if
       call new_equations(scene%system, springs, settings, equations)

@@ -37,7 +37,7 @@ contains
       call deck_scene(deck, scene)
       decision%system = scene%system
       decision%contacts = scene%contacts
-      call tell_joints(scene, model, run, decision%contacts)
+      call tell_joints(scene, model, run, decision%system%moved, decision%contacts)
       associate (told => decision%outcome)
          told%steps = outcome%steps
          told%passes = outcome%passes
@@ -52,16 +52,18 @@ contains
 
    !> Joints at the end of a run: openings and slips from the corners, forces from the contacts. The
    !> increments are those of the whole run, for single steps of this scheme jitter
-   pure subroutine tell_joints(scene, model, run, contacts)
+   pure subroutine tell_joints(scene, model, run, now, contacts)
       !> The scene at the beginning; springings of arches stand for the abutments, which do not move
       type(scene_t), intent(in) :: scene
       !> The model
       type(limerick_model_t), intent(in) :: model
       !> The run at its end
       type(limerick_run_t), intent(in) :: run
+      !> The corners at the end: (2, n_vertex) [m]
+      real(wp), intent(inout) :: now(:, :)
       !> The joints: at the beginning in, at the end out
       type(contacts_t), intent(inout) :: contacts
-      real(wp) :: now(2, size(scene%system%vertex, 2)), elastic_slip
+      real(wp) :: elastic_slip
       integer :: j, n
 
       if (size(model%measured_block) > 0) then

@@ -28,7 +28,7 @@ contains
 
       elastic = scene
       elastic%settings%n_dof = n_unknown
-      call new_joint_springs(scene%system, scene%system%centroid, scene%contacts%joint, &
+      call new_joint_springs(scene%system, 0.0_wp*scene%system%motion, scene%contacts%joint, &
          & scene%settings%penalty_ratio, n_unknown, elastic%contacts%springs)
       if (decision%flow == flow_rule%associated) then
          elastic%contacts%face = decision%contacts%face

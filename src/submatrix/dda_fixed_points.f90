@@ -5,17 +5,21 @@
 module dda_fixed_points
    use dda_block_system, only : block_system_t
    use dda_boundary, only : held_point_t, rate_at, value_at
-   use dda_deformation, only : displacement_matrix, moved_point
+   use dda_deformation, only : displacement_matrix, moved_point, tangent_matrix
    use dda_kinds, only : wp
+   use dda_least_squares, only : least_squares
    use dda_settings, only : settings_t
    implicit none
    private
 
    public :: fixed_points_t, new_fixed_points, follow_fixed_points, add_fixed_springs
-   public :: correct_fixed_forces
+   public :: correct_fixed_forces, hold_rigidly
 
    !> Stiffness of a spring over the inertia 2m/dt**2 of its block, at the least
    real(wp), parameter :: over_inertia = 1.0e3_wp
+
+   !> Columns of which less than this share of the largest is left say nothing new
+   real(wp), parameter :: negligible = 1.0e-10_wp
 
    !> One spring for each direction in which a point of a movable block is held
    type :: fixed_points_t
@@ -92,7 +96,7 @@ contains
             if (settings%current) then
                centre = system%centroid(:, b) + system%motion(1:2, b)
                place = moved_point(held%point, system%centroid(:, b), system%motion(:, b))
-               t = displacement_matrix(place, centre)
+               t = tangent_matrix(place, centre, system%motion(:, b))
             end if
             path = value_at(held%path, time + dt)
             rate = rate_at(held%path, time + dt)
@@ -127,6 +131,23 @@ contains
          end associate
       end do
    end subroutine add_fixed_springs
+
+   !> Let the points of a block without strain rate ask for no more than it can do: of the rates of
+   !> a rigid block those nearest to what was asked for
+   pure subroutine hold_rigidly(equation, fixed)
+      !> Equation of the block
+      integer, intent(in) :: equation
+      !> The springs; rows and rates of the block's are changed
+      type(fixed_points_t), intent(inout) :: fixed
+      integer :: mine(count(fixed%equation == equation)), i
+      real(wp) :: velocity(3)
+
+      mine = pack([(i, i=1, size(fixed%equation))], fixed%equation == equation)
+      fixed%row(4:, mine) = 0.0_wp
+      if (size(mine) < 2) return
+      velocity = least_squares(transpose(fixed%row(:3, mine)), fixed%rate(mine), negligible)
+      fixed%rate(mine) = matmul(velocity, fixed%row(:3, mine))
+   end subroutine hold_rigidly
 
    !> Add to the forces, and to the load, what the springs carry after a motion
    pure subroutine correct_fixed_forces(target, motion, fixed, load, change)

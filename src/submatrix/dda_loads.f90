@@ -1,6 +1,6 @@
 !> Loads on a block (Shi: df15, df16)
 module dda_loads
-   use dda_deformation, only : displacement_matrix
+   use dda_deformation, only : displacement_matrix, tangent_matrix
    use dda_kinds, only : wp
    implicit none
    private
@@ -23,18 +23,21 @@ contains
    end function body_load
 
    !> Force at a point of the block
-   pure function point_load(force, point, centroid) result(load)
+   pure function point_load(force, point, centroid, motion) result(load)
       !> Force: (2) [N/m]
       real(wp), intent(in) :: force(2)
       !> Where it acts: (2) [m]
       real(wp), intent(in) :: point(2)
       !> Centre of gravity of the block: (2) [m]
       real(wp), intent(in) :: centroid(2)
+      !> How the block has moved to where point and centre are; not at all if it is left out: (6)
+      real(wp), intent(in), optional :: motion(6)
       !> Generalised load: (6)
       real(wp) :: load(6)
       real(wp) :: t(2, 6)
 
       t = displacement_matrix(point, centroid)
+      if (present(motion)) t = tangent_matrix(point, centroid, motion)
       load = force(1)*t(1, :) + force(2)*t(2, :)
    end function point_load
 end module dda_loads

@@ -2,7 +2,7 @@
 !> (Shi: df09, df15, df16)
 module dda_outer_loads
    use dda_block_system, only : block_system_t
-   use dda_boundary, only : value_at
+   use dda_boundary, only : history_t, mean_over, value_at
    use dda_deformation, only : moved_point
    use dda_kinds, only : wp
    use dda_loads, only : body_load, point_load
@@ -14,24 +14,27 @@ module dda_outer_loads
 
 contains
 
-   !> Loads that change with time added to those that do not
-   pure subroutine outer_loads(system, settings, time, weight, load)
+   !> Loads that change with time added to those that do not: their mean over a dynamic step, what
+   !> they are at the end of a static one
+   pure subroutine outer_loads(system, settings, time, dt, weight, load)
       !> The blocks
       type(block_system_t), intent(in) :: system
       !> Settings of the run
       type(settings_t), intent(in) :: settings
-      !> The time [s]
+      !> Time at the beginning of the step [s]
       real(wp), intent(in) :: time
+      !> Length of the step [s]
+      real(wp), intent(in) :: dt
       !> Weight of the blocks: (n_dof, n_equation)
       real(wp), intent(in) :: weight(:, :)
       !> Sum of all loads: (n_dof, n_equation)
       real(wp), intent(out) :: load(:, :)
-      real(wp) :: of_block(6), centre(2), place(2), shaking(2)
+      real(wp) :: of_block(6), centre(2), place(2), force(2), shaking(2)
       integer :: b, e, i, nd
 
       nd = size(load, 1)
       load = weight
-      shaking = -value_at(settings%boundary%base_acceleration, time)
+      shaking = -now(settings%boundary%base_acceleration)
       if (any(abs(shaking) > 0.0_wp)) then
          do b = 1, size(system%equation)
             e = system%equation(b)
@@ -47,14 +50,32 @@ contains
             e = system%equation(b)
             if (e == 0) cycle
             centre = system%centroid(:, b)
-            place = point
+            force = now(settings%boundary%loaded(i)%force)
             if (settings%current) then
                place = moved_point(point, centre, system%motion(:, b))
-               centre = centre + system%motion(1:2, b)
+               of_block = point_load(force, place, centre + system%motion(1:2, b), &
+                  & system%motion(:, b))
+            else
+               of_block = point_load(force, point, centre)
             end if
-            of_block = point_load(value_at(settings%boundary%loaded(i)%force, time), place, centre)
             load(:, e) = load(:, e) + of_block(:nd)
          end associate
       end do
+
+   contains
+
+      !> What a history is in the step
+      pure function now(history) result(value)
+         !> The history
+         type(history_t), intent(in) :: history
+         !> Components along x and y: (2)
+         real(wp) :: value(2)
+
+         if (settings%dynamic) then
+            value = mean_over(history, time, time + dt)
+         else
+            value = value_at(history, time + dt)
+         end if
+      end function now
    end subroutine outer_loads
 end module dda_outer_loads

@@ -109,10 +109,13 @@ def test_pictures_show_joints_that_come_and_go(tmp_path: Path) -> None:
     assert {row["frame"] for row in joints} < {str(number) for number in numbers}
 
 
-def test_dynamic_run_goes_on_from_its_restart_file_to_the_last_bit(tmp_path: Path) -> None:
+@pytest.mark.parametrize("held", ["", "fix 0 2\n", "displacement 1 2\n0 0 0\n0.5 0.1 0.05\n"])
+def test_dynamic_run_goes_on_from_its_restart_file_to_the_last_bit(
+    tmp_path: Path, held: str
+) -> None:
     groups = "&joint friction_deg = 20 /\n&load horizontal_coefficient = 0.5 /\n"
     groups += "&analysis mode = 'dynamic', time_step = 0.01, steps = {} /\n&output restart = .true. /"
-    blocks = BASE + BLOCK + "measure 0.5 1\n"
+    blocks = BASE + BLOCK + "measure 0.5 1\n" + held
     whole = write(tmp_path, blocks, groups.format(80), "whole")
     first = write(tmp_path, blocks, groups.format(30), "first")
     rest = write(tmp_path, blocks, groups.format("80, restart = 'first/case_1.restart'"), "rest")

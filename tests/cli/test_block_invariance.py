@@ -22,7 +22,7 @@ BLOCKS = [
 ]
 
 
-def scene(move: Callable[[Point], Point], order: list[int] = [0, 1, 2], first: int = 0) -> str:
+def scene(move: Callable[[Point], Point], order: tuple[int, ...] = (0, 1, 2), first: int = 0) -> str:
     """Text of the file of blocks with all corners moved."""
     text = []
     polygons = [("block fixed", BASE)] + [("block", BLOCKS[i]) for i in order]
@@ -89,7 +89,7 @@ def test_critical_push_is_that_of_two_posts(plain: float) -> None:
 
 
 def test_renumbered(tmp_path: Path, geometry: str, plain: float) -> None:
-    blocks = scene(same, order=[2, 0, 1], first=2)
+    blocks = scene(same, order=(2, 0, 1), first=2)
     assert critical(tmp_path / "other", blocks, search(), geometry) == pytest.approx(plain, rel=1e-8)
 
 

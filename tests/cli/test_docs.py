@@ -152,8 +152,23 @@ def test_blocks_of_a_page_run(page: Path, tmp_path: Path, shell: dict[str, str])
 def test_links_between_pages_lead_somewhere() -> None:
     broken = []
     for page in PAGES:
+        if page.parent.name == "site":  # links of the built site: tests/post/test_site.py
+            continue
         text = re.sub(r"^```.*?^```", "", page.read_text(encoding="utf-8"), flags=re.M | re.S)
         for target in re.findall(r"\]\(([^)#:\s]+\.\w+)(?:#[^)]*)?\)", text):
             if not (page.parent / target).exists():
                 broken.append(f"{page.name}: {target}")
     assert broken == []
+
+
+def test_flaws_that_are_cured_name_modules_and_tests_that_exist() -> None:
+    page = (ROOT / "docs" / "limits.md").read_text(encoding="utf-8")
+    rows = [line for line in page.splitlines() if line.startswith("| ") and "cured" in line]
+    names = re.findall(r"`(test_[a-z0-9_]+)`", page)
+    assert len(rows) >= 15 and all("`test_" in row for row in rows)
+    suites = [*(ROOT / "tests").rglob("*.pf"), *(ROOT / "tests").rglob("*.py")]
+    whole = "\n".join(path.read_text(encoding="utf-8") for path in suites)
+    for name in names:
+        assert re.search(rf"(subroutine|def) {name}\(", whole), name
+    for name in re.findall(r"`(dda_[a-z_]+)`", page):
+        assert list((ROOT / "src").rglob(f"{name}.f90")), name

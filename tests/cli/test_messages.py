@@ -112,6 +112,27 @@ def test_misspelt_command_is_told_the_nearest(arguments: list[str], meant: str) 
     assert f"did you mean '{meant}'?" in run_dda(*arguments).stderr
 
 
+@pytest.mark.parametrize(
+    "arguments",
+    [
+        ["check", "--jobs", "2"], ["check", "--resume"], ["check", "--out", "x"],
+        ["check", "--cases", "1"], ["cut", "--set", "arch%radius=1"], ["cut", "--resume"],
+        ["export", "--jobs", "2"], ["export", "--cases", "1"],
+    ],
+    ids=" ".join,
+)
+def test_option_of_another_subcommand_is_refused(tmp_path: Path, arguments: list[str]) -> None:
+    (tmp_path / "deck.nml").write_text(GOOD)
+    verb, *options = arguments
+    done = run_dda(verb, "deck.nml", *options, cwd=tmp_path)
+    assert done.returncode == 2
+    assert done.stderr == (
+        f"dda:3: error: wanted an option of dda {verb}, found {options[0]}, which dda run takes; "
+        "leave it away\n"
+    )
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["deck.nml"]
+
+
 #: A square in DDAML; what stands before the end of its geometry
 JOINTS = "<Joint type='1'>0 0 1 0</Joint><Joint type='1'>1 0 1 1</Joint>"
 JOINTS += "<Joint type='1'>1 1 0 1</Joint><Joint type='1'>0 1 0 0</Joint>"

@@ -15,7 +15,8 @@ LAST = """blocks half_angle_deg thickness_ratio friction_deg mode geometry verdi
     intrados_hinge_deg extrados_hinge_deg springing_hinge steps open_close_iterations
     factorisations seconds unknowns""".split()
 JOINTS = """case joint angle_deg x_intrados y_intrados x_extrados y_extrados normal_force
-    shear_force eccentricity_ratio opening_intrados opening_extrados slip state""".split()
+    shear_force eccentricity_ratio opening_intrados opening_extrados slip state block_1
+    block_2 x y force_x force_y mechanism slides_x slides_y""".split()
 
 Row = dict[str, str]
 
@@ -494,7 +495,7 @@ def read_joints(folder: Path) -> list[dict[str, float | str]]:
     rows = read_table(folder / "deck" / "joints.csv")[1]
     return [
         {
-            name: value if name == "state" or value == "" else float(value)
+            name: value if name in ("state", "mechanism") or value == "" else float(value)
             for name, value in row.items()
         }
         for row in rows

@@ -16,8 +16,8 @@ from dda_command import run_dda
 STABLE = "&arch thickness_ratio = 0.12 /\n"
 UNDECIDED = "&arch thickness_ratio = 0.12 /\n&analysis steps = 1 /\n"
 BAD = "&arch\n thickness_ratio = 2 /\n"
-TABLES = ["joints.csv", "log.txt", "results.csv"]
-FILES = ["deck.record", *TABLES]
+TABLES = ["blocks.csv", "joints.csv", "log.txt", "results.csv"]
+FILES = sorted(["deck.record", "disk.record", *TABLES])
 
 
 def write_decks(folder: Path, **texts: str) -> None:
@@ -218,11 +218,11 @@ def test_out_may_be_absolute_and_end_in_a_slash(tmp_path: Path) -> None:
 
 def test_results_of_an_earlier_run_are_replaced(tmp_path: Path) -> None:
     sweep = "&sweep parameter = 'radius', values = 5, 10, 20 /\n"
-    write_decks(tmp_path, many=STABLE + sweep, one=STABLE + "&output joints = .false. /\n")
+    write_decks(tmp_path, many=STABLE + sweep, one=STABLE + "&output joints = .false., blocks = .false. /\n")
     assert run_dda("run", "many.nml", "--out", "results", cwd=tmp_path).returncode == 0
     assert run_dda("run", "one.nml", "--out", "results", cwd=tmp_path).returncode == 0
     assert len(rows_of(tmp_path / "results")) == 1
-    assert names_in(tmp_path / "results") == ["deck.record", "log.txt", "results.csv"]
+    assert names_in(tmp_path / "results") == ["deck.record", "disk.record", "log.txt", "results.csv"]
 
 
 # names
@@ -358,7 +358,7 @@ def test_set_may_switch_joints_off(tmp_path: Path) -> None:
     write_decks(tmp_path, deck=STABLE)
     setting = "output%joints=.false."
     assert run_dda("run", "deck.nml", "--set", setting, cwd=tmp_path).returncode == 0
-    assert names_in(tmp_path / "deck") == ["deck.record", "log.txt", "results.csv"]
+    assert names_in(tmp_path / "deck") == [name for name in FILES if name != "joints.csv"]
 
 
 def test_set_of_a_search_key_starts_a_search(tmp_path: Path) -> None:

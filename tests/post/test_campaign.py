@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import csv
 import os
+import re
 import signal
 import subprocess
 import sys
@@ -16,7 +17,7 @@ pytest.importorskip("voussoir", reason="PYTHONPATH wants the build's python fold
 
 from voussoir import campaign_part  # noqa: E402
 from voussoir.campaign import share  # noqa: E402
-from voussoir.campaign_merge import merge, slices_of  # noqa: E402
+from voussoir.campaign_merge import TABLES, merge, slices_of  # noqa: E402
 from voussoir.campaign_part import finished_by, finished_in, ranges_of  # noqa: E402
 from voussoir.command_line import main  # noqa: E402
 
@@ -28,6 +29,13 @@ DECK = """&arch voussoirs = 12 /
 &sweep parameter = 'half_angle_deg', first = 60, last = 90, count = {angles} /
 &sweep parameter = 'friction_deg', values = 20, 30, 50 /
 """
+
+
+def test_every_table_of_a_run_is_merged() -> None:
+    source = Path(__file__).resolve().parents[2] / "src/app/dda_result_tables.f90"
+    if not source.is_file():
+        pytest.skip("the sources are not here: skipped")
+    assert set(re.findall(r'"/(\w+\.(?:csv|txt))"', source.read_text())) == set(TABLES)
 
 
 @pytest.fixture(autouse=True)
@@ -204,6 +212,40 @@ def test_rows_that_were_cut_off_are_not_taken(tmp_path: Path) -> None:
     assert [place[0] for place in slices_of(attempt / "results.csv")] == [1]
     (attempt / "results.csv").write_text("deck,case,verdict,seconds\na,1,stable\na,2,stable,0.1\n")
     assert finished_by(attempt) == {2}
+
+
+def test_rows_that_a_loss_of_power_may_have_spoiled_are_not_taken(tmp_path: Path) -> None:
+    text = "deck,case,verdict,seconds\na,1,stable,0.1\na,2,stable,0.1\n"
+    (tmp_path / "results.csv").write_text(text)
+    for record, cases in (
+        (f"0 {campaign_part.start_name()}\n", {1, 2}),
+        ("0 another start\n", set()),
+        (f"{text.index('a,2')} another start\n", {1}),
+        ("", set()),
+    ):
+        (tmp_path / "disk.record").write_text(record)
+        assert finished_by(tmp_path) == cases
+
+
+def test_every_table_of_a_run_is_merged(tmp_path: Path) -> None:
+    (tmp_path / "drop.blocks").write_text(
+        "block fixed\n-1 -1\n1 -1\n1 0\n-1 0\nblock\n-0.5 0\n0.5 0\n0.5 1\n-0.5 1\n"
+        "measure 0 0.5\n"
+    )
+    deck = tmp_path / "drop.nml"
+    deck.write_text(
+        "&scene kind = 'blocks', geometry = 'drop.blocks' /\n"
+        "&analysis mode = 'dynamic', geometry = 'current', duration = 0.02, time_step = 0.01 /\n"
+        "&output frames = 2, energy = .true. /\n"
+        "&sweep parameter = 'friction_deg', values = 20, 30, 40 /\n"
+    )
+    subprocess.run([DDA, "run", deck, "--out", tmp_path / "one", "--quiet"], check=True)
+    out = tmp_path / "out"
+    assert main(["campaign", str(deck), "--out", str(out), "--workers", "2", "--quiet"]) == 0
+    for table in (tmp_path / "one").glob("*.csv"):
+        if table.name != "results.csv":
+            assert (out / table.name).read_text() == table.read_text(), table.name
+    assert {"points.csv", "energy.csv", "frames.csv"} <= {path.name for path in out.iterdir()}
 
 
 def test_ranges_read_back() -> None:

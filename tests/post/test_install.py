@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import shutil
 import subprocess
+import sys
 from pathlib import Path
 
 import pytest
@@ -43,6 +44,22 @@ def test_installed_program_runs_an_installed_deck(prefix: Path, tmp_path: Path) 
 def test_installed_command_finds_its_package_through_a_link(prefix: Path, tmp_path: Path) -> None:
     (tmp_path / "vsr").symlink_to(prefix / "bin/voussoir")
     assert "1.059653e-01" in run(tmp_path / "vsr", "theory", "--alpha", "90")
+
+
+def test_installed_command_finds_program_and_decks(prefix: Path, tmp_path: Path) -> None:
+    words = ["validation", "--scenes", "incline", "--out", str(tmp_path)]
+    assert "incline" in run(prefix / "bin/voussoir", *words)
+    assert (tmp_path / "validation.csv").read_text().count("incline") > 0
+
+
+def test_decks_are_found_where_pip_puts_them(tmp_path: Path) -> None:
+    source = Path(__file__).parents[2]
+    shutil.copytree(source / "post/voussoir", tmp_path / "site/voussoir")
+    shutil.copytree(source / "input", tmp_path / "site/voussoir/input")
+    code = "from voussoir.dda_program import find_input; print(find_input('paper'))"
+    environment = {**os.environ, "PYTHONPATH": str(tmp_path / "site")}
+    done = subprocess.run([sys.executable, "-c", code], env=environment, capture_output=True, text=True)
+    assert done.stdout.strip() == str(tmp_path / "site/voussoir/input/paper")
 
 
 def test_documents_are_installed(prefix: Path) -> None:

@@ -22,10 +22,11 @@ from voussoir import (  # noqa: E402
     results,
     theory,
 )
-from voussoir.paper_campaign import Campaign, Clock, find_dda, find_decks  # noqa: E402
+from voussoir.dda_program import find_dda, find_input  # noqa: E402
+from voussoir.paper_campaign import Campaign, Clock  # noqa: E402
 from voussoir.paper_findings import exact_threshold, least_friction  # noqa: E402
 
-DECKS = find_decks()
+DECKS = find_input("paper")
 PAPER = paper_tables.read_table(DECKS / "paper_tables.csv")
 EXACT = paper_tables.read_table(Path(__file__).parents[1] / "data" / "paper_exact.csv")
 FIGURES = [f"figure{number}" for number in range(1, 21)]
@@ -187,7 +188,7 @@ def test_pictures_open_in_paraview(paper_folder: Path, deck: str) -> None:
 def test_missing_program_is_named(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     status = command_line.main(["paper", "--out", str(tmp_path), "--dda", str(tmp_path / "dda")])
     assert status == 2
-    assert "dda was not found" in capsys.readouterr().err
+    assert "wanted the program dda" in capsys.readouterr().err
 
 
 def test_missing_decks_are_named(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

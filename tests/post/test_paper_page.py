@@ -15,9 +15,10 @@ import pytest
 pytest.importorskip("voussoir", reason="PYTHONPATH wants the build's python folder")
 pytest.importorskip("matplotlib", reason="figures want matplotlib")
 
-from voussoir.paper_campaign import Campaign, find_decks  # noqa: E402
+from voussoir.dda_program import find_input  # noqa: E402
+from voussoir.paper_campaign import Campaign  # noqa: E402
 
-DECKS = find_decks()
+DECKS = find_input("paper")
 FIGURES = [f"figure{number}" for number in range(1, 21)]
 
 # the page

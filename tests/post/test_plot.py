@@ -13,20 +13,17 @@ pytest.importorskip("matplotlib", reason="figures want matplotlib")
 pytest.importorskip("voussoir", reason="PYTHONPATH wants the build's python folder")
 
 from voussoir import results  # noqa: E402
-from voussoir.case_picture import draw_case, rounded, sliding  # noqa: E402
+from voussoir.case_picture import draw_case, roles_of, thrust_points  # noqa: E402
+from voussoir.case_scene import scene_of  # noqa: E402
+from voussoir.collapse_animation import FFMpegWriter  # noqa: E402
+from voussoir.collapse_picture import contacts_of, limits, shapes_of  # noqa: E402
 from voussoir.command_line import main  # noqa: E402
 from voussoir.design_chart import ChartError, draw_chart, swept_columns  # noqa: E402
 from voussoir.figure_style import house_style  # noqa: E402
-from voussoir.joint_chain import (  # noqa: E402
-    JointChain,
-    chain_of,
-    displaced,
-    forces,
-    outlines,
-    thrust_points,
-)
+from voussoir.units import force_text, length_text, rounded  # noqa: E402
 
 DDA = os.environ.get("DDA", "")
+BENCHMARKS = Path(__file__).resolve().parents[2] / "input" / "benchmarks"
 pytestmark = pytest.mark.skipif(not DDA, reason="DDA wants the name of the program")
 
 
@@ -66,91 +63,154 @@ def motion(tmp_path_factory: pytest.TempPathFactory) -> results.Results:
     )
 
 
+@pytest.fixture(scope="module")
+def rocking(tmp_path_factory: pytest.TempPathFactory) -> results.Results:
+    """Three blocks that rock on a base, in time, with pictures."""
+    return benchmark(
+        tmp_path_factory.mktemp("rocking"), "rocking_tall",
+        "output%frames=5", "output%joints=.true.", "analysis%duration=0.5",
+    )
+
+
+def benchmark(folder: Path, deck: str, *settings: str) -> results.Results:
+    """Results of a deck of input/benchmarks."""
+    options = [word for setting in settings for word in ("--set", setting)]
+    out = folder / deck
+    command = [DDA, "run", BENCHMARKS / f"{deck}.nml", "--quiet", "--out", out, *options]
+    assert subprocess.run(command).returncode in (0, 3)
+    return results.read(out)
+
+
+def legend_of(figure) -> str:
+    """What the legend of a figure says."""
+    return " | ".join(text.get_text() for text in figure.legends[0].get_texts())
+
+
 @pytest.mark.parametrize("case", [1, 2])
 def test_line_of_thrust_lies_inside_the_joints(arches: results.Results, case: int) -> None:
     joints = arches.joints_of(case)
-    chain = chain_of(joints)
-    points = thrust_points(chain, joints)
-    depth = np.linalg.norm(chain.extrados - chain.intrados, axis=1)
-    height = np.einsum("ij,ij->i", points - chain.intrados, chain.outward) / depth
-    assert np.all(height >= -1e-7) and np.all(height <= 1.0 + 1e-7)
+    ends = [
+        np.column_stack((joints[f"x_{side}"], joints[f"y_{side}"]))
+        for side in ("intrados", "extrados")
+    ]
+    along = ends[1] - ends[0]
+    reach = np.einsum("ij,ij->i", thrust_points(joints) - ends[0], along)
+    share = reach / np.einsum("ij,ij->i", along, along)
+    assert np.all(share >= -1e-7) and np.all(share <= 1.0 + 1e-7)
+    # and on them
+    assert thrust_points(joints) == pytest.approx(ends[0] + share[:, None] * along, abs=1e-9)
 
 
-def test_forces_drawn_carry_the_weight(arches: results.Results) -> None:
-    joints = arches.joints_of(2)
-    chain = chain_of(joints)
-    blocks = outlines(chain, None)
-    area = 0.0
-    for x, y in (block.T for block in blocks):
-        area += 0.5 * abs(np.sum(x * np.roll(y, -1) - y * np.roll(x, -1)))
-    vectors = forces(chain, joints)
-    assert vectors[0] - vectors[-1] == pytest.approx([0.0, 2240.0 * 9.81 * area], abs=2e-4 * 1e6)
-    assert vectors[0][1] == pytest.approx(-vectors[-1][1], rel=1e-6)
-    assert vectors[0][0] > 0.0
-
-
-def test_faceted_blocks_have_their_corners_on_two_circles(tmp_path: Path) -> None:
-    run = compute(tmp_path, "&arch joints_deg = 0, 54.5, 90, facet_deg = 1, thickness_ratio = 0.2 /\n")
+def test_mechanism_is_drawn_with_the_displacement_that_the_legend_states(arches) -> None:
     with house_style():
-        draw_case(run, 1)
-    blocks = outlines(chain_of(run.joints_of(1)), 1.0)
-    assert [len(block) for block in blocks] == [2 * (36 + 1), 2 * (55 + 1), 2 * (55 + 1), 2 * (36 + 1)]
-    radii = np.linalg.norm(np.vstack(blocks), axis=1)
-    assert np.all(np.minimum(abs(radii - 9.0), abs(radii - 11.0)) < 1e-12)
+        figure = draw_case(arches, 1, magnify=0.4)
+    assert "drawn with a largest displacement of 400 mm" in legend_of(figure)
+    scene = scene_of(arches, 1)
+    moves = [
+        np.hypot(*(after - before).T).max()
+        for before, after in zip(scene.shapes(0.0), scene.shapes(0.4))
+    ]
+    assert max(moves) == pytest.approx(0.4, abs=1e-12)
+    drawn = figure.axes[0].collections[2].get_paths()
+    for path, shape in zip(drawn, scene.shapes(0.4)):
+        assert path.vertices[: len(shape)] == pytest.approx(shape, abs=1e-12)
 
 
-def test_chain_turns_a_block_about_its_hinge_exactly() -> None:
-    """A block between two fixed joints turns by w about the intrados of the first."""
-    spin = 1e-3
-    intrados = np.array([[-1.0, 0.0], [1.0, 0.0]])
-    extrados = intrados + [0.0, 0.5]
-    up, right = np.array([[0.0, 1.0]] * 2), np.array([[1.0, 0.0]] * 2)
-    chain = JointChain(intrados, extrados, up, right)
-
-    def turn(point: np.ndarray) -> np.ndarray:
-        x, y = point - intrados[0]
-        return spin * np.array([-y, x])
-
-    ends = turn(intrados[1]), turn(extrados[1])
-    joints = {
-        "opening_intrados": np.array([0.0, -ends[0][0]]),
-        "opening_extrados": np.array([-0.5 * spin, -ends[1][0]]),
-        "slip": np.array([0.0, -ends[0][1]]),
-    }
-    block = np.array([[-1.0, 0.0], [1.0, 0.0], [1.0, 0.5], [-1.0, 0.5]])
-    moved = displaced(chain, joints, [block])
-    assert moved is not None
-    assert moved[0] == pytest.approx(np.array([turn(point) for point in block]), abs=1e-15)
+def test_supports_of_an_arch_are_cut_off_below_its_springings(arches) -> None:
+    scene = scene_of(arches, 2)
+    assert [len(scene.blocks), len(scene.supports)] == [36, 2]
+    for support in scene.supports:
+        assert support.corners[:, 1].max() == pytest.approx(0.0, abs=1e-12)
+        assert support.corners[:, 1].min() == pytest.approx(-0.3 * 1.5, abs=1e-12)
 
 
-def test_mechanism_of_a_fallen_arch_closes_and_its_crown_falls(arches: results.Results) -> None:
-    joints = arches.joints_of(1)
-    chain = chain_of(joints)
-    blocks = outlines(chain, None)
-    moved = displaced(chain, joints, blocks)
-    assert moved is not None
-    largest = max(np.abs(part).max() for part in moved)
-    assert moved[17][1][1] < -0.5 * largest  # the crown's corner
-    left, right = moved[9].mean(axis=0), moved[26].mean(axis=0)
-    assert left == pytest.approx(right * [-1, 1], abs=1e-2 * largest)
-    assert left[0] < 0.0  # the haunches go outwards
-
-
-def test_elastic_motion_is_not_drawn_as_a_mechanism(arches: results.Results) -> None:
-    joints = arches.joints_of(2)
-    chain = chain_of(joints)
-    assert displaced(chain, joints, outlines(chain, None)) is None
-
-
-def test_joints_at_the_limit_of_friction_are_marked(searches: results.Results) -> None:
+def test_joints_that_slide_in_the_collapse_are_marked(searches: results.Results) -> None:
     marked = {}
     for row in searches.cases.rows():
-        slides = np.flatnonzero(sliding(searches.joints_of(row["case"]), row))
+        slides = np.flatnonzero(roles_of(searches.joints_of(row["case"])) == "sliding")
         marked[row["half_angle_deg"], row["friction_deg"]] = set(slides)
         assert bool(len(slides)) == (row["collapse_mode"] == "mixed")
     # at 90 degrees friction of 21.2 degrees and less lets the springings slide outwards
     assert marked[90, 20] == marked[90, 21] == {0, 36}
     assert marked[90, 50] == set()
+
+
+@pytest.mark.parametrize(
+    ("deck", "settings", "words"),
+    [
+        ("post_and_lintel", (), ("fixed", "collapse mechanism", "hinge", "contact forces")),
+        ("dry_wall_2x4", (), ("hinge", "open joint", "sliding joint")),
+        ("slope", (), ("sliding joint: which way its sides move",)),
+        ("four_corners", (), ("displaced shape, displacements × ", "touches at this corner only")),
+        ("momentum", (), ("at the beginning; true scale", "measured points and their ways")),
+        ("projectile", (), ("measured points and their ways",)),
+    ],
+)
+def test_any_scene_of_blocks_is_drawn(tmp_path: Path, deck: str, settings, words) -> None:
+    run = benchmark(tmp_path, deck, *settings)
+    with house_style():
+        figure = draw_case(run, 1)
+    legend = legend_of(figure)
+    assert all(word in legend for word in words), legend
+    low, high = (np.array(end) for end in zip(figure.axes[0].get_xlim(), figure.axes[0].get_ylim()))
+    scene = scene_of(run, 1)
+    points = np.vstack(scene.shapes(1.0 if scene.moves else 0.0))
+    assert np.all(points >= low) and np.all(points <= high)
+
+
+def test_ways_of_measured_points_end_where_the_points_are(rocking: results.Results) -> None:
+    with house_style():
+        axes = draw_case(rocking, 1, magnify=1.0).axes[0]
+    ends = [line.get_xydata()[-1] for line in axes.lines if line.get_marker() == "D"]
+    ways = rocking.points_of(1)
+    assert len(ends) == len(ways) == 6
+    for end, way in zip(ends, ways):
+        assert end == pytest.approx([way["x"][-1], way["y"][-1]], abs=1e-12)
+
+
+def test_scenes_of_lines_and_of_the_original_scheme_are_drawn(tmp_path: Path) -> None:
+    for mode in ("static", "limerick"):
+        deck = BENCHMARKS.parent / "limerick" / "terrace.nml"
+        out = tmp_path / mode
+        command = [DDA, "run", deck, "--quiet", "--out", out, "--set", f"analysis%mode={mode}"]
+        assert subprocess.run(command).returncode in (0, 3)
+        assert main(["plot", str(out)]) == 0
+        assert (out / "plots" / "case_1.svg").stat().st_size > 5000
+
+
+@pytest.mark.parametrize(
+    ("groups", "words"),
+    [
+        ("&search low = 0.2, high = 0.5 /", "line of thrust"),  # stands at both ends
+        ("&search low = 0.02, high = 0.05 /", "collapse mechanism"),  # falls at both
+        ("&analysis steps = 1 /", "displaced shape"),  # is undecided
+        ("&analysis geometry = 'current' /\n&search /", "collapse mechanism"),
+        ("&analysis mode = 'limerick' /\n&search /", "collapse mechanism"),
+    ],
+)
+def test_cases_of_any_end_are_drawn(tmp_path: Path, groups: str, words: str) -> None:
+    (tmp_path / "deck.nml").write_text(f"&arch voussoirs = 8 /\n{groups}\n")
+    subprocess.run([DDA, "run", "deck.nml", "--quiet"], cwd=tmp_path)
+    with house_style():
+        assert words in legend_of(draw_case(results.read(tmp_path / "deck"), 1))
+
+
+def test_what_is_not_told_is_not_drawn(tmp_path: Path, capsys) -> None:
+    run = benchmark(tmp_path, "stack", "output%joints=.false.")
+    with house_style():
+        assert "contact forces" not in legend_of(draw_case(run, 1))
+    bare = benchmark(tmp_path / "bare", "stack", "output%blocks=.false.")
+    assert main(["plot", str(bare.folder)]) == 2
+    assert "--set output%blocks=.true. --cases 1" in capsys.readouterr().err
+
+
+def test_numbers_have_units_that_suit_them() -> None:
+    assert [length_text(value) for value in (2e-9, 3.5e-6, 0.0123, 0.5, 2.0, 4200.0)] == [
+        "2 nm", "3.5 µm", "12.3 mm", "500 mm", "2 m", "4.2 km"
+    ]
+    assert [force_text(value) for value in (12.0, 368.46e3, 2e6)] == [
+        "12 N/m", "368.5 kN/m", "2 MN/m"
+    ]
 
 
 def test_magnification_is_a_round_number() -> None:
@@ -176,12 +236,13 @@ def test_all_cases_are_drawn_beside_the_results(arches, capsys) -> None:
 
 def test_magnification_is_stated_and_forces_may_be_left_out(arches, tmp_path: Path) -> None:
     with house_style():
-        texts = {}
-        for magnify, with_forces in ((None, True), (1e-5, False), (0.0, False)):
-            legend = draw_case(arches, 1, magnify, with_forces).legends[0]
-            texts[magnify] = " | ".join(text.get_text() for text in legend.get_texts())
-    assert "contact forces, longest 368.5 kN/m" in texts[None]
-    assert "displacements × 1e-05" in texts[1e-5] and "forces" not in texts[1e-5]
+        texts = {
+            magnify: legend_of(draw_case(arches, 2, magnify, with_forces))
+            for magnify, with_forces in ((None, True), (30.0, False), (0.0, False))
+        }
+    assert "contact forces, longest 548.1 kN/m" in texts[None]
+    assert "displacements × 500 (largest 1.09 mm)" in texts[None]
+    assert "displacements × 30 (" in texts[30.0] and "forces" not in texts[30.0]
     assert "displaced" not in texts[0.0]
     words = ["plot", str(arches.folder), "--out", str(tmp_path), "--magnify", "2", "--no-forces"]
     assert main(words) == 0
@@ -238,15 +299,45 @@ def test_folder_that_cannot_be_written_is_status_4(arches, tmp_path: Path, capsy
     assert "taken" in capsys.readouterr().err
 
 
+def test_many_curves_of_one_number_are_told_apart_by_colour(tmp_path: Path) -> None:
+    run = compute(
+        tmp_path,
+        "&search /\n&arch voussoirs = 12 /\n&output joints = .false. /\n"
+        "&sweep parameter = 'half_angle_deg', first = 60, last = 90, count = 10 /\n"
+        "&sweep parameter = 'friction_deg', first = 25, last = 50, count = 9 /\n",
+    )
+    with house_style():
+        for column, other, curves in (
+            ("friction_deg", "half_angle_deg", 10), ("half_angle_deg", "friction_deg", 9)
+        ):
+            axes, bar = draw_chart(run, column).axes
+            assert len(axes.lines) == curves
+            low, high = min(run.cases[other]), max(run.cases[other])
+            assert bar.get_ylim() == pytest.approx((low, high))
+            for line in axes.lines:
+                assert len(line.get_xdata()) == 19 - curves
+
+
 def test_too_many_curves_are_refused(tmp_path: Path) -> None:
     run = compute(
         tmp_path,
-        "&search /\n&output joints = .false. /\n"
-        "&sweep parameter = 'half_angle_deg', first = 60, last = 90, count = 9 /\n"
-        "&sweep parameter = 'friction_deg', values = 40, 50 /\n",
+        "&search /\n&arch voussoirs = 8 /\n&output joints = .false. /\n"
+        "&sweep parameter = 'half_angle_deg', first = 60, last = 90, count = 5 /\n"
+        "&sweep parameter = 'springing', texts = 'frictional', 'no-slip' /\n"
+        "&sweep parameter = 'friction_deg', values = 40, 50, 60 /\n",
     )
-    with pytest.raises(ChartError, match="at most 8 curves"):
+    with pytest.raises(ChartError, match="found 10 curves of .*; sweep fewer values"):
         draw_chart(run, "friction_deg")
+
+
+def test_cases_without_a_critical_value_are_told(tmp_path: Path) -> None:
+    run = compute(
+        tmp_path,
+        "&search /\n&arch voussoirs = 8 /\n&sweep parameter = 'friction_deg', values = 5, 40, 50 /\n",
+    )
+    with house_style():
+        title = draw_chart(run).axes[0].get_title()
+    assert title == "1 of 3 cases have no critical value"
 
 
 def test_motion_is_animated(motion: results.Results, tmp_path: Path, capsys) -> None:
@@ -254,6 +345,42 @@ def test_motion_is_animated(motion: results.Results, tmp_path: Path, capsys) -> 
     assert main(["animate", str(motion.folder), "--case", "1", "--out", str(file)]) == 0
     assert file.read_bytes()[:6] == b"GIF89a"
     assert capsys.readouterr().out.strip() == str(file)
+
+
+def test_blocks_in_time_are_animated(rocking: results.Results, tmp_path: Path, capsys) -> None:
+    frames = rocking.frames_of(1)
+    assert [frame.time for frame in frames] == pytest.approx([0.0, 0.1, 0.2, 0.3, 0.4, 0.5], abs=1e-3)
+    words = ["animate", str(rocking.folder), "--magnify", "2", "--out", str(tmp_path / "rock.png")]
+    assert main(words) == 0
+    names = [f"rock_{number:03d}.png" for number in range(1, 7)]
+    assert sorted(path.name for path in tmp_path.iterdir()) == names
+    assert capsys.readouterr().out.strip() == str(tmp_path / names[0])
+    scene = scene_of(rocking, 1)
+    assert [block.number for block in scene.supports] == [1]
+    now, twice = (shapes_of(scene, frames[0], frames[3], factor) for factor in (1.0, 2.0))
+    assert twice[0] - scene.blocks[0].corners == pytest.approx(2 * (now[0] - scene.blocks[0].corners))
+    low, high = limits(rocking, [1], 2.0)
+    assert np.all(np.vstack(twice) >= low) and np.all(np.vstack(twice) <= high)
+    # each block rocks on a corner
+    assert all(points.shape[1] <= 6 for points in contacts_of(frames[1]).values())
+
+
+@pytest.mark.skipif(FFMpegWriter.isAvailable(), reason="ffmpeg is there: skipped")
+def test_missing_ffmpeg_is_told(motion: results.Results, tmp_path: Path, capsys) -> None:
+    assert main(["animate", str(motion.folder), "--out", str(tmp_path / "fall.mp4")]) == 2
+    assert "wanted the program ffmpeg" in capsys.readouterr().err
+    assert not list(tmp_path.iterdir())
+
+
+@pytest.mark.skipif(not FFMpegWriter.isAvailable(), reason="ffmpeg is not there: skipped")
+def test_motion_is_a_film(motion: results.Results, tmp_path: Path) -> None:
+    assert main(["animate", str(motion.folder), "--out", str(tmp_path / "fall.mp4")]) == 0
+    assert (tmp_path / "fall.mp4").read_bytes()[4:8] == b"ftyp"
+
+
+def test_unknown_ending_of_an_animation_is_told(motion, tmp_path: Path, capsys) -> None:
+    assert main(["animate", str(motion.folder), "--out", str(tmp_path / "fall.avi")]) == 2
+    assert "wanted a file .gif, .mp4 or .png, found 'fall.avi'" in capsys.readouterr().err
 
 
 def test_results_without_frames_are_not_animated(arches, capsys) -> None:

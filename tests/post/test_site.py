@@ -6,7 +6,9 @@ import os
 import re
 import subprocess
 import sys
+from html.parser import HTMLParser
 from pathlib import Path
+from urllib.parse import unquote
 
 import pytest
 
@@ -17,7 +19,7 @@ DDA = os.environ.get("DDA", "")
 @pytest.fixture(scope="module")
 def site(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """The site, built."""
-    for package in ("mkdocs", "ford"):
+    for package in ("mkdocs", "ford", "latex2mathml"):
         pytest.importorskip(package, reason=f"the site wants {package}: skipped")
     out = tmp_path_factory.mktemp("site")
     script = ROOT / "docs/site/build_site.py"
@@ -59,10 +61,58 @@ def test_every_public_procedure_is_there(site: Path) -> None:
     assert missing == []
 
 
+class Links(HTMLParser):
+    """Links of a page, and what can be linked to in it."""
+
+    def __init__(self, page: Path) -> None:
+        super().__init__()
+        self.targets: set[str] = set()
+        self.links: list[str] = []
+        self.feed(page.read_text(encoding="utf-8"))
+
+    def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
+        """Note what a tag links to."""
+        for name, value in attrs:
+            if value and name in ("id", "name"):
+                self.targets.add(value)
+            elif value and name in ("href", "src"):
+                self.links.append(value)
+
+
+def test_every_link_leads_somewhere(site: Path) -> None:
+    pages = {page.resolve(): Links(page) for page in site.rglob("*.html") if page.stem != "404"}
+    broken = []
+    for page, links in pages.items():
+        for link in links.links:
+            if re.match(r"[a-z]+:|//", link):
+                continue
+            place, _, anchor = link.partition("#")
+            file = (page.parent / unquote(place.partition("?")[0])).resolve() if place else page
+            if file.is_dir():
+                file /= "index.html"
+            # FORD's own anchors are its affair
+            lost = anchor and page.parent == site.resolve() and file in pages and (
+                unquote(anchor) not in pages[file].targets
+            )
+            if not file.exists() or lost:
+                broken.append(f"{page.name}: {link}")
+    assert len(pages) > 500
+    assert broken == []
+
+
+def test_formulas_are_drawn_and_no_network_is_wanted(site: Path) -> None:
+    text = (site / "theory.html").read_text(encoding="utf-8")
+    assert text.count("<math") > 250
+    assert not re.search(r"\\(frac|alpha|eta|sqrt)", text)
+    for page in site.glob("*.html"):
+        text = page.read_text(encoding="utf-8")
+        assert not re.search(r'<(?:script|link|img)[^>]+(?:src|href)="(?:https?:)?//', text), page.name
+
+
 def test_missing_packages_are_told(tmp_path: Path) -> None:
     script = ROOT / "docs/site/build_site.py"
     done = subprocess.run(
         [sys.executable, "-S", "-E", script, "--out", tmp_path], capture_output=True, text=True
     )
     assert done.returncode == 2
-    assert "wanted the packages mkdocs and ford" in done.stderr
+    assert "wanted the packages mkdocs, ford, latex2mathml" in done.stderr

@@ -103,3 +103,27 @@ def test_joint_forces_and_states_are_those_of_the_table(fall: results.Results) -
         assert force == pytest.approx(np.column_stack([frame.joints[name] for name in names]))
         for ending in ("first", "second"):
             assert vtk_to_numpy(data.GetArray(f"state_{ending}")).dtype.kind == "i"
+
+
+def test_blocks_in_time_carry_their_times_and_states(tmp_path: Path) -> None:
+    """A block that slides down a slope: times of the index, displacement, contact states."""
+    deck = Path(__file__).resolve().parents[2] / "input/benchmarks/incline_30.nml"
+    options = ["--set", "output%frames=4", "--set", "output%vtu=.true."]
+    command = [os.environ["DDA"], "run", deck, "--quiet", "--out", tmp_path, *options]
+    subprocess.run(command, check=True)
+    run = results.read(tmp_path)
+    pictures, files = run.frames_of(1), files_of(run)
+    index = ElementTree.parse(run.pvd(1)).getroot().findall("Collection/DataSet")
+    times = sorted({float(item.attrib["timestep"]) for item in index})
+    assert times == [frame.time for frame in pictures]
+    end = float(run.setting("analysis%duration"))
+    assert times == pytest.approx([0.0, end / 4, end / 2, 3 * end / 4, end], abs=0.01)
+    states = {"open": 0, "sliding": 1, "locked": 2}
+    for (blocks, joints), frame in zip(files, pictures):
+        moved = vtk_to_numpy(grid_of(blocks).GetPointData().GetArray("displacement"))[:, :2]
+        corners = np.vstack(frame.blocks)
+        assert moved == pytest.approx(corners - np.vstack(pictures[0].blocks), abs=1e-12)
+        data = grid_of(joints).GetPointData()
+        found = vtk_to_numpy(data.GetArray("state_first"))
+        assert list(found) == [states[word] for word in frame.joints["state_1"]]
+    assert 1 in found  # it slides

@@ -1,0 +1,138 @@
+"""What the picture of one case shows, as `dda run` has told it: shapes, supports, the piece of plane."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from voussoir.results import Block, Results
+
+#: Room around what moves, and how far beyond it supports are shown, over its size
+MARGIN, SUPPORT_REACH = 0.06, 0.25
+#: How much of the depth of an arch's supports is shown
+SUPPORT_SHARE = 0.3
+
+
+@dataclass(frozen=True)
+class CaseScene:
+    """Shapes of one case.
+
+    Attributes
+    ----------
+    blocks : list of Block
+        Blocks that can move, at the beginning.
+    supports : list of Block
+        Blocks that cannot; of an arch only the parts next to the springings.
+    is_arch : bool
+        Whether the blocks are an arch's.
+    moves : bool
+        Whether the blocks are computed where they go, so that pictures show them there.
+    falls : bool
+        Whether the displacements are a collapse mechanism, which has no size.
+    """
+
+    blocks: list[Block]
+    supports: list[Block]
+    is_arch: bool
+    moves: bool
+    falls: bool
+
+    @property
+    def largest(self) -> float:
+        """Largest displacement of a corner [m], NaN where none is told."""
+        return max(
+            (float(np.hypot(*block.displacement.T).max()) for block in self.blocks),
+            default=float("nan"),
+        )
+
+    def shapes(self, factor: float) -> list[np.ndarray]:
+        """Corners of the blocks that can move, with so many times their displacements."""
+        if factor == 0.0:  # where displacements are not known, too
+            return [block.corners for block in self.blocks]
+        return [block.corners + factor * block.displacement for block in self.blocks]
+
+
+def scene_of(run: Results, number: int) -> CaseScene:
+    """The shapes of one case.
+
+    Parameters
+    ----------
+    run : Results
+        The results of the deck.
+    number : int
+        Number of the case.
+
+    Returns
+    -------
+    CaseScene
+        The shapes.
+
+    Raises
+    ------
+    KeyError
+        If the folder has no blocks of this case.
+    """
+    told = run.blocks_of(number)
+    is_arch = run.kind == "arch"
+    free = [block for block in told if block.state != "fixed"]
+    supports = [block for block in told if block.state == "fixed"]
+    if is_arch:
+        supports = [shortened(block, free) for block in supports]
+    row = run.case(number)
+    moves = row["geometry"] == "current" and not run.searched
+    falls = row["collapse_mode"] != "none" and not moves
+    return CaseScene(free, supports, is_arch, moves, falls)
+
+
+def shortened(support: Block, free: list[Block]) -> Block:
+    """A support of an arch of which only the part next to its joint is left.
+
+    Two supports overlap behind the springings where an arch spans much more than a semicircle.
+
+    Parameters
+    ----------
+    support : Block
+        The support.
+    free : list of Block
+        The blocks of the arch; the support shares two corners with one of them.
+
+    Returns
+    -------
+    Block
+        The same with its far corners drawn up.
+    """
+    corners = np.vstack([block.corners for block in free])
+    apart = np.linalg.norm(support.corners[:, None] - corners[None], axis=2).min(axis=1)
+    near = np.argsort(apart, kind="stable")[:2]
+    start, end = support.corners[near]
+    along = (end - start) / np.linalg.norm(end - start)
+    normal = np.array([-along[1], along[0]])
+    depth = (support.corners - start) @ normal
+    shape = support.corners - np.outer((1.0 - SUPPORT_SHARE) * depth, normal)
+    return Block(support.number, support.state, shape, support.displacement)
+
+
+def view(shapes: list[np.ndarray], supports: list[np.ndarray]) -> tuple[np.ndarray, np.ndarray]:
+    """The piece of plane that shows all that moves, and what of the supports is near to it.
+
+    Parameters
+    ----------
+    shapes : list of ndarray
+        Points that must be seen: (n, 2) each [m].
+    supports : list of ndarray
+        Corners of the supports.
+
+    Returns
+    -------
+    tuple of ndarray
+        Lower left and upper right corner [m].
+    """
+    points = np.vstack(shapes or supports)
+    low, high = points.min(axis=0), points.max(axis=0)
+    size = float((high - low).max())
+    if supports:
+        held = np.vstack(supports)
+        low = np.minimum(low, np.maximum(held.min(axis=0), low - SUPPORT_REACH * size))
+        high = np.maximum(high, np.minimum(held.max(axis=0), high + SUPPORT_REACH * size))
+    return low - MARGIN * size, high + MARGIN * size

@@ -1,0 +1,71 @@
+!> disk.record: how much of results.csv a loss of power has not taken
+!>
+!> A row that the system has been given survives the end of the program, but not that of the system.
+!> So the tables are brought to the disk now and then, results.csv last, and its length is written
+!> down beside the name that the system gives to the time since its start. As long as that is the
+!> same, all rows count; afterwards those up to that length.
+module dda_disk_record
+   use, intrinsic :: iso_fortran_env, only : int64
+   use dda_error, only : error_t
+   use dda_table_file, only : close_table, open_part, rename_part, table_file_t
+   use dda_text_file, only : read_text_file
+   implicit none
+   private
+
+   public :: write_disk_record, trusted_length
+
+   !> Where Linux tells a word that is another one after each start
+   character(len=*), parameter :: start_file = "/proc/sys/kernel/random/boot_id"
+
+contains
+
+   !> Write down how much is on the disk
+   subroutine write_disk_record(file, length, error)
+      !> Name of the record
+      character(len=*), intent(in) :: file
+      !> Length of results.csv that is on the disk [bytes]
+      integer(int64), intent(in) :: length
+      !> Allocated if it cannot be written
+      type(error_t), allocatable, intent(inout) :: error
+      type(table_file_t) :: record
+      character(len=20) :: bytes
+
+      if (allocated(error)) return
+      write (bytes, "(i0)") length
+      call open_part(file, trim(bytes)//" "//start_name(), record, error)
+      call close_table(record)
+      if (.not. allocated(error)) call rename_part(file, error)
+   end subroutine write_disk_record
+
+   !> Length of results.csv up to which rows count [bytes]; a folder without a record was written as
+   !> a whole
+   integer(int64) function trusted_length(file)
+      !> Name of the record
+      character(len=*), intent(in) :: file
+      character(len=:), allocatable :: text
+      type(error_t), allocatable :: error
+      logical :: there
+      integer :: stat
+
+      trusted_length = huge(trusted_length)
+      inquire (file=file, exist=there)
+      if (.not. there) return
+      call read_text_file(file, text, error)
+      if (index(text, " "//start_name()//new_line("a")) > 0) return
+      read (text, *, iostat=stat) trusted_length
+      if (stat /= 0) trusted_length = 0
+   end function trusted_length
+
+   !> What the system calls the time since its start; a dash where it has no name for it
+   function start_name() result(name)
+      !> The name
+      character(len=36) :: name
+      integer :: unit, stat
+
+      name = "-"
+      open (newunit=unit, file=start_file, status="old", action="read", iostat=stat)
+      if (stat /= 0) return
+      read (unit, "(a)", iostat=stat) name
+      close (unit)
+   end function start_name
+end module dda_disk_record

@@ -1,0 +1,118 @@
+!> The acceleration of a ground whose velocity or displacement is given
+!>
+!> Accelerations are histories, linear between their times. A velocity that is linear between its
+!> times has an acceleration that jumps there; a displacement is smoothed by a cubic spline, whose
+!> second derivative is just such a history.
+module dda_ground_motion
+   use dda_boundary, only : history_t
+   use dda_kinds, only : wp
+   implicit none
+   private
+
+   public :: acceleration_of_velocity, acceleration_of_displacement
+
+   !> Length of a jump over the interval beside it
+   real(wp), parameter :: share = 1.0e-9_wp
+
+contains
+
+   !> Acceleration of a velocity that is linear between its times; none before and after
+   pure function acceleration_of_velocity(velocity) result(acceleration)
+      !> The velocity: two times or more [m/s]
+      type(history_t), intent(in) :: velocity
+      !> Its rate [m/s2]
+      type(history_t) :: acceleration
+      real(wp) :: length
+      integer :: i, n
+
+      n = size(velocity%time)
+      allocate (acceleration%time(2*n), acceleration%value(2, 2*n))
+      acceleration%value = 0.0_wp
+      acceleration%time(1) = velocity%time(1) - jump_beside(velocity%time(1:2))
+      do i = 1, n - 1
+         length = velocity%time(i + 1) - velocity%time(i)
+         acceleration%time(2*i:2*i + 1) = [velocity%time(i), &
+            & velocity%time(i + 1) - jump_beside(velocity%time(i:i + 1))]
+         acceleration%value(:, 2*i) = (velocity%value(:, i + 1) - velocity%value(:, i))/length
+         acceleration%value(:, 2*i + 1) = acceleration%value(:, 2*i)
+      end do
+      acceleration%time(2*n) = velocity%time(n)
+   end function acceleration_of_velocity
+
+   !> Second derivative of the cubic spline through displacements, whose third derivative does not
+   !> jump at the second time and the last but one (a parabola through three points, a straight line
+   !> through two); none after the last time, where the ground goes on as fast as it was
+   pure function acceleration_of_displacement(displacement) result(acceleration)
+      !> The displacement: two times or more [m]
+      type(history_t), intent(in) :: displacement
+      !> Its second derivative [m/s2]
+      type(history_t) :: acceleration
+      integer :: n
+
+      n = size(displacement%time)
+      allocate (acceleration%time(n + 1), acceleration%value(2, n + 1))
+      associate (time => displacement%time)
+         acceleration%time(:n) = time
+         acceleration%time(n + 1) = time(n) + jump_beside(time(n - 1:n))
+         acceleration%value(:, :n) = second_derivatives(time, displacement%value)
+         acceleration%value(:, n + 1) = 0.0_wp
+      end associate
+   end function acceleration_of_displacement
+
+   !> Length of a jump at an end of an interval: no time, but more than rounding
+   pure real(wp) function jump_beside(interval)
+      !> Beginning and end: (2) [s]
+      real(wp), intent(in) :: interval(2)
+
+      jump_beside = max(share*(interval(2) - interval(1)), 4.0_wp*spacing(maxval(abs(interval))))
+   end function jump_beside
+
+   !> Second derivatives of the spline at its points: a tridiagonal system for the inner ones
+   pure function second_derivatives(time, value) result(second)
+      !> Where the points are, increasing: (n)
+      real(wp), intent(in) :: time(:)
+      !> The points: (2, n)
+      real(wp), intent(in) :: value(:, :)
+      !> Second derivatives: (2, n)
+      real(wp) :: second(2, size(time))
+      real(wp) :: length(size(time) - 1), slope(2, size(time) - 1)
+      real(wp) :: diagonal(size(time)), above(size(time)), below(size(time)), ratio
+      integer :: i, n
+
+      n = size(time)
+      second = 0.0_wp
+      if (n < 3) return
+      length = time(2:) - time(:n - 1)
+      slope = (value(:, 2:) - value(:, :n - 1))/spread(length, 1, 2)
+      do i = 2, n - 1
+         below(i) = length(i - 1)
+         diagonal(i) = 2.0_wp*(length(i - 1) + length(i))
+         above(i) = length(i)
+         second(:, i) = 6.0_wp*(slope(:, i) - slope(:, i - 1))
+      end do
+      if (n == 3) then
+         second(:, 2) = second(:, 2)/(3.0_wp*(length(1) + length(2)))
+         second(:, [1, 3]) = spread(second(:, 2), 2, 2)
+         return
+      end if
+      ! the ends, as straight continuations of their neighbours, are put into the rows beside them
+      ratio = length(1)/length(2)
+      diagonal(2) = diagonal(2) + length(1)*(1.0_wp + ratio)
+      above(2) = above(2) - length(1)*ratio
+      ratio = length(n - 1)/length(n - 2)
+      diagonal(n - 1) = diagonal(n - 1) + length(n - 1)*(1.0_wp + ratio)
+      below(n - 1) = below(n - 1) - length(n - 1)*ratio
+      do i = 3, n - 1
+         ratio = below(i)/diagonal(i - 1)
+         diagonal(i) = diagonal(i) - ratio*above(i - 1)
+         second(:, i) = second(:, i) - ratio*second(:, i - 1)
+      end do
+      second(:, n - 1) = second(:, n - 1)/diagonal(n - 1)
+      do i = n - 2, 2, -1
+         second(:, i) = (second(:, i) - above(i)*second(:, i + 1))/diagonal(i)
+      end do
+      second(:, 1) = second(:, 2) + length(1)/length(2)*(second(:, 2) - second(:, 3))
+      second(:, n) = second(:, n - 1) &
+         & + length(n - 1)/length(n - 2)*(second(:, n - 1) - second(:, n - 2))
+   end function second_derivatives
+end module dda_ground_motion

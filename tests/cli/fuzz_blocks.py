@@ -1,0 +1,297 @@
+#!/usr/bin/env python3
+"""Seeded mutation fuzzer of files of blocks, of restart files, and of decks that run them.
+
+usage: fuzz_blocks.py --dda build/bin/dda [--mutants N] [--runs N] [--seed N]
+
+Mutates good files of blocks and decks of mode dynamic and limerick, and has `dda check` read them,
+many a call. Every deck must either be accepted or give lines FILE:LINE: error: ... with lines that
+the file has; the exit status must be 0 or 2; nothing may crash or hang. Of those that are accepted
+some are computed, a few steps long: status 0 or 3. Restart files with bytes changed, cut off or put
+in are never taken: status 2. The same seed makes the same mutants. Ends with status 1 and keeps the
+files that failed.
+"""
+
+from __future__ import annotations
+
+import argparse
+import random
+import re
+import shutil
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+
+from fuzz_deck import ERROR, run
+from fuzz_limerick import mutate_once
+
+BLOCKS = [
+    b"""! a block on a base
+block fixed
+  -1 -1
+   2 -1
+   2  0
+  -1  0
+block material 2 velocity 0.1 0 0 stress -1e4 0 0
+   0  0
+   1  0
+   1  2
+   0  2
+material 2 density 2500 young 1e10 poisson 0.25
+joint 1 2 friction_deg 35 cohesion 1e3 tension 0
+measure 1 2
+load 0.5 1.5
+  0 0 0
+  0.01 100 0
+fix 1.5 -0.5 x
+base_acceleration
+  0 0 0
+  0.02 1 0
+""",
+    b"block fixed\n0 0\n4 0\n4 -1\n0 -1\nblock\n1 0\n2 0\n2 1\n1 1\nblock\n1 1\n2 1\n1.5 2\n"
+    b"block velocity 0 -1 0.5\n2.5 0.5\n3.5 0.5\n3 1.5\ndisplacement 0.5 -0.5 0 0.001\n",
+]
+GROUPS = [
+    b"&analysis mode = 'dynamic', geometry = 'current', time_step = 0.001, steps = 9 /\n",
+    b"&analysis mode = 'dynamic', geometry = 'current', duration = 0.01, restitution = 0.5 /\n"
+    b"&output restart = .true., energy = .true., frames = 2 /\n",
+    b"&analysis mode = 'limerick', steps = 5, collapse_displacement = 0.5 /\n"
+    b"&limerick penetration_ratio = 1e-4, open_ratio = 0 /\n",
+    b"&analysis mode = 'limerick', steps = 4 / &joint friction_deg = 20 /\n",
+    b"&analysis geometry = 'current', steps = 5 / &search parameter = 'friction_deg' /\n",
+    b"&load horizontal_coefficient = 0.1 / &joint cohesion = 1e3, tension = 1e2 /\n",
+]
+WORDS = b"""block fixed material joint measure load fix displacement base_acceleration velocity stress
+density young x y friction_deg 0 -1 1e300 1e-300 nan 2147483648 99999999999 1e15 0.5 ! & /""".split()
+#: Words of a run that keep it short
+SHORT = ["--cases", "1", "--quiet", "--set", "analysis%steps=6"]
+
+
+def mutant(rng: random.Random, seeds: list[bytes]) -> bytes:
+    """Make a text from a good one by a change or more; sometimes it stays good.
+
+    Parameters
+    ----------
+    rng
+        Source of all choices
+    seeds
+        Good texts of one form
+
+    Returns
+    -------
+    bytes
+        The text
+    """
+    text = rng.choice(seeds)
+    for _ in range(rng.choice([0, 1, 1, 1, 2, 4])):
+        if rng.random() < 0.3:
+            places = list(re.finditer(rb"\S+", text)) or [re.search(rb"", text)]
+            place = rng.choice(places)
+            text = text[: place.start()] + rng.choice(WORDS) + text[place.end():]
+        else:
+            text = mutate_once(rng, text, seeds)
+    return text
+
+
+def complaint(status: int | None, lines: list[str], folder: Path) -> str:
+    """What the outcome of a call breaks; empty if all is well.
+
+    Parameters
+    ----------
+    status
+        Exit status; None for a hang
+    lines
+        What was printed
+    folder
+        Where the files are
+
+    Returns
+    -------
+    str
+        The complaint
+    """
+    if status not in (0, 2, 3):
+        return "hang" if status is None else f"status {status}: " + " | ".join(lines[-5:])
+    errors = 0
+    for line in lines:
+        match = ERROR.match(line)
+        if not match and ("error" in line.lower() or "NaN" in line or "Infinity" in line):
+            return f"not FILE:LINE: error: {line}"
+        if not match:
+            continue
+        errors += 1
+        path = folder / match["file"]
+        text = path.read_bytes() if path.suffix != ".restart" else b"\n"
+        ends = text.count(b"\n") + text.count(b"\r") - text.count(b"\r\n")
+        if not 1 <= int(match["line"]) <= ends + 1:
+            return f"no such line: {line}"
+    return "" if (status == 2) == (errors > 0) else f"status {status} with {errors} errors"
+
+
+def write_mutant(rng: random.Random, folder: Path, number: int) -> Path:
+    """Write a file of blocks and its deck, one or both of them changed.
+
+    Parameters
+    ----------
+    rng
+        Source of all choices
+    folder
+        Where they go
+    number
+        Number of the mutant
+
+    Returns
+    -------
+    Path
+        The deck
+    """
+    which = rng.randrange(3)
+    blocks = rng.choice(BLOCKS) if which == 1 else mutant(rng, BLOCKS)
+    groups = rng.choice(GROUPS) if which == 0 else mutant(rng, GROUPS)
+    (folder / f"m{number}.blocks").write_bytes(blocks)
+    deck = folder / f"m{number}.nml"
+    deck.write_bytes(f"&scene kind = 'blocks', geometry = 'm{number}.blocks' /\n".encode() + groups)
+    return deck
+
+
+def is_small(text: bytes) -> bool:
+    """Whether a deck that was accepted takes no time: no number asks for many steps or pictures."""
+    numbers = [float(word) for word in re.findall(rb"(?:frames|limit|count) *= *(\d+)", text)]
+    return b"sweep" not in text.lower() and max(numbers, default=0.0) <= 100.0
+
+
+def compute(dda: str, deck: Path, folder: Path) -> str:
+    """Compute a deck that was accepted.
+
+    Parameters
+    ----------
+    dda
+        The program
+    deck
+        The deck
+    folder
+        Where the files are
+
+    Returns
+    -------
+    str
+        What is broken; empty if nothing is
+    """
+    status, lines = run([dda, "run", *SHORT, "--out", str(folder / "out")], [deck], 60.0)
+    broken = complaint(status, lines, folder)
+    if not broken and status in (0, 3):
+        rows = (folder / "out" / "results.csv").read_bytes()
+        if rows.count(b"\n") != 2 or b"nan" in rows.lower().split(b"\n")[1]:
+            return "not one row of numbers"
+    return broken
+
+
+def spoil(rng: random.Random, good: bytes) -> bytes:
+    """A restart file with bytes changed, cut off, put in or exchanged."""
+    place, kind = rng.randrange(len(good)), rng.randrange(4)
+    if kind == 0:
+        return good[:place] + bytes([good[place] ^ (1 << rng.randrange(8))]) + good[place + 1:]
+    if kind == 1:
+        return good[:place]
+    if kind == 2:
+        return good[:place] + rng.randbytes(rng.choice([1, 4, 8, 64])) + good[place:]
+    number = rng.choice([b"\xff" * 8, b"\0" * 8, b"\xff\xff\xff\x7f", rng.randbytes(8)])
+    spoilt = good[:place] + number + good[place + len(number):]
+    return spoilt if spoilt != good else good[:-1]
+
+
+def fuzz_restart(dda: str, rng: random.Random, mutants: int, folder: Path) -> list[str]:
+    """Run a deck on spoilt restart files.
+
+    Parameters
+    ----------
+    dda
+        The program
+    rng
+        Source of all choices
+    mutants
+        How many
+    folder
+        Where the files go
+
+    Returns
+    -------
+    list of str
+        What is broken
+    """
+    (folder / "r.blocks").write_bytes(BLOCKS[1])
+    scene = "&scene kind = 'blocks', geometry = 'r.blocks' /\n"
+    moves = "&analysis mode = 'dynamic', geometry = 'current', time_step = 0.001, steps = {} {} /\n"
+    (folder / "r.nml").write_text(scene + moves.format(5, "") + "&output restart = .true. /\n")
+    words = [dda, "run", "r.nml", "--out", "r", "--quiet"]
+    subprocess.run(words, cwd=folder, check=False, capture_output=True)
+    good = (folder / "r" / "case_1.restart").read_bytes()
+    failed = []
+    for number in range(mutants):
+        deck = folder / f"s{number}.nml"
+        deck.write_text(scene + moves.format(8, f", restart = 's{number}.restart'"))
+        content = good if number == 0 else spoil(rng, good)
+        (folder / f"s{number}.restart").write_bytes(content)
+        status, lines = run([dda, "run", "--quiet", "--out", str(folder / "o")], [deck], 20.0)
+        broken = complaint(status, lines, folder)
+        if number == 0 and status == 2 or number > 0 and status != 2:
+            broken = broken or f"status {status}"
+        if broken:
+            failed.append(f"s{number}.restart: {broken}")
+    return failed
+
+
+def main() -> int:
+    """Fuzz and report."""
+    parser = argparse.ArgumentParser(description=__doc__,
+                                     formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--dda", required=True, type=lambda name: str(Path(name).resolve()),
+                        help="the program")
+    parser.add_argument("--mutants", type=int, default=20000)
+    parser.add_argument("--runs", type=int, default=2000, help="accepted decks to compute at most")
+    parser.add_argument("--restarts", type=int, default=500, help="spoilt restart files")
+    parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--batch", type=int, default=40, help="decks a call")
+    parser.add_argument("--keep", default="fuzz_failed", help="folder for files that failed")
+    options = parser.parse_args()
+    rng = random.Random(options.seed)
+    failed: list[str] = []
+    accepted = computed = 0
+    with tempfile.TemporaryDirectory() as name:
+        folder = Path(name)
+        for start in range(0, options.mutants, options.batch):
+            numbers = range(start, min(start + options.batch, options.mutants))
+            decks = [write_mutant(rng, folder, number) for number in numbers]
+            status, lines = run([options.dda, "check"], decks, 20.0)
+            together = complaint(status, lines, folder)
+            before = len(failed)
+            refused = {match["file"] for match in map(ERROR.match, lines) if match}
+            for deck in decks:
+                broken = ""
+                named = {str(deck), str(deck.with_suffix(".blocks"))}
+                if together:
+                    broken = complaint(*run([options.dda, "check"], [deck], 20.0), folder)
+                elif not named & refused:
+                    accepted += 1
+                    text = deck.read_bytes()
+                    if computed < options.runs and is_small(text):
+                        computed += 1
+                        broken = compute(options.dda, deck, folder)
+                if broken:
+                    failed.append(f"{deck.name}: {broken}")
+                    Path(options.keep).mkdir(parents=True, exist_ok=True)
+                    for path in (deck, deck.with_suffix(".blocks")):
+                        shutil.copy(path, options.keep)
+                deck.unlink()
+                deck.with_suffix(".blocks").unlink()
+            if together and len(failed) == before:
+                failed.append(f"only together, from {decks[0].name}: {together}")
+        failed += fuzz_restart(options.dda, rng, options.restarts, folder)
+    print("\n".join(failed))
+    print(f"{options.mutants} mutants, seed {options.seed}: {accepted} accepted, {computed} "
+          f"computed, {options.restarts} restart files, {len(failed)} failed")
+    return 1 if failed else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

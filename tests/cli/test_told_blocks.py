@@ -1,0 +1,187 @@
+"""blocks.csv, and what joints.csv tells of any scene: blocks, forces, mechanism, way of sliding."""
+
+from __future__ import annotations
+
+import csv
+import math
+from collections import defaultdict
+from pathlib import Path
+
+import pytest
+from dda_command import run_dda
+
+ROOT = Path(__file__).resolve().parents[2]
+BENCHMARKS = ROOT / "input" / "benchmarks"
+Row = dict[str, str]
+
+
+def rows_of(file: Path) -> list[Row]:
+    """Rows of a table."""
+    with file.open(newline="") as lines:
+        return list(csv.DictReader(lines))
+
+
+def run(folder: Path, text: str, *options: str) -> Path:
+    """Folder of the results of a deck."""
+    (folder / "deck.nml").write_text(text)
+    done = run_dda("run", "deck.nml", "--quiet", *options, cwd=folder)
+    assert done.returncode == 0, done.stderr
+    return folder / "deck"
+
+
+def corners_of(rows: list[Row]) -> dict[int, list[tuple[float, ...]]]:
+    """Place and displacement of the corners of each block."""
+    corners = defaultdict(list)
+    for row in rows:
+        corners[int(row["block"])].append(tuple(float(row[name]) for name in "xyuv"))
+    return corners
+
+
+def area_of(corners: list[tuple[float, ...]]) -> float:
+    """Area of a block, positive where its corners run anticlockwise."""
+    ends = corners[1:] + corners[:1]
+    return sum(a[0] * b[1] - b[0] * a[1] for a, b in zip(corners, ends)) / 2
+
+
+def test_blocks_of_an_arch_have_its_area_and_its_springings_are_fixed(tmp_path: Path) -> None:
+    rows = rows_of(run(tmp_path, "&arch voussoirs = 8 /\n") / "blocks.csv")
+    corners = corners_of(rows)
+    area = sum(area_of(corners[block]) for block in range(1, 9))
+    assert area == pytest.approx(8 * math.sin(math.radians(22.5)) / 2 * (10.75**2 - 9.25**2))
+    assert {row["block"] for row in rows if row["state"] == "fixed"} == {"9", "10"}
+    assert all(u == v == 0.0 for block in (9, 10) for *_, u, v in corners[block])
+    assert [row["vertex"] for row in rows[:4]] == ["1", "2", "3", "4"]
+
+
+@pytest.mark.parametrize("deck", ["stack", "goodman_bray", "dry_wall_2x4"])
+def test_forces_of_the_joints_carry_every_block(tmp_path: Path, deck: str) -> None:
+    options = ["--out", str(tmp_path / "out"), "--quiet", "--set", "output%joints=.true."]
+    assert run_dda("run", BENCHMARKS / f"{deck}.nml", *options).returncode in (0, 3)
+    corners = corners_of([row for row in rows_of(tmp_path / "out/blocks.csv") if row["case"] == "1"])
+    fixed = {row["block"] for row in rows_of(tmp_path / "out/blocks.csv") if row["state"] == "fixed"}
+    result = rows_of(tmp_path / "out/results.csv")[0]
+    push = float(result["critical"]) if result["critical"] else 0.0
+    weight = 2240 * 9.81 if deck == "dry_wall_2x4" else 25e3
+    total = defaultdict(lambda: [0.0, 0.0])
+    for row in rows_of(tmp_path / "out/joints.csv"):
+        if row["case"] != "1":
+            continue
+        for block, sign in ((row["block_1"], -1.0), (row["block_2"], 1.0)):
+            for i, part in enumerate(("force_x", "force_y")):
+                total[block][i] += sign * float(row[part])
+    largest = weight * max(area_of(corners[int(block)]) for block in total if block not in fixed)
+    for block in set(total) - fixed:
+        load = weight * area_of(corners[int(block)])
+        assert total[block][1] == pytest.approx(load, abs=1e-4 * largest)
+        assert total[block][0] == pytest.approx(-push * load, abs=1e-4 * largest)
+
+
+def test_mechanism_of_a_search_is_told_beside_the_arch_that_stands(tmp_path: Path) -> None:
+    folder = run(tmp_path, "&arch voussoirs = 36 /\n&search /\n")
+    (result,) = rows_of(folder / "results.csv")
+    joints = rows_of(folder / "joints.csv")
+    for side in ("intrados", "extrados"):
+        told = {float(angle) for angle in result[f"{side}_hinge_deg"].split(";")}
+        hinges = [float(row["angle_deg"]) for row in joints if row["mechanism"] == f"hinge_{side}"]
+        assert {round(abs(angle), 6) for angle in hinges} == told
+    assert {row["mechanism"] for row in joints} == {"none", "hinge_intrados", "hinge_extrados"}
+    corners = corners_of(rows_of(folder / "blocks.csv"))
+    moves = [math.hypot(u, v) for block in corners.values() for *_, u, v in block]
+    assert max(moves) == pytest.approx(1.0, abs=1e-12)
+    # the crown falls, and the mechanism is symmetric
+    crown = corners[18][1]
+    assert crown[3] < -0.5
+    for left, right in ((9, 28), (4, 33)):
+        for side in (0, 1):
+            assert corners[left][side][2] == pytest.approx(-corners[right][1 - side][2], abs=1e-5)
+
+
+def test_sliding_springings_are_told_with_their_way(tmp_path: Path) -> None:
+    text = "&arch voussoirs = 36 /\n&joint friction_deg = 20 /\n&search /\n"
+    joints = rows_of(run(tmp_path, text) / "joints.csv")
+    slides = [row for row in joints if row["mechanism"] == "sliding"]
+    assert [row["joint"] for row in slides] == ["1", "37"]
+    assert all(row["state"] == "locked" for row in slides)
+    for row, (first, second) in zip(slides, (("37", "1"), ("36", "38"))):
+        assert (row["block_1"], row["block_2"]) == (first, second)
+        # the arch goes outwards: its left end, the second block, to the left; its right end, the
+        # first block, to the right, so that the springing slides to the left past it
+        assert float(row["slides_x"]) == pytest.approx(-1.0, abs=1e-12)
+        assert float(row["slides_y"]) == pytest.approx(0.0, abs=1e-12)
+    assert all(row["slides_x"] == "" for row in joints if row not in slides)
+
+
+def test_a_block_slides_down_its_slope(tmp_path: Path) -> None:
+    options = ["--out", str(tmp_path / "out"), "--quiet"]
+    assert run_dda("run", BENCHMARKS / "slope.nml", *options).returncode == 0
+    results = {row["case"]: row for row in rows_of(tmp_path / "out/results.csv")}
+    falls = [row for row in rows_of(tmp_path / "out/joints.csv")
+             if results[row["case"]]["verdict"] == "collapsed"]
+    assert falls
+    for row in falls:
+        assert row["mechanism"] == "sliding"
+        way = float(row["slides_x"]), float(row["slides_y"])
+        sign = 1.0 if row["block_1"] == "1" else -1.0
+        assert sign * way[0] == pytest.approx(math.cos(math.radians(30)), abs=1e-9)
+        assert sign * way[1] == pytest.approx(-math.sin(math.radians(30)), abs=1e-9)
+
+
+def test_displacement_of_a_falling_block_is_exact(tmp_path: Path) -> None:
+    options = ["--out", str(tmp_path / "out"), "--quiet"]
+    assert run_dda("run", BENCHMARKS / "free_fall.nml", *options).returncode == 0
+    last = rows_of(tmp_path / "out/points.csv")[-1]
+    time = float(last["time"])
+    for corners in corners_of(rows_of(tmp_path / "out/blocks.csv")).values():
+        for *_, u, v in corners:
+            assert u == pytest.approx(0.0, abs=1e-10)
+            assert v == pytest.approx(-0.5 * 9.81 * time**2, rel=1e-10)
+
+
+def test_blocks_held_by_points_are_told(tmp_path: Path) -> None:
+    (tmp_path / "x.blocks").write_text(
+        "block\n0 0\n1 0\n1 1\n0 1\nfix 0 0\nfix 1 0\nblock\n0 1\n1 1\n1 2\n0 2\n"
+    )
+    folder = run(tmp_path, "&scene kind = 'blocks', geometry = 'x.blocks' /\n")
+    states = {row["block"]: row["state"] for row in rows_of(folder / "blocks.csv")}
+    assert states == {"1": "held", "2": "free"}
+
+
+def test_far_blocks_are_told_in_the_coordinates_of_the_user(tmp_path: Path) -> None:
+    (tmp_path / "x.blocks").write_text(
+        "block fixed\n1e6 0\n1000001 0\n1000001 1\n1e6 1\n"
+        "block\n1e6 1\n1000001 1\n1000001 2\n1e6 2\n"
+    )
+    folder = run(tmp_path, "&scene kind = 'blocks', geometry = 'x.blocks' /\n")
+    assert [row["x"] for row in rows_of(folder / "blocks.csv")] == [
+        "1000000", "1000001", "1000001", "1000000"] * 2
+    (joint,) = rows_of(folder / "joints.csv")
+    assert float(joint["x"]) == pytest.approx(1000000.5, abs=1e-6)
+    assert float(joint["force_y"]) == pytest.approx(2240 * 9.81, rel=1e-6)
+
+
+def test_the_original_scheme_tells_how_far_its_blocks_have_moved(tmp_path: Path) -> None:
+    done = run_dda("run", ROOT / "input/limerick/both_sides.nml", "--out", tmp_path, "--quiet")
+    assert done.returncode == 0, done.stderr
+    rows = rows_of(tmp_path / "blocks.csv")
+    largest = {
+        case: max(math.hypot(float(row["u"]), float(row["v"]))
+                  for row in rows if row["case"] == case)
+        for case in ("1", "2")
+    }
+    # the first arch falls, that is by a twentieth of its radius; the second comes to rest
+    assert largest["1"] >= 0.5 > 0.1 > largest["2"] > 0.0
+
+
+@pytest.mark.parametrize(
+    ("cases", "setting", "written"),
+    [(100, "", True), (101, "", False), (101, ".true.", True), (2, ".false.", False)],
+)
+def test_blocks_of_many_cases_are_written_on_demand(
+    tmp_path: Path, cases: int, setting: str, written: bool
+) -> None:
+    options = ["--set", f"output%blocks={setting}"] if setting else []
+    text = (
+        "&arch voussoirs = 2, thickness_ratio = 0.5 /\n"
+        f"&sweep parameter = 'radius', first = 1, last = 2, count = {cases} /\n"
+    )
+    assert (run(tmp_path, text, *options) / "blocks.csv").exists() == written

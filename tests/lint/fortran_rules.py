@@ -1,0 +1,142 @@
+"""The house rules of the Fortran sources: what can be told from the text alone."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Collection, Iterator
+from dataclasses import dataclass
+from pathlib import Path
+
+#: Longest file, procedure and line
+FILE_LINES, PROCEDURE_LINES, LINE_LENGTH = 400, 60, 100
+
+_STRING = re.compile(r"'[^']*'|\"[^\"]*\"")
+_PROCEDURE = re.compile(r"(?!end\b)(?:[\w()=*:, ]+ )?(?:subroutine|function) (\w+) *(?:\(|$)")
+_END_PROCEDURE = re.compile(r"end (?:subroutine|function)\b")
+_BLOCK = re.compile(r"(type\b(?! *\()|interface\b|abstract interface\b)")
+
+
+@dataclass
+class Statement:
+    """A statement on one line, in small letters, without strings and comments."""
+
+    text: str
+    #: Its first and last line in the file, from 1
+    first: int
+    last: int
+    #: Whether a comment for FORD stands right before it
+    documented: bool
+
+
+def statements(lines: list[str]) -> Iterator[Statement]:
+    """Statements of a file, continued lines joined."""
+    text, first, documented, comment = "", 0, False, False
+    for number, line in enumerate(lines, start=1):
+        if line.lstrip().startswith("!"):
+            # directives of OpenMP are no documentation, and no end of it
+            comment = comment or line.lstrip().startswith("!>")
+            continue
+        code = _STRING.sub("''", line).split("!")[0].strip().lower()
+        if not code:
+            comment = False
+            continue
+        if not text:
+            first, documented = number, comment
+        comment = False
+        text = f"{text} {code.lstrip('&').strip()}".strip()
+        if text.endswith("&"):
+            text = text[:-1].strip()
+            continue
+        yield Statement(re.sub(r"\s+", " ", text), first, number, documented)
+        text = ""
+
+
+def offences(path: Path, long: Collection[str] = ()) -> list[str]:
+    """What a source breaks.
+
+    Parameters
+    ----------
+    path : Path
+        The source.
+    long : collection of str, optional
+        Procedures that may be longer.
+
+    Returns
+    -------
+    list of str
+        FILE:LINE: rule.
+    """
+    lines = path.read_text(encoding="utf-8").splitlines()
+    found = list(_of_lines(lines)) + list(_of_statements(list(statements(lines)), long))
+    return [f"{path}:{number}: {rule}" for number, rule in sorted(found)]
+
+
+def _of_lines(lines: list[str]) -> Iterator[tuple[int, str]]:
+    """Rules of lines and of the whole file."""
+    if len(lines) > FILE_LINES:
+        yield len(lines), f"a file has at most {FILE_LINES} lines"
+    for number, line in enumerate(lines, start=1):
+        if len(line) > LINE_LENGTH:
+            yield number, f"a line has at most {LINE_LENGTH} characters"
+        if line != line.rstrip() or "\t" in line:
+            yield number, "no tabs, no blanks at the end of a line"
+
+
+def _of_statements(all_of_them: list[Statement], long: Collection[str]) -> Iterator[tuple[int, str]]:
+    """Rules of statements, procedures and modules."""
+    open_procedures: list[Statement] = []
+    block, contains = 0, False
+    for this in all_of_them:
+        text = this.text
+        yield from ((this.first, rule) for rule in _of_one(text))
+        if re.match(r"end (type|interface)\b", text):
+            block -= 1
+        elif _BLOCK.match(text):
+            block += 1
+            if not text.startswith(("interface", "abstract")) and not this.documented:
+                yield this.first, "a type has its !> line"
+        elif _END_PROCEDURE.match(text):
+            if open_procedures:
+                yield from _of_procedure(open_procedures.pop(), this, long)
+        elif _PROCEDURE.match(text) and not text.startswith("module procedure"):
+            if not this.documented:
+                yield this.first, "a procedure has its !> line"
+            open_procedures.append(this)
+        elif "intent(" in text.replace(" ", "") and not this.documented:
+            yield this.first, "an argument has its !> line"
+        elif text == "contains":
+            contains = True
+        elif not (block or contains or open_procedures) and _is_variable(text):
+            if all_of_them[0].text.startswith("module"):
+                yield this.first, "no module variables"
+    texts = [this.text for this in all_of_them]
+    if texts and texts[0].startswith(("module", "program")) and "implicit none" not in texts:
+        yield 1, "implicit none"
+    if texts and texts[0].startswith("module") and "private" not in texts:
+        yield 1, "a module is private, and names what is public"
+
+
+def _of_one(text: str) -> Iterator[str]:
+    """Rules of a single statement."""
+    if re.search(r"\bgo ?to\b", text):
+        yield "no goto"
+    if re.match(r"[\w() =*,]+, *pointer\b.*::", text):
+        yield "no pointers"
+    if re.match(r"use\b", text) and not re.search(r"\bonly *:", text):
+        yield "use names what it takes: only"
+    if re.match(r"(common|equivalence|entry|data)\b[ /(]", text) and "::" not in text:
+        if "=" not in text:
+            yield "no common, equivalence, entry or data"
+
+
+def _of_procedure(begin: Statement, end: Statement, long: Collection[str]) -> Iterator[tuple[int, str]]:
+    """Rules of a whole procedure."""
+    name = _PROCEDURE.match(begin.text)
+    if end.last - begin.first + 1 > PROCEDURE_LINES and name and name[1] not in long:
+        yield begin.first, f"a procedure has at most {PROCEDURE_LINES} lines"
+
+
+def _is_variable(text: str) -> bool:
+    """Whether a statement declares something that can change."""
+    declares = re.match(r"(integer|real|logical|complex|character|type *\(|class *\()", text)
+    return bool(declares) and "::" in text and "parameter" not in text.split("::")[0]

@@ -1,0 +1,116 @@
+"""Every source keeps the house rules, and the rules find what breaks them."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import fortran_rules
+import pytest
+import python_rules
+
+REPOSITORY = Path(__file__).resolve().parents[2]
+#: Longer than a procedure should be: each reads better whole than torn apart
+LONG = {"run_to_verdict", "lowest_point", "settle_in_time"}
+GOOD = """!> A module
+module good
+   use other, only : thing
+   implicit none
+   private
+   integer, parameter :: limit = 3
+
+   !> A type
+   type :: pair_t
+      integer :: first
+   end type pair_t
+
+contains
+
+   !> A procedure
+   pure subroutine work(x, &
+      & y)
+      !> Its argument
+      real, intent(inout) :: x
+      !> Another one: "go to" is no goto in words, nor is a pointer
+      real, intent(in) :: y
+      integer :: i
+
+      x = y ! go to
+      i = 1
+   end subroutine work
+end module good
+"""
+GOOD_PYTHON = '''"""A module."""
+
+from pathlib import Path
+
+
+def read(path: Path) -> str:
+    """Read."""
+    return path.read_text()
+'''
+
+
+def test_fortran_sources_keep_the_rules() -> None:
+    files = sorted((REPOSITORY / "src").rglob("*.f90"))
+    assert len(files) > 100
+    assert [line for file in files for line in fortran_rules.offences(file, LONG)] == []
+
+
+@pytest.mark.parametrize(("folder", "strict"), [("post", True), ("docs", False), ("tests", False)])
+def test_python_sources_keep_the_rules(folder: str, strict: bool) -> None:
+    files = sorted((REPOSITORY / folder).rglob("*.py"))
+    assert files
+    assert [line for file in files for line in python_rules.offences(file, strict)] == []
+
+
+def test_what_keeps_the_rules_is_left_in_peace(tmp_path: Path) -> None:
+    (tmp_path / "good.f90").write_text(GOOD)
+    (tmp_path / "good.py").write_text(GOOD_PYTHON)
+    assert fortran_rules.offences(tmp_path / "good.f90") == []
+    assert python_rules.offences(tmp_path / "good.py", strict=True) == []
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "rule"),
+    [
+        ("   i = 1", "   go to 10", "no goto"),
+        ("integer, parameter :: limit = 3", "integer :: limit = 3", "no module variables"),
+        ("integer :: i", "integer, pointer :: i", "no pointers"),
+        ("use other, only : thing", "use other", "only"),
+        ("   implicit none\n", "", "implicit none"),
+        ("   private\n", "", "private"),
+        ("   !> A procedure\n", "", "a procedure has its !> line"),
+        ("      !> Its argument\n", "", "an argument has its !> line"),
+        ("   !> A type\n", "", "a type has its !> line"),
+        ("i = 1", "i = 1 ", "no blanks at the end"),
+        ("i = 1", "i = 1" + " + 1" * 30, "at most 100 characters"),
+        ("      i = 1\n", "      i = 1\n" * 60, "a procedure has at most 60 lines"),
+        ("contains\n", "contains\n" + "\n" * 400, "a file has at most 400 lines"),
+    ],
+)
+def test_what_breaks_a_rule_is_found(tmp_path: Path, old: str, new: str, rule: str) -> None:
+    assert old in GOOD
+    (tmp_path / "bad.f90").write_text(GOOD.replace(old, new, 1))
+    found = fortran_rules.offences(tmp_path / "bad.f90")
+    assert len(found) == 1 and rule in found[0], found
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "rule"),
+    [
+        ("from pathlib", "import os\nfrom pathlib", "os is imported and not used"),
+        ("(path: Path) -> str", "(path) -> Path", "has no type of path"),
+        ('    """Read."""\n', "", "read says what it does"),
+        ('"""A module."""\n', "", "a module says what it is for"),
+        ("return", "try:\n        pass\n    except:\n        pass\n    return", "an except names"),
+        ("return", "assert (path, 'there')\n    return", "always holds"),
+        ("path: Path", "path: Path = []", "shared by all calls"),
+        ("    return", "    path = path\n" * 60 + "    return", "a function has at most 60 lines"),
+        ("return", "return   " + "0 or " * 30, "at most 120 characters"),
+    ],
+)
+def test_what_breaks_a_rule_of_python_is_found(tmp_path: Path, old: str, new: str, rule: str) -> None:
+    assert old in GOOD_PYTHON
+    (tmp_path / "bad.py").write_text(GOOD_PYTHON.replace(old, new, 1))
+    found = python_rules.offences(tmp_path / "bad.py", strict=True)
+    assert len(found) == 1 and rule in found[0], found
