@@ -23,8 +23,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         Parser of the subcommand.
     """
     parser.description = (
-        "Animate cases of a folder that dda run has written with geometry = 'current' and "
-        "output frames, side by side: arches and blocks, collapses and dynamic runs."
+        "Animate cases of a folder that dda run has written, side by side: the frames of runs "
+        "with geometry = 'current' (arches and blocks, collapses and dynamic runs), else the "
+        "collapse mechanism as it grows."
     )
     parser.add_argument("folder", metavar="DIR", type=Path, help="folder of the results")
     parser.add_argument(
@@ -32,7 +33,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         metavar="N",
         type=int,
         nargs="+",
-        help=f"cases to animate (default: the first {MOST_CASES} that have frames)",
+        help=f"cases to animate (default: the first {MOST_CASES} that move)",
     )
     parser.add_argument(
         "--out",
@@ -89,17 +90,18 @@ def _run(arguments: argparse.Namespace) -> int:
     cases = arguments.case or [int(number) for number in read.cases["case"]]
     for number in cases:
         read.case(number)
-    moving = [number for number in cases if len(read.frames_of(number)) > 1]
+    from voussoir.case_picture import title_of
+    from voussoir.collapse_animation import animate, check_ending
+    from voussoir.collapse_picture import pictures_of
+    from voussoir.figure_style import house_style
+
+    moving = [number for number in cases if len(pictures_of(read, number)) > 1]
     if not moving or arguments.case and len(moving) < len(cases):
         still = next(number for number in cases if number not in moving)
         raise ValueError(
             f"wanted frames of case {still}, found none; give the deck &analysis geometry = "
             "'current' / and &output frames = 20 /"
         )
-    from voussoir.case_picture import title_of
-    from voussoir.collapse_animation import animate, check_ending
-    from voussoir.figure_style import house_style
-
     file = arguments.out or arguments.folder / "plots" / "motion.gif"
     check_ending(file)
     file.parent.mkdir(parents=True, exist_ok=True)
@@ -107,7 +109,7 @@ def _run(arguments: argparse.Namespace) -> int:
     factor = arguments.magnify
 
     def title(row: dict[str, Any]) -> str:
-        return title_of(row) + (f"\ndisplacements × {factor:g}" if factor != 1.0 else "")
+        return title_of(row, read) + (f"\ndisplacements × {factor:g}" if factor != 1.0 else "")
 
     with house_style():
         width = 5.6 if len(shown) > 1 else 6.4

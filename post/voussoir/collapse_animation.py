@@ -7,10 +7,11 @@ from pathlib import Path
 from typing import Any
 
 import matplotlib.pyplot as plt
+import numpy as np
 from matplotlib.animation import FFMpegWriter, FuncAnimation, PillowWriter
 from matplotlib.figure import Figure
 
-from voussoir.collapse_picture import draw_frame, limits, set_limits
+from voussoir.collapse_picture import draw_frame, limits, pictures_of, set_limits
 from voussoir.results import Results
 
 #: Pictures a second, and how many times the last one is shown
@@ -83,24 +84,13 @@ def animate(
     """
     check_ending(file)
     columns = min(columns, len(numbers))
-    frames = [run.frames_of(number) for number in numbers]
+    frames = [pictures_of(run, number) for number in numbers]
     boxes = [limits(run, [number], magnify) for number in numbers]
     shape = max((high[1] - low[1]) / (high[0] - low[0]) for low, high in boxes)
     timed = any(run.case(number)["mode"] == "dynamic" for number in numbers)
-    words = [title(run.case(number)) for number in numbers]
-    if run.kind != "arch" and magnify == 1.0:
-        words = [text + "\ncontacts: crosses slide, dots stick" for text in words]
+    words = captions(run, numbers, title, magnify)
     room = 0.2 * (1 + max(text.count("\n") for text in words) + timed) + 0.15
-    lines = -(-len(numbers) // columns)
-    figure, grid = plt.subplots(
-        lines,
-        columns,
-        figsize=(width, lines * (width / columns * shape + room)),
-        layout="constrained",
-        squeeze=False,
-    )
-    for axes in grid.flat[len(numbers) :]:
-        axes.set_axis_off()
+    figure, grid = new_grid(len(numbers), columns, width, width / columns * shape + room)
 
     def draw(moment: int) -> None:
         for axes, number, pictures, box, text in zip(grid.flat, numbers, frames, boxes, words):
@@ -108,14 +98,40 @@ def animate(
             axes.clear()
             draw_frame(axes, run, number, frame, size=4.0, magnify=magnify)
             set_limits(axes, box)
-            if timed:
-                text += f"\nt = {frame.time:.3f} s"
-            axes.set_title(text, fontsize=9)
+            clock = f"\nt = {frame.time:.3f} s" if timed else ""
+            axes.set_title(text + clock, fontsize=9)
 
-    length = max(map(len, frames))
-    written = write(figure, draw, length, file)
+    written = write(figure, draw, max(map(len, frames)), file)
     plt.close(figure)
     return written
+
+
+def new_grid(
+    count: int, columns: int, width: float, height: float
+) -> tuple[Figure, np.ndarray]:
+    """A figure with room for so many pictures of one height [inch], and the axes of all places."""
+    lines = -(-count // columns)
+    figure, grid = plt.subplots(
+        lines, columns, figsize=(width, lines * height), layout="constrained", squeeze=False
+    )
+    for axes in grid.flat[count:]:
+        axes.set_axis_off()
+    return figure, grid
+
+
+def captions(
+    run: Results, numbers: list[int], title: Callable[[dict[str, Any]], str], magnify: float
+) -> list[str]:
+    """What stands above the pictures: the title of each case, and what its pictures are."""
+    words = []
+    for number in numbers:
+        text = title(run.case(number))
+        if len(run.frames_of(number)) < 2:
+            text += "\nthe collapse mechanism, at a size of its own"
+        elif run.kind != "arch" and magnify == 1.0:
+            text += "\ncontacts: crosses slide, dots stick"
+        words.append(text)
+    return words
 
 
 def write(figure: Figure, draw: Callable[[int], None], length: int, file: Path) -> Path:

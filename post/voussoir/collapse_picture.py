@@ -10,7 +10,10 @@ from matplotlib.lines import Line2D
 
 from voussoir.case_scene import CaseScene, scene_of, view
 from voussoir.figure_style import INK, STONE
-from voussoir.results import Frame, Results
+from voussoir.results import Frame, Results, Table
+
+#: Largest displacement of a mechanism that is animated, over its size, and pictures on the way
+MECHANISM_SIZE, GROWTH = 0.08, 10
 
 #: Marks of hinges, of joints that part, and of slip
 MARKS = {
@@ -30,6 +33,40 @@ MEANINGS = {
     "slip": "sliding joint",
     "closed": "contact that sticks",
 }
+
+
+def pictures_of(run: Results, number: int) -> list[Frame]:
+    """Pictures of the motion of a case: its frames, or its collapse mechanism as it grows.
+
+    Parameters
+    ----------
+    run : Results
+        The results of the deck.
+    number : int
+        Number of the case.
+
+    Returns
+    -------
+    list of Frame
+        The pictures; at most one where nothing moves. Those of a mechanism have no joints.
+    """
+    frames = run.frames_of(number)
+    if len(frames) > 1 or run.blocks is None or not np.any(run.blocks["case"] == number):
+        return frames
+    scene = scene_of(run, number)
+    if not scene.falls or not scene.largest > 0.0:
+        return frames
+    told = run.blocks_of(number)
+    low, high = view(scene.shapes(0.0), [])
+    most = MECHANISM_SIZE * float((high - low).max()) / scene.largest
+    return [
+        Frame(
+            picture, 0, 0.0,
+            [block.corners + picture / GROWTH * most * block.displacement for block in told],
+            Table({}),
+        )
+        for picture in range(GROWTH + 1)
+    ]
 
 
 def draw_frame(
@@ -57,7 +94,7 @@ def draw_frame(
     Axes
         The same.
     """
-    first = run.frames_of(number)[0]
+    first = pictures_of(run, number)[0]
     scene = scene_of(run, number)
     before = shapes_of(scene, first, first, 1.0)
     if frame.number > 0:
@@ -72,7 +109,7 @@ def draw_frame(
     )
     blocks = shapes_of(scene, first, frame, magnify)
     axes.add_collection(PolyCollection(blocks, facecolors=STONE, edgecolors=INK[0], linewidths=0.6))
-    if frame.number > 0 and magnify == 1.0:
+    if frame.number > 0 and magnify == 1.0 and len(frame.joints):
         marks = marks_of(run, number, frame) if scene.is_arch else contacts_of(frame)
         for kind, points in marks.items():
             axes.plot(*points, linestyle="none", markersize=size, zorder=5, **MARKS[kind])
@@ -170,7 +207,7 @@ def limits(
     """
     shapes, supports = [], []
     for number in numbers:
-        scene, frames = scene_of(run, number), run.frames_of(number)
+        scene, frames = scene_of(run, number), pictures_of(run, number)
         supports += [block.corners for block in scene.supports]
         for frame in frames:
             shapes += shapes_of(scene, frames[0], frame, magnify)

@@ -4,7 +4,10 @@ from __future__ import annotations
 
 import csv
 import os
+import re
+import shutil
 import subprocess
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -12,6 +15,7 @@ from voussoir.dda_program import find_dda
 
 #: A row of results.csv: its columns as text
 Row = dict[str, str]
+_NOT_A_NUMBER = re.compile(r"(?:^|,)[-+]?(?:nan|inf|infinity)(?:,|$)", re.IGNORECASE)
 
 
 @dataclass(frozen=True)
@@ -30,6 +34,8 @@ class Finished:
         What it printed as error.
     not_a_number
         Names of result files that hold NaN or Inf.
+    folder
+        Folder of its results.
     """
 
     status: int | None
@@ -37,14 +43,21 @@ class Finished:
     remarks: dict[str, str] = field(default_factory=dict)
     message: str = ""
     not_a_number: tuple[str, ...] = ()
+    folder: Path = Path()
 
 
-def run_deck(deck: str, folder: Path, timeout: float = 600.0, jobs: int = 1) -> Finished:
-    """Write a deck, run it, read its results.
+def run_deck(
+    deck: str | bytes,
+    folder: Path,
+    timeout: float = 600.0,
+    jobs: int = 1,
+    files: Mapping[str, str] | None = None,
+) -> Finished:
+    """Write a deck and the files beside it, run it, read its results.
 
     Parameters
     ----------
-    deck : str
+    deck : str or bytes
         Text of the deck.
     folder : Path
         Where deck.nml and the folder of its results go; made if missing.
@@ -52,6 +65,8 @@ def run_deck(deck: str, folder: Path, timeout: float = 600.0, jobs: int = 1) -> 
         Longest time that it may take [s].
     jobs : int, optional
         Cases computed at the same time.
+    files : mapping, optional
+        Names and texts of the files beside the deck.
 
     Returns
     -------
@@ -59,8 +74,11 @@ def run_deck(deck: str, folder: Path, timeout: float = 600.0, jobs: int = 1) -> 
         What it left.
     """
     folder.mkdir(parents=True, exist_ok=True)
-    (folder / "deck.nml").write_text(deck, encoding="utf-8")
-    command = [str(find_dda()), "run", "deck.nml", "--quiet", "--out", "out"]
+    shutil.rmtree(folder / "out", ignore_errors=True)
+    (folder / "deck.nml").write_bytes(deck if isinstance(deck, bytes) else deck.encode())
+    for name, text in (files or {}).items():
+        (folder / name).write_text(text, encoding="utf-8")
+    command = [str(find_dda()), "run", "deck.nml", "--out", "out"]
     try:
         done = subprocess.run(
             [*command, "--jobs", str(jobs)],
@@ -80,6 +98,7 @@ def run_deck(deck: str, folder: Path, timeout: float = 600.0, jobs: int = 1) -> 
         _remarks(out / "log.txt"),
         done.stderr.strip(),
         tuple(path.name for path in sorted(out.glob("*.csv")) if _holds_no_number(path)),
+        out,
     )
 
 
@@ -104,5 +123,5 @@ def _remarks(file: Path) -> dict[str, str]:
 
 def _holds_no_number(file: Path) -> bool:
     """Whether a table holds NaN or Inf."""
-    words = {word.strip("+-").lower() for row in read_rows(file) for word in row.values() if word}
-    return bool(words & {"nan", "inf", "infinity"})
+    with file.open(encoding="utf-8") as lines:
+        return any(_NOT_A_NUMBER.search(line) for line in lines)

@@ -13,7 +13,8 @@ from voussoir.dda_program import DdaError, find_dda
 from voussoir.deck_runs import Finished, Row, run_deck
 from voussoir.stability_judge import WRONG, judge
 from voussoir.stability_page import Line, headline, write_csv, write_markdown, write_page
-from voussoir.stability_scenes import Scene, catalogue, random_scenes
+from voussoir.stability_scene import Scene
+from voussoir.stability_scenes import catalogue, random_scenes
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -29,7 +30,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     )
     parser.add_argument("--jobs", type=int, default=1, help="scenes run at the same time")
     parser.add_argument(
-        "--random", type=int, default=150, metavar="N", help="number of random arches"
+        "--random", type=int, default=150, metavar="N", help="number of random scenes"
     )
     parser.add_argument("--seed", type=int, default=1, help="beginning of the random numbers")
     parser.add_argument("--only", metavar="WORD", help="only scenes whose group or name has WORD")
@@ -96,7 +97,8 @@ def run_scenes(scenes: Iterable[Scene], folder: Path, jobs: int, timeout: float)
 
     def run_scene(numbered: tuple[int, Scene]) -> Line:
         number, scene = numbered
-        finished = run_deck(scene.text(), folder / "scenes" / f"{number:04d}", timeout)
+        place = folder / "scenes" / f"{number:04d}"
+        finished = run_deck(scene.text(), place, timeout, files=scene.files)
         line = _line(scene, finished)
         if line.result != "right":
             sys.stdout.write(

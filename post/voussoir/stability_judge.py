@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from typing import Protocol
 
 from voussoir.deck_runs import Finished, Row
+from voussoir.validation_scene import Check, Outcome
 
 RIGHT, UNDECIDED, WRONG = "right", "undecided", "WRONG"
 
@@ -38,8 +39,8 @@ class Expectation(Protocol):
     def wanted(self) -> str:
         """The answer in words."""
 
-    def judge(self, rows: list[Row]) -> Judgement:
-        """Judge rows that are all there and decided."""
+    def judge(self, finished: Finished) -> Judgement:
+        """Judge a run whose rows are all there and decided."""
 
 
 @dataclass(frozen=True)
@@ -60,9 +61,9 @@ class Critical:
             return "collapsed"
         return f"{self.exact:.10g}" if self.exact > 0.0 else "stable"
 
-    def judge(self, rows: list[Row]) -> Judgement:
-        """Judge the first row."""
-        (row,) = rows
+    def judge(self, finished: Finished) -> Judgement:
+        """Judge the only row."""
+        (row,) = finished.rows
         if self.exact is None or self.exact == 0.0:
             return _verdict(row, self.wanted())
         if row["verdict"] != "found":
@@ -76,7 +77,7 @@ class Critical:
 
 @dataclass(frozen=True)
 class Shifted:
-    """A search whose value differs from the exact one of rigid blocks by no more than elasticity.
+    """A search whose bracket differs from the exact value of rigid blocks by elasticity at most.
 
     Attributes
     ----------
@@ -95,15 +96,16 @@ class Shifted:
             return "collapsed"
         return f"{self.exact:.8g} +- {self.bound:.1e}"
 
-    def judge(self, rows: list[Row]) -> Judgement:
-        """Judge the first row."""
-        (row,) = rows
+    def judge(self, finished: Finished) -> Judgement:
+        """Judge the only row."""
+        (row,) = finished.rows
         if self.exact is None:
             return _verdict(row, "collapsed")
         if row["verdict"] != "found":
             return Judgement(WRONG, row["verdict"], "", "a critical value exists")
         shift = float(row["critical"]) - self.exact
-        near = abs(shift) <= self.bound
+        low, high = float(row["critical_low"]), float(row["critical_high"])
+        near = low - self.bound <= self.exact <= high + self.bound
         why = "" if near else f"more than elasticity explains: {self.bound:.1e}"
         colour = RIGHT if near else WRONG
         return Judgement(colour, row["critical"], f"{shift / self.exact:.1e}", why)
@@ -125,11 +127,11 @@ class Verdict:
         """The answer in words."""
         return self.word
 
-    def judge(self, rows: list[Row]) -> Judgement:
+    def judge(self, finished: Finished) -> Judgement:
         """Judge all rows."""
         return next(
-            (found for row in rows if (found := _verdict(row, self.word)).colour == WRONG),
-            _verdict(rows[0], self.word),
+            (found for row in finished.rows if (found := _verdict(row, self.word)).colour == WRONG),
+            _verdict(finished.rows[0], self.word),
         )
 
 
@@ -149,8 +151,9 @@ class Same:
         """The answer in words."""
         return f"the same to {self.tolerance:.0e}"
 
-    def judge(self, rows: list[Row]) -> Judgement:
+    def judge(self, finished: Finished) -> Judgement:
         """Judge all rows."""
+        rows = finished.rows
         if any(row["verdict"] != "found" for row in rows):
             return Judgement(WRONG, rows[0]["verdict"], "", "critical values exist")
         values = [float(row["critical"]) for row in rows]
@@ -177,9 +180,79 @@ class Refused:
         """The answer in words."""
         return "refused"
 
-    def judge(self, rows: list[Row]) -> Judgement:
-        """Judge rows of a deck that was not refused."""
-        return Judgement(WRONG, rows[0]["verdict"] if rows else "nothing", "", "not refused")
+    def judge(self, finished: Finished) -> Judgement:
+        """Judge a deck that was not refused."""
+        found = finished.rows[0]["verdict"] if finished.rows else "nothing"
+        return Judgement(WRONG, found, "", "not refused")
+
+
+@dataclass(frozen=True)
+class Warned:
+    """A scene that runs, and of which a warning names a word.
+
+    Attributes
+    ----------
+    word
+        What the warning names.
+    then
+        What it must answer.
+    """
+
+    word: str
+    then: Expectation
+
+    def wanted(self) -> str:
+        """The answer in words."""
+        return f"a warning, {self.then.wanted()}"
+
+    def judge(self, finished: Finished) -> Judgement:
+        """Judge what was printed, then the rest."""
+        if "warning: " not in finished.message or self.word not in finished.message:
+            why = f"no warning names {self.word}"
+            return Judgement(WRONG, finished.rows[0]["verdict"], "", why)
+        return self.then.judge(finished)
+
+
+@dataclass(frozen=True)
+class Measured:
+    """Quantities of the results that are known.
+
+    Attributes
+    ----------
+    checks
+        What is compared.
+    """
+
+    checks: tuple[Check, ...]
+
+    def wanted(self) -> str:
+        """The answer in words."""
+        return "; ".join(f"{check.what}: {_figure(check.exact)}" for check in self.checks)
+
+    def judge(self, finished: Finished) -> Judgement:
+        """Judge every quantity; tell the one whose error is the largest share of the accepted."""
+        worst, found, why, share = "", "", "", -1.0
+        for check in self.checks:
+            outcome = Outcome(finished.folder, check.case)
+            try:
+                computed = check.measure(outcome)
+            except (IndexError, FileNotFoundError):
+                return Judgement(WRONG, "nothing", "", f"{check.what}: nothing to measure")
+            error = check.error(computed)
+            # an error that is not a number is accepted nowhere
+            bad = not error <= check.accept
+            if bad or error / (check.accept or 1.0) > share:
+                share = error / (check.accept or 1.0)
+                worst, found = f"{error:.1e}", _figure(computed)
+                why = f"{check.what}: accepted is {check.accept:.0e}" if bad else ""
+            if bad:
+                break
+        return Judgement(WRONG if why else RIGHT, found, worst, why)
+
+
+def _figure(value: float | str) -> str:
+    """A value in short."""
+    return value if isinstance(value, str) else f"{value:.8g}"
 
 
 def judge(expectation: Expectation, finished: Finished) -> Judgement:
@@ -203,7 +276,7 @@ def judge(expectation: Expectation, finished: Finished) -> Judgement:
         return Judgement(WRONG, "NaN or Inf", "", "in " + ", ".join(finished.not_a_number))
     if finished.status not in (0, 2, 3):
         return Judgement(WRONG, f"exit status {finished.status}", "", finished.message[:200])
-    if isinstance(expectation, Refused) and finished.status == 2:
+    if isinstance(expectation, Refused) and finished.status == 2 and not finished.rows:
         named = expectation.word in finished.message
         why = "" if named else f"the message does not name {expectation.word}"
         return Judgement(RIGHT if named else WRONG, "refused", finished.message[:160], why)
@@ -213,7 +286,7 @@ def judge(expectation: Expectation, finished: Finished) -> Judgement:
     if open_cases:
         reason = finished.remarks.get(open_cases[0]["case"], "")
         return Judgement(UNDECIDED, "undecided", "", reason)
-    return expectation.judge(finished.rows)
+    return expectation.judge(finished)
 
 
 def _verdict(row: Row, word: str) -> Judgement:

@@ -30,8 +30,11 @@ class Line:
     reason: str
 
 
-_STYLE = """body { font: 14px/1.4 sans-serif; margin: 2em; }
-table { border-collapse: collapse; } th, td { padding: .2em .6em; text-align: left; }
+_STYLE = """body { font: 13px/1.35 sans-serif; margin: 2em; }
+table { border-collapse: collapse; margin-bottom: 2em; }
+th, td { padding: .15em .5em; text-align: left; vertical-align: top; }
+td.number { text-align: right; font-variant-numeric: tabular-nums; }
+td.guard, td.reason { min-width: 14em; } td.wanted, td.found, td.error { max-width: 20em; }
 th { border-bottom: 2px solid #000; } td { border-bottom: 1px solid #ddd; }
 td.right { background: #d9efd9; } td.undecided { background: #fbeebf; }
 td.WRONG { background: #d1632a; color: #fff; font-weight: bold; }
@@ -122,7 +125,7 @@ def _is_number(text: str) -> bool:
 
 
 def write_page(lines: Sequence[Line], file: Path) -> None:
-    """Write the table as a page: green for right, yellow for undecided, red for WRONG.
+    """Write a page: the groups, what is not right, then every scene; green, yellow and red.
 
     Parameters
     ----------
@@ -131,19 +134,51 @@ def write_page(lines: Sequence[Line], file: Path) -> None:
     file : Path
         Where.
     """
-    names = [field.name for field in fields(Line)]
     bad = " class='bad'" if any(line.result == WRONG for line in lines) else ""
+    doubtful = [line for line in lines if line.result != RIGHT]
     text = [
         "<!DOCTYPE html><html lang='en'><head><meta charset='utf-8'>",
         f"<title>Stiff and extreme scenes</title><style>{_STYLE}</style></head><body>",
-        f"<h1{bad}>{html.escape(headline(lines))}</h1><table><thead><tr>",
-        "".join(f"<th>{name}</th>" for name in names) + "</tr></thead><tbody>",
+        f"<h1{bad}>{html.escape(headline(lines))}</h1>",
+        *_group_table(lines),
     ]
+    if doubtful:
+        text += ["<h2>What is not right, and why</h2>", *_scene_table(doubtful)]
+    text += ["<h2>Every scene</h2>", *_scene_table(lines), "</body></html>"]
+    file.write_text("\n".join(text) + "\n", encoding="utf-8")
+
+
+def _group_table(lines: Sequence[Line]) -> list[str]:
+    """Counts of each group; a count above zero has its colour."""
+    results = (RIGHT, UNDECIDED, WRONG)
+    head = "".join(f"<th>{name}</th>" for name in ("group", "scenes", *results))
+    text = [f"<table><thead><tr>{head}</tr></thead><tbody>"]
+    for group in dict.fromkeys(line.group for line in lines):
+        count = Counter(line.result for line in lines if line.group == group)
+        cells = "".join(
+            f"<td class='number {result if count[result] else ''}'>{count[result]}</td>"
+            for result in results
+        )
+        name = html.escape(group)
+        text.append(f"<tr><td>{name}</td><td class='number'>{count.total()}</td>{cells}</tr>")
+    return [*text, "</tbody></table>"]
+
+
+def _scene_table(lines: Sequence[Line]) -> list[str]:
+    """One row a scene."""
+    names = [field.name for field in fields(Line)]
+    head = "".join(f"<th>{name}</th>" for name in names)
+    text = [f"<table><thead><tr>{head}</tr></thead><tbody>"]
     for line in lines:
         cells = "".join(
-            f"<td{f' class={value!r}' if name == 'result' else ''}>{html.escape(value)}</td>"
+            f"<td class='{value if name == 'result' else _kind(name, value)}'>"
+            f"{html.escape(value)}</td>"
             for name, value in asdict(line).items()
         )
         text.append(f"<tr>{cells}</tr>")
-    text.append("</tbody></table></body></html>")
-    file.write_text("\n".join(text) + "\n", encoding="utf-8")
+    return [*text, "</tbody></table>"]
+
+
+def _kind(name: str, value: str) -> str:
+    """Class of a cell."""
+    return "number" if name not in ("wanted", "found") and _is_number(value) else name

@@ -129,15 +129,18 @@ def _pressed() -> list[Scene]:
         Check(f"thrust at joint {k + 1} [N/m]", thrust, _normal(k), 1e-8, scale=thrust)
         for k in range(3)
     )
+    sagging = Check("thrust of the sagging beam over w LL/(8 (h - z))", 1.0, _sagging, 1e-4)
+    roof = "unit weight of the wedge [N/m3]"
+    scenes = []
+    for more, accept in (((), 1e-4), (MOVED, 2e-3)):
+        scenes.append(Scene(ASSEMBLIES, "jammed", "2 mu N = W", jammed, more))
+        wedge = (critical(roof, pull, accept),)
+        source = "Brady and Brown, derived anew"
+        scenes.append(Scene(ASSEMBLIES, "roof_wedge", source, wedge, more))
     return [
-        Scene(ASSEMBLIES, "jammed", "2 mu N = W", jammed),
-        Scene(
-            ASSEMBLIES,
-            "roof_wedge",
-            "Brady and Brown, derived anew",
-            (critical("unit weight of the wedge [N/m3]", pull, 1e-4),),
-        ),
+        *scenes,
         Scene(ASSEMBLIES, "voussoir_beam", "w LL/(8h)", beam),
+        Scene(ASSEMBLIES, "voussoir_beam", "w LL/(8 (h - z))", (sagging,), MOVED),
         Scene(
             ASSEMBLIES,
             "snap_through",
@@ -145,6 +148,12 @@ def _pressed() -> list[Scene]:
             (critical("unit weight [N/m3]", bar, 1e-4),),
         ),
     ]
+
+
+def _sagging(outcome: Outcome) -> float:
+    """Thrust of the two blocks over what the height that their sag has left asks for."""
+    left = 0.5 + float(outcome.end(1)[1])
+    return _normal(0)(outcome) * 8.0 * left / (25000.0 * 0.5 * 4.0**2)
 
 
 #: Tilts of dry walls in limit analysis with dilatant friction [deg], by coefficient of friction

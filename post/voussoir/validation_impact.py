@@ -133,6 +133,18 @@ def _fate(block: int, b: float, h: float):
     return measure
 
 
+def _period(outcome: Outcome) -> float:
+    """Time between the first two blows on the ground 1 m below the start [s].
+
+    Taken from the parabola through three steps of the flight between them.
+    """
+    time, _, _, _, v = outcome.track(1)
+    blows = 1 + np.flatnonzero((v[1:-1] < v[:-2]) & (v[1:-1] < v[2:]))
+    steps = [blows[0] + 1, (blows[0] + blows[1]) // 2, blows[1] - 1]
+    roots = np.roots(np.polyfit(time[steps] - time[steps[1]], v[steps] + 1.0, 2))
+    return float(abs(roots[0] - roots[1]))
+
+
 def _bounces() -> list[Scene]:
     """A block dropped from 1 m, and two that meet head-on."""
     height = lambda outcome: 1.0 + float(outcome.end(1)[1])  # noqa: E731
@@ -145,6 +157,8 @@ def _bounces() -> list[Scene]:
             for case, e in enumerate((0.5, 0.8, 1.0), 2)
         ),
     )
+    flight = 2.0 * math.sqrt(2.0 / GRAVITY)
+    period = Check("time between blows, e = 1.0 [s]", flight, _period, 1e-6, 4)
     fall = DENSITY * GRAVITY
     rise = "largest rise of energy in a step, e = {}, over the fall's"
     rises = tuple(
@@ -159,7 +173,7 @@ def _bounces() -> list[Scene]:
             met.append(Check(what, exact, speed, 1e-6, case, scale=3.0))
     never = Check("largest rise of energy in a step [J/m]", 0.0, largest_rise, 1e-6, scale=1.0)
     return [
-        Scene(IMPACT, "bounce", "e^(2n) H", tops + rises, rate=True),
+        Scene(IMPACT, "bounce", "e^(2n) H", (*tops, period, *rises), rate=True),
         Scene(IMPACT, "collision", "v1 - (1 + e) m2/(m1 + m2) (v1 - v2)", tuple(met), rate=True),
         Scene(IMPACT, "momentum", "energy never rises", (never,)),
     ]

@@ -40,6 +40,22 @@ def _area_change(outcome: Outcome) -> float:
     return float(np.abs(twice / 4.0 - 1.0).max())
 
 
+def _radius_change(outcome: Outcome) -> float:
+    """Largest change of the distance of points 2 to 5 from point 1, over that at the beginning."""
+    centre = outcome.track(1)[1:3]
+    change = 0.0
+    for point in range(2, 6):
+        far = np.hypot(*(outcome.track(point)[1:3] - centre))
+        change = max(change, float(np.abs(far / far[0] - 1.0).max()))
+    return change
+
+
+def _rotation(outcome: Outcome) -> float:
+    """Largest angle that the line from point 2 to point 3 has turned [rad]."""
+    angle = outcome.direction(2, 3)
+    return float(np.abs(angle - angle[0]).max())
+
+
 def _moving(axis: int, point: int = 1):
     """Measure of a displacement at the end."""
     return lambda outcome: float(outcome.end(point)[axis])
@@ -101,12 +117,41 @@ def _momentum_checks() -> tuple[Check, ...]:
     )
 
 
+def _spins(*checks: Check) -> tuple[Scene, ...]:
+    """Scenes of a block that spins; the checks are those of a spin alone."""
+    return (
+        Scene(
+            FLIGHT,
+            "spin",
+            "angle w t, nothing else",
+            (
+                Check("angle after 10000 steps [rad]", 300.0, _turned, 1e-10),
+                Check("way of the centre [m]", 0.0, _moving(0), 1e-10, scale=1.0),
+                *checks,
+            ),
+            slow=True,
+        ),
+        Scene(
+            FLIGHT,
+            "spin_and_fall",
+            "both of them",
+            (
+                Check("v after 2 s [m]", 10.0 - 2.0 * GRAVITY, _moving(1), 1e-9),
+                Check("angle after 2 s [rad]", 0.5, _turned, 1e-9),
+            ),
+            rate=True,
+        ),
+    )
+
+
 def _flights() -> list[Scene]:
     """Scenes without contact, and one in which blocks meet freely."""
     thrown = 5.0 - GRAVITY / 2.0
     terminal = -GRAVITY / 4.0 * (10.0 - (1.0 - math.exp(-40.0)) / 4.0)
     kinetic = DENSITY * 2.0 * GRAVITY**2 / 2.0
     fast = lambda outcome: float(outcome.energy("kinetic")[-1])  # noqa: E731
+    away = "largest change of a corner's distance from the centre, relative"
+    strain = Check(away, 0.0, _radius_change, 1e-12, scale=1.0)
     area = Check("largest change of area, relative", 0.0, _area_change, 1e-12, scale=1.0)
     return [
         Scene(
@@ -126,31 +171,13 @@ def _flights() -> list[Scene]:
             (
                 Check("u after 1 s [m]", 3.0, _moving(0), 1e-10),
                 Check("v after 1 s [m]", thrown, _moving(1), 1e-10),
+                Check("largest rotation [rad]", 0.0, _rotation, 1e-10, scale=1.0),
+                strain,
                 area,
             ),
             rate=True,
         ),
-        Scene(
-            FLIGHT,
-            "spin",
-            "angle w t, nothing else",
-            (
-                Check("angle after 10000 steps [rad]", 300.0, _turned, 1e-10),
-                Check("way of the centre [m]", 0.0, _moving(0), 1e-10, scale=1.0),
-                area,
-            ),
-            slow=True,
-        ),
-        Scene(
-            FLIGHT,
-            "spin_and_fall",
-            "both of them",
-            (
-                Check("v after 2 s [m]", 10.0 - 2.0 * GRAVITY, _moving(1), 1e-9),
-                Check("angle after 2 s [rad]", 0.5, _turned, 1e-9),
-            ),
-            rate=True,
-        ),
+        *_spins(strain, area),
         Scene(
             FLIGHT,
             "damped_fall",

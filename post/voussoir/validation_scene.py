@@ -5,7 +5,7 @@ from __future__ import annotations
 import csv
 import dataclasses
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
@@ -180,7 +180,9 @@ def critical(what: str, exact: float, accept: float, case: int = 1) -> Check:
 MOVED = ("analysis%geometry=current",)
 
 
-def rigid_and_moving(section: str, deck: str, source: str, checks, moved: float) -> list[Scene]:
+def rigid_and_moving(
+    section: str, deck: str, source: str, checks: Sequence[tuple[str, float]], moved: float
+) -> list[Scene]:
     """A critical deck in reference geometry, and with blocks that move and strain.
 
     Parameters

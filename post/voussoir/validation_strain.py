@@ -30,11 +30,16 @@ def _strains() -> list[Scene]:
         for case, young in enumerate((5e9, 5e11), 1)
     )
     frequency = math.sqrt(3.0 * YOUNG / 2500.0) / (2.0 * math.pi * 2.0)
+    # the determinant of a step of constant acceleration is 1/(1 + square/2), square = (w dt)^2
+    angle = 2.0 * math.pi * frequency * 2e-6
+    lost = 1.0 - (1.0 + angle**2 / 2.0) ** (-math.pi / angle)
     swing = (Check("frequency, 1.10266 of the bar's [1/s]", frequency, _swings(1), 1e-3),)
+    decay = (Check("amplitude lost in a cycle of 2565 steps", lost, _lost_amplitude, 1e-2),)
     return [
         *(Scene(STRAIN, "uniaxial", "Hooke", pressed_checks, more) for more in ((), MOVED)),
         *(Scene(STRAIN, "bar_own_weight", "rho g HH/(2E)", bar, more) for more in ((), MOVED)),
         Scene(STRAIN, "bar_swings", "sqrt(3E/rho)/(2 pi H)", swing, rate=True),
+        Scene(STRAIN, "bar_swings", "a step: 1/sqrt(1 + (w dt)^2/2)", decay),
     ]
 
 
@@ -114,6 +119,17 @@ def _arrival(modulus: float):
         return 1.95 / (time - way / speed)
 
     return measure
+
+
+def _lost_amplitude(outcome: Outcome) -> float:
+    """Share of the amplitude of point 1 about its mean that a cycle takes."""
+    swing = outcome.track(1)[4] + 2500.0 * GRAVITY * 4.0 / (2.0 * YOUNG)
+    inner = swing[1:-1]
+    k = 1 + np.flatnonzero((inner >= swing[:-2]) & (inner > swing[2:]) & (inner > 0.0))
+    tops = swing[k] + (swing[k + 1] - swing[k - 1]) ** 2 / (
+        8.0 * (2.0 * swing[k] - swing[k - 1] - swing[k + 1])
+    )
+    return float(1.0 - (tops[-1] / tops[0]) ** (1.0 / (len(tops) - 1)))
 
 
 def _swings(point: int):

@@ -9,7 +9,10 @@ from pathlib import Path
 
 from voussoir import limit_lp
 from voussoir.dda_program import DdaError, find_dda
+from voussoir.work_precision_motion import MotionPoint, motion_points
+from voussoir.work_precision_motion_page import draw_motion, motion_table, write_motion_csv
 from voussoir.work_precision_page import best_table, draw, race_table, write_csv
+from voussoir.work_precision_plan import cost_table, plan_costs
 from voussoir.work_precision_runs import Arch, Point, Race, bisected, dda_points, race
 
 
@@ -41,8 +44,15 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         help="numbers of voussoirs, even ones",
     )
     parser.add_argument("--repeats", type=int, default=5, help="runs of each setting")
-    parser.add_argument(
+    part = parser.add_mutually_exclusive_group()
+    part.add_argument(
         "--race", action="store_true", help="only the times of one decision, no diagram"
+    )
+    part.add_argument(
+        "--motion", action="store_true", help="only blocks that move in time, no arches"
+    )
+    part.add_argument(
+        "--plan", action="store_true", help="only what parts of the scene plan cost if forced in"
     )
 
 
@@ -67,13 +77,26 @@ def run(arguments: argparse.Namespace) -> int:
     arches = [Arch(angle, count) for count in arguments.voussoirs for angle in arguments.angles]
     arguments.out.mkdir(parents=True, exist_ok=True)
     runs = arguments.out / "runs"
-    races = [race(arch, runs, arguments.repeats) for arch in arches]
+    if arguments.plan:
+        costs = plan_costs(arguments.voussoirs, runs, arguments.repeats)
+        table = "\n".join(cost_table(list(costs))) + "\n"
+        (arguments.out / "plan_costs.md").write_text(table, encoding="utf-8")
+        sys.stdout.write(table)
+        return 0
+    races: list[Race] = []
     points: list[Point] = []
-    if not arguments.race:
+    motion: list[MotionPoint] = []
+    if not arguments.motion:
+        races = [race(arch, runs, arguments.repeats) for arch in arches]
+    if not arguments.motion and not arguments.race:
         points = [point for arch in arches for point in _points(arch, runs, arguments.repeats)]
         write_csv(points, arguments.out / "work_precision.csv")
         draw(points, arguments.out)
-    text = "\n".join(_report(races, points)) + "\n"
+    if not arguments.race:
+        motion = list(motion_points(runs, arguments.repeats))
+        write_motion_csv(motion, arguments.out / "work_precision_motion.csv")
+        draw_motion(motion, arguments.out)
+    text = "\n".join(_report(races, points, motion)) + "\n"
     (arguments.out / "work_precision.md").write_text(text, encoding="utf-8")
     sys.stdout.write(text)
     return 0
@@ -88,7 +111,7 @@ def _points(arch: Arch, runs: Path, repeats: int) -> list[Point]:
     return points
 
 
-def _report(races: list[Race], points: list[Point]) -> list[str]:
+def _report(races: list[Race], points: list[Point], motion: list[MotionPoint]) -> list[str]:
     """Lines of the report."""
     version = limit_lp.scipy_version()
     peer = f"HiGHS of scipy {version}" if version else "scipy is missing: no linear programs"
@@ -98,9 +121,11 @@ def _report(races: list[Race], points: list[Point]) -> list[str]:
         f"Python {platform.python_version()}; {peer}. Times are the least of this run; only "
         "their ratios mean anything. dda: the column seconds, wall time (arch, decision). Linear "
         "programs: processor time (building, solving).",
-        "",
-        *race_table(races),
     ]
+    if races:
+        lines += ["", *race_table(races)]
     if points:
         lines += ["", "Fastest setting that reaches an accuracy:", "", *best_table(points)]
+    if motion:
+        lines += ["", "Blocks that move in time:", "", *motion_table(motion)]
     return lines

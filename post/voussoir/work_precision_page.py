@@ -146,7 +146,7 @@ def draw(points: Sequence[Point], folder: Path) -> list[Path]:
         figure.legend(
             [handles[name] for name in shown], shown, loc="lower center", ncol=4, fontsize=8
         )
-        figure.tight_layout(rect=(0.0, 0.03 + 0.05 / rows, 1.0, 1.0))
+        figure.tight_layout(rect=(0.0, 0.2 / rows, 1.0, 1.0))
         return save(figure, folder, "work_precision")
 
 
@@ -154,7 +154,7 @@ def _draw_panel(axis, arch: Arch, points: Sequence[Point], families: Sequence[st
     """One panel."""
     from voussoir.figure_style import DASHES, INK
 
-    marks = "osv^Dx+*1p"
+    marks = "osv^Dx+*Pph<"
     for number, family in enumerate(families):
         shown = [point for point in points if point.family == family and point.error is not None]
         axis.loglog(

@@ -108,7 +108,16 @@ _FAMILIES: tuple[tuple[str, str, str, tuple[float, ...], str], ...] = (
         (1.0, 10.0, 100.0, 1000.0),
         "geometry = 'current'",
     ),
+    (
+        "Limerick's scheme, tolerance",
+        "search",
+        "tolerance",
+        (1e-1, 1e-2, 1e-3),
+        "&analysis mode = 'limerick' /\n",
+    ),
 )
+#: Arches of more voussoirs than this are searched with blocks that do not move only
+MOST_MOVING = 100
 
 
 def dda_points(arch: Arch, folder: Path, repeats: int) -> Iterator[Point]:
@@ -130,7 +139,8 @@ def dda_points(arch: Arch, folder: Path, repeats: int) -> Iterator[Point]:
     """
     exact = arch.exact()
     for family, group, key, values, more in _FAMILIES:
-        if "moving" in family and arch.voussoirs > 100:
+        original = family.startswith("Limerick")
+        if ("moving" in family or original) and arch.voussoirs > MOST_MOVING:
             continue
         for value in values:
             keys = {"search": "parameter = 'thickness_ratio'"}
@@ -141,7 +151,7 @@ def dda_points(arch: Arch, folder: Path, repeats: int) -> Iterator[Point]:
             keys[group] = ", ".join(filter(None, [keys.get(group), f"{key} = {value!r}"]))
             groups = "".join(f"&{name} {line} /\n" for name, line in keys.items())
             deck = arch.deck() + text + groups
-            deck += f"&sweep parameter = 'radius', values = {repeats}*10.0 /\n"
+            deck += f"&sweep parameter = 'radius', values = {1 if original else repeats}*10.0 /\n"
             rows = run_deck(deck, folder / f"{arch.half_angle_deg:g}_{arch.voussoirs}").rows
             if rows:
                 yield _dda_point(arch, family, f"{value:g}", rows, exact)

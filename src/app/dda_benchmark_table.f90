@@ -8,7 +8,7 @@ module dda_benchmark_table
    implicit none
    private
 
-   public :: print_tables
+   public :: print_tables, print_row, rounded, machine_line
 
    !> Characters of a cell
    integer, parameter :: cell = 14

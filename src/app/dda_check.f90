@@ -1,6 +1,7 @@
 !> dda check: read and check decks, say what would be computed
 module dda_check
    use, intrinsic :: iso_fortran_env, only : error_unit, output_unit
+   use dda_boundary, only : boundary_t
    use dda_command_line, only : command_t, name_of
    use dda_deck, only : deck_t, flag_of, has_group, integer_of, is_given, text_of, word_of
    use dda_deck_scene, only : check_lines, check_scene, deck_scene, warning_line
@@ -92,8 +93,48 @@ contains
       call tell("strength", merge("cohesion or tension, until a joint breaks", &
          & "none: friction alone                     ", any(scene%contacts%springs%shift > 0.0) &
          & .or. any(scene%contacts%joint%law%cohesion > 0.0)))
+      call tell("points", points_text(scene%settings%boundary))
       call print_parts(first, blocks)
+      call tell("also told", tables_text(first))
    end subroutine print_plan
+
+   !> The points that are held, loaded and measured
+   pure function points_text(boundary) result(text)
+      !> The points of the scene
+      type(boundary_t), intent(in) :: boundary
+      !> The text
+      character(len=:), allocatable :: text
+      integer :: n(3)
+
+      n = 0
+      if (allocated(boundary%held)) n(1) = size(boundary%held)
+      if (allocated(boundary%loaded)) n(2) = size(boundary%loaded)
+      if (allocated(boundary%measured)) n(3) = size(boundary%measured)
+      text = "none: nothing is held, loaded or measured at a point"
+      if (any(n > 0)) text = to_text(n(1))//" held, "//to_text(n(2))//" loaded, "//to_text(n(3)) &
+         & //" measured"
+   end function points_text
+
+   !> What is written besides results.csv and joints.csv
+   pure function tables_text(deck) result(text)
+      !> The deck of the case
+      type(deck_t), intent(in) :: deck
+      !> The text
+      character(len=:), allocatable :: text
+      character(len=9), parameter :: name(4) = [character(len=9) :: "vtu", "energy", &
+         & "condition", "restart"]
+      integer :: i
+
+      text = ""
+      do i = 1, size(name)
+         if (flag_of(deck, "output", trim(name(i)))) text = text//", "//trim(name(i))
+      end do
+      if (text == "") then
+         text = "nothing: output%vtu, energy, condition and restart are .false."
+      else
+         text = text(3:)//": as &output asks"
+      end if
+   end function tables_text
 
    !> Print what a case of the original's scheme is made of
    subroutine print_limerick_plan(deck)

@@ -3,12 +3,14 @@
 module dda_contact_search
    use, intrinsic :: iso_fortran_env, only : int64
    use dda_block_system, only : block_system_t
+   use dda_box_tree, only : box_pairs
    use dda_contact_types, only : joint_t
    use dda_edge_pairs, only : edge_pairs_t, find_edge_pairs, remember_edge_pairs
    use dda_entrance, only : add_joints, joint_list_t, neighbourhood_t
    use dda_kinds, only : wp
    use dda_material, only : joint_law_t
    use dda_outline, only : measure_edges, outline_of, outline_t
+   use dda_parting_line, only : add_parted_joint
    implicit none
    private
 
@@ -24,7 +26,8 @@ module dda_contact_search
       type(edge_pairs_t) :: near
    end type joint_search_t
 
-   !> Gaps below this share of the smaller block's size count as closed at the beginning
+   !> Gaps below this share of the smallest block's size, of the two and of those that lie between
+   !> them, count as closed at the beginning
    real(wp), parameter :: touching = 1.0e-4_wp
 
 contains
@@ -58,8 +61,38 @@ contains
       near%travel = 0.0_wp*system%vertex
       near%beginning = .true.
       allocate (near%closed(0))
-      call find_joints(search, system, reach, near, joint)
+      call find_joints(search, system, reach, near, joint, least_beside(system, reach))
    end subroutine touching_joints
+
+   !> The least reach of all blocks that a block meets, its own among them: a sheet between two
+   !> blocks is thicker than its own reach, not than theirs
+   pure function least_beside(system, reach) result(least)
+      !> The blocks
+      type(block_system_t), intent(in) :: system
+      !> How far each block can reach: (n_block) [m]
+      real(wp), intent(in) :: reach(:)
+      !> The least reach: (n_block) [m]
+      real(wp) :: least(size(reach))
+      real(wp) :: high(2, size(reach)), low(2, size(reach))
+      integer, allocatable :: pair(:, :)
+      integer :: b, k
+
+      do b = 1, size(reach)
+         associate (vertex => system%vertex(:, &
+            & system%first_vertex(b):system%first_vertex(b + 1) - 1))
+            low(:, b) = minval(vertex, dim=2) - reach(b)
+            high(:, b) = maxval(vertex, dim=2) + reach(b)
+         end associate
+      end do
+      call box_pairs(low, high, [(b, b=1, size(reach))], pair)
+      least = reach
+      do k = 1, size(pair, 2)
+         associate (i => pair(1, k), j => pair(2, k))
+            least(i) = min(least(i), reach(j))
+            least(j) = min(least(j), reach(i))
+         end associate
+      end do
+   end function least_beside
 
    !> Look around for edges that may come near one another in this step and those that follow
    pure subroutine look_around(search, system, reach)
@@ -75,7 +108,7 @@ contains
    end subroutine look_around
 
    !> Joints of blocks that touch where they are now, or come as near as they may in a step
-   pure subroutine near_joints(search, system, travel, closed, reach, joint)
+   pure subroutine near_joints(search, system, travel, closed, reach, in_time, joint)
       !> The search
       type(joint_search_t), intent(in) :: search
       !> The blocks
@@ -86,18 +119,21 @@ contains
       integer(int64), intent(in) :: closed(:)
       !> Most that the corners of each block may move: (n_block) [m]
       real(wp), intent(in) :: reach(:)
+      !> Whether blocks move in time: then a line parts convex blocks
+      logical, intent(in) :: in_time
       !> The joints, in the order of their blocks: (n_joint)
       type(joint_t), allocatable, intent(out) :: joint(:)
       type(neighbourhood_t) :: near
 
       near%vertex = system%moved
       near%travel = travel
+      if (in_time) near%ahead = system%moved + travel
       near%closed = closed
       call find_joints(search, system, reach, near, joint)
    end subroutine near_joints
 
    !> Joints of all pairs of blocks whose edges come near one another
-   pure subroutine find_joints(search, system, reach, near, joint)
+   pure subroutine find_joints(search, system, reach, near, joint, beside)
       !> The search
       type(joint_search_t), intent(in) :: search
       !> The blocks
@@ -109,8 +145,12 @@ contains
       type(neighbourhood_t), intent(inout) :: near
       !> The joints: (n_joint)
       type(joint_t), allocatable, intent(out) :: joint(:)
+      !> Least reach beside each block; one that lies beside both counts at the beginning, too:
+      !> (n_block) [m]
+      real(wp), intent(in), optional :: beside(:)
       type(joint_list_t) :: list
       integer, allocatable :: pair(:, :)
+      real(wp) :: far
       integer :: block(2), first, last, j
 
       near%outline = search%outline
@@ -125,8 +165,13 @@ contains
             if (any(near%outline%block(pair(:, last + 1)) /= block)) exit
             last = last + 1
          end do
-         call add_joints(near, pair(:, first:last), &
-            & merge(minval(reach(block)), sum(reach(block)), near%beginning), list)
+         far = sum(reach(block))
+         if (present(beside)) far = min(minval(reach(block)), maxval(beside(block)))
+         if (allocated(near%ahead) .and. all(near%outline%convex(block))) then
+            call add_parted_joint(near, pair(:, first:last), far, list)
+         else
+            call add_joints(near, pair(:, first:last), far, list)
+         end if
          first = last + 1
       end do
       allocate (joint(list%n))

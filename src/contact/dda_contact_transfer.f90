@@ -17,6 +17,9 @@ module dda_contact_transfer
    !> An open end takes part in the slip of a joint as far as this share of its length allows
    real(wp), parameter :: closeness = 1.0e-4_wp
 
+   !> Way by which corners inside a neighbour come out in a step, over the size of the smaller block
+   real(wp), parameter :: recovery = 1.0e-12_wp
+
 contains
 
    !> Contacts of blocks that touch in the reference shape: closed, whole and free of force
@@ -70,12 +73,13 @@ contains
 
       call list_past(system, contacts, past, closed)
       call look_around(contacts%search, system, reach)
-      call near_joints(contacts%search, system, travel, closed, reach, joint)
+      call near_joints(contacts%search, system, travel, closed, reach, &
+         & .not. contacts%remember, joint)
       allocate (source(2, size(joint)))
       call match_contacts(system, joint, reach, past, source)
       do j = 1, size(joint)
          taken = source(:, j)
-         call take_over_slip(system, past, taken, joint(j))
+         call take_over_slip(system, past, taken, .not. contacts%remember, joint(j))
       end do
       before%face = contacts%face
       before%broken = contacts%broken
@@ -85,6 +89,7 @@ contains
          call keep_shear(system, past, source(:, j), contacts%springs%stiffness(j), &
             & contacts%joint(j))
          call place_joint(system, system%moved, contacts%joint(j), gap)
+         if (.not. contacts%remember) call stay_inside(system, contacts%joint(j), gap)
          contacts%gap(:, j) = gap
          contacts%trial(:, j) = -contacts%springs%stiffness(j)*gap
          call guess_face(source(:, j), j, contacts)
@@ -144,13 +149,15 @@ contains
    end subroutine list_past
 
    !> Let a joint start with the slip that its contacts had, and measure it where it is closed
-   pure subroutine take_over_slip(system, past, source, joint)
+   pure subroutine take_over_slip(system, past, source, in_time, joint)
       !> The blocks
       type(block_system_t), intent(in) :: system
       !> The contacts of the step before
       type(past_contact_t), intent(in) :: past(:)
       !> Which of them go on, 0 for none: (2)
       integer, intent(in) :: source(2)
+      !> Whether blocks move in time: then each step allows anew for what lies inside
+      logical, intent(in) :: in_time
       !> The joint
       type(joint_t), intent(inout) :: joint
       real(wp) :: gap(3), apart(2), length
@@ -164,6 +171,7 @@ contains
             length = edge_size(system, contact)
             contact%lock = contact%lock - past(source(k))%slip/length
             contact%closed_at = past(source(k))%contact%closed_at
+            if (in_time) contact%closed_at = max(0.0_wp, contact%closed_at)
          end associate
       end do
       if (joint%n_contact == 2) then
@@ -195,6 +203,26 @@ contains
          end associate
       end do
    end subroutine keep_shear
+
+   !> Let a corner that is inside its neighbour go no deeper, and come out slowly: pushing it out
+   !> would bring in energy
+   pure subroutine stay_inside(system, joint, gap)
+      !> The blocks
+      type(block_system_t), intent(in) :: system
+      !> The joint
+      type(joint_t), intent(inout) :: joint
+      !> Opening at the two contacts, and slip: (3) [m]
+      real(wp), intent(inout) :: gap(3)
+      real(wp) :: least
+      integer :: k
+
+      least = -recovery*sqrt(minval(system%area(joint%block)))
+      do k = 1, joint%n_contact
+         if (gap(k) >= least) cycle
+         joint%contact(k)%closed_at = joint%contact(k)%closed_at + gap(k) - least
+         gap(k) = least
+      end do
+   end subroutine stay_inside
 
    !> Let a joint have no slip where it is
    pure subroutine lock_joint(system, vertex, joint)

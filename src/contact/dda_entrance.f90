@@ -11,7 +11,8 @@ module dda_entrance
    implicit none
    private
 
-   public :: neighbourhood_t, joint_list_t, add_joints, contact_key
+   public :: neighbourhood_t, joint_list_t, add_joints, add_single, contact_key, join_edges
+   public :: was_closed
 
    !> What a search looks at
    type :: neighbourhood_t
@@ -23,6 +24,8 @@ module dda_entrance
       real(wp), allocatable :: vertex(:, :)
       !> How they are about to move; only directions and ratios count: (2, n_vertex) [m]
       real(wp), allocatable :: travel(:, :)
+      !> Where the corners would be then, where lines part convex blocks: (2, n_vertex) [m]
+      real(wp), allocatable :: ahead(:, :)
       !> Whether nothing has touched before
       logical :: beginning = .false.
       !> Keys of the contacts that were closed, rising: (n_closed)

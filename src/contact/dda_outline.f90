@@ -21,6 +21,8 @@ module dda_outline
       real(wp), allocatable :: direction(:, :)
       !> Length of each edge, once it is measured: (n_vertex) [m]
       real(wp), allocatable :: length(:)
+      !> Whether a block has no notch: (n_block)
+      logical, allocatable :: convex(:)
    end type outline_t
 
    !> A corner seen from an edge
@@ -54,6 +56,7 @@ contains
 
       n = size(system%vertex, 2)
       allocate (outline%block(n), outline%next(n), outline%previous(n))
+      allocate (outline%convex(size(system%first_vertex) - 1))
       do b = 1, size(system%first_vertex) - 1
          first = system%first_vertex(b)
          last = system%first_vertex(b + 1) - 1
@@ -61,6 +64,10 @@ contains
             outline%block(v) = b
             outline%next(v) = merge(first, v + 1, v == last)
             outline%previous(v) = merge(last, v - 1, v == first)
+         end do
+         outline%convex(b) = .true.
+         do v = first, last
+            outline%convex(b) = outline%convex(b) .and. is_convex(outline, system%vertex, v)
          end do
       end do
    end function outline_of

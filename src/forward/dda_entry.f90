@@ -21,7 +21,8 @@ module dda_entry
 
 contains
 
-   !> Cut a step at whose end a search finds corners deeper inside than they were at its beginning
+   !> Cut a step at whose end a search finds corners deeper inside than they were at its beginning,
+   !> where a block with a notch is one of the two
    pure subroutine refuse_entry(settings, system, contacts, march, step)
       !> Settings of the run
       type(settings_t), intent(in) :: settings
@@ -37,7 +38,7 @@ contains
       type(contacts_t) :: found
       logical :: breaks
 
-      if (step%dt <= shortest*march%longest) return
+      if (all(contacts%search%outline%convex) .or. step%dt <= shortest*march%longest) return
       after = system
       found = contacts
       call update_contacts(step, settings, found, breaks)
@@ -60,9 +61,10 @@ contains
 
       depth = 0.0_wp
       do j = 1, size(contacts%joint)
-         associate (n => contacts%joint(j)%n_contact)
+         associate (n => contacts%joint(j)%n_contact, block => contacts%joint(j)%block)
+            if (all(contacts%search%outline%convex(block))) cycle
             depth = max(depth, -minval(contacts%gap(:n, j)) &
-               & /sqrt(minval(system%area(contacts%joint(j)%block))))
+               & /sqrt(minval(system%area(block))))
          end associate
       end do
    end function depth

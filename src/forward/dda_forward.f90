@@ -16,10 +16,11 @@ module dda_forward
    use dda_kinds, only : wp
    use dda_multipliers, only : settle_joints
    use dda_open_close, only : step_state_t
+   use dda_parting, only : judge_parting
    use dda_settings, only : settings_t
    use dda_step_context, only : march_t, step_context_t
    use dda_step_interval, only : first_interval, judge_step, next_interval
-   use dda_step_reach, only : first_reach, judge_reach, next_reach, travel_of
+   use dda_step_reach, only : first_reach, judge_reach, next_reach, travel_by, travel_of
    use dda_velocity, only : settle_velocities, stiffen_contacts
    use dda_verdict, only : judge_verdict, largest_displacement, measure_step, verdict
    implicit none
@@ -52,7 +53,7 @@ module dda_forward
    end type outcome_t
 
    !> Most cuts of one step's length
-   integer, parameter :: max_retries = 20
+   integer, parameter :: max_retries = 40
 
 contains
 
@@ -183,17 +184,22 @@ contains
       type(step_context_t), intent(inout) :: step
       !> Allocated if no step, however short, settles
       type(error_t), allocatable, intent(inout) :: error
-      integer :: retry
-      logical :: breaks, in_time, widened
+      real(wp) :: travel(2, size(system%vertex, 2))
+      integer :: choices, retry
+      logical :: again, breaks, in_time, widened
 
       in_time = settings%dynamic .and. settings%current
       widened = settings%current
       contacts%remember = .not. in_time
       if (settings%current) call turn_masses(system, equations)
       step%was_cut = .false.
+      choices = 0
+      travel = 0.0_wp
+      if (contacts%searched .and. settings%current) travel = travel_of(system, settings, march)
       do retry = 0, max_retries
-         if (widened) call place_contacts(settings, system, march, contacts, equations)
+         if (widened) call place_contacts(settings, system, travel, march, contacts, equations)
          widened = .false.
+         again = .false.
          step%dt = march%dt
          if (in_time) call stiffen_contacts(system, step%dt, contacts)
          if (in_time) call take_springs(contacts%springs, equations)
@@ -207,8 +213,11 @@ contains
          if (contacts%searched .and. settings%current) &
             & call judge_reach(system, contacts, march, step, widened)
          if (step%accepted .and. in_time) &
-            & call settle_impacts(settings, system, contacts, equations, march, step)
+            & call settle_impacts(settings, system, contacts, equations, choices, march, step, &
+            & again)
          if (step%accepted) exit
+         widened = widened .or. again
+         if (again) travel = travel_by(system, step%state%motion)
       end do
       if (.not. step%accepted) then
          call fatal_error(error, "the open-close loop settles at no length of the step")
@@ -227,7 +236,8 @@ contains
 
    !> Velocities after a settled step: cut it if blocks meet in it that rebound, or if the impulses
    !> do not settle
-   pure subroutine settle_impacts(settings, system, contacts, equations, march, step)
+   pure subroutine settle_impacts(settings, system, contacts, equations, choices, march, step, &
+      & again)
       !> Settings of the run
       type(settings_t), intent(in) :: settings
       !> The blocks before the step
@@ -236,14 +246,21 @@ contains
       type(contacts_t), intent(in) :: contacts
       !> The equations
       type(equations_t), intent(inout) :: equations
+      !> How often the lines that part blocks were chosen by the motion of the step
+      integer, intent(inout) :: choices
       !> The march; the length of the next try is set
       type(march_t), intent(inout) :: march
       !> The settled step; its velocities are set, and whether it counts
       type(step_context_t), intent(inout) :: step
+      !> Whether they must be chosen again
+      logical, intent(out) :: again
 
+      again = .false.
       step%longest = march%longest
       step%slowest_impact = 2.0_wp*march%free_acceleration*march%longest
       call meet_impact(settings, system, contacts, equations, march, step)
+      if (step%accepted .and. contacts%searched) &
+         & call judge_parting(settings, system, contacts, choices, march, step, again)
       if (.not. step%accepted) return
       call settle_velocities(settings, system, contacts, equations, step)
       if (step%accepted) then
@@ -255,11 +272,13 @@ contains
    end subroutine settle_impacts
 
    !> Contacts where the blocks are now: those that were given, or those that a search finds
-   pure subroutine place_contacts(settings, system, march, contacts, equations)
+   pure subroutine place_contacts(settings, system, travel, march, contacts, equations)
       !> Settings of the run
       type(settings_t), intent(in) :: settings
       !> The blocks
       type(block_system_t), intent(in) :: system
+      !> How the corners are about to move: (2, n_vertex) [m]
+      real(wp), intent(in) :: travel(:, :)
       !> The march; its reach is set where it was not
       type(march_t), intent(inout) :: march
       !> The contacts
@@ -271,8 +290,8 @@ contains
       if (contacts%searched) then
          allocate (before, source=contacts%springs%equation)
          if (.not. allocated(march%reach)) march%reach = first_reach(system, settings, march)
-         call renew_contacts(system, travel_of(system, settings, march), march%reach, &
-            & settings%penalty_ratio, settings%n_dof, contacts)
+         call renew_contacts(system, travel, march%reach, settings%penalty_ratio, &
+            & settings%n_dof, contacts)
          call renew_springs(before, contacts%springs, equations)
       else
          call follow_contacts(system, settings%penalty_ratio, settings%n_dof, contacts)
@@ -308,6 +327,7 @@ contains
       state%start = contacts%trial
       state%face = contacts%face
       state%cone = contacts%springs%cone
+      state%unsettled_work = 0.0_wp
       state%passes = 0
    end subroutine begin_step
 end module dda_forward

@@ -47,6 +47,7 @@ contains
       tolerance = 1.0e-11_wp*equations%force_scale
       state%cone = cone_t(friction=0.0_wp, limit=huge(1.0_wp))
       state%face%slip = 0
+      state%unsettled_work = 0.0_wp
       call iterate_open_close(equations, springs, max_changes, state, one_by_one=.true.)
       if (.not. state%settled) return
       bound = coulomb_bound(springs, state)
@@ -61,6 +62,7 @@ contains
          if (.not. state%settled) return
          change = merge(coulomb_bound(springs, state) - bound, 0.0_wp, &
             & springs%cone%limit < huge(1.0_wp))
+         state%unsettled_work = sum(abs(change*state%increment(3, :)))
          if (maxval(abs(change)) <= tolerance .or. resolved) return
          stale = stale + 1
          if (maxval(abs(change)) < least) then

@@ -1,10 +1,9 @@
 !> The open-close loop: an active-set method on the faces of the friction cones (Shi: df18 to df22)
 !>
 !> One step minimises a convex, piecewise quadratic energy. With the faces fixed the minimum is a
-!> linear system; each joint whose force disagrees with its face more than its neighbours' do then
-!> changes its face, as the simplex method pivots. Should a set of faces come again, only the joint
-!> that disagrees most does; should one come again then, Newton's method with an exact line search
-!> takes over, which must end.
+!> linear system; each joint that disagrees with its face more than its neighbours do then changes
+!> it, as the simplex method pivots. Should a set of faces come again, only the worst joint does;
+!> should one come again then, Newton's method with an exact line search, which must end.
 module dda_open_close
    use, intrinsic :: iso_fortran_env, only : int64
    use dda_assembly, only : equations_t, solve_faces
@@ -36,20 +35,22 @@ module dda_open_close
       type(joint_face_t), allocatable :: face(:)
       !> Bounds of the forces: (n_joint)
       type(cone_t), allocatable :: cone(:)
+      !> How much smaller than usual gaps must be that sweeps leave
+      real(wp) :: fineness = 1.0_wp
+      !> Work of what the bounds of the shear forces would still change by [J/m]
+      real(wp) :: unsettled_work = 0.0_wp
       !> Passes of the loop so far
       integer :: passes = 0
       !> Whether every joint's force agrees with its face
       logical :: settled = .false.
    end type step_state_t
 
-   !> Joints whose disagreement is as large as the largest but for rounding change together, which
-   !> keeps the mirror images of a symmetric scene alike
+   !> Joints that disagree as much as the worst but for rounding change with it: mirror images do
    real(wp), parameter :: tie = 1.0e-9_wp
    !> Joints whose disagreement is below this share of the largest wait for their turn
    real(wp), parameter :: notable = 0.1_wp
 
-   !> Changes of faces before Newton's method takes over where blocks make no chain: faces of a wall
-   !> depend on one another too much for each to be judged alone
+   !> Changes of faces before Newton's method takes over where blocks make no chain
    integer, parameter :: few_changes = 1
    !> Most passes of Newton's method: where it needs more, a shorter step is cheaper
    integer, parameter :: max_newton = 80
@@ -75,8 +76,7 @@ contains
       integer :: change, most, since
       logical :: peaks
 
-      most = max_changes
-      if (equations%matrix%width > 1) most = min(most, few_changes)
+      most = merge(max_changes, min(max_changes, few_changes), equations%matrix%width <= 1)
       peaks = .true.
       if (present(one_by_one)) peaks = .not. one_by_one
       since = 1
@@ -169,8 +169,7 @@ contains
       !> The force [N/m]
       real(wp) :: noise
 
-      noise = 1.0e-13_wp*equations%force_scale &
-         & + 8.0_wp*epsilon(1.0_wp)*max(0.0_wp, &
+      noise = 1.0e-13_wp*equations%force_scale + 8.0_wp*epsilon(1.0_wp)*max(0.0_wp, &
          & maxval(springs%stiffness))*maxval(abs(state%motion(1:2, :)))
    end function force_noise
 
@@ -220,10 +219,9 @@ contains
       end do
    end subroutine joint_forces
 
-   !> Newton's method on the step's energy from the motion of the state; each direction is followed
-   !> to the lowest point. The direction corrects what the blocks lack in balance, so that its
-   !> rounding is that of a correction, and a motion in balance is the answer even where rounding
-   !> lets no face agree
+   !> Newton's method on the step's energy from the motion of the state, to the lowest point of each
+   !> direction. That corrects what the blocks lack in balance, so that its rounding is small; a
+   !> motion in balance is the answer even where rounding lets no face agree
    pure subroutine iterate_newton(equations, springs, state)
       !> Blocks assembled; matrix and factor are made anew
       type(equations_t), intent(inout) :: equations

@@ -7,6 +7,7 @@
 !> they change a little to the end counts.
 module dda_settle_in_time
    use dda_assembly, only : equations_t
+   use dda_contact_sweeps, only : sweep_contacts
    use dda_fixed_points, only : correct_fixed_forces
    use dda_friction, only : accelerated, coulomb_bound
    use dda_joint_springs, only : joint_springs_t
@@ -34,7 +35,7 @@ module dda_settle_in_time
 contains
 
    !> Settle multipliers and bounds
-   pure subroutine settle_in_time(settings, target, equations, springs, state)
+   pure subroutine settle_in_time(settings, target, equations, springs, state, in_vain)
       !> Settings of the run
       type(settings_t), intent(in) :: settings
       !> How far the held points must go: (n_fixed) [m]
@@ -45,6 +46,8 @@ contains
       type(joint_springs_t), intent(in) :: springs
       !> Forces and faces to begin with in, motion and joints out
       type(step_state_t), intent(inout) :: state
+      !> Whether it is no matter if this does not end; then little is tried
+      logical, intent(in), optional :: in_vain
       real(wp), dimension(size(springs%stiffness)) :: bound, change, wrong
       logical :: glued(size(springs%stiffness))
       real(wp), dimension(size(springs%stiffness), memory + 1) :: bounds, changes
@@ -55,6 +58,13 @@ contains
       if (settings%flow == flow_rule%associated) then
          call settle_multipliers(settings, target, opening, equations, springs, state)
          return
+      end if
+      if (size(equations%fixed%point) == 0) then
+         call sweep_contacts(equations, springs, state)
+         if (state%settled) return
+         if (present(in_vain)) then
+            if (in_vain) return
+         end if
       end if
       glued = .not. springs%cone%limit < huge(1.0_wp)
       state%force = state%multiplier

@@ -35,6 +35,8 @@ module dda_step_interval
    real(wp), parameter :: cut = 0.3_wp
    !> A step that moves farther than this multiple of what is allowed is rejected
    real(wp), parameter :: too_far = 2.0_wp
+   !> Most that free fall from rest may go in a step, over the size of the smallest block
+   real(wp), parameter :: longest_fall = 0.25_wp
    !> Least ratio of the inertia 2 m/dt**2 to the penalty stiffness: beyond, rounding takes over
    real(wp), parameter :: least_inertia = 1.0e-13_wp
 
@@ -93,6 +95,9 @@ contains
       end if
       call change_faces(equations, springs, state)
       march%elastic_motion = largest_motion(system, state%motion)
+      if (falls_glued(equations, state%motion, march%dt) .and. size(springs%stiffness) > 0) &
+         & march%elastic_motion = min(march%elastic_motion, (1.0_wp + settings%penalty_ratio) &
+         & *sum(norm2(equations%weight(1:2, :), dim=1))/minval(springs%stiffness))
       if (march%free_acceleration > 0.0_wp) march%dt = min(march%longest, &
          & sqrt(2.0_wp*first_fall*march%elastic_motion/march%free_acceleration))
       if (settings%time_step > 0.0_wp) march%dt = min(march%longest, settings%time_step)
@@ -117,6 +122,27 @@ contains
 
       static_growth = merge(1.0_wp, growth, acceleration < settling*last_acceleration)
    end function static_growth
+
+   !> Whether the blocks fall even with all joints glued, as one that stands on a corner does: most
+   !> work of the loads is then speed
+   pure logical function falls_glued(equations, motion, dt)
+      !> The equations, assembled
+      type(equations_t), intent(in) :: equations
+      !> The motion: (n_dof, n_equation)
+      real(wp), intent(in) :: motion(:, :)
+      !> Length of the step [s]
+      real(wp), intent(in) :: dt
+      real(wp) :: kinetic, work
+      integer :: e
+
+      kinetic = 0.0_wp
+      work = sum(equations%weight*motion)
+      do e = 1, size(motion, 2)
+         kinetic = kinetic + 2.0_wp/dt**2 &
+            & *dot_product(motion(:, e), matmul(equations%mass(:, :, e), motion(:, e)))
+      end do
+      falls_glued = kinetic > 0.5_wp*work
+   end function falls_glued
 
    !> Motion that the rounding of coordinates feigns: a corner off by eps of the model's size tilts
    !> a
@@ -143,8 +169,9 @@ contains
          & *sqrt(real(count(system%equation > 0), wp))
    end function feigned_motion
 
-   !> Length of a dynamic step: the one that was asked for, or that in which free fall from rest
-   !> goes as far as a step may
+   !> Length of a dynamic step: that in which free fall from rest goes as far as a step may, or the
+   !> one that was asked for, unless blocks would move in it by a good part of their size: what is
+   !> met in such a step depends on where it is looked for
    pure function dynamic_step(settings, march) result(dt)
       !> Settings of the run
       type(settings_t), intent(in) :: settings
@@ -153,11 +180,17 @@ contains
       !> The length [s]
       real(wp) :: dt
 
+      real(wp) :: fall
+
       dt = settings%time_step
-      if (dt > 0.0_wp) return
-      dt = 1.0_wp
-      if (march%free_acceleration > 0.0_wp) &
-         & dt = sqrt(2.0_wp*march%allowed_motion/march%free_acceleration)
+      if (.not. march%free_acceleration > 0.0_wp) then
+         if (.not. dt > 0.0_wp) dt = 1.0_wp
+      else if (.not. dt > 0.0_wp) then
+         dt = sqrt(2.0_wp*march%allowed_motion/march%free_acceleration)
+      else if (settings%current) then
+         fall = march%allowed_motion*min(1.0_wp, longest_fall/settings%max_displacement_ratio)
+         dt = min(dt, sqrt(2.0_wp*fall/march%free_acceleration))
+      end if
    end function dynamic_step
 
    !> Shorten a dynamic step that would move too far, or beyond the end of the run
@@ -174,7 +207,8 @@ contains
          & march%dt = march%allowed_motion/speed
       if (.not. settings%duration > 0.0_wp) return
       left = settings%duration - march%time
-      if (left < march%dt*(1.0_wp + 1.0e-9_wp)) march%dt = left
+      ! what many rounded steps leave over is no step of its own
+      if (left < march%dt*(1.0_wp + 1.0e-6_wp)) march%dt = left
    end subroutine fit_interval
 
    !> Accept a step, or cut its length for another try: it must have settled and, where blocks move,

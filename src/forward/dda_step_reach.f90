@@ -9,7 +9,7 @@ module dda_step_reach
    implicit none
    private
 
-   public :: first_reach, judge_reach, next_reach, travel_of
+   public :: first_reach, judge_reach, next_reach, travel_by, travel_of
 
    !> Least reach of a block over its size: contacts nearer than this are always looked at
    real(wp), parameter :: least_reach = 1.0e-3_wp
@@ -131,26 +131,44 @@ contains
       type(march_t), intent(in) :: march
       !> The motion: (2, n_vertex) [m]
       real(wp) :: travel(2, size(system%vertex, 2))
-      real(wp) :: t(2, 6), motion(6), centroid(2)
+      real(wp) :: motion(6, maxval(system%equation))
+      integer :: b, e
+
+      motion = 0.0_wp
+      do b = 1, size(system%area)
+         e = system%equation(b)
+         if (e == 0) cycle
+         if (settings%dynamic) then
+            motion(:, e) = march%dt*system%velocity(:, b)
+            motion(1:2, e) = motion(1:2, e) + settings%load_direction*system%unit_weight(b) &
+               & *march%dt**2/(2.0_wp*system%density(b))
+         else if (allocated(march%last_motion)) then
+            motion(:size(march%last_motion, 1), e) = march%last_motion(:, e)
+         end if
+      end do
+      travel = travel_by(system, motion)
+   end function travel_of
+
+   !> How a motion of the blocks moves their corners
+   pure function travel_by(system, motion) result(travel)
+      !> The blocks
+      type(block_system_t), intent(in) :: system
+      !> The motion: (n_dof, n_equation)
+      real(wp), intent(in) :: motion(:, :)
+      !> The motion of the corners: (2, n_vertex) [m]
+      real(wp) :: travel(2, size(system%vertex, 2))
+      real(wp) :: t(2, 6), centroid(2)
       integer :: b, e, v
 
       travel = 0.0_wp
       do b = 1, size(system%area)
          e = system%equation(b)
          if (e == 0) cycle
-         motion = 0.0_wp
-         if (settings%dynamic) then
-            motion = march%dt*system%velocity(:, b)
-            motion(1:2) = motion(1:2) + settings%load_direction*system%unit_weight(b) &
-               & *march%dt**2/(2.0_wp*system%density(b))
-         else if (allocated(march%last_motion)) then
-            motion(:size(march%last_motion, 1)) = march%last_motion(:, e)
-         end if
          centroid = system%centroid(:, b) + system%motion(1:2, b)
          do v = system%first_vertex(b), system%first_vertex(b + 1) - 1
             t = displacement_matrix(system%moved(:, v), centroid)
-            travel(:, v) = matmul(t, motion)
+            travel(:, v) = matmul(t(:, :size(motion, 1)), motion(:, e))
          end do
       end do
-   end function travel_of
+   end function travel_by
 end module dda_step_reach

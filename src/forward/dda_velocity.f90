@@ -14,7 +14,7 @@ module dda_velocity
    use dda_block_system, only : block_system_t
    use dda_contact_detection, only : contacts_t
    use dda_elasticity, only : stress_load
-   use dda_fixed_points, only : add_fixed_springs, hold_rigidly
+   use dda_fixed_points, only : add_fixed_springs, hold_rigidly, turn_fixed_row
    use dda_joint_springs, only : joint_springs_t
    use dda_kinds, only : wp
    use dda_material, only : elasticity_matrix
@@ -37,7 +37,11 @@ module dda_velocity
    !> rate: its strain follows its load
    real(wp), parameter :: resolved = 1.0_wp
    !> Most tries with less restitution; the last one has none
-   integer, parameter :: max_tries = 8
+   integer, parameter :: max_tries = 10
+   !> What speeds leave of gaps in the longest step, over what motions leave
+   real(wp), parameter :: finer = 1.0e-2_wp
+   !> Share by which restitution is taken less at first
+   real(wp), parameter :: least_less = 1.0e-6_wp
    !> Energy that counts as rounding, over that of motion
    real(wp), parameter :: energy_noise = 1.0e-12_wp
 
@@ -45,7 +49,9 @@ contains
 
    !> Velocities of the blocks at the end of a settled step. Newton's restitution may bring in
    !> energy where there is friction, or where blocks are hit in several places; then there is
-   !> less of it
+   !> less of it. What contacts have done to the energy of the motion is no part of what is allowed.
+   !> Held points turn with their block, which constant acceleration does not know: no contact, no
+   !> bound
    pure subroutine settle_velocities(settings, system, contacts, equations, step)
       !> Settings of the run
       type(settings_t), intent(in) :: settings
@@ -58,22 +64,54 @@ contains
       !> The step; its velocities are set, and whether it counts
       type(step_context_t), intent(inout) :: step
       logical :: closed(2, size(contacts%joint))
-      real(wp) :: part(2, size(contacts%joint)), before
+      real(wp) :: part(2, size(contacts%joint)), allowed, before, less
+      real(wp) :: steady(size(step%state%motion, 1), size(step%state%motion, 2))
       integer :: try
 
       closed = closed_contacts(system, contacts, step)
       part = parting_speed(settings, system, contacts, closed, step)
-      before = kinetic_energy(equations, 2.0_wp/step%dt*step%state%motion &
-         & - packed_velocity(system, size(step%state%motion, 1)))
+      steady = 2.0_wp/step%dt*step%state%motion &
+         & - packed_velocity(system, size(step%state%motion, 1))
+      before = kinetic_energy(equations, steady)
+      allowed = before - sum(step%state%force*step%state%increment)
+      less = least_less
       do try = 0, max_tries
          if (try == max_tries) part = 0.0_wp
          call settle_impulses(settings, system, contacts, closed, part, equations, step)
          if (.not. step%accepted) return
-         step%impact = before - kinetic_energy(equations, step%velocity)
-         if (step%impact >= -energy_noise*before .or. .not. any(part > 0.0_wp)) return
-         part = 0.8_wp*part
+         if (kinetic_energy(equations, step%velocity) <= allowed + energy_noise*before) exit
+         if (.not. any(part > 0.0_wp)) exit
+         part = (1.0_wp - less)*part
+         less = min(20.0_wp*less, 0.2_wp)
       end do
+      if (any(closed)) &
+         & call hold_energy(equations, steady, allowed + energy_noise*before, step%velocity)
+      step%impact = before - kinetic_energy(equations, step%velocity)
    end subroutine settle_velocities
+
+   !> Let the velocities have no more energy than there is: mix into them those of constant
+   !> acceleration. Momentum stays, and a mixture of admissible impulses is admissible
+   pure subroutine hold_energy(equations, steady, allowed, velocity)
+      !> The equations, for the masses
+      type(equations_t), intent(in) :: equations
+      !> Velocities at the end of constant acceleration: (n_dof, n_equation)
+      real(wp), intent(in) :: steady(:, :)
+      !> The energy [J/m]
+      real(wp), intent(in) :: allowed
+      !> The velocities: (n_dof, n_equation)
+      real(wp), intent(inout) :: velocity(:, :)
+      real(wp) :: excess, slope, square, share, root
+
+      excess = kinetic_energy(equations, velocity) - allowed
+      if (.not. excess > 0.0_wp) return
+      square = kinetic_energy(equations, steady - velocity)
+      slope = kinetic_energy(equations, steady) - kinetic_energy(equations, velocity) - square
+      ! excess + share*slope + share**2*square = 0
+      root = slope**2 - 4.0_wp*excess*square
+      if (.not. root > 0.0_wp .or. .not. slope < 0.0_wp) return
+      share = min(1.0_wp, 2.0_wp*excess/(sqrt(root) - slope))
+      velocity = velocity + share*(steady - velocity)
+   end subroutine hold_energy
 
    !> Velocities for given speeds at which the contacts must part
    pure subroutine settle_impulses(settings, system, contacts, closed, part, equations, step)
@@ -101,6 +139,8 @@ contains
       held_force = equations%fixed%force
       call assemble_rates(settings, system, follows, step, equations)
       state = step%state
+      ! what a speed leaves of a gap counts as in the longest step
+      state%fineness = finer*step%dt/step%longest
       springs = contacts%springs
       do j = 1, size(contacts%joint)
          springs%stiffness(j) = over_inertia*joint_mass(system, contacts%joint(j)%block)/step%dt**2
@@ -204,7 +244,7 @@ contains
       !> Receives base and load
       type(equations_t), intent(inout) :: equations
       real(wp) :: share, stress(6)
-      integer :: b, e, nd
+      integer :: b, e, i, nd
 
       nd = size(equations%load, 1)
       share = damping_rate(settings, step%dt)*step%dt/2.0_wp
@@ -225,9 +265,16 @@ contains
                & - matmul(equations%elastic(:, :, e), step%state%motion(:, e))
          end if
       end do
+      do i = 1, size(equations%fixed%point)
+         e = equations%fixed%equation(i)
+         call turn_fixed_row(system, settings, i, step%state%motion(:, e), equations%fixed, &
+            & equations%load(:, e))
+      end do
       do b = 1, size(follows)
-         if (follows(b) .and. system%equation(b) > 0) &
-            & call hold_rigidly(system%equation(b), equations%fixed)
+         e = system%equation(b)
+         if (e == 0 .or. .not. follows(b)) cycle
+         call hold_rigidly(e, equations%fixed)
+         equations%load(4:, e) = 0.0_wp
       end do
       call add_fixed_springs(equations%fixed, step%dt*equations%fixed%rate, equations%base, &
          & equations%load)

@@ -37,6 +37,8 @@ module dda_verdict
    real(wp), parameter :: beyond_any = 100.0_wp
    !> Where blocks move, collapse is a displacement of this multiple of the elastic motion
    real(wp), parameter :: collapse_multiple = 100.0_wp
+   !> What has moved as far and loses more than half of its acceleration in a step may come to rest
+   real(wp), parameter :: slowing = 0.5_wp
    !> A block of less than this share of the mean mass is light
    real(wp), parameter :: light = 1.0e-2_wp
    !> Share of the whole weight to which joint forces are balanced, with a margin of ten
@@ -169,20 +171,29 @@ contains
       !> One of verdict
       integer :: answer
       logical :: at_rest, far_beyond_elastic, all_work_is_speed, steady, most_work_is_speed
-      logical :: stores_nothing
+      logical :: goes_on, is_certain, stores_nothing
       real(wp) :: far, fall
 
       far = settings%collapse_displacement
       if (settings%current .and. .not. far > 0.0_wp) far = collapse_multiple*march%elastic_motion
       at_rest = step%acceleration <= settings%rest_tolerance*march%free_acceleration
       fall = march%free_acceleration*step%dt**2/2.0_wp
+      ! what slides must itself have moved that far, for joints settle in their slips for a while
       far_beyond_elastic = fall >= beyond_elastic*march%elastic_motion &
+         & .and. (step%farthest >= march%elastic_motion .or. .not. slides(step)) &
          & .or. (step%was_cut .or. step%dt >= march%longest) &
          & .and. fall >= beyond_any*march%elastic_motion
       all_work_is_speed = step%kinetic > 0.999_wp*step%work
       most_work_is_speed = step%kinetic > 0.9_wp*step%work
       steady = abs(step%acceleration - march%last_acceleration) < 0.01_wp*march%last_acceleration
       stores_nothing = abs(step%stored) < 1.0e-3_wp*abs(step%work)
+      ! what drives the blocks must be more than what the bounds of friction are off by, and speed
+      ! without work is rounding
+      is_certain = step%kinetic > 2.0_wp*step%state%unsettled_work &
+         & .and. (step%kinetic < 1.1_wp*step%work .or. allocated(settings%boundary%held))
+      ! blocks that slip far into a notch come to rest there
+      goes_on = settings%collapse_displacement > 0.0_wp &
+         & .or. step%acceleration > slowing*march%last_acceleration
       ! where blocks move, a step that comes to rest has only proven the shape it started from
       if (settings%current) at_rest = at_rest .and. march%steps >= 2 &
          & .and. step%farthest <= max(still*march%displacement, march%resolution, &
@@ -191,12 +202,22 @@ contains
       if (at_rest) then
          answer = verdict%stable
       else if (far > 0.0_wp) then
-         if (march%displacement > far .and. march%steps >= 2) answer = verdict%collapsed
-      else if (march%steps >= 2 .and. far_beyond_elastic) then
-         if (all_work_is_speed .or. steady .and. (most_work_is_speed .or. stores_nothing)) &
+         if (march%displacement > far .and. march%steps >= 2 .and. goes_on) &
             & answer = verdict%collapsed
+      else if (march%steps >= 2 .and. far_beyond_elastic) then
+         if (is_certain .and. (all_work_is_speed .or. steady .and. (most_work_is_speed &
+            & .or. stores_nothing))) answer = verdict%collapsed
       end if
    end function judge_verdict
+
+   !> Whether a joint slides at the end of a step
+   pure logical function slides(step)
+      !> The step
+      type(step_context_t), intent(in) :: step
+
+      slides = .false.
+      if (allocated(step%state%face)) slides = any(step%state%face%slip /= 0)
+   end function slides
 
    !> Farthest that a corner has moved since the beginning
    pure function largest_displacement(system, current) result(largest)

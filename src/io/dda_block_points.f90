@@ -63,6 +63,11 @@ contains
       i = 1
       if (has_value) call take_numbers(entry%head, i, value, error)
       if (allocated(error)) return
+      if (has_value .and. i <= entry%head%n) then
+         call fatal_error(error, "unknown word '"//trim(entry%head%word(i))//"'", &
+            & line=entry%head%number)
+         return
+      end if
       call read_history(entry, has_value, value, history, error)
       if (allocated(error)) return
       if (entry%head%word(1) == "base_acceleration") then
@@ -150,7 +155,9 @@ contains
             & //"), which lies in none", line=entry%head%number)
          return
       end if
-      held = held_point_t(block, point, [.true., .true.], history)
+      held%block = block
+      held%point = point
+      held%path = history
       if (entry%head%word(1) == "fix") then
          call take_directions(entry, i, held%along, error)
       else if (i <= entry%head%n) then
@@ -163,7 +170,7 @@ contains
          case ("fix", "displacement")
             call add_held(entry, held, plan, error)
          case ("load")
-            boundary%loaded = [boundary%loaded, loaded_point_t(block, point, history)]
+            call keep_load(boundary%loaded, block, point, history)
          case ("measure")
             boundary%measured = [boundary%measured, measured_point_t(block, point)]
          end select
@@ -218,8 +225,46 @@ contains
             & //"are held or led already, found another", line=entry%head%number)
          return
       end if
-      plan%boundary%held = [plan%boundary%held, held]
+      call keep_held(plan%boundary%held, held)
    end subroutine add_held
+
+   !> Add a held point to a list; gfortran's array constructors would lose the memory of histories
+   pure subroutine keep_held(list, held)
+      !> The list
+      type(held_point_t), allocatable, intent(inout) :: list(:)
+      !> The point
+      type(held_point_t), intent(in) :: held
+      type(held_point_t), allocatable :: longer(:)
+      integer :: n
+
+      n = size(list)
+      allocate (longer(n + 1))
+      longer(:n) = list
+      longer(n + 1) = held
+      call move_alloc(longer, list)
+   end subroutine keep_held
+
+   !> Add a loaded point to a list likewise
+   pure subroutine keep_load(list, block, point, history)
+      !> The list
+      type(loaded_point_t), allocatable, intent(inout) :: list(:)
+      !> Block that owns the point
+      integer, intent(in) :: block
+      !> The point: (2) [m]
+      real(wp), intent(in) :: point(2)
+      !> Its force in time
+      type(history_t), intent(in) :: history
+      type(loaded_point_t), allocatable :: longer(:)
+      integer :: n
+
+      n = size(list) + 1
+      allocate (longer(n))
+      longer(:n - 1) = list
+      longer(n)%block = block
+      longer(n)%point = point
+      longer(n)%force = history
+      call move_alloc(longer, list)
+   end subroutine keep_load
 
    !> A vector in time: one value behind the word, or rows of time and components below it
    pure subroutine read_history(entry, has_value, value, history, error)

@@ -18,6 +18,8 @@ module dda_check_plan
    real(wp), parameter :: too_thin = 1.0e-8_wp
    !> Blocks may overlap by this share of the smaller one's size, for coordinates are rounded
    real(wp), parameter :: rounded = 1.0e-4_wp
+   !> Corners rounded to this share of their block's extent are doubtful
+   real(wp), parameter :: few_digits = 1.0e-9_wp
    !> Blocks farther from zero than this multiple of their extent get an origin of their own
    real(wp), parameter :: far_away = 100.0_wp
 
@@ -124,6 +126,7 @@ contains
             & //to_text(plan%material(b))//", which is not given", line=plan%line(b))
          return
       end do
+      call check_digits(plan)
       extent = maxval(plan%vertex, dim=2) - minval(plan%vertex, dim=2)
       point = minval(plan%vertex, dim=2)
       if (maxval(abs(point)) > far_away*maxval(extent)) then
@@ -150,9 +153,27 @@ contains
             return
          end associate
       end do
-      if (.not. any(plan%fixed) .and. .not. allocated(plan%boundary%held)) &
-         & call warn(plan, 1, "nothing is fixed")
+      if (all(plan%fixed)) call warn(plan, 1, "all blocks are fixed: nothing can move")
    end subroutine check_plan
+
+   !> Warn of coordinates so large that their spacing shows in a block
+   pure subroutine check_digits(plan)
+      !> The plan; receives the warning
+      type(block_plan_t), intent(inout) :: plan
+      real(wp) :: extent, farthest
+      integer :: b
+
+      do b = 1, size(plan%fixed)
+         associate (vertex => plan%vertex(:, plan%first_vertex(b):plan%first_vertex(b + 1) - 1))
+            extent = norm2(maxval(vertex, dim=2) - minval(vertex, dim=2))
+            farthest = maxval(abs(vertex))
+         end associate
+         if (spacing(farthest) <= few_digits*extent) cycle
+         call warn(plan, plan%line(b), "block "//to_text(b)//" has corners of few digits: "// &
+            & "so far from zero coordinates are rounded to 1e-9 of its size or more")
+         return
+      end do
+   end subroutine check_digits
 
    !> Area of a polygon [m2]
    pure real(wp) function polygon_area(vertex)

@@ -28,7 +28,8 @@ module dda_critical
    !> Most undecided values in a row on the way to a decided one
    integer, parameter :: max_undecided = 6
 
-
+   !> Decisions that a proposal gets to lead to another collapse before the bracket is halved
+   integer, parameter :: patience = 3
    !> A bracket wider than this share of its value is no answer, unless a wider one was asked for
    real(wp), parameter :: widest = 1.0e-4_wp
 
@@ -43,8 +44,9 @@ contains
       !> What was found
       type(critical_t), intent(out) :: critical
       type(proposal_t) :: proposal
-      real(wp) :: limit
-      integer :: answer, undecided
+      real(wp) :: limit, value
+      integer :: answer, in_vain, undecided
+      logical :: may_turn
 
       call find_collapse(family, search, limit, critical)
       if (critical%verdict /= verdict%undecided) return
@@ -52,14 +54,22 @@ contains
       if (search%check_far_end .and. .not. allocated(critical%standing)) &
          & call decide_at(family, limit, critical, answer)
       answer = verdict%collapsed
+      may_turn = allocated(critical%reason) .and. .not. search%start > search%low
+      in_vain = 0
       undecided = 0
       do while (critical%decisions < max_decisions .and. undecided < max_undecided)
          if (.not. abs(critical%falls - limit) > 0.0_wp) then
-            critical%verdict = verdict%collapsed
-            return
+            if (.not. may_turn) then
+               critical%verdict = verdict%collapsed
+               return
+            end if
+            ! the low end is undecided: what stands may lie between it and the first collapse
+            limit = critical%undecided_at
+            may_turn = .false.
          end if
          if (answer == verdict%collapsed .and. .not. proved(search, critical, proposal)) &
             & call trace(family, search, limit, critical, proposal)
+         in_vain = merge(0, in_vain + 1, answer == verdict%collapsed)
          if (closed(search, critical, proposal)) then
             critical%verdict = verdict%found
             critical%half = proposal%half
@@ -67,7 +77,9 @@ contains
             critical%stops = proposal%usable .and. .not. critical%current
             return
          end if
-         call decide_at(family, candidate(critical, proposal, limit), critical, answer)
+         value = candidate(critical, proposal, limit, in_vain)
+         if (undecided > 0) value = not_again(value, critical, undecided)
+         call decide_at(family, value, critical, answer)
          if (answer == verdict%undecided) then
             undecided = undecided + 1
             proposal%half = 4.0_wp*proposal%half
@@ -193,13 +205,15 @@ contains
    end subroutine shed
 
    !> Where to decide next: just beyond the proposal, then just before it, then inside the bracket
-   pure function candidate(critical, proposal, limit) result(value)
+   pure function candidate(critical, proposal, limit, in_vain) result(value)
       !> What was found so far
       type(critical_t), intent(in) :: critical
       !> Where the last collapse stops
       type(proposal_t), intent(in) :: proposal
       !> The end of the range on the side that stands
       real(wp), intent(in) :: limit
+      !> Decisions since the last collapse
+      integer, intent(in) :: in_vain
       !> The value
       real(wp) :: value
       real(wp) :: beyond, before, far, toward
@@ -222,7 +236,7 @@ contains
       else if (critical%current .or. abs(far - critical%falls) > 0.3_wp*abs(far)) then
          value = middle(critical%falls, far)
       else
-         value = far - 0.1_wp*(far - critical%falls)
+         value = far - merge(0.1_wp, 0.5_wp, in_vain <= patience)*(far - critical%falls)
       end if
 
    contains
@@ -235,6 +249,24 @@ contains
          inside = toward*(x - critical%falls) > 0.0_wp .and. toward*(far - x) > 0.0_wp
       end function inside
    end function candidate
+
+   !> A value beside the one that has just been undecided: the middle of a bracket may be critical
+   !> to the last digit, where nothing rests and nothing moves
+   pure real(wp) function not_again(value, critical, undecided)
+      !> The value to decide next
+      real(wp), intent(in) :: value
+      !> What was found so far
+      type(critical_t), intent(in) :: critical
+      !> How many values in a row were undecided
+      integer, intent(in) :: undecided
+      real(wp) :: share
+
+      not_again = value
+      if (abs(value - critical%undecided_at) > 0.0_wp) return
+      if (.not. allocated(critical%standing)) return
+      share = 0.5_wp + 0.1_wp*real(merge(1, -1, mod(undecided, 2) == 0)*((undecided + 1)/2), wp)
+      not_again = critical%falls + share*(critical%stands - critical%falls)
+   end function not_again
 
    !> Middle of a bracket; the geometric one where the ends are of different magnitude
    pure real(wp) function middle(a, b)

@@ -21,6 +21,7 @@ module dda_deck_scene
    use dda_scene_plan, only : plan_scene, scene_plan_t
    use dda_settings, only : settings_t
    use dda_text, only : to_text
+   use dda_warnings, only : add_warning
    implicit none
    private
 
@@ -48,6 +49,9 @@ module dda_deck_scene
       !> Make the scene of one value
       procedure :: build => build_deck_scene
    end type deck_family_t
+
+   !> A block whose weight strains it more than this is doubtful
+   real(wp), parameter :: doubtful_strain = 1.0e-3_wp
 
 contains
 
@@ -176,10 +180,11 @@ contains
          & //trim(deck%plan%warning(i))
    end function warning_line
 
-   !> Check that a static scene can come to rest at all, and that a run that goes on has a file
+   !> Check that a static scene can come to rest at all, and that a run that goes on has a file;
+   !> warn of blocks that will fall, and of units that are no metres
    subroutine check_scene(deck, error)
-      !> The deck, checked
-      type(deck_t), intent(in) :: deck
+      !> The deck, checked; receives the warnings
+      type(deck_t), intent(inout) :: deck
       !> Allocated if nothing holds a block, or no file is there
       type(error_t), allocatable, intent(out) :: error
       type(scene_t) :: scene
@@ -204,12 +209,51 @@ contains
          if (allocated(error)) return
       end if
       if (word_of(deck, "scene", "kind") /= "blocks") return
-      if (word_of(deck, "analysis", "mode") /= "static") return
       call deck_scene(deck, scene)
       b = floating_block(scene)
-      if (b == 0) return
-      call fatal_error(error, "block "//to_text(b)//" rests on nothing: no chain of joints "// &
-         & "ties it to a fixed block, as mode = 'static' wants; add a joint or remove it", &
-         & geometry_file(deck), deck%plan%line(b))
+      if (b > 0 .and. word_of(deck, "analysis", "mode") == "static") then
+         call fatal_error(error, "block "//to_text(b)//" rests on nothing: no chain of joints "// &
+            & "ties it to a fixed block, as mode = 'static' wants; add a joint or remove it", &
+            & geometry_file(deck), deck%plan%line(b))
+         return
+      end if
+      call doubt_units(deck, scene)
+      if (b > 0 .and. any(deck%plan%fixed)) call add_warning(deck%warnings, "block " &
+         & //to_text(b)//" rests on nothing, and will fall", geometry_file(deck), &
+         & deck%plan%line(b))
+      if (any(deck%plan%fixed)) return
+      b = 0
+      if (allocated(deck%plan%boundary%held)) b = size(deck%plan%boundary%held)
+      if (b == 0) call add_warning(deck%warnings, "nothing is fixed", geometry_file(deck), 1)
    end subroutine check_scene
+
+   !> Warn where the weight of the blocks would strain them as no masonry is strained: lengths are
+   !> then often millimetres
+   pure subroutine doubt_units(deck, scene)
+      !> The deck; receives the warning
+      type(deck_t), intent(inout) :: deck
+      !> Its scene
+      type(scene_t), intent(in) :: scene
+      character(len=10) :: figure
+      real(wp) :: height, strain
+      integer :: b
+
+      strain = 0.0_wp
+      associate (system => scene%system)
+         do b = 1, size(system%area)
+            if (system%equation(b) == 0) cycle
+            associate (vertex => system%vertex(:, &
+               & system%first_vertex(b):system%first_vertex(b + 1) - 1))
+               height = maxval(maxval(vertex, dim=2) - minval(vertex, dim=2))
+            end associate
+            strain = max(strain, system%unit_weight(b)*height &
+               & /system%materials(system%material(b))%young)
+         end do
+      end associate
+      if (.not. strain > doubtful_strain) return
+      write (figure, "(es10.1)") strain
+      call add_warning(deck%warnings, "the weight of a block strains it by "// &
+         & trim(adjustl(figure))//": lengths, weights or young in other units than m, N, Pa?", &
+         & geometry_file(deck), 1)
+   end subroutine doubt_units
 end module dda_deck_scene

@@ -13,7 +13,7 @@ module dda_fixed_points
    private
 
    public :: fixed_points_t, new_fixed_points, follow_fixed_points, add_fixed_springs
-   public :: correct_fixed_forces, hold_rigidly
+   public :: correct_fixed_forces, turn_fixed_row, hold_rigidly
 
    !> Stiffness of a spring over the inertia 2m/dt**2 of its block, at the least
    real(wp), parameter :: over_inertia = 1.0e3_wp
@@ -131,6 +131,36 @@ contains
          end associate
       end do
    end subroutine add_fixed_springs
+
+   !> Let half the force that held a point in the motion act as it did, and half where the point is
+   !> at the end, as its velocity needs: with all of it along the old row a pendulum would gain
+   !> energy (Andersen 1983, J. Comput. Phys. 52:24)
+   pure subroutine turn_fixed_row(system, settings, i, motion, fixed, load)
+      !> The blocks before the step
+      type(block_system_t), intent(in) :: system
+      !> Settings of the run
+      type(settings_t), intent(in) :: settings
+      !> Number of the spring
+      integer, intent(in) :: i
+      !> Motion of its block in the step: (n_dof)
+      real(wp), intent(in) :: motion(:)
+      !> The springs; row and force of this one are changed
+      type(fixed_points_t), intent(inout) :: fixed
+      !> Load of its block: (n_dof)
+      real(wp), intent(inout) :: load(:)
+      real(wp) :: end_motion(6), place(2), t(2, 6)
+
+      load = load + fixed%force(i)/2.0_wp*fixed%row(:, i)
+      fixed%force(i) = 0.0_wp
+      associate (held => settings%boundary%held(fixed%point(i)), &
+         & b => settings%boundary%held(fixed%point(i))%block)
+         end_motion = system%motion(:, b)
+         end_motion(:3) = end_motion(:3) + motion(:3)
+         place = moved_point(held%point, system%centroid(:, b), end_motion)
+         t = displacement_matrix(place, system%centroid(:, b) + end_motion(1:2))
+      end associate
+      fixed%row(:3, i) = t(fixed%axis(i), :3)
+   end subroutine turn_fixed_row
 
    !> Let the points of a block without strain rate ask for no more than it can do: of the rates of
    !> a rigid block those nearest to what was asked for

@@ -2,7 +2,7 @@
 !> (Shi: df09, df15, df16)
 module dda_outer_loads
    use dda_block_system, only : block_system_t
-   use dda_boundary, only : history_t, mean_over, value_at
+   use dda_boundary, only : history_t, loaded_point_t, mean_over, value_at
    use dda_deformation, only : moved_point
    use dda_kinds, only : wp
    use dda_loads, only : body_load, point_load
@@ -29,7 +29,7 @@ contains
       real(wp), intent(in) :: weight(:, :)
       !> Sum of all loads: (n_dof, n_equation)
       real(wp), intent(out) :: load(:, :)
-      real(wp) :: of_block(6), centre(2), place(2), force(2), shaking(2)
+      real(wp) :: of_block(6), shaking(2)
       integer :: b, e, i, nd
 
       nd = size(load, 1)
@@ -45,24 +45,33 @@ contains
       end if
       if (.not. allocated(settings%boundary%loaded)) return
       do i = 1, size(settings%boundary%loaded)
-         associate (point => settings%boundary%loaded(i)%point, &
-            & b => settings%boundary%loaded(i)%block)
-            e = system%equation(b)
-            if (e == 0) cycle
-            centre = system%centroid(:, b)
-            force = now(settings%boundary%loaded(i)%force)
-            if (settings%current) then
-               place = moved_point(point, centre, system%motion(:, b))
-               of_block = point_load(force, place, centre + system%motion(1:2, b), &
-                  & system%motion(:, b))
-            else
-               of_block = point_load(force, point, centre)
-            end if
-            load(:, e) = load(:, e) + of_block(:nd)
-         end associate
+         e = system%equation(settings%boundary%loaded(i)%block)
+         if (e == 0) cycle
+         of_block = load_at(settings%boundary%loaded(i), now(settings%boundary%loaded(i)%force))
+         load(:, e) = load(:, e) + of_block(:nd)
       end do
 
    contains
+
+      !> What a force at a point of a block is to its unknowns
+      pure function load_at(loaded, force) result(of_block)
+         !> Where it acts
+         type(loaded_point_t), intent(in) :: loaded
+         !> The force: (2) [N/m]
+         real(wp), intent(in) :: force(2)
+         !> Load on the unknowns: (6)
+         real(wp) :: of_block(6)
+
+         associate (centre => system%centroid(:, loaded%block), &
+            & motion => system%motion(:, loaded%block))
+            if (settings%current) then
+               of_block = point_load(force, moved_point(loaded%point, centre, motion), &
+                  & centre + motion(1:2), motion)
+            else
+               of_block = point_load(force, loaded%point, centre)
+            end if
+         end associate
+      end function load_at
 
       !> What a history is in the step
       pure function now(history) result(value)

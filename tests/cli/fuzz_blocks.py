@@ -49,7 +49,7 @@ base_acceleration
   0.02 1 0
 """,
     b"block fixed\n0 0\n4 0\n4 -1\n0 -1\nblock\n1 0\n2 0\n2 1\n1 1\nblock\n1 1\n2 1\n1.5 2\n"
-    b"block velocity 0 -1 0.5\n2.5 0.5\n3.5 0.5\n3 1.5\ndisplacement 0.5 -0.5 0 0.001\n",
+    b"block velocity 0 -1 0.5\n2.5 0.5\n3.5 0.5\n3 1.5\ndisplacement 1.5 0.5 0 0.001\n",
 ]
 GROUPS = [
     b"&analysis mode = 'dynamic', geometry = 'current', time_step = 0.001, steps = 9 /\n",

@@ -34,6 +34,18 @@ def test_check_tells_what_was_found(tmp_path: Path) -> None:
     assert "1 of two normal springs and one shear spring, 1 of one corner before an edge" in done.stdout
 
 
+def test_check_tells_the_points(tmp_path: Path) -> None:
+    deck = write(tmp_path, BLOCK + "fix 0 0\nfix 1 0\nmeasure 0.5 1\nload 0.5 2 1 0\n")
+    done = run_dda("check", deck)
+    assert done.returncode == 0 and done.stderr == ""
+    assert "2 held, 1 loaded, 1 measured" in done.stdout
+
+
+def test_nothing_fixed_is_warned_of(tmp_path: Path) -> None:
+    deck = write(tmp_path, BLOCK, "&analysis mode = 'dynamic' /")
+    assert "x.blocks:1: warning: nothing is fixed" in run_dda("check", deck).stderr
+
+
 def test_warnings_name_file_and_line(tmp_path: Path) -> None:
     clockwise = "block\n0 0\n0 2\n1 2\n1 0\n"
     deck = write(tmp_path, BASE + clockwise)
@@ -56,6 +68,7 @@ def test_warnings_name_file_and_line(tmp_path: Path) -> None:
         (BASE + BLOCK + "fix 5 5\n", 11, "lies in none"),
         (BASE + BLOCK + "material 2 density 0\n", 11, "above 0"),
         (BASE + BLOCK.replace("1 2", "1,5 2"), 9, "a corner x y"),
+        (BASE + BLOCK + "fix 0.5 1\ndisplacement 0.5 1 0.1 0\n", 12, "held or led already"),
     ],
 )
 def test_bad_blocks_are_refused_with_file_and_line(
@@ -67,6 +80,30 @@ def test_bad_blocks_are_refused_with_file_and_line(
     assert f"x.blocks:{line}: error: " in message
     assert words in message
     assert not (tmp_path / "x").exists()
+
+
+@pytest.mark.parametrize(
+    "blocks, line, words",
+    [
+        (BASE.replace("block", "block fixed\n5 5\n6 5\n6 6\nblock", 1), 1, "all blocks are fixed"),
+        (BASE + BLOCK.replace("0\n", "3\n", 2).replace("2\n", "5\n"), 6, "rests on nothing"),
+        (BASE + BLOCK + "material 2 density 1\n" + "block\n1e7 0\n10000000.1 0\n1e7 0.1\n", 12, "few digits"),
+        (
+            (BASE + BLOCK).replace("1", "1000").replace("2", "2000"),
+            1,
+            "strains it by",
+        ),
+    ],
+)
+def test_doubtful_blocks_are_warned_of_with_file_and_line(
+    tmp_path: Path, blocks: str, line: int, words: str
+) -> None:
+    deck = write(tmp_path, blocks, "&analysis mode = 'dynamic', steps = 2, duration = 1e-6 /")
+    done = run_dda("run", deck, cwd=tmp_path)
+    assert done.returncode == 0, done.stderr
+    assert any(
+        f"x.blocks:{line}: warning: " in text and words in text for text in done.stderr.splitlines()
+    ), done.stderr
 
 
 def test_a_missing_file_is_bad_input(tmp_path: Path) -> None:

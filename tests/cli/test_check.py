@@ -54,6 +54,12 @@ def test_plan_names_the_deck_and_its_title(tmp_path: Path) -> None:
         ("&analysis unknowns = 6 /\n", ["unknowns 6 a block, 216 in all: the deck gives"]),
         ("&analysis geometry = 'current' /\n", ["6 a block, 216 in all: strain, for it moves"]),
         ("&analysis mode = 'dynamic' /\n", ["6 a block", "strain, for blocks vibrate", "kept"]),
+        ("&arch /\n", ["points none", "also told vtu: as &output asks", "strength none"]),
+        (
+            "&output energy = .true., vtu = .false., condition = .true. /\n",
+            ["also told energy, condition: as &output asks"],
+        ),
+        ("&output vtu = .false. /\n", ["also told nothing: output%vtu, energy"]),
         ("&joint cohesion = 1e3 /\n", ["6 a block", "which joint breaks first"]),
         ("&analysis collapse_displacement = 0.1 /\n", ["6 a block", "displacement that means"]),
         ("&arch thickness_ratio = 0.1 /\n", ["searched nothing"]),

@@ -85,6 +85,7 @@ def _of_lines(lines: list[str]) -> Iterator[tuple[int, str]]:
 def _of_statements(all_of_them: list[Statement], long: Collection[str]) -> Iterator[tuple[int, str]]:
     """Rules of statements, procedures and modules."""
     open_procedures: list[Statement] = []
+    inner = 0  # lines of internal procedures, which are judged on their own
     block, contains = 0, False
     for this in all_of_them:
         text = this.text
@@ -97,7 +98,9 @@ def _of_statements(all_of_them: list[Statement], long: Collection[str]) -> Itera
                 yield this.first, "a type has its !> line"
         elif _END_PROCEDURE.match(text):
             if open_procedures:
-                yield from _of_procedure(open_procedures.pop(), this, long)
+                begin = open_procedures.pop()
+                yield from _of_procedure(begin, this.last - (0 if open_procedures else inner), long)
+                inner = inner + this.last - begin.first + 1 if open_procedures else 0
         elif _PROCEDURE.match(text) and not text.startswith("module procedure"):
             if not this.documented:
                 yield this.first, "a procedure has its !> line"
@@ -129,10 +132,10 @@ def _of_one(text: str) -> Iterator[str]:
             yield "no common, equivalence, entry or data"
 
 
-def _of_procedure(begin: Statement, end: Statement, long: Collection[str]) -> Iterator[tuple[int, str]]:
+def _of_procedure(begin: Statement, last: int, long: Collection[str]) -> Iterator[tuple[int, str]]:
     """Rules of a whole procedure."""
     name = _PROCEDURE.match(begin.text)
-    if end.last - begin.first + 1 > PROCEDURE_LINES and name and name[1] not in long:
+    if last - begin.first + 1 > PROCEDURE_LINES and name and name[1] not in long:
         yield begin.first, f"a procedure has at most {PROCEDURE_LINES} lines"
 
 

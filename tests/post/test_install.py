@@ -3,12 +3,17 @@
 from __future__ import annotations
 
 import os
+import re
 import shutil
 import subprocess
 import sys
 from pathlib import Path
 
 import pytest
+
+pytest.importorskip("voussoir", reason="PYTHONPATH wants the build's python folder")
+
+from voussoir.command_line import COMMANDS  # noqa: E402
 
 BUILD = os.environ.get("VOUSSOIR_BUILD", "")
 
@@ -65,6 +70,41 @@ def test_decks_are_found_where_pip_puts_them(tmp_path: Path) -> None:
 def test_documents_are_installed(prefix: Path) -> None:
     folder = prefix / "share/doc/voussoir"
     assert (folder / "README.md").exists() and (folder / "docs/input.md").exists()
+
+
+def test_manual_pages_name_every_command_and_option(prefix: Path, tmp_path: Path) -> None:
+    for program in ("dda", "voussoir"):
+        text = (prefix / f"share/man/man1/{program}.1").read_text()
+        assert text.startswith(f".TH {program.upper()} 1 ")
+        plain = text.replace("\\-", "-")
+        for command in ("run", "check", "cut", "export") if program == "dda" else COMMANDS:
+            told = run(prefix / "bin" / program, "help", command)
+            options = set(re.findall(r"--[a-z-]+", told))
+            assert f".SS {program} {command}\n" in plain and options
+            assert [option for option in options if option not in plain] == []
+        if shutil.which("groff"):
+            words = ["groff", "-man", "-Tascii", "-ww", prefix / f"share/man/man1/{program}.1"]
+            done = subprocess.run(words, capture_output=True, text=True, check=True)
+            assert done.stderr == ""
+
+
+def test_version_is_the_same_everywhere(prefix: Path) -> None:
+    source = Path(__file__).parents[2]
+    project = (source / "CMakeLists.txt").read_text()
+    version = re.search(r"project\(voussoir VERSION ([\d.]+)", project)[1]
+    assert run(prefix / "bin/dda", "--version") == f"dda {version}\n"
+    assert run(prefix / "bin/voussoir", "--version") == f"voussoir {version}\n"
+    assert f'\nversion = "{version}"\n' in (source / "pyproject.toml").read_text()
+    assert f"\nversion: {version}\n" in (source / "CITATION.cff").read_text()
+    assert f"\n## {version}" in (source / "CHANGELOG.md").read_text()
+    assert f"voussoir {version}" in (prefix / "share/man/man1/dda.1").read_text()
+
+
+def test_results_tell_the_version_that_made_them(prefix: Path, tmp_path: Path) -> None:
+    (tmp_path / "a.nml").write_text("&arch thickness_ratio = 0.12 /\n")
+    run(prefix / "bin/dda", "run", str(tmp_path / "a.nml"), "--out", str(tmp_path / "a"))
+    version = run(prefix / "bin/dda", "--version").strip()
+    assert version in (tmp_path / "a/deck.record").read_text()
 
 
 def test_nothing_of_the_machine_is_left_in_the_package(prefix: Path) -> None:

@@ -16,7 +16,7 @@ from voussoir import results  # noqa: E402
 from voussoir.case_picture import draw_case, roles_of, thrust_points  # noqa: E402
 from voussoir.case_scene import scene_of  # noqa: E402
 from voussoir.collapse_animation import FFMpegWriter  # noqa: E402
-from voussoir.collapse_picture import contacts_of, limits, shapes_of  # noqa: E402
+from voussoir.collapse_picture import contacts_of, limits, pictures_of, shapes_of  # noqa: E402
 from voussoir.command_line import main  # noqa: E402
 from voussoir.design_chart import ChartError, draw_chart, swept_columns  # noqa: E402
 from voussoir.figure_style import house_style  # noqa: E402
@@ -383,6 +383,19 @@ def test_unknown_ending_of_an_animation_is_told(motion, tmp_path: Path, capsys) 
     assert "wanted a file .gif, .mp4 or .png, found 'fall.avi'" in capsys.readouterr().err
 
 
-def test_results_without_frames_are_not_animated(arches, capsys) -> None:
-    assert main(["animate", str(arches.folder)]) == 2
-    assert "wanted frames of case 1, found none; give the deck" in capsys.readouterr().err
+def test_mechanism_of_a_collapse_without_frames_is_animated(arches, tmp_path: Path, capsys) -> None:
+    pictures = pictures_of(arches, 1)
+    blocks = arches.blocks_of(1)
+    assert len(pictures) == 11
+    first, last = pictures[0].blocks, pictures[-1].blocks
+    moves = [np.hypot(*(after - before).T).max() for before, after in zip(first, last)]
+    assert max(moves) == pytest.approx(0.08 * 2 * 10.5, rel=0.13)  # of the width, and its margins
+    assert all(np.array_equal(shape, block.corners) for shape, block in zip(first, blocks))
+    assert main(["animate", str(arches.folder), "--out", str(tmp_path / "fall.png")]) == 0
+    assert len(list(tmp_path.iterdir())) == 11
+    capsys.readouterr()
+
+
+def test_results_that_do_not_move_are_not_animated(arches, capsys) -> None:
+    assert main(["animate", str(arches.folder), "--case", "2"]) == 2
+    assert "wanted frames of case 2, found none; give the deck" in capsys.readouterr().err

@@ -3,14 +3,26 @@
 import csv
 import os
 
+import numpy as np
 import pytest
 
 pytest.importorskip("voussoir", reason="PYTHONPATH wants the build's python folder")
 
 from voussoir.command_line import main  # noqa: E402
 from voussoir.deck_runs import Finished  # noqa: E402
-from voussoir.stability_judge import Critical, Refused, Same, Shifted, Verdict, judge  # noqa: E402
+from voussoir.stability_judge import (  # noqa: E402
+    Critical,
+    Measured,
+    Refused,
+    Same,
+    Shifted,
+    Verdict,
+    Warned,
+    judge,
+)
+from voussoir.stability_random import tower_push  # noqa: E402
 from voussoir.stability_scenes import catalogue, random_scenes  # noqa: E402
+from voussoir.validation_scene import Check  # noqa: E402
 
 
 @pytest.fixture(autouse=True)
@@ -41,8 +53,8 @@ def colour(expectation, *rows, status=0, **others):
         (Critical(None), row(), "WRONG"),
         (Critical(0.0), row("stable"), "right"),
         (Critical(0.0), row("collapsed"), "WRONG"),
-        (Shifted(0.1001, 2e-4), row(), "right"),
-        (Shifted(0.1001, 2e-5), row(), "WRONG"),
+        (Shifted(0.1002, 2e-4), row(), "right"),
+        (Shifted(0.1002, 2e-5), row(), "WRONG"),
         (Shifted(None, 1.0), row("collapsed"), "right"),
         (Verdict("stable"), row("stable"), "right"),
         (Verdict("stable"), row("collapsed"), "WRONG"),
@@ -86,9 +98,40 @@ def test_refusal_must_name_the_key():
     assert judge(Refused("poisson"), left).colour == "WRONG"
 
 
+def test_a_warning_must_be_there_and_the_answer_right():
+    doubt = "x.blocks:6: warning: block 2 is doubtful"
+    wanted = Warned("block 2", Verdict("stable"))
+    assert colour(wanted, row("stable"), message=doubt) == "right"
+    assert colour(wanted, row("stable"), message="") == "WRONG"
+    assert colour(wanted, row("collapsed"), message=doubt) == "WRONG"
+
+
+@pytest.mark.parametrize(
+    ("measured", "wanted"),
+    [(1.0, "right"), (1.0 + 1e-7, "right"), (1.1, "WRONG"), (float("nan"), "WRONG")],
+)
+def test_what_is_measured_must_be_near_the_exact_value(measured, wanted):
+    check = Check("x", 1.0, lambda outcome: measured, 1e-6)
+    assert colour(Measured((check,)), row("stable")) == wanted
+
+
+def test_nothing_to_measure_is_wrong():
+    check = Check("x", 1.0, lambda outcome: outcome.end(1)[0], 1e-6)
+    assert colour(Measured((check,)), row("stable")) == "WRONG"
+
+
+def test_push_of_a_tower_is_that_of_its_weakest_joint():
+    one = np.ones(3)
+    assert tower_push(-one / 2.0, one, one, 10.0) == pytest.approx(1.0 / 3.0)
+    assert tower_push(-one / 2.0, one, one, 0.2) == 0.2
+    # the upper block hangs over by three quarters of its half width
+    pair = np.ones(2)
+    assert tower_push(np.array([0.0, 0.375]), pair, pair, 10.0) == pytest.approx(0.25)
+
+
 def test_catalogue_is_large_and_without_repetition():
     names = [(scene.group, scene.name) for scene in catalogue()]
-    assert len(names) > 300 and len(set(names)) == len(names)
+    assert len(names) > 700 and len(set(names)) == len(names)
 
 
 def test_same_seed_makes_the_same_arches():
@@ -109,18 +152,28 @@ def test_scenes_are_run_and_told(tmp_path, capsys):
     assert {line["result"] for line in rows} == {"right"}
     assert all(float(line["condition"]) > 1.0 and int(line["passes"]) > 0 for line in rows)
     assert "0 WRONG" in (tmp_path / "stability.md").read_text()
-    assert (tmp_path / "stability.html").read_text().count("class='right'") == 4
+    page = (tmp_path / "stability.html").read_text()
+    assert page.count("<td class='right'>") == 4 and "class='number right'>4<" in page
+    assert "not right" not in page
 
 
 @pytest.mark.skipif("DDA" not in os.environ, reason="the program is named by DDA")
-def test_random_arches_are_right(tmp_path):
-    words = ["stability", "--out", str(tmp_path), "--only", "random", "--random", "40"]
+@pytest.mark.parametrize("group", ["contrast", "bad input", "corners", "slender"])
+def test_extreme_blocks_are_right(tmp_path, group, capsys):
+    words = ["stability", "--out", str(tmp_path), "--only", group, "--random", "0"]
+    assert main(words) == 0
+    assert "0 WRONG, 0 undecided" in capsys.readouterr().out
+
+
+@pytest.mark.skipif("DDA" not in os.environ, reason="the program is named by DDA")
+def test_random_arches_and_blocks_are_right(tmp_path):
+    words = ["stability", "--out", str(tmp_path), "--only", "random", "--random", "30"]
     words += ["--seed", "5"]
     assert main([*words, "--jobs", "2", "--timeout", "120"]) == 0
 
 
 def test_scenes_are_listed(capsys):
-    options = ["stability", "--only", "sliver", "--random", "0", "--list"]
+    options = ["stability", "--only", "sliver: ", "--random", "0", "--list"]
     assert main(options) == 0
     assert len(capsys.readouterr().out.splitlines()) == 21
 

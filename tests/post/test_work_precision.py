@@ -10,6 +10,8 @@ pytest.importorskip("voussoir", reason="PYTHONPATH wants the build's python fold
 
 from voussoir import limit_lp, theory  # noqa: E402
 from voussoir.command_line import main  # noqa: E402
+from voussoir.work_precision_motion import MotionPoint, order, pendulum_quarter  # noqa: E402
+from voussoir.work_precision_motion_page import motion_table  # noqa: E402
 from voussoir.work_precision_page import best_table, race_table  # noqa: E402
 from voussoir.work_precision_runs import Arch, Point, Race  # noqa: E402
 
@@ -68,6 +70,37 @@ def test_ratios_are_those_of_the_times():
     assert race_table([without])[-1].count("-") == 7
 
 
+def test_order_is_the_slope_of_errors_that_are_more_than_rounding():
+    points = [MotionPoint("x", 2.0**-k, 3.0 * 4.0**-k, 1.0, 1) for k in range(5)]
+    assert order(points) == pytest.approx(2.0, abs=1e-12)
+    assert order([MotionPoint("x", 1.0, 1e-10, 1.0, 1)] * 3) is None
+    row = motion_table(points)[-1]
+    assert row.startswith("| x | 2.0 | 3.0e+00 |") and row.endswith("| none | none | none | none |")
+
+
+def test_small_pendulum_swings_as_huygens_has_it():
+    assert pendulum_quarter(1e-4, 2.0) == pytest.approx(math.pi / 4.0, rel=1e-8)
+    # K(sin 45 deg) of Legendre's tables
+    assert pendulum_quarter(math.pi / 2.0, 1.0) == pytest.approx(1.854074677301372, rel=1e-14)
+
+
+@needs_dda
+def test_motion_alone_converges_as_it_should(tmp_path, capsys):
+    pytest.importorskip("matplotlib")
+    words = ["work-precision", "--motion", "--repeats", "1", "--out", str(tmp_path)]
+    assert main(words) == 0
+    assert "| pendulum: quarter period | 2.0 |" in capsys.readouterr().out
+    with (tmp_path / "work_precision_motion.csv").open() as lines:
+        rows = list(csv.DictReader(lines))
+    worst = {row["scene"]: float(row["error"]) for row in reversed(rows)}
+    least = {row["scene"]: float(row["error"]) for row in rows}
+    assert worst["incline: way"] < 1e-8 and worst["bounce: second top"] < 1e-8
+    assert least["rocking: quarter period"] < 5e-4 and least["rocking: next tilt"] < 1e-2
+    assert least["pendulum: next amplitude"] < 1e-7
+    assert (tmp_path / "work_precision_motion.svg").stat().st_size > 5000
+    assert not (tmp_path / "work_precision.csv").exists()
+
+
 @needs_dda
 def test_small_run_writes_tables_and_figure(tmp_path, capsys):
     pytest.importorskip("matplotlib")
@@ -80,6 +113,8 @@ def test_small_run_writes_tables_and_figure(tmp_path, capsys):
         rows = list(csv.DictReader(lines))
     fine = [row for row in rows if row["family"] == "tolerance" and float(row["setting"]) < 1e-7]
     assert fine and all(float(row["error"]) < float(row["setting"]) for row in fine[:3])
+    original = [row for row in rows if row["family"] == "Limerick's scheme, tolerance"]
+    assert original and all(0.0 < float(row["error"]) < 0.5 for row in original)
     moving = {row["setting"]: row for row in rows if row["family"] == "Young's modulus, moving"}
     shift = [float(moving[young]["error"]) for young in ("5e+09", "5e+10", "5e+11")]
     assert shift[0] / shift[1] == pytest.approx(10.0, rel=0.01)
@@ -95,3 +130,19 @@ def test_race_alone_writes_no_diagram(tmp_path, capsys):
     printed = capsys.readouterr().out
     assert "| 60 | 4 |" in printed and "| 60 | 8 |" in printed
     assert not (tmp_path / "work_precision.csv").exists()
+
+
+@needs_dda
+def test_what_the_plan_saves_is_told_and_the_answer_stays(tmp_path, capsys):
+    words = ["work-precision", "--plan", "--voussoirs", "12", "--repeats", "2", "--out"]
+    assert main([*words, str(tmp_path)]) == 0
+    printed = capsys.readouterr().out
+    assert printed == (tmp_path / "plan_costs.md").read_text()
+    rows = [line.strip("| ").split(" | ") for line in printed.splitlines()[2:]]
+    answers = {row[1]: row[-1] for row in rows}
+    assert answers["joints searched among polygons"] == "stable"
+    for part in ("strain: 6 unknowns a block", "strength that can break", "condition"):
+        assert float(answers[part]) < 1e-10
+    # moving blocks differ by what elasticity makes of them
+    assert 1e-5 < float(answers["blocks that move, contacts that follow"]) < 1e-2
+    assert all(float(row[2]) > 0.0 for row in rows)

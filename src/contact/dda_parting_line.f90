@@ -1,0 +1,193 @@
+!> Two convex blocks are apart as long as an edge of one of them has the other beyond its line. That
+!> line is the entrance: what must not cross it keeps the blocks apart, whichever corners meet
+module dda_parting_line
+   use, intrinsic :: iso_fortran_env, only : int64
+   use dda_entrance, only : add_single, join_edges, joint_list_t, neighbourhood_t, was_closed
+   use dda_kinds, only : wp
+   use dda_vector, only : along, right_normal
+   implicit none
+   private
+
+   public :: add_parted_joint, block_gap
+
+   !> An edge and the block beyond it
+   type :: line_t
+      !> Number of the edge; 0 for none
+      integer :: edge = 0
+      !> The corner of the other block that is nearest to its line
+      integer :: corner = 0
+      !> Height of that corner above the line [m]
+      real(wp) :: gap = -huge(1.0_wp)
+      !> When it crosses the line, in lengths of the travel
+      real(wp) :: time = -huge(1.0_wp)
+   end type line_t
+
+   !> A line that has parted two blocks in touch goes on while no other does better by more than
+   !> this share of the edge
+   real(wp), parameter :: lasting = 1.0e-9_wp
+   !> A corner no deeper than this share of the edge has not crossed its line
+   real(wp), parameter :: slack = 1.0e-6_wp
+
+contains
+
+   !> How far two convex blocks are apart, along the normal of the edge that parts them best;
+   !> negative if they have entered one another [m]
+   pure real(wp) function block_gap(first_vertex, vertex, block)
+      !> First corner of each block, and one beyond the last: (n_block + 1)
+      integer, intent(in) :: first_vertex(:)
+      !> Corners: (2, n_vertex) [m]
+      real(wp), intent(in) :: vertex(:, :)
+      !> The two blocks: (2)
+      integer, intent(in) :: block(2)
+      integer :: edge, next, side
+
+      block_gap = -huge(block_gap)
+      do side = 1, 2
+         associate (first => first_vertex(block(side)), last => first_vertex(block(side) + 1) - 1, &
+            & from => first_vertex(block(3 - side)), to => first_vertex(block(3 - side) + 1) - 1)
+            do edge = first, last
+               next = merge(first, edge + 1, edge == last)
+               block_gap = max(block_gap, minval(heights(vertex, edge, next, from, to)))
+            end do
+         end associate
+      end do
+   end function block_gap
+
+   !> Heights of a block's corners above the line of an edge
+   pure function heights(vertex, edge, next, from, to) result(height)
+      !> Corners: (2, n_vertex) [m]
+      real(wp), intent(in) :: vertex(:, :)
+      !> Where the edge starts
+      integer, intent(in) :: edge
+      !> Where it ends
+      integer, intent(in) :: next
+      !> First corner of the block
+      integer, intent(in) :: from
+      !> Its last corner
+      integer, intent(in) :: to
+      !> The heights: (to - from + 1) [m]
+      real(wp) :: height(from:to)
+      real(wp) :: normal(2)
+
+      normal = right_normal(along(vertex(:, edge), vertex(:, next)))
+      height = normal(1)*(vertex(1, from:to) - vertex(1, edge)) &
+         & + normal(2)*(vertex(2, from:to) - vertex(2, edge))
+   end function heights
+
+   !> Add the one joint of two convex blocks: the other block's edge or corner before the line that
+   !> parts them
+   pure subroutine add_parted_joint(near, edge_pair, reach, list)
+      !> The neighbourhood
+      type(neighbourhood_t), intent(in) :: near
+      !> Edges near one another, of the first block and of the second: (2, n_pair)
+      integer, intent(in) :: edge_pair(:, :)
+      !> Gaps wider than this are no matter [m]
+      real(wp), intent(in) :: reach
+      !> Receives the joint
+      type(joint_list_t), intent(inout) :: list
+      type(line_t) :: line
+      integer(int64) :: taken(2)
+      integer :: pair(2), n_taken, side, n
+
+      line = parting_line(near, edge_pair, reach)
+      if (line%gap > reach) return
+      side = merge(1, 2, near%outline%block(line%edge) == near%outline%block(edge_pair(1, 1)))
+      pair(side) = line%edge
+      pair(3 - side) = facing_edge(near, line)
+      n = list%n
+      n_taken = 0
+      call join_edges(near, pair, reach, taken, n_taken, list)
+      if (list%n > n) return
+      call add_single(near, line%corner, line%edge, side, taken, n_taken, list)
+   end subroutine add_parted_joint
+
+   !> The edge whose line parts two blocks: the one that did while they touched; else, of those that
+   !> part them now, the one that the other block would cross last
+   pure function parting_line(near, edge_pair, reach) result(best)
+      !> The neighbourhood
+      type(neighbourhood_t), intent(in) :: near
+      !> Edges near one another: (2, n_pair)
+      integer, intent(in) :: edge_pair(:, :)
+      !> Blocks farther from one another than this are no matter [m]
+      real(wp), intent(in) :: reach
+      !> The line
+      type(line_t) :: best
+      type(line_t) :: line, held, widest
+      integer :: i, side
+
+      do side = 1, 2
+         do i = 1, size(edge_pair, 2)
+            if (any(edge_pair(side, :i - 1) == edge_pair(side, i))) cycle
+            line = line_of(near, edge_pair(side, i), near%outline%block(edge_pair(3 - side, i)))
+            if (line%gap > widest%gap) widest = line
+            if (line%time > best%time .or. .not. line%time < best%time .and. line%gap > best%gap) &
+               & best = line
+            if (was_closed(near, line%corner, line%edge) .and. line%gap > held%gap) held = line
+         end do
+      end do
+      if (widest%gap > reach) best = widest
+      if (held%edge == 0) return
+      if (held%gap >= widest%gap - lasting*edge_size(near, held%edge)) best = held
+   end function parting_line
+
+   !> One edge and the other block
+   pure function line_of(near, edge, block) result(line)
+      !> The neighbourhood
+      type(neighbourhood_t), intent(in) :: near
+      !> Number of the edge
+      integer, intent(in) :: edge
+      !> The other block
+      integer, intent(in) :: block
+      !> The line
+      type(line_t) :: line
+      real(wp), allocatable :: height(:)
+      real(wp) :: after, margin
+      integer :: next
+
+      associate (from => near%first_vertex(block), to => near%first_vertex(block + 1) - 1)
+         next = near%outline%next(edge)
+         line%edge = edge
+         allocate (height(from:to))
+         height(:) = heights(near%vertex, edge, next, from, to)
+         line%corner = from - 1 + minloc(height, dim=1)
+         line%gap = minval(height)
+         height(:) = heights(near%ahead, edge, next, from, to)
+         after = minval(height)
+      end associate
+      margin = slack*edge_size(near, edge)
+      line%time = sign(huge(1.0_wp), line%gap + margin)
+      if (line%gap - after > tiny(1.0_wp)) then
+         if (line%gap + margin < huge(1.0_wp)**0.5_wp*(line%gap - after)) &
+            & line%time = (line%gap + margin)/(line%gap - after)
+      end if
+      if (line%gap < -margin) line%time = -huge(1.0_wp)
+   end function line_of
+
+   !> Edge at the nearest corner of a line that looks at it most squarely
+   pure integer function facing_edge(near, line)
+      !> The neighbourhood
+      type(neighbourhood_t), intent(in) :: near
+      !> The line
+      type(line_t), intent(in) :: line
+      real(wp) :: direction(2)
+
+      associate (v => near%vertex, next => near%outline%next, &
+         & before => near%outline%previous(line%corner))
+         direction = along(v(:, line%edge), v(:, next(line%edge)))
+         facing_edge = line%corner
+         if (dot_product(direction, along(v(:, before), v(:, line%corner))) &
+            & < dot_product(direction, along(v(:, line%corner), v(:, next(line%corner))))) &
+            & facing_edge = before
+      end associate
+   end function facing_edge
+
+   !> Length of an edge [m]
+   pure real(wp) function edge_size(near, edge)
+      !> The neighbourhood
+      type(neighbourhood_t), intent(in) :: near
+      !> Number of the edge
+      integer, intent(in) :: edge
+
+      edge_size = norm2(near%vertex(:, near%outline%next(edge)) - near%vertex(:, edge))
+   end function edge_size
+end module dda_parting_line

@@ -1,0 +1,138 @@
+"""Blocks in scenes that once fooled the program: thin neighbours, notches, corners, long steps."""
+
+from __future__ import annotations
+
+import csv
+import math
+from pathlib import Path
+
+import pytest
+from dda_command import run_dda
+
+BASE = "block fixed\n-10 -1\n10 -1\n10 0\n-10 0\n"
+
+
+def block(*corners: tuple[float, float], words: str = "") -> str:
+    """Text of one block."""
+    return f"block {words}\n" + "".join(f"{x!r} {y!r}\n" for x, y in corners)
+
+
+def rectangle(x: float, y: float, width: float, height: float) -> str:
+    """Text of an upright block."""
+    return block((x, y), (x + width, y), (x + width, y + height), (x, y + height))
+
+
+def run(folder: Path, blocks: str, groups: str, name: str = "results") -> list[dict[str, str]]:
+    """Rows of a table of a run."""
+    (folder / "x.blocks").write_text(blocks)
+    (folder / "x.nml").write_text(f"&scene kind = 'blocks', geometry = 'x.blocks' /\n{groups}\n")
+    done = run_dda("run", "x.nml", "--out", folder / "out", "--quiet", cwd=folder)
+    assert done.returncode == 0, done.stderr
+    with (folder / "out" / f"{name}.csv").open() as lines:
+        return list(csv.DictReader(lines))
+
+
+@pytest.mark.parametrize("thickness", [1e-3, 1e-5, 1e-7])
+@pytest.mark.parametrize("geometry", ["reference", "current"])
+def test_a_sheet_carries_all_that_stands_on_it(
+    tmp_path: Path, thickness: float, geometry: str
+) -> None:
+    blocks = BASE + rectangle(0.0, 0.0, 1.0, thickness) + rectangle(0.0, thickness, 1.0, 1.0)
+    groups = f"&analysis geometry = '{geometry}' /\n&material unit_weight = 25000.0, young = 5e12 /"
+    rows = [row for row in run(tmp_path, blocks, groups, "joints") if row["state"] != "open"]
+    forces = [float(row["normal_force"]) for row in rows]
+    assert forces == pytest.approx([25000.0 * (1.0 + thickness), 25000.0], rel=1e-6)
+
+
+def test_a_block_on_a_pebble_does_not_rest_on_the_floor(tmp_path: Path) -> None:
+    size = 3e-5
+    blocks = BASE + rectangle(-size / 2, 0.0, size, size) + rectangle(-0.5, size, 1.0, 1.0)
+    rows = run(tmp_path, blocks, "&material unit_weight = 1.0 /", "joints")
+    assert [float(row["normal_force"]) for row in rows] == pytest.approx([1.0, 1.0], rel=1e-6)
+
+
+@pytest.mark.parametrize("half_deg", [3.0, 5.0, 85.0])
+def test_a_smooth_wedge_slips_far_into_its_notch_and_rests(tmp_path: Path, half_deg: float) -> None:
+    """By 1/sin^2 of the half angle more than if it stuck, and 1/sin^2 again of its own height."""
+    slope = math.tan(math.radians(half_deg))
+    sides = [
+        [(0.0, 0.0), (0.0, -1.0), (2.0 * slope + 1.0, -1.0), (2.0 * slope, 2.0)],
+        [(0.0, 0.0), (-2.0 * slope, 2.0), (-2.0 * slope - 1.0, -1.0), (0.0, -1.0)],
+    ]
+    blocks = "".join(block(*side, words="fixed") for side in sides)
+    blocks += block((0.0, 0.0), (slope, 1.0), (-slope, 1.0))
+    groups = "&analysis geometry = 'current' /\n&joint friction_deg = 0 /\n"
+    (row,) = run(tmp_path, blocks, groups + "&material young = 5e12 /")
+    assert row["verdict"] == "stable"
+
+
+@pytest.mark.parametrize("tilt", [-30.0, -1.0, 1e-3, 1.0])
+@pytest.mark.parametrize("geometry", ["reference", "current"])
+def test_a_square_on_its_corner_falls(tmp_path: Path, tilt: float, geometry: str) -> None:
+    blocks = BASE + block((0.0, 0.0), (1.0, 1.0), (0.0, 2.0), (-1.0, 1.0))
+    groups = f"&analysis geometry = '{geometry}' /\n&load gravity_direction_deg = {tilt - 90.0} /"
+    (row,) = run(tmp_path, blocks, groups)
+    assert row["verdict"] == "collapsed"
+
+
+@pytest.mark.parametrize("step", [0.1, 1.0, 10.0])
+def test_long_steps_let_nothing_through_the_floor(tmp_path: Path, step: float) -> None:
+    blocks = BASE + rectangle(-5.0, 0.0, 2.0, 0.5) + "measure -4.0 0.25\n"
+    motion = "mode = 'dynamic', geometry = 'current', max_displacement_ratio = 1.0"
+    groups = f"&analysis {motion}, time_step = {step}, duration = 1.5 /\n"
+    groups += "&joint friction_deg = 20 /\n&load gravity_direction_deg = -60 /"
+    last = run(tmp_path, blocks, groups, "points")[-1]
+    slide = 9.81 * (0.5 - math.cos(math.pi / 6.0) * math.tan(math.radians(20.0)))
+    assert float(last["u"]) == pytest.approx(slide * 1.5**2 / 2.0, rel=1e-3)
+    assert abs(float(last["v"])) < 1e-5
+
+
+def test_a_search_steps_aside_of_the_value_that_is_critical_to_the_last_digit(
+    tmp_path: Path,
+) -> None:
+    """The middle of the bracket about tan(phi) is tan(phi): nothing rests there, nothing moves."""
+    blocks = BASE + rectangle(-0.345, 0.0, 0.62, 0.941) + rectangle(-0.516, 0.941, 0.778, 1.047)
+    groups = "&joint friction_deg = 7.61 /\n&material young = 5e13 /\n"
+    groups += "&analysis geometry = 'current' /\n&search parameter = 'horizontal_coefficient' /"
+    (row,) = run(tmp_path, blocks, groups)
+    assert row["verdict"] == "found"
+    assert float(row["critical"]) == pytest.approx(math.tan(math.radians(7.61)), rel=1e-7)
+
+
+def quarter_period(amplitude: float, frequency: float) -> float:
+    """A quarter of a pendulum's period, by the arithmetic-geometric mean of Gauss [s]."""
+    a, b = 1.0, math.cos(amplitude / 2.0)
+    for _ in range(20):
+        a, b = (a + b) / 2.0, math.sqrt(a * b)
+    return math.pi / (2.0 * a * frequency)
+
+
+@pytest.mark.parametrize("amplitude_deg", [20.0, 60.0, 150.0])
+def test_a_pendulum_keeps_its_period_and_gains_no_energy(
+    tmp_path: Path, amplitude_deg: float
+) -> None:
+    """A bar held at the middle of its end, let go; the step is of second order."""
+    amplitude, width, height = math.radians(amplitude_deg), 0.1, 1.0
+    c, s = math.cos(amplitude), math.sin(amplitude)
+    hanging = [(-width / 2, -height), (width / 2, -height), (width / 2, 0.0), (-width / 2, 0.0)]
+    blocks = block(*((c * x - s * y, s * x + c * y) for x, y in hanging))
+    blocks += f"fix 0 0\nmeasure {s * height!r} {-c * height!r}\n"
+    gyration = (width**2 + height**2) / 12.0 + height**2 / 4.0
+    exact = quarter_period(amplitude, math.sqrt(9.81 * height / 2.0 / gyration))
+    errors = []
+    for step in (4e-3, 2e-3):
+        motion = "mode = 'dynamic', geometry = 'current', max_displacement_ratio = 1.0"
+        groups = f"&analysis {motion}, time_step = {step}, duration = 4.0, steps = 100000 /\n"
+        groups += "&material young = 1e12 /\n&output energy = .true. /"
+        points = run(tmp_path, blocks, groups, "points")
+        with (tmp_path / "out" / "energy.csv").open() as lines:
+            rows = list(csv.DictReader(lines))
+        stored = [sum(float(row[n]) for n in ("kinetic", "elastic", "gravity")) for row in rows]
+        assert max(stored) - stored[0] < 1e-3 * 2240.0 * width * height * 9.81 * height
+        angle = [math.atan2(float(p["x"]), -float(p["y"])) for p in points]
+        k = next(i for i, value in enumerate(angle) if value < 0.0)
+        before, time = float(points[k - 1]["time"]), float(points[k]["time"])
+        found = before + (time - before) * angle[k - 1] / (angle[k - 1] - angle[k])
+        errors.append(abs(found / exact - 1.0))
+    assert errors[1] < 1e-4
+    assert math.log2(errors[0] / errors[1]) > 1.8
