@@ -118,9 +118,9 @@ def _report(races: list[Race], points: list[Point], motion: list[MotionPoint]) -
     lines = [
         "# Error against run time",
         "",
-        f"Python {platform.python_version()}; {peer}. Times are medians of this run; only their "
-        "ratios mean anything. dda: the column seconds (arch, exact value, decision). Linear "
-        "programs: building and solving.",
+        f"Python {platform.python_version()}; {peer}. Times are the least of this run; only "
+        "their ratios mean anything. dda: the column seconds, wall time (arch, decision). Linear "
+        "programs: processor time (building, solving).",
     ]
     if races:
         lines += ["", *race_table(races)]

@@ -2,12 +2,15 @@
 !> banded factorisation and substitution of their own equations
 module dda_benchmark
    use couplet_heyman_discrete, only : discrete_critical_equal, discrete_solution_t
-   use dda_arch, only : arch_blocks, arch_shape_t, equal_joints
+   use dda_arch, only : arch_blocks, equal_joints
+   use dda_arch_chain, only : arch_chain, arch_numbers_t, arch_rays, arch_rays_t
    use dda_assembly, only : equations_t, new_equations, solve_faces
    use dda_block_inertia, only : assemble_blocks
    use dda_band_reference, only : band_job_t, new_band_job
    use dda_block_factor, only : factorise, substitute
    use dda_block_system, only : block_system_t
+   use dda_chain, only : chain_t
+   use dda_chain_decision, only : decide_chain
    use dda_constants, only : pi
    use dda_contact_detection, only : contacts_t, find_contacts
    use dda_critical, only : critical_t, find_critical, search_t
@@ -16,18 +19,27 @@ module dda_benchmark
    use dda_kinds, only : wp
    use dda_material, only : joint_law_t, material_t
    use dda_scene, only : family_t, scene_t
+   use dda_settings, only : settings_t
    use dda_stopwatch, only : job_t, median_of, take_samples, timed_job_t
    use dda_verdict, only : verdict
    implicit none
    private
 
-   public :: equal_arches_t, figures_t, measure, search_once
+   public :: equal_arches_t, figures_t, measure, new_arches, search_once
 
    !> Arches of equal voussoirs that differ by their thickness ratio
    type, extends(family_t) :: equal_arches_t
       !> Number of voussoirs
       integer :: voussoirs = 36
+      !> Unknowns of a block; arches of 3 are chains, as where a deck asks for no more
+      integer :: unknowns = 6
+      !> What the arches are made from
+      type(arch_numbers_t) :: numbers
+      !> What does not depend on their thickness
+      type(arch_rays_t) :: rays
    contains
+      !> Make the arch of one thickness ratio as a chain
+      procedure :: link => link_arch
       !> Make the arch of one thickness ratio
       procedure :: build => build_arch
    end type equal_arches_t
@@ -36,6 +48,8 @@ module dda_benchmark
    type :: figures_t
       !> Number of voussoirs
       integer :: voussoirs = 0
+      !> Unknowns of a block
+      integer :: unknowns = 6
       !> Mean time of a decision [s]
       real(wp) :: decision = 0.0_wp
       !> Time of a search [s]
@@ -62,6 +76,8 @@ module dda_benchmark
    type, extends(job_t) :: decisions_job_t
       !> The arches: (4)
       type(scene_t), allocatable :: scene(:)
+      !> The same as chains, if they are: (4)
+      type(chain_t), allocatable :: chain(:)
       !> Their decisions after a run: (4)
       type(decision_t), allocatable :: decision(:)
    contains
@@ -133,7 +149,31 @@ module dda_benchmark
 
 contains
 
-   !> Make the arch of one thickness ratio: radius 10 m, joints that cannot slide
+   !> Arches of radius 10 m whose joints cannot slide
+   pure function new_arches(voussoirs, unknowns) result(family)
+      !> Number of voussoirs
+      integer, intent(in) :: voussoirs
+      !> Unknowns of a block, 3 or 6
+      integer, intent(in) :: unknowns
+      !> The arches
+      type(equal_arches_t) :: family
+      type(material_t) :: material
+      type(settings_t) :: settings
+
+      family%voussoirs = voussoirs
+      family%unknowns = unknowns
+      family%decides_chains = unknowns == 3
+      allocate (family%numbers%shape%joint_angle, source=equal_joints(voussoirs, half_angle))
+      allocate (family%numbers%shape%facets((voussoirs + 1)/2), source=1)
+      family%numbers%density = material%density
+      family%numbers%young = material%young
+      family%numbers%body_force = [0.0_wp, -unit_weight]
+      family%numbers%penalty_ratio = settings%penalty_ratio
+      family%numbers%law%no_slip = .true.
+      call arch_rays(family%numbers, family%rays)
+   end function new_arches
+
+   !> Make the arch of one thickness ratio
    pure subroutine build_arch(family, value, scene, error)
       !> The family
       class(equal_arches_t), intent(in) :: family
@@ -143,25 +183,44 @@ contains
       type(scene_t), intent(out) :: scene
       !> Never allocated
       type(error_t), allocatable, intent(out) :: error
-      type(arch_shape_t) :: shape
+      type(arch_numbers_t) :: numbers
       type(material_t) :: material
       type(joint_law_t) :: law(family%voussoirs + 1)
       integer, allocatable :: edge_pair(:, :)
 
-      shape%thickness_ratio = value
-      shape%joint_angle = equal_joints(family%voussoirs, half_angle)
-      allocate (shape%facets((family%voussoirs + 1)/2), source=1)
-      call arch_blocks(shape, material, scene%system, edge_pair)
+      numbers = family%numbers
+      numbers%shape%thickness_ratio = value
+      call arch_blocks(numbers%shape, material, scene%system, edge_pair)
       scene%system%unit_weight = unit_weight
-      law%no_slip = .true.
-      call find_contacts(scene%system, edge_pair, law, scene%settings%penalty_ratio, &
-         & scene%settings%n_dof, scene%contacts)
+      scene%settings%n_dof = family%unknowns
+      law = numbers%law
+      call find_contacts(scene%system, edge_pair, law, numbers%penalty_ratio, family%unknowns, &
+         & scene%contacts)
    end subroutine build_arch
 
+   !> Make the arch of one thickness ratio as a chain
+   pure subroutine link_arch(family, value, settings, chain, linked)
+      !> The family
+      class(equal_arches_t), intent(in) :: family
+      !> Thickness over radius
+      real(wp), intent(in) :: value
+      !> Settings of the run
+      type(settings_t), intent(out) :: settings
+      !> The chain
+      type(chain_t), intent(out) :: chain
+      !> Always
+      logical, intent(out) :: linked
+
+      linked = .true.
+      call arch_chain(family%numbers, family%rays, value, chain)
+   end subroutine link_arch
+
    !> All figures but the memory
-   subroutine measure(voussoirs, figures)
+   subroutine measure(voussoirs, unknowns, figures)
       !> Number of voussoirs
       integer, intent(in) :: voussoirs
+      !> Unknowns of a block
+      integer, intent(in) :: unknowns
       !> Receives the figures
       type(figures_t), intent(inout) :: figures
       type(decisions_job_t) :: decisions
@@ -170,14 +229,20 @@ contains
       type(discrete_solution_t) :: exact
       type(error_t), allocatable :: error
       real(wp), allocatable :: sample(:, :)
+      type(settings_t) :: settings
+      logical :: linked
       integer :: answer(4), i
 
       figures%voussoirs = voussoirs
+      figures%unknowns = unknowns
       allocate (decisions%scene(size(distance)), decisions%decision(size(distance)))
-      search%family%voussoirs = voussoirs
+      if (unknowns == 3) allocate (decisions%chain(size(distance)))
+      search%family = new_arches(voussoirs, unknowns)
       call discrete_critical_equal(voussoirs, half_angle, pi, .true., exact)
       do i = 1, size(distance)
          call search%family%build(exact%eta*(1.0_wp + distance(i)), decisions%scene(i), error)
+         if (unknowns == 3) call search%family%link(exact%eta*(1.0_wp + distance(i)), settings, &
+            & decisions%chain(i), linked)
       end do
       call decisions%run()
       answer = decisions%decision%outcome%verdict
@@ -191,9 +256,9 @@ contains
       call measure_decisions(decisions, figures)
    end subroutine measure
 
-   !> Time the decisions, LAPACK and the parts of a decision. What is called apart is timed apart
-   !> and multiplied by the number of its calls, the rest is what is left. The equations are those
-   !> of the first decision
+   !> Time the decisions, LAPACK and the parts of a decision, but for those of a chain. What is
+   !> called apart is timed apart and multiplied by the number of its calls, the rest is what is
+   !> left. The equations are those of the first decision
    subroutine measure_decisions(decisions, figures)
       !> The four decisions, run once
       type(decisions_job_t), intent(in) :: decisions
@@ -248,12 +313,14 @@ contains
    end subroutine measure_decisions
 
    !> One search and nothing else
-   subroutine search_once(voussoirs)
+   subroutine search_once(voussoirs, unknowns)
       !> Number of voussoirs
       integer, intent(in) :: voussoirs
+      !> Unknowns of a block
+      integer, intent(in) :: unknowns
       type(search_job_t) :: search
 
-      search%family%voussoirs = voussoirs
+      search%family = new_arches(voussoirs, unknowns)
       call search%run()
    end subroutine search_once
 
@@ -261,9 +328,14 @@ contains
    subroutine run_decisions(job)
       !> The job
       class(decisions_job_t), intent(inout) :: job
+      logical :: decided
       integer :: i
 
       do i = 1, size(job%scene)
+         if (allocated(job%chain)) then
+            call decide_chain(job%scene(i)%settings, job%chain(i), job%decision(i), decided)
+            if (decided) cycle
+         end if
          call decide(job%scene(i)%settings, job%scene(i)%system, job%scene(i)%contacts, &
             & job%decision(i))
       end do

@@ -24,17 +24,19 @@ contains
       integer :: i
 
       write (output_unit, "(a)") machine_line(), ""
-      call print_row([character(len=cell) :: "voussoirs", "decision us", "right", "search us", &
-         & "error", "decisions", "passes", "factorisations", "memory kB", "LAPACK us", &
-         & "decision/LAP."], markdown, head=.true.)
+      call print_row([character(len=cell) :: "voussoirs", "unknowns", "decision us", "right", &
+         & "search us", "error", "decisions", "passes", "factorisations", "memory kB", &
+         & "LAPACK us", "decision/LAP."], markdown, head=.true.)
       do i = 1, size(figures)
          call print_row(figure_cells(figures(i)), markdown, head=.false.)
       end do
+      if (all(figures%unknowns == 3)) return
       write (output_unit, "(a)") ""
       call print_row([character(len=cell) :: "of a decision", "set up %", "assemble %", &
          & "fact., solve %", "judge, rest %", "factorisations", "us a factor."], markdown, &
          & head=.true.)
       do i = 1, size(figures)
+         if (figures(i)%unknowns == 3) cycle
          call print_row(part_cells(figures(i)), markdown, head=.false.)
       end do
    end subroutine print_tables
@@ -43,17 +45,18 @@ contains
    function figure_cells(figures) result(cells)
       !> The figures
       type(figures_t), intent(in) :: figures
-      !> Text of each column: (11)
-      character(len=cell) :: cells(11)
+      !> Text of each column: (12)
+      character(len=cell) :: cells(12)
 
       associate (critical => figures%critical)
          cells = [character(len=cell) :: to_text(figures%voussoirs), &
-            & microseconds(figures%decision), to_text(figures%right)//" of 4", &
+            & to_text(figures%unknowns), microseconds(figures%decision), &
+            & to_text(figures%right)//" of 4", &
             & microseconds(figures%search), small(figures%error), to_text(critical%decisions), &
             & to_text(critical%passes), to_text(critical%factorisations), "-", &
             & microseconds(figures%lapack), rounded(figures%ratio, 1)]
-         if (figures%memory >= 0) cells(9) = to_text(figures%memory)
-         if (critical%verdict /= verdict%found) cells(5) = "not found"
+         if (figures%memory >= 0) cells(10) = to_text(figures%memory)
+         if (critical%verdict /= verdict%found) cells(6) = "not found"
       end associate
    end function figure_cells
 

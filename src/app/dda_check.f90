@@ -192,6 +192,12 @@ contains
       plan = plan_scene(deck)
       call tell("unknowns", to_text(plan%unknowns)//" a block, "//to_text(plan%unknowns*blocks) &
          & //" in all: "//trim(why(plan%reason)))
+      if (plan%chain) then
+         call tell("equations", "a chain, without pattern and contact search: each block "// &
+            & "touches its two neighbours alone")
+      else
+         call tell("equations", "those of any blocks that touch")
+      end if
       call tell("velocities", trim(merge("kept: mode is dynamic                          ", &
          & "none: every step starts at rest, mode is static", plan%velocities)))
       if (plan%shared_forces) then

@@ -147,7 +147,7 @@ contains
       type(progress_t) :: progress
       type(error_t), allocatable :: error
       logical, allocatable :: chosen(:)
-      integer :: count(3), number, total
+      integer :: count(3), next, total
 
       total = n_cases(deck)
       count = 0
@@ -159,14 +159,11 @@ contains
       chosen = chosen .and. .not. finished%case
       progress%total = size(pack(chosen, chosen))
       call system_clock(progress%start)
-      !$omp parallel do num_threads(min(command%jobs, total, max_jobs)) schedule(dynamic) &
-      !$omp default(none) &
-      !$omp shared(total, deck, name, command, tables, progress, count, error, chosen)
-      do number = 1, total
-         if (.not. chosen(number)) cycle
-         call run_one_case(command, name, deck, number, total, tables, progress, count, error)
-      end do
-      !$omp end parallel do
+      next = 0
+      !$omp parallel num_threads(min(command%jobs, total, max_jobs)) default(none) &
+      !$omp shared(deck, name, command, tables, progress, count, error, chosen, next)
+      call run_cases(command, name, deck, chosen, next, tables, progress, count, error)
+      !$omp end parallel
       call clear_progress(progress)
       call close_tables(tables, error)
       count = count + [finished%count, sum(finished%count)]
@@ -214,18 +211,19 @@ contains
       end if
    end subroutine begin_tables
 
-   !> Compute one case and write it down; nothing is computed after a failure to write
-   subroutine run_one_case(command, name, deck, number, total, tables, progress, count, error)
+   !> Compute cases until none is left, or none can be written; each thread runs this. A case is
+   !> written down in the same turn in which the next one is prepared: one wait for other threads
+   subroutine run_cases(command, name, deck, chosen, next, tables, progress, count, error)
       !> What the user asked for
       type(command_t), intent(in) :: command
       !> Name of the deck
       character(len=*), intent(in) :: name
       !> The deck with its sweeps
       type(deck_t), intent(in) :: deck
-      !> Number of the case
-      integer, intent(in) :: number
-      !> Number of cases
-      integer, intent(in) :: total
+      !> Cases to be computed
+      logical, intent(in) :: chosen(:)
+      !> The last case that was begun by any thread
+      integer, intent(inout) :: next
       !> Where the results go
       type(result_tables_t), intent(inout) :: tables
       !> What was told so far
@@ -237,44 +235,82 @@ contains
       type(deck_t) :: case_of_deck
       type(case_t) :: this
       type(error_t), allocatable :: problem
+      integer :: number
+
+      number = 0
+      do
+         !$omp critical (texts)
+         if (number > 0 .and. .not. allocated(error)) call write_down(command, name, deck, number, &
+            & this, tables, progress, count, error)
+         number = 0
+         if (.not. allocated(error)) number = next_chosen(chosen, next)
+         if (number > 0) then
+            next = number
+            call case_deck(deck, number, case_of_deck, problem)
+            call prepare_case(case_of_deck, this)
+            this%tells_tables = any(tables%at([table%joints, table%blocks])%wanted)
+         end if
+         !$omp end critical (texts)
+         if (number == 0) exit
+         call compute_case(this)
+      end do
+   end subroutine run_cases
+
+   !> The first chosen case behind another one; 0 if there is none
+   pure integer function next_chosen(chosen, last)
+      !> Cases to be computed
+      logical, intent(in) :: chosen(:)
+      !> The other one
+      integer, intent(in) :: last
+
+      do next_chosen = last + 1, size(chosen)
+         if (chosen(next_chosen)) return
+      end do
+      next_chosen = 0
+   end function next_chosen
+
+   !> Write a computed case down
+   subroutine write_down(command, name, deck, number, this, tables, progress, count, error)
+      !> What the user asked for
+      type(command_t), intent(in) :: command
+      !> Name of the deck
+      character(len=*), intent(in) :: name
+      !> The deck with its sweeps
+      type(deck_t), intent(in) :: deck
+      !> Number of the case
+      integer, intent(in) :: number
+      !> The case
+      type(case_t), intent(in) :: this
+      !> Where the results go
+      type(result_tables_t), intent(inout) :: tables
+      !> What was told so far
+      type(progress_t), intent(inout) :: progress
+      !> Cases decided, undecided, written: (3)
+      integer, intent(inout) :: count(3)
+      !> Failure to write
+      type(error_t), allocatable, intent(inout) :: error
       type(result_row_t) :: row
       type(joint_row_t), allocatable :: joint_row(:)
       type(told_blocks_t) :: blocks
       character(len=:), allocatable :: remark
-      logical :: failed
 
-      !$omp critical (texts)
-      failed = allocated(error)
-      if (.not. failed) then
-         call case_deck(deck, number, case_of_deck, problem)
-         call prepare_case(case_of_deck, this)
-      end if
-      !$omp end critical (texts)
-      if (failed) return
-      call compute_case(this)
-      !$omp critical (texts)
-      if (.not. allocated(error)) then
-         call tell_case(this, row, joint_row, blocks, remark)
-         row%deck = deck_stem(name)
-         row%number = number
-         row%swept = swept_fields(deck, number)
-         joint_row%number = number
-         call write_pictures(tables, number, this, error)
-         if (.not. allocated(error)) call write_end(tables%folder, number, this, error)
-         if (.not. allocated(error)) call write_case(tables, row, joint_row, &
-            & blocks, remark, error)
-         if (.not. allocated(error)) call sync_when_due(tables, error)
-      end if
-      if (.not. allocated(error)) then
-         count(3) = count(3) + 1
-         count(merge(2, 1, row%verdict == "undecided")) = &
-            & count(merge(2, 1, row%verdict == "undecided")) + 1
-         call clear_progress(progress)
-         if (.not. command%quiet) call print_row(row, remark, total, count(3))
-         call report_progress(progress)
-      end if
-      !$omp end critical (texts)
-   end subroutine run_one_case
+      call tell_case(this, row, joint_row, blocks, remark)
+      row%deck = deck_stem(name)
+      row%number = number
+      row%swept = swept_fields(deck, number)
+      joint_row%number = number
+      call write_pictures(tables, number, this, error)
+      if (.not. allocated(error)) call write_end(tables%folder, number, this, error)
+      if (.not. allocated(error)) call write_case(tables, row, joint_row, blocks, remark, error)
+      if (.not. allocated(error)) call sync_when_due(tables, error)
+      if (allocated(error)) return
+      count(3) = count(3) + 1
+      count(merge(2, 1, row%verdict == "undecided")) = &
+         & count(merge(2, 1, row%verdict == "undecided")) + 1
+      call clear_progress(progress)
+      if (.not. command%quiet) call print_row(row, remark, n_cases(deck), count(3))
+      call report_progress(progress)
+   end subroutine write_down
 
    !> Write what is seen of a case on its way: pictures, measured points, energies
    subroutine write_pictures(tables, number, this, error)

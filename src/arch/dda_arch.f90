@@ -7,7 +7,7 @@ module dda_arch
    implicit none
    private
 
-   public :: arch_shape_t, arch_blocks, equal_joints, facet_count
+   public :: arch_shape_t, arch_blocks, equal_joints, facet_count, section_directions
 
    !> Shape of an arch that is its own mirror image; joints are radial
    type :: arch_shape_t
@@ -91,40 +91,32 @@ contains
       is_joint = is_joint(:n)
    end subroutine half_sections
 
-   !> Sections of the whole arch from the left springing to the right one, mirrored to the last bit
-   pure subroutine whole_sections(shape, intrados, extrados, is_joint)
+   !> Directions of the sections of the whole arch, seen from the centre, from the left springing to
+   !> the right one; mirrored to the last bit
+   pure subroutine section_directions(shape, direction, is_joint)
       !> The arch
       type(arch_shape_t), intent(in) :: shape
-      !> Inner corners: (2, m) [m]
-      real(wp), allocatable, intent(out) :: intrados(:, :)
-      !> Outer corners: (2, m) [m]
-      real(wp), allocatable, intent(out) :: extrados(:, :)
+      !> Unit vectors: (2, m)
+      real(wp), allocatable, intent(out) :: direction(:, :)
       !> Which sections are joints: (m)
       logical, allocatable, intent(out) :: is_joint(:)
       real(wp), allocatable :: angle(:)
       logical, allocatable :: half_joint(:)
-      real(wp) :: direction(2)
       integer :: i, m, n, left, right
 
       call half_sections(shape, angle, half_joint)
       n = size(angle)
       m = 2*n - merge(0, 1, angle(1) > 0.0_wp)
-      allocate (intrados(2, m), extrados(2, m), is_joint(m))
+      allocate (direction(2, m), is_joint(m))
       do i = 1, n
          left = n + 1 - i
          right = m - n + i
-         direction = [sin(angle(i)), cos(angle(i))]
-         intrados(:, right) = shape%radius*(1.0_wp - shape%thickness_ratio/2.0_wp)*direction
-         extrados(:, right) = shape%radius*(1.0_wp + shape%thickness_ratio/2.0_wp)*direction
-         intrados(:, left) = intrados(:, right)*[-1.0_wp, 1.0_wp]
-         extrados(:, left) = extrados(:, right)*[-1.0_wp, 1.0_wp]
+         direction(:, right) = [sin(angle(i)), cos(angle(i))]
+         direction(:, left) = direction(:, right)*[-1.0_wp, 1.0_wp]
          is_joint([left, right]) = half_joint(i)
       end do
-      if (mod(m, 2) == 1) then
-         intrados(1, n) = 0.0_wp
-         extrados(1, n) = 0.0_wp
-      end if
-   end subroutine whole_sections
+      if (mod(m, 2) == 1) direction(1, n) = 0.0_wp
+   end subroutine section_directions
 
    !> Voussoirs from left to right, then the left and the right springing, which are fixed blocks;
    !> and the pairs of edges that lie together, from left to right
@@ -137,12 +129,15 @@ contains
       type(block_system_t), intent(out) :: system
       !> Block and edge on the left, block and edge on the right of each joint: (4, n + 1)
       integer, allocatable, intent(out) :: edge_pair(:, :)
-      real(wp), allocatable :: intrados(:, :), extrados(:, :), vertex(:, :)
+      real(wp), allocatable :: direction(:, :), intrados(:, :), extrados(:, :), vertex(:, :)
       logical, allocatable :: is_joint(:)
       integer, allocatable :: joint_at(:), first_vertex(:)
       integer :: b, n, first, last, i
 
-      call whole_sections(shape, intrados, extrados, is_joint)
+      call section_directions(shape, direction, is_joint)
+      allocate (intrados, extrados, source=direction)
+      intrados = shape%radius*(1.0_wp - shape%thickness_ratio/2.0_wp)*direction
+      extrados = shape%radius*(1.0_wp + shape%thickness_ratio/2.0_wp)*direction
       joint_at = pack([(i, i=1, size(is_joint))], is_joint)
       n = size(joint_at) - 1
       allocate (first_vertex(n + 3), vertex(2, 2*(size(is_joint) + n - 1) + 8))

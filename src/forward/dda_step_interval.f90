@@ -14,6 +14,7 @@ module dda_step_interval
    private
 
    public :: first_interval, judge_step, next_interval, largest_motion
+   public :: longest_static_step, static_growth
 
    !> Free fall in the first static step over the elastic motion
    real(wp), parameter :: first_fall = 1.0e2_wp
@@ -84,7 +85,7 @@ contains
       end if
       stiffest = maxval(system%materials%young)
       if (size(springs%stiffness) > 0) stiffest = maxval(springs%stiffness)
-      march%longest = sqrt(2.0_wp*mean_mass/(least_inertia*stiffest))
+      march%longest = longest_static_step(mean_mass, stiffest)
       march%dt = march%longest
       call assemble_blocks(system, settings, march%dt, equations)
       call solve_faces(equations, springs, glued, closed, state%start, state%motion)
@@ -101,6 +102,26 @@ contains
          & sqrt(2.0_wp*first_fall*march%elastic_motion/march%free_acceleration))
       if (settings%time_step > 0.0_wp) march%dt = min(march%longest, settings%time_step)
    end subroutine first_interval
+
+   !> Longest static step: its inertia must not drown in the rounding of the stiffness
+   pure real(wp) function longest_static_step(mean_mass, stiffest)
+      !> Mean mass of the blocks [kg/m]
+      real(wp), intent(in) :: mean_mass
+      !> Stiffness of the stiffest spring [N/m per metre depth]
+      real(wp), intent(in) :: stiffest
+
+      longest_static_step = sqrt(2.0_wp*mean_mass/(least_inertia*stiffest))
+   end function longest_static_step
+
+   !> By what the next static step is longer
+   pure real(wp) function static_growth(acceleration, last_acceleration)
+      !> Acceleration of this step [m/s2]
+      real(wp), intent(in) :: acceleration
+      !> That of the step before [m/s2]
+      real(wp), intent(in) :: last_acceleration
+
+      static_growth = merge(1.0_wp, growth, acceleration < settling*last_acceleration)
+   end function static_growth
 
    !> Whether the blocks fall even with all joints glued, as one that stands on a corner does: most
    !> work of the loads is then speed
@@ -233,9 +254,8 @@ contains
       !> The march
       type(march_t), intent(inout) :: march
       real(wp) :: factor, alike
-      logical :: settles
 
-      settles = step%acceleration < settling*march%last_acceleration
+      factor = static_growth(step%acceleration, march%last_acceleration)
       march%last_acceleration = step%acceleration
       if (settings%dynamic) then
          march%dt = march%longest
@@ -245,7 +265,7 @@ contains
          if (.not. settings%current) call fit_interval(settings, 0.0_wp, march)
          return
       end if
-      factor = merge(1.0_wp, merge(calm_growth, growth, step%was_cut), settles)
+      if (step%was_cut) factor = min(factor, calm_growth)
       if (settings%current) then
          if (step%farthest > 0.0_wp) factor = min(growth, &
             & 0.8_wp*sqrt(too_far*march%allowed_motion/step%farthest))

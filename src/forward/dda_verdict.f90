@@ -10,7 +10,7 @@ module dda_verdict
    implicit none
    private
 
-   public :: verdict, verdict_enum, measure_step, judge_verdict, largest_displacement
+   public :: verdict, verdict_enum, measure_step, judge_verdict, largest_displacement, is_felt
 
    !> Answers of an analysis
    type :: verdict_enum
@@ -126,10 +126,10 @@ contains
       real(wp), intent(in) :: dt
       !> The acceleration [m/s2]
       real(wp) :: largest
-      real(wp) :: acceleration, gyration, mean_mass, noise
+      real(wp) :: acceleration, gyration, mean_mass, whole
       integer :: b, e
 
-      noise = left_over*sum(abs(equations%weight(1:2, :)))
+      whole = sum(abs(equations%weight(1:2, :)))
       mean_mass = sum(equations%mass(1, 1, :))/real(size(equations%mass, 3), wp)
       largest = 0.0_wp
       do b = 1, size(system%equation)
@@ -137,12 +137,24 @@ contains
          if (e == 0) cycle
          gyration = sqrt((system%second(1, b) + system%second(2, b))/system%area(b))
          acceleration = (norm2(motion(1:2, e)) + gyration*abs(motion(3, e)))*2.0_wp/dt**2
-         associate (mass => equations%mass(1, 1, e))
-            if (mass < light*mean_mass .and. mass*acceleration < noise) cycle
-         end associate
-         largest = max(largest, acceleration)
+         if (is_felt(equations%mass(1, 1, e), mean_mass, whole, acceleration)) &
+            & largest = max(largest, acceleration)
       end do
    end function felt_acceleration
+
+   !> Whether the acceleration of a block is more than the open-close loop may leave to a light one
+   elemental logical function is_felt(mass, mean_mass, whole, acceleration)
+      !> Mass of the block [kg/m]
+      real(wp), intent(in) :: mass
+      !> Mean mass of all blocks [kg/m]
+      real(wp), intent(in) :: mean_mass
+      !> Sum of all loads [N/m]
+      real(wp), intent(in) :: whole
+      !> Acceleration of the block [m/s2]
+      real(wp), intent(in) :: acceleration
+
+      is_felt = mass >= light*mean_mass .or. mass*acceleration >= left_over*whole
+   end function is_felt
 
    !> Judge a static run by its last two steps.
    !> It stands if the joint forces balance the full load but for a residue that would accelerate no

@@ -2,6 +2,7 @@
 module dda_arch_scene
    use couplet_heyman_discrete, only : discrete_critical, discrete_solution_t, discrete_status
    use dda_arch, only : arch_blocks, arch_shape_t, equal_joints, facet_count
+   use dda_arch_chain, only : arch_numbers_t
    use dda_block_system, only : block_system_t
    use dda_constants, only : degree, pi
    use dda_contact_detection, only : find_contacts
@@ -14,7 +15,8 @@ module dda_arch_scene
    implicit none
    private
 
-   public :: arch_scene, half_joints_deg, exact_thickness, search_start, arch_resolution
+   public :: arch_scene, arch_numbers, joint_angles_deg, half_joints_deg, exact_thickness
+   public :: search_start, arch_resolution, chain_resolution
    public :: joint_law, material_of, settings_of, unit_weight
 
    !> Friction angles from here on mean that no joint slides [deg]
@@ -30,26 +32,54 @@ contains
       type(scene_t), intent(out) :: scene
       type(joint_law_t), allocatable :: law(:)
       integer, allocatable :: edge_pair(:, :)
-      real(wp), allocatable :: half(:)
-      integer :: j, n
+      integer :: n
 
       call arch_blocks(arch_shape(deck), material_of(deck), scene%system, edge_pair)
       scene%system%unit_weight = unit_weight(deck)
       scene%settings = settings_of(deck, degree*real_of(deck, "arch", "half_angle_deg"), &
          & size(half_joints_deg(deck)))
-      scene%settings%rest_tolerance = max(scene%settings%rest_tolerance, weight_rounding(deck))
+      scene%settings%rest_tolerance = max(scene%settings%rest_tolerance, &
+         & weight_rounding(degree*real_of(deck, "arch", "half_angle_deg"), &
+         & real_of(deck, "arch", "thickness_ratio")))
       n = size(edge_pair, 2)
       allocate (law(n), source=joint_law(deck))
       if (word_of(deck, "arch", "springing") == "no-slip") law([1, n])%no_slip = .true.
       call find_contacts(scene%system, edge_pair, law, scene%settings%penalty_ratio, &
          & scene%settings%n_dof, scene%contacts)
-      allocate (half, source=half_joints_deg(deck))
-      allocate (scene%joint_angle_deg(n))
-      do j = 1, size(half)
-         scene%joint_angle_deg(size(half) + 1 - j) = -half(j)
-         scene%joint_angle_deg(n - size(half) + j) = half(j)
-      end do
+      allocate (scene%joint_angle_deg, source=joint_angles_deg(deck))
    end subroutine arch_scene
+
+   !> What a chain of rigid voussoirs is made from
+   pure function arch_numbers(deck) result(numbers)
+      !> The deck, checked
+      type(deck_t), intent(in) :: deck
+      !> The numbers; those of the settings are left out
+      type(arch_numbers_t) :: numbers
+
+      numbers%shape = arch_shape(deck)
+      numbers%density = real_of(deck, "material", "density")
+      numbers%young = real_of(deck, "material", "young")
+      numbers%penalty_ratio = real_of(deck, "analysis", "penalty_ratio")
+      numbers%law = joint_law(deck)
+      numbers%no_slip_springing = word_of(deck, "arch", "springing") == "no-slip"
+   end function arch_numbers
+
+   !> Angles of all joints from the crown, positive to the right
+   pure function joint_angles_deg(deck) result(angle)
+      !> The deck
+      type(deck_t), intent(in) :: deck
+      !> The angles, from left to right: (n_joint) [deg]
+      real(wp), allocatable :: angle(:)
+      real(wp), allocatable :: half(:)
+      integer :: n
+
+      allocate (half, source=half_joints_deg(deck))
+      n = 2*size(half)
+      if (.not. half(1) > 0.0_wp) n = n - 1
+      allocate (angle(n))
+      angle(:size(half)) = -half(size(half):1:-1)
+      angle(n - size(half) + 1:) = half
+   end function joint_angles_deg
 
    !> The blocks' material
    pure function material_of(deck) result(material)
@@ -174,12 +204,13 @@ contains
 
    !> Acceleration over that of free fall that rounding feigns: a corner off by eps r makes the
    !> weight of a voussoir wrong by eps over the thickness ratio
-   pure real(wp) function weight_rounding(deck)
-      !> The deck
-      type(deck_t), intent(in) :: deck
+   pure real(wp) function weight_rounding(half_angle, thickness_ratio)
+      !> Angle from the crown to a springing [rad]
+      real(wp), intent(in) :: half_angle
+      !> Thickness over radius
+      real(wp), intent(in) :: thickness_ratio
 
-      weight_rounding = min(1.0_wp, (degree*real_of(deck, "arch", "half_angle_deg"))**2/2.0_wp) &
-         & *epsilon(1.0_wp)/real_of(deck, "arch", "thickness_ratio")
+      weight_rounding = min(1.0_wp, half_angle**2/2.0_wp)*epsilon(1.0_wp)/thickness_ratio
    end function weight_rounding
 
    !> Exact critical thickness ratio of the very same polygons by limit analysis
@@ -236,4 +267,18 @@ contains
       arch_resolution = 8.0_wp*square/8.0_wp*epsilon(1.0_wp) &
          & /real_of(deck, "arch", "thickness_ratio")**2
    end function arch_resolution
+
+   !> The same for a chain, whose voussoirs are seen from their own joints: masses are wrong by some
+   !> eps n, the place of the thrust by alpha^2/8 of that, to be compared with alpha^4/48; and an
+   !> arch that lacks as much of its thickness, and accelerates by 0.4 alpha^2 of that, must not
+   !> pass for one at rest, which it may at 16 eps n/alpha (n joints in half an arch)
+   pure real(wp) function chain_resolution(deck)
+      !> The deck of one case
+      type(deck_t), intent(in) :: deck
+      real(wp) :: angle
+
+      angle = degree*real_of(deck, "arch", "half_angle_deg")
+      chain_resolution = 100.0_wp*epsilon(1.0_wp)*real(size(half_joints_deg(deck)), wp) &
+         & /min(angle**2, angle**3)
+   end function chain_resolution
 end module dda_arch_scene

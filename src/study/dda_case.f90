@@ -1,8 +1,11 @@
 !> One case of a deck: prepared and computed
 module dda_case
    use, intrinsic :: iso_fortran_env, only : int64
-   use dda_arch_scene, only : arch_resolution, exact_thickness, search_start
+   use dda_arch_chain, only : arch_rays
+   use dda_arch_scene, only : arch_resolution, chain_resolution, exact_thickness, search_start
    use dda_block_system, only : block_system_t
+   use dda_chain, only : chain_t
+   use dda_chain_decision, only : decide_chain
    use dda_contact_detection, only : contacts_t
    use dda_critical, only : critical_t, find_critical, search_t
    use dda_decision, only : decide, decision_t
@@ -10,7 +13,8 @@ module dda_case
       & parameter_t, real_of, text_of, word_of
    use dda_deck_check, only : search_bracket
    use dda_deck_parameter, only : find_parameter, parameter_name
-   use dda_deck_scene, only : deck_family_t, deck_scene
+   use dda_deck_keys, only : key_index
+   use dda_deck_scene, only : deck_family_t, deck_scene, new_family
    use dda_error, only : error_t
    use dda_forward, only : outcome_t, run_to_verdict
    use dda_frames, only : album_t
@@ -42,6 +46,8 @@ module dda_case
       type(scene_plan_t) :: plan
       !> Whether a critical value is searched
       logical :: searches = .false.
+      !> Whether tables of joints or blocks are told, for which a scene is made
+      logical :: tells_tables = .true.
       !> Whether the original's scheme decides
       logical :: limerick = .false.
       !> The scenes of the search
@@ -85,7 +91,11 @@ contains
       this%plan = plan_scene(deck)
       this%searches = has_group(deck, "search")
       this%limerick = word_of(deck, "analysis", "mode") == "limerick"
-      if (this%searches) call prepare_search(deck, this%family, this%search)
+      if (this%searches) then
+         call prepare_search(deck, this%family, this%search)
+      else
+         call new_family(deck, parameter_t(key=key_index("arch", "thickness_ratio")), this%family)
+      end if
       searched = searched_name(deck)
       this%exact_known = (searched == "" .or. searched == "thickness_ratio") &
          & .and. word_of(deck, "scene", "kind") == "arch"
@@ -98,9 +108,10 @@ contains
       type(error_t), allocatable :: error
       integer(int64) :: start, finish, rate
 
+      if (this%exact_known) call exact_thickness(this%deck, this%exact, this%exact_known)
       call system_clock(start, rate)
       call plan_album(this)
-      if (this%exact_known) call exact_thickness(this%deck, this%exact, this%exact_known)
+      if (this%family%chains) call arch_rays(this%family%numbers, this%family%rays)
       if (this%searches .and. this%limerick) then
          ! the limit of this scheme lies somewhat above the exact value
          if (this%exact_known .and. .not. this%search%check_far_end) &
@@ -110,19 +121,19 @@ contains
             & call this%family%build(this%critical%falls, this%scene, error)
       else if (this%searches) then
          call find_critical(this%family, this%search, this%critical)
-         if (allocated(this%critical%fallen)) then
-            call this%family%build(this%critical%falls, this%scene, error)
-            call follow_collapse(this%scene, this%critical%fallen)
-         end if
+         if (allocated(this%critical%fallen)) &
+            & call see_collapse(this, this%critical%falls, this%critical%fallen)
       else if (this%limerick) then
          call deck_scene(this%deck, this%scene)
          call decide_limerick(this%deck, this%decision)
       else
-         call deck_scene(this%deck, this%scene)
          call compute_decision(this)
-         if (this%decision%outcome%verdict == verdict%collapsed) &
-            & call follow_collapse(this%scene, this%decision)
+         if (.not. allocated(this%error)) call see_collapse(this, &
+            & real_of(this%deck, "arch", "thickness_ratio"), this%decision)
       end if
+      if (this%searches .and. .not. this%family%decides_chains &
+         & .and. .not. allocated(this%critical%fallen) .and. allocated(this%critical%standing)) &
+         & call this%family%build(this%critical%stands, this%scene, error)
       if (this%plan%shared_forces) call share_told_forces(this)
       if (integer_of(this%deck, "output", "frames") > 0 .or. size(this%album%point) > 0) &
          & call take_pictures(this)
@@ -130,13 +141,24 @@ contains
       this%seconds = real(finish - start, wp)/real(rate, wp)
    end subroutine compute_case
 
-   !> Decide the scene, from its beginning or from where an earlier run has ended
+   !> Decide the scene: as a chain if it needs no more, else from its beginning or from where an
+   !> earlier run has ended
    subroutine compute_decision(this)
-      !> The case, its scene made
+      !> The case
       type(case_t), intent(inout) :: this
       type(block_system_t) :: system
       type(contacts_t) :: contacts
+      type(settings_t) :: settings
+      type(chain_t) :: chain
+      logical :: decided
 
+      ! tables tell displacements at the end, which a chain does not keep
+      decided = this%family%decides_chains .and. .not. this%tells_tables
+      if (decided) call this%family%link(real_of(this%deck, "arch", "thickness_ratio"), settings, &
+         & chain, decided)
+      if (decided) call decide_chain(settings, chain, this%decision, decided)
+      if (decided) return
+      call deck_scene(this%deck, this%scene)
       system = this%scene%system
       contacts = this%scene%contacts
       if (is_given(this%deck, "analysis", "restart")) then
@@ -146,6 +168,31 @@ contains
       end if
       call decide(this%scene%settings, system, contacts, this%decision, this%album, this%onward)
    end subroutine compute_decision
+
+   !> Make the scene of a decision where a chain has done without it and it is wanted now: for
+   !> tables of joints, for pictures, or to follow a sliding collapse
+   pure subroutine see_collapse(this, value, decision)
+      !> The case
+      type(case_t), intent(inout) :: this
+      !> Value of the parameter that was decided
+      real(wp), intent(in) :: value
+      !> Its decision
+      type(decision_t), intent(inout) :: decision
+      type(error_t), allocatable :: error
+      logical :: wanted
+
+      if (this%family%decides_chains) this%scene%joint_angle_deg = this%family%joint_angle_deg
+      wanted = this%searches
+      if (this%family%decides_chains) wanted = this%tells_tables &
+         & .or. integer_of(this%deck, "output", "frames") > 0 &
+         & .or. any(decision%contacts%face%slip /= 0)
+      if (wanted .and. .not. allocated(this%scene%contacts%joint)) &
+         & call this%family%build(value, this%scene, error)
+      if (decision%outcome%verdict == verdict%collapsed) &
+         & call follow_collapse(this%scene, decision)
+      if (allocated(this%scene%contacts%joint) .and. .not. allocated(decision%contacts%joint)) &
+         & decision%contacts%joint = this%scene%contacts%joint
+   end subroutine see_collapse
 
    !> What the album of the case is to hold
    pure subroutine plan_album(this)
@@ -178,6 +225,8 @@ contains
       if (.not. allocated(this%critical%standing)) return
       call this%family%build(this%critical%stands, scene, error)
       call share_forces(scene, this%critical%standing)
+      if (.not. allocated(this%critical%standing%contacts%joint)) &
+         & this%critical%standing%contacts%joint = scene%contacts%joint
    end subroutine share_told_forces
 
    !> Run a static scene once more for its pictures, a collapse until a corner has moved a tenth of
@@ -250,10 +299,11 @@ contains
       type(deck_family_t), intent(out) :: family
       !> The search
       type(search_t), intent(out) :: search
+      type(parameter_t) :: parameter
       character(len=:), allocatable :: problem
 
-      family%deck = deck
-      call find_parameter(text_of(deck, "search", "parameter"), family%parameter, problem)
+      call find_parameter(text_of(deck, "search", "parameter"), parameter, problem)
+      call new_family(deck, parameter, family)
       call search_bracket(deck, search%low, search%high)
       search%tolerance = real_of(deck, "search", "tolerance")
       ! the original's own verdicts near the limit are no sharper
@@ -263,6 +313,10 @@ contains
       search%start = search%low
       if (searched_name(deck) /= "thickness_ratio") return
       search%resolution_at = real_of(deck, "arch", "thickness_ratio")
+      if (family%decides_chains) then
+         search%resolution = chain_resolution(deck)
+         search%resolution_at = 0.0_wp
+      end if
       search%start = search_start(deck)
       if (.not. is_given(deck, "search", "low")) search%low = 1.0e-5_wp*search%start
       search%check_far_end = is_given(deck, "search", "high")

@@ -107,31 +107,41 @@ contains
       type(told_blocks_t), intent(inout) :: blocks
       !> Why the verdict is undecided
       character(len=:), allocatable, intent(inout) :: remark
-      logical :: moves
 
       associate (outcome => this%decision%outcome)
          row%verdict = verdict_name(outcome%verdict)
          if (allocated(outcome%reason)) remark = outcome%reason
-         joint_row = joint_rows(this%decision%contacts, this%scene%joint_angle_deg, &
-            & this%scene%origin)
-         call tell_blocks(this%scene, blocks)
+         if (allocated(this%decision%contacts%joint)) joint_row = &
+            & joint_rows(this%decision%contacts, this%scene%joint_angle_deg, this%scene%origin)
          if (outcome%verdict == verdict%collapsed) then
             call tell_mechanism(this%decision%contacts, this%scene%joint_angle_deg, row)
-            call tell_roles(this%decision%contacts, joint_row)
+            if (size(joint_row) > 0) call tell_roles(this%decision%contacts, joint_row)
          end if
-         moves = this%limerick .or. this%scene%settings%current
-         if (outcome%verdict == verdict%collapsed .and. .not. moves) then
-            call tell_mechanism_motion(this%scene%system, outcome%motion, blocks)
-         else
-            call tell_total_motion(this%decision%system, moves, blocks)
-         end if
-         row%blocks = maxval(this%scene%system%equation)
+         if (allocated(this%decision%system%equation)) call tell_end(this, blocks)
+         row%blocks = block_count(this%scene, this%decision%contacts)
          row%steps = outcome%steps
          row%open_close_iterations = outcome%passes
          row%factorisations = outcome%factorisations
          call tell_condition(outcome, row)
       end associate
    end subroutine tell_decision
+
+   !> Tell the blocks at the end of a decision
+   pure subroutine tell_end(this, blocks)
+      !> The case
+      type(case_t), intent(in) :: this
+      !> Its blocks
+      type(told_blocks_t), intent(inout) :: blocks
+      logical :: moves
+
+      moves = this%limerick .or. this%scene%settings%current
+      call tell_blocks(this%scene, blocks)
+      if (this%decision%outcome%verdict == verdict%collapsed .and. .not. moves) then
+         call tell_mechanism_motion(this%scene%system, this%decision%outcome%motion, blocks)
+      else
+         call tell_total_motion(this%decision%system, moves, blocks)
+      end if
+   end subroutine tell_end
 
    !> Tell the search of a case
    pure subroutine tell_search(this, row, joint_row, blocks, remark)
@@ -146,8 +156,6 @@ contains
       type(told_blocks_t), intent(inout) :: blocks
       !> Why the verdict is undecided
       character(len=:), allocatable, intent(inout) :: remark
-      type(scene_t) :: scene
-      type(error_t), allocatable :: error
 
       associate (critical => this%critical)
          row%verdict = verdict_name(critical%verdict)
@@ -157,22 +165,13 @@ contains
                & remark = "at "//to_text(critical%undecided_at)//" "//critical%reason
          end if
          if (critical%verdict == verdict%found) call tell_bracket(critical, row)
-         scene = this%scene
-         if (allocated(critical%standing)) then
-            call this%family%build(critical%stands, scene, error)
-            joint_row = joint_rows(critical%standing%contacts, scene%joint_angle_deg, scene%origin)
-         else if (allocated(critical%fallen)) then
-            joint_row = joint_rows(critical%fallen%contacts, scene%joint_angle_deg, scene%origin)
-         end if
-         if (allocated(scene%system%equation)) then
-            row%blocks = maxval(scene%system%equation)
-            call tell_blocks(scene, blocks)
-         end if
          if (allocated(critical%fallen)) then
             call tell_mechanism(critical%fallen%contacts, this%scene%joint_angle_deg, row)
-            call tell_roles(critical%fallen%contacts, joint_row)
-            call tell_fall(critical%fallen, scene, blocks)
+            row%blocks = block_count(this%scene, critical%fallen%contacts)
+         else if (allocated(critical%standing)) then
+            row%blocks = block_count(this%scene, critical%standing%contacts)
          end if
+         if (this%tells_tables) call tell_nearest(this, joint_row, blocks)
          row%steps = critical%steps
          row%open_close_iterations = critical%passes
          row%factorisations = critical%factorisations
@@ -183,6 +182,47 @@ contains
          end if
       end associate
    end subroutine tell_search
+
+   !> Joints and blocks of the decision nearest to critical that stands, else of that which falls
+   pure subroutine tell_nearest(this, joint_row, blocks)
+      !> The case
+      type(case_t), intent(in) :: this
+      !> Rows of the joints
+      type(joint_row_t), allocatable, intent(inout) :: joint_row(:)
+      !> The blocks
+      type(told_blocks_t), intent(inout) :: blocks
+      type(scene_t) :: scene
+      type(error_t), allocatable :: error
+
+      associate (critical => this%critical)
+         scene = this%scene
+         if (allocated(critical%standing)) then
+            call this%family%build(critical%stands, scene, error)
+            if (allocated(critical%standing%contacts%joint)) joint_row = &
+               & joint_rows(critical%standing%contacts, scene%joint_angle_deg, scene%origin)
+         else if (allocated(critical%fallen)) then
+            joint_row = joint_rows(critical%fallen%contacts, scene%joint_angle_deg, scene%origin)
+         end if
+         if (allocated(scene%system%equation)) call tell_blocks(scene, blocks)
+         if (.not. allocated(critical%fallen)) return
+         if (size(joint_row) > 0) call tell_roles(critical%fallen%contacts, joint_row)
+         call tell_fall(critical%fallen, scene, blocks)
+      end associate
+   end subroutine tell_nearest
+
+   !> Number of movable blocks: of the scene, or where there was none, of a chain by its joints
+   pure integer function block_count(scene, contacts)
+      !> The scene, which may be empty
+      type(scene_t), intent(in) :: scene
+      !> Contacts of its decision
+      type(contacts_t), intent(in) :: contacts
+
+      if (allocated(scene%system%equation)) then
+         block_count = maxval(scene%system%equation)
+      else
+         block_count = size(contacts%face) - 1
+      end if
+   end function block_count
 
    !> Displacements of the blocks in the collapse nearest to critical
    pure subroutine tell_fall(fallen, scene, blocks)

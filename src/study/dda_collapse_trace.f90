@@ -1,11 +1,13 @@
 !> Where a collapse stops: its joints, frozen, are traced to the value at which they cease to move
 module dda_collapse_trace
+   use dda_chain, only : chain_t
+   use dda_chain_power, only : chain_mechanism_t, chain_power, freeze_mechanism
    use dda_error, only : error_t
    use dda_frozen_mechanism, only : frozen_mechanism_t, mechanism_power
    use dda_kinds, only : wp
    use dda_scene, only : family_t, scene_t
    use dda_search, only : critical_t, search_t
-   use dda_settings, only : flow_rule
+   use dda_settings, only : flow_rule, settings_t
    implicit none
    private
 
@@ -25,6 +27,16 @@ module dda_collapse_trace
       real(wp) :: reach = 0.0_wp
    end type proposal_t
 
+   !> A collapse whose joints keep to their faces
+   type :: frozen_t
+      !> Whether it is that of a chain
+      logical :: linked = .false.
+      !> The mechanism of a chain
+      type(chain_mechanism_t) :: chain
+      !> The mechanism of any blocks
+      type(frozen_mechanism_t) :: blocks
+   end type frozen_t
+
    !> Share of the value by which moving blocks are first looked for beyond frozen ones
    real(wp), parameter :: first_reach = 1.0e-3_wp
    !> Half a bracket is no narrower than this share of its value
@@ -35,6 +47,9 @@ module dda_collapse_trace
    real(wp), parameter :: noise_margin = 20.0_wp
    !> Roots whose mean is taken where rounding is more than the tolerance
    integer, parameter :: n_roots = 32
+   !> How much of what the parabola corrects it may leave itself, over the relative width of the
+   !> values that it goes through
+   real(wp), parameter :: curving = 1.0e3_wp
    !> Most passes of the secant method
    integer, parameter :: max_passes = 20
    !> Free fall over elastic motion in the step that traces a mechanism
@@ -42,7 +57,8 @@ module dda_collapse_trace
 
 contains
 
-   !> Trace the last collapse to where it stops, by the secant method on the power of the loads
+   !> Trace the last collapse to where it stops, by the secant method on the power of the loads;
+   !> from the third value on the parabola through three tells what the secant leaves
    pure subroutine trace(family, search, limit, critical, proposal)
       !> The family
       class(family_t), intent(in) :: family
@@ -54,16 +70,15 @@ contains
       type(critical_t), intent(inout) :: critical
       !> Where the collapse stops
       type(proposal_t), intent(out) :: proposal
-      type(frozen_mechanism_t) :: mechanism
+      type(frozen_t) :: mechanism
       real(wp) :: x(2), power(2), first_power, noise, next, slope, coarse_slope, step
+      real(wp) :: bend, last_slope, off, x_before
       integer :: pass
       logical :: usable, stopped, only_noise
 
       proposal%half = least_half(search, critical)*max(abs(critical%falls), tiny(1.0_wp))
       if (critical%fallen%flow /= flow_rule%associated) return
-      mechanism%face = critical%fallen%contacts%face
-      mechanism%motion = critical%fallen%outcome%motion(:3, :)
-      mechanism%dt = sqrt(free_fall)*critical%fallen%outcome%elastic_time
+      mechanism = frozen(family, critical)
       x(1) = critical%falls
       call power_at(family, mechanism, x(1), critical, power(1), noise, usable)
       if (.not. usable) return
@@ -71,19 +86,51 @@ contains
       step = min(0.3_wp, max(1.0e-3_wp, 1.25_wp*critical%fallen%outcome%acceleration_ratio))
       step = min(step*max(abs(x(1)), 0.01_wp*abs(limit - x(1))), abs(limit - x(1)))
       x(2) = x(1) + sign(step, limit - x(1))
+      last_slope = 0.0_wp
+      x_before = x(1)
       do pass = 1, max_passes
          call power_at(family, mechanism, x(2), critical, power(2), noise, usable)
          if (.not. usable .or. .not. abs(power(2) - power(1)) > 0.0_wp) return
          slope = (power(2) - power(1))/(x(2) - x(1))
          if (pass == 1) coarse_slope = slope
          next = x(2) - power(2)/slope
+         bend = 0.0_wp
+         if (pass > 1) bend = (slope - last_slope)/slope*(next - x(2))*(next - x(1)) &
+            & /(x(2) - x_before)
+         next = next - bend
          if (next < search%low .or. next > search%high) return
-         stopped = abs(next - x(2)) < 0.02_wp*least_half(search, critical)*abs(next)
+         off = abs(next - x(2))
+         if (pass > 1) off = min(off, abs(bend*(x(2) - x(1)))*curving/abs(next))
+         stopped = off < 0.02_wp*least_half(search, critical)*abs(next)
          only_noise = abs(power(2)) < 1.0e-3_wp*abs(first_power) .and. abs(power(2)) > abs(power(1))
          if (stopped .or. only_noise) exit
+         last_slope = slope
+         x_before = x(1)
          x = [x(2), next]
          power(1) = power(2)
       end do
+      call propose(family, search, mechanism, next, coarse_slope, noise, critical, proposal)
+   end subroutine trace
+
+   !> Where a mechanism stops, and how near to that to decide
+   pure subroutine propose(family, search, mechanism, next, coarse_slope, noise, critical, proposal)
+      !> The family
+      class(family_t), intent(in) :: family
+      !> What is searched
+      type(search_t), intent(in) :: search
+      !> The mechanism
+      type(frozen_t), intent(in) :: mechanism
+      !> Where it stops
+      real(wp), intent(in) :: next
+      !> Change of its power with the value
+      real(wp), intent(in) :: coarse_slope
+      !> Noise of the power; raised where rounding shows
+      real(wp), intent(inout) :: noise
+      !> What was found so far; the factorisations are counted
+      type(critical_t), intent(inout) :: critical
+      !> The proposal
+      type(proposal_t), intent(inout) :: proposal
+
       proposal%usable = .true.
       proposal%value = next
       if (critical%current) then
@@ -91,13 +138,37 @@ contains
          proposal%half = least_half(search, critical)*abs(next)
          return
       end if
-      call refine_noise(family, mechanism, next, critical, noise)
+      if (.not. mechanism%linked) call refine_noise(family, mechanism, next, critical, noise)
       proposal%half = max(least_half(search, critical)*abs(next), abs(noise/coarse_slope), &
          & rest_resolution(critical, next))
       proposal%reach = proposal%half
       if (proposal%half > search%tolerance*abs(next)) &
          & call average_root(family, mechanism, coarse_slope, critical, proposal)
-   end subroutine trace
+   end subroutine propose
+
+   !> Freeze the last collapse
+   pure function frozen(family, critical) result(mechanism)
+      !> The family
+      class(family_t), intent(in) :: family
+      !> What was found so far, a collapse among it
+      type(critical_t), intent(in) :: critical
+      !> The mechanism
+      type(frozen_t) :: mechanism
+      type(chain_t) :: chain
+      type(settings_t) :: settings
+
+      associate (contacts => critical%fallen%contacts, outcome => critical%fallen%outcome)
+         call family%link(critical%falls, settings, chain, mechanism%linked)
+         if (mechanism%linked) then
+            call freeze_mechanism(contacts%face, contacts%increment, chain%friction, &
+               & mechanism%chain)
+         else
+            mechanism%blocks%face = contacts%face
+            mechanism%blocks%motion = outcome%motion(:3, :)
+            mechanism%blocks%dt = sqrt(free_fall)*outcome%elastic_time
+         end if
+      end associate
+   end function frozen
 
    !> Half the width of a bracket over its value: of the tolerance, or of what rounding leaves
    pure real(wp) function least_half(search, critical)
@@ -120,7 +191,7 @@ contains
       !> The family
       class(family_t), intent(in) :: family
       !> The mechanism
-      type(frozen_mechanism_t), intent(in) :: mechanism
+      type(frozen_t), intent(in) :: mechanism
       !> Change of the power with the value
       real(wp), intent(in) :: slope
       !> The factorisations are counted
@@ -147,21 +218,21 @@ contains
       !> The family
       class(family_t), intent(in) :: family
       !> The mechanism
-      type(frozen_mechanism_t), intent(in) :: mechanism
+      type(frozen_t), intent(in) :: mechanism
       !> The value
       real(wp), intent(in) :: value
       !> The factorisations are counted
       type(critical_t), intent(inout) :: critical
       !> Noise of the power; raised where rounding shows
       real(wp), intent(inout) :: noise
-      type(frozen_mechanism_t) :: other
+      type(frozen_t) :: other
       real(wp) :: power(3), ignored
       logical :: usable
       integer :: i
 
       other = mechanism
       do i = 1, 3
-         other%dt = mechanism%dt*0.7_wp**(i - 2)
+         other%blocks%dt = mechanism%blocks%dt*0.7_wp**(i - 2)
          call power_at(family, other, value, critical, power(i), ignored, usable)
          if (.not. usable) return
       end do
@@ -186,7 +257,7 @@ contains
       !> The family
       class(family_t), intent(in) :: family
       !> The mechanism
-      type(frozen_mechanism_t), intent(in) :: mechanism
+      type(frozen_t), intent(in) :: mechanism
       !> The value
       real(wp), intent(in) :: value
       !> The factorisations are counted
@@ -199,13 +270,20 @@ contains
       logical, intent(out) :: usable
       type(error_t), allocatable :: error
       type(scene_t) :: scene
+      type(chain_t) :: chain
+      type(settings_t) :: settings
 
       power = 0.0_wp
       noise = 0.0_wp
+      if (mechanism%linked) then
+         call family%link(value, settings, chain, usable)
+         if (usable) call chain_power(mechanism%chain, chain, power, noise, usable)
+         return
+      end if
       call family%build(value, scene, error)
       usable = .not. allocated(error)
       if (.not. usable) return
-      call mechanism_power(mechanism, scene, power, noise, usable)
+      call mechanism_power(mechanism%blocks, scene, power, noise, usable)
       critical%factorisations = critical%factorisations + 1
    end subroutine power_at
 end module dda_collapse_trace

@@ -5,6 +5,8 @@
 !> prove it. Where the joints tell nothing, the bracket is halved.
 module dda_critical
    use dda_block_system, only : block_system_t
+   use dda_chain, only : chain_t
+   use dda_chain_decision, only : decide_chain
    use dda_collapse_trace, only : proposal_t, trace
    use dda_decision, only : decide, decision_t
    use dda_error, only : error_t
@@ -12,6 +14,7 @@ module dda_critical
    use dda_kinds, only : wp
    use dda_scene, only : family_t, scene_t
    use dda_search, only : critical_t, search_t
+   use dda_settings, only : settings_t
    use dda_verdict, only : verdict
    implicit none
    private
@@ -64,7 +67,8 @@ contains
             limit = critical%undecided_at
             may_turn = .false.
          end if
-         if (answer == verdict%collapsed) call trace(family, search, limit, critical, proposal)
+         if (answer == verdict%collapsed .and. .not. proved(search, critical, proposal)) &
+            & call trace(family, search, limit, critical, proposal)
          in_vain = merge(0, in_vain + 1, answer == verdict%collapsed)
          if (closed(search, critical, proposal)) then
             critical%verdict = verdict%found
@@ -152,18 +156,26 @@ contains
       type(decision_t), allocatable :: decision
       type(error_t), allocatable :: error
       type(scene_t) :: scene
+      type(chain_t) :: chain
+      type(settings_t) :: settings
+      logical :: decided
 
       answer = verdict%undecided
       critical%decisions = critical%decisions + 1
-      call family%build(value, scene, error)
-      if (allocated(error)) then
-         critical%reason = error%message
-         critical%undecided_at = value
-         return
-      end if
-      critical%current = scene%settings%current
       allocate (decision)
-      call decide(scene%settings, scene%system, scene%contacts, decision)
+      decided = family%decides_chains
+      if (decided) call family%link(value, settings, chain, decided)
+      if (decided) call decide_chain(settings, chain, decision, decided)
+      if (.not. decided) then
+         call family%build(value, scene, error)
+         if (allocated(error)) then
+            critical%reason = error%message
+            critical%undecided_at = value
+            return
+         end if
+         critical%current = scene%settings%current
+         call decide(scene%settings, scene%system, scene%contacts, decision)
+      end if
       critical%steps = critical%steps + decision%outcome%steps
       critical%passes = critical%passes + decision%outcome%passes
       critical%factorisations = critical%factorisations + decision%outcome%factorisations
@@ -266,6 +278,23 @@ contains
       middle = (a + b)/2.0_wp
       if (min(a, b) > 0.0_wp .and. max(a, b) > 4.0_wp*min(a, b)) middle = sqrt(a*b)
    end function middle
+
+   !> Whether the last two decisions are those that the proposal asked for, at the tolerance, so
+   !> that another trace would tell nothing new
+   pure logical function proved(search, critical, proposal)
+      !> What is searched
+      type(search_t), intent(in) :: search
+      !> What was found so far
+      type(critical_t), intent(in) :: critical
+      !> Where the collapse before the last stops
+      type(proposal_t), intent(in) :: proposal
+
+      proved = proposal%usable
+      if (proved) proved = closed(search, critical, proposal) &
+         & .and. proposal%half <= 0.5001_wp*search%tolerance*abs(critical%stands) &
+         & .and. abs((critical%stands + critical%falls)/2.0_wp - proposal%value) &
+         & < 1.0e-3_wp*proposal%half
+   end function proved
 
    !> Whether the bracket is as narrow as the proposal asks for
    pure logical function closed(search, critical, proposal)

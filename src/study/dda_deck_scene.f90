@@ -1,8 +1,11 @@
 !> From a deck of any kind to its scene
 module dda_deck_scene
-   use dda_arch_scene, only : arch_scene, material_of, settings_of, unit_weight
+   use dda_arch_chain, only : arch_chain, arch_numbers_t, arch_rays, arch_rays_t
+   use dda_arch_scene, only : arch_numbers, arch_scene, half_joints_deg, joint_angles_deg, &
+      & material_of, settings_of, unit_weight
    use dda_block_scene, only : base_t, block_scene, floating_block
-   use dda_constants, only : pi
+   use dda_chain, only : chain_t
+   use dda_constants, only : degree, pi
    use dda_deck, only : deck_error, deck_t, file_beside, is_given, parameter_t, place_of, &
       & real_of, text_of, word_of
    use dda_deck_keys, only : key_index
@@ -15,12 +18,14 @@ module dda_deck_scene
    use dda_read_deck, only : geometry_file
    use dda_restart, only : check_restart
    use dda_scene, only : family_t, scene_t
+   use dda_scene_plan, only : plan_scene, scene_plan_t
+   use dda_settings, only : settings_t
    use dda_text, only : to_text
    use dda_warnings, only : add_warning
    implicit none
    private
 
-   public :: check_lines, check_scene, deck_family_t, deck_scene, warning_line
+   public :: check_lines, check_scene, deck_family_t, deck_scene, new_family, warning_line
 
    !> The scenes of one deck whose searched parameter varies
    type, extends(family_t) :: deck_family_t
@@ -28,7 +33,19 @@ module dda_deck_scene
       type(deck_t) :: deck
       !> The parameter
       type(parameter_t) :: parameter
+      !> Whether its scenes are chains but for strain, and differ by their thickness ratio alone
+      logical :: chains = .false.
+      !> Then: what the arches are made from
+      type(arch_numbers_t) :: numbers
+      !> Settings of their runs
+      type(settings_t) :: settings
+      !> Angle of each joint from the crown: (n_joint) [deg]
+      real(wp), allocatable :: joint_angle_deg(:)
+      !> What does not depend on the thickness; made by the one who searches
+      type(arch_rays_t) :: rays
    contains
+      !> Make the chain of one value
+      procedure :: link => link_arch
       !> Make the scene of one value
       procedure :: build => build_deck_scene
    end type deck_family_t
@@ -37,6 +54,49 @@ module dda_deck_scene
    real(wp), parameter :: doubtful_strain = 1.0e-3_wp
 
 contains
+
+   !> The family of a deck, its numbers read
+   pure subroutine new_family(deck, parameter, family)
+      !> The deck of one case
+      type(deck_t), intent(in) :: deck
+      !> The parameter that varies
+      type(parameter_t), intent(in) :: parameter
+      !> The family
+      type(deck_family_t), intent(out) :: family
+      type(scene_plan_t) :: plan
+
+      family%deck = deck
+      family%parameter = parameter
+      plan = plan_scene(deck)
+      family%chains = plan%row .and. parameter%key == key_index("arch", "thickness_ratio")
+      family%decides_chains = family%chains .and. plan%chain
+      if (.not. family%chains) return
+      family%settings = settings_of(deck, degree*real_of(deck, "arch", "half_angle_deg"), &
+         & size(half_joints_deg(deck)))
+      family%numbers = arch_numbers(deck)
+      family%numbers%body_force = unit_weight(deck)*family%settings%load_direction
+      allocate (family%joint_angle_deg, source=joint_angles_deg(deck))
+   end subroutine new_family
+
+   !> Make the chain of one thickness ratio
+   pure subroutine link_arch(family, value, settings, chain, linked)
+      !> The family
+      class(deck_family_t), intent(in) :: family
+      !> The thickness ratio
+      real(wp), intent(in) :: value
+      !> Settings of the run
+      type(settings_t), intent(out) :: settings
+      !> The chain
+      type(chain_t), intent(out) :: chain
+      !> Whether the scenes are chains, and one has this value
+      logical, intent(out) :: linked
+
+      linked = family%chains
+      if (linked) linked = number_fits(family%parameter%key, value)
+      if (.not. linked) return
+      settings = family%settings
+      call arch_chain(family%numbers, family%rays, value, chain)
+   end subroutine link_arch
 
    !> Make the scene of one value of the parameter
    pure subroutine build_deck_scene(family, value, scene, error)

@@ -1,6 +1,7 @@
 !> A scene ready to run, and families of scenes that differ by one number
 module dda_scene
    use dda_block_system, only : block_system_t
+   use dda_chain, only : chain_t
    use dda_contact_detection, only : contacts_t
    use dda_error, only : error_t
    use dda_kinds, only : wp
@@ -26,9 +27,14 @@ module dda_scene
 
    !> Scenes that differ by the value of one parameter
    type, abstract :: family_t
+      !> Whether its chains, if there are any, are decided as such; otherwise collapses alone are
+      !> traced on them
+      logical :: decides_chains = .false.
    contains
       !> Make the scene of one value
       procedure(build_scene), deferred :: build
+      !> Make the scene of one value as a chain of rigid blocks, where it is one but for strain
+      procedure :: link => link_nothing
    end type family_t
 
    abstract interface
@@ -45,4 +51,25 @@ module dda_scene
          type(error_t), allocatable, intent(out) :: error
       end subroutine build_scene
    end interface
+
+contains
+
+   !> Scenes that are no chains
+   pure subroutine link_nothing(family, value, settings, chain, linked)
+      !> The family
+      class(family_t), intent(in) :: family
+      !> Value of its parameter
+      real(wp), intent(in) :: value
+      !> Settings of the run
+      type(settings_t), intent(out) :: settings
+      !> The chain
+      type(chain_t), intent(out) :: chain
+      !> Whether there is one
+      logical, intent(out) :: linked
+
+      settings = settings_t()
+      chain = chain_t()
+      ! what is asked of the arguments cannot be
+      linked = .not. same_type_as(family, family) .and. value > 0.0_wp
+   end subroutine link_nothing
 end module dda_scene

@@ -51,6 +51,11 @@ module dda_scene_plan
       logical :: moving = .false.
       !> Whether joints have cohesion or tensile strength, and may lose it
       logical :: strength = .false.
+      !> Whether the blocks lie in a row, unmoved, each touching its two neighbours alone
+      logical :: row = .false.
+      !> Whether the blocks are a chain: rigid, unmoved, each touching its two neighbours alone,
+      !> which flat arrays without pattern and search can hold
+      logical :: chain = .false.
       !> Whether the forces of the arch that a search found to stand are computed with strain
       logical :: shared_forces = .false.
    end type scene_plan_t
@@ -71,6 +76,7 @@ contains
       if (is_given(deck, "analysis", "unknowns")) then
          plan%reason = strain_reason%forced
          plan%unknowns = integer_of(deck, "analysis", "unknowns")
+         call see_chain(deck, plan)
          return
       end if
       plan%reason = strain_reason%none
@@ -89,5 +95,22 @@ contains
       else
          plan%shared_forces = .false.
       end if
+      call see_chain(deck, plan)
    end function plan_scene
+
+   !> Whether an arch is a chain but for strain, and whether it needs no more: the condition number
+   !> is one of the equations with a pattern, and a displacement that means collapse one of corners
+   pure subroutine see_chain(deck, plan)
+      !> The deck of the case
+      type(deck_t), intent(in) :: deck
+      !> Its plan, otherwise made
+      type(scene_plan_t), intent(inout) :: plan
+
+      plan%row = word_of(deck, "scene", "kind") == "arch" &
+         & .and. word_of(deck, "analysis", "mode") == "static" &
+         & .and. .not. (plan%moving .or. plan%strength)
+      plan%chain = plan%row .and. plan%unknowns == n_rigid &
+         & .and. .not. (flag_of(deck, "output", "condition") &
+         & .or. is_given(deck, "analysis", "collapse_displacement"))
+   end subroutine see_chain
 end module dda_scene_plan

@@ -86,7 +86,7 @@ def run_script(text: str, folder: Path, shell: dict[str, str]) -> str:
 
 def plain(text: str) -> str:
     """Text without what differs from machine to machine: rounding errors and blanks."""
-    return " ".join(re.sub(r"-?\d\.\dE-\d\d", "ERROR", text).split())
+    return " ".join(re.sub(r"-?\d\.\dE[-+]\d\d", "ERROR", text).split())
 
 
 def run_console(block: Block, folder: Path, shell: dict[str, str]) -> None:

@@ -88,12 +88,13 @@ def test_mechanism_of_a_search_is_told_beside_the_arch_that_stands(tmp_path: Pat
     corners = corners_of(rows_of(folder / "blocks.csv"))
     moves = [math.hypot(u, v) for block in corners.values() for *_, u, v in block]
     assert max(moves) == pytest.approx(1.0, abs=1e-12)
-    # the crown falls, and the mechanism is symmetric
+    # the crown falls, and the mechanism is symmetric but for rounding: 1e-12 of the weights against the
+    # acceleration of an arch that lacks 5e-9 of its thickness
     crown = corners[18][1]
     assert crown[3] < -0.5
     for left, right in ((9, 28), (4, 33)):
         for side in (0, 1):
-            assert corners[left][side][2] == pytest.approx(-corners[right][1 - side][2], abs=1e-5)
+            assert corners[left][side][2] == pytest.approx(-corners[right][1 - side][2], abs=1e-3)
 
 
 def test_sliding_springings_are_told_with_their_way(tmp_path: Path) -> None:

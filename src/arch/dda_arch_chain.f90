@@ -1,0 +1,187 @@
+!> An arch of rigid voussoirs as a chain
+!>
+!> Coordinates are seen from the middle of the crown, and each voussoir from its own first joint:
+!> the thickness t of a shallow arch, a millionth of its radius, then keeps its digits. Area, centre
+!> and moment of inertia are polynomials of t, whose coefficients are found once: a point of a
+!> voussoir is X0 + s X1, with X0 on a chord halfway through the thickness, X1 between the
+!> directions of the chord's ends, and s from -t/2 to t/2.
+module dda_arch_chain
+   use dda_arch, only : arch_shape_t, section_directions
+   use dda_chain, only : chain_t, new_chain
+   use dda_kinds, only : wp
+   use dda_material, only : joint_law_t
+   implicit none
+   private
+
+   public :: arch_numbers_t, arch_rays_t, arch_rays, arch_chain
+
+   !> What an arch of one material is made from
+   type :: arch_numbers_t
+      !> Its shape
+      type(arch_shape_t) :: shape
+      !> Mass per volume [kg/m3]
+      real(wp) :: density = 0.0_wp
+      !> Young's modulus [Pa]
+      real(wp) :: young = 0.0_wp
+      !> Load per volume: (2) [N/m3]
+      real(wp) :: body_force(2) = 0.0_wp
+      !> Contact stiffness over the stiffness of the block across the joint
+      real(wp) :: penalty_ratio = 0.0_wp
+      !> Law of the joints, without cohesion and tensile strength
+      type(joint_law_t) :: law
+      !> Whether the springings cannot slide
+      logical :: no_slip_springing = .false.
+   end type arch_numbers_t
+
+   !> What does not depend on the thickness
+   type :: arch_rays_t
+      !> Directions of the sections from left to right: (2, m)
+      real(wp), allocatable :: direction(:, :)
+      !> Where they cross the circle halfway through the thickness, from its top, over the radius:
+      !> (2, m)
+      real(wp), allocatable :: point(:, :)
+      !> Which of them are joints: (n_joint)
+      integer, allocatable :: joint(:)
+      !> Areas of the voussoirs over t: (n) [m]
+      real(wp), allocatable :: area(:)
+      !> Their centres from the middles of their first joints: centre(:, 1) + centre(:, 2) t**2:
+      !> (2, 2, n) [m, 1/m]
+      real(wp), allocatable :: centre(:, :, :)
+      !> Squares of their radii of gyration about these middles, likewise: (2, n) [m2, 1]
+      real(wp), allocatable :: gyration(:, :)
+   end type arch_rays_t
+
+   !> Most that the stiffness of two joints may differ by, as for other springs
+   real(wp), parameter :: stiffest = 1.0e2_wp
+
+contains
+
+   !> Sections of an arch of any thickness
+   pure subroutine arch_rays(numbers, rays)
+      !> The arch
+      type(arch_numbers_t), intent(in) :: numbers
+      !> Its sections
+      type(arch_rays_t), intent(out) :: rays
+      logical, allocatable :: is_joint(:)
+      integer :: b, i, n
+
+      call section_directions(numbers%shape, rays%direction, is_joint)
+      allocate (rays%point(2, size(is_joint)), rays%joint(count(is_joint)))
+      rays%point(1, :) = rays%direction(1, :)
+      ! cos - 1
+      rays%point(2, :) = -rays%direction(1, :)**2/(1.0_wp + rays%direction(2, :))
+      n = 0
+      do i = 1, size(is_joint)
+         if (.not. is_joint(i)) cycle
+         n = n + 1
+         rays%joint(n) = i
+      end do
+      n = size(rays%joint) - 1
+      allocate (rays%area(n), rays%centre(2, 2, n), rays%gyration(2, n))
+      do b = 1, n
+         call find_moments(numbers%shape%radius, rays, b)
+      end do
+   end subroutine arch_rays
+
+   !> Coefficients of one voussoir; Simpson's rule is exact along its chords
+   pure subroutine find_moments(radius, rays, b)
+      !> Radius halfway through the thickness [m]
+      real(wp), intent(in) :: radius
+      !> The sections; the coefficients of the voussoir are set
+      type(arch_rays_t), intent(inout) :: rays
+      !> Number of the voussoir
+      integer, intent(in) :: b
+      !> Weights of the rule
+      real(wp), parameter :: weight(0:2) = [1.0_wp, 4.0_wp, 1.0_wp]/6.0_wp
+      real(wp) :: chord(2), from(2), x0(2), x1(2), area, rate, turn, first(2, 2), polar(2), part
+      integer :: i, k
+
+      area = 0.0_wp
+      first = 0.0_wp
+      polar = 0.0_wp
+      do k = rays%joint(b), rays%joint(b + 1) - 1
+         from = radius*(rays%point(:, k) - rays%point(:, rays%joint(b)))
+         chord = radius*(rays%point(:, k + 1) - rays%point(:, k))
+         ! dA = (rate - turn s) ds du
+         turn = rays%direction(1, k)*rays%direction(2, k + 1) &
+            & - rays%direction(2, k)*rays%direction(1, k + 1)
+         do i = 0, 2
+            part = real(i, wp)/2.0_wp
+            x0 = from + part*chord
+            x1 = rays%direction(:, k) + part*(rays%direction(:, k + 1) - rays%direction(:, k))
+            rate = chord(1)*x1(2) - chord(2)*x1(1)
+            area = area + weight(i)*rate
+            first(:, 1) = first(:, 1) + weight(i)*rate*x0
+            first(:, 2) = first(:, 2) - weight(i)*turn*x1/12.0_wp
+            polar(1) = polar(1) + weight(i)*rate*(x0(1)**2 + x0(2)**2)
+            polar(2) = polar(2) + weight(i)*(rate*(x1(1)**2 + x1(2)**2) &
+               & - 2.0_wp*turn*(x0(1)*x1(1) + x0(2)*x1(2)))/12.0_wp
+         end do
+      end do
+      rays%area(b) = area
+      rays%centre(:, :, b) = first/area
+      rays%gyration(:, b) = polar/area
+   end subroutine find_moments
+
+   !> The arch of one thickness ratio
+   pure subroutine arch_chain(numbers, rays, thickness_ratio, chain)
+      !> The arch
+      type(arch_numbers_t), intent(in) :: numbers
+      !> Its sections
+      type(arch_rays_t), intent(in) :: rays
+      !> Thickness over radius
+      real(wp), intent(in) :: thickness_ratio
+      !> The chain
+      type(chain_t), intent(out) :: chain
+      real(wp) :: area, centre(2), radius, thickness, way(2)
+      integer :: b, first, last, n
+
+      n = size(rays%joint) - 1
+      call new_chain(n, chain)
+      radius = numbers%shape%radius
+      thickness = thickness_ratio*radius
+      chain%stiffness(1) = huge(1.0_wp)
+      do b = 1, n
+         first = rays%joint(b)
+         last = rays%joint(b + 1)
+         area = rays%area(b)*thickness
+         centre = rays%centre(:, 1, b) + rays%centre(:, 2, b)*thickness**2
+         chain%centroid(:, b) = radius*rays%point(:, first) + centre
+         chain%mass(b) = numbers%density*area
+         chain%inertia(b) = chain%mass(b)*(rays%gyration(1, b) &
+            & + rays%gyration(2, b)*thickness**2 - centre(1)**2 - centre(2)**2)
+         chain%weight(:, b) = area*numbers%body_force
+         chain%tangent(:, b) = rays%direction(:, first)
+         chain%middle(:, b) = radius*rays%point(:, first)
+         way = radius*(rays%point(:, last) - rays%point(:, first)) - centre
+         chain%arm(:, 2, b) = arms(-centre, rays%direction(:, first))
+         chain%arm(:, 1, b + 1) = arms(way, rays%direction(:, last))
+         chain%stiffness(b + 1) = numbers%penalty_ratio*numbers%young*thickness/rays%area(b)
+         chain%stiffness(b) = min(chain%stiffness(b), chain%stiffness(b + 1))
+      end do
+      last = rays%joint(n + 1)
+      chain%tangent(:, n + 1) = rays%direction(:, last)
+      chain%middle(:, n + 1) = radius*rays%point(:, last)
+      chain%arm(:, 1, 1) = 0.0_wp
+      chain%arm(:, 2, n + 1) = 0.0_wp
+      chain%rounding = 4.0_wp*epsilon(1.0_wp)*real(n, wp)
+      chain%stiffness = min(chain%stiffness, stiffest*minval(chain%stiffness))
+      chain%half = thickness/2.0_wp
+      chain%friction = numbers%law%friction
+      chain%limit = merge(huge(1.0_wp), 0.0_wp, numbers%law%no_slip)
+      if (numbers%no_slip_springing) chain%limit([1, n + 1]) = huge(1.0_wp)
+   end subroutine arch_chain
+
+   !> Moments of unit forces along the normal and along the tangent of a joint
+   pure function arms(way, tangent)
+      !> From the centre to the joint's middle: (2) [m]
+      real(wp), intent(in) :: way(2)
+      !> The tangent: (2)
+      real(wp), intent(in) :: tangent(2)
+      !> The moments: (2) [m]
+      real(wp) :: arms(2)
+
+      arms(1) = -way(1)*tangent(1) - way(2)*tangent(2)
+      arms(2) = way(1)*tangent(2) - way(2)*tangent(1)
+   end function arms
+end module dda_arch_chain

@@ -1,0 +1,183 @@
+!> Does a chain stand: the same march of static steps to the same verdict as for any blocks
+module dda_chain_decision
+   use dda_chain, only : chain_t
+   use dda_chain_step, only : chain_step_t, lengthen_step, new_chain_step, settle_chain
+   use dda_chain_thrust, only : find_thrust, thrust_faces, thrust_t
+   use dda_decision, only : decision_t
+   use dda_friction_cone, only : joint_face_t
+   use dda_kinds, only : wp
+   use dda_settings, only : flow_rule, settings_t
+   use dda_step_context, only : march_t, step_context_t
+   use dda_step_interval, only : longest_static_step, static_growth
+   use dda_verdict, only : is_felt, judge_verdict, verdict
+   implicit none
+   private
+
+   public :: decide_chain
+
+   !> Free fall over elastic motion in the first step. The faces to begin with are nearly right, so
+   !> that it may be as long as those that prove a collapse, with a margin
+   real(wp), parameter :: first_fall = 1.0e10_wp
+
+contains
+
+   !> Decide a chain under the associated flow rule, from rest
+   pure subroutine decide_chain(settings, chain, decision, decided)
+      !> Settings of the run
+      type(settings_t), intent(in) :: settings
+      !> The chain
+      type(chain_t), intent(in) :: chain
+      !> The decision, without blocks and springs
+      type(decision_t), intent(out) :: decision
+      !> Whether it counts: not where a step did not settle, nor where a structure with sliding
+      !> joints stands, for Coulomb's law has the last word there
+      logical, intent(out) :: decided
+      type(chain_step_t) :: step
+      type(march_t) :: march
+      type(step_context_t) :: measured
+      integer :: answer
+
+      decided = .false.
+      call begin_march(settings, chain, march, step)
+      answer = verdict%undecided
+      do while (march%steps < settings%max_steps)
+         call settle_chain(chain, step)
+         if (.not. step%settled) return
+         call measure(chain, step, measured)
+         march%steps = march%steps + 1
+         answer = judge_verdict(march, measured, settings)
+         if (answer /= verdict%undecided) exit
+         call lengthen(chain, measured, march, step)
+      end do
+      decided = answer == verdict%collapsed &
+         & .or. answer == verdict%stable .and. all(step%face%slip == 0)
+      if (decided) call tell(settings, chain, answer, march, measured, step, decision)
+   end subroutine decide_chain
+
+   !> Scales, first faces and first length
+   pure subroutine begin_march(settings, chain, march, step)
+      !> Settings of the run
+      type(settings_t), intent(in) :: settings
+      !> The chain
+      type(chain_t), intent(in) :: chain
+      !> The march
+      type(march_t), intent(out) :: march
+      !> The step
+      type(chain_step_t), intent(out) :: step
+      type(thrust_t) :: thrust
+      type(joint_face_t) :: face(size(chain%half))
+      real(wp) :: load(3, size(chain%half))
+
+      call find_thrust(chain, thrust, load)
+      call thrust_faces(chain, load, thrust, face)
+      call new_chain_step(chain, face, step)
+      march%free_acceleration = sqrt(maxval((chain%weight(1, :)**2 + chain%weight(2, :)**2) &
+         & /chain%mass**2))
+      march%last_acceleration = march%free_acceleration
+      march%elastic_motion = thrust%elastic_motion
+      march%longest = longest_static_step(sum(chain%mass)/real(size(chain%mass), wp), &
+         & maxval(chain%stiffness))
+      march%dt = march%longest
+      if (march%free_acceleration > 0.0_wp) march%dt = min(march%longest, &
+         & sqrt(2.0_wp*first_fall*march%elastic_motion/march%free_acceleration))
+      if (settings%time_step > 0.0_wp) march%dt = min(march%longest, settings%time_step)
+      call lengthen_step(chain, march%dt, step)
+   end subroutine begin_march
+
+   !> Go on from the end of a step; one of the same length needs no other equations, and a second
+   !> one shows whether the acceleration is steady
+   pure subroutine lengthen(chain, measured, march, step)
+      !> The chain
+      type(chain_t), intent(in) :: chain
+      !> The step's measures
+      type(step_context_t), intent(in) :: measured
+      !> The march
+      type(march_t), intent(inout) :: march
+      !> The step
+      type(chain_step_t), intent(inout) :: step
+      real(wp) :: factor
+
+      factor = static_growth(measured%acceleration, march%last_acceleration)
+      if (march%steps == 1) factor = 1.0_wp
+      march%last_acceleration = measured%acceleration
+      step%start = step%trial
+      march%dt = min(march%longest, factor*march%dt)
+      if (march%dt > step%dt) call lengthen_step(chain, march%dt, step)
+   end subroutine lengthen
+
+   !> Acceleration and energies of a settled step
+   pure subroutine measure(chain, step, measured)
+      !> The chain
+      type(chain_t), intent(in) :: chain
+      !> The settled step; its forces become those of before
+      type(chain_step_t), intent(inout) :: step
+      !> The measures
+      type(step_context_t), intent(out) :: measured
+      real(wp) :: acceleration, kinetic, largest, mean_mass, square, whole, rate
+      integer :: b, j
+
+      measured%dt = step%dt
+      rate = 2.0_wp/step%dt**2
+      mean_mass = sum(chain%mass)/real(size(chain%mass), wp)
+      whole = sum(abs(chain%weight))
+      largest = 0.0_wp
+      associate (d => step%motion)
+         do b = 1, size(chain%mass)
+            measured%work = measured%work + chain%weight(1, b)*d(1, b) + chain%weight(2, b)*d(2, b)
+            kinetic = chain%mass(b)*(d(1, b)**2 + d(2, b)**2) + chain%inertia(b)*d(3, b)**2
+            measured%kinetic = measured%kinetic + rate*kinetic
+            ! a sum is no more than the root of twice the sum of squares
+            if (2.0_wp*kinetic <= largest**2*chain%mass(b)) cycle
+            acceleration = sqrt(d(1, b)**2 + d(2, b)**2) &
+               & + sqrt(chain%inertia(b)/chain%mass(b))*abs(d(3, b))
+            if (acceleration <= largest) cycle
+            if (is_felt(chain%mass(b), mean_mass, whole, rate*acceleration)) largest = acceleration
+         end do
+      end associate
+      measured%acceleration = rate*largest
+      do j = 1, size(chain%half)
+         square = step%force(1, j)**2 + step%force(2, j)**2 + step%force(3, j)**2
+         measured%stored = measured%stored + (square - step%stored(j))/(2.0_wp*chain%stiffness(j))
+         step%stored(j) = square
+      end do
+   end subroutine measure
+
+   !> Tell the end of a march as that of any blocks
+   pure subroutine tell(settings, chain, answer, march, measured, step, decision)
+      !> Settings of the run
+      type(settings_t), intent(in) :: settings
+      !> The chain
+      type(chain_t), intent(in) :: chain
+      !> One of verdict
+      integer, intent(in) :: answer
+      !> The march
+      type(march_t), intent(in) :: march
+      !> Measures of the last step
+      type(step_context_t), intent(in) :: measured
+      !> The last step; its motion moves on
+      type(chain_step_t), intent(inout) :: step
+      !> The decision
+      type(decision_t), intent(inout) :: decision
+      integer :: j
+
+      decision%flow = flow_rule%associated
+      associate (outcome => decision%outcome, contacts => decision%contacts)
+         outcome%verdict = answer
+         outcome%rest_tolerance = settings%rest_tolerance
+         outcome%acceleration_ratio = measured%acceleration/march%free_acceleration
+         outcome%elastic_time = sqrt(2.0_wp*march%elastic_motion/march%free_acceleration)
+         outcome%steps = march%steps
+         outcome%passes = step%passes
+         outcome%factorisations = step%factorisations
+         allocate (contacts%gap(3, size(chain%half)))
+         do j = 1, size(chain%half)
+            contacts%gap(:, j) = -step%trial(:, j)/chain%stiffness(j)
+         end do
+         call move_alloc(step%motion, outcome%motion)
+         call move_alloc(step%face, contacts%face)
+         call move_alloc(step%trial, contacts%trial)
+         call move_alloc(step%force, contacts%force)
+         call move_alloc(step%increment, contacts%increment)
+      end associate
+   end subroutine tell
+end module dda_chain_decision

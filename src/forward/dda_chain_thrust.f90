@@ -1,0 +1,337 @@
+!> Where to begin with the faces of a chain: the forces of all its joints follow from those of the
+!> first one, three unknowns, by equilibrium alone
+!>
+!> Sought are the forces in balance with the loads that lie nearest to the friction cones,
+!>
+!>    sum over the joints of (share |y|**2 + |z - y|**2)/(2p) = least,   y = Proj_C(z)
+!>
+!> by Newton's method. Where forces inside the cones exist, these are nearly the springs' own, and
+!> z - y is what opens; where none exist, z - y is a mechanism (Farkas). Only joints that fail more
+!> than their neighbours open in the end: a structure opens joint by joint. The result decides
+!> nothing: it is where the steps begin.
+module dda_chain_thrust
+   use dda_chain, only : chain_t
+   use dda_friction_cone, only : apply_face, cone_t, joint_face_t, project
+   use dda_kinds, only : wp
+   implicit none
+   private
+
+   public :: thrust_t, find_thrust, thrust_faces, influence, solve_3
+
+   !> The forces, and what they show
+   type :: thrust_t
+      !> Force and moment about the origin that the left springing bears with: (3) [N/m, N/m, N]
+      real(wp) :: reaction(3) = 0.0_wp
+      !> Mean motion along the loads if no joint could open: the scale of elastic motion [m]
+      real(wp) :: elastic_motion = 0.0_wp
+      !> Passes of Newton's method
+      integer :: passes = 0
+   end type thrust_t
+
+   !> A function of the three unknowns: its value with its first and second derivatives
+   type :: energy_t
+      !> Value
+      real(wp) :: value = 0.0_wp
+      !> First derivatives
+      real(wp) :: slope(3) = 0.0_wp
+      !> Second derivatives
+      real(wp) :: curvature(3, 3) = 0.0_wp
+   end type energy_t
+
+   !> Share of the forces inside the cones; the smaller, the sharper is the answer
+   real(wp), parameter :: share = 1.0e-6_wp
+   !> Most passes
+   integer, parameter :: max_passes = 40
+   !> Share of the function below which it does not fall noticeably
+   real(wp), parameter :: little = 1.0e-9_wp
+   !> Share of the fall that a straight line promises which counts as a fall
+   real(wp), parameter :: barely = 1.0e-4_wp
+   !> Relative error that rounding makes of the function
+   real(wp), parameter :: rounding = 1.0e-11_wp
+   !> Chains of more joints are first looked at with about as many
+   integer, parameter :: coarse = 60
+   !> Most places tried along a direction
+   integer, parameter :: max_tries = 10
+
+contains
+
+   !> Find the forces
+   pure subroutine find_thrust(chain, thrust, load)
+      !> The chain
+      type(chain_t), intent(in) :: chain
+      !> The forces
+      type(thrust_t), intent(out) :: thrust
+      !> Sum of the loads on the blocks before each joint, force and moment: (3, n + 1)
+      real(wp), intent(out) :: load(:, :)
+      type(energy_t) :: glued
+      integer :: stride
+
+      call sum_loads(chain, load)
+      glued = glued_energy(chain, load)
+      call solve_3(glued%curvature, -glued%slope, thrust%reaction)
+      thrust%elastic_motion = (2.0_wp*glued%value + dot_product(glued%slope, thrust%reaction)) &
+         & /sum(sqrt(chain%weight(1, :)**2 + chain%weight(2, :)**2))
+      glued = energy_t(share*glued%value, share*glued%slope, share*glued%curvature)
+      stride = 1 + size(chain%half)/coarse
+      if (stride > 1) call descend(chain, load, glued, stride, thrust)
+      call descend(chain, load, glued, 1, thrust)
+   end subroutine find_thrust
+
+   !> Newton's method on the energy of every so many joints
+   pure subroutine descend(chain, load, glued, stride, thrust)
+      !> The chain
+      type(chain_t), intent(in) :: chain
+      !> Sums of the loads: (3, n + 1)
+      real(wp), intent(in) :: load(:, :)
+      !> Energy if no joint could fail, at zero
+      type(energy_t), intent(in) :: glued
+      !> One joint in so many counts
+      integer, intent(in) :: stride
+      !> The forces
+      type(thrust_t), intent(inout) :: thrust
+      type(energy_t) :: here, there
+      real(wp) :: direction(3), way, fall
+      integer :: pass, try
+
+      call find_energy(chain, load, glued, stride, thrust%reaction, here)
+      do pass = 1, max_passes
+         thrust%passes = thrust%passes + 1
+         call solve_3(here%curvature, -here%slope, direction)
+         fall = -dot_product(here%slope, direction)
+         if (.not. fall > little*here%value) exit
+         way = 1.0_wp
+         do try = 1, max_tries
+            call find_energy(chain, load, glued, stride, thrust%reaction + way*direction, there)
+            if (there%value <= here%value*(1.0_wp + rounding) - barely*way*fall) exit
+            way = shorter(way, dot_product(there%slope, direction), &
+               & dot_product(direction, matmul(there%curvature, direction)))
+         end do
+         thrust%reaction = thrust%reaction + way*direction
+         here = there
+      end do
+   end subroutine descend
+
+   !> Where along a direction to try next: Newton's method on the slope, which rises
+   pure real(wp) function shorter(way, slope, curvature)
+      !> How far was too far
+      real(wp), intent(in) :: way
+      !> Slope there
+      real(wp), intent(in) :: slope
+      !> Its change
+      real(wp), intent(in) :: curvature
+
+      shorter = way/2.0_wp
+      if (slope > 0.0_wp .and. slope < way*curvature) shorter = way - slope/curvature
+   end function shorter
+
+   !> The function that is made least, at one place
+   pure subroutine find_energy(chain, load, glued, stride, reaction, energy)
+      !> The chain
+      type(chain_t), intent(in) :: chain
+      !> Sums of the loads: (3, n + 1)
+      real(wp), intent(in) :: load(:, :)
+      !> Its part if no joint could fail, at zero
+      type(energy_t), intent(in) :: glued
+      !> One joint in so many counts
+      integer, intent(in) :: stride
+      !> The place
+      real(wp), intent(in) :: reaction(3)
+      !> The function with its derivatives
+      type(energy_t), intent(out) :: energy
+      real(wp) :: slope(3)
+
+      call add_failing(chain, load, stride, reaction, energy)
+      slope = matmul(glued%curvature, reaction)
+      energy%value = energy%value + glued%value &
+         & + dot_product(reaction, glued%slope + slope/2.0_wp)
+      energy%slope = energy%slope + glued%slope + slope
+      energy%curvature = energy%curvature + glued%curvature
+   end subroutine find_energy
+
+   !> Sums of the loads from the left
+   pure subroutine sum_loads(chain, load)
+      !> The chain
+      type(chain_t), intent(in) :: chain
+      !> The sums: (3, n + 1)
+      real(wp), intent(out) :: load(:, :)
+      integer :: b
+
+      load(:, 1) = 0.0_wp
+      do b = 1, size(chain%mass)
+         load(1:2, b + 1) = load(1:2, b) + chain%weight(:, b)
+         load(3, b + 1) = load(3, b) + chain%centroid(1, b)*chain%weight(2, b) &
+            & - chain%centroid(2, b)*chain%weight(1, b)
+      end do
+   end subroutine sum_loads
+
+   !> Force N1, N2, T of one joint
+   pure function joint_force(chain, load, reaction, j) result(force)
+      !> The chain
+      type(chain_t), intent(in) :: chain
+      !> Sums of the loads: (3, n + 1)
+      real(wp), intent(in) :: load(:, :)
+      !> The unknowns
+      real(wp), intent(in) :: reaction(3)
+      !> Number of the joint
+      integer, intent(in) :: j
+      !> The force
+      real(wp) :: force(3)
+      real(wp) :: s(3), normal, moment
+
+      s = reaction + load(:, j)
+      normal = chain%tangent(2, j)*s(1) - chain%tangent(1, j)*s(2)
+      force(3) = chain%tangent(1, j)*s(1) + chain%tangent(2, j)*s(2)
+      moment = s(3) - chain%middle(1, j)*s(2) + chain%middle(2, j)*s(1)
+      force(1) = (normal + moment/chain%half(j))/2.0_wp
+      force(2) = (normal - moment/chain%half(j))/2.0_wp
+   end function joint_force
+
+   !> What each unknown makes of the force of one joint
+   pure function influence(chain, j) result(g)
+      !> The chain
+      type(chain_t), intent(in) :: chain
+      !> Number of the joint
+      integer, intent(in) :: j
+      !> Rows N1, N2, T: (3, 3)
+      real(wp) :: g(3, 3)
+      real(wp) :: normal(3), moment(3)
+
+      normal = [chain%tangent(2, j), -chain%tangent(1, j), 0.0_wp]
+      moment = [chain%middle(2, j), -chain%middle(1, j), 1.0_wp]/chain%half(j)
+      g(1, :) = (normal + moment)/2.0_wp
+      g(2, :) = (normal - moment)/2.0_wp
+      g(3, :) = [chain%tangent(:, j), 0.0_wp]
+   end function influence
+
+   !> Energy of the springs if no joint could fail, at zero
+   pure function glued_energy(chain, load) result(energy)
+      !> The chain
+      type(chain_t), intent(in) :: chain
+      !> Sums of the loads: (3, n + 1)
+      real(wp), intent(in) :: load(:, :)
+      !> The energy
+      type(energy_t) :: energy
+      real(wp) :: n(3), t(3), m(3), force(3), give
+      integer :: c, j
+
+      n = 0.0_wp
+      t = 0.0_wp
+      do j = 1, size(chain%half)
+         give = 1.0_wp/chain%stiffness(j)
+         t(1:2) = chain%tangent(:, j)
+         n(1) = t(2)
+         n(2) = -t(1)
+         m(3) = 1.0_wp/chain%half(j)
+         m(1) = chain%middle(2, j)*m(3)
+         m(2) = -chain%middle(1, j)*m(3)
+         ! N1**2 + N2**2 = (N**2 + (M/half)**2)/2
+         force(1) = (n(1)*load(1, j) + n(2)*load(2, j))*(give/2.0_wp)
+         force(2) = (m(1)*load(1, j) + m(2)*load(2, j) + m(3)*load(3, j))*(give/2.0_wp)
+         force(3) = (t(1)*load(1, j) + t(2)*load(2, j))*give
+         energy%value = energy%value + (force(1)**2 + force(2)**2 + force(3)**2/2.0_wp)/give
+         energy%slope = energy%slope + n*force(1) + m*force(2) + t*force(3)
+         do c = 1, 3
+            energy%curvature(:, c) = energy%curvature(:, c) &
+               & + n*(n(c)*(give/2.0_wp)) + m*(m(c)*(give/2.0_wp)) + t*(t(c)*give)
+         end do
+      end do
+   end function glued_energy
+
+   !> Half the squared distance of the forces from the cones, over the stiffness
+   pure subroutine add_failing(chain, load, stride, reaction, energy)
+      !> The chain
+      type(chain_t), intent(in) :: chain
+      !> Sums of the loads: (3, n + 1)
+      real(wp), intent(in) :: load(:, :)
+      !> One joint in so many counts
+      integer, intent(in) :: stride
+      !> The place
+      real(wp), intent(in) :: reaction(3)
+      !> What it is added to
+      type(energy_t), intent(inout) :: energy
+      type(cone_t) :: cone
+      type(joint_face_t) :: face
+      real(wp) :: force(3), admissible(3), tangent(3, 3), constant(3), g(3, 3), rest(3)
+      integer :: j
+
+      do j = 1, size(chain%half), stride
+         force = joint_force(chain, load, reaction, j)
+         if (holds(chain, force, j)) cycle
+         cone = cone_t(friction=chain%friction(j), limit=chain%limit(j))
+         call project(cone, force, admissible, face)
+         call apply_face(cone, face, tangent, constant)
+         g = influence(chain, j)
+         rest = force - admissible
+         energy%value = energy%value + dot_product(rest, rest)/(2.0_wp*chain%stiffness(j))
+         energy%slope = energy%slope + matmul(rest, g)/chain%stiffness(j)
+         energy%curvature = energy%curvature &
+            & + matmul(transpose(g), g - matmul(tangent, g))/chain%stiffness(j)
+      end do
+   end subroutine add_failing
+
+   !> Whether a force lies inside the cone of a joint
+   pure logical function holds(chain, force, j)
+      !> The chain
+      type(chain_t), intent(in) :: chain
+      !> N1, N2, T [N/m]
+      real(wp), intent(in) :: force(3)
+      !> Number of the joint
+      integer, intent(in) :: j
+
+      holds = force(1) >= 0.0_wp .and. force(2) >= 0.0_wp &
+         & .and. abs(force(3)) <= chain%limit(j) + chain%friction(j)*(force(1) + force(2))
+   end function holds
+
+   !> Faces of the joints that fail more than their neighbours do
+   pure subroutine thrust_faces(chain, load, thrust, face)
+      !> The chain
+      type(chain_t), intent(in) :: chain
+      !> Sums of the loads: (3, n + 1)
+      real(wp), intent(in) :: load(:, :)
+      !> The forces
+      type(thrust_t), intent(in) :: thrust
+      !> The faces: (n + 1)
+      type(joint_face_t), intent(out) :: face(:)
+      type(joint_face_t) :: wanted(size(face))
+      real(wp) :: gap(0:size(face) + 1), force(3), admissible(3)
+      type(cone_t) :: cone
+      integer :: j
+
+      gap = 0.0_wp
+      do j = 1, size(face)
+         force = joint_force(chain, load, thrust%reaction, j)
+         if (holds(chain, force, j)) cycle
+         cone = cone_t(friction=chain%friction(j), limit=chain%limit(j))
+         call project(cone, force, admissible, wanted(j))
+         gap(j) = norm2(force - admissible)
+      end do
+      do j = 1, size(face)
+         if (gap(j) > 0.0_wp .and. gap(j) >= (1.0_wp - 1.0e-6_wp)*max(gap(j - 1), gap(j + 1))) &
+            & face(j) = wanted(j)
+      end do
+   end subroutine thrust_faces
+
+   !> Solve three equations with a symmetric positive definite matrix
+   pure subroutine solve_3(a, b, x)
+      !> The matrix
+      real(wp), intent(in) :: a(3, 3)
+      !> Right-hand side
+      real(wp), intent(in) :: b(3)
+      !> The solution
+      real(wp), intent(out) :: x(3)
+      real(wp) :: d(3), l21, l31, l32
+
+      d(1) = a(1, 1)
+      l21 = a(2, 1)/d(1)
+      l31 = a(3, 1)/d(1)
+      d(2) = a(2, 2) - l21*a(2, 1)
+      l32 = (a(3, 2) - l31*a(2, 1))/d(2)
+      d(3) = a(3, 3) - l31*a(3, 1) - l32**2*d(2)
+      x(1) = b(1)
+      x(2) = b(2) - l21*x(1)
+      x(3) = b(3) - l31*x(1) - l32*x(2)
+      x = x/d
+      x(2) = x(2) - l32*x(3)
+      x(1) = x(1) - l21*x(2) - l31*x(3)
+   end subroutine solve_3
+end module dda_chain_thrust

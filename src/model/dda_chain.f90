@@ -1,0 +1,56 @@
+!> Rigid blocks in a row between two fixed ones, each touching its two neighbours alone, as flat
+!> arrays: the form in which a scene that needs no more is decided
+module dda_chain
+   use dda_kinds, only : wp
+   implicit none
+   private
+
+   public :: chain_t, new_chain
+
+   !> Blocks from left to right; joint j is the one before block j, the last joint is behind the
+   !> last block. A joint's force is N1 at its first corner, N2 at its second, and T along it
+   type :: chain_t
+      !> Centres of gravity: (2, n) [m]
+      real(wp), allocatable :: centroid(:, :)
+      !> Masses: (n) [kg/m]
+      real(wp), allocatable :: mass(:)
+      !> Moments of inertia about the centre: (n) [kg m]
+      real(wp), allocatable :: inertia(:)
+      !> Loads at the centre: (2, n) [N/m]
+      real(wp), allocatable :: weight(:, :)
+      !> Relative errors of the masses by the rounding of the corners' coordinates: (n)
+      real(wp), allocatable :: rounding(:)
+      !> Middles of the joints: (2, n + 1) [m]
+      real(wp), allocatable :: middle(:, :)
+      !> Unit vectors from their first corners to their second ones: (2, n + 1)
+      real(wp), allocatable :: tangent(:, :)
+      !> Half their lengths: (n + 1) [m]
+      real(wp), allocatable :: half(:)
+      !> Stiffness of each of the three springs of a joint: (n + 1) [N/m per metre depth]
+      real(wp), allocatable :: stiffness(:)
+      !> Coefficients of friction: (n + 1)
+      real(wp), allocatable :: friction(:)
+      !> Shear force that a joint carries without normal force; huge if it cannot slide:
+      !> (n + 1) [N/m]
+      real(wp), allocatable :: limit(:)
+      !> Moments of unit forces along normal and tangent at a joint's middle about the centre of the
+      !> block before it and of the block behind it: (2, 2, n + 1) [m]
+      real(wp), allocatable :: arm(:, :, :)
+   end type chain_t
+
+contains
+
+   !> A chain of n blocks without numbers
+   pure subroutine new_chain(n, chain)
+      !> Number of blocks
+      integer, intent(in) :: n
+      !> The chain
+      type(chain_t), intent(out) :: chain
+
+      allocate (chain%centroid(2, n), chain%mass(n), chain%inertia(n), chain%weight(2, n))
+      allocate (chain%rounding(n))
+      allocate (chain%middle(2, n + 1), chain%tangent(2, n + 1), chain%half(n + 1))
+      allocate (chain%stiffness(n + 1), chain%friction(n + 1), chain%limit(n + 1))
+      allocate (chain%arm(2, 2, n + 1))
+   end subroutine new_chain
+end module dda_chain
