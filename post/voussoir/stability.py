@@ -6,15 +6,19 @@ import argparse
 import sys
 from collections.abc import Iterable
 from concurrent.futures import ThreadPoolExecutor
+from dataclasses import replace
 from itertools import chain
 from pathlib import Path
 
 from voussoir.dda_program import DdaError, find_dda
 from voussoir.deck_runs import Finished, Row, run_deck
-from voussoir.stability_judge import WRONG, judge
+from voussoir.stability_judge import RIGHT, UNDECIDED, WRONG, judge
 from voussoir.stability_page import Line, headline, write_csv, write_markdown, write_page
 from voussoir.stability_scene import Scene
 from voussoir.stability_scenes import catalogue, random_scenes
+
+#: Results from good to bad
+_SEVERITY = (RIGHT, UNDECIDED, WRONG)
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -98,8 +102,11 @@ def run_scenes(scenes: Iterable[Scene], folder: Path, jobs: int, timeout: float)
     def run_scene(numbered: tuple[int, Scene]) -> Line:
         number, scene = numbered
         place = folder / "scenes" / f"{number:04d}"
-        finished = run_deck(scene.text(), place, timeout, files=scene.files)
-        line = _line(scene, finished)
+        line = _line(scene, run_deck(scene.text(), place, timeout, files=scene.files))
+        if scene.has_lean_plan:
+            lean = _line(scene, run_deck(scene.text(lean=True), place / "lean", timeout))
+            if _SEVERITY.index(lean.result) > _SEVERITY.index(line.result):
+                line = replace(lean, condition=line.condition)
         if line.result != "right":
             sys.stdout.write(
                 f"{line.result}: {number:04d} {line.group}: {line.scene}: "

@@ -43,11 +43,17 @@ class Scene:
     guard: str
     files: Mapping[str, str] = field(default_factory=dict)
 
-    def text(self) -> bytes:
-        """The deck as it is written."""
+    @property
+    def has_lean_plan(self) -> bool:
+        """Whether the scene needs less of the method where fewer tables are wanted: an arch does."""
+        return isinstance(self.deck, dict) and not {"scene", "output"} & set(self.deck)
+
+    def text(self, lean: bool = False) -> bytes:
+        """The deck as it is written: with all that can be told, or lean with a row a case alone."""
         if isinstance(self.deck, bytes):
             return self.deck
-        output = {"vtu": False, "condition": True, **self.deck.get("output", {})}
+        told = {"joints": False, "blocks": False} if lean else {"condition": True}
+        output = {"vtu": False, **told, **self.deck.get("output", {})}
         lines = []
         for group, keys in {**self.deck, "output": output}.items():
             values = ", ".join(f"{key} = {_written(value)}" for key, value in keys.items())

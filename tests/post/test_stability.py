@@ -2,12 +2,14 @@
 
 import csv
 import os
+from dataclasses import replace
 
 import numpy as np
 import pytest
 
 pytest.importorskip("voussoir", reason="PYTHONPATH wants the build's python folder")
 
+from voussoir import stability  # noqa: E402
 from voussoir.command_line import main  # noqa: E402
 from voussoir.deck_runs import Finished  # noqa: E402
 from voussoir.stability_judge import (  # noqa: E402
@@ -21,6 +23,7 @@ from voussoir.stability_judge import (  # noqa: E402
     judge,
 )
 from voussoir.stability_random import tower_push  # noqa: E402
+from voussoir.stability_scene import Scene  # noqa: E402
 from voussoir.stability_scenes import catalogue, random_scenes  # noqa: E402
 from voussoir.validation_scene import Check  # noqa: E402
 
@@ -139,6 +142,22 @@ def test_same_seed_makes_the_same_arches():
         [scene.text() for scene in random_scenes(20, seed)] for seed in (7, 7, 8)
     )
     assert one == other != third
+
+
+def test_an_arch_is_judged_with_its_lean_plan_too(tmp_path, monkeypatch):
+    """The worse of the two answers counts; the condition number is that of the full one."""
+    scene = Scene("half angle", "90 deg", {"arch": {"voussoirs": 36}}, Critical(0.1), "")
+
+    def run_deck(text, *_, **__):
+        told = {**row(low="0.11" if b"blocks = .false." in text else "0.09"), "collapse_mode": ""}
+        told |= {name: "1" for name in ("open_close_iterations", "factorisations", "seconds")}
+        return Finished(0, [told | ({"condition": "1e9"} if b"condition" in text else {})])
+
+    monkeypatch.setattr(stability, "run_deck", run_deck)
+    (line,) = stability.run_scenes([scene], tmp_path, 1, 1.0)
+    assert (line.result, line.condition) == ("WRONG", "1.0e+09")
+    blocks = replace(scene, deck={"scene": {"kind": "blocks"}})
+    assert scene.has_lean_plan and not blocks.has_lean_plan
 
 
 @pytest.mark.skipif("DDA" not in os.environ, reason="the program is named by DDA")
