@@ -37,9 +37,10 @@ _TAIL = """
 ## What the rates tell
 
 - Flight is exact at any step, and so are bounces with restitution: a step ends where blocks meet.
-- **rocking.** Without restitution an impact falls somewhere within a step: first order, though
-  uneven from step to step. The decks take 0.5 ms; with 1 ms next amplitudes err by up to 2.1 %,
-  quarter periods by 0.06 %.
+- **rocking.** A block that turns about its corner in steps of constant acceleration loses a little
+  energy: first order. The decks take 1 ms and a restitution of 1e-9, with which steps end where
+  blocks meet. With 0 an impact falls somewhere within a step, and next amplitudes err by up to
+  2.1 %.
 - **upslope_returns.** The error is made in the step in which the block turns; where in the step
   that is changes with its length.
 - A rate near 0 is an error that is not one of the step. On slopes it is the strain of the block
