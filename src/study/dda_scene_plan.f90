@@ -6,6 +6,7 @@
 module dda_scene_plan
    use dda_block_system, only : n_unknown
    use dda_deck, only : deck_t, flag_of, has_group, integer_of, is_given, real_of, word_of
+   use dda_kinds, only : wp
    implicit none
    private
 
@@ -13,6 +14,10 @@ module dda_scene_plan
 
    !> Unknowns of a rigid block: u0, v0, r0
    integer, parameter :: n_rigid = 3
+
+   !> Below this half angle the steps of a chain near critical are moved by rounding, which passes
+   !> for rest sooner or later [deg]
+   real(wp), parameter :: shallow_deg = 3.0_wp
 
    !> Why blocks have strains or not
    type :: strain_reason_enum
@@ -109,6 +114,7 @@ contains
       plan%row = word_of(deck, "scene", "kind") == "arch" &
          & .and. word_of(deck, "analysis", "mode") == "static" &
          & .and. .not. (plan%moving .or. plan%strength)
+      if (plan%row) plan%row = real_of(deck, "arch", "half_angle_deg") >= shallow_deg
       plan%chain = plan%row .and. plan%unknowns == n_rigid &
          & .and. .not. (flag_of(deck, "output", "condition") &
          & .or. is_given(deck, "analysis", "collapse_displacement"))
