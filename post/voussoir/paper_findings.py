@@ -354,8 +354,3 @@ def _arch(row: Row) -> str:
     if row.joint:
         return f"joint at {row.joint} degrees"
     return f"{row.blocks} blocks, half angle {row.half_angle} degrees"
-
-
-def worst_rigid_error(table: PaperTable) -> float:
-    """Largest relative error of rigid blocks in a table."""
-    return max(abs(row.values[_RIGID].error or 0.0) for row in table.rows)

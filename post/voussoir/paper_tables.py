@@ -163,7 +163,7 @@ def join(rows: list[Row], results: Iterator[Cells]) -> list[str]:
     return methods
 
 
-def add_theories(table: str, rows: list[Row], theory: Any) -> None:
+def add_theories(rows: list[Row], theory: Any) -> None:
     """Add the three analytic solutions to the rows.
 
     Where the joint is imposed it is eta(beta), for which Heyman is CCR; else the critical state.
@@ -201,7 +201,7 @@ def build_table(name: str, results: Path, paper: Path, theory: Any = None) -> Pa
     rows = read_paper(paper, name)
     columns = ["paper DDA", *join(rows, results_of(results, name))]
     if theory is not None:
-        add_theories(name, rows, theory)
+        add_theories(rows, theory)
         columns += THEORIES.values()
     for row in rows:
         for heading, value in row.values.items():

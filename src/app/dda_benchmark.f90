@@ -25,7 +25,7 @@ module dda_benchmark
    implicit none
    private
 
-   public :: equal_arches_t, figures_t, measure, new_arches, search_once
+   public :: equal_arches_t, figures_t, measure, search_once
 
    !> Arches of equal voussoirs that differ by their thickness ratio
    type, extends(family_t) :: equal_arches_t

@@ -3,7 +3,7 @@ module dda_check
    use, intrinsic :: iso_fortran_env, only : error_unit, output_unit
    use dda_boundary, only : boundary_t
    use dda_command_line, only : command_t, name_of
-   use dda_deck, only : deck_t, flag_of, has_group, integer_of, is_given, text_of, word_of
+   use dda_deck, only : deck_t, flag_of, has_group, integer_of, text_of, word_of
    use dda_deck_scene, only : check_lines, check_scene, deck_scene, warning_line
    use dda_deck_sweep, only : case_deck, n_cases, swept_names
    use dda_cut, only : print_warnings

@@ -19,7 +19,7 @@ module dda_result_tables
    private
 
    public :: result_tables_t, result_table_t, table, table_enum
-   public :: name_tables, open_tables, close_tables, write_case, swept_fields, write_record
+   public :: name_tables, open_tables, close_tables, write_case, swept_fields
    public :: sync_tables, sync_when_due
 
    !> Places of the tables in result_tables_t

@@ -17,7 +17,7 @@ module dda_step_benchmark
    implicit none
    private
 
-   public :: step_case_t, step_figures_t, measure_steps, part_name
+   public :: step_case_t, step_figures_t, measure_steps
 
    !> A scene and how it is run
    type :: step_case_t

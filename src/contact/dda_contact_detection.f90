@@ -111,8 +111,7 @@ contains
    end subroutine set_strength
 
    !> Joints where the blocks are now: rows anew, openings measured, and the forces of the step
-   !> before
-   !> as multipliers, so that the springs only carry what changes
+   !> before as multipliers, so that the springs only carry what changes
    pure subroutine follow_contacts(system, penalty_ratio, n_dof, contacts)
       !> The blocks
       type(block_system_t), intent(in) :: system

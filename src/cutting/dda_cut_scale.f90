@@ -1,7 +1,7 @@
 !> Where a model of lines lies, how large it is, and which distances count as none (Shi: dc02)
 module dda_cut_scale
    use dda_kinds, only : wp
-   use dda_line_model, only : entities_t, line_model_t
+   use dda_line_model, only : line_model_t
    implicit none
    private
 

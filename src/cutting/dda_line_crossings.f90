@@ -9,7 +9,7 @@ module dda_line_crossings
    implicit none
    private
 
-   public :: crossings_t, find_crossings, max_crossings
+   public :: crossings_t, find_crossings
 
    !> Most crossings of a model
    integer, parameter :: max_crossings = 30000000

@@ -1,6 +1,5 @@
 !> Condition number of a factored matrix, estimated with its own factor: a case that runs beside
-!> others
-!> must not call LAPACK
+!> others must not call LAPACK
 module dda_condition
    use dda_block_factor, only : block_factor_t, substitute
    use dda_block_matrix, only : block_matrix_t

@@ -12,8 +12,7 @@ module dda_least_squares
 contains
 
    !> The x that makes |A x - b| least, by modified Gram-Schmidt with the largest column first
-   !> (Golub
-   !> and Van Loan, Matrix Computations, 5.2.8 and 5.4.1)
+   !> (Golub and Van Loan, Matrix Computations, 5.2.8 and 5.4.1)
    pure function least_squares(a, b, drop) result(x)
       !> Matrix A: (m, n)
       real(wp), intent(in) :: a(:, :)

@@ -42,8 +42,6 @@ module dda_contact_sweeps
    real(wp), parameter :: coarse = 1.0e2_wp
    !> The same where they bring no less without haste either
    real(wp), parameter :: coarsest = 1.0e4_wp
-   !> Most passes over the forces of one joint
-   integer, parameter :: max_passes = 1
    !> After this many sweeps a change that falls no more ends them
    integer, parameter :: plain_sweeps = 1000
    !> Most sweeps
@@ -287,7 +285,7 @@ contains
       !> Largest change so far: of a force, and of an opening or slip by it: (2) [N/m, m]
       real(wp), intent(inout) :: change(2)
       real(wp) :: before(3), gap(3), wanted
-      integer :: a, b, i, k, pass
+      integer :: a, b, i, k
 
       a = springs%equation(1, j)
       b = springs%equation(2, j)
@@ -299,19 +297,17 @@ contains
          end do
       end do
       before = force
-      do pass = 1, max_passes
-         do k = 1, 3
-            if (.not. view%give(k, k, j) > 0.0_wp) cycle
-            if (k < 3) then
-               wanted = sign(max(0.0_wp, abs(gap(k)) - noise), gap(k))
-               wanted = max(-springs%shift(k, j), force(k) - wanted/view%give(k, k, j))
-            else
-               wanted = shear_bound(springs%cone(j), force + springs%shift(:, j))
-               wanted = max(-wanted, min(wanted, force(k) - gap(k)/view%give(k, k, j)))
-            end if
-            gap = gap + (wanted - force(k))*view%give(:, k, j)
-            force(k) = wanted
-         end do
+      do k = 1, 3
+         if (.not. view%give(k, k, j) > 0.0_wp) cycle
+         if (k < 3) then
+            wanted = sign(max(0.0_wp, abs(gap(k)) - noise), gap(k))
+            wanted = max(-springs%shift(k, j), force(k) - wanted/view%give(k, k, j))
+         else
+            wanted = shear_bound(springs%cone(j), force + springs%shift(:, j))
+            wanted = max(-wanted, min(wanted, force(k) - gap(k)/view%give(k, k, j)))
+         end if
+         gap = gap + (wanted - force(k))*view%give(:, k, j)
+         force(k) = wanted
       end do
       do k = 1, 3
          wanted = force(k) - before(k)

@@ -1,6 +1,5 @@
 !> Augmented Lagrangian: the forces of the springs become multipliers until the springs carry
-!> nothing,
-!> so that the penalty leaves no trace
+!> nothing, so that the penalty leaves no trace
 module dda_multipliers
    use dda_assembly, only : equations_t
    use dda_fixed_points, only : correct_fixed_forces

@@ -2,9 +2,8 @@
 !>
 !> With given bounds of the shear forces the problem is convex, and the passes of the multipliers
 !> end quickly. Around them, the bounds follow the normal forces (Coulomb), beginning with those of
-!> the
-!> step before. Whatever the bounds are, friction takes energy and no momentum; so a step in which
-!> they change a little to the end counts.
+!> the step before. Whatever the bounds are, friction takes energy and no momentum; so a step in
+!> which they change a little to the end counts.
 module dda_settle_in_time
    use dda_assembly, only : equations_t
    use dda_contact_sweeps, only : sweep_contacts

@@ -145,9 +145,8 @@ contains
    end function falls_glued
 
    !> Motion that the rounding of coordinates feigns: a corner off by eps of the model's size tilts
-   !> a
-   !> block, and that moves its far end by the block's aspect ratio times as much; errors of
-   !> many blocks add up by chance
+   !> a block, and that moves its far end by the block's aspect ratio times as much; errors of many
+   !> blocks add up by chance
    pure function feigned_motion(system) result(motion)
       !> The blocks
       type(block_system_t), intent(in) :: system
@@ -242,8 +241,7 @@ contains
    end subroutine judge_step
 
    !> Length of the step that follows an accepted one. Where blocks move it aims at the motion that
-   !> a
-   !> step may make, and shrinks where blocks rattle to and fro
+   !> a step may make, and shrinks where blocks rattle to and fro
    pure subroutine next_interval(settings, system, step, march)
       !> Settings of the run
       type(settings_t), intent(in) :: settings

@@ -64,7 +64,7 @@ contains
       if (has_value) call take_numbers(entry%head, i, value, error)
       if (allocated(error)) return
       if (has_value .and. i <= entry%head%n) then
-         call fatal_error(error, "unknown word '"//trim(entry%head%word(i))//"'", &
+         call fatal_error(error, "unknown word '"//shown(trim(entry%head%word(i)))//"'", &
             & line=entry%head%number)
          return
       end if

@@ -5,7 +5,7 @@ module dda_deck_check_case
    use dda_text, only : to_text
    use dda_deck_keys, only : deck_key, key_index, group_index
    use dda_deck, only : deck_t, deck_place_t, parameter_t, deck_error, &
-      flag_of, has_group, integer_of, real_of, word_of, is_given, place_of
+      flag_of, integer_of, real_of, word_of, is_given, place_of
    use dda_deck_parameter, only : parameter_name
    use dda_deck_set, only : put_number, number_problem
    implicit none

@@ -5,7 +5,7 @@ module dda_deck_sweep
    use dda_text, only : to_text, lower_case
    use dda_deck_keys, only : deck_key, key_index, word_length
    use dda_deck_words, only : wanted, full_name
-   use dda_deck, only : deck_t, deck_value_t, deck_sweep_t, deck_place_t, parameter_t, &
+   use dda_deck, only : deck_t, deck_value_t, deck_sweep_t, deck_place_t, &
       deck_error, real_of, integer_of, text_of, flag_of, is_given, place_of
    use dda_deck_parameter, only : find_parameter, parameter_name
    use dda_deck_set, only : put_number, put_text, number_problem, text_problem, is_numeric

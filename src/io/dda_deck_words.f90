@@ -6,7 +6,7 @@ module dda_deck_words
    implicit none
    private
 
-   public :: wanted, range_text, quoted_words, full_name, near_group, near_key, near_word
+   public :: wanted, quoted_words, full_name, near_group, near_key, near_word
    public :: near_one, or_leave_out, deck_help
 
    !> Longest word that is compared letter by letter [characters]

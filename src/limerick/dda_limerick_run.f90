@@ -4,7 +4,7 @@ module dda_limerick_run
    use dda_error, only : error_t
    use dda_kinds, only : wp
    use dda_limerick_model, only : limerick_model_t
-   use dda_limerick_state, only : limerick_march_t, new_blocks, new_march
+   use dda_limerick_state, only : new_blocks, new_march
    use dda_limerick_step, only : advance, limerick_run_t
    implicit none
    private

@@ -41,7 +41,8 @@ contains
 
    !> Second derivative of the cubic spline through displacements, whose third derivative does not
    !> jump at the second time and the last but one (a parabola through three points, a straight line
-   !> through two); none after the last time, where the ground goes on as fast as it was
+   !> through two); none before the first time and after the last, where the ground goes on as fast
+   !> as it was
    pure function acceleration_of_displacement(displacement) result(acceleration)
       !> The displacement: two times or more [m]
       type(history_t), intent(in) :: displacement
@@ -50,12 +51,14 @@ contains
       integer :: n
 
       n = size(displacement%time)
-      allocate (acceleration%time(n + 1), acceleration%value(2, n + 1))
+      allocate (acceleration%time(n + 2), acceleration%value(2, n + 2))
       associate (time => displacement%time)
-         acceleration%time(:n) = time
-         acceleration%time(n + 1) = time(n) + jump_beside(time(n - 1:n))
-         acceleration%value(:, :n) = second_derivatives(time, displacement%value)
-         acceleration%value(:, n + 1) = 0.0_wp
+         acceleration%time(1) = time(1) - jump_beside(time(1:2))
+         acceleration%time(2:n + 1) = time
+         acceleration%time(n + 2) = time(n) + jump_beside(time(n - 1:n))
+         acceleration%value(:, 1) = 0.0_wp
+         acceleration%value(:, 2:n + 1) = second_derivatives(time, displacement%value)
+         acceleration%value(:, n + 2) = 0.0_wp
       end associate
    end function acceleration_of_displacement
 

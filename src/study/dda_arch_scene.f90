@@ -3,7 +3,6 @@ module dda_arch_scene
    use couplet_heyman_discrete, only : discrete_critical, discrete_solution_t, discrete_status
    use dda_arch, only : arch_blocks, arch_shape_t, equal_joints, facet_count
    use dda_arch_chain, only : arch_numbers_t
-   use dda_block_system, only : block_system_t
    use dda_constants, only : degree, pi
    use dda_contact_detection, only : find_contacts
    use dda_deck, only : deck_t, flag_of, integer_of, is_given, list_of, real_of, word_of

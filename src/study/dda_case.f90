@@ -35,10 +35,8 @@ module dda_case
    public :: case_t, prepare_case, compute_case, searched_name
 
    !> One case in three stages: prepared, computed, told. Only the second may run beside other
-   !> cases:
-   !> the others make texts, and gfortran keeps the length of a text that a function returns in
-   !> memory
-   !> that threads share
+   !> cases: the others make texts, and gfortran keeps the length of a text that a function returns
+   !> in memory that threads share
    type :: case_t
       !> The deck with the values of the case
       type(deck_t) :: deck

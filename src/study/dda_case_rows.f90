@@ -20,7 +20,7 @@ module dda_case_rows
    implicit none
    private
 
-   public :: tell_case, verdict_name
+   public :: tell_case
 
    !> A bracket whose middle is off by more than this share of its half is lopsided
    real(wp), parameter :: lopsided = 0.05_wp

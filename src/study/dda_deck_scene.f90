@@ -1,6 +1,6 @@
 !> From a deck of any kind to its scene
 module dda_deck_scene
-   use dda_arch_chain, only : arch_chain, arch_numbers_t, arch_rays, arch_rays_t
+   use dda_arch_chain, only : arch_chain, arch_numbers_t, arch_rays_t
    use dda_arch_scene, only : arch_numbers, arch_scene, half_joints_deg, joint_angles_deg, &
       & material_of, settings_of, unit_weight
    use dda_block_scene, only : base_t, block_scene, floating_block

@@ -22,8 +22,7 @@ module dda_frozen_mechanism
       !> Motion of its last step without strains: (3, n_equation)
       real(wp), allocatable :: motion(:, :)
       !> Length of a step long enough that elastic motion hides nothing, and short enough that
-      !> rounding
-      !> leaves the power smooth [s]
+      !> rounding leaves the power smooth [s]
       real(wp) :: dt = 0.0_wp
    end type frozen_mechanism_t
 
@@ -31,8 +30,7 @@ contains
 
    !> Power of the loads on the mechanism. The structure with faces held moves under its loads; two
    !> more solutions with its own inertia as the load leave of that motion the mechanism alone,
-   !> which
-   !> is then measured by the mechanism's motion at the value where it was found
+   !> which is then measured by the mechanism's motion at the value where it was found
    pure subroutine mechanism_power(mechanism, scene, power, noise, usable)
       !> The mechanism
       type(frozen_mechanism_t), intent(in) :: mechanism

@@ -6,7 +6,7 @@ module dda_limerick_scene
    use dda_kinds, only : wp
    use dda_limerick_lines, only : lines_model, take_constants
    use dda_limerick_model, only : half_size, limerick_constants_t, limerick_model_t
-   use dda_material, only : friction_coefficient, joint_law_t
+   use dda_material, only : friction_coefficient
    use dda_scene, only : scene_t
    use dda_vector, only : along, right_normal
    implicit none

@@ -5,7 +5,7 @@ module dda_line_scene
    use dda_constants, only : degree, pi
    use dda_contact_detection, only : find_contacts
    use dda_cut_model, only : cut_model_t, point_kind
-   use dda_deck, only : deck_error, deck_t, is_given, real_of, word_of
+   use dda_deck, only : deck_error, deck_t, is_given, word_of
    use dda_deck_keys, only : key_index
    use dda_edge_split, only : split_edges
    use dda_error, only : error_t

@@ -50,8 +50,7 @@ module dda_mechanism
 contains
 
    !> Follow a collapse under Coulomb friction where joints slide in it, for its motion to be that
-   !> of
-   !> joints that do not open by sliding
+   !> of joints that do not open by sliding
    pure subroutine follow_collapse(scene, decision)
       !> The scene that fell
       type(scene_t), intent(in) :: scene

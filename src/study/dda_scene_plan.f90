@@ -10,7 +10,7 @@ module dda_scene_plan
    implicit none
    private
 
-   public :: scene_plan_t, plan_scene, strain_reason, n_rigid
+   public :: scene_plan_t, plan_scene, strain_reason
 
    !> Unknowns of a rigid block: u0, v0, r0
    integer, parameter :: n_rigid = 3
