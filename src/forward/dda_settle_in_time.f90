@@ -58,7 +58,8 @@ contains
          call settle_multipliers(settings, target, opening, equations, springs, state)
          return
       end if
-      if (size(equations%fixed%point) == 0) then
+      ! glue hands on waves of strain, which are finer than what sweeps leave
+      if (size(equations%fixed%point) == 0 .and. .not. any(springs%shift > 0.0_wp)) then
          call sweep_contacts(equations, springs, state)
          if (state%settled) return
          if (present(in_vain)) then
