@@ -102,7 +102,7 @@ def _chains() -> list[Scene]:
         for case, (what, e) in enumerate(moduli, 1)
     )
     return [
-        Scene(STRAIN, "glued_columns", "chain of n bar elements", tuple(columns), slow=True),
+        Scene(STRAIN, "glued_columns", "chain of n bar elements", tuple(columns)),
         Scene(STRAIN, "wave", "sqrt(modulus/rho)", waves, slow=True),
     ]
 
