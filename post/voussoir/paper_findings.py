@@ -11,7 +11,7 @@ import numpy as np
 
 from voussoir import theory
 from voussoir.paper_campaign import Campaign
-from voussoir.paper_tables import THEORIES, PaperTable, Row, Value
+from voussoir.paper_tables import THEORIES, Row, Value
 
 _RIGID, _ELASTIC, _PAPER = "ours, rigid", "ours, elastic", "paper DDA"
 

@@ -84,8 +84,8 @@ contains
       across = 0.0_wp
       left = left + right
       call eliminate(matrix%diagonal(:, :, middle), across, middle, left, factor)
-      factor%usable = minval(factor%inverse) > 0.0_wp &
-         & .and. maxval(factor%inverse) < huge(1.0_wp)
+      ! minval passes over what is no number, the sum does not
+      factor%usable = minval(factor%inverse) > 0.0_wp .and. sum(factor%inverse) < huge(1.0_wp)
    end subroutine factorise_chain
 
    !> Eliminate one block

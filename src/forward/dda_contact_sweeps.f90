@@ -14,9 +14,9 @@ module dda_contact_sweeps
    use dda_friction_cone, only : cone_t, joint_face_t
    use dda_joint_springs, only : joint_springs_t
    use dda_kinds, only : wp
-   use dda_open_close, only : step_state_t
    use dda_small_cholesky, only : cholesky, solved
    use dda_spring_products, only : relative_displacement
+   use dda_step_state, only : step_state_t
    implicit none
    private
 

@@ -6,10 +6,10 @@ module dda_curved_motion
    use dda_contact_detection, only : contacts_t
    use dda_contact_types, only : joint_t, place_joint
    use dda_kinds, only : wp
-   use dda_open_close, only : step_state_t
    use dda_settings, only : settings_t
    use dda_settle_in_time, only : settle_in_time
    use dda_step_context, only : step_context_t
+   use dda_step_state, only : step_state_t
    implicit none
    private
 

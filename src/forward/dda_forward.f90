@@ -15,12 +15,12 @@ module dda_forward
    use dda_impact_time, only : meet_impact
    use dda_kinds, only : wp
    use dda_multipliers, only : settle_joints
-   use dda_open_close, only : step_state_t
    use dda_parting, only : judge_parting
    use dda_settings, only : settings_t
    use dda_step_context, only : march_t, step_context_t
    use dda_step_interval, only : first_interval, judge_step, next_interval
    use dda_step_reach, only : first_reach, judge_reach, next_reach, travel_by, travel_of
+   use dda_step_state, only : step_state_t
    use dda_velocity, only : settle_velocities, stiffen_contacts
    use dda_verdict, only : judge_verdict, largest_displacement, measure_step, verdict
    implicit none

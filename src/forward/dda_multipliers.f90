@@ -6,9 +6,10 @@ module dda_multipliers
    use dda_friction, only : iterate_friction
    use dda_joint_springs, only : joint_springs_t
    use dda_kinds, only : wp
-   use dda_open_close, only : iterate_open_close, step_state_t
+   use dda_open_close, only : iterate_open_close
    use dda_settle_in_time, only : settle_in_time
    use dda_settings, only : flow_rule, settings_t
+   use dda_step_state, only : step_state_t
    implicit none
    private
 

@@ -7,53 +7,22 @@
 module dda_open_close
    use, intrinsic :: iso_fortran_env, only : int64
    use dda_assembly, only : equations_t, solve_faces
-   use dda_block_factor, only : substitute
-   use dda_friction_cone, only : apply_face, cone_t, is_stuck, joint_face_t, project
+   use dda_friction_cone, only : joint_face_t
    use dda_joint_springs, only : joint_springs_t
    use dda_kinds, only : wp
-   use dda_spring_products, only : relative_displacement
+   use dda_newton, only : iterate_newton
+   use dda_step_state, only : disagreement, force_noise, joint_forces, step_state_t
    implicit none
    private
 
-   public :: step_state_t, iterate_open_close, change_faces, joint_forces, force_noise
-
-   !> What the loop works on: the motion of the step and the joints at its end
-   type :: step_state_t
-      !> Motion of the blocks: (n_dof, n_equation)
-      real(wp), allocatable :: motion(:, :)
-      !> Opening at the two contacts and slip of each joint: (3, n_joint) [m]
-      real(wp), allocatable :: increment(:, :)
-      !> Forces at the beginning of the step: (3, n_joint) [N/m]
-      real(wp), allocatable :: multiplier(:, :)
-      !> Trial forces at the beginning of the step: (3, n_joint) [N/m]
-      real(wp), allocatable :: start(:, :)
-      !> Trial forces at its end: (3, n_joint) [N/m]
-      real(wp), allocatable :: trial(:, :)
-      !> Admissible forces at its end: (3, n_joint) [N/m]
-      real(wp), allocatable :: force(:, :)
-      !> Faces that they lie on: (n_joint)
-      type(joint_face_t), allocatable :: face(:)
-      !> Bounds of the forces: (n_joint)
-      type(cone_t), allocatable :: cone(:)
-      !> How much smaller than usual gaps must be that sweeps leave
-      real(wp) :: fineness = 1.0_wp
-      !> Work of what the bounds of the shear forces would still change by [J/m]
-      real(wp) :: unsettled_work = 0.0_wp
-      !> Passes of the loop so far
-      integer :: passes = 0
-      !> Whether every joint's force agrees with its face
-      logical :: settled = .false.
-   end type step_state_t
+   public :: iterate_open_close, change_faces
 
    !> Joints that disagree as much as the worst but for rounding change with it: mirror images do
    real(wp), parameter :: tie = 1.0e-9_wp
    !> Joints whose disagreement is below this share of the largest wait for their turn
    real(wp), parameter :: notable = 0.1_wp
-
    !> Changes of faces before Newton's method takes over where blocks make no chain
    integer, parameter :: few_changes = 1
-   !> Most passes of Newton's method: where it needs more, a shorter step is cheaper
-   integer, parameter :: max_newton = 80
 
 contains
 
@@ -157,213 +126,6 @@ contains
          is_peak(j) = gap(j) >= (1.0_wp - tie)*highest
       end do
    end function is_peak
-
-   !> Force that rounding alone can make: of all loads, and of the penalty on the largest motion
-   pure function force_noise(equations, springs, state) result(noise)
-      !> The equations, for the loads
-      type(equations_t), intent(in) :: equations
-      !> The springs, for the penalty
-      type(joint_springs_t), intent(in) :: springs
-      !> The step, for the motion
-      type(step_state_t), intent(in) :: state
-      !> The force [N/m]
-      real(wp) :: noise
-
-      noise = 1.0e-13_wp*equations%force_scale + 8.0_wp*epsilon(1.0_wp)*max(0.0_wp, &
-         & maxval(springs%stiffness))*maxval(abs(state%motion(1:2, :)))
-   end function force_noise
-
-   !> How far the force that each joint's face gives is from the admissible one, beyond rounding
-   pure subroutine disagreement(springs, state, gap, wanted)
-      !> The springs of the joints
-      type(joint_springs_t), intent(in) :: springs
-      !> The step; its increments and trial forces are set
-      type(step_state_t), intent(inout) :: state
-      !> Length of the difference: (n_joint) [N/m]
-      real(wp), intent(out) :: gap(:)
-      !> Face that each joint ought to have: (n_joint)
-      type(joint_face_t), intent(out) :: wanted(:)
-      real(wp) :: admissible(3), constant(3), held(3), shift(3), tangent(3, 3)
-      integer :: j
-
-      state%increment = relative_displacement(springs, state%motion)
-      do j = 1, size(gap)
-         shift = springs%shift(:, j)
-         state%trial(:, j) = state%start(:, j) - springs%stiffness(j)*state%increment(:, j)
-         call project(state%cone(j), state%trial(:, j) + shift, admissible, wanted(j))
-         held = state%trial(:, j) + shift
-         if (.not. is_stuck(state%face(j))) then
-            call apply_face(state%cone(j), state%face(j), tangent, constant)
-            held = matmul(tangent, held) + constant
-         end if
-         gap(j) = sqrt(sum((held - admissible)**2)) &
-            & - 16.0_wp*epsilon(1.0_wp)*maxval(abs(state%trial(:, j)))
-      end do
-   end subroutine disagreement
-
-   !> Admissible forces and faces of the joints after a motion
-   pure subroutine joint_forces(springs, state)
-      !> The springs of the joints
-      type(joint_springs_t), intent(in) :: springs
-      !> The step; everything but the motion is set
-      type(step_state_t), intent(inout) :: state
-      real(wp) :: shift(3)
-      integer :: j
-
-      state%increment = relative_displacement(springs, state%motion)
-      do j = 1, size(state%face)
-         shift = springs%shift(:, j)
-         state%trial(:, j) = state%start(:, j) - springs%stiffness(j)*state%increment(:, j)
-         call project(state%cone(j), state%trial(:, j) + shift, state%force(:, j), state%face(j))
-         state%force(:, j) = state%force(:, j) - shift
-      end do
-   end subroutine joint_forces
-
-   !> Newton's method on the step's energy from the motion of the state, to the lowest point of each
-   !> direction. That corrects what the blocks lack in balance, so that its rounding is small; a
-   !> motion in balance is the answer even where rounding lets no face agree
-   pure subroutine iterate_newton(equations, springs, state)
-      !> Blocks assembled; matrix and factor are made anew
-      type(equations_t), intent(inout) :: equations
-      !> The springs of the joints
-      type(joint_springs_t), intent(in) :: springs
-      !> The step
-      type(step_state_t), intent(inout) :: state
-      type(joint_face_t) :: wanted(size(state%face))
-      real(wp) :: gap(size(state%face))
-      real(wp) :: from(size(state%motion, 1), size(state%motion, 2))
-      real(wp) :: direction(size(state%motion, 1), size(state%motion, 2))
-      integer :: pass
-      logical :: balanced
-
-      do pass = 1, max_newton
-         from = state%motion
-         call joint_forces(springs, state)
-         call find_unbalance(equations, springs, state, direction, balanced)
-         call solve_faces(equations, springs, state%cone, state%face, state%start, state%motion)
-         state%passes = state%passes + 1
-         if (.not. equations%factor%usable) return
-         call disagreement(springs, state, gap, wanted)
-         state%settled = maxval(gap) <= force_noise(equations, springs, state)
-         if (state%settled) return
-         state%motion = from
-         state%settled = balanced
-         if (state%settled) return
-         call substitute(equations%factor, direction)
-         state%motion = from + lowest_point(equations, springs, state, from, direction)*direction
-      end do
-   end subroutine iterate_newton
-
-   !> What the admissible forces of a motion leave of the loads, and whether that is rounding: then
-   !> no other motion has noticeably less energy
-   pure subroutine find_unbalance(equations, springs, state, rest, balanced)
-      !> The equations of the step
-      type(equations_t), intent(in) :: equations
-      !> The springs of the joints
-      type(joint_springs_t), intent(in) :: springs
-      !> The step, with the forces of its motion
-      type(step_state_t), intent(in) :: state
-      !> Loads that nothing balances: (n_dof, n_equation)
-      real(wp), intent(out) :: rest(:, :)
-      !> Whether rounding can make as much
-      logical, intent(out) :: balanced
-      real(wp) :: rounding(size(rest, 1), size(rest, 2)), noise
-      integer :: e, j, side
-
-      noise = force_noise(equations, springs, state)
-      do e = 1, size(rest, 2)
-         rest(:, e) = equations%load(:, e) - matmul(equations%base(:, :, e), state%motion(:, e))
-         rounding(:, e) = 8.0_wp*epsilon(1.0_wp)*(abs(equations%load(:, e)) &
-            & + matmul(abs(equations%base(:, :, e)), abs(state%motion(:, e))))
-      end do
-      do j = 1, size(state%face)
-         do side = 1, 2
-            e = springs%equation(side, j)
-            if (e == 0) cycle
-            rest(:, e) = rest(:, e) + matmul(springs%row(:, :, side, j), state%force(:, j))
-            rounding(:, e) = rounding(:, e) + noise*sum(abs(springs%row(:, :, side, j)), dim=2)
-         end do
-      end do
-      balanced = all(abs(rest) <= rounding)
-   end subroutine find_unbalance
-
-   !> How far to go from one motion towards another for the least energy. The slope of the energy
-   !> rises piecewise linearly, so its zero is found by bracketing and false position
-   pure function lowest_point(equations, springs, state, from, direction) result(factor)
-      !> The equations of the step
-      type(equations_t), intent(in) :: equations
-      !> The springs of the joints
-      type(joint_springs_t), intent(in) :: springs
-      !> The step, for bounds and forces at its beginning
-      type(step_state_t), intent(in) :: state
-      !> Where to start: (n_dof, n_equation)
-      real(wp), intent(in) :: from(:, :)
-      !> Where to go: (n_dof, n_equation)
-      real(wp), intent(in) :: direction(:, :)
-      !> 1 is the whole way
-      real(wp) :: factor
-      real(wp) :: start(3, size(state%face)), rate(3, size(state%face))
-      real(wp) :: slope_at_zero, curvature, low, high, slope_low, slope_high, slope
-      integer :: e, pass
-
-      start = relative_displacement(springs, from)
-      rate = relative_displacement(springs, direction)
-      slope_at_zero = 0.0_wp
-      curvature = 0.0_wp
-      do e = 1, size(from, 2)
-         slope_at_zero = slope_at_zero + dot_product(direction(:, e), &
-            & matmul(equations%base(:, :, e), from(:, e)) - equations%load(:, e))
-         curvature = curvature + dot_product(direction(:, e), &
-            & matmul(equations%base(:, :, e), direction(:, e)))
-      end do
-      low = 0.0_wp
-      slope_low = slope_of(low)
-      high = 1.0_wp
-      slope_high = slope_of(high)
-      do while (slope_high < 0.0_wp .and. high < 1.0e6_wp)
-         low = high
-         slope_low = slope_high
-         high = 2.0_wp*high
-         slope_high = slope_of(high)
-      end do
-      factor = high
-      do pass = 1, 60
-         if (.not. slope_high > slope_low) exit
-         factor = low - slope_low*(high - low)/(slope_high - slope_low)
-         if (mod(pass, 3) == 0) factor = (low + high)/2.0_wp
-         slope = slope_of(factor)
-         if (slope < 0.0_wp) then
-            low = factor
-            slope_low = slope
-         else
-            high = factor
-            slope_high = slope
-         end if
-         if (high - low <= 1.0e-14_wp*high) exit
-         if (abs(slope) <= 1.0e-15_wp*abs(slope_at_zero)) exit
-      end do
-
-   contains
-
-      !> Slope of the energy along the direction
-      pure function slope_of(way) result(slope)
-         !> How far along the direction
-         real(wp), intent(in) :: way
-         !> The slope
-         real(wp) :: slope
-         type(joint_face_t) :: face
-         real(wp) :: force(3), shift(3)
-         integer :: j
-
-         slope = slope_at_zero + way*curvature
-         do j = 1, size(rate, 2)
-            shift = springs%shift(:, j)
-            call project(state%cone(j), shift + state%start(:, j) &
-               & - springs%stiffness(j)*(start(:, j) + way*rate(:, j)), force, face)
-            slope = slope - dot_product(force - shift, rate(:, j))
-         end do
-      end function slope_of
-   end function lowest_point
 
    !> A number that tells sets of faces apart
    pure function hash(face) result(number)

@@ -11,8 +11,9 @@ module dda_settle_in_time
    use dda_friction, only : accelerated, coulomb_bound
    use dda_joint_springs, only : joint_springs_t
    use dda_kinds, only : wp
-   use dda_open_close, only : iterate_open_close, step_state_t
+   use dda_open_close, only : iterate_open_close
    use dda_settings, only : flow_rule, settings_t
+   use dda_step_state, only : step_state_t
    implicit none
    private
 

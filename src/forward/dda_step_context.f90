@@ -1,7 +1,7 @@
 !> What one step finds out; made new for each step
 module dda_step_context
    use dda_kinds, only : wp
-   use dda_open_close, only : step_state_t
+   use dda_step_state, only : step_state_t
    implicit none
    private
 

@@ -7,9 +7,10 @@ module dda_step_interval
    use dda_friction_cone, only : cone_t, joint_face_t
    use dda_joint_springs, only : joint_springs_t
    use dda_kinds, only : wp
-   use dda_open_close, only : change_faces, step_state_t
+   use dda_open_close, only : change_faces
    use dda_settings, only : settings_t
    use dda_step_context, only : march_t, step_context_t
+   use dda_step_state, only : step_state_t
    implicit none
    private
 

@@ -18,10 +18,10 @@ module dda_velocity
    use dda_joint_springs, only : joint_springs_t
    use dda_kinds, only : wp
    use dda_material, only : elasticity_matrix
-   use dda_open_close, only : step_state_t
    use dda_settle_in_time, only : settle_in_time
    use dda_settings, only : settings_t
    use dda_step_context, only : step_context_t
+   use dda_step_state, only : step_state_t
    use dda_vector, only : cross
    use dda_spring_products, only : relative_displacement
    implicit none

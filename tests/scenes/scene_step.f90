@@ -6,8 +6,8 @@ module scene_step
    use dda_joint_springs, only : joint_springs_t
    use dda_kinds, only : wp
    use dda_material, only : joint_law_t
-   use dda_open_close, only : step_state_t
    use dda_scene, only : scene_t
+   use dda_step_state, only : step_state_t
    use scene_model, only : add_block, add_joint, model_t, rectangle, scene_of, turned
    implicit none
    private
