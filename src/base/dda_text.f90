@@ -1,6 +1,7 @@
 !> Numbers to text, text to numbers, small words on strings
 module dda_text
    use, intrinsic :: ieee_arithmetic, only : ieee_is_finite
+   use, intrinsic :: iso_fortran_env, only : int64
    use dda_kinds, only : wp
    implicit none
    private
@@ -26,46 +27,176 @@ contains
       !> Text without blanks
       character(len=:), allocatable :: text
       character(len=24) :: buffer
-      real(wp) :: again
-      integer :: digits, stat
+      integer(int64) :: digits
+      integer :: exponent
+      logical :: known
 
-      do digits = 15, 17
-         write (buffer, scientific_form(digits)) value
+      if (.not. ieee_is_finite(value)) then
+         write (buffer, scientific_form(17)) value
+         text = trim(adjustl(buffer))
+         return
+      end if
+      known = abs(value) < 1.0e15_wp
+      if (known) known = .not. abs(value - aint(value)) > 0.0_wp
+      if (known) then
+         digits = int(abs(value), int64)
+         exponent = count_digits(digits) - 1
+      else
+         call scale(abs(value), digits, exponent, known)
+         if (.not. known) then
+            write (buffer, scientific_form(17)) value
+            call take_digits(buffer, digits, exponent)
+         end if
+         call shorten(value, digits, exponent, known)
+         if (.not. known) call try_forms(value, digits, exponent)
+      end if
+      text = plain_form(digits, exponent)
+      if (sign(1.0_wp, value) < 0.0_wp) text = "-"//text
+   end function real_to_text
+
+   !> The 17 digits of a number of usual size: a power of ten up to the 22nd is a double, and its
+   !> product with another double the sum of two (Dekker 1971)
+   pure subroutine scale(value, digits, exponent, known)
+      !> The number, positive
+      real(wp), intent(in) :: value
+      !> Its digits, rounded, as one whole number
+      integer(int64), intent(out) :: digits
+      !> Power of ten of the first digit
+      integer, intent(out) :: exponent
+      !> Whether they could be found so
+      logical, intent(out) :: known
+      real(wp) :: a(2), b(2), power, product, rest
+
+      digits = 0
+      exponent = floor(log10(max(value, tiny(value))))
+      known = exponent <= 16 .and. exponent >= 16 - 22
+      if (.not. known) return
+      power = 10.0_wp**(16 - exponent)
+      product = value*power
+      a = halves(value)
+      b = halves(power)
+      rest = ((a(1)*b(1) - product) + a(1)*b(2) + a(2)*b(1)) + a(2)*b(2)
+      ! beyond 2**53 the product is whole; what is left of it rounds, but for a tie
+      known = product > 1.0e16_wp .and. product < 0.9999e17_wp &
+         & .and. abs(rest - anint(rest)) < 0.5_wp
+      if (known) digits = int(product, int64) + nint(rest, int64)
+   end subroutine scale
+
+   !> Two numbers of half the digits that add up to one
+   pure function halves(value)
+      !> The one
+      real(wp), intent(in) :: value
+      !> The two
+      real(wp) :: halves(2)
+      real(wp) :: high
+
+      high = 134217729.0_wp*value
+      halves(1) = high - (high - value)
+      halves(2) = value - halves(1)
+   end function halves
+
+   !> Leave out of 17 digits those that the number does not need to be read back
+   pure subroutine shorten(value, digits, exponent, known)
+      !> The number
+      real(wp), intent(in) :: value
+      !> Its 17 digits in, the shorter ones out
+      integer(int64), intent(inout) :: digits
+      !> Power of ten of the first digit
+      integer, intent(in) :: exponent
+      !> Whether it could be told without reading the digits back, so that they were changed
+      logical, intent(out) :: known
+      integer(int64) :: short, unit
+      real(wp) :: off, half_step
+      integer :: places
+
+      known = abs(exponent) < 280
+      if (.not. known) return
+      ! half the way to the next double, and all distances, in units of the 17th digit
+      half_step = 0.5_wp*spacing(value)*10.0_wp**(16 - exponent)
+      do places = 15, 16
+         unit = 10_int64**(17 - places)
+         short = (digits + unit/2)/unit
+         off = real(abs(digits - short*unit), wp)
+         ! the 17 digits are themselves rounded, by half a unit
+         if (off - 0.5_wp > 1.000001_wp*half_step) cycle
+         ! below a power of two the next double is only half as far; a tie may round either way
+         known = off + 0.5_wp < 0.499999_wp*half_step .or. off + 0.5_wp < 0.999999_wp*half_step &
+            & .and. abs(fraction(value)) > 0.5_wp
+         known = known .and. 2.0_wp*off < real(unit, wp) .and. short < 10_int64**places
+         if (known) digits = short
+         return
+      end do
+   end subroutine shorten
+
+   !> The fewest digits that read back as the same number, by reading them
+   pure subroutine try_forms(value, digits, exponent)
+      !> The number
+      real(wp), intent(in) :: value
+      !> Its digits
+      integer(int64), intent(out) :: digits
+      !> Power of ten of the first one
+      integer, intent(out) :: exponent
+      character(len=24) :: buffer
+      real(wp) :: again
+      integer :: places, stat
+
+      do places = 15, 17
+         write (buffer, scientific_form(places)) value
          read (buffer, "(f24.0)", iostat=stat) again
          if (stat /= 0) exit
          if (.not. abs(again - value) > 0.0_wp) exit
       end do
-      text = plain_form(trim(adjustl(buffer)), value)
-   end function real_to_text
+      call take_digits(buffer, digits, exponent)
+   end subroutine try_forms
 
-   !> Turn scientific notation into plain decimals where that is as short
-   pure function plain_form(scientific, value) result(text)
-      !> Number as written by an ES edit descriptor
+   !> Digits and exponent of a number as an ES edit descriptor writes it
+   pure subroutine take_digits(scientific, digits, exponent)
+      !> The text
       character(len=*), intent(in) :: scientific
-      !> The number itself
-      real(wp), intent(in) :: value
+      !> All digits before the exponent, as one whole number
+      integer(int64), intent(out) :: digits
+      !> The exponent
+      integer, intent(out) :: exponent
+      integer :: code, e, i
+
+      digits = 0
+      exponent = 0
+      e = scan(scientific, "E")
+      do i = 1, len(scientific)
+         code = iachar(scientific(i:i)) - iachar("0")
+         if (code < 0 .or. code > 9) cycle
+         if (i < e) digits = 10_int64*digits + int(code, int64)
+         if (i > e) exponent = 10*exponent + code
+      end do
+      if (scientific(e + 1:e + 1) == "-") exponent = -exponent
+   end subroutine take_digits
+
+   !> Plain decimals where they are as short as scientific notation
+   pure function plain_form(number, exponent) result(text)
+      !> Significant digits as a whole number; zeros at its end do not count
+      integer(int64), intent(in) :: number
+      !> Power of ten of the first digit
+      integer, intent(in) :: exponent
       !> Text without trailing zeros
       character(len=:), allocatable :: text
-      character(len=:), allocatable :: digits, sign
-      integer :: e, exponent, stat
+      character(len=20) :: digits
+      integer(int64) :: rest
+      integer :: n
 
-      e = scan(scientific, "E")
-      text = scientific
-      if (e == 0 .or. .not. ieee_is_finite(value)) return
-      read (scientific(e + 1:), "(i4)", iostat=stat) exponent
-      if (stat /= 0) return
-      sign = ""
-      if (scientific(1:1) == "-") sign = "-"
-      digits = scientific(len(sign) + 1:len(sign) + 1)//scientific(len(sign) + 3:e - 1)
-      digits = digits(1:max(1, verify(digits, "0", back=.true.)))
+      rest = number
+      do while (rest > 9)
+         if (mod(rest, 10_int64) /= 0) exit
+         rest = rest/10_int64
+      end do
+      call put_digits(rest, digits, n)
       if (exponent >= 0 .and. exponent < 16) then
-         text = sign//left_of_point(digits, exponent)
+         text = left_of_point(digits(:n), exponent)
       else if (exponent < 0 .and. exponent > -5) then
-         text = sign//"0."//repeat("0", -exponent - 1)//digits
-      else if (len(digits) == 1) then
-         text = sign//digits//"e"//integer_to_text(exponent)
+         text = "0."//repeat("0", -exponent - 1)//digits(:n)
+      else if (n == 1) then
+         text = digits(:n)//"e"//integer_to_text(exponent)
       else
-         text = sign//digits(1:1)//"."//digits(2:)//"e"//integer_to_text(exponent)
+         text = digits(1:1)//"."//digits(2:n)//"e"//integer_to_text(exponent)
       end if
    end function plain_form
 
@@ -85,16 +216,55 @@ contains
       end if
    end function left_of_point
 
+   !> How many digits a whole number has
+   pure integer function count_digits(number)
+      !> The number, not negative
+      integer(int64), intent(in) :: number
+      integer(int64) :: rest
+
+      rest = number
+      count_digits = 1
+      do while (rest > 9)
+         rest = rest/10_int64
+         count_digits = count_digits + 1
+      end do
+   end function count_digits
+
+   !> Write the digits of a whole number
+   pure subroutine put_digits(number, digits, n)
+      !> The number, not negative
+      integer(int64), intent(in) :: number
+      !> The digits, from the left
+      character(len=20), intent(out) :: digits
+      !> How many
+      integer, intent(out) :: n
+      integer(int64) :: rest
+      integer :: i
+
+      digits = ""
+      n = count_digits(number)
+      rest = number
+      do i = n, 1, -1
+         digits(i:i) = achar(iachar("0") + int(mod(rest, 10_int64)))
+         rest = rest/10_int64
+      end do
+   end subroutine put_digits
+
    !> Decimal text of an integer
    pure function integer_to_text(value) result(text)
       !> Number to write
       integer, intent(in) :: value
       !> Text without blanks
       character(len=:), allocatable :: text
-      character(len=12) :: buffer
+      character(len=20) :: digits
+      integer :: n
 
-      write (buffer, "(i0)") value
-      text = trim(buffer)
+      call put_digits(abs(int(value, int64)), digits, n)
+      if (value < 0) then
+         text = "-"//digits(:n)
+      else
+         text = digits(:n)
+      end if
    end function integer_to_text
 
    !> The same text with A-Z turned into a-z

@@ -12,7 +12,8 @@ module dda_deck_sweep
    implicit none
    private
 
-   public :: add_sweep, n_cases, case_deck, set_case, swept_names, swept_texts, max_sweeps
+   public :: add_sweep, n_cases, case_deck, turn_to_case, set_case, swept_names, swept_texts
+   public :: max_sweeps
 
    !> Most &sweep groups of a deck
    integer, parameter :: max_sweeps = 8
@@ -242,7 +243,7 @@ contains
       end do
    end function positions
 
-   !> Put the swept values of a case into a deck
+   !> Put the swept values of a case into the deck of the sweeps
    pure subroutine set_case(deck, number, error)
       !> The deck; it may hold the values of another case
       type(deck_t), intent(inout) :: deck
@@ -250,11 +251,27 @@ contains
       integer, intent(in) :: number
       !> An item of a list that is not there; never for a deck that was checked
       type(error_t), allocatable, intent(out) :: error
-      integer :: position(size(deck%sweep)), s
+      type(deck_t) :: swept
 
-      position = positions(deck, number)
-      do s = 1, size(deck%sweep)
-         associate (sweep => deck%sweep(s))
+      swept%sweep = deck%sweep
+      call put_case(swept, number, deck, error)
+   end subroutine set_case
+
+   !> Put the swept values of a case into a deck
+   pure subroutine put_case(swept, number, deck, error)
+      !> A deck with the sweeps
+      type(deck_t), intent(in) :: swept
+      !> Number of the case, from 1 to n_cases
+      integer, intent(in) :: number
+      !> The deck that receives them
+      type(deck_t), intent(inout) :: deck
+      !> As in set_case
+      type(error_t), allocatable, intent(out) :: error
+      integer :: position(size(swept%sweep)), s
+
+      position = positions(swept, number)
+      do s = 1, size(swept%sweep)
+         associate (sweep => swept%sweep(s))
             if (size(sweep%numbers) > 0) then
                call put_number(deck, sweep%parameter, sweep%numbers(position(s)), &
                   sweep%place, error)
@@ -264,7 +281,7 @@ contains
          end associate
          if (allocated(error)) return
       end do
-   end subroutine set_case
+   end subroutine put_case
 
    !> The deck of one case
    pure subroutine case_deck(deck, number, result, error)
@@ -278,8 +295,28 @@ contains
       type(error_t), allocatable, intent(out) :: error
 
       result = deck
-      call set_case(result, number, error)
+      call put_case(deck, number, result, error)
    end subroutine case_deck
+
+   !> Turn the deck of one case into that of another one of the same sweeps; the first time all of
+   !> the deck is copied, and later the swept values alone
+   pure subroutine turn_to_case(deck, number, result, error)
+      !> The deck with its sweeps
+      type(deck_t), intent(in) :: deck
+      !> Number of the case, from 1 to n_cases
+      integer, intent(in) :: number
+      !> The deck of a case, without sweeps; new, or as this routine left it
+      type(deck_t), intent(inout) :: result
+      !> As in set_case
+      type(error_t), allocatable, intent(out) :: error
+
+      if (.not. allocated(result%value)) then
+         result = deck
+         deallocate (result%sweep)
+         allocate (result%sweep(0))
+      end if
+      call put_case(deck, number, result, error)
+   end subroutine turn_to_case
 
    !> Names of the swept parameters
    pure function swept_names(deck) result(names)

@@ -1,0 +1,247 @@
+!> The cases of a deck, one after another: prepared, computed, written down
+module dda_run_cases
+   use dda_case, only : case_t, compute_case, prepare_case
+   use dda_case_rows, only : tell_case
+   use dda_command_line, only : command_t
+   use dda_deck, only : deck_t, flag_of
+   use dda_deck_sweep, only : n_cases, turn_to_case
+   use dda_error, only : error_t
+   use dda_kinds, only : wp
+   use dda_picture_files, only : write_album, write_energies, write_track
+   use dda_progress, only : clear_progress, progress_t, report_progress
+   use dda_restart, only : save_restart
+   use dda_result_tables, only : result_tables_t, swept_fields, sync_when_due, table, write_case
+   use dda_summary, only : print_row
+   use dda_text, only : to_text
+   use dda_write_blocks, only : told_blocks_t
+   use dda_write_results, only : joint_row_t, result_row_t
+   implicit none
+   private
+
+   public :: deck_stem, run_cases
+
+   !> Most cases that a thread takes at a time
+   integer, parameter :: max_batch = 32
+   !> Cases are taken together as long as they take less than this [s]: a wait of one thread for
+   !> another one costs as much as a short case, and what is not yet written is lost if the run is
+   !> killed
+   real(wp), parameter :: short_batch = 2.0e-3_wp
+
+contains
+
+   !> Compute cases until none is left, or none can be written; each thread runs this. Cases are
+   !> written down in the same turn in which the next ones are prepared: one wait for other threads
+   subroutine run_cases(command, name, deck, chosen, next, tables, progress, count, error)
+      !> What the user asked for
+      type(command_t), intent(in) :: command
+      !> Name of the deck
+      character(len=*), intent(in) :: name
+      !> The deck with its sweeps
+      type(deck_t), intent(in) :: deck
+      !> Cases to be computed
+      logical, intent(in) :: chosen(:)
+      !> The last case that was begun by any thread
+      integer, intent(inout) :: next
+      !> Where the results go
+      type(result_tables_t), intent(inout) :: tables
+      !> What was told so far
+      type(progress_t), intent(inout) :: progress
+      !> Cases decided, undecided, written: (3)
+      integer, intent(inout) :: count(3)
+      !> Failure to write
+      type(error_t), allocatable, intent(inout) :: error
+      type(deck_t) :: case_of_deck
+      type(case_t), allocatable :: batch(:)
+      integer :: number(max_batch), i, most, n
+
+      allocate (batch(max_batch))
+      n = 0
+      most = 1
+      do
+         !$omp critical (texts)
+         do i = 1, n
+            if (.not. allocated(error)) call write_down(command, name, deck, number(i), &
+               & batch(i), tables, progress, count, error)
+         end do
+         n = 0
+         if (.not. allocated(error)) then
+            call take_cases(chosen, min(most, 1 + (size(chosen) - next)/(4*command%jobs)), next, &
+               & number, n)
+            do i = 1, n
+               call prepare(deck, number(i), case_of_deck, tables, batch(i))
+            end do
+         end if
+         !$omp end critical (texts)
+         if (n == 0) exit
+         do i = 1, n
+            call compute_case(batch(i))
+         end do
+         if (command%jobs > 1) most = next_batch(n, sum(batch(:n)%seconds))
+      end do
+   end subroutine run_cases
+
+   !> How many cases to take after so many that took so long
+   pure integer function next_batch(n, seconds)
+      !> Cases taken
+      integer, intent(in) :: n
+      !> Time of all of them [s]
+      real(wp), intent(in) :: seconds
+
+      next_batch = max(1, n/2)
+      if (seconds < short_batch) next_batch = n
+      if (2.0_wp*seconds < short_batch) next_batch = min(max_batch, 2*n)
+   end function next_batch
+
+   !> Take the next chosen cases
+   pure subroutine take_cases(chosen, most, next, number, n)
+      !> Cases to be computed
+      logical, intent(in) :: chosen(:)
+      !> How many to take at most
+      integer, intent(in) :: most
+      !> The last case that was begun
+      integer, intent(inout) :: next
+      !> Their numbers: (max_batch), n of them set
+      integer, intent(inout) :: number(:)
+      !> How many were taken
+      integer, intent(out) :: n
+      integer :: found
+
+      do n = 0, most - 1
+         found = next_chosen(chosen, next)
+         if (found == 0) return
+         next = found
+         number(n + 1) = found
+      end do
+   end subroutine take_cases
+
+   !> Make one case ready to be computed
+   subroutine prepare(deck, number, case_of_deck, tables, this)
+      !> The deck with its sweeps
+      type(deck_t), intent(in) :: deck
+      !> Number of the case
+      integer, intent(in) :: number
+      !> Deck of the case before in, of this one out
+      type(deck_t), intent(inout) :: case_of_deck
+      !> Where the results go
+      type(result_tables_t), intent(in) :: tables
+      !> The case
+      type(case_t), intent(out) :: this
+      type(error_t), allocatable :: problem
+
+      call turn_to_case(deck, number, case_of_deck, problem)
+      call prepare_case(case_of_deck, this)
+      this%tells_tables = any(tables%at([table%joints, table%blocks])%wanted)
+   end subroutine prepare
+
+   !> The first chosen case behind another one; 0 if there is none
+   pure integer function next_chosen(chosen, last)
+      !> Cases to be computed
+      logical, intent(in) :: chosen(:)
+      !> The other one
+      integer, intent(in) :: last
+
+      do next_chosen = last + 1, size(chosen)
+         if (chosen(next_chosen)) return
+      end do
+      next_chosen = 0
+   end function next_chosen
+
+   !> Name of a deck without its folder and its ending; one that would stay the same, or be a folder
+   !> that exists already, gets an ending
+   pure function deck_stem(name) result(stem)
+      !> Name of the file
+      character(len=*), intent(in) :: name
+      !> The stem
+      character(len=:), allocatable :: stem
+      integer :: dot
+
+      stem = name(index(name, "/", back=.true.) + 1:)
+      dot = index(stem, ".", back=.true.)
+      if (dot > 1) then
+         stem = stem(:dot - 1)
+      else
+         stem = stem//".results"
+      end if
+      if (verify(stem, ".") == 0) stem = stem//"results"
+   end function deck_stem
+
+   !> Write a computed case down
+   subroutine write_down(command, name, deck, number, this, tables, progress, count, error)
+      !> What the user asked for
+      type(command_t), intent(in) :: command
+      !> Name of the deck
+      character(len=*), intent(in) :: name
+      !> The deck with its sweeps
+      type(deck_t), intent(in) :: deck
+      !> Number of the case
+      integer, intent(in) :: number
+      !> The case
+      type(case_t), intent(in) :: this
+      !> Where the results go
+      type(result_tables_t), intent(inout) :: tables
+      !> What was told so far
+      type(progress_t), intent(inout) :: progress
+      !> Cases decided, undecided, written: (3)
+      integer, intent(inout) :: count(3)
+      !> Failure to write
+      type(error_t), allocatable, intent(inout) :: error
+      type(result_row_t) :: row
+      type(joint_row_t), allocatable :: joint_row(:)
+      type(told_blocks_t) :: blocks
+      character(len=:), allocatable :: remark
+
+      call tell_case(this, row, joint_row, blocks, remark)
+      row%deck = deck_stem(name)
+      row%number = number
+      row%swept = swept_fields(deck, number)
+      joint_row%number = number
+      call write_pictures(tables, number, this, error)
+      if (.not. allocated(error)) call write_end(tables%folder, number, this, error)
+      if (.not. allocated(error)) call write_case(tables, row, joint_row, blocks, remark, error)
+      if (.not. allocated(error)) call sync_when_due(tables, error)
+      if (allocated(error)) return
+      count(3) = count(3) + 1
+      count(merge(2, 1, row%verdict == "undecided")) = &
+         & count(merge(2, 1, row%verdict == "undecided")) + 1
+      call clear_progress(progress)
+      if (.not. command%quiet) call print_row(row, remark, n_cases(deck), count(3))
+      call report_progress(progress)
+   end subroutine write_down
+
+   !> Write what is seen of a case on its way: pictures, measured points, energies
+   subroutine write_pictures(tables, number, this, error)
+      !> Where the results go
+      type(result_tables_t), intent(in) :: tables
+      !> Number of the case
+      integer, intent(in) :: number
+      !> The case, computed
+      type(case_t), intent(in) :: this
+      !> Allocated if something cannot be written
+      type(error_t), allocatable, intent(inout) :: error
+
+      if (tables%at(table%frames)%wanted) call write_album(tables%folder, number, &
+         & tables%has_vtu, this%scene%system, this%scene%origin, this%album, &
+         & tables%at(table%frames)%open, tables%at(table%frame_joints)%open, error)
+      if (tables%at(table%points)%wanted .and. .not. allocated(error)) call write_track( &
+         & number, this%scene%origin, this%album, tables%at(table%points)%open, error)
+      if (tables%at(table%energy)%wanted .and. .not. allocated(error)) call write_energies( &
+         & number, this%album, tables%at(table%energy)%open, error)
+   end subroutine write_pictures
+
+   !> Write the end of a dynamic case, to go on from there
+   subroutine write_end(folder, number, this, error)
+      !> Folder of the deck's results
+      character(len=*), intent(in) :: folder
+      !> Number of the case
+      integer, intent(in) :: number
+      !> The case, computed
+      type(case_t), intent(in) :: this
+      !> Allocated if it cannot be written
+      type(error_t), allocatable, intent(out) :: error
+
+      if (.not. flag_of(this%deck, "output", "restart")) return
+      if (.not. this%scene%settings%dynamic .or. allocated(this%error)) return
+      call save_restart(folder//"/case_"//to_text(number)//".restart", this%decision%system, &
+         & this%decision%contacts, this%onward, error)
+   end subroutine write_end
+end module dda_run_cases
