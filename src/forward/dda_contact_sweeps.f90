@@ -91,14 +91,16 @@ contains
          state%settled = modulo(sweep, round) == 0 .and. (change(1) <= enough(1) &
             & .or. sweep >= strictly .and. change(2) <= enough(2))
          if (state%settled) exit
-         if (hasty) call go_on(springs, view, force - before, square, way, force, motion)
-         if (modulo(sweep, patience) /= 0 .or. sweep == 0) cycle
-         if (.not. change(2) < falling*last) then
-            state%settled = change(2) <= merge(coarse, coarsest, hasty)*enough(2)
-            if (state%settled .or. sweep >= plain_sweeps) exit
-            hasty = .false.
+         if (modulo(sweep, patience) == 0 .and. sweep > 0) then
+            if (.not. change(2) < falling*last) then
+               state%settled = change(2) <= merge(coarse, coarsest, hasty)*enough(2)
+               if (state%settled .or. sweep >= plain_sweeps) exit
+               hasty = .false.
+            end if
+            last = change(2)
          end if
-         last = change(2)
+         ! not before an end: the forces that it goes on to need not be admissible
+         if (hasty) call go_on(springs, view, force - before, square, way, force, motion)
       end do
       call keep_forces(equations, springs, view, force, state)
    end subroutine sweep_contacts

@@ -59,6 +59,8 @@ module scene_pile
       real(wp) :: peak = 0.0_wp
       !> Deepest that a block has been in another after a step [m]
       real(wp) :: entry = 0.0_wp
+      !> Farthest that a joint's force has been outside its cone, over the weight of all blocks
+      real(wp) :: outside = 0.0_wp
       !> Factorisations
       integer :: factorisations = 0
    end type record_t
@@ -93,6 +95,8 @@ contains
             record%peak = max(record%peak, e%kinetic)
          end associate
          record%entry = max(record%entry, deepest_entry(system%first_vertex, system%moved))
+         record%outside = max(record%outside, farthest_outside(scene)/sum(system%unit_weight &
+            & *system%area, mask=system%equation > 0))
       end associate
       record%verdict = outcome%verdict
       record%factorisations = record%factorisations + outcome%factorisations
@@ -146,6 +150,21 @@ contains
       end do
       scene = searched_scene(model, joint_law_t(friction=pile%friction))
    end function pile_scene
+
+   !> Farthest that the force of a joint is outside its cone, in tension or in shear [N/m]
+   pure real(wp) function farthest_outside(scene)
+      !> The scene after a step
+      type(scene_t), intent(in) :: scene
+      integer :: j
+
+      farthest_outside = 0.0_wp
+      associate (force => scene%contacts%force, cone => scene%contacts%springs%cone)
+         do j = 1, size(cone)
+            farthest_outside = max(farthest_outside, -force(1, j), -force(2, j), abs(force(3, j)) &
+               & - cone(j)%limit - cone(j)%friction*(force(1, j) + force(2, j)))
+         end do
+      end associate
+   end function farthest_outside
 
    !> How deep two convex blocks lie in one another at most: the shortest way out of the pair that
    !> has the longest; negative if all are apart [m]
