@@ -25,8 +25,8 @@ PARTS: tuple[tuple[str, str | None], ...] = (
     ("strain: 6 unknowns a block", "&analysis unknowns = 6 /\n"),
     ("joint forces with strain: joints.csv", "&output joints = .true., vtu = .false. /\n"),
     ("strength that can break", "&joint cohesion = 1e-9 /\n"),
-    ("pictures: vtu", "&output joints = .false., vtu = .true. /\n"),
-    ("condition", "&output joints = .false., vtu = .false., condition = .true. /\n"),
+    ("pictures: vtu", "&output joints = .false., blocks = .false., vtu = .true. /\n"),
+    ("condition", "&output joints = .false., blocks = .false., vtu = .false., condition = .true. /\n"),
     ("joints searched among polygons", None),
     ("blocks that move, contacts that follow", "&analysis geometry = 'current' /\n"),
 )
@@ -105,7 +105,7 @@ def _cost(
     """Time, memory and answer of one deck."""
     written = {"&arch": f"half_angle_deg = 90.0, voussoirs = {arch.voussoirs}"}
     written["&joint"] = f"friction_deg = {FRICTION_DEG}"
-    written["&output"] = "joints = .false., vtu = .false."
+    written["&output"] = "joints = .false., blocks = .false., vtu = .false."
     if groups is None:
         written = {"&scene": f"kind = 'blocks', geometry = '{BLOCKS}'", **written}
         del written["&arch"]
