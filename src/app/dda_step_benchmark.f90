@@ -162,7 +162,8 @@ contains
          select case (part_name(job%part))
          case ("search")
             call near_joints(scene%contacts%search, scene%system, travel_of(scene%system, &
-               & settings, job%march), none, job%march%reach, joint)
+               & settings, job%march), none, job%march%reach, .not. scene%contacts%remember, &
+               & joint)
          case ("transfer")
             call renew_contacts(scene%system, travel_of(scene%system, settings, job%march), &
                & job%march%reach, settings%penalty_ratio, settings%n_dof, scene%contacts)
