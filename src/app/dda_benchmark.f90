@@ -11,6 +11,7 @@ module dda_benchmark
    use dda_block_system, only : block_system_t
    use dda_chain, only : chain_t
    use dda_chain_decision, only : decide_chain
+   use dda_chain_unfold, only : unfold
    use dda_constants, only : pi
    use dda_contact_detection, only : contacts_t, find_contacts
    use dda_critical, only : critical_t, find_critical, search_t
@@ -163,13 +164,11 @@ contains
       family%voussoirs = voussoirs
       family%unknowns = unknowns
       family%decides_chains = unknowns == 3
+      family%numbers = arch_numbers_t(density=material%density, young=material%young, &
+         & body_force=[0.0_wp, -unit_weight], penalty_ratio=settings%penalty_ratio, &
+         & law=joint_law_t(no_slip=.true.), halved=family%decides_chains)
       allocate (family%numbers%shape%joint_angle, source=equal_joints(voussoirs, half_angle))
       allocate (family%numbers%shape%facets((voussoirs + 1)/2), source=1)
-      family%numbers%density = material%density
-      family%numbers%young = material%young
-      family%numbers%body_force = [0.0_wp, -unit_weight]
-      family%numbers%penalty_ratio = settings%penalty_ratio
-      family%numbers%law%no_slip = .true.
       call arch_rays(family%numbers, family%rays)
    end function new_arches
 
@@ -245,6 +244,7 @@ contains
             & decisions%chain(i), linked)
       end do
       call decisions%run()
+      call unfold(decisions%decision)
       answer = decisions%decision%outcome%verdict
       figures%right = count(answer == merge(verdict%stable, verdict%collapsed, distance > 0.0_wp))
       call search%run()

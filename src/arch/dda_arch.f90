@@ -7,7 +7,8 @@ module dda_arch
    implicit none
    private
 
-   public :: arch_shape_t, arch_blocks, equal_joints, facet_count, section_directions
+   public :: arch_shape_t, arch_blocks, equal_joints, facet_count
+   public :: left_directions, section_directions
 
    !> Shape of an arch that is its own mirror image; joints are radial
    type :: arch_shape_t
@@ -91,6 +92,30 @@ contains
       is_joint = is_joint(:n)
    end subroutine half_sections
 
+   !> Directions of the sections of the left half, seen from the centre, from the springing to the
+   !> crown
+   pure subroutine left_directions(shape, direction, is_joint)
+      !> The arch
+      type(arch_shape_t), intent(in) :: shape
+      !> Unit vectors; the last is the crown's if there is a section: (2, m)
+      real(wp), allocatable, intent(out) :: direction(:, :)
+      !> Which sections are joints: (m)
+      logical, allocatable, intent(out) :: is_joint(:)
+      real(wp), allocatable :: angle(:)
+      logical, allocatable :: half_joint(:)
+      integer :: i, n
+
+      call half_sections(shape, angle, half_joint)
+      n = size(angle)
+      allocate (direction(2, n), is_joint(n))
+      do i = 1, n
+         direction(1, n + 1 - i) = -sin(angle(i))
+         direction(2, n + 1 - i) = cos(angle(i))
+         is_joint(n + 1 - i) = half_joint(i)
+      end do
+      if (.not. angle(1) > 0.0_wp) direction(1, n) = 0.0_wp
+   end subroutine left_directions
+
    !> Directions of the sections of the whole arch, seen from the centre, from the left springing to
    !> the right one; mirrored to the last bit
    pure subroutine section_directions(shape, direction, is_joint)
@@ -100,22 +125,19 @@ contains
       real(wp), allocatable, intent(out) :: direction(:, :)
       !> Which sections are joints: (m)
       logical, allocatable, intent(out) :: is_joint(:)
-      real(wp), allocatable :: angle(:)
+      real(wp), allocatable :: half(:, :)
       logical, allocatable :: half_joint(:)
-      integer :: i, m, n, left, right
+      integer :: m, n
 
-      call half_sections(shape, angle, half_joint)
-      n = size(angle)
-      m = 2*n - merge(0, 1, angle(1) > 0.0_wp)
+      call left_directions(shape, half, half_joint)
+      n = size(half_joint)
+      m = 2*n - merge(0, 1, half(1, n) < 0.0_wp)
       allocate (direction(2, m), is_joint(m))
-      do i = 1, n
-         left = n + 1 - i
-         right = m - n + i
-         direction(:, right) = [sin(angle(i)), cos(angle(i))]
-         direction(:, left) = direction(:, right)*[-1.0_wp, 1.0_wp]
-         is_joint([left, right]) = half_joint(i)
-      end do
-      if (mod(m, 2) == 1) direction(1, n) = 0.0_wp
+      direction(1, m:m - n + 1:-1) = -half(1, :)
+      direction(2, m:m - n + 1:-1) = half(2, :)
+      is_joint(m:m - n + 1:-1) = half_joint
+      direction(:, :n) = half
+      is_joint(:n) = half_joint
    end subroutine section_directions
 
    !> Voussoirs from left to right, then the left and the right springing, which are fixed blocks;

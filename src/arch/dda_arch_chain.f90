@@ -6,7 +6,7 @@
 !> voussoir is X0 + s X1, with X0 on a chord halfway through the thickness, X1 between the
 !> directions of the chord's ends, and s from -t/2 to t/2.
 module dda_arch_chain
-   use dda_arch, only : arch_shape_t, section_directions
+   use dda_arch, only : arch_shape_t, left_directions, section_directions
    use dda_chain, only : chain_t, new_chain
    use dda_kinds, only : wp
    use dda_material, only : joint_law_t
@@ -31,19 +31,27 @@ module dda_arch_chain
       type(joint_law_t) :: law
       !> Whether the springings cannot slide
       logical :: no_slip_springing = .false.
+      !> Whether the left half alone will do: the loads must be upright
+      logical :: halved = .false.
    end type arch_numbers_t
 
-   !> What does not depend on the thickness
+   !> What does not depend on the thickness, of the whole arch or its left half
    type :: arch_rays_t
+      !> Whether the plane of symmetry cuts a voussoir, whose left half is the last one
+      logical :: keystone = .false.
+      !> Number of voussoirs of the whole arch
+      integer :: voussoirs = 0
       !> Directions of the sections from left to right: (2, m)
       real(wp), allocatable :: direction(:, :)
       !> Where they cross the circle halfway through the thickness, from its top, over the radius:
       !> (2, m)
       real(wp), allocatable :: point(:, :)
-      !> Which of them are joints: (n_joint)
+      !> Which of them are joints, or the plane of symmetry: (n_joint)
       integer, allocatable :: joint(:)
       !> Areas of the voussoirs over t: (n) [m]
       real(wp), allocatable :: area(:)
+      !> Their lengths along the arch, a keystone's in whole: (n) [m]
+      real(wp), allocatable :: length(:)
       !> Their centres from the middles of their first joints: centre(:, 1) + centre(:, 2) t**2:
       !> (2, 2, n) [m, 1/m]
       real(wp), allocatable :: centre(:, :, :)
@@ -65,11 +73,18 @@ contains
       logical, allocatable :: is_joint(:)
       integer :: b, i, n
 
-      call section_directions(numbers%shape, rays%direction, is_joint)
-      allocate (rays%point(2, size(is_joint)), rays%joint(count(is_joint)))
+      if (numbers%halved) then
+         call left_directions(numbers%shape, rays%direction, is_joint)
+      else
+         call section_directions(numbers%shape, rays%direction, is_joint)
+      end if
+      rays%voussoirs = merge(2, 1, numbers%halved)*(count(is_joint) - 1)
+      allocate (rays%point(2, size(is_joint)))
       rays%point(1, :) = rays%direction(1, :)
       ! cos - 1
       rays%point(2, :) = -rays%direction(1, :)**2/(1.0_wp + rays%direction(2, :))
+      if (numbers%halved) call meet_plane(rays, is_joint)
+      allocate (rays%joint(count(is_joint)))
       n = 0
       do i = 1, size(is_joint)
          if (.not. is_joint(i)) cycle
@@ -81,7 +96,32 @@ contains
       do b = 1, n
          call find_moments(numbers%shape%radius, rays, b)
       end do
+      rays%length = rays%area
+      if (.not. rays%keystone) return
+      rays%length(n) = 2.0_wp*rays%length(n)
+      rays%direction(:, rays%joint(n + 1)) = [0.0_wp, 1.0_wp]
    end subroutine arch_rays
+
+   !> Let the left half of an arch end on its plane of symmetry, where the direction is the mean of
+   !> those on either side
+   pure subroutine meet_plane(rays, is_joint)
+      !> The sections
+      type(arch_rays_t), intent(inout) :: rays
+      !> Which sections are joints; the plane counts as one
+      logical, allocatable, intent(inout) :: is_joint(:)
+      integer :: m
+
+      m = size(is_joint)
+      rays%keystone = .not. is_joint(m) .or. rays%direction(1, m) < 0.0_wp
+      if (rays%keystone) rays%voussoirs = rays%voussoirs + 1
+      if (rays%direction(1, m) < 0.0_wp) then
+         rays%direction = reshape([rays%direction, 0.0_wp, rays%direction(2, m)], [2, m + 1])
+         rays%point = reshape([rays%point, 0.0_wp, rays%point(2, m)], [2, m + 1])
+         is_joint = [is_joint, .true.]
+      else
+         is_joint(m) = .true.
+      end if
+   end subroutine meet_plane
 
    !> Coefficients of one voussoir; Simpson's rule is exact along its chords
    pure subroutine find_moments(radius, rays, b)
@@ -156,7 +196,7 @@ contains
          way = radius*(rays%point(:, last) - rays%point(:, first)) - centre
          chain%arm(:, 2, b) = arms(-centre, rays%direction(:, first))
          chain%arm(:, 1, b + 1) = arms(way, rays%direction(:, last))
-         chain%stiffness(b + 1) = numbers%penalty_ratio*numbers%young*thickness/rays%area(b)
+         chain%stiffness(b + 1) = numbers%penalty_ratio*numbers%young*thickness/rays%length(b)
          chain%stiffness(b) = min(chain%stiffness(b), chain%stiffness(b + 1))
       end do
       last = rays%joint(n + 1)
@@ -164,13 +204,30 @@ contains
       chain%middle(:, n + 1) = radius*rays%point(:, last)
       chain%arm(:, 1, 1) = 0.0_wp
       chain%arm(:, 2, n + 1) = 0.0_wp
-      chain%rounding = 4.0_wp*epsilon(1.0_wp)*real(n, wp)
+      chain%rounding = 4.0_wp*epsilon(1.0_wp)*real(rays%voussoirs, wp)
       chain%stiffness = min(chain%stiffness, stiffest*minval(chain%stiffness))
       chain%half = thickness/2.0_wp
       chain%friction = numbers%law%friction
       chain%limit = merge(huge(1.0_wp), 0.0_wp, numbers%law%no_slip)
       if (numbers%no_slip_springing) chain%limit([1, n + 1]) = huge(1.0_wp)
+      if (numbers%halved) call add_plane(rays, chain)
    end subroutine arch_chain
+
+   !> Make the last joint the plane of symmetry
+   pure subroutine add_plane(rays, chain)
+      !> Sections of the left half
+      type(arch_rays_t), intent(in) :: rays
+      !> The chain
+      type(chain_t), intent(inout) :: chain
+      integer :: last
+
+      last = size(chain%half)
+      chain%halved = .true.
+      chain%keystone = rays%keystone
+      chain%stiffness(last) = 2.0_wp*chain%stiffness(last)
+      chain%friction(last) = 0.0_wp
+      chain%limit(last) = 0.0_wp
+   end subroutine add_plane
 
    !> Moments of unit forces along the normal and along the tangent of a joint
    pure function arms(way, tangent)

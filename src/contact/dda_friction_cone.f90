@@ -30,6 +30,8 @@ module dda_friction_cone
       real(wp) :: limit = 0.0_wp
       !> Whether the joint has one corner only: the second stays open
       logical :: single = .false.
+      !> Whether it is a plane of symmetry through a block: any normal forces and no shear force
+      logical :: mirror = .false.
    end type cone_t
 
    !> Shi's states of a contact
@@ -59,6 +61,11 @@ contains
       type(joint_face_t), intent(out) :: face
       real(wp) :: excess
 
+      if (cone%mirror) then
+         force = [trial(1:2), 0.0_wp]
+         face%slip = 1
+         return
+      end if
       force(1:2) = max(trial(1:2), 0.0_wp)
       force(3) = trial(3)
       face%open = trial(1:2) < 0.0_wp

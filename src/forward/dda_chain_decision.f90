@@ -27,7 +27,7 @@ contains
       type(settings_t), intent(in) :: settings
       !> The chain
       type(chain_t), intent(in) :: chain
-      !> The decision, without blocks and springs
+      !> The decision, without blocks and springs; of the left half alone if the chain is halved
       type(decision_t), intent(out) :: decision
       !> Whether it counts: not where a step did not settle, nor where a structure with sliding
       !> joints stands, for Coulomb's law has the last word there
@@ -50,9 +50,19 @@ contains
          call lengthen(chain, measured, march, step)
       end do
       decided = answer == verdict%collapsed &
-         & .or. answer == verdict%stable .and. all(step%face%slip == 0)
+         & .or. answer == verdict%stable .and. .not. slides(chain, step)
       if (decided) call tell(settings, chain, answer, march, measured, step, decision)
    end subroutine decide_chain
+
+   !> Whether a joint slides, not counting a plane of symmetry
+   pure logical function slides(chain, step)
+      !> The chain
+      type(chain_t), intent(in) :: chain
+      !> The step
+      type(chain_step_t), intent(in) :: step
+
+      slides = any(step%face(:size(step%face) - merge(1, 0, chain%halved))%slip /= 0)
+   end function slides
 
    !> Scales, first faces and first length
    pure subroutine begin_march(settings, chain, march, step)
@@ -66,11 +76,11 @@ contains
       type(chain_step_t), intent(out) :: step
       type(thrust_t) :: thrust
       type(joint_face_t) :: face(size(chain%half))
-      real(wp) :: load(3, size(chain%half))
+      real(wp), dimension(3, size(chain%half)) :: load, force, admissible
 
       call find_thrust(chain, thrust, load)
-      call thrust_faces(chain, load, thrust, face)
-      call new_chain_step(chain, face, step)
+      call thrust_faces(chain, load, thrust, face, force, admissible)
+      call new_chain_step(chain, face, force, admissible, step)
       march%free_acceleration = sqrt(maxval((chain%weight(1, :)**2 + chain%weight(2, :)**2) &
          & /chain%mass**2))
       march%last_acceleration = march%free_acceleration
@@ -169,6 +179,8 @@ contains
          outcome%steps = march%steps
          outcome%passes = step%passes
          outcome%factorisations = step%factorisations
+         decision%halved = chain%halved
+         decision%keystone = chain%keystone
          allocate (contacts%gap(3, size(chain%half)))
          do j = 1, size(chain%half)
             contacts%gap(:, j) = -step%trial(:, j)/chain%stiffness(j)

@@ -70,23 +70,30 @@ module dda_chain_step
 
 contains
 
-   !> Room for a step that begins with these faces, without force in any joint
-   pure subroutine new_chain_step(chain, face, step)
+   !> Room for a step that begins with these faces and forces
+   pure subroutine new_chain_step(chain, face, start, admissible, step)
       !> The chain
       type(chain_t), intent(in) :: chain
       !> Faces of the joints: (n + 1)
       type(joint_face_t), intent(in) :: face(:)
+      !> Trial forces of the joints: (3, n + 1) [N/m]
+      real(wp), intent(in) :: start(:, :)
+      !> Their admissible forces: (3, n + 1) [N/m]
+      real(wp), intent(in) :: admissible(:, :)
       !> The step
       type(chain_step_t), intent(out) :: step
-      integer :: n
+      integer :: j, n
 
       n = size(chain%mass)
       allocate (step%motion(3, n), step%increment(3, n + 1), step%trial(3, n + 1))
-      allocate (step%start(3, n + 1), step%stored(n + 1), source=0.0_wp)
-      allocate (step%force(3, n + 1), step%wanted(n + 1), step%stuck(n + 1))
+      allocate (step%start, source=start)
+      allocate (step%force(3, n + 1), step%wanted(n + 1), step%stuck(n + 1), step%stored(n + 1))
       allocate (step%face, source=face)
       allocate (step%gap(0:n + 2), source=0.0_wp)
       step%stuck = is_stuck(face)
+      do j = 1, n + 1
+         step%stored(j) = admissible(1, j)**2 + admissible(2, j)**2 + admissible(3, j)**2
+      end do
       step%load_noise = 1.0e-13_wp*sum(abs(chain%weight))
       step%spring_noise = 8.0_wp*epsilon(1.0_wp)*maxval(chain%stiffness)
       call new_chain_factor(n, step%matrix, step%factor)

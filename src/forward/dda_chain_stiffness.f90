@@ -19,7 +19,8 @@ contains
       !> The bounds
       type(cone_t) :: cone
 
-      cone = cone_t(friction=chain%friction(j), limit=chain%limit(j))
+      cone = cone_t(friction=chain%friction(j), limit=chain%limit(j), &
+         & mirror=chain%keystone .and. j == size(chain%half))
    end function cone_of
 
    !> Rows of one side of a joint: what its forces N1, N2, T are to a block

@@ -11,6 +11,7 @@
 !> nothing: it is where the steps begin.
 module dda_chain_thrust
    use dda_chain, only : chain_t
+   use dda_chain_stiffness, only : cone_of
    use dda_friction_cone, only : apply_face, cone_t, joint_face_t, project
    use dda_kinds, only : wp
    implicit none
@@ -20,7 +21,8 @@ module dda_chain_thrust
 
    !> The forces, and what they show
    type :: thrust_t
-      !> Force and moment about the origin that the left springing bears with: (3) [N/m, N/m, N]
+      !> Force and moment about the origin that the left springing bears with; of half a chain,
+      !> beyond what it bears of its loads: (3) [N/m, N/m, N]
       real(wp) :: reaction(3) = 0.0_wp
       !> Mean motion along the loads if no joint could open: the scale of elastic motion [m]
       real(wp) :: elastic_motion = 0.0_wp
@@ -64,36 +66,74 @@ contains
       !> Sum of the loads on the blocks before each joint, force and moment: (3, n + 1)
       real(wp), intent(out) :: load(:, :)
       type(energy_t) :: glued
-      integer :: stride
+      integer, allocatable :: watched(:)
+      integer :: j, m, stride
 
+      m = size(chain%half)
+      stride = 1 + m/coarse
+      watched = [(j, j=1, m - 1, stride), m]
       call sum_loads(chain, load)
-      glued = glued_energy(chain, load)
+      glued = glued_energy(chain, load, watched)
       call solve_3(glued%curvature, -glued%slope, thrust%reaction)
       thrust%elastic_motion = (2.0_wp*glued%value + dot_product(glued%slope, thrust%reaction)) &
+         & *real(m, wp)/real(size(watched), wp) &
          & /sum(sqrt(chain%weight(1, :)**2 + chain%weight(2, :)**2))
       glued = energy_t(share*glued%value, share*glued%slope, share*glued%curvature)
-      stride = 1 + size(chain%half)/coarse
-      if (stride > 1) call descend(chain, load, glued, stride, thrust)
-      call descend(chain, load, glued, 1, thrust)
+      call descend(chain, load, glued, watched, thrust)
+      if (stride == 1) return
+      watched = around_weak(chain, load, thrust%reaction, stride, watched)
+      call descend(chain, load, glued, watched, thrust)
    end subroutine find_thrust
 
-   !> Newton's method on the energy of every so many joints
-   pure subroutine descend(chain, load, glued, stride, thrust)
+   !> Joints around those that fail, or are nearer to it than their neighbours
+   pure function around_weak(chain, load, reaction, stride, coarse) result(around)
+      !> The chain
+      type(chain_t), intent(in) :: chain
+      !> Sums of the loads: (3, n + 1)
+      real(wp), intent(in) :: load(:, :)
+      !> The place
+      real(wp), intent(in) :: reaction(3)
+      !> How far around
+      integer, intent(in) :: stride
+      !> Joints that are looked at, rising
+      integer, intent(in) :: coarse(:)
+      !> The joints, rising
+      integer, allocatable :: around(:)
+      logical :: is_near(size(chain%half))
+      real(wp) :: force(3), safety(0:size(coarse) + 1)
+      integer :: i, j
+
+      safety = huge(1.0_wp)
+      do i = 1, size(coarse)
+         force = joint_force(chain, load, reaction, coarse(i))
+         safety(i) = min(force(1), force(2), chain%limit(coarse(i)) - abs(force(3)) &
+            & + chain%friction(coarse(i))*(force(1) + force(2)))
+      end do
+      is_near = .false.
+      do i = 1, size(coarse)
+         if (safety(i) > max(0.0_wp, min(safety(i - 1), safety(i + 1)))) cycle
+         is_near(max(1, coarse(i) - stride):min(size(is_near), coarse(i) + stride)) = .true.
+      end do
+      around = pack([(j, j=1, size(is_near))], is_near)
+   end function around_weak
+
+   !> Newton's method on the energy of some joints
+   pure subroutine descend(chain, load, glued, watched, thrust)
       !> The chain
       type(chain_t), intent(in) :: chain
       !> Sums of the loads: (3, n + 1)
       real(wp), intent(in) :: load(:, :)
       !> Energy if no joint could fail, at zero
       type(energy_t), intent(in) :: glued
-      !> One joint in so many counts
-      integer, intent(in) :: stride
+      !> The joints that count
+      integer, intent(in) :: watched(:)
       !> The forces
       type(thrust_t), intent(inout) :: thrust
       type(energy_t) :: here, there
       real(wp) :: direction(3), way, fall
       integer :: pass, try
 
-      call find_energy(chain, load, glued, stride, thrust%reaction, here)
+      call find_energy(chain, load, glued, watched, thrust%reaction, here)
       do pass = 1, max_passes
          thrust%passes = thrust%passes + 1
          call solve_3(here%curvature, -here%slope, direction)
@@ -101,7 +141,7 @@ contains
          if (.not. fall > little*here%value) exit
          way = 1.0_wp
          do try = 1, max_tries
-            call find_energy(chain, load, glued, stride, thrust%reaction + way*direction, there)
+            call find_energy(chain, load, glued, watched, thrust%reaction + way*direction, there)
             if (there%value <= here%value*(1.0_wp + rounding) - barely*way*fall) exit
             way = shorter(way, dot_product(there%slope, direction), &
                & dot_product(direction, matmul(there%curvature, direction)))
@@ -125,30 +165,43 @@ contains
    end function shorter
 
    !> The function that is made least, at one place
-   pure subroutine find_energy(chain, load, glued, stride, reaction, energy)
+   pure subroutine find_energy(chain, load, glued, watched, reaction, energy)
       !> The chain
       type(chain_t), intent(in) :: chain
       !> Sums of the loads: (3, n + 1)
       real(wp), intent(in) :: load(:, :)
       !> Its part if no joint could fail, at zero
       type(energy_t), intent(in) :: glued
-      !> One joint in so many counts
-      integer, intent(in) :: stride
+      !> The joints that count
+      integer, intent(in) :: watched(:)
       !> The place
       real(wp), intent(in) :: reaction(3)
       !> The function with its derivatives
       type(energy_t), intent(out) :: energy
       real(wp) :: slope(3)
 
-      call add_failing(chain, load, stride, reaction, energy)
+      call add_failing(chain, load, watched, reaction, energy)
       slope = matmul(glued%curvature, reaction)
       energy%value = energy%value + glued%value &
          & + dot_product(reaction, glued%slope + slope/2.0_wp)
       energy%slope = energy%slope + glued%slope + slope
       energy%curvature = energy%curvature + glued%curvature
+      if (chain%halved) call hold_upright(energy)
    end subroutine find_energy
 
-   !> Sums of the loads from the left
+   !> Take the second unknown out: a smooth plane leaves all weight to the springing
+   pure subroutine hold_upright(energy)
+      !> The function
+      type(energy_t), intent(inout) :: energy
+
+      energy%slope(2) = 0.0_wp
+      energy%curvature(:, 2) = 0.0_wp
+      energy%curvature(2, :) = 0.0_wp
+      energy%curvature(2, 2) = 1.0_wp
+   end subroutine hold_upright
+
+   !> Sums of the loads from the left, where a smooth plane ends the chain with what the springing
+   !> bears of them
    pure subroutine sum_loads(chain, load)
       !> The chain
       type(chain_t), intent(in) :: chain
@@ -157,6 +210,7 @@ contains
       integer :: b
 
       load(:, 1) = 0.0_wp
+      if (chain%halved) load(2, 1) = -sum(chain%weight(2, :))
       do b = 1, size(chain%mass)
          load(1:2, b + 1) = load(1:2, b) + chain%weight(:, b)
          load(3, b + 1) = load(3, b) + chain%centroid(1, b)*chain%weight(2, b) &
@@ -204,19 +258,22 @@ contains
    end function influence
 
    !> Energy of the springs if no joint could fail, at zero
-   pure function glued_energy(chain, load) result(energy)
+   pure function glued_energy(chain, load, watched) result(energy)
       !> The chain
       type(chain_t), intent(in) :: chain
       !> Sums of the loads: (3, n + 1)
       real(wp), intent(in) :: load(:, :)
+      !> The joints that count
+      integer, intent(in) :: watched(:)
       !> The energy
       type(energy_t) :: energy
       real(wp) :: n(3), t(3), m(3), force(3), give
-      integer :: c, j
+      integer :: c, i, j
 
       n = 0.0_wp
       t = 0.0_wp
-      do j = 1, size(chain%half)
+      do i = 1, size(watched)
+         j = watched(i)
          give = 1.0_wp/chain%stiffness(j)
          t(1:2) = chain%tangent(:, j)
          n(1) = t(2)
@@ -235,16 +292,17 @@ contains
                & + n*(n(c)*(give/2.0_wp)) + m*(m(c)*(give/2.0_wp)) + t*(t(c)*give)
          end do
       end do
+      if (chain%halved) call hold_upright(energy)
    end function glued_energy
 
    !> Half the squared distance of the forces from the cones, over the stiffness
-   pure subroutine add_failing(chain, load, stride, reaction, energy)
+   pure subroutine add_failing(chain, load, watched, reaction, energy)
       !> The chain
       type(chain_t), intent(in) :: chain
       !> Sums of the loads: (3, n + 1)
       real(wp), intent(in) :: load(:, :)
-      !> One joint in so many counts
-      integer, intent(in) :: stride
+      !> The joints that count
+      integer, intent(in) :: watched(:)
       !> The place
       real(wp), intent(in) :: reaction(3)
       !> What it is added to
@@ -252,12 +310,13 @@ contains
       type(cone_t) :: cone
       type(joint_face_t) :: face
       real(wp) :: force(3), admissible(3), tangent(3, 3), constant(3), g(3, 3), rest(3)
-      integer :: j
+      integer :: i, j
 
-      do j = 1, size(chain%half), stride
+      do i = 1, size(watched)
+         j = watched(i)
          force = joint_force(chain, load, reaction, j)
          if (holds(chain, force, j)) cycle
-         cone = cone_t(friction=chain%friction(j), limit=chain%limit(j))
+         cone = cone_of(chain, j)
          call project(cone, force, admissible, face)
          call apply_face(cone, face, tangent, constant)
          g = influence(chain, j)
@@ -282,8 +341,8 @@ contains
          & .and. abs(force(3)) <= chain%limit(j) + chain%friction(j)*(force(1) + force(2))
    end function holds
 
-   !> Faces of the joints that fail more than their neighbours do
-   pure subroutine thrust_faces(chain, load, thrust, face)
+   !> Forces of all joints, and faces of those that fail more than their neighbours do
+   pure subroutine thrust_faces(chain, load, thrust, face, force, admissible)
       !> The chain
       type(chain_t), intent(in) :: chain
       !> Sums of the loads: (3, n + 1)
@@ -292,23 +351,27 @@ contains
       type(thrust_t), intent(in) :: thrust
       !> The faces: (n + 1)
       type(joint_face_t), intent(out) :: face(:)
+      !> The forces N1, N2, T: (3, n + 1) [N/m]
+      real(wp), intent(out) :: force(:, :)
+      !> The admissible forces nearest to them: (3, n + 1) [N/m]
+      real(wp), intent(out) :: admissible(:, :)
       type(joint_face_t) :: wanted(size(face))
-      real(wp) :: gap(0:size(face) + 1), force(3), admissible(3)
-      type(cone_t) :: cone
+      real(wp) :: gap(0:size(face) + 1)
       integer :: j
 
       gap = 0.0_wp
       do j = 1, size(face)
-         force = joint_force(chain, load, thrust%reaction, j)
-         if (holds(chain, force, j)) cycle
-         cone = cone_t(friction=chain%friction(j), limit=chain%limit(j))
-         call project(cone, force, admissible, wanted(j))
-         gap(j) = norm2(force - admissible)
+         force(:, j) = joint_force(chain, load, thrust%reaction, j)
+         admissible(:, j) = force(:, j)
+         if (holds(chain, force(:, j), j)) cycle
+         call project(cone_of(chain, j), force(:, j), admissible(:, j), wanted(j))
+         gap(j) = norm2(force(:, j) - admissible(:, j))
       end do
       do j = 1, size(face)
          if (gap(j) > 0.0_wp .and. gap(j) >= (1.0_wp - 1.0e-6_wp)*max(gap(j - 1), gap(j + 1))) &
             & face(j) = wanted(j)
       end do
+      if (chain%halved) face(size(face))%slip = 1
    end subroutine thrust_faces
 
    !> Solve three equations with a symmetric positive definite matrix

@@ -26,6 +26,11 @@ module dda_decision
       type(contacts_t) :: contacts
       !> Flow rule of the run that gave them, one of flow_rule
       integer :: flow = 1
+      !> Whether outcome and contacts are those of the left half of a row, up to its plane of
+      !> symmetry
+      logical :: halved = .false.
+      !> Whether this plane runs through the last block
+      logical :: keystone = .false.
    end type decision_t
 
 contains

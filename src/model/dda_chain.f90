@@ -10,6 +10,12 @@ module dda_chain
    !> Blocks from left to right; joint j is the one before block j, the last joint is behind the
    !> last block. A joint's force is N1 at its first corner, N2 at its second, and T along it
    type :: chain_t
+      !> Whether these are the left blocks of a row that is its own mirror image. The last joint is
+      !> then the plane of symmetry: smooth, and twice as stiff, as it opens half as wide
+      logical :: halved = .false.
+      !> Whether this plane runs through a block, whose left half is the last one and does not
+      !> leave it
+      logical :: keystone = .false.
       !> Centres of gravity: (2, n) [m]
       real(wp), allocatable :: centroid(:, :)
       !> Masses: (n) [kg/m]

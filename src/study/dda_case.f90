@@ -6,6 +6,7 @@ module dda_case
    use dda_block_system, only : block_system_t
    use dda_chain, only : chain_t
    use dda_chain_decision, only : decide_chain
+   use dda_chain_unfold, only : unfold
    use dda_contact_detection, only : contacts_t
    use dda_critical, only : critical_t, find_critical, search_t
    use dda_decision, only : decide, decision_t
@@ -155,6 +156,7 @@ contains
       if (decided) call this%family%link(real_of(this%deck, "arch", "thickness_ratio"), settings, &
          & chain, decided)
       if (decided) call decide_chain(settings, chain, this%decision, decided)
+      if (decided) call unfold(this%decision)
       if (decided) return
       call deck_scene(this%deck, this%scene)
       system = this%scene%system

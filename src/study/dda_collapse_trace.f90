@@ -159,6 +159,8 @@ contains
 
       associate (contacts => critical%fallen%contacts, outcome => critical%fallen%outcome)
          call family%link(critical%falls, settings, chain, mechanism%linked)
+         ! half a chain knows nothing of a collapse of the whole that was decided without it
+         mechanism%linked = mechanism%linked .and. (chain%halved .eqv. critical%fallen%halved)
          if (mechanism%linked) then
             call freeze_mechanism(contacts%face, contacts%increment, chain%friction, &
                & mechanism%chain)

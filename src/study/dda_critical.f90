@@ -7,6 +7,7 @@ module dda_critical
    use dda_block_system, only : block_system_t
    use dda_chain, only : chain_t
    use dda_chain_decision, only : decide_chain
+   use dda_chain_unfold, only : unfold
    use dda_collapse_trace, only : proposal_t, trace
    use dda_decision, only : decide, decision_t
    use dda_error, only : error_t
@@ -42,6 +43,20 @@ contains
       !> What is searched
       type(search_t), intent(in) :: search
       !> What was found
+      type(critical_t), intent(out) :: critical
+
+      call close_bracket(family, search, critical)
+      if (allocated(critical%fallen)) call unfold(critical%fallen)
+      if (allocated(critical%standing)) call unfold(critical%standing)
+   end subroutine find_critical
+
+   !> Close the bracket around the value
+   pure subroutine close_bracket(family, search, critical)
+      !> The family
+      class(family_t), intent(in) :: family
+      !> What is searched
+      type(search_t), intent(in) :: search
+      !> What was found; chains may be halves
       type(critical_t), intent(out) :: critical
       type(proposal_t) :: proposal
       real(wp) :: limit, value
@@ -88,7 +103,7 @@ contains
             undecided = 0
          end if
       end do
-   end subroutine find_critical
+   end subroutine close_bracket
 
    !> Go to the first collapse: from the start towards the low end, or else at the high end
    pure subroutine find_collapse(family, search, limit, critical)

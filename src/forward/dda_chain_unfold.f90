@@ -1,0 +1,73 @@
+!> The whole of what the left half of a row that is its own mirror image has decided
+module dda_chain_unfold
+   use dda_decision, only : decision_t
+   use dda_friction_cone, only : joint_face_t
+   use dda_kinds, only : wp
+   implicit none
+   private
+
+   public :: unfold
+
+contains
+
+   !> Make the decision of a halved chain that of the whole one; any other stays as it is. A smooth
+   !> plane of symmetry is the joint there, which does not slide and opens on both sides
+   elemental subroutine unfold(decision)
+      !> The decision
+      type(decision_t), intent(inout) :: decision
+      type(joint_face_t), allocatable :: face(:)
+      integer :: m, n
+
+      if (.not. decision%halved) return
+      decision%halved = .false.
+      associate (contacts => decision%contacts, outcome => decision%outcome)
+         m = size(contacts%face)
+         if (decision%keystone) then
+            m = m - 1
+            n = 2*m
+         else
+            n = 2*m - 1
+            contacts%face(m)%slip = 0
+            contacts%increment(:, m) = contacts%increment(:, m)*[2.0_wp, 2.0_wp, 0.0_wp]
+            contacts%gap(:, m) = contacts%gap(:, m)*[2.0_wp, 2.0_wp, 0.0_wp]
+            contacts%trial(3, m) = 0.0_wp
+         end if
+         allocate (face(n))
+         face(:m) = contacts%face(:m)
+         face(n:n - m + 1:-1)%open(1) = contacts%face(:m)%open(1)
+         face(n:n - m + 1:-1)%open(2) = contacts%face(:m)%open(2)
+         face(n:n - m + 1:-1)%slip = -contacts%face(:m)%slip
+         call move_alloc(face, contacts%face)
+         call mirror(m, n, [1.0_wp, 1.0_wp, -1.0_wp], contacts%gap)
+         call mirror(m, n, [1.0_wp, 1.0_wp, -1.0_wp], contacts%increment)
+         call mirror(m, n, [1.0_wp, 1.0_wp, -1.0_wp], contacts%trial)
+         call mirror(m, n, [1.0_wp, 1.0_wp, -1.0_wp], contacts%force)
+         if (.not. allocated(outcome%motion)) return
+         ! a keystone moves up or down alone
+         if (decision%keystone) outcome%motion(:, m) = outcome%motion(:, m)*[0.0_wp, 1.0_wp, 0.0_wp]
+         call mirror(size(outcome%motion, 2), n - 1, [-1.0_wp, 1.0_wp, -1.0_wp], &
+            & outcome%motion)
+      end associate
+   end subroutine unfold
+
+   !> Mirror the columns of the left half
+   pure subroutine mirror(m, n, sign, value)
+      !> Columns of the left half that count, with that on the plane of symmetry if there is one
+      integer, intent(in) :: m
+      !> Columns of the whole
+      integer, intent(in) :: n
+      !> Signs of the mirror image: (3)
+      real(wp), intent(in) :: sign(3)
+      !> The columns of the left half in, of the whole out: (3, at least m), (3, n)
+      real(wp), allocatable, intent(inout) :: value(:, :)
+      real(wp), allocatable :: whole(:, :)
+      integer :: j
+
+      allocate (whole(3, n))
+      do j = 1, m
+         whole(:, n + 1 - j) = sign*value(:, j)
+         whole(:, j) = value(:, j)
+      end do
+      call move_alloc(whole, value)
+   end subroutine mirror
+end module dda_chain_unfold
