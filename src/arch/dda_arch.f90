@@ -109,8 +109,7 @@ contains
       n = size(angle)
       allocate (direction(2, n), is_joint(n))
       do i = 1, n
-         direction(1, n + 1 - i) = -sin(angle(i))
-         direction(2, n + 1 - i) = cos(angle(i))
+         direction(:, n + 1 - i) = [-sin(angle(i)), cos(angle(i))]
          is_joint(n + 1 - i) = half_joint(i)
       end do
       if (.not. angle(1) > 0.0_wp) direction(1, n) = 0.0_wp

@@ -7,7 +7,7 @@
 !> directions of the chord's ends, and s from -t/2 to t/2.
 module dda_arch_chain
    use dda_arch, only : arch_shape_t, left_directions, section_directions
-   use dda_chain, only : chain_t, new_chain
+   use dda_chain, only : chain_t, new_chain, weigh
    use dda_kinds, only : wp
    use dda_material, only : joint_law_t
    implicit none
@@ -123,7 +123,8 @@ contains
       end if
    end subroutine meet_plane
 
-   !> Coefficients of one voussoir; Simpson's rule is exact along its chords
+   !> Coefficients of one voussoir. As its chords lie across the mean directions of their ends, an
+   !> area is rate (1 + s/radius) ds du, with u from 0 to 1 along the chord
    pure subroutine find_moments(radius, rays, b)
       !> Radius halfway through the thickness [m]
       real(wp), intent(in) :: radius
@@ -131,32 +132,25 @@ contains
       type(arch_rays_t), intent(inout) :: rays
       !> Number of the voussoir
       integer, intent(in) :: b
-      !> Weights of the rule
-      real(wp), parameter :: weight(0:2) = [1.0_wp, 4.0_wp, 1.0_wp]/6.0_wp
-      real(wp) :: chord(2), from(2), x0(2), x1(2), area, rate, turn, first(2, 2), polar(2), part
-      integer :: i, k
+      real(wp) :: chord(2), from(2), mean(2), spread(2), area, rate, first(2, 2), polar(2)
+      integer :: k
 
       area = 0.0_wp
       first = 0.0_wp
       polar = 0.0_wp
       do k = rays%joint(b), rays%joint(b + 1) - 1
-         from = radius*(rays%point(:, k) - rays%point(:, rays%joint(b)))
          chord = radius*(rays%point(:, k + 1) - rays%point(:, k))
-         ! dA = (rate - turn s) ds du
-         turn = rays%direction(1, k)*rays%direction(2, k + 1) &
-            & - rays%direction(2, k)*rays%direction(1, k + 1)
-         do i = 0, 2
-            part = real(i, wp)/2.0_wp
-            x0 = from + part*chord
-            x1 = rays%direction(:, k) + part*(rays%direction(:, k + 1) - rays%direction(:, k))
-            rate = chord(1)*x1(2) - chord(2)*x1(1)
-            area = area + weight(i)*rate
-            first(:, 1) = first(:, 1) + weight(i)*rate*x0
-            first(:, 2) = first(:, 2) - weight(i)*turn*x1/12.0_wp
-            polar(1) = polar(1) + weight(i)*rate*(x0(1)**2 + x0(2)**2)
-            polar(2) = polar(2) + weight(i)*(rate*(x1(1)**2 + x1(2)**2) &
-               & - 2.0_wp*turn*(x0(1)*x1(1) + x0(2)*x1(2)))/12.0_wp
-         end do
+         from = radius*(rays%point(:, k) - rays%point(:, rays%joint(b))) + chord/2.0_wp
+         spread = rays%direction(:, k + 1) - rays%direction(:, k)
+         mean = rays%direction(:, k) + spread/2.0_wp
+         rate = chord(1)*mean(2) - chord(2)*mean(1)
+         area = area + rate
+         first(:, 1) = first(:, 1) + rate*from
+         first(:, 2) = first(:, 2) + (rate/(12.0_wp*radius))*mean
+         polar(1) = polar(1) + rate*(dot_product(from, from) + dot_product(chord, chord)/12.0_wp)
+         polar(2) = polar(2) + (rate/12.0_wp)*(dot_product(mean, mean) &
+            & + dot_product(spread, spread)/12.0_wp + (dot_product(from, mean) &
+            & + dot_product(chord, spread)/12.0_wp)*(2.0_wp/radius))
       end do
       rays%area(b) = area
       rays%centre(:, :, b) = first/area
@@ -211,6 +205,7 @@ contains
       chain%limit = merge(huge(1.0_wp), 0.0_wp, numbers%law%no_slip)
       if (numbers%no_slip_springing) chain%limit([1, n + 1]) = huge(1.0_wp)
       if (numbers%halved) call add_plane(rays, chain)
+      call weigh(chain)
    end subroutine arch_chain
 
    !> Make the last joint the plane of symmetry

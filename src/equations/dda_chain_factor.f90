@@ -65,6 +65,7 @@ contains
       middle = (n + 1)/2
       left = 0.0_wp
       right = 0.0_wp
+      factor%usable = .true.
       i = min(first, middle)
       k = max(last, middle)
       if (i > 1) call repeat_update(factor, i - 1, left)
@@ -84,8 +85,6 @@ contains
       across = 0.0_wp
       left = left + right
       call eliminate(matrix%diagonal(:, :, middle), across, middle, left, factor)
-      ! minval passes over what is no number, the sum does not
-      factor%usable = minval(factor%inverse) > 0.0_wp .and. sum(factor%inverse) < huge(1.0_wp)
    end subroutine factorise_chain
 
    !> Eliminate one block
@@ -98,7 +97,7 @@ contains
       integer, intent(in) :: e
       !> What its neighbour takes from it in, what it takes from the next one out; lower triangle
       real(wp), intent(inout) :: update(3, 3)
-      !> Receives the block's part
+      !> Receives the block's part; no longer usable if a pivot is not positive
       type(chain_factor_t), intent(inout) :: factor
       real(wp) :: a, b, c, r(3), v(3, 3), w(3, 3)
       integer :: i, k
@@ -113,6 +112,9 @@ contains
       factor%lower(3, e) = a*r(2)
       r(3) = 1.0_wp/(diagonal(3, 3) - update(3, 3) - c*factor%lower(2, e) - a*factor%lower(3, e))
       factor%inverse(:, e) = r
+      ! false of what is no number, too
+      if (.not. (min(r(1), r(2), r(3)) > 0.0_wp .and. r(1) + r(2) + r(3) < huge(1.0_wp))) &
+         & factor%usable = .false.
       v(:, 1) = across(:, 1)
       v(:, 2) = across(:, 2) - factor%lower(1, e)*v(:, 1)
       v(:, 3) = across(:, 3) - factor%lower(2, e)*v(:, 1) - factor%lower(3, e)*v(:, 2)

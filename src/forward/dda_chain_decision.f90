@@ -4,7 +4,6 @@ module dda_chain_decision
    use dda_chain_step, only : chain_step_t, lengthen_step, new_chain_step, settle_chain
    use dda_chain_thrust, only : find_thrust, thrust_faces, thrust_t
    use dda_decision, only : decision_t
-   use dda_friction_cone, only : joint_face_t
    use dda_kinds, only : wp
    use dda_settings, only : flow_rule, settings_t
    use dda_step_context, only : march_t, step_context_t
@@ -75,18 +74,15 @@ contains
       !> The step
       type(chain_step_t), intent(out) :: step
       type(thrust_t) :: thrust
-      type(joint_face_t) :: face(size(chain%half))
-      real(wp), dimension(3, size(chain%half)) :: load, force, admissible
+      real(wp) :: load(3, size(chain%half))
 
+      call new_chain_step(chain, step)
       call find_thrust(chain, thrust, load)
-      call thrust_faces(chain, load, thrust, face, force, admissible)
-      call new_chain_step(chain, face, force, admissible, step)
-      march%free_acceleration = sqrt(maxval((chain%weight(1, :)**2 + chain%weight(2, :)**2) &
-         & /chain%mass**2))
+      call thrust_faces(chain, load, thrust, step%face, step%start, step%stored)
+      march%free_acceleration = chain%free_acceleration
       march%last_acceleration = march%free_acceleration
       march%elastic_motion = thrust%elastic_motion
-      march%longest = longest_static_step(sum(chain%mass)/real(size(chain%mass), wp), &
-         & maxval(chain%stiffness))
+      march%longest = longest_static_step(chain%mean_mass, chain%stiffest)
       march%dt = march%longest
       if (march%free_acceleration > 0.0_wp) march%dt = min(march%longest, &
          & sqrt(2.0_wp*first_fall*march%elastic_motion/march%free_acceleration))
@@ -123,33 +119,37 @@ contains
       type(chain_step_t), intent(inout) :: step
       !> The measures
       type(step_context_t), intent(out) :: measured
-      real(wp) :: acceleration, kinetic, largest, mean_mass, square, whole, rate
+      real(wp) :: kinetic, largest, moving, spinning, square, stored, work, rate
       integer :: b, j
 
       measured%dt = step%dt
       rate = 2.0_wp/step%dt**2
-      mean_mass = sum(chain%mass)/real(size(chain%mass), wp)
-      whole = sum(abs(chain%weight))
       largest = 0.0_wp
-      associate (d => step%motion)
-         do b = 1, size(chain%mass)
-            measured%work = measured%work + chain%weight(1, b)*d(1, b) + chain%weight(2, b)*d(2, b)
-            kinetic = chain%mass(b)*(d(1, b)**2 + d(2, b)**2) + chain%inertia(b)*d(3, b)**2
-            measured%kinetic = measured%kinetic + rate*kinetic
-            ! a sum is no more than the root of twice the sum of squares
-            if (2.0_wp*kinetic <= largest**2*chain%mass(b)) cycle
-            acceleration = sqrt(d(1, b)**2 + d(2, b)**2) &
-               & + sqrt(chain%inertia(b)/chain%mass(b))*abs(d(3, b))
-            if (acceleration <= largest) cycle
-            if (is_felt(chain%mass(b), mean_mass, whole, rate*acceleration)) largest = acceleration
+      kinetic = 0.0_wp
+      work = 0.0_wp
+      stored = 0.0_wp
+      associate (d => step%motion, mass => chain%mass)
+         do b = 1, size(mass)
+            work = work + chain%weight(1, b)*d(1, b) + chain%weight(2, b)*d(2, b)
+            moving = d(1, b)**2 + d(2, b)**2
+            spinning = chain%inertia(b)*d(3, b)**2/mass(b)
+            kinetic = kinetic + mass(b)*(moving + spinning)
+            ! the sum of both motions, squared
+            square = moving + spinning + 2.0_wp*sqrt(moving*spinning)
+            if (square <= largest) cycle
+            if (is_felt(mass(b), chain%mean_mass, chain%whole_load, rate*sqrt(square))) &
+               & largest = square
          end do
       end associate
-      measured%acceleration = rate*largest
       do j = 1, size(chain%half)
          square = step%force(1, j)**2 + step%force(2, j)**2 + step%force(3, j)**2
-         measured%stored = measured%stored + (square - step%stored(j))/(2.0_wp*chain%stiffness(j))
+         stored = stored + (square - step%stored(j))/(2.0_wp*chain%stiffness(j))
          step%stored(j) = square
       end do
+      measured%acceleration = rate*sqrt(largest)
+      measured%kinetic = rate*kinetic
+      measured%work = work
+      measured%stored = stored
    end subroutine measure
 
    !> Tell the end of a march as that of any blocks

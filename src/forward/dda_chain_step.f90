@@ -8,7 +8,7 @@ module dda_chain_step
    use dda_chain, only : chain_t
    use dda_chain_factor, only : chain_factor_t, chain_matrix_t, factorise_chain, &
       & new_chain_factor, substitute_chain
-   use dda_chain_stiffness, only : add_stiffness, cone_of
+   use dda_chain_stiffness, only : cone_of, joint_stiffness, joint_stiffness_t
    use dda_friction_cone, only : apply_face, is_stuck, joint_face_t, project
    use dda_kinds, only : wp
    implicit none
@@ -70,36 +70,25 @@ module dda_chain_step
 
 contains
 
-   !> Room for a step that begins with these faces and forces
-   pure subroutine new_chain_step(chain, face, start, admissible, step)
+   !> Room for a step, without length, faces and forces
+   pure subroutine new_chain_step(chain, step)
       !> The chain
       type(chain_t), intent(in) :: chain
-      !> Faces of the joints: (n + 1)
-      type(joint_face_t), intent(in) :: face(:)
-      !> Trial forces of the joints: (3, n + 1) [N/m]
-      real(wp), intent(in) :: start(:, :)
-      !> Their admissible forces: (3, n + 1) [N/m]
-      real(wp), intent(in) :: admissible(:, :)
       !> The step
       type(chain_step_t), intent(out) :: step
-      integer :: j, n
+      integer :: n
 
       n = size(chain%mass)
       allocate (step%motion(3, n), step%increment(3, n + 1), step%trial(3, n + 1))
-      allocate (step%start, source=start)
-      allocate (step%force(3, n + 1), step%wanted(n + 1), step%stuck(n + 1), step%stored(n + 1))
-      allocate (step%face, source=face)
+      allocate (step%start(3, n + 1), step%force(3, n + 1), step%stored(n + 1))
+      allocate (step%face(n + 1), step%wanted(n + 1), step%stuck(n + 1))
       allocate (step%gap(0:n + 2), source=0.0_wp)
-      step%stuck = is_stuck(face)
-      do j = 1, n + 1
-         step%stored(j) = admissible(1, j)**2 + admissible(2, j)**2 + admissible(3, j)**2
-      end do
-      step%load_noise = 1.0e-13_wp*sum(abs(chain%weight))
-      step%spring_noise = 8.0_wp*epsilon(1.0_wp)*maxval(chain%stiffness)
+      step%load_noise = 1.0e-13_wp*chain%whole_load
+      step%spring_noise = 8.0_wp*epsilon(1.0_wp)*chain%stiffest
       call new_chain_factor(n, step%matrix, step%factor)
    end subroutine new_chain_step
 
-   !> Give the step another length: all diagonal blocks change
+   !> Give the step a length, with the faces that it has: all diagonal blocks change
    pure subroutine lengthen_step(chain, dt, step)
       !> The chain
       type(chain_t), intent(in) :: chain
@@ -107,13 +96,16 @@ contains
       real(wp), intent(in) :: dt
       !> The step
       type(chain_step_t), intent(inout) :: step
-      integer :: b, n
+      type(joint_stiffness_t) :: part
+      integer :: j, n
 
       n = size(chain%mass)
       step%dt = dt
-      do b = 1, n
-         if (b > 1) call couple(chain, step, b)
-         call assemble(chain, step, b)
+      step%stuck = is_stuck(step%face)
+      do j = 1, n + 1
+         part = joint_stiffness(chain, step%face(j), step%stuck(j), j)
+         if (j > 1) call end_block(part, j - 1, step)
+         if (j <= n) call begin_block(chain, part, j, step)
       end do
       step%changed = [1, n]
    end subroutine lengthen_step
@@ -175,14 +167,16 @@ contains
       integer, intent(in) :: j
       !> The step
       type(chain_step_t), intent(inout) :: step
-      integer :: n
+      integer :: b, first, last
 
-      n = size(chain%mass)
+      first = max(1, j - 1)
+      last = min(size(chain%mass), j)
       step%stuck(j) = is_stuck(step%face(j))
-      if (j > 1 .and. j <= n) call couple(chain, step, j)
-      if (j > 1) call assemble(chain, step, j - 1)
-      if (j <= n) call assemble(chain, step, j)
-      step%changed = [min(step%changed(1), max(1, j - 1)), max(step%changed(2), min(n, j))]
+      do b = first, last
+         call begin_block(chain, joint_stiffness(chain, step%face(b), step%stuck(b), b), b, step)
+         call end_block(joint_stiffness(chain, step%face(b + 1), step%stuck(b + 1), b + 1), b, step)
+      end do
+      step%changed = [min(step%changed(1), first), max(step%changed(2), last)]
    end subroutine hold_face
 
    !> Motion of all blocks if every joint keeps to its face
@@ -296,40 +290,39 @@ contains
          & - step%force(:, j)) - 16.0_wp*epsilon(1.0_wp)*maxval(abs(step%trial(:, j))))
    end subroutine judge_joint
 
-   !> Coupling of the blocks at a joint
-   pure subroutine couple(chain, step, j)
+   !> Diagonal block of inertia and the springs of the joint before it, and coupling across this one
+   pure subroutine begin_block(chain, part, b, step)
       !> The chain
       type(chain_t), intent(in) :: chain
-      !> The step; the coupling is made
-      type(chain_step_t), intent(inout) :: step
-      !> Number of the joint
-      integer, intent(in) :: j
-      real(wp) :: sum(3, 3)
-
-      sum = 0.0_wp
-      call add_stiffness(chain, step%face(j), step%stuck(j), 2, 1, j, sum)
-      step%matrix%coupling(:, :, j) = sum
-   end subroutine couple
-
-   !> Diagonal block: inertia and the springs of both joints
-   pure subroutine assemble(chain, step, b)
-      !> The chain
-      type(chain_t), intent(in) :: chain
-      !> The step; the block is made
-      type(chain_step_t), intent(inout) :: step
+      !> What the joint before the block adds
+      type(joint_stiffness_t), intent(in) :: part
       !> Number of the block
       integer, intent(in) :: b
-      real(wp) :: sum(3, 3), rate
+      !> The step; its matrix is made
+      type(chain_step_t), intent(inout) :: step
+      real(wp) :: rate
 
       rate = 2.0_wp/step%dt**2
-      sum = 0.0_wp
-      call add_stiffness(chain, step%face(b), step%stuck(b), 2, 2, b, sum)
-      call add_stiffness(chain, step%face(b + 1), step%stuck(b + 1), 1, 1, b + 1, sum)
-      sum(1, 1) = sum(1, 1) + rate*chain%mass(b)
-      sum(2, 2) = sum(2, 2) + rate*chain%mass(b)
-      sum(3, 3) = sum(3, 3) + rate*chain%inertia(b)
-      step%matrix%diagonal(:, :, b) = sum
-   end subroutine assemble
+      associate (diagonal => step%matrix%diagonal(:, :, b))
+         diagonal = part%behind
+         diagonal(1, 1) = diagonal(1, 1) + rate*chain%mass(b)
+         diagonal(2, 2) = diagonal(2, 2) + rate*chain%mass(b)
+         diagonal(3, 3) = diagonal(3, 3) + rate*chain%inertia(b)
+      end associate
+      if (b > 1) step%matrix%coupling(:, :, b) = part%coupling
+   end subroutine begin_block
+
+   !> Add the springs of the joint behind it to a block's diagonal block
+   pure subroutine end_block(part, b, step)
+      !> What this joint adds
+      type(joint_stiffness_t), intent(in) :: part
+      !> Number of the block
+      integer, intent(in) :: b
+      !> The step; its matrix is made
+      type(chain_step_t), intent(inout) :: step
+
+      step%matrix%diagonal(:, :, b) = step%matrix%diagonal(:, :, b) + part%before
+   end subroutine end_block
 
    !> A number that tells sets of faces apart
    pure function hash(step) result(number)

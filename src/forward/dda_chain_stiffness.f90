@@ -6,7 +6,17 @@ module dda_chain_stiffness
    implicit none
    private
 
-   public :: add_stiffness, cone_of
+   public :: joint_stiffness_t, joint_stiffness, cone_of
+
+   !> What one joint adds to the matrix
+   type :: joint_stiffness_t
+      !> To the diagonal block of the block before it: (3, 3)
+      real(wp) :: before(3, 3)
+      !> To that of the block behind it: (3, 3)
+      real(wp) :: behind(3, 3)
+      !> Rows of the block behind it, columns of the block before it: (3, 3)
+      real(wp) :: coupling(3, 3)
+   end type joint_stiffness_t
 
 contains
 
@@ -42,47 +52,71 @@ contains
       if (side == 1) rows = -rows
    end function rows
 
-   !> Stiffness p R P R' that a joint has between two sides, which may be the same
-   pure subroutine add_stiffness(chain, face, stuck, first, second, j, stiffness)
+   !> Stiffness p R P R' of one joint
+   pure function joint_stiffness(chain, face, stuck, j) result(part)
       !> The chain
       type(chain_t), intent(in) :: chain
       !> Face of the joint
       type(joint_face_t), intent(in) :: face
       !> Whether it is the inside of the cone
       logical, intent(in) :: stuck
-      !> Side whose rows these are
-      integer, intent(in) :: first
-      !> Side whose columns these are
-      integer, intent(in) :: second
       !> Number of the joint
       integer, intent(in) :: j
-      !> What the stiffness is added to: (3, 3)
-      real(wp), intent(inout) :: stiffness(3, 3)
-      real(wp) :: p, n(2), t(2), tangent(3, 3), constant(3)
+      !> What it adds
+      type(joint_stiffness_t) :: part
+      real(wp) :: tangent(3, 3), constant(3), before(3, 3), behind(3, 3)
 
-      if (.not. stuck) then
-         call apply_face(cone_of(chain, j), face, tangent, constant)
-         stiffness = stiffness + chain%stiffness(j)*matmul(rows(chain, first, j), &
-            & matmul(tangent, transpose(rows(chain, second, j))))
+      if (stuck) then
+         part = stuck_stiffness(chain%stiffness(j), chain%tangent(:, j), chain%half(j), &
+            & chain%arm(:, 1, j), chain%arm(:, 2, j))
          return
       end if
-      p = chain%stiffness(j)
-      if (first /= second) p = -p
-      t = p*chain%tangent(:, j)
-      n(1) = t(2)
-      n(2) = -t(1)
-      associate (a => chain%arm(:, first, j), b => chain%arm(:, second, j), &
-         & u => chain%tangent(:, j))
-         stiffness(1, 1) = stiffness(1, 1) + p + n(1)*u(2)
-         stiffness(2, 1) = stiffness(2, 1) + n(2)*u(2)
-         stiffness(1, 2) = stiffness(1, 2) + n(2)*u(2)
-         stiffness(2, 2) = stiffness(2, 2) + p - n(2)*u(1)
-         stiffness(3, 1) = stiffness(3, 1) + 2.0_wp*a(1)*n(1) + a(2)*t(1)
-         stiffness(3, 2) = stiffness(3, 2) + 2.0_wp*a(1)*n(2) + a(2)*t(2)
-         stiffness(1, 3) = stiffness(1, 3) + 2.0_wp*b(1)*n(1) + b(2)*t(1)
-         stiffness(2, 3) = stiffness(2, 3) + 2.0_wp*b(1)*n(2) + b(2)*t(2)
-         stiffness(3, 3) = stiffness(3, 3) &
-            & + p*(2.0_wp*(a(1)*b(1) + chain%half(j)**2) + a(2)*b(2))
-      end associate
-   end subroutine add_stiffness
+      call apply_face(cone_of(chain, j), face, tangent, constant)
+      tangent = chain%stiffness(j)*tangent
+      before = rows(chain, 1, j)
+      behind = rows(chain, 2, j)
+      part%before = matmul(before, matmul(tangent, transpose(before)))
+      part%behind = matmul(behind, matmul(tangent, transpose(behind)))
+      part%coupling = matmul(behind, matmul(tangent, transpose(before)))
+   end function joint_stiffness
+
+   !> The same where all three springs hold: two along the normal n and one along the tangent t
+   pure function stuck_stiffness(p, t, half, a, b) result(part)
+      !> Stiffness of a spring [N/m per metre depth]
+      real(wp), intent(in) :: p
+      !> The tangent: (2)
+      real(wp), intent(in) :: t(2)
+      !> Half the length of the joint [m]
+      real(wp), intent(in) :: half
+      !> Moments of unit forces along n and t about the centre of the block before: (2) [m]
+      real(wp), intent(in) :: a(2)
+      !> Likewise about that of the block behind: (2) [m]
+      real(wp), intent(in) :: b(2)
+      !> What the joint adds
+      type(joint_stiffness_t) :: part
+      real(wp) :: xx, xy, yy, n1, n2, t1, t2, ax, ay, bx, by, spin
+
+      ! p (2 n n' + t t') = p (1 + n n')
+      xy = -p*t(1)*t(2)
+      xx = p + p*t(2)**2
+      yy = p + p*t(1)**2
+      n1 = 2.0_wp*p*t(2)
+      n2 = -2.0_wp*p*t(1)
+      t1 = p*t(1)
+      t2 = p*t(2)
+      ax = a(1)*n1 + a(2)*t1
+      ay = a(1)*n2 + a(2)*t2
+      bx = b(1)*n1 + b(2)*t1
+      by = b(1)*n2 + b(2)*t2
+      spin = 2.0_wp*half**2
+      part%before(:, 1) = [xx, xy, ax]
+      part%before(:, 2) = [xy, yy, ay]
+      part%before(:, 3) = [ax, ay, p*(2.0_wp*a(1)**2 + spin + a(2)**2)]
+      part%behind(:, 1) = [xx, xy, bx]
+      part%behind(:, 2) = [xy, yy, by]
+      part%behind(:, 3) = [bx, by, p*(2.0_wp*b(1)**2 + spin + b(2)**2)]
+      part%coupling(:, 1) = [-xx, -xy, -bx]
+      part%coupling(:, 2) = [-xy, -yy, -by]
+      part%coupling(:, 3) = [-ax, -ay, -p*(2.0_wp*a(1)*b(1) + spin + a(2)*b(2))]
+   end function stuck_stiffness
 end module dda_chain_stiffness

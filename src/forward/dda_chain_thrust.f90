@@ -21,8 +21,8 @@ module dda_chain_thrust
 
    !> The forces, and what they show
    type :: thrust_t
-      !> Force and moment about the origin that the left springing bears with; of half a chain,
-      !> beyond what it bears of its loads: (3) [N/m, N/m, N]
+      !> Force and moment about the origin that the left springing bears with, or the plane of
+      !> symmetry of half a chain: (3) [N/m, N/m, N]
       real(wp) :: reaction(3) = 0.0_wp
       !> Mean motion along the loads if no joint could open: the scale of elastic motion [m]
       real(wp) :: elastic_motion = 0.0_wp
@@ -63,7 +63,7 @@ contains
       type(chain_t), intent(in) :: chain
       !> The forces
       type(thrust_t), intent(out) :: thrust
-      !> Sum of the loads on the blocks before each joint, force and moment: (3, n + 1)
+      !> Sums of the loads, force and moment: (3, n + 1)
       real(wp), intent(out) :: load(:, :)
       type(energy_t) :: glued
       integer, allocatable :: watched(:)
@@ -76,8 +76,7 @@ contains
       glued = glued_energy(chain, load, watched)
       call solve_3(glued%curvature, -glued%slope, thrust%reaction)
       thrust%elastic_motion = (2.0_wp*glued%value + dot_product(glued%slope, thrust%reaction)) &
-         & *real(m, wp)/real(size(watched), wp) &
-         & /sum(sqrt(chain%weight(1, :)**2 + chain%weight(2, :)**2))
+         & *real(m, wp)/real(size(watched), wp)/chain%whole_load
       glued = energy_t(share*glued%value, share*glued%slope, share*glued%curvature)
       call descend(chain, load, glued, watched, thrust)
       if (stride == 1) return
@@ -189,7 +188,7 @@ contains
       if (chain%halved) call hold_upright(energy)
    end subroutine find_energy
 
-   !> Take the second unknown out: a smooth plane leaves all weight to the springing
+   !> Take the second unknown out: a smooth plane bears no weight
    pure subroutine hold_upright(energy)
       !> The function
       type(energy_t), intent(inout) :: energy
@@ -200,23 +199,43 @@ contains
       energy%curvature(2, 2) = 1.0_wp
    end subroutine hold_upright
 
-   !> Sums of the loads from the left, where a smooth plane ends the chain with what the springing
-   !> bears of them
+   !> Sums of the loads before each joint, or of half a chain, less the sums of those behind it
    pure subroutine sum_loads(chain, load)
       !> The chain
       type(chain_t), intent(in) :: chain
       !> The sums: (3, n + 1)
       real(wp), intent(out) :: load(:, :)
+      real(wp) :: total(3)
       integer :: b
 
-      load(:, 1) = 0.0_wp
-      if (chain%halved) load(2, 1) = -sum(chain%weight(2, :))
-      do b = 1, size(chain%mass)
-         load(1:2, b + 1) = load(1:2, b) + chain%weight(:, b)
-         load(3, b + 1) = load(3, b) + chain%centroid(1, b)*chain%weight(2, b) &
-            & - chain%centroid(2, b)*chain%weight(1, b)
-      end do
+      total = 0.0_wp
+      if (chain%halved) then
+         load(:, size(chain%half)) = 0.0_wp
+         do b = size(chain%mass), 1, -1
+            total = total - load_of(chain, b)
+            load(:, b) = total
+         end do
+      else
+         load(:, 1) = 0.0_wp
+         do b = 1, size(chain%mass)
+            total = total + load_of(chain, b)
+            load(:, b + 1) = total
+         end do
+      end if
    end subroutine sum_loads
+
+   !> Load of one block: force, and moment about the origin
+   pure function load_of(chain, b) result(load)
+      !> The chain
+      type(chain_t), intent(in) :: chain
+      !> Number of the block
+      integer, intent(in) :: b
+      !> The load: (3) [N/m, N/m, N]
+      real(wp) :: load(3)
+
+      load(1:2) = chain%weight(:, b)
+      load(3) = chain%centroid(1, b)*chain%weight(2, b) - chain%centroid(2, b)*chain%weight(1, b)
+   end function load_of
 
    !> Force N1, N2, T of one joint
    pure function joint_force(chain, load, reaction, j) result(force)
@@ -342,7 +361,7 @@ contains
    end function holds
 
    !> Forces of all joints, and faces of those that fail more than their neighbours do
-   pure subroutine thrust_faces(chain, load, thrust, face, force, admissible)
+   pure subroutine thrust_faces(chain, load, thrust, face, force, square)
       !> The chain
       type(chain_t), intent(in) :: chain
       !> Sums of the loads: (3, n + 1)
@@ -353,19 +372,21 @@ contains
       type(joint_face_t), intent(out) :: face(:)
       !> The forces N1, N2, T: (3, n + 1) [N/m]
       real(wp), intent(out) :: force(:, :)
-      !> The admissible forces nearest to them: (3, n + 1) [N/m]
-      real(wp), intent(out) :: admissible(:, :)
+      !> Squares of the admissible forces nearest to them: (n + 1)
+      real(wp), intent(out) :: square(:)
       type(joint_face_t) :: wanted(size(face))
-      real(wp) :: gap(0:size(face) + 1)
+      real(wp) :: gap(0:size(face) + 1), admissible(3)
       integer :: j
 
       gap = 0.0_wp
       do j = 1, size(face)
          force(:, j) = joint_force(chain, load, thrust%reaction, j)
-         admissible(:, j) = force(:, j)
-         if (holds(chain, force(:, j), j)) cycle
-         call project(cone_of(chain, j), force(:, j), admissible(:, j), wanted(j))
-         gap(j) = norm2(force(:, j) - admissible(:, j))
+         admissible = force(:, j)
+         if (.not. holds(chain, force(:, j), j)) then
+            call project(cone_of(chain, j), force(:, j), admissible, wanted(j))
+            gap(j) = norm2(force(:, j) - admissible)
+         end if
+         square(j) = dot_product(admissible, admissible)
       end do
       do j = 1, size(face)
          if (gap(j) > 0.0_wp .and. gap(j) >= (1.0_wp - 1.0e-6_wp)*max(gap(j - 1), gap(j + 1))) &

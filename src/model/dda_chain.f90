@@ -5,7 +5,7 @@ module dda_chain
    implicit none
    private
 
-   public :: chain_t, new_chain
+   public :: chain_t, new_chain, weigh
 
    !> Blocks from left to right; joint j is the one before block j, the last joint is behind the
    !> last block. A joint's force is N1 at its first corner, N2 at its second, and T along it
@@ -42,6 +42,14 @@ module dda_chain
       !> Moments of unit forces along normal and tangent at a joint's middle about the centre of the
       !> block before it and of the block behind it: (2, 2, n + 1) [m]
       real(wp), allocatable :: arm(:, :, :)
+      !> Mean mass of its blocks [kg/m]
+      real(wp) :: mean_mass = 0.0_wp
+      !> Sum of the sizes of the loads' components [N/m]
+      real(wp) :: whole_load = 0.0_wp
+      !> Largest acceleration of a block that falls freely [m/s2]
+      real(wp) :: free_acceleration = 0.0_wp
+      !> Largest stiffness of a spring [N/m per metre depth]
+      real(wp) :: stiffest = 0.0_wp
    end type chain_t
 
 contains
@@ -59,4 +67,28 @@ contains
       allocate (chain%stiffness(n + 1), chain%friction(n + 1), chain%limit(n + 1))
       allocate (chain%arm(2, 2, n + 1))
    end subroutine new_chain
+
+   !> Set the sums and bounds that depend on all blocks and joints, from these
+   pure subroutine weigh(chain)
+      !> The chain
+      type(chain_t), intent(inout) :: chain
+      real(wp) :: mass, load, fastest, stiffest
+      integer :: b, n
+
+      n = size(chain%mass)
+      mass = 0.0_wp
+      load = 0.0_wp
+      fastest = 0.0_wp
+      stiffest = chain%stiffness(n + 1)
+      do b = 1, n
+         mass = mass + chain%mass(b)
+         load = load + abs(chain%weight(1, b)) + abs(chain%weight(2, b))
+         fastest = max(fastest, (chain%weight(1, b)**2 + chain%weight(2, b)**2)/chain%mass(b)**2)
+         stiffest = max(stiffest, chain%stiffness(b))
+      end do
+      chain%mean_mass = mass/real(n, wp)
+      chain%whole_load = load
+      chain%free_acceleration = sqrt(fastest)
+      chain%stiffest = stiffest
+   end subroutine weigh
 end module dda_chain
