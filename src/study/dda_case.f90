@@ -156,7 +156,6 @@ contains
       if (decided) call this%family%link(real_of(this%deck, "arch", "thickness_ratio"), settings, &
          & chain, decided)
       if (decided) call decide_chain(settings, chain, this%decision, decided)
-      if (decided) call unfold(this%decision)
       if (decided) return
       call deck_scene(this%deck, this%scene)
       system = this%scene%system
@@ -179,17 +178,19 @@ contains
       !> Its decision
       type(decision_t), intent(inout) :: decision
       type(error_t), allocatable :: error
-      logical :: wanted
+      logical :: collapsed, wanted
 
       if (this%family%decides_chains) this%scene%joint_angle_deg = this%family%joint_angle_deg
+      collapsed = decision%outcome%verdict == verdict%collapsed
       wanted = this%searches
       if (this%family%decides_chains) wanted = this%tells_tables &
-         & .or. integer_of(this%deck, "output", "frames") > 0 &
-         & .or. any(decision%contacts%face%slip /= 0)
+         & .or. integer_of(this%deck, "output", "frames") > 0
+      ! nothing is told of the joints of a chain that stands
+      if (wanted .or. collapsed) call unfold(decision)
+      if (collapsed) wanted = wanted .or. any(decision%contacts%face%slip /= 0)
       if (wanted .and. .not. allocated(this%scene%contacts%joint)) &
          & call this%family%build(value, this%scene, error)
-      if (decision%outcome%verdict == verdict%collapsed) &
-         & call follow_collapse(this%scene, decision)
+      if (collapsed) call follow_collapse(this%scene, decision)
       if (allocated(this%scene%contacts%joint) .and. .not. allocated(decision%contacts%joint)) &
          & decision%contacts%joint = this%scene%contacts%joint
    end subroutine see_collapse
