@@ -16,7 +16,8 @@ module dda_chain_factor
    type :: chain_matrix_t
       !> Diagonal blocks, of which the lower triangles count: (3, 3, n_block)
       real(wp), allocatable :: diagonal(:, :, :)
-      !> Rows of each block but the first, columns of the block before it: (3, 3, 2:n_block)
+      !> Rows of each block, columns of the block before it; of the first one unused:
+      !> (3, 3, n_block)
       real(wp), allocatable :: coupling(:, :, :)
    end type chain_matrix_t
 
@@ -43,7 +44,7 @@ contains
       !> The factor
       type(chain_factor_t), intent(out) :: factor
 
-      allocate (matrix%diagonal(3, 3, n), matrix%coupling(3, 3, 2:n))
+      allocate (matrix%diagonal(3, 3, n), matrix%coupling(3, 3, n))
       allocate (factor%lower(3, n), factor%inverse(3, n), factor%onward(3, 3, n))
    end subroutine new_chain_factor
 
@@ -145,28 +146,33 @@ contains
    end subroutine repeat_update
 
    !> Solve for one right-hand side
-   pure subroutine substitute_chain(factor, x)
+   pure subroutine substitute_chain(factor, x, work)
       !> Usable factor
       type(chain_factor_t), intent(in) :: factor
       !> Right-hand side in, solution out: (3, n_block)
       real(wp), intent(inout) :: x(:, :)
-      real(wp) :: left(3), right(3)
+      !> Right-hand side times solution
+      real(wp), intent(out) :: work
+      real(wp) :: left(3), right(3), left_work, right_work
       integer :: i, k, middle, n
 
       n = size(x, 2)
       middle = (n + 1)/2
       left = 0.0_wp
       right = 0.0_wp
+      left_work = 0.0_wp
+      right_work = 0.0_wp
       do i = 1, n - middle
          k = n + 1 - i
          if (i < middle) call forward(factor%lower(:, i), factor%inverse(:, i), &
-            & factor%onward(:, :, i), left, x(:, i))
+            & factor%onward(:, :, i), left, x(:, i), left_work)
          call forward(factor%lower(:, k), factor%inverse(:, k), factor%onward(:, :, k), right, &
-            & x(:, k))
+            & x(:, k), right_work)
       end do
       left = left + right
       call forward(factor%lower(:, middle), factor%inverse(:, middle), &
-         & factor%onward(:, :, middle), left, x(:, middle))
+         & factor%onward(:, :, middle), left, x(:, middle), left_work)
+      work = left_work + right_work
       left = 0.0_wp
       call backward(factor%lower(:, middle), factor%onward(:, :, middle), left, x(:, middle))
       left = x(:, middle)
@@ -179,7 +185,7 @@ contains
    end subroutine substitute_chain
 
    !> One block on the way to the middle
-   pure subroutine forward(lower, inverse, onward, passed, x)
+   pure subroutine forward(lower, inverse, onward, passed, x, work)
       !> Its part of L
       real(wp), intent(in) :: lower(3)
       !> One over its D
@@ -190,12 +196,20 @@ contains
       real(wp), intent(inout) :: passed(3)
       !> Load in, load before the way back out
       real(wp), intent(inout) :: x(3)
+      !> Receives the block's share of the work
+      real(wp), intent(inout) :: work
+      real(wp) :: x1, x2, x3
 
-      x = x - passed
-      x(2) = x(2) - lower(1)*x(1)
-      x(3) = x(3) - lower(2)*x(1) - lower(3)*x(2)
-      passed = onward(:, 1)*x(1) + onward(:, 2)*x(2) + onward(:, 3)*x(3)
-      x = x*inverse
+      x1 = x(1) - passed(1)
+      x2 = x(2) - passed(2) - lower(1)*x1
+      x3 = x(3) - passed(3) - lower(2)*x1 - lower(3)*x2
+      passed(1) = onward(1, 1)*x1 + onward(1, 2)*x2 + onward(1, 3)*x3
+      passed(2) = onward(2, 1)*x1 + onward(2, 2)*x2 + onward(2, 3)*x3
+      passed(3) = onward(3, 1)*x1 + onward(3, 2)*x2 + onward(3, 3)*x3
+      x(1) = x1*inverse(1)
+      x(2) = x2*inverse(2)
+      x(3) = x3*inverse(3)
+      work = work + x1**2*inverse(1) + x2**2*inverse(2) + x3**2*inverse(3)
    end subroutine forward
 
    !> One block on the way back
@@ -208,12 +222,14 @@ contains
       real(wp), intent(inout) :: next(3)
       !> Load in, solution out
       real(wp), intent(inout) :: x(3)
+      real(wp) :: x1, x2, x3
 
-      x(1) = x(1) - onward(1, 1)*next(1) - onward(2, 1)*next(2) - onward(3, 1)*next(3)
-      x(2) = x(2) - onward(1, 2)*next(1) - onward(2, 2)*next(2) - onward(3, 2)*next(3)
-      x(3) = x(3) - onward(1, 3)*next(1) - onward(2, 3)*next(2) - onward(3, 3)*next(3)
-      x(2) = x(2) - lower(3)*x(3)
-      x(1) = x(1) - lower(1)*x(2) - lower(2)*x(3)
-      next = x
+      x1 = x(1) - onward(1, 1)*next(1) - onward(2, 1)*next(2) - onward(3, 1)*next(3)
+      x2 = x(2) - onward(1, 2)*next(1) - onward(2, 2)*next(2) - onward(3, 2)*next(3)
+      x3 = x(3) - onward(1, 3)*next(1) - onward(2, 3)*next(2) - onward(3, 3)*next(3)
+      x2 = x2 - lower(3)*x3
+      x1 = x1 - lower(1)*x2 - lower(2)*x3
+      next = [x1, x2, x3]
+      x = next
    end subroutine backward
 end module dda_chain_factor

@@ -6,7 +6,7 @@
 !> other; the nearest ones that do are taken.
 module dda_chain_power
    use dda_chain, only : chain_t
-   use dda_chain_thrust, only : influence, solve_3
+   use dda_chain_thrust, only : hold_upright, influence, solve_3
    use dda_friction_cone, only : apply_face, cone_t, is_stuck, joint_face_t
    use dda_kinds, only : wp
    implicit none
@@ -27,26 +27,30 @@ module dda_chain_power
 contains
 
    !> Freeze the joints of a collapse
-   pure subroutine freeze_mechanism(face, increment, friction, mechanism)
-      !> Faces of the joints: (n + 1)
+   pure subroutine freeze_mechanism(chain, face, increment, mechanism)
+      !> The chain that falls
+      type(chain_t), intent(in) :: chain
+      !> Faces of its joints: (n + 1)
       type(joint_face_t), intent(in) :: face(:)
       !> Opening at the two corners and slip in the last step: (3, n + 1) [m]
       real(wp), intent(in) :: increment(:, :)
-      !> Coefficients of friction: (n + 1)
-      real(wp), intent(in) :: friction(:)
       !> The mechanism
       type(chain_mechanism_t), intent(out) :: mechanism
+      type(joint_face_t) :: held(size(face))
       real(wp) :: tangent(3, 3), constant(3)
       integer :: i, j, k, m
 
-      m = count(.not. is_stuck(face))
+      held = face
+      ! what slides along a smooth plane of symmetry closes by itself
+      if (chain%halved) held(size(face))%slip = 0
+      m = count(.not. is_stuck(held))
       allocate (mechanism%joint(m), mechanism%free(3, 3, m), mechanism%opening(3, m))
       i = 0
       do j = 1, size(face)
-         if (is_stuck(face(j))) cycle
+         if (is_stuck(held(j))) cycle
          i = i + 1
          mechanism%joint(i) = j
-         call apply_face(cone_t(friction=friction(j)), face(j), tangent, constant)
+         call apply_face(cone_t(friction=chain%friction(j)), held(j), tangent, constant)
          mechanism%free(:, :, i) = -tangent
          do k = 1, 3
             mechanism%free(k, k, i) = 1.0_wp - tangent(k, k)
@@ -95,7 +99,8 @@ contains
       noise = noise/max(scale, tiny(1.0_wp))
    end subroutine chain_power
 
-   !> Openings nearest to the frozen ones that bring the last block where it is fixed
+   !> Openings nearest to the frozen ones that bring the last block where it is fixed, or to where
+   !> it stays on a plane of symmetry, upright or not
    pure subroutine close_row(mechanism, chain, opening)
       !> The mechanism
       type(chain_mechanism_t), intent(in) :: mechanism
@@ -116,6 +121,7 @@ contains
             lack = lack + matmul(opening(:, i), g)
             matrix = matrix + matmul(transpose(g), matmul(mechanism%free(:, :, i), g))
          end do
+         if (chain%halved) call hold_upright(lack, matrix)
          call solve_3(matrix, lack, multiplier)
          do i = 1, size(mechanism%joint)
             g = influence(chain, mechanism%joint(i))

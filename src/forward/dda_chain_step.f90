@@ -8,13 +8,13 @@ module dda_chain_step
    use dda_chain, only : chain_t
    use dda_chain_factor, only : chain_factor_t, chain_matrix_t, factorise_chain, &
       & new_chain_factor, substitute_chain
-   use dda_chain_stiffness, only : cone_of, joint_stiffness, joint_stiffness_t
+   use dda_chain_stiffness, only : add_joint, cone_of
    use dda_friction_cone, only : apply_face, is_stuck, joint_face_t, project
    use dda_kinds, only : wp
    implicit none
    private
 
-   public :: chain_step_t, new_chain_step, lengthen_step, settle_chain
+   public :: chain_step_t, new_chain_step, lengthen_step, settle_chain, go_on, find_opening
 
    !> Motion of the blocks, joints, and equations of a step
    type :: chain_step_t
@@ -22,16 +22,21 @@ module dda_chain_step
       real(wp) :: dt = 0.0_wp
       !> Motion of the blocks: (3, n)
       real(wp), allocatable :: motion(:, :)
-      !> Opening at the two corners and slip of each joint: (3, n + 1) [m]
-      real(wp), allocatable :: increment(:, :)
       !> Trial forces at the beginning of the step: (3, n + 1) [N/m]
       real(wp), allocatable :: start(:, :)
+      !> Loads and moments that these leave unbalanced, on the faces of the step before: (3, n)
+      real(wp), allocatable :: load(:, :)
+      !> Joints that were not stuck in the step before: (n + 1)
+      logical, allocatable :: was_loose(:)
+      !> Forces that their faces had then: (3, n + 1) [N/m]
+      real(wp), allocatable :: held(:, :)
       !> Trial forces at its end: (3, n + 1) [N/m]
       real(wp), allocatable :: trial(:, :)
       !> Admissible forces at its end: (3, n + 1) [N/m]
       real(wp), allocatable :: force(:, :)
-      !> Squares of the admissible forces at its beginning: (n + 1)
-      real(wp), allocatable :: stored(:)
+      !> Work of what was not in balance at its beginning: it goes into speed, but for what the
+      !> springs take [J/m]
+      real(wp) :: work = 0.0_wp
       !> Faces that the equations hold: (n + 1)
       type(joint_face_t), allocatable :: face(:)
       !> Which of them are the inside of the cone: (n + 1)
@@ -70,7 +75,7 @@ module dda_chain_step
 
 contains
 
-   !> Room for a step, without length, faces and forces
+   !> Room for a step, without length, faces and forces; these are to be in balance with the loads
    pure subroutine new_chain_step(chain, step)
       !> The chain
       type(chain_t), intent(in) :: chain
@@ -79,9 +84,11 @@ contains
       integer :: n
 
       n = size(chain%mass)
-      allocate (step%motion(3, n), step%increment(3, n + 1), step%trial(3, n + 1))
-      allocate (step%start(3, n + 1), step%force(3, n + 1), step%stored(n + 1))
+      allocate (step%motion(3, n), step%start(3, n + 1), step%held(3, n + 1))
+      allocate (step%trial(3, n + 1), step%force(3, n + 1))
       allocate (step%face(n + 1), step%wanted(n + 1), step%stuck(n + 1))
+      allocate (step%load(3, n), source=0.0_wp)
+      allocate (step%was_loose(n + 1), source=.false.)
       allocate (step%gap(0:n + 2), source=0.0_wp)
       step%load_noise = 1.0e-13_wp*chain%whole_load
       step%spring_noise = 8.0_wp*epsilon(1.0_wp)*chain%stiffest
@@ -96,17 +103,25 @@ contains
       real(wp), intent(in) :: dt
       !> The step
       type(chain_step_t), intent(inout) :: step
-      type(joint_stiffness_t) :: part
+      real(wp) :: beyond(3, 3), across(3, 3)
       integer :: j, n
 
       n = size(chain%mass)
       step%dt = dt
       step%stuck = is_stuck(step%face)
-      do j = 1, n + 1
-         part = joint_stiffness(chain, step%face(j), step%stuck(j), j)
-         if (j > 1) call end_block(part, j - 1, step)
-         if (j <= n) call begin_block(chain, part, j, step)
-      end do
+      beyond = 0.0_wp
+      associate (diagonal => step%matrix%diagonal, coupling => step%matrix%coupling)
+         call add_joint(chain, step%face(1), step%stuck(1), 1, beyond, diagonal(:, :, 1), &
+            & coupling(:, :, 1))
+         do j = 2, n
+            call add_inertia(chain, j - 1, step)
+            call add_joint(chain, step%face(j), step%stuck(j), j, diagonal(:, :, j - 1), &
+               & diagonal(:, :, j), coupling(:, :, j))
+         end do
+         call add_inertia(chain, n, step)
+         call add_joint(chain, step%face(n + 1), step%stuck(n + 1), n + 1, diagonal(:, :, n), &
+            & beyond, across)
+      end associate
       step%changed = [1, n]
    end subroutine lengthen_step
 
@@ -167,15 +182,22 @@ contains
       integer, intent(in) :: j
       !> The step
       type(chain_step_t), intent(inout) :: step
+      real(wp) :: beside(3, 3), across(3, 3)
       integer :: b, first, last
 
       first = max(1, j - 1)
       last = min(size(chain%mass), j)
       step%stuck(j) = is_stuck(step%face(j))
-      do b = first, last
-         call begin_block(chain, joint_stiffness(chain, step%face(b), step%stuck(b), b), b, step)
-         call end_block(joint_stiffness(chain, step%face(b + 1), step%stuck(b + 1), b + 1), b, step)
-      end do
+      associate (diagonal => step%matrix%diagonal, coupling => step%matrix%coupling)
+         do b = first, last
+            beside = 0.0_wp
+            call add_joint(chain, step%face(b), step%stuck(b), b, beside, diagonal(:, :, b), &
+               & coupling(:, :, b))
+            call add_inertia(chain, b, step)
+            call add_joint(chain, step%face(b + 1), step%stuck(b + 1), b + 1, diagonal(:, :, b), &
+               & beside, across)
+         end do
+      end associate
       step%changed = [min(step%changed(1), first), max(step%changed(2), last)]
    end subroutine hold_face
 
@@ -185,7 +207,7 @@ contains
       type(chain_t), intent(in) :: chain
       !> The step
       type(chain_step_t), intent(inout) :: step
-      real(wp) :: held(3), normal, turn, way(2)
+      real(wp) :: change(3)
       integer :: j, n
 
       n = size(chain%mass)
@@ -195,24 +217,71 @@ contains
          if (.not. step%factor%usable) return
          step%changed = [n + 1, 0]
       end if
+      step%motion = step%load
       do j = 1, n + 1
-         held = step%start(:, j)
-         if (.not. step%stuck(j)) held = held_force(chain, step%face(j), held, j)
-         normal = held(1) + held(2)
-         turn = chain%half(j)*(held(1) - held(2))
-         way(1) = chain%tangent(2, j)*normal + chain%tangent(1, j)*held(3)
-         way(2) = chain%tangent(2, j)*held(3) - chain%tangent(1, j)*normal
-         if (j > 1) then
-            step%motion(1:2, j - 1) = step%motion(1:2, j - 1) - way
-            step%motion(3, j - 1) = step%motion(3, j - 1) &
-               & - (chain%arm(1, 1, j)*normal + chain%arm(2, 1, j)*held(3) + turn)
+         if (step%stuck(j) .and. .not. step%was_loose(j)) cycle
+         change = -step%start(:, j)
+         if (step%was_loose(j)) change = -step%held(:, j)
+         if (step%stuck(j)) then
+            change = change + step%start(:, j)
+         else
+            change = change + held_force(chain, step%face(j), step%start(:, j), j)
          end if
-         if (j > n) exit
-         step%motion(1:2, j) = chain%weight(:, j) + way
-         step%motion(3, j) = chain%arm(1, 2, j)*normal + chain%arm(2, 2, j)*held(3) + turn
+         call push(chain, j, change, step%motion)
       end do
-      call substitute_chain(step%factor, step%motion)
+      call substitute_chain(step%factor, step%motion, step%work)
    end subroutine solve_motion
+
+   !> Add the force of a joint to the loads of its two blocks
+   pure subroutine push(chain, j, force, load)
+      !> The chain
+      type(chain_t), intent(in) :: chain
+      !> Number of the joint
+      integer, intent(in) :: j
+      !> N1, N2, T: (3) [N/m]
+      real(wp), intent(in) :: force(3)
+      !> Loads and moments: (3, n)
+      real(wp), intent(inout) :: load(:, :)
+      real(wp) :: normal, turn, way(2)
+
+      normal = force(1) + force(2)
+      turn = chain%half(j)*(force(1) - force(2))
+      way(1) = chain%tangent(2, j)*normal + chain%tangent(1, j)*force(3)
+      way(2) = chain%tangent(2, j)*force(3) - chain%tangent(1, j)*normal
+      if (j > 1) then
+         load(1:2, j - 1) = load(1:2, j - 1) - way
+         load(3, j - 1) = load(3, j - 1) &
+            & - (chain%arm(1, 1, j)*normal + chain%arm(2, 1, j)*force(3) + turn)
+      end if
+      if (j <= size(load, 2)) then
+         load(1:2, j) = load(1:2, j) + way
+         load(3, j) = load(3, j) &
+            & + chain%arm(1, 2, j)*normal + chain%arm(2, 2, j)*force(3) + turn
+      end if
+   end subroutine push
+
+   !> Begin the next step, at rest, where a settled one has ended: its inertia is what the forces
+   !> leave unbalanced
+   pure subroutine go_on(chain, step)
+      !> The chain
+      type(chain_t), intent(in) :: chain
+      !> The step
+      type(chain_step_t), intent(inout) :: step
+      real(wp) :: rate
+      integer :: b, j
+
+      rate = 2.0_wp/step%dt**2
+      do b = 1, size(chain%mass)
+         step%load(1:2, b) = rate*chain%mass(b)*step%motion(1:2, b)
+         step%load(3, b) = rate*chain%inertia(b)*step%motion(3, b)
+      end do
+      step%start = step%trial
+      step%was_loose = .not. step%stuck
+      do j = 1, size(step%face)
+         if (step%was_loose(j)) &
+            & step%held(:, j) = held_force(chain, step%face(j), step%start(:, j), j)
+      end do
+   end subroutine go_on
 
    !> Force that a face makes of a trial force
    pure function held_force(chain, face, trial, j) result(held)
@@ -232,14 +301,40 @@ contains
       held = matmul(tangent, trial) + constant
    end function held_force
 
-   !> Openings, trial and admissible forces of all joints after a motion, and how far the forces of
-   !> their faces are from these, beyond rounding
+   !> Opening and slip of a joint by the motions of its blocks
+   pure subroutine find_opening(chain, j, before, behind, normal, turn, slip)
+      !> The chain
+      type(chain_t), intent(in) :: chain
+      !> Number of the joint
+      integer, intent(in) :: j
+      !> Motion of the block before it: (3) [m, m, 1]
+      real(wp), intent(in) :: before(3)
+      !> Motion of the block behind it: (3) [m, m, 1]
+      real(wp), intent(in) :: behind(3)
+      !> Opening at its middle [m]
+      real(wp), intent(out) :: normal
+      !> How much more it is at the first corner, and less at the second [m]
+      real(wp), intent(out) :: turn
+      !> Slip [m]
+      real(wp), intent(out) :: slip
+
+      normal = chain%tangent(2, j)*(behind(1) - before(1)) &
+         & - chain%tangent(1, j)*(behind(2) - before(2)) &
+         & + chain%arm(1, 2, j)*behind(3) - chain%arm(1, 1, j)*before(3)
+      turn = chain%half(j)*(behind(3) - before(3))
+      slip = chain%tangent(1, j)*(behind(1) - before(1)) &
+         & + chain%tangent(2, j)*(behind(2) - before(2)) &
+         & + chain%arm(2, 2, j)*behind(3) - chain%arm(2, 1, j)*before(3)
+   end subroutine find_opening
+
+   !> Trial and admissible forces of all joints after a motion, and how far the forces of their
+   !> faces are from these, beyond rounding
    pure subroutine judge_joints(chain, step)
       !> The chain
       type(chain_t), intent(in) :: chain
       !> The step
       type(chain_step_t), intent(inout) :: step
-      real(wp) :: before(3), after(3), trial(3), normal, slip, turn, farthest
+      real(wp) :: before(3), behind(3), normal, slip, turn, n1, n2, t, p, farthest
       integer :: j, n
 
       n = size(chain%mass)
@@ -247,26 +342,24 @@ contains
       farthest = 0.0_wp
       step%highest = 0.0_wp
       do j = 1, n + 1
-         after = 0.0_wp
-         if (j <= n) after = step%motion(:, j)
-         farthest = max(farthest, abs(after(1)), abs(after(2)))
-         normal = chain%tangent(2, j)*(after(1) - before(1)) &
-            & - chain%tangent(1, j)*(after(2) - before(2)) &
-            & + chain%arm(1, 2, j)*after(3) - chain%arm(1, 1, j)*before(3)
-         slip = chain%tangent(1, j)*(after(1) - before(1)) &
-            & + chain%tangent(2, j)*(after(2) - before(2)) &
-            & + chain%arm(2, 2, j)*after(3) - chain%arm(2, 1, j)*before(3)
-         turn = chain%half(j)*(after(3) - before(3))
-         before = after
-         after(1) = normal + turn
-         after(2) = normal - turn
-         after(3) = slip
-         trial = step%start(:, j) - chain%stiffness(j)*after
-         step%increment(:, j) = after
-         step%trial(:, j) = trial
-         if (step%stuck(j) .and. trial(1) >= 0.0_wp .and. trial(2) >= 0.0_wp &
-            & .and. abs(trial(3)) <= chain%limit(j) + chain%friction(j)*(trial(1) + trial(2))) then
-            step%force(:, j) = trial
+         behind = 0.0_wp
+         if (j <= n) behind = step%motion(:, j)
+         farthest = max(farthest, abs(behind(1)), abs(behind(2)))
+         call find_opening(chain, j, before, behind, normal, turn, slip)
+         before = behind
+         ! one by one: a processor waits for numbers stored apart and fetched together
+         p = chain%stiffness(j)
+         n1 = step%start(1, j) - p*(normal + turn)
+         n2 = step%start(2, j) - p*(normal - turn)
+         t = step%start(3, j) - p*slip
+         step%trial(1, j) = n1
+         step%trial(2, j) = n2
+         step%trial(3, j) = t
+         if (step%stuck(j) .and. n1 >= 0.0_wp .and. n2 >= 0.0_wp &
+            & .and. abs(t) <= chain%limit(j) + chain%friction(j)*(n1 + n2)) then
+            step%force(1, j) = n1
+            step%force(2, j) = n2
+            step%force(3, j) = t
             step%gap(j) = 0.0_wp
          else
             call judge_joint(chain, j, step)
@@ -290,39 +383,23 @@ contains
          & - step%force(:, j)) - 16.0_wp*epsilon(1.0_wp)*maxval(abs(step%trial(:, j))))
    end subroutine judge_joint
 
-   !> Diagonal block of inertia and the springs of the joint before it, and coupling across this one
-   pure subroutine begin_block(chain, part, b, step)
+   !> Add its inertia to a block's diagonal block
+   pure subroutine add_inertia(chain, b, step)
       !> The chain
       type(chain_t), intent(in) :: chain
-      !> What the joint before the block adds
-      type(joint_stiffness_t), intent(in) :: part
       !> Number of the block
       integer, intent(in) :: b
-      !> The step; its matrix is made
+      !> The step
       type(chain_step_t), intent(inout) :: step
       real(wp) :: rate
 
       rate = 2.0_wp/step%dt**2
       associate (diagonal => step%matrix%diagonal(:, :, b))
-         diagonal = part%behind
          diagonal(1, 1) = diagonal(1, 1) + rate*chain%mass(b)
          diagonal(2, 2) = diagonal(2, 2) + rate*chain%mass(b)
          diagonal(3, 3) = diagonal(3, 3) + rate*chain%inertia(b)
       end associate
-      if (b > 1) step%matrix%coupling(:, :, b) = part%coupling
-   end subroutine begin_block
-
-   !> Add the springs of the joint behind it to a block's diagonal block
-   pure subroutine end_block(part, b, step)
-      !> What this joint adds
-      type(joint_stiffness_t), intent(in) :: part
-      !> Number of the block
-      integer, intent(in) :: b
-      !> The step; its matrix is made
-      type(chain_step_t), intent(inout) :: step
-
-      step%matrix%diagonal(:, :, b) = step%matrix%diagonal(:, :, b) + part%before
-   end subroutine end_block
+   end subroutine add_inertia
 
    !> A number that tells sets of faces apart
    pure function hash(step) result(number)

@@ -6,17 +6,7 @@ module dda_chain_stiffness
    implicit none
    private
 
-   public :: joint_stiffness_t, joint_stiffness, cone_of
-
-   !> What one joint adds to the matrix
-   type :: joint_stiffness_t
-      !> To the diagonal block of the block before it: (3, 3)
-      real(wp) :: before(3, 3)
-      !> To that of the block behind it: (3, 3)
-      real(wp) :: behind(3, 3)
-      !> Rows of the block behind it, columns of the block before it: (3, 3)
-      real(wp) :: coupling(3, 3)
-   end type joint_stiffness_t
+   public :: add_joint, cone_of
 
 contains
 
@@ -52,8 +42,8 @@ contains
       if (side == 1) rows = -rows
    end function rows
 
-   !> Stiffness p R P R' of one joint
-   pure function joint_stiffness(chain, face, stuck, j) result(part)
+   !> Stiffness p R P R' of one joint, in the matrix of a chain
+   pure subroutine add_joint(chain, face, stuck, j, before, behind, coupling)
       !> The chain
       type(chain_t), intent(in) :: chain
       !> Face of the joint
@@ -62,26 +52,30 @@ contains
       logical, intent(in) :: stuck
       !> Number of the joint
       integer, intent(in) :: j
-      !> What it adds
-      type(joint_stiffness_t) :: part
-      real(wp) :: tangent(3, 3), constant(3), before(3, 3), behind(3, 3)
+      !> Diagonal block of the block before it, to which it adds: (3, 3)
+      real(wp), intent(inout) :: before(3, 3)
+      !> Diagonal block of the block behind it, of which it is the first part: (3, 3)
+      real(wp), intent(out) :: behind(3, 3)
+      !> Rows of the block behind it, columns of the block before it: (3, 3)
+      real(wp), intent(out) :: coupling(3, 3)
+      real(wp) :: tangent(3, 3), constant(3), left(3, 3), right(3, 3)
 
       if (stuck) then
-         part = stuck_stiffness(chain%stiffness(j), chain%tangent(:, j), chain%half(j), &
-            & chain%arm(:, 1, j), chain%arm(:, 2, j))
+         call add_stuck(chain%stiffness(j), chain%tangent(:, j), chain%half(j), &
+            & chain%arm(:, 1, j), chain%arm(:, 2, j), before, behind, coupling)
          return
       end if
       call apply_face(cone_of(chain, j), face, tangent, constant)
       tangent = chain%stiffness(j)*tangent
-      before = rows(chain, 1, j)
-      behind = rows(chain, 2, j)
-      part%before = matmul(before, matmul(tangent, transpose(before)))
-      part%behind = matmul(behind, matmul(tangent, transpose(behind)))
-      part%coupling = matmul(behind, matmul(tangent, transpose(before)))
-   end function joint_stiffness
+      left = rows(chain, 1, j)
+      right = rows(chain, 2, j)
+      before = before + matmul(left, matmul(tangent, transpose(left)))
+      behind = matmul(right, matmul(tangent, transpose(right)))
+      coupling = matmul(right, matmul(tangent, transpose(left)))
+   end subroutine add_joint
 
    !> The same where all three springs hold: two along the normal n and one along the tangent t
-   pure function stuck_stiffness(p, t, half, a, b) result(part)
+   pure subroutine add_stuck(p, t, half, a, b, before, behind, coupling)
       !> Stiffness of a spring [N/m per metre depth]
       real(wp), intent(in) :: p
       !> The tangent: (2)
@@ -92,9 +86,13 @@ contains
       real(wp), intent(in) :: a(2)
       !> Likewise about that of the block behind: (2) [m]
       real(wp), intent(in) :: b(2)
-      !> What the joint adds
-      type(joint_stiffness_t) :: part
-      real(wp) :: xx, xy, yy, n1, n2, t1, t2, ax, ay, bx, by, spin
+      !> Diagonal block of the block before it, to which it adds: (3, 3)
+      real(wp), intent(inout) :: before(3, 3)
+      !> Diagonal block of the block behind it, of which it is the first part: (3, 3)
+      real(wp), intent(out) :: behind(3, 3)
+      !> Rows of the block behind it, columns of the block before it: (3, 3)
+      real(wp), intent(out) :: coupling(3, 3)
+      real(wp) :: xx, xy, yy, n1, n2, ax, ay, bx, by, spin
 
       ! p (2 n n' + t t') = p (1 + n n')
       xy = -p*t(1)*t(2)
@@ -102,21 +100,19 @@ contains
       yy = p + p*t(1)**2
       n1 = 2.0_wp*p*t(2)
       n2 = -2.0_wp*p*t(1)
-      t1 = p*t(1)
-      t2 = p*t(2)
-      ax = a(1)*n1 + a(2)*t1
-      ay = a(1)*n2 + a(2)*t2
-      bx = b(1)*n1 + b(2)*t1
-      by = b(1)*n2 + b(2)*t2
+      ax = a(1)*n1 + a(2)*p*t(1)
+      ay = a(1)*n2 + a(2)*p*t(2)
+      bx = b(1)*n1 + b(2)*p*t(1)
+      by = b(1)*n2 + b(2)*p*t(2)
       spin = 2.0_wp*half**2
-      part%before(:, 1) = [xx, xy, ax]
-      part%before(:, 2) = [xy, yy, ay]
-      part%before(:, 3) = [ax, ay, p*(2.0_wp*a(1)**2 + spin + a(2)**2)]
-      part%behind(:, 1) = [xx, xy, bx]
-      part%behind(:, 2) = [xy, yy, by]
-      part%behind(:, 3) = [bx, by, p*(2.0_wp*b(1)**2 + spin + b(2)**2)]
-      part%coupling(:, 1) = [-xx, -xy, -bx]
-      part%coupling(:, 2) = [-xy, -yy, -by]
-      part%coupling(:, 3) = [-ax, -ay, -p*(2.0_wp*a(1)*b(1) + spin + a(2)*b(2))]
-   end function stuck_stiffness
+      before(:, 1) = before(:, 1) + [xx, xy, ax]
+      before(:, 2) = before(:, 2) + [xy, yy, ay]
+      before(:, 3) = before(:, 3) + [ax, ay, p*(2.0_wp*a(1)**2 + spin + a(2)**2)]
+      behind(:, 1) = [xx, xy, bx]
+      behind(:, 2) = [xy, yy, by]
+      behind(:, 3) = [bx, by, p*(2.0_wp*b(1)**2 + spin + b(2)**2)]
+      coupling(:, 1) = [-xx, -xy, -bx]
+      coupling(:, 2) = [-xy, -yy, -by]
+      coupling(:, 3) = [-ax, -ay, -p*(2.0_wp*a(1)*b(1) + spin + a(2)*b(2))]
+   end subroutine add_stuck
 end module dda_chain_stiffness

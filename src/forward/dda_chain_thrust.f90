@@ -17,7 +17,7 @@ module dda_chain_thrust
    implicit none
    private
 
-   public :: thrust_t, find_thrust, thrust_faces, influence, solve_3
+   public :: thrust_t, find_thrust, thrust_faces, hold_upright, influence, solve_3
 
    !> The forces, and what they show
    type :: thrust_t
@@ -41,7 +41,7 @@ module dda_chain_thrust
    end type energy_t
 
    !> Share of the forces inside the cones; the smaller, the sharper is the answer
-   real(wp), parameter :: share = 1.0e-6_wp
+   real(wp), parameter :: share = 1.0e-8_wp
    !> Most passes
    integer, parameter :: max_passes = 40
    !> Share of the function below which it does not fall noticeably
@@ -185,18 +185,20 @@ contains
          & + dot_product(reaction, glued%slope + slope/2.0_wp)
       energy%slope = energy%slope + glued%slope + slope
       energy%curvature = energy%curvature + glued%curvature
-      if (chain%halved) call hold_upright(energy)
+      if (chain%halved) call hold_upright(energy%slope, energy%curvature)
    end subroutine find_energy
 
-   !> Take the second unknown out: a smooth plane bears no weight
-   pure subroutine hold_upright(energy)
-      !> The function
-      type(energy_t), intent(inout) :: energy
+   !> Take the second of three unknowns out: a smooth plane bears no weight, and stops none
+   pure subroutine hold_upright(slope, curvature)
+      !> First derivatives
+      real(wp), intent(inout) :: slope(3)
+      !> Second derivatives
+      real(wp), intent(inout) :: curvature(3, 3)
 
-      energy%slope(2) = 0.0_wp
-      energy%curvature(:, 2) = 0.0_wp
-      energy%curvature(2, :) = 0.0_wp
-      energy%curvature(2, 2) = 1.0_wp
+      slope(2) = 0.0_wp
+      curvature(:, 2) = 0.0_wp
+      curvature(2, :) = 0.0_wp
+      curvature(2, 2) = 1.0_wp
    end subroutine hold_upright
 
    !> Sums of the loads before each joint, or of half a chain, less the sums of those behind it
@@ -311,7 +313,7 @@ contains
                & + n*(n(c)*(give/2.0_wp)) + m*(m(c)*(give/2.0_wp)) + t*(t(c)*give)
          end do
       end do
-      if (chain%halved) call hold_upright(energy)
+      if (chain%halved) call hold_upright(energy%slope, energy%curvature)
    end function glued_energy
 
    !> Half the squared distance of the forces from the cones, over the stiffness
@@ -361,7 +363,7 @@ contains
    end function holds
 
    !> Forces of all joints, and faces of those that fail more than their neighbours do
-   pure subroutine thrust_faces(chain, load, thrust, face, force, square)
+   pure subroutine thrust_faces(chain, load, thrust, face, force)
       !> The chain
       type(chain_t), intent(in) :: chain
       !> Sums of the loads: (3, n + 1)
@@ -372,21 +374,16 @@ contains
       type(joint_face_t), intent(out) :: face(:)
       !> The forces N1, N2, T: (3, n + 1) [N/m]
       real(wp), intent(out) :: force(:, :)
-      !> Squares of the admissible forces nearest to them: (n + 1)
-      real(wp), intent(out) :: square(:)
       type(joint_face_t) :: wanted(size(face))
       real(wp) :: gap(0:size(face) + 1), admissible(3)
       integer :: j
 
       gap = 0.0_wp
+      call carry_forces(chain, load, thrust%reaction, force)
       do j = 1, size(face)
-         force(:, j) = joint_force(chain, load, thrust%reaction, j)
-         admissible = force(:, j)
-         if (.not. holds(chain, force(:, j), j)) then
-            call project(cone_of(chain, j), force(:, j), admissible, wanted(j))
-            gap(j) = norm2(force(:, j) - admissible)
-         end if
-         square(j) = dot_product(admissible, admissible)
+         if (holds(chain, force(:, j), j)) cycle
+         call project(cone_of(chain, j), force(:, j), admissible, wanted(j))
+         gap(j) = norm2(force(:, j) - admissible)
       end do
       do j = 1, size(face)
          if (gap(j) > 0.0_wp .and. gap(j) >= (1.0_wp - 1.0e-6_wp)*max(gap(j - 1), gap(j + 1))) &
@@ -394,6 +391,43 @@ contains
       end do
       if (chain%halved) face(size(face))%slip = 1
    end subroutine thrust_faces
+
+   !> Forces of all joints, each from that of its neighbour by the balance of the block between: the
+   !> moment of a shallow arch, seen from afar, would lose its digits
+   pure subroutine carry_forces(chain, load, reaction, force)
+      !> The chain
+      type(chain_t), intent(in) :: chain
+      !> Sums of the loads: (3, n + 1)
+      real(wp), intent(in) :: load(:, :)
+      !> The unknowns
+      real(wp), intent(in) :: reaction(3)
+      !> The forces N1, N2, T: (3, n + 1) [N/m]
+      real(wp), intent(out) :: force(:, :)
+      real(wp) :: s(2), normal, along, moment
+      integer :: b, from, ahead, n, side
+
+      n = size(chain%mass)
+      from = merge(n + 1, 1, chain%halved)
+      ahead = merge(-1, 1, chain%halved)
+      side = merge(1, 2, chain%halved)
+      force(:, from) = joint_force(chain, load, reaction, from)
+      moment = (force(1, from) - force(2, from))*chain%half(from)
+      s = reaction(1:2) + load(1:2, from)
+      normal = force(1, from) + force(2, from)
+      along = force(3, from)
+      do b = merge(n, 1, chain%halved), merge(1, n, chain%halved), ahead
+         from = from + ahead
+         moment = moment + chain%arm(1, side, from - ahead)*normal &
+            & + chain%arm(2, side, from - ahead)*along
+         s = s + real(ahead, wp)*chain%weight(:, b)
+         normal = chain%tangent(2, from)*s(1) - chain%tangent(1, from)*s(2)
+         along = chain%tangent(1, from)*s(1) + chain%tangent(2, from)*s(2)
+         moment = moment - chain%arm(1, 3 - side, from)*normal - chain%arm(2, 3 - side, from)*along
+         force(1, from) = (normal + moment/chain%half(from))/2.0_wp
+         force(2, from) = (normal - moment/chain%half(from))/2.0_wp
+         force(3, from) = along
+      end do
+   end subroutine carry_forces
 
    !> Solve three equations with a symmetric positive definite matrix
    pure subroutine solve_3(a, b, x)

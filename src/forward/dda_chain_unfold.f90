@@ -6,7 +6,7 @@ module dda_chain_unfold
    implicit none
    private
 
-   public :: unfold
+   public :: unfold, whole_joints
 
 contains
 
@@ -15,22 +15,21 @@ contains
    elemental subroutine unfold(decision)
       !> The decision
       type(decision_t), intent(inout) :: decision
+      real(wp), parameter :: crown(3) = [2.0_wp, 2.0_wp, 0.0_wp]
       type(joint_face_t), allocatable :: face(:)
       integer :: m, n
 
       if (.not. decision%halved) return
+      n = whole_joints(decision)
       decision%halved = .false.
       associate (contacts => decision%contacts, outcome => decision%outcome)
          m = size(contacts%face)
          if (decision%keystone) then
             m = m - 1
-            n = 2*m
          else
-            n = 2*m - 1
             contacts%face(m)%slip = 0
-            contacts%increment(:, m) = contacts%increment(:, m)*[2.0_wp, 2.0_wp, 0.0_wp]
-            contacts%gap(:, m) = contacts%gap(:, m)*[2.0_wp, 2.0_wp, 0.0_wp]
-            contacts%trial(3, m) = 0.0_wp
+            if (allocated(contacts%increment)) contacts%increment(:, m) = crown*contacts%increment(:, m)
+            if (allocated(contacts%gap)) contacts%gap(:, m) = crown*contacts%gap(:, m)
          end if
          allocate (face(n))
          face(:m) = contacts%face(:m)
@@ -40,7 +39,6 @@ contains
          call move_alloc(face, contacts%face)
          call mirror(m, n, [1.0_wp, 1.0_wp, -1.0_wp], contacts%gap)
          call mirror(m, n, [1.0_wp, 1.0_wp, -1.0_wp], contacts%increment)
-         call mirror(m, n, [1.0_wp, 1.0_wp, -1.0_wp], contacts%trial)
          call mirror(m, n, [1.0_wp, 1.0_wp, -1.0_wp], contacts%force)
          if (.not. allocated(outcome%motion)) return
          ! a keystone moves up or down alone
@@ -50,6 +48,16 @@ contains
       end associate
    end subroutine unfold
 
+   !> Number of joints that a decision is of, folded or not
+   elemental integer function whole_joints(decision)
+      !> The decision
+      type(decision_t), intent(in) :: decision
+
+      whole_joints = size(decision%contacts%face)
+      if (.not. decision%halved) return
+      whole_joints = 2*whole_joints - merge(2, 1, decision%keystone)
+   end function whole_joints
+
    !> Mirror the columns of the left half
    pure subroutine mirror(m, n, sign, value)
       !> Columns of the left half that count, with that on the plane of symmetry if there is one
@@ -58,11 +66,12 @@ contains
       integer, intent(in) :: n
       !> Signs of the mirror image: (3)
       real(wp), intent(in) :: sign(3)
-      !> The columns of the left half in, of the whole out: (3, at least m), (3, n)
+      !> The columns of the left half in, of the whole out, if there are any: (3, at least m), (3, n)
       real(wp), allocatable, intent(inout) :: value(:, :)
       real(wp), allocatable :: whole(:, :)
       integer :: j
 
+      if (.not. allocated(value)) return
       allocate (whole(3, n))
       do j = 1, m
          whole(:, n + 1 - j) = sign*value(:, j)

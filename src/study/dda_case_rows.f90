@@ -1,6 +1,7 @@
 !> A computed case told as rows of the result tables
 module dda_case_rows
    use dda_case, only : case_t, searched_name
+   use dda_chain_unfold, only : whole_joints
    use dda_contact_detection, only : contacts_t
    use dda_critical, only : critical_t
    use dda_decision, only : decision_t
@@ -118,7 +119,7 @@ contains
             if (size(joint_row) > 0) call tell_roles(this%decision%contacts, joint_row)
          end if
          if (allocated(this%decision%system%equation)) call tell_end(this, blocks)
-         row%blocks = block_count(this%scene, this%decision%contacts)
+         row%blocks = block_count(this%scene, this%decision)
          row%steps = outcome%steps
          row%open_close_iterations = outcome%passes
          row%factorisations = outcome%factorisations
@@ -167,9 +168,9 @@ contains
          if (critical%verdict == verdict%found) call tell_bracket(critical, row)
          if (allocated(critical%fallen)) then
             call tell_mechanism(critical%fallen%contacts, this%scene%joint_angle_deg, row)
-            row%blocks = block_count(this%scene, critical%fallen%contacts)
+            row%blocks = block_count(this%scene, critical%fallen)
          else if (allocated(critical%standing)) then
-            row%blocks = block_count(this%scene, critical%standing%contacts)
+            row%blocks = block_count(this%scene, critical%standing)
          end if
          if (this%tells_tables) call tell_nearest(this, joint_row, blocks)
          row%steps = critical%steps
@@ -211,16 +212,16 @@ contains
    end subroutine tell_nearest
 
    !> Number of movable blocks: of the scene, or where there was none, of a chain by its joints
-   pure integer function block_count(scene, contacts)
+   pure integer function block_count(scene, decision)
       !> The scene, which may be empty
       type(scene_t), intent(in) :: scene
-      !> Contacts of its decision
-      type(contacts_t), intent(in) :: contacts
+      !> Its decision
+      type(decision_t), intent(in) :: decision
 
       if (allocated(scene%system%equation)) then
          block_count = maxval(scene%system%equation)
       else
-         block_count = size(contacts%face) - 1
+         block_count = whole_joints(decision) - 1
       end if
    end function block_count
 

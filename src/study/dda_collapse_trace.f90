@@ -162,8 +162,7 @@ contains
          ! half a chain knows nothing of a collapse of the whole that was decided without it
          mechanism%linked = mechanism%linked .and. (chain%halved .eqv. critical%fallen%halved)
          if (mechanism%linked) then
-            call freeze_mechanism(contacts%face, contacts%increment, chain%friction, &
-               & mechanism%chain)
+            call freeze_mechanism(chain, contacts%face, contacts%increment, mechanism%chain)
          else
             mechanism%blocks%face = contacts%face
             mechanism%blocks%motion = outcome%motion(:3, :)
