@@ -1,8 +1,8 @@
 !> Does a chain stand: the same march of static steps to the same verdict as for any blocks
 module dda_chain_decision
    use dda_chain, only : chain_t
-   use dda_chain_step, only : chain_step_t, find_opening, go_on, lengthen_step, new_chain_step, &
-      & settle_chain
+   use dda_chain_state, only : chain_step_t, new_chain_step
+   use dda_chain_step, only : find_opening, go_on, lengthen_step, settle_chain
    use dda_chain_thrust, only : find_thrust, thrust_faces, thrust_t
    use dda_decision, only : decision_t
    use dda_kinds, only : wp

@@ -6,7 +6,7 @@
 !> other; the nearest ones that do are taken.
 module dda_chain_power
    use dda_chain, only : chain_t
-   use dda_chain_thrust, only : hold_upright, influence, solve_3
+   use dda_chain_balance, only : hold_upright, influence, solve_3
    use dda_friction_cone, only : apply_face, cone_t, is_stuck, joint_face_t
    use dda_kinds, only : wp
    implicit none

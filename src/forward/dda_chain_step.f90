@@ -1,70 +1,21 @@
 !> One step of a chain: the open-close loop on flat arrays
 !>
 !> It is the step of `advance` for blocks that start at rest, do not move and have 3 unknowns: the
-!> same energy, the same peaks, the same noise. A chain that does not settle here is left to the
-!> loop for any pattern of blocks.
+!> same energy, the same peaks, the same noise. Its right-hand side holds only what is not in
+!> balance at its beginning: loads and forces, which would drown that, are left out. A chain that
+!> does not settle here is left to the loop for any pattern of blocks.
 module dda_chain_step
    use, intrinsic :: iso_fortran_env, only : int64
    use dda_chain, only : chain_t
-   use dda_chain_factor, only : chain_factor_t, chain_matrix_t, factorise_chain, &
-      & new_chain_factor, substitute_chain
+   use dda_chain_factor, only : factorise_chain, substitute_chain
+   use dda_chain_state, only : chain_step_t, hash
    use dda_chain_stiffness, only : add_joint, cone_of
    use dda_friction_cone, only : apply_face, is_stuck, joint_face_t, project
    use dda_kinds, only : wp
    implicit none
    private
 
-   public :: chain_step_t, new_chain_step, lengthen_step, settle_chain, go_on, find_opening
-
-   !> Motion of the blocks, joints, and equations of a step
-   type :: chain_step_t
-      !> Length of the step [s]
-      real(wp) :: dt = 0.0_wp
-      !> Motion of the blocks: (3, n)
-      real(wp), allocatable :: motion(:, :)
-      !> Trial forces at the beginning of the step: (3, n + 1) [N/m]
-      real(wp), allocatable :: start(:, :)
-      !> Loads and moments that these leave unbalanced, on the faces of the step before: (3, n)
-      real(wp), allocatable :: load(:, :)
-      !> Joints that were not stuck in the step before: (n + 1)
-      logical, allocatable :: was_loose(:)
-      !> Forces that their faces had then: (3, n + 1) [N/m]
-      real(wp), allocatable :: held(:, :)
-      !> Trial forces at its end: (3, n + 1) [N/m]
-      real(wp), allocatable :: trial(:, :)
-      !> Admissible forces at its end: (3, n + 1) [N/m]
-      real(wp), allocatable :: force(:, :)
-      !> Work of what was not in balance at its beginning: it goes into speed, but for what the
-      !> springs take [J/m]
-      real(wp) :: work = 0.0_wp
-      !> Faces that the equations hold: (n + 1)
-      type(joint_face_t), allocatable :: face(:)
-      !> Which of them are the inside of the cone: (n + 1)
-      logical, allocatable :: stuck(:)
-      !> Faces that the forces ask for: (n + 1)
-      type(joint_face_t), allocatable :: wanted(:)
-      !> How far the force of a face is from the admissible one; a joint at either end has no
-      !> neighbour there: (0:n + 2) [N/m]
-      real(wp), allocatable :: gap(:)
-      !> The largest of these [N/m]
-      real(wp) :: highest = 0.0_wp
-      !> Force that rounding alone can make: of all loads [N/m]
-      real(wp) :: load_noise = 0.0_wp
-      !> Force that rounding can make over the largest motion [N/m2]
-      real(wp) :: spring_noise = 0.0_wp
-      !> Matrix of the faces
-      type(chain_matrix_t) :: matrix
-      !> Its factor
-      type(chain_factor_t) :: factor
-      !> Blocks that have changed since the factor was made: first and last, none if first > last
-      integer :: changed(2) = 0
-      !> Passes of the open-close loop
-      integer :: passes = 0
-      !> Factorisations, whole or in part
-      integer :: factorisations = 0
-      !> Whether every joint's force agrees with its face
-      logical :: settled = .false.
-   end type chain_step_t
+   public :: lengthen_step, settle_chain, go_on, find_opening
 
    !> Most passes before a chain is left to the loop for any blocks
    integer, parameter :: max_passes = 200
@@ -74,26 +25,6 @@ module dda_chain_step
    real(wp), parameter :: notable = 0.1_wp
 
 contains
-
-   !> Room for a step, without length, faces and forces; these are to be in balance with the loads
-   pure subroutine new_chain_step(chain, step)
-      !> The chain
-      type(chain_t), intent(in) :: chain
-      !> The step
-      type(chain_step_t), intent(out) :: step
-      integer :: n
-
-      n = size(chain%mass)
-      allocate (step%motion(3, n), step%start(3, n + 1), step%held(3, n + 1))
-      allocate (step%trial(3, n + 1), step%force(3, n + 1))
-      allocate (step%face(n + 1), step%wanted(n + 1), step%stuck(n + 1))
-      allocate (step%load(3, n), source=0.0_wp)
-      allocate (step%was_loose(n + 1), source=.false.)
-      allocate (step%gap(0:n + 2), source=0.0_wp)
-      step%load_noise = 1.0e-13_wp*chain%whole_load
-      step%spring_noise = 8.0_wp*epsilon(1.0_wp)*chain%stiffest
-      call new_chain_factor(n, step%matrix, step%factor)
-   end subroutine new_chain_step
 
    !> Give the step a length, with the faces that it has: all diagonal blocks change
    pure subroutine lengthen_step(chain, dt, step)
@@ -400,29 +331,4 @@ contains
          diagonal(3, 3) = diagonal(3, 3) + rate*chain%inertia(b)
       end associate
    end subroutine add_inertia
-
-   !> A number that tells sets of faces apart
-   pure function hash(step) result(number)
-      !> The step
-      type(chain_step_t), intent(in) :: step
-      !> The number
-      integer(int64) :: number
-      integer(int64) :: code
-      integer :: j
-
-      number = 0_int64
-      do j = 1, size(step%face)
-         if (step%stuck(j)) cycle
-         associate (face => step%face(j))
-            code = 12_int64*j + face%slip + 1
-            if (face%open(1)) code = code + 3
-            if (face%open(2)) code = code + 6
-         end associate
-         code = ieor(code, ishft(code, 21))
-         code = ieor(code, ishft(code, -35))
-         code = ieor(code, ishft(code, 4))
-         code = ieor(code, ishft(code, 41))
-         number = ieor(ishft(number, 7) + ishft(number, -57), code)
-      end do
-   end function hash
 end module dda_chain_step

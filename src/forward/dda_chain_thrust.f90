@@ -1,5 +1,5 @@
-!> Where to begin with the faces of a chain: the forces of all its joints follow from those of the
-!> first one, three unknowns, by equilibrium alone
+!> Where to begin with the forces and faces of a chain: the forces of all joints follow from three
+!> unknowns by equilibrium alone
 !>
 !> Sought are the forces in balance with the loads that lie nearest to the friction cones,
 !>
@@ -7,17 +7,19 @@
 !>
 !> by Newton's method. Where forces inside the cones exist, these are nearly the springs' own, and
 !> z - y is what opens; where none exist, z - y is a mechanism (Farkas). Only joints that fail more
-!> than their neighbours open in the end: a structure opens joint by joint. The result decides
-!> nothing: it is where the steps begin.
+!> than their neighbours open in the end: a structure opens joint by joint. Newton's method decides
+!> nothing: it says where the steps begin.
 module dda_chain_thrust
    use dda_chain, only : chain_t
+   use dda_chain_balance, only : carry_forces, hold_upright, holds, influence, joint_force, &
+      & solve_3, sum_loads
    use dda_chain_stiffness, only : cone_of
    use dda_friction_cone, only : apply_face, cone_t, joint_face_t, project
    use dda_kinds, only : wp
    implicit none
    private
 
-   public :: thrust_t, find_thrust, thrust_faces, hold_upright, influence, solve_3
+   public :: thrust_t, find_thrust, thrust_faces
 
    !> The forces, and what they show
    type :: thrust_t
@@ -188,96 +190,6 @@ contains
       if (chain%halved) call hold_upright(energy%slope, energy%curvature)
    end subroutine find_energy
 
-   !> Take the second of three unknowns out: a smooth plane bears no weight, and stops none
-   pure subroutine hold_upright(slope, curvature)
-      !> First derivatives
-      real(wp), intent(inout) :: slope(3)
-      !> Second derivatives
-      real(wp), intent(inout) :: curvature(3, 3)
-
-      slope(2) = 0.0_wp
-      curvature(:, 2) = 0.0_wp
-      curvature(2, :) = 0.0_wp
-      curvature(2, 2) = 1.0_wp
-   end subroutine hold_upright
-
-   !> Sums of the loads before each joint, or of half a chain, less the sums of those behind it
-   pure subroutine sum_loads(chain, load)
-      !> The chain
-      type(chain_t), intent(in) :: chain
-      !> The sums: (3, n + 1)
-      real(wp), intent(out) :: load(:, :)
-      real(wp) :: total(3)
-      integer :: b
-
-      total = 0.0_wp
-      if (chain%halved) then
-         load(:, size(chain%half)) = 0.0_wp
-         do b = size(chain%mass), 1, -1
-            total = total - load_of(chain, b)
-            load(:, b) = total
-         end do
-      else
-         load(:, 1) = 0.0_wp
-         do b = 1, size(chain%mass)
-            total = total + load_of(chain, b)
-            load(:, b + 1) = total
-         end do
-      end if
-   end subroutine sum_loads
-
-   !> Load of one block: force, and moment about the origin
-   pure function load_of(chain, b) result(load)
-      !> The chain
-      type(chain_t), intent(in) :: chain
-      !> Number of the block
-      integer, intent(in) :: b
-      !> The load: (3) [N/m, N/m, N]
-      real(wp) :: load(3)
-
-      load(1:2) = chain%weight(:, b)
-      load(3) = chain%centroid(1, b)*chain%weight(2, b) - chain%centroid(2, b)*chain%weight(1, b)
-   end function load_of
-
-   !> Force N1, N2, T of one joint
-   pure function joint_force(chain, load, reaction, j) result(force)
-      !> The chain
-      type(chain_t), intent(in) :: chain
-      !> Sums of the loads: (3, n + 1)
-      real(wp), intent(in) :: load(:, :)
-      !> The unknowns
-      real(wp), intent(in) :: reaction(3)
-      !> Number of the joint
-      integer, intent(in) :: j
-      !> The force
-      real(wp) :: force(3)
-      real(wp) :: s(3), normal, moment
-
-      s = reaction + load(:, j)
-      normal = chain%tangent(2, j)*s(1) - chain%tangent(1, j)*s(2)
-      force(3) = chain%tangent(1, j)*s(1) + chain%tangent(2, j)*s(2)
-      moment = s(3) - chain%middle(1, j)*s(2) + chain%middle(2, j)*s(1)
-      force(1) = (normal + moment/chain%half(j))/2.0_wp
-      force(2) = (normal - moment/chain%half(j))/2.0_wp
-   end function joint_force
-
-   !> What each unknown makes of the force of one joint
-   pure function influence(chain, j) result(g)
-      !> The chain
-      type(chain_t), intent(in) :: chain
-      !> Number of the joint
-      integer, intent(in) :: j
-      !> Rows N1, N2, T: (3, 3)
-      real(wp) :: g(3, 3)
-      real(wp) :: normal(3), moment(3)
-
-      normal = [chain%tangent(2, j), -chain%tangent(1, j), 0.0_wp]
-      moment = [chain%middle(2, j), -chain%middle(1, j), 1.0_wp]/chain%half(j)
-      g(1, :) = (normal + moment)/2.0_wp
-      g(2, :) = (normal - moment)/2.0_wp
-      g(3, :) = [chain%tangent(:, j), 0.0_wp]
-   end function influence
-
    !> Energy of the springs if no joint could fail, at zero
    pure function glued_energy(chain, load, watched) result(energy)
       !> The chain
@@ -349,19 +261,6 @@ contains
       end do
    end subroutine add_failing
 
-   !> Whether a force lies inside the cone of a joint
-   pure logical function holds(chain, force, j)
-      !> The chain
-      type(chain_t), intent(in) :: chain
-      !> N1, N2, T [N/m]
-      real(wp), intent(in) :: force(3)
-      !> Number of the joint
-      integer, intent(in) :: j
-
-      holds = force(1) >= 0.0_wp .and. force(2) >= 0.0_wp &
-         & .and. abs(force(3)) <= chain%limit(j) + chain%friction(j)*(force(1) + force(2))
-   end function holds
-
    !> Forces of all joints, and faces of those that fail more than their neighbours do
    pure subroutine thrust_faces(chain, load, thrust, face, force)
       !> The chain
@@ -391,65 +290,4 @@ contains
       end do
       if (chain%halved) face(size(face))%slip = 1
    end subroutine thrust_faces
-
-   !> Forces of all joints, each from that of its neighbour by the balance of the block between: the
-   !> moment of a shallow arch, seen from afar, would lose its digits
-   pure subroutine carry_forces(chain, load, reaction, force)
-      !> The chain
-      type(chain_t), intent(in) :: chain
-      !> Sums of the loads: (3, n + 1)
-      real(wp), intent(in) :: load(:, :)
-      !> The unknowns
-      real(wp), intent(in) :: reaction(3)
-      !> The forces N1, N2, T: (3, n + 1) [N/m]
-      real(wp), intent(out) :: force(:, :)
-      real(wp) :: s(2), normal, along, moment
-      integer :: b, from, ahead, n, side
-
-      n = size(chain%mass)
-      from = merge(n + 1, 1, chain%halved)
-      ahead = merge(-1, 1, chain%halved)
-      side = merge(1, 2, chain%halved)
-      force(:, from) = joint_force(chain, load, reaction, from)
-      moment = (force(1, from) - force(2, from))*chain%half(from)
-      s = reaction(1:2) + load(1:2, from)
-      normal = force(1, from) + force(2, from)
-      along = force(3, from)
-      do b = merge(n, 1, chain%halved), merge(1, n, chain%halved), ahead
-         from = from + ahead
-         moment = moment + chain%arm(1, side, from - ahead)*normal &
-            & + chain%arm(2, side, from - ahead)*along
-         s = s + real(ahead, wp)*chain%weight(:, b)
-         normal = chain%tangent(2, from)*s(1) - chain%tangent(1, from)*s(2)
-         along = chain%tangent(1, from)*s(1) + chain%tangent(2, from)*s(2)
-         moment = moment - chain%arm(1, 3 - side, from)*normal - chain%arm(2, 3 - side, from)*along
-         force(1, from) = (normal + moment/chain%half(from))/2.0_wp
-         force(2, from) = (normal - moment/chain%half(from))/2.0_wp
-         force(3, from) = along
-      end do
-   end subroutine carry_forces
-
-   !> Solve three equations with a symmetric positive definite matrix
-   pure subroutine solve_3(a, b, x)
-      !> The matrix
-      real(wp), intent(in) :: a(3, 3)
-      !> Right-hand side
-      real(wp), intent(in) :: b(3)
-      !> The solution
-      real(wp), intent(out) :: x(3)
-      real(wp) :: d(3), l21, l31, l32
-
-      d(1) = a(1, 1)
-      l21 = a(2, 1)/d(1)
-      l31 = a(3, 1)/d(1)
-      d(2) = a(2, 2) - l21*a(2, 1)
-      l32 = (a(3, 2) - l31*a(2, 1))/d(2)
-      d(3) = a(3, 3) - l31*a(3, 1) - l32**2*d(2)
-      x(1) = b(1)
-      x(2) = b(2) - l21*x(1)
-      x(3) = b(3) - l31*x(1) - l32*x(2)
-      x = x/d
-      x(2) = x(2) - l32*x(3)
-      x(1) = x(1) - l21*x(2) - l31*x(3)
-   end subroutine solve_3
 end module dda_chain_thrust

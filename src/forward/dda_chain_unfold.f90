@@ -1,12 +1,13 @@
 !> The whole of what the left half of a row that is its own mirror image has decided
 module dda_chain_unfold
+   use dda_chain, only : chain_t
    use dda_decision, only : decision_t
    use dda_friction_cone, only : joint_face_t
    use dda_kinds, only : wp
    implicit none
    private
 
-   public :: unfold, whole_joints
+   public :: fold, unfold, whole_joints
 
 contains
 
@@ -15,7 +16,6 @@ contains
    elemental subroutine unfold(decision)
       !> The decision
       type(decision_t), intent(inout) :: decision
-      real(wp), parameter :: crown(3) = [2.0_wp, 2.0_wp, 0.0_wp]
       type(joint_face_t), allocatable :: face(:)
       integer :: m, n
 
@@ -28,8 +28,11 @@ contains
             m = m - 1
          else
             contacts%face(m)%slip = 0
-            if (allocated(contacts%increment)) contacts%increment(:, m) = crown*contacts%increment(:, m)
-            if (allocated(contacts%gap)) contacts%gap(:, m) = crown*contacts%gap(:, m)
+            if (allocated(contacts%increment)) contacts%increment(1:2, m) = &
+               & 2.0_wp*contacts%increment(1:2, m)
+            contacts%gap(1:2, m) = 2.0_wp*contacts%gap(1:2, m)
+            if (allocated(contacts%increment)) contacts%increment(3, m) = 0.0_wp
+            contacts%gap(3, m) = 0.0_wp
          end if
          allocate (face(n))
          face(:m) = contacts%face(:m)
@@ -47,6 +50,30 @@ contains
             & outcome%motion)
       end associate
    end subroutine unfold
+
+   !> Faces and openings of the left half of a collapse that was decided as a whole
+   pure subroutine fold(chain, decision, face, increment)
+      !> Half the chain
+      type(chain_t), intent(in) :: chain
+      !> The collapse
+      type(decision_t), intent(in) :: decision
+      !> Faces of its joints: (m)
+      type(joint_face_t), allocatable, intent(out) :: face(:)
+      !> Openings and slips: (3, m) [m]
+      real(wp), allocatable, intent(out) :: increment(:, :)
+      integer :: m
+
+      m = size(chain%half)
+      allocate (face(m), increment(3, m))
+      face = decision%contacts%face(:m)
+      increment = decision%contacts%increment(:, :m)
+      if (chain%keystone) then
+         face(m) = joint_face_t()
+         increment(:, m) = 0.0_wp
+      else
+         increment(:, m) = increment(:, m)/2.0_wp
+      end if
+   end subroutine fold
 
    !> Number of joints that a decision is of, folded or not
    elemental integer function whole_joints(decision)
@@ -66,7 +93,8 @@ contains
       integer, intent(in) :: n
       !> Signs of the mirror image: (3)
       real(wp), intent(in) :: sign(3)
-      !> The columns of the left half in, of the whole out, if there are any: (3, at least m), (3, n)
+      !> The columns of the left half in, of the whole out, if there are any:
+      !> (3, at least m), (3, n)
       real(wp), allocatable, intent(inout) :: value(:, :)
       real(wp), allocatable :: whole(:, :)
       integer :: j

@@ -1,9 +1,11 @@
 !> Where a collapse stops: its joints, frozen, are traced to the value at which they cease to move
 module dda_collapse_trace
    use dda_chain, only : chain_t
+   use dda_chain_unfold, only : fold
    use dda_chain_power, only : chain_mechanism_t, chain_power, freeze_mechanism
    use dda_error, only : error_t
    use dda_frozen_mechanism, only : frozen_mechanism_t, mechanism_power
+   use dda_friction_cone, only : joint_face_t
    use dda_kinds, only : wp
    use dda_scene, only : family_t, scene_t
    use dda_search, only : critical_t, search_t
@@ -156,12 +158,15 @@ contains
       type(frozen_t) :: mechanism
       type(chain_t) :: chain
       type(settings_t) :: settings
+      type(joint_face_t), allocatable :: face(:)
+      real(wp), allocatable :: increment(:, :)
 
       associate (contacts => critical%fallen%contacts, outcome => critical%fallen%outcome)
          call family%link(critical%falls, settings, chain, mechanism%linked)
-         ! half a chain knows nothing of a collapse of the whole that was decided without it
-         mechanism%linked = mechanism%linked .and. (chain%halved .eqv. critical%fallen%halved)
-         if (mechanism%linked) then
+         if (mechanism%linked .and. chain%halved .and. .not. critical%fallen%halved) then
+            call fold(chain, critical%fallen, face, increment)
+            call freeze_mechanism(chain, face, increment, mechanism%chain)
+         else if (mechanism%linked) then
             call freeze_mechanism(chain, contacts%face, contacts%increment, mechanism%chain)
          else
             mechanism%blocks%face = contacts%face

@@ -160,7 +160,7 @@ def test_names_and_titles_with_commas_and_quotes_stay_one_field(tmp_path: Path) 
         ("&search low = 0.02, high = 0.05 /\n", "collapsed", 0),
         ("&search parameter = 'friction_deg', low = 30, high = 80 /\n", "stable", 0),
         ("&search parameter = 'friction_deg', low = 1, high = 10 /\n", "collapsed", 0),
-        ("&search /\n&analysis steps = 1 /\n", "undecided", 3),
+        ("&search /\n&analysis unknowns = 6, steps = 1 /\n", "undecided", 3),
     ],
 )
 def test_verdict_is_one_word(tmp_path: Path, text: str, verdict: str, status: int) -> None:

@@ -133,7 +133,7 @@ def test_one_undecided_case_among_many_gives_3(tmp_path: Path) -> None:
 
 
 def test_undecided_search_gives_3_and_no_critical_value(tmp_path: Path) -> None:
-    write_decks(tmp_path, deck="&search /\n&analysis steps = 1 /\n")
+    write_decks(tmp_path, deck="&search /\n&analysis unknowns = 6, steps = 1 /\n")
     assert run_dda("run", "deck.nml", cwd=tmp_path).returncode == 3
     (row,) = rows_of(tmp_path / "deck")
     assert row["verdict"] == "undecided"
