@@ -8,18 +8,22 @@ module dda_chain_decision
    use dda_kinds, only : wp
    use dda_settings, only : flow_rule, settings_t
    use dda_step_context, only : march_t, step_context_t
-   use dda_step_interval, only : longest_static_step, static_growth
-   use dda_verdict, only : is_beyond_elastic, is_felt, verdict
+   use dda_step_interval, only : longest_static_step
+   use dda_verdict, only : is_felt, verdict
    implicit none
    private
 
    public :: decide_chain
 
-   !> Free fall over elastic motion in the first step. The faces to begin with are nearly right, so
-   !> that it may be as long as those that prove a collapse, with a margin
-   real(wp), parameter :: first_fall = 2.0e8_wp
-   !> Share of the work that is speed where springs take no more than rounding, and what they let
-   !> move changes the acceleration by less than 1 %
+   !> Free fall over elastic motion in a step, where nothing but rest keeps a chain slow
+   real(wp), parameter :: long_fall = 2.0e8_wp
+   !> The same once enough joints open for a mechanism, which rounding resists in long steps of a
+   !> shallow arch
+   real(wp), parameter :: short_fall = 1.0e5_wp
+   !> Most steps; the second is free of what the springs took in the first, and a shallow arch with
+   !> three hinges comes to rest in a few
+   integer, parameter :: most_steps = 12
+   !> Share of the work that is speed where springs take none
    real(wp), parameter :: all_speed = 0.999_wp
 
 contains
@@ -38,19 +42,22 @@ contains
       type(chain_step_t) :: step
       type(march_t) :: march
       type(step_context_t) :: measured
+      real(wp) :: dt
       integer :: answer
 
       decided = .false.
       call begin_march(settings, chain, march, step)
       answer = verdict%undecided
-      do while (march%steps < settings%max_steps)
+      do while (march%steps < min(most_steps, settings%max_steps))
+         march%steps = march%steps + 1
          call settle_chain(chain, step)
          if (.not. step%settled) return
          call measure(chain, step, measured)
-         march%steps = march%steps + 1
-         answer = judge(march, measured, settings)
+         answer = judge(march, measured, can_move(step), settings)
          if (answer /= verdict%undecided) exit
-         call lengthen(chain, measured, march, step)
+         call go_on(chain, step)
+         dt = step_length(chain, march, merge(short_fall, long_fall, can_move(step)))
+         if (abs(dt - step%dt) > 0.0_wp) call lengthen_step(chain, dt, step)
       end do
       decided = answer == verdict%collapsed &
          & .or. answer == verdict%stable .and. .not. slides(chain, step)
@@ -58,23 +65,43 @@ contains
    end subroutine decide_chain
 
    !> Judge a step. It began in balance but for what falls, so that it has no elastic motion to
-   !> tell from that, as the first steps of any blocks have: where no spring takes any of its work,
-   !> nothing will stop it
-   pure integer function judge(march, step, settings)
+   !> tell from that, as the first steps of any blocks have: a mechanism whose work no spring takes
+   !> will not be stopped
+   pure integer function judge(march, step, moves, settings)
       !> The march
       type(march_t), intent(in) :: march
       !> The step, measured
       type(step_context_t), intent(in) :: step
+      !> Whether enough joints open or slide for a mechanism
+      logical, intent(in) :: moves
       !> Settings of the run
       type(settings_t), intent(in) :: settings
+      real(wp) :: rest
 
       judge = verdict%undecided
-      if (step%acceleration <= settings%rest_tolerance*march%free_acceleration) then
+      rest = settings%rest_tolerance*march%free_acceleration
+      ! what resists a mechanism is rounding, which must not pass for rest
+      if (moves) rest = rest*min(1.0_wp, step%kinetic/max(step%work, tiny(rest)))
+      if (step%acceleration <= rest) then
          judge = verdict%stable
-      else if (is_beyond_elastic(march, step) .and. step%kinetic > all_speed*step%work) then
+      else if (moves .and. step%kinetic > all_speed*step%work) then
          judge = verdict%collapsed
       end if
    end function judge
+
+   !> Whether more corners open and joints slide than the three motions that close the row again
+   pure logical function can_move(step)
+      !> The step; what slides along a plane of symmetry counts
+      type(chain_step_t), intent(in) :: step
+      integer :: free, j
+
+      free = 0
+      do j = 1, size(step%face)
+         if (step%stuck(j)) cycle
+         free = free + count(step%face(j)%open) + abs(step%face(j)%slip)
+      end do
+      can_move = free > 3
+   end function can_move
 
    !> Whether a joint slides, not counting a plane of symmetry
    pure logical function slides(chain, step)
@@ -86,7 +113,7 @@ contains
       slides = any(step%face(:size(step%face) - merge(1, 0, chain%halved))%slip /= 0)
    end function slides
 
-   !> Scales, first faces and first length
+   !> Scales, first forces, faces and length
    pure subroutine begin_march(settings, chain, march, step)
       !> Settings of the run
       type(settings_t), intent(in) :: settings
@@ -103,36 +130,23 @@ contains
       call find_thrust(chain, thrust, load)
       call thrust_faces(chain, load, thrust, step%face, step%start)
       march%free_acceleration = chain%free_acceleration
-      march%last_acceleration = march%free_acceleration
       march%elastic_motion = thrust%elastic_motion
-      march%longest = longest_static_step(chain%mean_mass, chain%stiffest)
-      march%dt = march%longest
-      if (march%free_acceleration > 0.0_wp) march%dt = min(march%longest, &
-         & sqrt(2.0_wp*first_fall*march%elastic_motion/march%free_acceleration))
-      if (settings%time_step > 0.0_wp) march%dt = min(march%longest, settings%time_step)
-      call lengthen_step(chain, march%dt, step)
+      call lengthen_step(chain, step_length(chain, march, long_fall), step)
    end subroutine begin_march
 
-   !> Go on from the end of a step; one of the same length needs no other equations, and a second
-   !> one is free of what the springs took in the first
-   pure subroutine lengthen(chain, measured, march, step)
+   !> Length of a step [s]
+   pure real(wp) function step_length(chain, march, fall)
       !> The chain
       type(chain_t), intent(in) :: chain
-      !> The step's measures
-      type(step_context_t), intent(in) :: measured
       !> The march
-      type(march_t), intent(inout) :: march
-      !> The step
-      type(chain_step_t), intent(inout) :: step
-      real(wp) :: factor
+      type(march_t), intent(in) :: march
+      !> Free fall in the step over elastic motion
+      real(wp), intent(in) :: fall
 
-      factor = static_growth(measured%acceleration, march%last_acceleration)
-      if (march%steps == 1) factor = 1.0_wp
-      march%last_acceleration = measured%acceleration
-      call go_on(chain, step)
-      march%dt = min(march%longest, factor*march%dt)
-      if (march%dt > step%dt) call lengthen_step(chain, march%dt, step)
-   end subroutine lengthen
+      step_length = longest_static_step(chain%mean_mass, chain%stiffest)
+      if (march%free_acceleration > 0.0_wp) step_length = min(step_length, &
+         & sqrt(2.0_wp*fall*march%elastic_motion/march%free_acceleration))
+   end function step_length
 
    !> Acceleration of a settled step, and energies beyond those of the forces at its beginning: of
    !> a shallow arch these would drown them

@@ -68,7 +68,7 @@ contains
       type(chain_t), intent(in) :: chain
       !> Power: positive where the mechanism moves by itself
       real(wp), intent(out) :: power
-      !> What the rounding of the corners' coordinates makes of it
+      !> What the rounding of weights, and of motions far from where they turn, makes of it
       real(wp), intent(out) :: noise
       !> Whether there is a mechanism
       logical, intent(out) :: usable
@@ -90,7 +90,9 @@ contains
             work = chain%weight(1, b)*(twist(1) - twist(3)*chain%centroid(2, b)) &
                & + chain%weight(2, b)*(twist(2) + twist(3)*chain%centroid(1, b))
             power = power + work
-            noise = noise + abs(work)*chain%rounding(b)
+            noise = noise + chain%rounding(b)*(abs(chain%weight(1, b))*(abs(twist(1)) &
+               & + abs(twist(3)*chain%centroid(2, b))) + abs(chain%weight(2, b)) &
+               & *(abs(twist(2)) + abs(twist(3)*chain%centroid(1, b))))
             scale = scale + chain%mass(b)
          end do
       end do

@@ -77,8 +77,12 @@ contains
       call sum_loads(chain, load)
       glued = glued_energy(chain, load, watched)
       call solve_3(glued%curvature, -glued%slope, thrust%reaction)
-      thrust%elastic_motion = (2.0_wp*glued%value + dot_product(glued%slope, thrust%reaction)) &
-         & *real(m, wp)/real(size(watched), wp)/chain%whole_load
+      do j = 1, size(watched)
+         thrust%elastic_motion = thrust%elastic_motion + sum(joint_force(chain, load, &
+            & thrust%reaction, watched(j))**2)/chain%stiffness(watched(j))
+      end do
+      thrust%elastic_motion = thrust%elastic_motion*real(m, wp)/real(size(watched), wp) &
+         & /chain%whole_load
       glued = energy_t(share*glued%value, share*glued%slope, share*glued%curvature)
       call descend(chain, load, glued, watched, thrust)
       if (stride == 1) return

@@ -11,7 +11,6 @@ module dda_verdict
    private
 
    public :: verdict, verdict_enum, measure_step, judge_verdict, largest_displacement, is_felt
-   public :: is_beyond_elastic
 
    !> Answers of an analysis
    type :: verdict_enum
@@ -171,13 +170,19 @@ contains
       type(settings_t), intent(in) :: settings
       !> One of verdict
       integer :: answer
-      logical :: at_rest, all_work_is_speed, steady, most_work_is_speed
+      logical :: at_rest, far_beyond_elastic, all_work_is_speed, steady, most_work_is_speed
       logical :: goes_on, is_certain, stores_nothing
-      real(wp) :: far
+      real(wp) :: far, fall
 
       far = settings%collapse_displacement
       if (settings%current .and. .not. far > 0.0_wp) far = collapse_multiple*march%elastic_motion
       at_rest = step%acceleration <= settings%rest_tolerance*march%free_acceleration
+      fall = march%free_acceleration*step%dt**2/2.0_wp
+      ! what slides must itself have moved that far, for joints settle in their slips for a while
+      far_beyond_elastic = fall >= beyond_elastic*march%elastic_motion &
+         & .and. (step%farthest >= march%elastic_motion .or. .not. slides(step)) &
+         & .or. (step%was_cut .or. step%dt >= march%longest) &
+         & .and. fall >= beyond_any*march%elastic_motion
       all_work_is_speed = step%kinetic > 0.999_wp*step%work
       most_work_is_speed = step%kinetic > 0.9_wp*step%work
       steady = abs(step%acceleration - march%last_acceleration) < 0.01_wp*march%last_acceleration
@@ -199,27 +204,11 @@ contains
       else if (far > 0.0_wp) then
          if (march%displacement > far .and. march%steps >= 2 .and. goes_on) &
             & answer = verdict%collapsed
-      else if (march%steps >= 2 .and. is_beyond_elastic(march, step)) then
+      else if (march%steps >= 2 .and. far_beyond_elastic) then
          if (is_certain .and. (all_work_is_speed .or. steady .and. (most_work_is_speed &
             & .or. stores_nothing))) answer = verdict%collapsed
       end if
    end function judge_verdict
-
-   !> Whether a step is so long that what resists it no more is no spring
-   pure logical function is_beyond_elastic(march, step)
-      !> The march
-      type(march_t), intent(in) :: march
-      !> The step, measured
-      type(step_context_t), intent(in) :: step
-      real(wp) :: fall
-
-      fall = march%free_acceleration*step%dt**2/2.0_wp
-      ! what slides must itself have moved that far, for joints settle in their slips for a while
-      is_beyond_elastic = fall >= beyond_elastic*march%elastic_motion &
-         & .and. (step%farthest >= march%elastic_motion .or. .not. slides(step)) &
-         & .or. (step%was_cut .or. step%dt >= march%longest) &
-         & .and. fall >= beyond_any*march%elastic_motion
-   end function is_beyond_elastic
 
    !> Whether a joint slides at the end of a step
    pure logical function slides(step)

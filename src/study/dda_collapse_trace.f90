@@ -141,8 +141,9 @@ contains
          return
       end if
       if (.not. mechanism%linked) call refine_noise(family, mechanism, next, critical, noise)
-      proposal%half = max(least_half(search, critical)*abs(next), abs(noise/coarse_slope), &
-         & rest_resolution(critical, next))
+      ! the stop may be off by the one, a decision beside it by the other
+      proposal%half = max(least_half(search, critical)*abs(next), abs(noise/coarse_slope) &
+         & + rest_resolution(critical, next))
       proposal%reach = proposal%half
       if (proposal%half > search%tolerance*abs(next)) &
          & call average_root(family, mechanism, coarse_slope, critical, proposal)
