@@ -39,8 +39,6 @@ module dda_arch_chain
    type :: arch_rays_t
       !> Whether the plane of symmetry cuts a voussoir, whose left half is the last one
       logical :: keystone = .false.
-      !> Number of voussoirs of the whole arch
-      integer :: voussoirs = 0
       !> Directions of the sections from left to right: (2, m)
       real(wp), allocatable :: direction(:, :)
       !> Where they cross the circle halfway through the thickness, from its top, over the radius:
@@ -78,7 +76,6 @@ contains
       else
          call section_directions(numbers%shape, rays%direction, is_joint)
       end if
-      rays%voussoirs = merge(2, 1, numbers%halved)*(count(is_joint) - 1)
       allocate (rays%point(2, size(is_joint)))
       rays%point(1, :) = rays%direction(1, :)
       ! cos - 1
@@ -113,7 +110,6 @@ contains
 
       m = size(is_joint)
       rays%keystone = .not. is_joint(m) .or. rays%direction(1, m) < 0.0_wp
-      if (rays%keystone) rays%voussoirs = rays%voussoirs + 1
       if (rays%direction(1, m) < 0.0_wp) then
          rays%direction = reshape([rays%direction, 0.0_wp, rays%direction(2, m)], [2, m + 1])
          rays%point = reshape([rays%point, 0.0_wp, rays%point(2, m)], [2, m + 1])
@@ -198,7 +194,6 @@ contains
       chain%middle(:, n + 1) = radius*rays%point(:, last)
       chain%arm(:, 1, 1) = 0.0_wp
       chain%arm(:, 2, n + 1) = 0.0_wp
-      chain%rounding = 4.0_wp*epsilon(1.0_wp)*real(rays%voussoirs, wp)
       chain%stiffness = min(chain%stiffness, stiffest*minval(chain%stiffness))
       chain%half = thickness/2.0_wp
       chain%friction = numbers%law%friction

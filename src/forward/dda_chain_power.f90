@@ -1,12 +1,12 @@
 !> The power of the loads on a collapse of a chain whose joints keep to their faces: as smooth a
-!> function of the chain's shape as that of any blocks, but found by kinematics alone
+!> function of the chain's shape as that of any blocks, but found by statics alone
 !>
-!> The joints that open or slide make the mechanism: all blocks between two of them move as one. In
-!> another shape of the chain the openings must still close the row, from one fixed block to the
-!> other; the nearest ones that do are taken.
+!> The joints that open or slide make the mechanism. Forces in balance with the loads do as much
+!> work on its openings as the loads do on the blocks between.
 module dda_chain_power
    use dda_chain, only : chain_t
-   use dda_chain_balance, only : hold_upright, influence, solve_3
+   use dda_chain_balance, only : carry_forces, hold_upright, influence, joint_force, solve_3, &
+      & sum_loads
    use dda_friction_cone, only : apply_face, cone_t, is_stuck, joint_face_t
    use dda_kinds, only : wp
    implicit none
@@ -23,6 +23,9 @@ module dda_chain_power
       !> Openings and slip: (3, m), the largest 1
       real(wp), allocatable :: opening(:, :)
    end type chain_mechanism_t
+
+   !> Relative error of a force that is carried from joint to joint
+   real(wp), parameter :: rounding = 4.0_wp*epsilon(1.0_wp)
 
 contains
 
@@ -60,75 +63,75 @@ contains
       if (m > 0) mechanism%opening = mechanism%opening/maxval(abs(mechanism%opening))
    end subroutine freeze_mechanism
 
-   !> Power of the loads on a frozen mechanism
+   !> Power of the loads on a frozen mechanism: that of any forces in balance with them, on its
+   !> openings. The forces taken are those that least hinder it, small numbers at its joints, as the
+   !> weights times their motions are not; and openings that do not quite close the row in this
+   !> shape do no harm
    pure subroutine chain_power(mechanism, chain, power, noise, usable)
       !> The mechanism
       type(chain_mechanism_t), intent(in) :: mechanism
       !> The chain
       type(chain_t), intent(in) :: chain
-      !> Power: positive where the mechanism moves by itself
+      !> Power over the mass: positive where the mechanism moves by itself
       real(wp), intent(out) :: power
-      !> What the rounding of weights, and of motions far from where they turn, makes of it
+      !> What rounding makes of it
       real(wp), intent(out) :: noise
       !> Whether there is a mechanism
       logical, intent(out) :: usable
-      real(wp) :: opening(3, size(mechanism%joint)), twist(3), work, scale
-      integer :: b, i, last
+      real(wp) :: load(3, size(chain%half)), force(3, size(chain%half)), reaction(3), change(3)
+      real(wp) :: carried, mass
+      integer :: i, j
 
       power = 0.0_wp
       noise = 0.0_wp
       usable = size(mechanism%joint) > 0
       if (.not. usable) return
-      call close_row(mechanism, chain, opening)
-      scale = 0.0_wp
-      twist = 0.0_wp
+      call sum_loads(chain, load)
+      reaction = 0.0_wp
       do i = 1, size(mechanism%joint)
-         twist = twist + matmul(opening(:, i), influence(chain, mechanism%joint(i)))
-         last = size(chain%mass)
-         if (i < size(mechanism%joint)) last = mechanism%joint(i + 1) - 1
-         do b = mechanism%joint(i), last
-            work = chain%weight(1, b)*(twist(1) - twist(3)*chain%centroid(2, b)) &
-               & + chain%weight(2, b)*(twist(2) + twist(3)*chain%centroid(1, b))
-            power = power + work
-            noise = noise + chain%rounding(b)*(abs(chain%weight(1, b))*(abs(twist(1)) &
-               & + abs(twist(3)*chain%centroid(2, b))) + abs(chain%weight(2, b)) &
-               & *(abs(twist(2)) + abs(twist(3)*chain%centroid(1, b))))
-            scale = scale + chain%mass(b)
-         end do
+         j = mechanism%joint(i)
+         force(:, j) = joint_force(chain, load, reaction, j)
       end do
-      usable = scale > 0.0_wp
-      power = power/max(scale, tiny(1.0_wp))
-      noise = noise/max(scale, tiny(1.0_wp))
+      call find_reaction(mechanism, chain, force, reaction)
+      call carry_forces(chain, load, reaction, force)
+      call find_reaction(mechanism, chain, force, change)
+      carried = 0.0_wp
+      do j = 1, size(chain%half)
+         carried = carried + maxval(abs(chain%arm(2, :, j)))*sum(abs(force(:, j)))
+      end do
+      do i = 1, size(mechanism%joint)
+         j = mechanism%joint(i)
+         force(:, j) = force(:, j) + matmul(influence(chain, j), change)
+         power = power - dot_product(mechanism%opening(:, i), force(:, j))
+         noise = noise + sum(abs(mechanism%opening(:, i)))*carried/chain%half(j)
+      end do
+      mass = chain%mean_mass*real(size(chain%mass), wp)
+      power = power/mass
+      noise = rounding*noise/mass
    end subroutine chain_power
 
-   !> Openings nearest to the frozen ones that bring the last block where it is fixed, or to where
-   !> it stays on a plane of symmetry, upright or not
-   pure subroutine close_row(mechanism, chain, opening)
+   !> Change of the unknowns that brings the forces nearest to what the open joints let pass
+   pure subroutine find_reaction(mechanism, chain, force, change)
       !> The mechanism
       type(chain_mechanism_t), intent(in) :: mechanism
       !> The chain
       type(chain_t), intent(in) :: chain
-      !> The openings: (3, m)
-      real(wp), intent(out) :: opening(:, :)
-      real(wp) :: g(3, 3), lack(3), matrix(3, 3), multiplier(3)
-      integer :: i, pass
+      !> Forces of the joints; those of the mechanism count: (3, n + 1) [N/m]
+      real(wp), intent(in) :: force(:, :)
+      !> The change: (3) [N/m, N/m, N]
+      real(wp), intent(out) :: change(3)
+      real(wp) :: free(3, 3), g(3, 3), matrix(3, 3), slope(3)
+      integer :: i
 
-      opening = mechanism%opening
-      ! the second pass takes out what rounding left of the first
-      do pass = 1, 2
-         lack = 0.0_wp
-         matrix = 0.0_wp
-         do i = 1, size(mechanism%joint)
-            g = influence(chain, mechanism%joint(i))
-            lack = lack + matmul(opening(:, i), g)
-            matrix = matrix + matmul(transpose(g), matmul(mechanism%free(:, :, i), g))
-         end do
-         if (chain%halved) call hold_upright(lack, matrix)
-         call solve_3(matrix, lack, multiplier)
-         do i = 1, size(mechanism%joint)
-            g = influence(chain, mechanism%joint(i))
-            opening(:, i) = opening(:, i) - matmul(mechanism%free(:, :, i), matmul(g, multiplier))
-         end do
+      slope = 0.0_wp
+      matrix = 0.0_wp
+      do i = 1, size(mechanism%joint)
+         g = influence(chain, mechanism%joint(i))
+         free = matmul(mechanism%free(:, :, i), g)
+         slope = slope + matmul(force(:, mechanism%joint(i)), free)
+         matrix = matrix + matmul(transpose(g), free)
       end do
-   end subroutine close_row
+      if (chain%halved) call hold_upright(slope, matrix)
+      call solve_3(matrix, -slope, change)
+   end subroutine find_reaction
 end module dda_chain_power

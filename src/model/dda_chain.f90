@@ -24,8 +24,6 @@ module dda_chain
       real(wp), allocatable :: inertia(:)
       !> Loads at the centre: (2, n) [N/m]
       real(wp), allocatable :: weight(:, :)
-      !> Relative errors of the masses by the rounding of the corners' coordinates: (n)
-      real(wp), allocatable :: rounding(:)
       !> Middles of the joints: (2, n + 1) [m]
       real(wp), allocatable :: middle(:, :)
       !> Unit vectors from their first corners to their second ones: (2, n + 1)
@@ -62,7 +60,6 @@ contains
       type(chain_t), intent(out) :: chain
 
       allocate (chain%centroid(2, n), chain%mass(n), chain%inertia(n), chain%weight(2, n))
-      allocate (chain%rounding(n))
       allocate (chain%middle(2, n + 1), chain%tangent(2, n + 1), chain%half(n + 1))
       allocate (chain%stiffness(n + 1), chain%friction(n + 1), chain%limit(n + 1))
       allocate (chain%arm(2, 2, n + 1))
