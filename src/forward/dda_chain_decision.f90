@@ -16,13 +16,16 @@ module dda_chain_decision
    public :: decide_chain
 
    !> Free fall over elastic motion in a step, where nothing but rest keeps a chain slow
-   real(wp), parameter :: long_fall = 2.0e8_wp
+   real(wp), parameter :: long_fall = 1.0e10_wp
    !> The same once enough joints open for a mechanism, which rounding resists in long steps of a
    !> shallow arch
    real(wp), parameter :: short_fall = 1.0e5_wp
-   !> Most steps; the second is free of what the springs took in the first, and a shallow arch with
-   !> three hinges comes to rest in a few
-   integer, parameter :: most_steps = 12
+   !> Most steps; the second is free of what the springs took in the first, and a shallow arch of
+   !> many voussoirs with three hinges comes to rest in some tens
+   integer, parameter :: most_steps = 60
+   !> Chains of as many blocks that are undecided are not asked once more as any blocks: in longer
+   !> steps rounding of a shallow arch would pass for rest or collapse
+   integer, parameter :: many = 100
    !> Share of the work that is speed where springs take none
    real(wp), parameter :: all_speed = 0.999_wp
 
@@ -37,7 +40,7 @@ contains
       !> The decision, without blocks and springs; of the left half alone if the chain is halved
       type(decision_t), intent(out) :: decision
       !> Whether it counts: not where a step did not settle, nor where a structure with sliding
-      !> joints stands, for Coulomb's law has the last word there
+      !> joints stands, for Coulomb's law has the last word there; undecided if the chain is long
       logical, intent(out) :: decided
       type(chain_step_t) :: step
       type(march_t) :: march
@@ -60,13 +63,14 @@ contains
          if (abs(dt - step%dt) > 0.0_wp) call lengthen_step(chain, dt, step)
       end do
       decided = answer == verdict%collapsed &
-         & .or. answer == verdict%stable .and. .not. slides(chain, step)
+         & .or. answer == verdict%stable .and. .not. slides(chain, step) &
+         & .or. answer == verdict%undecided .and. size(chain%mass) >= many
       if (decided) call tell(settings, chain, answer, march, measured, step, decision)
    end subroutine decide_chain
 
    !> Judge a step. It began in balance but for what falls, so that it has no elastic motion to
-   !> tell from that, as the first steps of any blocks have: a mechanism whose work no spring takes
-   !> will not be stopped
+   !> tell from that, as the first steps of any blocks have: what moves so far without a spring that
+   !> takes its work, or as a mechanism, will not be stopped
    pure integer function judge(march, step, moves, settings)
       !> The march
       type(march_t), intent(in) :: march
@@ -77,14 +81,16 @@ contains
       !> Settings of the run
       type(settings_t), intent(in) :: settings
       real(wp) :: rest
+      logical :: short
 
+      short = march%free_acceleration*step%dt**2 < 4.0_wp*short_fall*march%elastic_motion
       judge = verdict%undecided
       rest = settings%rest_tolerance*march%free_acceleration
       ! what resists a mechanism is rounding, which must not pass for rest
       if (moves) rest = rest*min(1.0_wp, step%kinetic/max(step%work, tiny(rest)))
       if (step%acceleration <= rest) then
          judge = verdict%stable
-      else if (moves .and. step%kinetic > all_speed*step%work) then
+      else if (step%kinetic > all_speed*step%work .and. (moves .or. .not. short)) then
          judge = verdict%collapsed
       end if
    end function judge
@@ -204,6 +210,8 @@ contains
       decision%flow = flow_rule%associated
       associate (outcome => decision%outcome, contacts => decision%contacts)
          outcome%verdict = answer
+         if (answer == verdict%undecided) outcome%reason = &
+            & "all steps are spent and neither rest nor collapse is proven"
          outcome%rest_tolerance = settings%rest_tolerance
          outcome%acceleration_ratio = measured%acceleration/march%free_acceleration
          outcome%elastic_time = sqrt(2.0_wp*march%elastic_motion/march%free_acceleration)
