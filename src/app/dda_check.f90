@@ -195,6 +195,8 @@ contains
       if (plan%chain) then
          call tell("equations", "a chain, without pattern and contact search: each block "// &
             & "touches its two neighbours alone")
+         if (plan%halved) call tell("", "of the left half, against a plane of symmetry: "// &
+            & "the loads are upright")
       else
          call tell("equations", "those of any blocks that touch")
       end if

@@ -75,8 +75,7 @@ contains
          & size(half_joints_deg(deck)))
       family%numbers = arch_numbers(deck)
       family%numbers%body_force = unit_weight(deck)*family%settings%load_direction
-      family%numbers%halved = family%decides_chains &
-         & .and. .not. abs(family%settings%load_direction(1)) > 0.0_wp
+      family%numbers%halved = family%decides_chains .and. plan%halved
       allocate (family%joint_angle_deg, source=joint_angles_deg(deck))
    end subroutine new_family
 

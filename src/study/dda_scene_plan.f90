@@ -61,6 +61,8 @@ module dda_scene_plan
       !> Whether the blocks are a chain: rigid, unmoved, each touching its two neighbours alone,
       !> which flat arrays without pattern and search can hold
       logical :: chain = .false.
+      !> Whether the left half of the chain will do, as the loads are upright
+      logical :: halved = .false.
       !> Whether the forces of the arch that a search found to stand are computed with strain
       logical :: shared_forces = .false.
    end type scene_plan_t
@@ -118,5 +120,8 @@ contains
       plan%chain = plan%row .and. plan%unknowns == n_rigid &
          & .and. .not. (flag_of(deck, "output", "condition") &
          & .or. is_given(deck, "analysis", "collapse_displacement"))
+      plan%halved = plan%chain &
+         & .and. .not. abs(real_of(deck, "load", "gravity_direction_deg") + 90.0_wp) > 0.0_wp &
+         & .and. .not. abs(real_of(deck, "load", "horizontal_coefficient")) > 0.0_wp
    end subroutine see_chain
 end module dda_scene_plan

@@ -50,6 +50,11 @@ def test_plan_names_the_deck_and_its_title(tmp_path: Path) -> None:
         ("&search parameter = 'friction_deg' /\n", ["searched friction_deg"]),
         ("&search /\n", ["unknowns 3 a block, 108 in all: rigid", "once more with 6 unknowns"]),
         ("&output joints = .false. /\n", ["unknowns 3 a block", "none: output%joints is .false."]),
+        ("&search /\n", ["equations a chain, without pattern", "of the left half, against a plane"]),
+        (
+            "&search /\n&load horizontal_coefficient = 0.01 /\n",
+            ["each block touches its two neighbours alone velocities"],
+        ),
         ("&arch /\n", ["unknowns 6 a block, 216 in all: strain, for it shares out the forces"]),
         ("&analysis unknowns = 6 /\n", ["unknowns 6 a block, 216 in all: the deck gives"]),
         ("&analysis geometry = 'current' /\n", ["6 a block, 216 in all: strain, for it moves"]),
