@@ -49,7 +49,7 @@ contains
       integer :: answer
 
       decided = .false.
-      call begin_march(settings, chain, march, step)
+      call begin_march(chain, march, step)
       answer = verdict%undecided
       do while (march%steps < min(most_steps, settings%max_steps))
          march%steps = march%steps + 1
@@ -120,9 +120,7 @@ contains
    end function slides
 
    !> Scales, first forces, faces and length
-   pure subroutine begin_march(settings, chain, march, step)
-      !> Settings of the run
-      type(settings_t), intent(in) :: settings
+   pure subroutine begin_march(chain, march, step)
       !> The chain
       type(chain_t), intent(in) :: chain
       !> The march

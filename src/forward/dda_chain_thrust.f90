@@ -73,7 +73,7 @@ contains
 
       m = size(chain%half)
       stride = 1 + m/coarse
-      watched = [(j, j=1, m - 1, stride), m]
+      allocate (watched, source=[(j, j=1, m - 1, stride), m])
       call sum_loads(chain, load)
       glued = glued_energy(chain, load, watched)
       call solve_3(glued%curvature, -glued%slope, thrust%reaction)

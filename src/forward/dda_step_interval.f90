@@ -15,7 +15,7 @@ module dda_step_interval
    private
 
    public :: first_interval, judge_step, next_interval, largest_motion
-   public :: longest_static_step, static_growth
+   public :: longest_static_step
 
    !> Free fall in the first static step over the elastic motion
    real(wp), parameter :: first_fall = 1.0e2_wp
