@@ -138,7 +138,7 @@ contains
       type(chain_t), intent(in) :: chain
       !> The step
       type(chain_step_t), intent(inout) :: step
-      real(wp) :: change(3)
+      real(wp) :: before(3), now(3)
       integer :: j, n
 
       n = size(chain%mass)
@@ -151,14 +151,11 @@ contains
       step%motion = step%load
       do j = 1, n + 1
          if (step%stuck(j) .and. .not. step%was_loose(j)) cycle
-         change = -step%start(:, j)
-         if (step%was_loose(j)) change = -step%held(:, j)
-         if (step%stuck(j)) then
-            change = change + step%start(:, j)
-         else
-            change = change + held_force(chain, step%face(j), step%start(:, j), j)
-         end if
-         call push(chain, j, change, step%motion)
+         before = step%start(:, j)
+         if (step%was_loose(j)) before = step%held(:, j)
+         now = step%start(:, j)
+         if (.not. step%stuck(j)) now = held_force(chain, step%face(j), now, j)
+         call push(chain, j, now - before, step%motion)
       end do
       call substitute_chain(step%factor, step%motion, step%work)
    end subroutine solve_motion

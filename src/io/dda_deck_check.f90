@@ -8,7 +8,7 @@ module dda_deck_check
    use dda_deck, only : deck_t, deck_place_t, parameter_t, deck_error, &
       integer_of, word_of, text_of, is_given, has_group, place_of
    use dda_deck_parameter, only : find_parameter, parameter_name
-   use dda_deck_sweep, only : n_cases, set_case
+   use dda_deck_sweep, only : n_cases, turn_to_case
    use dda_deck_check_case, only : check_case, bracket_of
    implicit none
    private
@@ -227,9 +227,8 @@ contains
             deck%sweep(size(deck%sweep))%place)
          return
       end if
-      work = deck
       do number = 1, n
-         call set_case(work, number, error)
+         call turn_to_case(deck, number, work, error)
          if (.not. allocated(error)) call check_case(work, searched, error)
          if (.not. allocated(error)) cycle
          if (n > 1) error%message = error%message//" (case "//to_text(number)//")"

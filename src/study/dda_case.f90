@@ -88,14 +88,15 @@ contains
       this%deck = deck
       this%restart_file = file_beside(deck, text_of(deck, "analysis", "restart"))
       this%plan = plan_scene(deck)
+      searched = searched_name(deck)
       this%searches = has_group(deck, "search")
       this%limerick = word_of(deck, "analysis", "mode") == "limerick"
       if (this%searches) then
-         call prepare_search(deck, this%family, this%search)
+         call prepare_search(deck, this%plan, searched, this%family, this%search)
       else
-         call new_family(deck, parameter_t(key=key_index("arch", "thickness_ratio")), this%family)
+         call new_family(deck, this%plan, parameter_t(key=key_index("arch", "thickness_ratio")), &
+            & this%family)
       end if
-      searched = searched_name(deck)
       this%exact_known = (searched == "" .or. searched == "thickness_ratio") &
          & .and. word_of(deck, "scene", "kind") == "arch"
    end subroutine prepare_case
@@ -293,9 +294,13 @@ contains
    end function searched_name
 
    !> What a deck asks to be searched
-   pure subroutine prepare_search(deck, family, search)
+   pure subroutine prepare_search(deck, plan, searched, family, search)
       !> The deck of the case
       type(deck_t), intent(in) :: deck
+      !> What its scenes need
+      type(scene_plan_t), intent(in) :: plan
+      !> Name of the searched parameter
+      character(len=*), intent(in) :: searched
       !> Its scenes
       type(deck_family_t), intent(out) :: family
       !> The search
@@ -304,7 +309,7 @@ contains
       character(len=:), allocatable :: problem
 
       call find_parameter(text_of(deck, "search", "parameter"), parameter, problem)
-      call new_family(deck, parameter, family)
+      call new_family(deck, plan, parameter, family)
       call search_bracket(deck, search%low, search%high)
       search%tolerance = real_of(deck, "search", "tolerance")
       ! the original's own verdicts near the limit are no sharper
@@ -312,7 +317,7 @@ contains
          & .and. .not. is_given(deck, "search", "tolerance")) search%tolerance = 1.0e-4_wp
       if (word_of(deck, "scene", "kind") == "arch") search%resolution = arch_resolution(deck)
       search%start = search%low
-      if (searched_name(deck) /= "thickness_ratio") return
+      if (searched /= "thickness_ratio") return
       search%resolution_at = real_of(deck, "arch", "thickness_ratio")
       if (family%decides_chains) then
          search%resolution = chain_resolution(deck)

@@ -18,7 +18,7 @@ module dda_deck_scene
    use dda_read_deck, only : geometry_file
    use dda_restart, only : check_restart
    use dda_scene, only : family_t, scene_t
-   use dda_scene_plan, only : plan_scene, scene_plan_t
+   use dda_scene_plan, only : scene_plan_t
    use dda_settings, only : settings_t
    use dda_text, only : to_text
    use dda_warnings, only : add_warning
@@ -56,18 +56,18 @@ module dda_deck_scene
 contains
 
    !> The family of a deck, its numbers read
-   pure subroutine new_family(deck, parameter, family)
+   pure subroutine new_family(deck, plan, parameter, family)
       !> The deck of one case
       type(deck_t), intent(in) :: deck
+      !> What its scenes need
+      type(scene_plan_t), intent(in) :: plan
       !> The parameter that varies
       type(parameter_t), intent(in) :: parameter
       !> The family
       type(deck_family_t), intent(out) :: family
-      type(scene_plan_t) :: plan
 
       family%deck = deck
       family%parameter = parameter
-      plan = plan_scene(deck)
       family%chains = plan%row .and. parameter%key == key_index("arch", "thickness_ratio")
       family%decides_chains = family%chains .and. plan%chain
       if (.not. family%chains) return
