@@ -1,0 +1,112 @@
+!> Joints between blocks as flat arrays on a graph: blocks are its nodes, joints its edges
+!>
+!> A joint carries two normal forces N1, N2 at its corners and one shear force T; forces that push
+!> the blocks apart are positive. Its three rows are at once how it opens and slips when the blocks
+!> move, and how its forces act on them:
+!>
+!>    (opening 1, opening 2, slip) = sum over both blocks of row' * motion
+!>    force on block s             = sum over k of row(:, k, s) * force(k)
+!>
+!> Nothing here knows polygons, materials or time: arches, walls, rings and slopes are one thing.
+module dda_joint_graph
+   use dda_kinds, only : wp
+   implicit none
+   private
+
+   public :: joint_graph_t, joint_kind, joint_kind_enum
+   public :: joint_motion, add_joint_forces
+
+   !> What a joint can carry
+   type :: joint_kind_enum
+      !> Two corners: N1 >= 0, N2 >= 0, |T| <= friction*(N1 + N2)
+      integer :: contact = 1
+      !> Two corners that cannot slide: N1 >= 0, N2 >= 0, any T
+      integer :: no_slip = 2
+      !> One corner: N1 >= 0, |T| <= friction*N1, N2 = 0
+      integer :: corner = 3
+      !> One corner that cannot slide: N1 >= 0, any T, N2 = 0
+      integer :: corner_no_slip = 4
+      !> A held point: any N1 and any T, N2 = 0
+      integer :: pin = 5
+      !> A plane of symmetry: any N1 and N2, T = 0
+      integer :: mirror = 6
+   end type joint_kind_enum
+
+   !> Names of the kinds
+   type(joint_kind_enum), parameter :: joint_kind = joint_kind_enum()
+
+   !> Joints of an assembly
+   type :: joint_graph_t
+      !> Number of blocks that can move
+      integer :: n_block = 0
+      !> Unknowns of a block: 3, or 6 with strain
+      integer :: n_dof = 3
+      !> The two blocks of each joint, 0 for one that cannot move: (2, n_joint)
+      integer, allocatable :: block(:, :)
+      !> Opening at corner 1, at corner 2, and slip by unit motion of each block:
+      !> (n_dof, 3, 2, n_joint) [1, 1, m ...]
+      real(wp), allocatable :: row(:, :, :, :)
+      !> What each joint can carry, one of joint_kind: (n_joint)
+      integer, allocatable :: kind(:)
+      !> Coefficient of friction; 0 without: (n_joint)
+      real(wp), allocatable :: friction(:)
+      !> Length of the joint: (n_joint) [m]
+      real(wp), allocatable :: length(:)
+      !> Displacement by unit force at corner 1, corner 2 and along the joint: (3, n_joint) [m2/N]
+      real(wp), allocatable :: compliance(:, :)
+      !> Opening of the corners where nothing has moved: (2, n_joint) [m]
+      real(wp), allocatable :: gap(:, :)
+      !> Mass and moment of inertia of each block, for motion damped by mass: (n_dof, n_block)
+      real(wp), allocatable :: mass(:, :)
+   end type joint_graph_t
+
+contains
+
+   !> Opening at both corners and slip of every joint
+   pure subroutine joint_motion(graph, motion, opening)
+      !> The joints
+      type(joint_graph_t), intent(in) :: graph
+      !> Motion of the blocks: (n_dof, n_block)
+      real(wp), intent(in) :: motion(:, :)
+      !> Opening 1, opening 2, slip: (3, n_joint)
+      real(wp), intent(out) :: opening(:, :)
+      integer :: b, d, j, k, side
+      real(wp) :: sum
+
+      do j = 1, size(graph%block, 2)
+         opening(:, j) = 0.0_wp
+         do side = 1, 2
+            b = graph%block(side, j)
+            if (b == 0) cycle
+            do k = 1, 3
+               sum = opening(k, j)
+               do d = 1, graph%n_dof
+                  sum = sum + graph%row(d, k, side, j)*motion(d, b)
+               end do
+               opening(k, j) = sum
+            end do
+         end do
+      end do
+   end subroutine joint_motion
+
+   !> Add what joint forces do to the blocks
+   pure subroutine add_joint_forces(graph, force, load)
+      !> The joints
+      type(joint_graph_t), intent(in) :: graph
+      !> N1, N2, T of each joint: (3, n_joint) [N/m]
+      real(wp), intent(in) :: force(:, :)
+      !> Forces on the blocks, to which theirs are added: (n_dof, n_block) [N/m, N/m, N ...]
+      real(wp), intent(inout) :: load(:, :)
+      integer :: b, j, k, side
+
+      do j = 1, size(graph%block, 2)
+         do side = 1, 2
+            b = graph%block(side, j)
+            if (b == 0) cycle
+            do k = 1, 3
+               load(:, b) = load(:, b) + graph%row(:, k, side, j)*force(k, j)
+            end do
+         end do
+      end do
+   end subroutine add_joint_forces
+end module dda_joint_graph
