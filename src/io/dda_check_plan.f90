@@ -62,10 +62,7 @@ contains
          return
       end if
       moments = area_moments(vertex)
-      if (moments%area < 0.0_wp) then
-         vertex = vertex(:, size(vertex, 2):1:-1)
-         call warn(plan, line, block_name(plan)//": clockwise corners are turned")
-      end if
+      if (moments%area < 0.0_wp) vertex = vertex(:, size(vertex, 2):1:-1)
       perimeter = sum(norm2(cshift(vertex, 1, dim=2) - vertex, dim=1))
       if (.not. 2.0_wp*abs(moments%area) > too_thin*extent*perimeter) then
          call fatal_error(error, "wanted a block with an area, "//block_name(plan) &

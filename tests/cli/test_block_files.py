@@ -47,14 +47,21 @@ def test_nothing_fixed_is_warned_of(tmp_path: Path) -> None:
 
 
 def test_warnings_name_file_and_line(tmp_path: Path) -> None:
-    clockwise = "block\n0 0\n0 2\n1 2\n1 0\n"
-    deck = write(tmp_path, BASE + clockwise)
+    twice = "block\n0 0\n0 0\n1 0\n1 2\n0 2\n"
+    deck = write(tmp_path, BASE + twice)
     for command in ("check", "run"):
         done = run_dda(command, deck, cwd=tmp_path)
         assert done.returncode == 0
         assert done.stderr.splitlines()[0].endswith(
-            "x.blocks:6: warning: block 2: clockwise corners are turned"
+            "x.blocks:6: warning: block 2: corners given twice are merged"
         )
+
+
+def test_corners_may_run_either_way_and_nothing_is_said(tmp_path: Path) -> None:
+    clockwise = "block\n0 0\n0 2\n1 2\n1 0\n"
+    for text in (BASE + BLOCK, BASE + clockwise):
+        done = run_dda("run", write(tmp_path, text), "--out", tmp_path / str(len(text)))
+        assert done.returncode == 0 and done.stderr == ""
 
 
 @pytest.mark.parametrize(
