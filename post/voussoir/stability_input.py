@@ -103,7 +103,7 @@ def _supports() -> Iterator[Scene]:
     yield _blocks("a held point outside", BASE + _BLOCK + "fix 5 5\n", Refused("lies in none"))
     led = "fix 0.5 0.5\ndisplacement 0.5 0.5 0.1 0\n"
     yield _blocks("a held point that is led", BASE + _BLOCK + led, Refused("held"))
-    pinned = BASE + _BLOCK + "fix 0 0\nfix 1 0\n"
+    pinned = BASE + _BLOCK + "fix block 2 0 0\nfix block 2 1 0\n"
     yield _blocks("a block held twice", pinned, Verdict("stable"))
     up = {"gravity_direction_deg": 90.0}
     yield _blocks("no weight, static", BASE + _BLOCK, Refused("gravity"), **_weightless())

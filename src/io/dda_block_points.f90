@@ -1,15 +1,16 @@
 !> Points of a file of blocks, and what acts on them in time
 module dda_block_points
-   use dda_block_input, only : block_at, block_plan_t
+   use dda_block_input, only : block_at, block_plan_t, holds_point, rivals_at
    use dda_block_lines, only : entry_t, take_numbers
    use dda_boundary, only : held_point_t, history_t, loaded_point_t, measured_point_t
+   use dda_check_plan, only : warn
    use dda_deck_token, only : shown
    use dda_error, only : error_t, fatal_error
    use dda_ground_motion, only : acceleration_of_displacement, acceleration_of_velocity
    use dda_held_paths, only : contradicts
    use dda_kinds, only : wp
    use dda_polygon, only : parts_inside
-   use dda_text, only : to_text
+   use dda_text, only : read_integer, to_text
    implicit none
    private
 
@@ -131,13 +132,11 @@ contains
       type(error_t), allocatable, intent(out) :: error
       type(history_t) :: history
       type(held_point_t) :: held
-      real(wp) :: point(2), value(2)
-      integer :: block, i
+      real(wp) :: value(2)
+      integer :: i
       logical :: has_value
 
-      i = 1
-      point = 0.0_wp
-      call take_numbers(entry%head, i, point, error)
+      call take_place(entry, plan, i, held%block, held%point, error)
       if (allocated(error)) return
       has_value = entry%n_column == 3 .and. entry%head%n >= i
       if (has_value) then
@@ -147,16 +146,6 @@ contains
       if (allocated(error)) return
       if (entry%n_column == 3) call read_history(entry, has_value, value, history, error)
       if (allocated(error)) return
-      point = point - plan%origin
-      block = block_at(plan, point)
-      if (block == 0) then
-         call fatal_error(error, "wanted a point of a block, found (" &
-            & //to_text(point(1) + plan%origin(1))//", "//to_text(point(2) + plan%origin(2)) &
-            & //"), which lies in none", line=entry%head%number)
-         return
-      end if
-      held%block = block
-      held%point = point
       held%path = history
       if (entry%head%word(1) == "fix") then
          call take_directions(entry, i, held%along, error)
@@ -170,12 +159,86 @@ contains
          case ("fix", "displacement")
             call add_held(entry, held, plan, error)
          case ("load")
-            call keep_load(boundary%loaded, block, point, history)
+            call keep_load(boundary%loaded, held%block, held%point, history)
          case ("measure")
-            boundary%measured = [boundary%measured, measured_point_t(block, point)]
+            boundary%measured = [boundary%measured, measured_point_t(held%block, held%point)]
          end select
       end associate
    end subroutine take_point
+
+   !> Read where a point is: [block N] x y; without a number it belongs to the block that holds it
+   pure subroutine take_place(entry, plan, i, block, point, error)
+      !> The entry
+      type(entry_t), intent(in) :: entry
+      !> The blocks; receives a warning where several hold the point
+      type(block_plan_t), intent(inout) :: plan
+      !> Place of the word after the coordinates
+      integer, intent(out) :: i
+      !> Number of its block
+      integer, intent(out) :: block
+      !> The point, seen from the origin of the plan: (2) [m]
+      real(wp), intent(out) :: point(2)
+      !> A block that is not there, or a point outside it
+      type(error_t), allocatable, intent(out) :: error
+      character(len=:), allocatable :: shown_point
+      logical :: ok
+
+      i = 1
+      block = 0
+      point = 0.0_wp
+      if (entry%head%word(2) == "block") then
+         call read_integer(trim(entry%head%word(3)), block, ok)
+         if (ok) ok = block >= 1 .and. block <= size(plan%fixed)
+         if (.not. ok) then
+            call fatal_error(error, "expected the number of a block from 1 to " &
+               & //to_text(size(plan%fixed))//", got '"//shown(trim(entry%head%word(3)))//"'", &
+               & line=entry%head%number)
+            return
+         end if
+         i = 3
+      end if
+      call take_numbers(entry%head, i, point, error)
+      if (allocated(error)) return
+      point = point - plan%origin
+      shown_point = "("//to_text(point(1) + plan%origin(1))//", " &
+         & //to_text(point(2) + plan%origin(2))//")"
+      if (block == 0) then
+         block = block_at(plan, point)
+         if (block == 0) then
+            call fatal_error(error, "expected a point of a block, got "//shown_point &
+               & //", which lies in none", line=entry%head%number)
+         else
+            call warn_of_rivals(entry, plan, block, rivals_at(plan, point, block))
+         end if
+      else if (.not. holds_point(plan, block, point)) then
+         call fatal_error(error, "expected a point of block "//to_text(block)//", got " &
+            & //shown_point//", which lies outside it", line=entry%head%number)
+      end if
+   end subroutine take_place
+
+   !> Warn of a point that lies on several blocks, and name them
+   pure subroutine warn_of_rivals(entry, plan, block, rival)
+      !> The entry
+      type(entry_t), intent(in) :: entry
+      !> Receives the warning
+      type(block_plan_t), intent(inout) :: plan
+      !> The block that the point belongs to
+      integer, intent(in) :: block
+      !> The others: (n)
+      integer, intent(in) :: rival(:)
+      character(len=:), allocatable :: others
+      integer :: k
+
+      if (size(rival) == 0) return
+      others = to_text(rival(1))
+      do k = 2, min(size(rival), 3)
+         others = others//", "//to_text(rival(k))
+      end do
+      if (size(rival) > 3) others = others//" and others"
+      call warn(plan, entry%head%number, "the point lies on block "//to_text(block) &
+         & //", which it is taken for, and on block "//others//"; write '" &
+         & //trim(entry%head%word(1))//" block N x y' to say which")
+   end subroutine warn_of_rivals
 
    !> Directions in which something is held: both, or the one that is named
    pure subroutine take_directions(entry, i, along, error)

@@ -10,7 +10,7 @@ module dda_check_plan
    implicit none
    private
 
-   public :: add_plan_block, check_plan
+   public :: add_plan_block, check_plan, warn
 
    !> Corners nearer than this share of a block's extent are one
    real(wp), parameter :: same_corner = 1.0e-8_wp

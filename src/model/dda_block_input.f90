@@ -6,7 +6,8 @@ module dda_block_input
    implicit none
    private
 
-   public :: block_plan_t, material_plan_t, law_plan_t, new_plan, block_at, unsupported_block
+   public :: block_plan_t, material_plan_t, law_plan_t, new_plan, block_at
+   public :: holds_point, rivals_at, unsupported_block
 
    !> What a file says of a material; what it leaves out is that of the deck
    type :: material_plan_t
@@ -75,29 +76,101 @@ contains
       allocate (plan%warning(0), plan%warning_line(0))
    end subroutine new_plan
 
-   !> Block that holds a point or has it on its outline; 0 if none does
+   !> Block that holds a point most deeply or has it on its outline; 0 if none does
    pure integer function block_at(plan, point)
       !> The plan
       type(block_plan_t), intent(in) :: plan
       !> The point, seen from the origin of the plan: (2) [m]
       real(wp), intent(in) :: point(2)
-      real(wp) :: deepest, depth, margin
+      real(wp) :: deepest, depth
       integer :: b
 
       block_at = 0
       deepest = -huge(deepest)
       do b = 1, size(plan%fixed)
-         associate (vertex => plan%vertex(:, plan%first_vertex(b):plan%first_vertex(b + 1) - 1))
-            margin = rounded*norm2(maxval(vertex, dim=2) - minval(vertex, dim=2))
-            if (any(point < minval(vertex, dim=2) - margin)) cycle
-            if (any(point > maxval(vertex, dim=2) + margin)) cycle
-            depth = depth_in(vertex, point)
-            if (depth < -margin .or. .not. depth > deepest) cycle
-         end associate
+         depth = depth_of(plan, b, point)
+         if (depth < -margin_of(plan, b) .or. .not. depth > deepest) cycle
          deepest = depth
          block_at = b
       end do
    end function block_at
+
+   !> Blocks that have a point on their outlines together with a block, as far as rounding tells
+   pure function rivals_at(plan, point, block) result(rival)
+      !> The plan
+      type(block_plan_t), intent(in) :: plan
+      !> The point, seen from the origin of the plan: (2) [m]
+      real(wp), intent(in) :: point(2)
+      !> The block, which holds it
+      integer, intent(in) :: block
+      !> The others: (n)
+      integer, allocatable :: rival(:)
+      real(wp) :: depth
+      integer :: b
+
+      depth = depth_of(plan, block, point)
+      if (depth > margin_of(plan, block)) then
+         allocate (rival(0))
+      else
+         rival = pack([(b, b=1, size(plan%fixed))], [(b /= block .and. is_rival(b), &
+            & b=1, size(plan%fixed))])
+      end if
+
+   contains
+
+      !> Whether a block has the point on its outline, too
+      pure logical function is_rival(b)
+         !> Number of the block
+         integer, intent(in) :: b
+         real(wp) :: margin
+
+         margin = min(margin_of(plan, b), margin_of(plan, block))
+         is_rival = depth <= margin .and. depth_of(plan, b, point) >= -margin
+      end function is_rival
+   end function rivals_at
+
+   !> Whether a block holds a point or has it on its outline
+   pure logical function holds_point(plan, b, point)
+      !> The plan
+      type(block_plan_t), intent(in) :: plan
+      !> Number of the block
+      integer, intent(in) :: b
+      !> The point, seen from the origin of the plan: (2) [m]
+      real(wp), intent(in) :: point(2)
+
+      holds_point = depth_of(plan, b, point) >= -margin_of(plan, b)
+   end function holds_point
+
+   !> How deep a point lies in a block, negative outside; far outside its box only that it does [m]
+   pure real(wp) function depth_of(plan, b, point)
+      !> The plan
+      type(block_plan_t), intent(in) :: plan
+      !> Number of the block
+      integer, intent(in) :: b
+      !> The point, seen from the origin of the plan: (2) [m]
+      real(wp), intent(in) :: point(2)
+      real(wp) :: margin
+
+      depth_of = -huge(depth_of)
+      margin = margin_of(plan, b)
+      associate (vertex => plan%vertex(:, plan%first_vertex(b):plan%first_vertex(b + 1) - 1))
+         if (any(point < minval(vertex, dim=2) - margin)) return
+         if (any(point > maxval(vertex, dim=2) + margin)) return
+         depth_of = depth_in(vertex, point)
+      end associate
+   end function depth_of
+
+   !> How far outside a block a point may lie that is still on its outline [m]
+   pure real(wp) function margin_of(plan, b)
+      !> The plan
+      type(block_plan_t), intent(in) :: plan
+      !> Number of the block
+      integer, intent(in) :: b
+
+      associate (vertex => plan%vertex(:, plan%first_vertex(b):plan%first_vertex(b + 1) - 1))
+         margin_of = rounded*norm2(maxval(vertex, dim=2) - minval(vertex, dim=2))
+      end associate
+   end function margin_of
 
    !> The first movable block that no chain of joints ties to a fixed one; 0 if there is none
    pure integer function unsupported_block(fixed, pair)

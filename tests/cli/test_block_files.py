@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+import math
 from pathlib import Path
 
 import pytest
@@ -64,6 +65,31 @@ def test_corners_may_run_either_way_and_nothing_is_said(tmp_path: Path) -> None:
         assert done.returncode == 0 and done.stderr == ""
 
 
+@pytest.mark.parametrize("share, verdict", [(0.99, "stable"), (1.01, "collapsed")])
+def test_a_load_on_a_joint_acts_on_the_block_that_is_named(
+    tmp_path: Path, share: float, verdict: str
+) -> None:
+    """A block of weight 2 w slides under a force of 2 w tan(friction) at its foot; its base does not."""
+    force = share * 2.0 * 25000.0 * math.tan(math.radians(20.0))
+    groups = "&material unit_weight = 25000.0 /\n&joint friction_deg = 20 /"
+    on_block = write(tmp_path, BASE + BLOCK + f"load block 2 0 0 {force!r} 0\n", groups)
+    done = run_dda("run", on_block, "--out", tmp_path / "out")
+    assert done.stderr == "" and table(tmp_path / "out/results.csv")[0]["verdict"] == verdict
+    on_base = write(tmp_path, BASE + BLOCK + f"load block 1 0 0\n0 {force!r} 0\n", groups)
+    done = run_dda("run", on_base, "--out", tmp_path / "out")
+    assert done.stderr == "" and table(tmp_path / "out/results.csv")[0]["verdict"] == "stable"
+
+
+def test_a_load_on_a_joint_without_a_block_is_warned_of(tmp_path: Path) -> None:
+    deck = write(tmp_path, BASE + BLOCK + "load 0 0 1 0\n")
+    for command in ("check", "run"):
+        (message,) = run_dda(command, deck, cwd=tmp_path).stderr.splitlines()
+        assert message.endswith(
+            "x.blocks:11: warning: the point lies on block 1, which it is taken for, and on block 2; "
+            "write 'load block N x y' to say which"
+        )
+
+
 @pytest.mark.parametrize(
     "blocks, line, words",
     [
@@ -73,6 +99,8 @@ def test_corners_may_run_either_way_and_nothing_is_said(tmp_path: Path) -> None:
         (BASE + "block\n0 -0.8\n1 -0.8\n1 -0.2\n", 6, "block 2 lies inside block 1"),
         (BASE + "block\n0 0\n1 1\n1 0\n0 1\n", 6, "its edges 1 and 3 meet at"),
         (BASE + BLOCK + "fix 5 5\n", 11, "lies in none"),
+        (BASE + BLOCK + "load block 2 0.5 -0.5 1 0\n", 11, "(0.5, -0.5), which lies outside it"),
+        (BASE + BLOCK + "load block 3 0.5 0.5 1 0\n", 11, "a block from 1 to 2, got '3'"),
         (BASE + BLOCK + "material 2 density 0\n", 11, "above 0"),
         (BASE + BLOCK.replace("1 2", "1,5 2"), 9, "a corner x y"),
         (BASE + BLOCK + "fix 0.5 1\ndisplacement 0.5 1 0.1 0\n", 12, "held or led already"),
