@@ -1,6 +1,6 @@
 !> dda check: read and check decks, say what would be computed
 module dda_check
-   use, intrinsic :: iso_fortran_env, only : error_unit, output_unit
+   use, intrinsic :: iso_fortran_env, only : error_unit
    use dda_boundary, only : boundary_t
    use dda_command_line, only : command_t, name_of
    use dda_deck, only : deck_t, flag_of, has_group, integer_of, text_of, word_of
@@ -14,6 +14,7 @@ module dda_check
    use dda_read_deck, only : read_deck
    use dda_scene, only : scene_t
    use dda_scene_plan, only : plan_scene, scene_plan_t, strain_reason
+   use dda_screen, only : print_line, screen_t
    use dda_text, only : to_text
    implicit none
    private
@@ -44,13 +45,15 @@ contains
             do w = 1, size(deck%plan%warning)
                write (error_unit, "(a)") warning_line(deck, w)
             end do
-            call print_plan(name_of(command, i), deck)
+            call print_plan(command%screen, name_of(command, i), deck)
          end if
       end do
    end subroutine check_decks
 
    !> Print what a deck's cases are made of
-   subroutine print_plan(name, deck)
+   subroutine print_plan(screen, name, deck)
+      !> Where it goes
+      type(screen_t), intent(in) :: screen
       !> Name of the deck
       character(len=*), intent(in) :: name
       !> The deck, checked
@@ -72,30 +75,31 @@ contains
             swept = swept//" "//trim(names(s))
          end do
       end associate
-      write (output_unit, "(a)") name//": "//text_of(deck, "scene", "title")
-      call tell("cases", to_text(n_cases(deck)))
-      if (swept /= "") call tell("swept", swept(2:))
+      call print_line(screen, name//": "//text_of(deck, "scene", "title"))
+      call tell(screen, "cases", to_text(n_cases(deck)))
+      if (swept /= "") call tell(screen, "swept", swept(2:))
       if (has_group(deck, "search")) then
-         call tell("searched", text_of(deck, "search", "parameter"))
+         call tell(screen, "searched", text_of(deck, "search", "parameter"))
       else
-         call tell("searched", "nothing: each case is decided as it is")
+         call tell(screen, "searched", "nothing: each case is decided as it is")
       end if
       if (allocated(deck%cut)) call check_lines(deck, error)
-      if (allocated(error)) call tell("not to run", error%message)
-      write (output_unit, "(a)") "   the first case:"
+      if (allocated(error)) call tell(screen, "not to run", error%message)
+      call print_line(screen, "   the first case:")
       if (word_of(first, "analysis", "mode") == "limerick") then
-         call print_limerick_plan(first)
+         call print_limerick_plan(screen, first)
          return
       end if
-      call tell("blocks", to_text(blocks)//" that move, "//to_text(size(scene%system%equation) &
+      call tell(screen, "blocks", &
+         & to_text(blocks)//" that move, "//to_text(size(scene%system%equation) &
          & - blocks)//trim(merge(" fixed springings", " held            ", arch)))
-      call tell("joints", joints_text(scene))
-      call tell("strength", merge("cohesion or tension, until a joint breaks", &
+      call tell(screen, "joints", joints_text(scene))
+      call tell(screen, "strength", merge("cohesion or tension, until a joint breaks", &
          & "none: friction alone                     ", any(scene%contacts%springs%shift > 0.0) &
          & .or. any(scene%contacts%joint%law%cohesion > 0.0)))
-      call tell("points", points_text(scene%settings%boundary))
-      call print_parts(first, blocks)
-      call tell("also told", tables_text(first))
+      call tell(screen, "points", points_text(scene%settings%boundary))
+      call print_parts(screen, first, blocks)
+      call tell(screen, "also told", tables_text(first))
    end subroutine print_plan
 
    !> The points that are held, loaded and measured
@@ -137,7 +141,9 @@ contains
    end function tables_text
 
    !> Print what a case of the original's scheme is made of
-   subroutine print_limerick_plan(deck)
+   subroutine print_limerick_plan(screen, deck)
+      !> Where it goes
+      type(screen_t), intent(in) :: screen
       !> The deck of the case
       type(deck_t), intent(in) :: deck
       type(limerick_model_t) :: model
@@ -146,17 +152,20 @@ contains
       call limerick_scene(deck, model)
       n = size(model%block_material)
       if (allocated(deck%cut)) then
-         call tell("blocks", to_text(n)//", held at "//to_text(size(model%fixed_block))//" points")
+         call tell(screen, "blocks", &
+            & to_text(n)//", held at "//to_text(size(model%fixed_block))//" points")
       else
-         call tell("blocks", to_text(n - 2)//" and 2 abutments, each held at 4 points")
+         call tell(screen, "blocks", to_text(n - 2)//" and 2 abutments, each held at 4 points")
       end if
-      call tell("half size", to_text(half_size(model))//" m: what penetration, opening and "// &
+      call tell(screen, "half size", &
+         & to_text(half_size(model))//" m: what penetration, opening and "// &
          & "motion are compared with")
-      call tell("contacts", "a vertex and an edge, or two corners; sought anew in each step")
-      call tell("unknowns", "6 a block, "//to_text(6*n)//" in all")
-      call tell("penalty", merge("follows the penetration, up or down", &
+      call tell(screen, "contacts", &
+         & "a vertex and an edge, or two corners; sought anew in each step")
+      call tell(screen, "unknowns", "6 a block, "//to_text(6*n)//" in all")
+      call tell(screen, "penalty", merge("follows the penetration, up or down", &
          & "fixed                              ", model%constants%auto_penalty))
-      call tell("velocities", merge("kept                            ", &
+      call tell(screen, "velocities", merge("kept                            ", &
          & "none: every step starts at rest ", model%constants%dynamic))
    end subroutine print_limerick_plan
 
@@ -182,7 +191,9 @@ contains
    end function joints_text
 
    !> Print which parts of the method a case needs, and why
-   subroutine print_parts(deck, blocks)
+   subroutine print_parts(screen, deck, blocks)
+      !> Where it goes
+      type(screen_t), intent(in) :: screen
       !> The deck of the case
       type(deck_t), intent(in) :: deck
       !> Blocks that move
@@ -190,30 +201,35 @@ contains
       type(scene_plan_t) :: plan
 
       plan = plan_scene(deck)
-      call tell("unknowns", to_text(plan%unknowns)//" a block, "//to_text(plan%unknowns*blocks) &
+      call tell(screen, "unknowns", &
+         & to_text(plan%unknowns)//" a block, "//to_text(plan%unknowns*blocks) &
          & //" in all: "//trim(why(plan%reason)))
       if (plan%chain) then
-         call tell("equations", "a chain, without pattern and contact search: each block "// &
+         call tell(screen, "equations", &
+            & "a chain, without pattern and contact search: each block "// &
             & "touches its two neighbours alone")
-         if (plan%halved) call tell("", "of the left half, against a plane of symmetry: "// &
+         if (plan%halved) call tell(screen, "", &
+            & "of the left half, against a plane of symmetry: "// &
             & "the loads are upright")
       else
-         call tell("equations", "those of any blocks that touch")
+         call tell(screen, "equations", "those of any blocks that touch")
       end if
-      call tell("velocities", trim(merge("kept: mode is dynamic                          ", &
+      call tell(screen, "velocities", &
+         & trim(merge("kept: mode is dynamic                          ", &
          & "none: every step starts at rest, mode is static", plan%velocities)))
       if (plan%shared_forces) then
-         call tell("joints.csv", "forces of the arch found to stand once more with 6 unknowns, "// &
+         call tell(screen, "joints.csv", &
+            & "forces of the arch found to stand once more with 6 unknowns, "// &
             & "for strain shares them out")
       else if (flag_of(deck, "output", "joints")) then
-         call tell("joints.csv", "forces of the decision itself")
+         call tell(screen, "joints.csv", "forces of the decision itself")
       else
-         call tell("joints.csv", "none: output%joints is .false.")
+         call tell(screen, "joints.csv", "none: output%joints is .false.")
       end if
       if (integer_of(deck, "output", "frames") > 0) then
-         call tell("frames", "the case is run once more for its pictures")
+         call tell(screen, "frames", "the case is run once more for its pictures")
       else
-         call tell("frames", "none: output%frames is 0")
+         call tell(screen, "frames", "none: output%frames is 0")
       end if
    end subroutine print_parts
 
@@ -239,12 +255,17 @@ contains
    end function why
 
    !> Print one line of the plan
-   subroutine tell(what, how)
+   subroutine tell(screen, what, how)
+      !> Where it goes
+      type(screen_t), intent(in) :: screen
       !> Part of the scene
       character(len=*), intent(in) :: what
       !> What it is, and why
       character(len=*), intent(in) :: how
 
-      write (output_unit, "(3x, a12, a)") [character(len=12) :: what], trim(how)
+      character(len=12) :: label
+
+      label = what
+      call print_line(screen, "   "//label//trim(how))
    end subroutine tell
 end module dda_check

@@ -3,6 +3,7 @@ module dda_command_line
    use dda_error, only : error_t, fatal_error
    use dda_deck_token, only : shown
    use dda_deck_words, only : near_one
+   use dda_screen, only : screen_t
    use dda_text, only : read_integer, to_text
    implicit none
    private
@@ -38,6 +39,8 @@ module dda_command_line
       logical :: quiet = .false.
       !> Skip cases that an earlier run has finished
       logical :: resume = .false.
+      !> Where lines for the user go
+      type(screen_t) :: screen
    end type command_t
 
 contains

@@ -1,6 +1,6 @@
 !> dda cut: lines to blocks
 module dda_cut
-   use, intrinsic :: iso_fortran_env, only : error_unit, output_unit
+   use, intrinsic :: iso_fortran_env, only : error_unit
    use dda_command_line, only : command_t, name_of
    use dda_cut_model, only : cut_model_t, point_kind
    use dda_cut_report, only : cut_reason, cut_remark_t
@@ -10,6 +10,7 @@ module dda_cut
    use dda_line_model, only : line_model_t
    use dda_process, only : exit_status, worst_status
    use dda_read_limerick, only : read_geometry
+   use dda_screen, only : print_line, screen_t
    use dda_text, only : to_text
    use dda_warnings, only : warning_line, warnings_t
    use dda_write_cut, only : write_cut_table, write_cut_vtu
@@ -58,7 +59,7 @@ contains
       if (allocated(error)) then
          status = exit_status%bad_input
       else
-         if (.not. command%quiet) call print_cut(model, cut)
+         if (.not. command%quiet) call print_cut(command%screen, model, cut)
          if (allocated(command%out)) call write_cut(command%out, cut, error)
          if (allocated(error)) status = exit_status%not_written
       end if
@@ -96,7 +97,9 @@ contains
    end subroutine write_cut
 
    !> Print counts, areas, and what was dropped
-   subroutine print_cut(model, cut)
+   subroutine print_cut(screen, model, cut)
+      !> Where it goes
+      type(screen_t), intent(in) :: screen
       !> Lines and points
       type(line_model_t), intent(in) :: model
       !> The blocks
@@ -105,43 +108,50 @@ contains
 
       smallest = minloc(cut%area, 1)
       largest = maxloc(cut%area, 1)
-      write (output_unit, "(a)") model%file//": "//to_text(model%line%n)//" lines, " &
-         & //to_text(size(cut%area))//" blocks"
+      call print_line(screen, model%file//": "//to_text(model%line%n)//" lines, " &
+         & //to_text(size(cut%area))//" blocks")
       if (size(cut%area) > 0) then
-         call tell("area", to_text(sum(cut%area))//" in all")
-         call tell("smallest", to_text(cut%area(smallest))//", block "//to_text(smallest))
-         call tell("largest", to_text(cut%area(largest))//", block "//to_text(largest))
+         call tell(screen, "area", to_text(sum(cut%area))//" in all")
+         call tell(screen, "smallest", to_text(cut%area(smallest))//", block "//to_text(smallest))
+         call tell(screen, "largest", to_text(cut%area(largest))//", block "//to_text(largest))
       end if
-      call tell("joints", to_text(size(cut%pair))//" pairs of edges that lie together")
-      call tell("points", to_text(count(cut%point%kind == point_kind%fixed))//" fixed, " &
+      call tell(screen, "joints", to_text(size(cut%pair))//" pairs of edges that lie together")
+      call tell(screen, "points", to_text(count(cut%point%kind == point_kind%fixed))//" fixed, " &
          & //to_text(count(cut%point%kind == point_kind%load))//" load, " &
          & //to_text(count(cut%point%kind == point_kind%measured))//" measured")
-      if (cut%n_removed > 0) call tell("taken out", to_text(cut%n_removed) &
+      if (cut%n_removed > 0) call tell(screen, "taken out", to_text(cut%n_removed) &
          & //" blocks that hold hole points")
-      if (cut%n_merged > 0) call tell("merged", to_text(cut%n_merged)//" crossings with a node " &
+      if (cut%n_merged > 0) call tell(screen, "merged", &
+         & to_text(cut%n_merged)//" crossings with a node " &
          & //"nearer than "//to_text(cut%scale%merge)//" (1.25 e00 w0, w0 = " &
          & //to_text(cut%scale%size)//")")
-      call print_blocks(cut)
-      call print_dropped(model, cut)
+      call print_blocks(screen, cut)
+      call print_dropped(screen, model, cut)
    end subroutine print_cut
 
    !> Print a row a block
-   subroutine print_blocks(cut)
+   subroutine print_blocks(screen, cut)
+      !> Where it goes
+      type(screen_t), intent(in) :: screen
       !> The blocks
       type(cut_model_t), intent(in) :: cut
+      character(len=24) :: columns
       integer :: b
 
-      write (output_unit, "(3x, a)") "block  material  corners  area"
+      call print_line(screen, "   block  material  corners  area")
       do b = 1, min(size(cut%area), most_rows)
-         write (output_unit, "(3x, i5, i10, i9, 2x, a)") b, cut%material(b), &
-            & cut%first_vertex(b + 1) - cut%first_vertex(b), to_text(cut%area(b))
+         write (columns, "(i5, i10, i9)") b, cut%material(b), &
+            & cut%first_vertex(b + 1) - cut%first_vertex(b)
+         call print_line(screen, "   "//columns//"  "//to_text(cut%area(b)))
       end do
-      if (size(cut%area) > most_rows) write (output_unit, "(3x, a)") "and " &
-         & //to_text(size(cut%area) - most_rows)//" more: --out FILE.csv lists all of them"
+      if (size(cut%area) > most_rows) call print_line(screen, "   and " &
+         & //to_text(size(cut%area) - most_rows)//" more: --out FILE.csv lists all of them")
    end subroutine print_blocks
 
    !> Print what was dropped, and why
-   subroutine print_dropped(model, cut)
+   subroutine print_dropped(screen, model, cut)
+      !> Where it goes
+      type(screen_t), intent(in) :: screen
       !> Lines and points
       type(line_model_t), intent(in) :: model
       !> The blocks
@@ -151,19 +161,20 @@ contains
 
       associate (remarks => cut%remarks)
          if (remarks%n == 0) then
-            call tell("dropped", "nothing")
+            call tell(screen, "dropped", "nothing")
             return
          end if
          allocate (unused(model%line%n), source=.false.)
          unused(remarks%item(:remarks%n)%line) = remarks%item(:remarks%n)%reason &
             & <= cut_reason%loose_line
-         call tell("dropped", to_text(remarks%n)//" parts of lines; "//to_text(count(unused)) &
+         call tell(screen, "dropped", &
+            & to_text(remarks%n)//" parts of lines; "//to_text(count(unused)) &
             & //" lines meet fewer than two others and are unused")
          do i = 1, min(remarks%n, most_rows)
-            write (output_unit, "(6x, a)") remark_text(model, cut, remarks%item(i))
+            call print_line(screen, "      "//remark_text(model, cut, remarks%item(i)))
          end do
-         if (remarks%n > most_rows) write (output_unit, "(6x, a)") "and " &
-            & //to_text(remarks%n - most_rows)//" more"
+         if (remarks%n > most_rows) call print_line(screen, "      and " &
+            & //to_text(remarks%n - most_rows)//" more")
       end associate
    end subroutine print_dropped
 
@@ -218,12 +229,17 @@ contains
    end function point_text
 
    !> Print one line of the summary
-   subroutine tell(what, how)
+   subroutine tell(screen, what, how)
+      !> Where it goes
+      type(screen_t), intent(in) :: screen
       !> What is told
       character(len=*), intent(in) :: what
       !> Its value
       character(len=*), intent(in) :: how
 
-      write (output_unit, "(3x, a12, a)") [character(len=12) :: what], how
+      character(len=12) :: label
+
+      label = what
+      call print_line(screen, "   "//label//how)
    end subroutine tell
 end module dda_cut

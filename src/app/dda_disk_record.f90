@@ -33,7 +33,7 @@ contains
       if (allocated(error)) return
       write (bytes, "(i0)") length
       call open_part(file, trim(bytes)//" "//start_name(), record, error)
-      call close_table(record)
+      call close_table(record, error)
       if (.not. allocated(error)) call rename_part(file, error)
    end subroutine write_disk_record
 

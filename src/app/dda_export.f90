@@ -1,6 +1,6 @@
 !> dda export: arch decks as files of the Limerick line
 module dda_export
-   use, intrinsic :: iso_fortran_env, only : error_unit, output_unit
+   use, intrinsic :: iso_fortran_env, only : error_unit
    use dda_arch_lines, only : arch_analysis, arch_lines, what_is_lost
    use dda_command_line, only : command_t, name_of
    use dda_deck, only : deck_t, has_group
@@ -11,6 +11,7 @@ module dda_export
    use dda_process, only : exit_status, make_folder, worst_status
    use dda_read_deck, only : read_deck
    use dda_run, only : deck_stem
+   use dda_screen, only : print_line, screen_t
    use dda_text, only : to_text
    use dda_write_limerick, only : ddaml_analysis, ddaml_geometry, plain_analysis, plain_geometry, &
       & write_text
@@ -78,7 +79,7 @@ contains
             write (error_unit, "(a)") error_line(error)
             return
          end if
-         if (.not. command%quiet) call tell(stem, case_of_deck)
+         if (.not. command%quiet) call tell(command%screen, stem, case_of_deck)
       end do
    end subroutine export_deck
 
@@ -102,20 +103,21 @@ contains
    end subroutine write_pair
 
    !> Say what was written, and what was lost
-   subroutine tell(stem, deck)
+   subroutine tell(screen, stem, deck)
+      !> Where it goes
+      type(screen_t), intent(in) :: screen
       !> Name of the files without their endings
       character(len=*), intent(in) :: stem
       !> The deck of the case
       type(deck_t), intent(in) :: deck
 
-      write (output_unit, "(a)") stem//".geo, "//stem//"_ddaml.geo, "//stem//".ana (DDAML), " &
-         & //stem//"_plain.ana"
-      write (output_unit, "(a)") "   the plain .ana has no place for contact constants, " &
-         & //"automatic step and penalty, plane strain and gravity (only as unit weight over " &
-         & //"unit mass)"
-      if (what_is_lost(deck) /= "") write (output_unit, "(a)") &
-         & "   neither form has a place for "//what_is_lost(deck)
-      if (has_group(deck, "search")) write (output_unit, "(a)") &
-         & "   the search is not written: the files hold the deck's own value of its parameter"
+      call print_line(screen, stem//".geo, "//stem//"_ddaml.geo, "//stem//".ana (DDAML), " &
+         & //stem//"_plain.ana")
+      call print_line(screen, "   the plain .ana has no place for contact constants, automatic "// &
+         & "step and penalty, plane strain and gravity (only as unit weight over unit mass)")
+      if (what_is_lost(deck) /= "") call print_line(screen, &
+         & "   neither form has a place for "//what_is_lost(deck))
+      if (has_group(deck, "search")) call print_line(screen, &
+         & "   the search is not written: the files hold the deck's own value of its parameter")
    end subroutine tell
 end module dda_export

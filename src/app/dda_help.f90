@@ -1,10 +1,11 @@
 !> dda help and dda --version
 module dda_help
-   use, intrinsic :: iso_fortran_env, only : error_unit, output_unit
+   use, intrinsic :: iso_fortran_env, only : error_unit
    use dda_command_line, only : command_t
    use dda_deck_token, only : shown
    use dda_deck_words, only : deck_help, near_one
    use dda_process, only : exit_status
+   use dda_screen, only : print_line, print_text, screen_t
    implicit none
    private
 
@@ -127,19 +128,19 @@ contains
       if (size(command%name) > 0) topic = trim(command%name(1))
       select case (topic)
       case ("")
-         call print_lines(general)
+         call print_lines(command%screen, general)
       case ("run")
-         call print_lines(on_run)
+         call print_lines(command%screen, on_run)
       case ("check")
-         call print_lines(on_check)
+         call print_lines(command%screen, on_check)
       case ("cut")
-         call print_lines(on_cut)
+         call print_lines(command%screen, on_cut)
       case ("export")
-         call print_lines(on_export)
+         call print_lines(command%screen, on_export)
       case ("help", "--help", "-h")
-         call print_lines(on_help)
+         call print_lines(command%screen, on_help)
       case ("keys")
-         write (output_unit, "(a)", advance="no") deck_help()
+         call print_text(command%screen, deck_help())
       case default
          write (error_unit, "(a)") "dda:2: error: wanted help on run, check, cut, export, " &
             & //"keys or help, found '"//shown(topic)//"'"//near_one(topic, topics) &
@@ -149,13 +150,15 @@ contains
    end subroutine print_help
 
    !> Print lines of text
-   subroutine print_lines(lines)
+   subroutine print_lines(screen, lines)
+      !> Where they go
+      type(screen_t), intent(in) :: screen
       !> The lines: (n)
       character(len=*), intent(in) :: lines(:)
       integer :: i
 
       do i = 1, size(lines)
-         write (output_unit, "(a)") trim(lines(i))
+         call print_line(screen, trim(lines(i)))
       end do
    end subroutine print_lines
 end module dda_help

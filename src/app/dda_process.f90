@@ -1,11 +1,13 @@
 !> What the program asks of the operating system
 module dda_process
-   use, intrinsic :: iso_c_binding, only : c_char, c_int, c_null_char
-   use, intrinsic :: iso_fortran_env, only : error_unit, output_unit
+   use, intrinsic :: iso_c_binding, only : c_char, c_funptr, c_int, c_intptr_t, c_null_char, &
+      & c_null_funptr
+   use, intrinsic :: iso_fortran_env, only : error_unit
    implicit none
    private
 
    public :: exit_status, exit_status_enum, leave, worst_status, make_folder, error_is_terminal
+   public :: survive_file_limit
 
    !> Exit statuses of the program
    type :: exit_status_enum
@@ -22,7 +24,23 @@ module dda_process
    !> Names of the exit statuses
    type(exit_status_enum), parameter :: exit_status = exit_status_enum()
 
+   !> Number of the signal that a file grown too large sends: the same on Linux, BSD and macOS
+   integer(c_int), parameter :: file_limit_signal = 25
+   !> What C calls SIG_IGN: the address that means that a signal is ignored
+   integer(c_intptr_t), parameter :: ignored = 1
+
    interface
+      !> C: what to do about a signal
+      function c_signal(number, handler) bind(c, name="signal") result(before)
+         import :: c_funptr, c_int
+         !> Number of the signal
+         integer(c_int), intent(in), value :: number
+         !> What handles it
+         type(c_funptr), intent(in), value :: handler
+         !> What handled it before
+         type(c_funptr) :: before
+      end function c_signal
+
       !> C: end the program
       subroutine c_exit(status) bind(c, name="exit")
          import :: c_int
@@ -58,10 +76,17 @@ contains
       !> One of exit_status
       integer, intent(in) :: status
 
-      flush (output_unit)
       flush (error_unit)
       call c_exit(int(status, c_int))
    end subroutine leave
+
+   !> Let a file that may not grow any more (ulimit -f) be a failure to write, not a signal that
+   !> ends the program
+   subroutine survive_file_limit()
+      type(c_funptr) :: before
+
+      before = c_signal(file_limit_signal, transfer(ignored, c_null_funptr))
+   end subroutine survive_file_limit
 
    !> Of two statuses the one that the user must know first: 4, then 2, then 3
    pure integer function worst_status(a, b)

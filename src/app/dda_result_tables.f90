@@ -186,7 +186,7 @@ contains
       type(table_file_t) :: file
 
       call open_table(tables%record_file, record, file, error)
-      call close_table(file)
+      call close_table(file, error)
    end subroutine write_record
 
    !> Bring all tables to the disk, results.csv last, and write down how long it is
@@ -231,7 +231,7 @@ contains
 
       call sync_tables(tables, error)
       do i = 1, size(tables%at)
-         call close_table(tables%at(i)%open)
+         call close_table(tables%at(i)%open, error)
       end do
    end subroutine close_tables
 

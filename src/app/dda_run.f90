@@ -149,7 +149,7 @@ contains
          if (count(3) > 0) write (error_unit, "(a)") to_text(count(3))//" of " &
             & //to_text(total)//" cases are safe in "//tables%folder//"/results.csv"
       else if (.not. command%quiet) then
-         call print_total(name, tables%folder, count)
+         call print_total(command%screen, name, tables%folder, count)
       end if
    end subroutine run_deck
 
@@ -176,7 +176,8 @@ contains
       if (command%resume) then
          call find_finished(tables, record, total, finished)
          if (.not. command%quiet) &
-            & call print_resumed(name, finished%same_deck, sum(finished%count), total)
+            & call print_resumed(command%screen, name, finished%same_deck, sum(finished%count), &
+            & total)
       end if
       if (finished%same_deck) then
          call reopen_tables(tables, finished, error)

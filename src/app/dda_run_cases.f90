@@ -204,7 +204,8 @@ contains
       count(merge(2, 1, row%verdict == "undecided")) = &
          & count(merge(2, 1, row%verdict == "undecided")) + 1
       call clear_progress(progress)
-      if (.not. command%quiet) call print_row(row, remark, n_cases(deck), count(3))
+      if (.not. command%quiet) &
+         & call print_row(command%screen, row, remark, n_cases(deck), count(3))
       call report_progress(progress)
    end subroutine write_down
 

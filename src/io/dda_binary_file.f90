@@ -9,7 +9,8 @@ module dda_binary_file
    implicit none
    private
 
-   public :: binary_file_t, open_binary, flush_binary, sync_binary, close_binary, go_to, place_of
+   public :: binary_file_t, open_binary, open_descriptor, flush_binary, sync_binary, close_binary
+   public :: descriptor_of, go_to, place_of
    public :: append_text, append_reals, append_integers, append_length
 
    !> A file open for writing
@@ -20,6 +21,10 @@ module dda_binary_file
       !> Name of the file, for messages
       character(len=:), allocatable :: name
    end type binary_file_t
+
+   !> What a write that failed may have met
+   character(len=*), parameter :: no_room = "expected room for all that is written, got none: "// &
+      & "the disk is full, or no file may grow so large (ulimit -f); make room or write elsewhere"
 
    interface
       !> C: open a file
@@ -32,6 +37,17 @@ module dda_binary_file
          !> The file, null if it cannot be opened
          type(c_ptr) :: handle
       end function c_fopen
+
+      !> C: a file that the system has opened already
+      function c_fdopen(descriptor, mode) bind(c, name="fdopen") result(handle)
+         import :: c_char, c_int, c_ptr
+         !> The system's number of the file
+         integer(c_int), intent(in), value :: descriptor
+         !> What is wanted of it, ended by a null character
+         character(kind=c_char), intent(in) :: mode(*)
+         !> The file, null if there is none of that number
+         type(c_ptr) :: handle
+      end function c_fdopen
 
       !> C: write items
       function c_fwrite(items, size, count, handle) bind(c, name="fwrite") result(written)
@@ -134,6 +150,28 @@ contains
          & "choose another folder with --out", name, 1)
    end subroutine open_binary
 
+   !> Take over a file that the system has opened already
+   subroutine open_descriptor(descriptor, name, file)
+      !> The system's number of the file
+      integer, intent(in) :: descriptor
+      !> Name that messages will show
+      character(len=*), intent(in) :: name
+      !> The file; not open if there is none of that number
+      type(binary_file_t), intent(out) :: file
+
+      file%name = name
+      file%handle = c_fdopen(int(descriptor, c_int), "w"//c_null_char)
+   end subroutine open_descriptor
+
+   !> The system's number of a file; negative for one that is not open
+   integer function descriptor_of(file)
+      !> The file
+      type(binary_file_t), intent(in) :: file
+
+      descriptor_of = -1
+      if (c_associated(file%handle)) descriptor_of = int(c_fileno(file%handle))
+   end function descriptor_of
+
    !> Write so that all up to here survives the end of the program
    subroutine flush_binary(file, error)
       !> The file
@@ -143,9 +181,7 @@ contains
       integer(c_int) :: failed(2)
 
       failed = [c_fflush(file%handle), c_ferror(file%handle)]
-      if (any(failed /= 0)) &
-         & call fatal_error(error, "wanted room for the results, found "// &
-         & "none; make room or choose another folder with --out", file%name, 1)
+      if (any(failed /= 0)) call fatal_error(error, no_room, file%name, 1)
    end subroutine flush_binary
 
    !> Write so that all up to here survives a loss of power
@@ -158,8 +194,8 @@ contains
       if (.not. c_associated(file%handle) .or. allocated(error)) return
       call flush_binary(file, error)
       if (allocated(error)) return
-      if (c_fsync(c_fileno(file%handle)) /= 0) call fatal_error(error, "wanted the results on "// &
-         & "the disk, found one that does not take them; choose another folder with --out", &
+      if (c_fsync(c_fileno(file%handle)) /= 0) call fatal_error(error, "expected a disk that "// &
+         & "takes what is written, got a failure of fsync; check the disk or write elsewhere", &
          & file%name, 1)
    end subroutine sync_binary
 
@@ -183,8 +219,7 @@ contains
       call flush_binary(file, error)
       failed = c_fclose(file%handle)
       if (failed /= 0 .and. .not. allocated(error)) &
-         & call fatal_error(error, "wanted room for the results, found "// &
-         & "none; make room or choose another folder with --out", file%name, 1)
+         & call fatal_error(error, no_room, file%name, 1)
       file%handle = c_null_ptr
    end subroutine close_binary
 
@@ -243,7 +278,7 @@ contains
 
    !> Write bytes; C keeps in mind whether that failed
    subroutine append_bytes(file, bytes, n)
-      !> The file
+      !> The file; nothing happens to one that is not open
       type(binary_file_t), intent(in) :: file
       !> Where they are
       type(c_ptr), intent(in) :: bytes
@@ -251,6 +286,7 @@ contains
       integer(c_size_t), intent(in) :: n
       integer(c_size_t) :: written
 
+      if (.not. c_associated(file%handle)) return
       written = c_fwrite(bytes, 1_c_size_t, n, file%handle)
    end subroutine append_bytes
 end module dda_binary_file

@@ -92,12 +92,15 @@ contains
    end function length_of
 
    !> Close a table
-   subroutine close_table(table)
+   subroutine close_table(table, error)
       !> The table; nothing happens to one that is not open
       type(table_file_t), intent(inout) :: table
-      type(error_t), allocatable :: known
+      !> An earlier failure, or that of closing it
+      type(error_t), allocatable, intent(inout) :: error
+      type(error_t), allocatable :: late
 
-      call close_binary(table%file, known)
+      call close_binary(table%file, late)
+      if (allocated(late) .and. .not. allocated(error)) call move_alloc(late, error)
    end subroutine close_table
 
    !> Begin a table beside the one that it will replace

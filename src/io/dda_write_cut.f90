@@ -47,7 +47,7 @@ contains
          call append_line(table, lines, error)
          lines = ""
       end do
-      call close_table(table)
+      call close_table(table, error)
    end subroutine write_cut_table
 
    !> The row of a block

@@ -34,7 +34,7 @@ contains
       first = index(text, lf)
       call open_table(file, text(:first - 1), table, error)
       if (.not. allocated(error)) call append_line(table, text(first + 1:), error)
-      call close_table(table)
+      call close_table(table, error)
    end subroutine write_text
 
    !> A geometry in the plain form

@@ -1,0 +1,79 @@
+!> Standard output, written like every other file: Fortran's own unit does not tell when it is full
+module dda_screen
+   use dda_binary_file, only : append_text, binary_file_t, close_binary, descriptor_of, &
+      & flush_binary, open_binary, open_descriptor
+   use dda_error, only : error_t
+   implicit none
+   private
+
+   public :: screen_t, open_screen, print_line, print_text, close_screen
+
+   !> Where lines for the user go
+   type :: screen_t
+      private
+      !> Its file
+      type(binary_file_t) :: file
+   end type screen_t
+
+   !> The system's number of standard output, and the last one that has a meaning of its own
+   integer, parameter :: standard_output = 1, standard_error = 2
+
+contains
+
+   !> Take over standard output; one that is closed is no failure: nobody wants to read it
+   subroutine open_screen(screen)
+      !> The screen
+      type(screen_t), intent(out) :: screen
+      type(error_t), allocatable :: error
+
+      call open_descriptor(standard_output, "standard output", screen%file)
+      if (descriptor_of(screen%file) < 0) call open_binary("/dev/null", screen%file, error)
+      call fill_gaps()
+   end subroutine open_screen
+
+   !> Occupy closed descriptors, lest a table gets one of them, and with it what is meant for the
+   !> user
+   subroutine fill_gaps()
+      type(binary_file_t) :: filler
+      type(error_t), allocatable :: error
+
+      do
+         call open_binary("/dev/null", filler, error)
+         if (allocated(error)) exit
+         if (descriptor_of(filler) > standard_error) exit
+      end do
+      call close_binary(filler, error)
+   end subroutine fill_gaps
+
+   !> Print one line
+   subroutine print_line(screen, line)
+      !> The screen
+      type(screen_t), intent(in) :: screen
+      !> The line
+      character(len=*), intent(in) :: line
+
+      call print_text(screen, line//new_line("a"))
+   end subroutine print_line
+
+   !> Print text as it is; whatever fails is reported when the screen is closed
+   subroutine print_text(screen, text)
+      !> The screen
+      type(screen_t), intent(in) :: screen
+      !> The text
+      character(len=*), intent(in) :: text
+      type(error_t), allocatable :: late
+
+      call append_text(screen%file, text)
+      call flush_binary(screen%file, late)
+   end subroutine print_text
+
+   !> End printing
+   subroutine close_screen(screen, error)
+      !> The screen
+      type(screen_t), intent(inout) :: screen
+      !> Allocated if anything could not be printed
+      type(error_t), allocatable, intent(out) :: error
+
+      call close_binary(screen%file, error)
+   end subroutine close_screen
+end module dda_screen
