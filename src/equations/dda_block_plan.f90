@@ -1,4 +1,4 @@
-!> The factor of a symmetric matrix of small blocks, and which of its blocks are not zero
+!> The factor of a matrix of small blocks, and which of its blocks are not zero
 module dda_block_plan
    use dda_block_dissection, only : dissected_order
    use dda_block_matrix, only : block_matrix_t
@@ -36,7 +36,16 @@ module dda_block_plan
       real(wp), allocatable :: inverse(:, :, :)
       !> D, by block: (n_dof, n_block)
       real(wp), allocatable :: pivot(:, :)
-      !> Whether the matrix was positive definite, so that the factor can be used
+      !> Whether U is the transpose of L
+      logical :: symmetric = .true.
+      !> Where it is not, the transpose of U as L, above; otherwise without entries
+      real(wp), allocatable :: upper(:, :, :)
+      !> Inverse of its diagonal blocks: (n_dof, n_dof, n_block), or without entries
+      real(wp), allocatable :: upper_inverse(:, :, :)
+      !> Whether the diagonal block at each place was lifted until it had a factor: (n_block)
+      logical, allocatable :: lifted(:)
+      !> Whether the factor can be used: the matrix was positive definite, or if it is not
+      !> symmetric, no pivot was zero
       logical :: usable = .false.
    end type block_factor_t
 
@@ -67,8 +76,14 @@ contains
          if (products(other) < products(factor)) factor = other
       end if
       call list_rows(factor)
-      allocate (factor%lower(matrix%n_dof, matrix%n_dof, size(factor%row)))
-      allocate (factor%inverse(matrix%n_dof, matrix%n_dof, n), factor%pivot(matrix%n_dof, n))
+      factor%symmetric = matrix%symmetric
+      associate (nd => matrix%n_dof, other => merge(0, 1, matrix%symmetric))
+         allocate (factor%lower(nd, nd, size(factor%row)), factor%inverse(nd, nd, n))
+         allocate (factor%upper(nd, nd, other*size(factor%row)))
+         allocate (factor%upper_inverse(nd, nd, other*n))
+         allocate (factor%pivot(nd, n), source=1.0_wp)
+      end associate
+      allocate (factor%lifted(n), source=.false.)
    end subroutine plan_factor
 
    !> Products of two blocks that a factorisation takes

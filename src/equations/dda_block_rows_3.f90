@@ -6,7 +6,7 @@ module dda_block_rows_3
    implicit none
    private
 
-   public :: eliminate, substitute_rows
+   public :: eliminate, eliminate_pairs, substitute_rows
 
    !> Unknowns of one block
    integer, parameter :: nd = 3
@@ -18,6 +18,12 @@ module dda_block_rows_3
    !> Ones below the diagonal
    real(wp), parameter :: below(nd, nd) = merge(1.0_wp, 0.0_wp, &
       & spread(number, 2, nd) > spread(number, 1, nd))
+   !> What is first added to a diagonal block without a factor, over the matrix's diagonal
+   real(wp), parameter :: first_lift = 1.0e-10_wp
+   !> How that grows from turn to turn
+   real(wp), parameter :: lift_growth = 100.0_wp
+   !> Most turns
+   integer, parameter :: most_lifts = 12
 
 contains
 

@@ -2,11 +2,11 @@
 module dense_reference
    use dda_block_matrix, only : block_matrix_t, set_pattern
    use dda_kinds, only : wp
-   use random_numbers, only : draw, random_t
+   use random_numbers, only : draw, draw_index, random_t
    implicit none
    private
 
-   public :: full_matrix, full_solution, fill_positive_definite, shuffled
+   public :: full_matrix, full_solution, fill_positive_definite, fill_springs, draw_pairs, shuffled
 
 contains
 
@@ -30,8 +30,13 @@ contains
          column = n*(matrix%pair(2, e) - 1)
          full(row + 1:row + n, column + 1:column + n) = &
             & full(row + 1:row + n, column + 1:column + n) + matrix%coupling(:, :, e)
-         full(column + 1:column + n, row + 1:row + n) = &
-            & transpose(full(row + 1:row + n, column + 1:column + n))
+         if (matrix%symmetric) then
+            full(column + 1:column + n, row + 1:row + n) = &
+               & transpose(full(row + 1:row + n, column + 1:column + n))
+         else
+            full(column + 1:column + n, row + 1:row + n) = &
+               & full(column + 1:column + n, row + 1:row + n) + matrix%upper(:, :, e)
+         end if
       end do
    end function full_matrix
 
@@ -89,6 +94,75 @@ contains
          end do
       end do
    end subroutine fill_positive_definite
+
+   !> Springs between blocks whose rows of displacements are random, and one from each block to the
+   !> ground: those of contacts that slide with friction are not symmetric
+   pure subroutine fill_springs(random, n_dof, n_block, pair, friction, symmetric, matrix)
+      !> Where the numbers come from
+      type(random_t), intent(inout) :: random
+      !> Unknowns of one block
+      integer, intent(in) :: n_dof
+      !> Number of blocks
+      integer, intent(in) :: n_block
+      !> Coupled blocks: (2, n_entry)
+      integer, intent(in) :: pair(:, :)
+      !> How far a spring is from a symmetric one; 0 is symmetric
+      real(wp), intent(in) :: friction
+      !> Whether the matrix is laid out as a symmetric one
+      logical, intent(in) :: symmetric
+      !> The matrix
+      type(block_matrix_t), intent(out) :: matrix
+      real(wp) :: a(3, n_dof), b(3, n_dof), spring(3, 3), skew(3)
+      integer :: c, e, i
+
+      call set_pattern(matrix, n_dof, n_block, pair, symmetric)
+      matrix%diagonal = 0.0_wp
+      do i = 1, n_block
+         do c = 1, n_dof
+            matrix%diagonal(c, c, i) = 0.1_wp
+         end do
+      end do
+      do e = 1, size(pair, 2)
+         call draw(random, a)
+         call draw(random, b)
+         call draw(random, skew)
+         spring = 0.0_wp
+         do c = 1, 3
+            spring(c, c) = 1.0_wp
+            spring(c, 1 + modulo(c, 3)) = friction*skew(c)
+            spring(1 + modulo(c, 3), c) = -friction*skew(c)
+         end do
+         associate (p => matrix%pair(1, e), q => matrix%pair(2, e))
+            matrix%diagonal(:, :, p) = matrix%diagonal(:, :, p) &
+               & + matmul(transpose(a), matmul(spring, a))
+            matrix%diagonal(:, :, q) = matrix%diagonal(:, :, q) &
+               & + matmul(transpose(b), matmul(spring, b))
+         end associate
+         matrix%coupling(:, :, e) = matmul(transpose(a), matmul(spring, b))
+         if (.not. matrix%symmetric) &
+            & matrix%upper(:, :, e) = matmul(transpose(b), matmul(spring, a))
+      end do
+   end subroutine fill_springs
+
+   !> Pairs of different blocks
+   pure subroutine draw_pairs(random, n_block, n_pair, pair)
+      !> Where they come from
+      type(random_t), intent(inout) :: random
+      !> Number of blocks
+      integer, intent(in) :: n_block
+      !> Number of pairs
+      integer, intent(in) :: n_pair
+      !> The pairs: (2, n_pair)
+      integer, allocatable, intent(out) :: pair(:, :)
+      integer :: e
+
+      allocate (pair(2, n_pair))
+      do e = 1, n_pair
+         call draw_index(random, n_block, pair(1, e))
+         call draw_index(random, n_block - 1, pair(2, e))
+         if (pair(2, e) >= pair(1, e)) pair(2, e) = pair(2, e) + 1
+      end do
+   end subroutine draw_pairs
 
    !> The numbers 1 to n in disorder
    pure subroutine shuffled(random, number)
