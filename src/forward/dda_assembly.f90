@@ -11,7 +11,7 @@ module dda_assembly
    use dda_joint_springs, only : joint_springs_t
    use dda_kinds, only : wp
    use dda_loads, only : body_load
-   use dda_settings, only : settings_t
+   use dda_settings, only : load_direction, settings_t
    use dda_spring_products, only : projected, add_product, add_load
    implicit none
    private
@@ -91,7 +91,7 @@ contains
          equations%mass(:, :, e) = full(:nd, :nd)
          full = elastic_matrix(system%materials(system%material(b)), system%area(b))
          equations%elastic(:, :, e) = full(:nd, :nd)
-         load = body_load(system%unit_weight(b)*settings%load_direction, system%area(b))
+         load = body_load(system%unit_weight(b)*load_direction(settings), system%area(b))
          equations%weight(:, e) = load(:nd)
       end do
       if (allocated(settings%boundary%held)) then

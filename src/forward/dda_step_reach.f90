@@ -4,7 +4,7 @@ module dda_step_reach
    use dda_contact_detection, only : contacts_t
    use dda_deformation, only : displacement_matrix
    use dda_kinds, only : wp
-   use dda_settings, only : settings_t
+   use dda_settings, only : load_direction, settings_t
    use dda_step_context, only : march_t, step_context_t
    implicit none
    private
@@ -140,7 +140,7 @@ contains
          if (e == 0) cycle
          if (settings%dynamic) then
             motion(:, e) = march%dt*system%velocity(:, b)
-            motion(1:2, e) = motion(1:2, e) + settings%load_direction*system%unit_weight(b) &
+            motion(1:2, e) = motion(1:2, e) + load_direction(settings)*system%unit_weight(b) &
                & *march%dt**2/(2.0_wp*system%density(b))
          else if (allocated(march%last_motion)) then
             motion(:size(march%last_motion, 1), e) = march%last_motion(:, e)

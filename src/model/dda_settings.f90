@@ -5,7 +5,7 @@ module dda_settings
    implicit none
    private
 
-   public :: settings_t, flow_rule, flow_rule_enum
+   public :: settings_t, flow_rule, flow_rule_enum, gravity_direction, load_direction
 
    !> How a sliding joint moves
    type :: flow_rule_enum
@@ -47,8 +47,10 @@ module dda_settings
       real(wp) :: max_displacement_ratio = 0.05_wp
       !> Motion of a corner that means collapse; 0 for a test without a length [m]
       real(wp) :: collapse_displacement = 0.0_wp
-      !> Body force per unit of weight: direction of gravity and the horizontal coefficient: (2)
-      real(wp) :: load_direction(2) = [0.0_wp, -1.0_wp]
+      !> Angle of gravity from upright, to the right [rad]
+      real(wp) :: tilt = 0.0_wp
+      !> Horizontal force over the weight, to the right
+      real(wp) :: push = 0.0_wp
       !> Held, loaded and measured points, and the motion of the ground
       type(boundary_t) :: boundary
       !> Remaining acceleration over that of the loads below which a structure is at rest
@@ -56,4 +58,29 @@ module dda_settings
       !> Whether the condition number of the last equations is wanted
       logical :: tells_condition = .false.
    end type settings_t
+
+contains
+
+   !> Body force per unit of weight. The four main directions of gravity are free of rounding, so
+   !> that what is symmetric stays so
+   pure function load_direction(settings) result(direction)
+      !> The settings
+      type(settings_t), intent(in) :: settings
+      !> Components to the right and up: (2)
+      real(wp) :: direction(2)
+
+      direction = gravity_direction(settings%tilt)
+      direction(1) = direction(1) + settings%push
+   end function load_direction
+
+   !> Direction of gravity that is turned from upright
+   pure function gravity_direction(tilt) result(direction)
+      !> Angle to the right [rad]
+      real(wp), intent(in) :: tilt
+      !> Unit vector: (2)
+      real(wp) :: direction(2)
+
+      direction = [sin(tilt), -cos(tilt)]
+      where (abs(direction) < epsilon(1.0_wp)) direction = 0.0_wp
+   end function gravity_direction
 end module dda_settings

@@ -167,11 +167,10 @@ contains
       integer, intent(in) :: joints
       !> The settings
       type(settings_t) :: settings
-      real(wp) :: direction, noise, rise
+      real(wp) :: noise, rise
       type(scene_plan_t) :: plan
 
       plan = plan_scene(deck)
-      direction = degree*real_of(deck, "load", "gravity_direction_deg")
       settings%dynamic = plan%velocities
       settings%current = plan%moving
       settings%n_dof = plan%unknowns
@@ -188,11 +187,9 @@ contains
       settings%restitution = real_of(deck, "analysis", "restitution")
       settings%damping = real_of(deck, "analysis", "damping")
       settings%max_displacement_ratio = real_of(deck, "analysis", "max_displacement_ratio")
-      settings%load_direction = [cos(direction), sin(direction)]
-      ! the four main directions, free of rounding, so that a symmetric arch stays symmetric
-      where (abs(settings%load_direction) < epsilon(1.0_wp)) settings%load_direction = 0.0_wp
-      settings%load_direction(1) = settings%load_direction(1) &
-         & + real_of(deck, "load", "horizontal_coefficient")
+      settings%tilt = degree*modulo(real_of(deck, "load", "gravity_direction_deg") + 270.0_wp, &
+         & 360.0_wp) - pi
+      settings%push = real_of(deck, "load", "horizontal_coefficient")
       rise = min(1.0_wp, half_angle**2/2.0_wp)
       settings%rest_tolerance = 1.0e-3_wp*rise*real_of(deck, "search", "tolerance")
       ! the thrust is w r, the weight of a voussoir 2 w r alpha/n: rounding of the one moves the

@@ -19,7 +19,7 @@ module dda_deck_scene
    use dda_restart, only : check_restart
    use dda_scene, only : family_t, scene_t
    use dda_scene_plan, only : scene_plan_t
-   use dda_settings, only : settings_t
+   use dda_settings, only : load_direction, settings_t
    use dda_text, only : to_text
    use dda_warnings, only : add_warning
    implicit none
@@ -74,7 +74,7 @@ contains
       family%settings = settings_of(deck, degree*real_of(deck, "arch", "half_angle_deg"), &
          & size(half_joints_deg(deck)))
       family%numbers = arch_numbers(deck)
-      family%numbers%body_force = unit_weight(deck)*family%settings%load_direction
+      family%numbers%body_force = unit_weight(deck)*load_direction(family%settings)
       family%numbers%halved = family%decides_chains .and. plan%halved
       allocate (family%joint_angle_deg, source=joint_angles_deg(deck))
    end subroutine new_family

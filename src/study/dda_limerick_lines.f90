@@ -10,6 +10,7 @@ module dda_limerick_lines
    use dda_line_scene, only : law_of_joint, line_scene
    use dda_material, only : friction_coefficient
    use dda_scene, only : scene_t
+   use dda_settings, only : load_direction
    use dda_text, only : to_text
    implicit none
    private
@@ -36,7 +37,7 @@ contains
       allocate (model%vertex, source=deck%cut%vertex)
       allocate (model%edge_law, source=deck%cut%edge_joint)
       allocate (model%block_material, source=scene%system%material)
-      model%load_direction = scene%settings%load_direction
+      model%load_direction = load_direction(scene%settings)
       call set_materials(deck, scene, model)
       allocate (model%law(max(1, maxval(model%edge_law))))
       do j = 1, size(model%law)

@@ -8,6 +8,7 @@ module dda_limerick_scene
    use dda_limerick_model, only : half_size, limerick_constants_t, limerick_model_t
    use dda_material, only : friction_coefficient
    use dda_scene, only : scene_t
+   use dda_settings, only : load_direction
    use dda_vector, only : along, right_normal
    implicit none
    private
@@ -71,7 +72,7 @@ contains
       allocate (model%material(1))
       model%material(1)%material_t = scene%system%materials(1)
       model%material(1)%unit_weight = scene%system%unit_weight(1)
-      model%load_direction = scene%settings%load_direction
+      model%load_direction = load_direction(scene%settings)
       do b = 1, 2
          call widen(deck, model%vertex(:, nv + 4*b - 3:nv + 4*b), &
             & model%fixed_point(:, 4*b - 3:4*b))

@@ -93,6 +93,6 @@ contains
       type(error_t), allocatable, intent(out) :: error
 
       call family%arch%build(family%thickness_ratio, scene, error)
-      scene%settings%load_direction(1) = scene%settings%load_direction(1) + value
+      scene%settings%push = scene%settings%push + value
    end subroutine build_pushed_arch
 end module scene_arch

@@ -42,7 +42,7 @@ module scene_block_on_base
       type(joint_law_t) :: law
       !> Material of the block
       type(material_t) :: material
-      !> Settings; the push is added to the load's direction
+      !> Settings; the push is added to theirs
       type(settings_t) :: settings
       !> One of varied
       integer :: what = 1
@@ -77,7 +77,7 @@ contains
       if (family%what == varied%width) width = value
       if (family%what == varied%friction_deg) law%friction = friction_coefficient(value)
       if (family%what == varied%unit_weight) model%unit_weight = value
-      model%settings%load_direction(1) = model%settings%load_direction(1) + push
+      model%settings%push = model%settings%push + push
       associate (base => rectangle([0.0_wp, -1.0_wp], width, 1.0_wp), &
          & block => rectangle([0.0_wp, 0.0_wp], width, family%height))
          call add_block(model, turned(base, family%slope), fixed=.true.)

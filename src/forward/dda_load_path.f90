@@ -1,0 +1,221 @@
+!> The way of a static scene from nothing to its full load
+!>
+!> Dead loads come first and at once: weight, upright, and forces on points as they are at the
+!> beginning. Then what is live comes from nothing to its value, one after the other: supports that
+!> are led, gravity that tilts, the horizontal push, histories from their beginning to their end.
+!> Between two stations everything is linear.
+module dda_load_path
+   use dda_block_system, only : block_system_t
+   use dda_boundary, only : history_t, value_at
+   use dda_joint_graph, only : joint_graph_t, joint_kind
+   use dda_kinds, only : wp
+   use dda_loads, only : body_load, point_load
+   use dda_settings, only : gravity_direction, settings_t
+   use dda_sort, only : sorted_order
+   implicit none
+   private
+
+   public :: load_path_t, load_path, loads_at, last_history_time
+
+   !> Stations of the way; station 0 has the dead loads alone
+   type :: load_path_t
+      !> Share of what led supports have gone at the beginning of their histories: (0:n_leg)
+      real(wp), allocatable :: led(:)
+      !> Angle of gravity from upright, to the right: (0:n_leg) [rad]
+      real(wp), allocatable :: tilt(:)
+      !> Horizontal coefficient: (0:n_leg)
+      real(wp), allocatable :: push(:)
+      !> Time of the histories: (0:n_leg) [s]
+      real(wp), allocatable :: time(:)
+   end type load_path_t
+
+   !> Longest leg of gravity that tilts: its chord is off by the square of it [rad]
+   real(wp), parameter :: longest_tilt = 4.4e-3_wp
+
+contains
+
+   !> Stations of a scene
+   pure function load_path(settings) result(path)
+      !> Settings of the run
+      type(settings_t), intent(in) :: settings
+      !> The stations
+      type(load_path_t) :: path
+      real(wp), allocatable :: time(:)
+      integer :: at, n_led, n_push, n_tilt
+
+      allocate (time, source=history_times(settings))
+      n_led = merge(1, 0, leads_at_once(settings))
+      n_tilt = ceiling(abs(settings%tilt)/longest_tilt)
+      n_push = merge(1, 0, abs(settings%push) > 0.0_wp)
+      at = n_led + n_tilt + n_push
+      allocate (path%led(0:at + size(time)), source=1.0_wp)
+      allocate (path%tilt(0:at + size(time)), source=settings%tilt)
+      allocate (path%push(0:at + size(time)), source=settings%push)
+      allocate (path%time(0:at + size(time)), source=0.0_wp)
+      path%led(0) = 0.0_wp
+      path%tilt(:n_led) = 0.0_wp
+      path%tilt(n_led:n_led + n_tilt) = shares(n_tilt)*settings%tilt
+      path%push(:n_led + n_tilt) = 0.0_wp
+      path%time(at + 1:) = time
+   end function load_path
+
+   !> Shares of a way in equal legs; all of it where there is none
+   pure function shares(n) result(share)
+      !> Number of legs
+      integer, intent(in) :: n
+      !> The shares: (0:n)
+      real(wp) :: share(0:n)
+      integer :: i
+
+      share = [(real(i, wp)/real(max(n, 1), wp), i=0, n)]
+      if (n == 0) share = 1.0_wp
+   end function shares
+
+   !> Loads on the blocks and ways of their supports at a station
+   pure subroutine loads_at(path, station, settings, system, graph, load, opening)
+      !> The stations
+      type(load_path_t), intent(in) :: path
+      !> Number of the station, from 0
+      integer, intent(in) :: station
+      !> Settings of the run
+      type(settings_t), intent(in) :: settings
+      !> The blocks
+      type(block_system_t), intent(in) :: system
+      !> Their joints, the pins of held points last
+      type(joint_graph_t), intent(in) :: graph
+      !> Loads: (n_dof, n_block) [N/m, N/m, N]
+      real(wp), intent(out) :: load(:, :)
+      !> Opening of the joints by what supports have gone: (3, n_joint) [m]
+      real(wp), intent(out) :: opening(:, :)
+      real(wp) :: direction(2), shaking(2), of_block(6)
+      integer :: b, e, i
+
+      direction = gravity_direction(path%tilt(station))
+      direction(1) = direction(1) + path%push(station)
+      shaking = -value_at(settings%boundary%base_acceleration, path%time(station))
+      do b = 1, size(system%equation)
+         e = system%equation(b)
+         if (e == 0) cycle
+         of_block = body_load(system%unit_weight(b)*direction + system%density(b)*shaking, &
+            & system%area(b))
+         load(:, e) = of_block(:size(load, 1))
+      end do
+      opening = 0.0_wp
+      call lead_pins(path, station, settings, system, graph, opening)
+      if (.not. allocated(settings%boundary%loaded)) return
+      do i = 1, size(settings%boundary%loaded)
+         associate (loaded => settings%boundary%loaded(i))
+            e = system%equation(loaded%block)
+            if (e == 0) cycle
+            of_block = point_load(value_at(loaded%force, path%time(station)), loaded%point, &
+               & system%centroid(:, loaded%block))
+            load(:, e) = load(:, e) + of_block(:size(load, 1))
+         end associate
+      end do
+   end subroutine loads_at
+
+   !> What led points make of their pins
+   pure subroutine lead_pins(path, station, settings, system, graph, opening)
+      !> The stations
+      type(load_path_t), intent(in) :: path
+      !> Number of the station
+      integer, intent(in) :: station
+      !> Settings of the run
+      type(settings_t), intent(in) :: settings
+      !> The blocks
+      type(block_system_t), intent(in) :: system
+      !> Their joints
+      type(joint_graph_t), intent(in) :: graph
+      !> Opening of the joints; that of the pins is set: (3, n_joint) [m]
+      real(wp), intent(inout) :: opening(:, :)
+      real(wp) :: way(2)
+      integer :: i, j
+
+      if (.not. allocated(settings%boundary%held)) return
+      j = count(graph%kind /= joint_kind%pin)
+      do i = 1, size(settings%boundary%held)
+         associate (held => settings%boundary%held(i))
+            if (system%equation(held%block) == 0) cycle
+            j = j + 1
+            way = path%led(station)*value_at(held%path, path%time(station))
+            if (.not. held%along(1)) way(1) = way(2)
+            if (.not. held%along(2)) way(2) = way(1)
+            opening([1, 3], j) = -way
+         end associate
+      end do
+   end subroutine lead_pins
+
+   !> Whether a support is led from the first moment on
+   pure logical function leads_at_once(settings)
+      !> Settings of the run
+      type(settings_t), intent(in) :: settings
+      integer :: i
+
+      leads_at_once = .false.
+      if (.not. allocated(settings%boundary%held)) return
+      do i = 1, size(settings%boundary%held)
+         leads_at_once = leads_at_once &
+            & .or. any(abs(value_at(settings%boundary%held(i)%path, 0.0_wp)) > 0.0_wp)
+      end do
+   end function leads_at_once
+
+   !> Times at which a history bends, after the beginning
+   pure function history_times(settings) result(time)
+      !> Settings of the run
+      type(settings_t), intent(in) :: settings
+      !> The times, ascending, each once: (n) [s]
+      real(wp), allocatable :: time(:)
+      integer :: i, n
+
+      n = bends(settings%boundary%base_acceleration)
+      if (allocated(settings%boundary%held)) n = n + sum(bends(settings%boundary%held%path))
+      if (allocated(settings%boundary%loaded)) n = n + sum(bends(settings%boundary%loaded%force))
+      allocate (time(n))
+      n = 0
+      call take_times(settings%boundary%base_acceleration, time, n)
+      if (allocated(settings%boundary%held)) then
+         do i = 1, size(settings%boundary%held)
+            call take_times(settings%boundary%held(i)%path, time, n)
+         end do
+      end if
+      if (allocated(settings%boundary%loaded)) then
+         do i = 1, size(settings%boundary%loaded)
+            call take_times(settings%boundary%loaded(i)%force, time, n)
+         end do
+      end if
+      time = time(sorted_order(spread(0, 1, n), time))
+      time = pack(time, time > [0.0_wp, time(:n - 1)])
+   end function history_times
+
+   !> Add the times of one history to a list
+   pure subroutine take_times(history, time, n)
+      !> The history
+      type(history_t), intent(in) :: history
+      !> The list, with room for them: (:) [s]
+      real(wp), intent(inout) :: time(:)
+      !> How many times it has
+      integer, intent(inout) :: n
+
+      if (bends(history) == 0) return
+      time(n + 1:n + size(history%time)) = history%time
+      n = n + size(history%time)
+   end subroutine take_times
+
+   !> Number of times that a history is given at; one time is no change
+   elemental integer function bends(history)
+      !> The history
+      type(history_t), intent(in) :: history
+
+      bends = 0
+      if (allocated(history%time)) bends = size(history%time)
+      if (bends == 1) bends = 0
+   end function bends
+
+   !> Time at which the last history of a scene ends, 0 where there is none [s]
+   pure real(wp) function last_history_time(settings)
+      !> Settings of the run
+      type(settings_t), intent(in) :: settings
+
+      last_history_time = maxval([0.0_wp, history_times(settings)])
+   end function last_history_time
+end module dda_load_path
