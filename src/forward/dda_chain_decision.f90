@@ -40,7 +40,7 @@ contains
       !> The decision, without blocks and springs; of the left half alone if the chain is halved
       type(decision_t), intent(out) :: decision
       !> Whether it counts: not where a step did not settle, nor where a structure with sliding
-      !> joints stands, for Coulomb's law has the last word there; undecided if the chain is long
+      !> joints stands and Coulomb's law has the last word; undecided if the chain is long
       logical, intent(out) :: decided
       type(chain_step_t) :: step
       type(march_t) :: march
@@ -63,7 +63,8 @@ contains
          if (abs(dt - step%dt) > 0.0_wp) call lengthen_step(chain, dt, step)
       end do
       decided = answer == verdict%collapsed &
-         & .or. answer == verdict%stable .and. .not. slides(chain, step) &
+         & .or. answer == verdict%stable .and. (.not. slides(chain, step) &
+         & .or. settings%verdict_flow == flow_rule%associated) &
          & .or. answer == verdict%undecided .and. size(chain%mass) >= many
       if (decided) call tell(settings, chain, answer, march, measured, step, decision)
    end subroutine decide_chain

@@ -62,6 +62,7 @@ contains
       decision%contacts = contacts
       call run_to_verdict(convex, decision%system, decision%contacts, decision%outcome)
       if (decision%outcome%verdict /= verdict%stable) return
+      if (settings%verdict_flow == flow_rule%associated) return
       if (any(decision%contacts%face%slip /= 0)) &
          & call follow_coulomb(settings, system, contacts, decision)
    end subroutine decide

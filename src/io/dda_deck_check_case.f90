@@ -52,6 +52,11 @@ contains
          word_of(deck, "analysis", "geometry") /= "current")) then
          call deck_error(error, "restitution wants mode = 'dynamic' and geometry = 'current'", &
             deck, place_of(deck, key_index("analysis", "restitution")))
+      else if ((is_limerick .or. .not. is_static) .and. &
+         word_of(deck, "analysis", "flow") == "associated") then
+         call deck_error(error, "flow = 'associated' expects mode = 'static', got '"// &
+            trim(word_of(deck, "analysis", "mode"))//"'; remove one of the two", deck, &
+            place_of(deck, key_index("analysis", "flow")))
       else if (is_static .and. is_given(deck, "analysis", "duration")) then
          call deck_error(error, "duration wants mode = 'dynamic': a static run has no time", &
             deck, place_of(deck, key_index("analysis", "duration")))

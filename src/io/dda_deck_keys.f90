@@ -184,6 +184,9 @@ module dda_deck_keys
       key_t(group="analysis", name="geometry", kind=key_kind%word, default="'reference'", &
             words="reference current", &
             meaning="Small displacements on the undeformed shape, or blocks that move."), &
+      key_t(group="analysis", name="flow", kind=key_kind%word, default="'coulomb'", &
+            words="coulomb associated", &
+            meaning="Friction rule of a static verdict: sliding along the joint, or opening it."), &
       key_t(group="analysis", name="steps", kind=key_kind%whole, default="400", &
             at_least=1.0_wp, at_most=1.0e9_wp, &
             meaning="Most time steps of one run; a static run left open by them is undecided."), &

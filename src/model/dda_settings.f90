@@ -27,8 +27,10 @@ module dda_settings
       logical :: current = .false.
       !> Unknowns of a block: 6, or 3 for rigid blocks
       integer :: n_dof = 6
-      !> Sliding of the joints, one of flow_rule
+      !> Sliding of the joints in a run, one of flow_rule
       integer :: flow = 1
+      !> Sliding of the joints that a verdict is of, one of flow_rule
+      integer :: verdict_flow = 2
       !> Contact stiffness over the stiffness of the block across the joint
       real(wp) :: penalty_ratio = 100.0_wp
       !> Most steps of a run

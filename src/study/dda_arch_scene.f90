@@ -10,7 +10,7 @@ module dda_arch_scene
    use dda_material, only : friction_coefficient, joint_law_t, material_t
    use dda_scene, only : scene_t
    use dda_scene_plan, only : plan_scene, scene_plan_t
-   use dda_settings, only : settings_t
+   use dda_settings, only : flow_rule, settings_t
    implicit none
    private
 
@@ -187,6 +187,8 @@ contains
       settings%restitution = real_of(deck, "analysis", "restitution")
       settings%damping = real_of(deck, "analysis", "damping")
       settings%max_displacement_ratio = real_of(deck, "analysis", "max_displacement_ratio")
+      settings%verdict_flow = merge(flow_rule%associated, flow_rule%coulomb, &
+         & word_of(deck, "analysis", "flow") == "associated")
       settings%tilt = degree*modulo(real_of(deck, "load", "gravity_direction_deg") + 270.0_wp, &
          & 360.0_wp) - pi
       settings%push = real_of(deck, "load", "horizontal_coefficient")

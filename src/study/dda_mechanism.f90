@@ -59,6 +59,7 @@ contains
       type(decision_t) :: other
 
       if (decision%flow == flow_rule%coulomb) return
+      if (scene%settings%verdict_flow == flow_rule%associated) return
       if (.not. any(decision%contacts%face%slip /= 0)) return
       call follow_coulomb(scene%settings, scene%system, scene%contacts, other)
       if (other%outcome%verdict == verdict%collapsed) decision = other

@@ -49,7 +49,7 @@ SEEDS = [
 &joint friction_deg=72, cohesion=0, tension=0.0 /
 &load gravity=9.81, gravity_direction_deg=-90, horizontal_coefficient=0.0 /
 &analysis mode='static', geometry='current', steps=400, max_displacement_ratio=0.05,
-   time_step=1d-3, penalty_ratio=100, collapse_displacement=0.5, open_close_limit=400 &end
+   time_step=1d-3, penalty_ratio=100, collapse_displacement=0.5, open_close_limit=400, flow='associated' &end
 """,
     b"""&arch voussoirs=8, thickness_ratio=0.09 / &search parameter='horizontal_coefficient' /
 &joint friction_deg=35, cohesion=1e3, tension=5e2 / &material plane='strain' poisson=0.3 /

@@ -189,6 +189,16 @@ SWEEPS_AND_SEARCHES = {
         ),
         "8",
     ),
+    "dynamic-associated": (
+        1,
+        "&analysis mode='dynamic', flow='associated', steps=10 /\n",
+        "expects mode = 'static', got 'dynamic'",
+    ),
+    "limerick-associated": (
+        1,
+        "&analysis mode='limerick', flow='associated' /\n",
+        "expects mode = 'static', got 'limerick'",
+    ),
     "too-many-cases": (
         2,
         "&sweep parameter='radius', first=1, last=2, count=1000 /\n"

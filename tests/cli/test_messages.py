@@ -17,7 +17,7 @@ MESSAGE = re.compile(
     r"(?P<file>[^:\n]+):(?P<line>\d+): error: (?P<fault>[^\n]+?); (?P<advice>[^;\n]+)\n"
 )
 FAULT = re.compile(
-    r"want(s|ed)\b.+\bfound\b|unknown|there is no such file|is repeated|exclude one another"
+    r"want(s|ed)\b.+\bfound\b|expect(s|ed)\b.+\bgot\b|unknown|there is no such file|is repeated|exclude one another"
     r"|, but |is no key|cannot be|is swept|is both|has no item|wants|is a list|is not yet there"
 )
 ORDER = re.compile(
