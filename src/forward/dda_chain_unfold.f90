@@ -7,7 +7,7 @@ module dda_chain_unfold
    implicit none
    private
 
-   public :: fold, unfold, whole_joints
+   public :: fold, unfold
 
 contains
 

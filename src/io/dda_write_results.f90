@@ -58,7 +58,7 @@ module dda_write_results
       real(wp), allocatable :: intrados_hinge_deg(:)
       !> Hinges at the extrados [deg]: (n)
       real(wp), allocatable :: extrados_hinge_deg(:)
-      !> intrados, extrados or none
+      !> intrados, extrados or none; blank where there is no arch
       character(len=8) :: springing_hinge = ""
       !> Time steps
       integer :: steps = 0
@@ -92,12 +92,13 @@ module dda_write_results
       real(wp) :: normal_force = 0.0_wp
       !> Force along the joint on its right block, towards the extrados [N/m]
       real(wp) :: shear_force = 0.0_wp
-      !> Place of the thrust: 1 at the intrados, -1 at the extrados; unknown without normal force
+      !> Place of the thrust: 1 at the intrados, -1 at the extrados; unknown without normal force,
+      !> and of a joint of one corner
       type(number_t) :: eccentricity_ratio
       !> Opening at the intrados [m]
       real(wp) :: opening_intrados = 0.0_wp
-      !> Opening at the extrados [m]
-      real(wp) :: opening_extrados = 0.0_wp
+      !> Opening at the extrados; unknown of a joint of one corner [m]
+      type(number_t) :: opening_extrados
       !> Motion of the right block along the joint, towards the extrados [m]
       real(wp) :: slip = 0.0_wp
       !> What the joint does, in a word
@@ -186,7 +187,7 @@ contains
          & //to_text(row%extrados(1))//","//to_text(row%extrados(2))//"," &
          & //to_text(row%normal_force)//","//to_text(row%shear_force)//"," &
          & //number_text(row%eccentricity_ratio)//","//to_text(row%opening_intrados)//"," &
-         & //to_text(row%opening_extrados)//","//to_text(row%slip)//","//trim(row%state)//"," &
+         & //number_text(row%opening_extrados)//","//to_text(row%slip)//","//trim(row%state)//"," &
          & //to_text(row%block(1))//","//to_text(row%block(2))//","//to_text(row%point(1))//"," &
          & //to_text(row%point(2))//","//to_text(row%force(1))//","//to_text(row%force(2))//"," &
          & //trim(row%mechanism)//","//number_text(row%slides(1))//"," &

@@ -10,7 +10,7 @@ module dda_block_scene
    implicit none
    private
 
-   public :: base_t, block_scene, floating_block
+   public :: base_t, block_scene, floating_block, lacks_friction
 
    !> What the deck says of all blocks and joints
    type :: base_t
@@ -137,6 +137,38 @@ contains
          end associate
       end do
    end function laws_of
+
+   !> Whether blocks may meet for whose materials the plan gives no friction
+   pure logical function lacks_friction(plan)
+      !> The plan, checked
+      type(block_plan_t), intent(in) :: plan
+      logical, allocatable :: given(:, :), moves(:)
+      integer, allocatable :: blocks(:)
+      integer :: b, i, j, n
+
+      n = max(maxval(plan%material), maxval(plan%laws%material(1)), maxval(plan%laws%material(2)))
+      allocate (given(n, n), source=.false.)
+      do i = 1, size(plan%laws)
+         associate (pair => plan%laws(i)%material)
+            given(pair(1), pair(2)) = given(pair(1), pair(2)) .or. plan%laws(i)%given(1)
+            given(pair(2), pair(1)) = given(pair(1), pair(2))
+         end associate
+      end do
+      allocate (blocks(n), source=0)
+      allocate (moves(n), source=.false.)
+      do b = 1, size(plan%material)
+         blocks(plan%material(b)) = blocks(plan%material(b)) + 1
+         moves(plan%material(b)) = moves(plan%material(b)) .or. .not. plan%fixed(b)
+      end do
+      lacks_friction = .false.
+      do j = 1, n
+         do i = 1, j
+            ! two blocks, not both fixed
+            if (merge(blocks(i) < 2, min(blocks(i), blocks(j)) == 0, i == j)) cycle
+            if (.not. given(i, j) .and. (moves(i) .or. moves(j))) lacks_friction = .true.
+         end do
+      end do
+   end function lacks_friction
 
    !> A law of joints that may open
    pure function law_of(value) result(law)

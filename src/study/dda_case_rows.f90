@@ -1,11 +1,12 @@
 !> A computed case told as rows of the result tables
 module dda_case_rows
+   use dda_block_scene, only : lacks_friction
    use dda_case, only : case_t, searched_name
-   use dda_chain_unfold, only : whole_joints
    use dda_contact_detection, only : contacts_t
    use dda_critical, only : critical_t
    use dda_decision, only : decision_t
    use dda_deck, only : deck_t, flag_of, is_given, real_of, word_of
+   use dda_deck_scene, only : movable_blocks
    use dda_error, only : error_line, error_t
    use dda_forward, only : outcome_t
    use dda_joint_rows, only : joint_rows, tell_roles
@@ -66,19 +67,33 @@ contains
       row%mode = word_of(this%deck, "analysis", "mode")
       row%geometry = word_of(this%deck, "analysis", "geometry")
       if (this%limerick) row%geometry = "current"
+      row%blocks = movable_blocks(this%deck)
       if (word_of(this%deck, "scene", "kind") == "arch") then
+         row%springing_hinge = "none"
          row%half_angle_deg = given_number(this%deck, "arch", "half_angle_deg", searched)
          row%thickness_ratio = given_number(this%deck, "arch", "thickness_ratio", searched)
       end if
-      if (.not. allocated(this%deck%analysis) .or. is_given(this%deck, "joint", "friction_deg")) &
+      if (deck_friction_acts(this%deck)) &
          & row%friction_deg = given_number(this%deck, "joint", "friction_deg", searched)
       row%collapse_mode = "none"
-      row%springing_hinge = "none"
       if (this%exact_known) row%exact = some_number(this%exact)
       row%seconds = this%seconds
       row%unknowns = this%plan%unknowns
       row%tells_condition = flag_of(this%deck, "output", "condition")
    end subroutine describe
+
+   !> Whether the friction of the deck may be that of a joint: those of lines have that of their
+   !> analysis file, those of blocks that of the law of their materials, where there is one
+   pure logical function deck_friction_acts(deck)
+      !> The deck of the case
+      type(deck_t), intent(in) :: deck
+
+      deck_friction_acts = is_given(deck, "joint", "friction_deg")
+      if (deck_friction_acts) return
+      deck_friction_acts = .not. allocated(deck%analysis)
+      if (word_of(deck, "scene", "kind") == "blocks") &
+         & deck_friction_acts = lacks_friction(deck%plan)
+   end function deck_friction_acts
 
    !> A number of the deck, unknown if it is searched
    pure function given_number(deck, group, key, searched) result(number)
@@ -119,7 +134,6 @@ contains
             if (size(joint_row) > 0) call tell_roles(this%decision%contacts, joint_row)
          end if
          if (allocated(this%decision%system%equation)) call tell_end(this, blocks)
-         row%blocks = block_count(this%scene, this%decision)
          row%steps = outcome%steps
          row%open_close_iterations = outcome%passes
          row%factorisations = outcome%factorisations
@@ -166,12 +180,8 @@ contains
                & remark = "at "//to_text(critical%undecided_at)//" "//critical%reason
          end if
          if (critical%verdict == verdict%found) call tell_bracket(critical, row)
-         if (allocated(critical%fallen)) then
-            call tell_mechanism(critical%fallen%contacts, this%scene%joint_angle_deg, row)
-            row%blocks = block_count(this%scene, critical%fallen)
-         else if (allocated(critical%standing)) then
-            row%blocks = block_count(this%scene, critical%standing)
-         end if
+         if (allocated(critical%fallen)) &
+            & call tell_mechanism(critical%fallen%contacts, this%scene%joint_angle_deg, row)
          if (this%tells_tables) call tell_nearest(this, joint_row, blocks)
          row%steps = critical%steps
          row%open_close_iterations = critical%passes
@@ -210,20 +220,6 @@ contains
          call tell_fall(critical%fallen, scene, blocks)
       end associate
    end subroutine tell_nearest
-
-   !> Number of movable blocks: of the scene, or where there was none, of a chain by its joints
-   pure integer function block_count(scene, decision)
-      !> The scene, which may be empty
-      type(scene_t), intent(in) :: scene
-      !> Its decision
-      type(decision_t), intent(in) :: decision
-
-      if (allocated(scene%system%equation)) then
-         block_count = maxval(scene%system%equation)
-      else
-         block_count = whole_joints(decision) - 1
-      end if
-   end function block_count
 
    !> Displacements of the blocks in the collapse nearest to critical
    pure subroutine tell_fall(fallen, scene, blocks)

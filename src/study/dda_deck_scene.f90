@@ -14,7 +14,7 @@ module dda_deck_scene
    use dda_error, only : error_t, fatal_error
    use dda_kinds, only : wp
    use dda_limerick_lines, only : check_limerick_lines
-   use dda_line_scene, only : check_line_scene, line_scene
+   use dda_line_scene, only : check_line_scene, held_blocks, line_scene
    use dda_read_deck, only : geometry_file
    use dda_restart, only : check_restart
    use dda_scene, only : family_t, scene_t
@@ -25,7 +25,8 @@ module dda_deck_scene
    implicit none
    private
 
-   public :: check_lines, check_scene, deck_family_t, deck_scene, new_family, warning_line
+   public :: check_lines, check_scene, deck_family_t, deck_scene, movable_blocks, new_family
+   public :: warning_line
 
    !> The scenes of one deck whose searched parameter varies
    type, extends(family_t) :: deck_family_t
@@ -135,6 +136,20 @@ contains
          call arch_scene(deck, scene)
       end if
    end subroutine deck_scene
+
+   !> Number of blocks that can move in the scene of a case
+   pure integer function movable_blocks(deck)
+      !> The deck, checked
+      type(deck_t), intent(in) :: deck
+
+      if (allocated(deck%cut)) then
+         movable_blocks = count(.not. held_blocks(deck%cut))
+      else if (word_of(deck, "scene", "kind") == "blocks") then
+         movable_blocks = count(.not. deck%plan%fixed)
+      else
+         movable_blocks = size(joint_angles_deg(deck)) - 1
+      end if
+   end function movable_blocks
 
    !> The scene of a deck's file of blocks
    pure subroutine file_scene(deck, scene)

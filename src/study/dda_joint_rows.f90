@@ -33,7 +33,8 @@ contains
          if (size(joint_angle_deg) > 0) row(j)%angle_deg = some_number(joint_angle_deg(j))
          call tell_forces(contacts%joint(j), contacts%force(:, j), origin, row(j))
          row(j)%opening_intrados = contacts%gap(1, j)
-         row(j)%opening_extrados = contacts%gap(2, j)
+         if (contacts%joint(j)%n_contact > 1) &
+            & row(j)%opening_extrados = some_number(contacts%gap(2, j))
          row(j)%slip = contacts%gap(3, j)
          row(j)%state = "locked"
          if (contacts%face(j)%open(2)) row(j)%state = "hinge_intrados"
@@ -65,7 +66,8 @@ contains
       row%force = row%normal_force*joint%normal + row%shear_force*joint%tangent
       row%point = (row%intrados + row%extrados)/2.0_wp
       if (.not. row%normal_force > 0.0_wp) return
-      row%eccentricity_ratio = some_number((force(1) - force(2))/row%normal_force)
+      if (joint%n_contact > 1) &
+         & row%eccentricity_ratio = some_number((force(1) - force(2))/row%normal_force)
       row%point = (force(1)*row%intrados + force(2)*row%extrados)/row%normal_force
    end subroutine tell_forces
 

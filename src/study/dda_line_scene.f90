@@ -2,7 +2,7 @@
 module dda_line_scene
    use dda_arch_scene, only : joint_law, material_of, settings_of, unit_weight
    use dda_block_system, only : block_system_t, new_block_system
-   use dda_constants, only : degree, pi
+   use dda_constants, only : pi
    use dda_contact_detection, only : find_contacts
    use dda_cut_model, only : cut_model_t, point_kind
    use dda_deck, only : deck_error, deck_t, is_given, word_of
@@ -17,7 +17,7 @@ module dda_line_scene
    implicit none
    private
 
-   public :: line_scene, check_line_scene, law_of_joint
+   public :: line_scene, check_line_scene, held_blocks, law_of_joint
 
    !> Friction angles from here on mean that a joint cannot slide [deg]
    real(wp), parameter :: no_slip_deg = 89.9_wp
@@ -41,11 +41,10 @@ contains
          & .or. scene%system%equation(split%pair%side(3)) > 0)
       n = size(split%pair)
       scene%settings = settings_of(deck, pi/2.0_wp, n)
-      allocate (law(n), edge_pair(4, n), scene%joint_angle_deg(n))
+      allocate (law(n), edge_pair(4, n), scene%joint_angle_deg(0))
       do j = 1, n
          law(j) = law_of_joint(deck, split%pair(j)%joint)
          edge_pair(:, j) = split%pair(j)%side
-         scene%joint_angle_deg(j) = inclination_deg(split%pair(j)%place)
       end do
       call find_contacts(scene%system, edge_pair, law, scene%settings%penalty_ratio, &
          & scene%settings%n_dof, scene%contacts)
@@ -211,16 +210,4 @@ contains
          end associate
       end do
    end function held_blocks
-
-   !> Angle of a joint from the upright, positive to the right, above -90 up to 90: what the angle
-   !> from the crown is to the joints of an arch
-   pure real(wp) function inclination_deg(place)
-      !> Ends of the joint: (4) [m]
-      real(wp), intent(in) :: place(4)
-      real(wp) :: way(2)
-
-      way = place(3:4) - place(1:2)
-      if (way(2) < 0.0_wp .or. (.not. way(2) > 0.0_wp .and. way(1) < 0.0_wp)) way = -way
-      inclination_deg = atan2(way(1), way(2))/degree
-   end function inclination_deg
 end module dda_line_scene

@@ -38,8 +38,8 @@ module dda_mechanism
       real(wp), allocatable :: intrados_deg(:)
       !> Hinges at the extrados, likewise: (n) [deg]
       real(wp), allocatable :: extrados_deg(:)
-      !> intrados, extrados or none: where the springings turn
-      character(len=8) :: springing = "none"
+      !> intrados, extrados or none: where the springings turn; blank where there is no arch
+      character(len=8) :: springing = ""
    end type mechanism_t
 
    !> An opening below this share of the largest opening or slip is elastic
@@ -83,6 +83,7 @@ contains
          & + sum(max(0.0_wp, contacts%increment(2, :)), mask=contacts%face%open(2))
       allocate (mechanism%intrados_deg(0), mechanism%extrados_deg(0))
       if (n > 0) then
+         mechanism%springing = "none"
          mechanism%intrados_deg = &
             & each_once(abs(pack(joint_angle_deg, role == joint_role%hinge_first)))
          mechanism%extrados_deg = &
