@@ -8,7 +8,7 @@ module dda_contact_types
    implicit none
    private
 
-   public :: contact_t, joint_t, edge_to_edge_joint, place_joint, slip_at, vertex_number
+   public :: contact_t, joint_t, edge_to_edge_joint, place_joint, same_joint, slip_at, vertex_number
 
    !> A vertex of one block against an edge of another
    type :: contact_t
@@ -77,6 +77,20 @@ contains
       n = system%first_vertex(block + 1) - system%first_vertex(block)
       vertex_number = system%first_vertex(block) + modulo(vertex - 1, n)
    end function vertex_number
+
+   !> Whether two joints are of the same corners and edges, in the same order
+   elemental logical function same_joint(a, b)
+      !> One joint
+      type(joint_t), intent(in) :: a
+      !> The other
+      type(joint_t), intent(in) :: b
+
+      same_joint = all(a%block == b%block) .and. a%n_contact == b%n_contact &
+         & .and. all(a%contact%vertex_block == b%contact%vertex_block &
+         & .and. a%contact%vertex == b%contact%vertex &
+         & .and. a%contact%edge_block == b%contact%edge_block &
+         & .and. a%contact%edge == b%contact%edge)
+   end function same_joint
 
    !> Joint of two edges that coincide and run against each other: both vertices of the second
    !> block's edge touch the first block's edge

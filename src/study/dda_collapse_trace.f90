@@ -74,7 +74,7 @@ contains
       type(proposal_t), intent(out) :: proposal
       type(frozen_t) :: mechanism
       real(wp) :: x(2), power(2), first_power, noise, next, slope, coarse_slope, step
-      real(wp) :: bend, last_slope, off, x_before
+      real(wp) :: bend, last_slope, near, x_before
       integer :: pass
       logical :: usable, stopped, only_noise
 
@@ -101,9 +101,9 @@ contains
             & /(x(2) - x_before)
          next = next - bend
          if (next < search%low .or. next > search%high) return
-         off = abs(next - x(2))
-         if (pass > 1) off = min(off, abs(bend*(x(2) - x(1)))*curving/abs(next))
-         stopped = off < 0.02_wp*least_half(search, critical)*abs(next)
+         near = 0.02_wp*least_half(search, critical)*abs(next)
+         stopped = abs(next - x(2)) <= near .or. pass > 1 &
+            & .and. abs(bend*(x(2) - x(1)))*curving < near*abs(next)
          only_noise = abs(power(2)) < 1.0e-3_wp*abs(first_power) .and. abs(power(2)) > abs(power(1))
          if (stopped .or. only_noise) exit
          last_slope = slope
@@ -170,6 +170,7 @@ contains
          else if (mechanism%linked) then
             call freeze_mechanism(chain, contacts%face, contacts%increment, mechanism%chain)
          else
+            mechanism%blocks%joint = contacts%joint
             mechanism%blocks%face = contacts%face
             mechanism%blocks%motion = outcome%motion(:3, :)
             mechanism%blocks%dt = sqrt(free_fall)*outcome%elastic_time

@@ -5,6 +5,7 @@ module dda_frozen_mechanism
    use dda_block_inertia, only : assemble_blocks
    use dda_block_factor, only : substitute
    use dda_block_system, only : block_system_t
+   use dda_contact_types, only : joint_t, same_joint
    use dda_friction_cone, only : joint_face_t
    use dda_joint_springs, only : joint_springs_t, new_joint_springs
    use dda_kinds, only : wp
@@ -17,6 +18,8 @@ module dda_frozen_mechanism
 
    !> A collapse to be traced from one value of the parameter to another
    type :: frozen_mechanism_t
+      !> The joints: (n_joint)
+      type(joint_t), allocatable :: joint(:)
       !> Faces of the joints in its last step: (n_joint)
       type(joint_face_t), allocatable :: face(:)
       !> Motion of its last step without strains: (3, n_equation)
@@ -51,6 +54,8 @@ contains
 
       power = 0.0_wp
       noise = 0.0_wp
+      usable = is_of(mechanism, scene)
+      if (.not. usable) return
       settings = scene%settings
       settings%n_dof = 3
       if (scene%settings%n_dof == settings%n_dof) then
@@ -60,8 +65,6 @@ contains
             & settings%penalty_ratio, settings%n_dof, springs)
       end if
       call new_equations(scene%system, springs, settings, equations)
-      usable = all(shape(equations%weight) == shape(mechanism%motion))
-      if (.not. usable) return
       allocate (motion, source=mechanism%motion)
       call assemble_blocks(scene%system, settings, mechanism%dt, equations)
       trial = 0.0_wp
@@ -85,6 +88,18 @@ contains
       end do
       noise = noise/scale
    end subroutine mechanism_power
+
+   !> Whether a scene has the blocks and joints of a mechanism, in the same order
+   pure logical function is_of(mechanism, scene)
+      !> The mechanism
+      type(frozen_mechanism_t), intent(in) :: mechanism
+      !> The scene
+      type(scene_t), intent(in) :: scene
+
+      is_of = size(mechanism%motion, 2) == maxval(scene%system%equation) &
+         & .and. size(mechanism%joint) == size(scene%contacts%joint)
+      if (is_of) is_of = all(same_joint(mechanism%joint, scene%contacts%joint))
+   end function is_of
 
    !> Multiply a motion by the inertia
    pure subroutine weigh(equations, dt, motion)
