@@ -313,7 +313,7 @@ def draw_hinges(axes: Axes, scene: CaseScene, joints: Table) -> list[Artist]:
 
 def draw_slips(axes: Axes, scene: CaseScene, joints: Table, size: float) -> list[Artist]:
     """Draw which way the sides of sliding joints move; gives the entries of the legend."""
-    slides = np.flatnonzero((roles_of(joints) == "sliding") & np.isfinite(joints["slides_x"]))
+    slides = np.flatnonzero(np.isfinite(joints["slides_x"]))
     centre = {
         block.number: block.corners.mean(axis=0) for block in scene.blocks + scene.supports
     }

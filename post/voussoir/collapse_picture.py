@@ -134,7 +134,7 @@ def shapes_of(
 def marks_of(run: Results, number: int, frame: Frame) -> dict[str, np.ndarray]:
     """Where a picture of an arch has hinges and slips.
 
-    Hinges are those of the row of the case; a joint slips that does so in some picture up to this.
+    Hinges are those of the row of the case, slips those of its joints.
 
     Returns
     -------
@@ -142,16 +142,13 @@ def marks_of(run: Results, number: int, frame: Frame) -> dict[str, np.ndarray]:
         Points of each kind: (2, n).
     """
     row = run.case(number)
-    angle = np.abs(run.joints_of(number)["angle_deg"])
+    roles = run.joints_of(number)
+    angle = np.abs(roles["angle_deg"])
     joints = frame.joints
-    slips = np.zeros(len(joints), dtype=bool)
-    for picture in run.frames_of(number)[1 : frame.number + 1]:
-        for state in ("state_1", "state_2"):
-            slips |= picture.joints[state] == "sliding"
     places = {
         "intrados": (np.isin(np.round(angle, 6), np.round(row["intrados_hinge_deg"], 6)), "_1"),
         "extrados": (np.isin(np.round(angle, 6), np.round(row["extrados_hinge_deg"], 6)), "_2"),
-        "slip": (slips, ""),
+        "slip": (np.isfinite(roles["slides_x"]), ""),
     }
     return {
         kind: np.array([joints["x" + at][mask], joints["y" + at][mask]])

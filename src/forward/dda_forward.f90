@@ -92,7 +92,7 @@ contains
       end if
       if (settings%dynamic .and. march%steps == 0) call audit_step(settings, system, equations, &
          & contacts, step, 0.0_wp, march%energy)
-      if (present(album)) call keep_pictures(system, contacts, march, .false., album)
+      if (present(album)) call keep_pictures(system, contacts, march, 0.0_wp, .false., album)
       do while (.not. allocated(error))
          if (march%steps == settings%max_steps) exit
          call advance(settings, system, contacts, equations, march, step, error)
@@ -103,7 +103,7 @@ contains
             & march%displacement = largest_displacement(system, settings%current)
          if (step%whole .and. .not. settings%dynamic) &
             & outcome%verdict = judge_verdict(march, step, settings)
-         if (present(album)) call keep_pictures(system, contacts, march, &
+         if (present(album)) call keep_pictures(system, contacts, march, step%farthest, &
             & outcome%verdict /= verdict%undecided, album)
          if (outcome%verdict /= verdict%undecided) exit
          if (settings%duration > 0.0_wp .and. march%time >= settings%duration) exit
@@ -152,19 +152,22 @@ contains
    end subroutine go_on
 
    !> Keep a picture if one is due, and where the measured points are
-   pure subroutine keep_pictures(system, contacts, march, last, album)
+   pure subroutine keep_pictures(system, contacts, march, farthest, last, album)
       !> The blocks
       type(block_system_t), intent(in) :: system
       !> The contacts
       type(contacts_t), intent(in) :: contacts
       !> The march
       type(march_t), intent(in) :: march
+      !> Largest motion of a point in the last step [m]
+      real(wp), intent(in) :: farthest
       !> Whether the run ends here
       logical, intent(in) :: last
       !> Receives the picture
       type(album_t), intent(inout) :: album
 
-      call keep_frame(system, contacts, march%steps, march%time, march%displacement, last, album)
+      call keep_frame(system, contacts, march%steps, march%time, march%displacement, farthest, &
+         & last, album)
       call keep_track(system, march%steps, march%time, album)
    end subroutine keep_pictures
 

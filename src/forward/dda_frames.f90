@@ -31,8 +31,10 @@ module dda_frames
       type(joint_t), allocatable :: joint(:)
       !> Force N1, N2, T of all joints: (3, n_joint) [N/m]
       real(wp), allocatable :: force(:, :)
-      !> Openings and slip of all joints: (3, n_joint) [m]
-      real(wp), allocatable :: gap(:, :)
+      !> Slip of all joints in the last step: (n_joint) [m]
+      real(wp), allocatable :: slip(:)
+      !> Largest motion of a point in the last step [m]
+      real(wp) :: farthest = 0.0_wp
       !> Faces that the forces lie on: (n_joint)
       type(joint_face_t), allocatable :: face(:)
    end type frame_t
@@ -69,7 +71,7 @@ module dda_frames
 contains
 
    !> Keep a picture if one is due
-   pure subroutine keep_frame(system, contacts, step, time, displacement, last, album)
+   pure subroutine keep_frame(system, contacts, step, time, displacement, farthest, last, album)
       !> The blocks
       type(block_system_t), intent(in) :: system
       !> The contacts
@@ -80,6 +82,8 @@ contains
       real(wp), intent(in) :: time
       !> Farthest that a corner has moved [m]
       real(wp), intent(in) :: displacement
+      !> Largest motion of a point in the last step [m]
+      real(wp), intent(in) :: farthest
       !> Whether the run ends here, so that a picture is due anyway
       logical, intent(in) :: last
       !> Receives the picture
@@ -115,7 +119,8 @@ contains
          frame%stress = system%stress
          frame%joint = contacts%joint
          frame%force = contacts%force
-         frame%gap = contacts%gap
+         frame%slip = contacts%increment(3, :)
+         frame%farthest = farthest
          frame%face = contacts%face
       end associate
    end subroutine keep_frame

@@ -2,7 +2,7 @@
 module dda_case_rows
    use dda_block_scene, only : lacks_friction
    use dda_case, only : case_t, searched_name
-   use dda_contact_detection, only : contacts_t
+   use dda_contact_types, only : joint_t
    use dda_critical, only : critical_t
    use dda_decision, only : decision_t
    use dda_deck, only : deck_t, flag_of, is_given, real_of, word_of
@@ -130,8 +130,9 @@ contains
          if (allocated(this%decision%contacts%joint)) joint_row = &
             & joint_rows(this%decision%contacts, this%scene%joint_angle_deg, this%scene%origin)
          if (outcome%verdict == verdict%collapsed) then
-            call tell_mechanism(this%decision%contacts, this%scene%joint_angle_deg, row)
-            if (size(joint_row) > 0) call tell_roles(this%decision%contacts, joint_row)
+            call tell_mechanism(this%decision, this%scene%joint_angle_deg, row)
+            if (size(joint_row) > 0) call tell_roles(this%decision%contacts, &
+               & this%decision%contacts%joint, joint_row, outcome%motion)
          end if
          if (allocated(this%decision%system%equation)) call tell_end(this, blocks)
          row%steps = outcome%steps
@@ -181,7 +182,7 @@ contains
          end if
          if (critical%verdict == verdict%found) call tell_bracket(critical, row)
          if (allocated(critical%fallen)) &
-            & call tell_mechanism(critical%fallen%contacts, this%scene%joint_angle_deg, row)
+            & call tell_mechanism(critical%fallen, this%scene%joint_angle_deg, row)
          if (this%tells_tables) call tell_nearest(this, joint_row, blocks)
          row%steps = critical%steps
          row%open_close_iterations = critical%passes
@@ -203,20 +204,27 @@ contains
       !> The blocks
       type(told_blocks_t), intent(inout) :: blocks
       type(scene_t) :: scene
+      type(joint_t), allocatable :: joint(:)
       type(error_t), allocatable :: error
 
       associate (critical => this%critical)
          scene = this%scene
+         allocate (joint(0))
          if (allocated(critical%standing)) then
             call this%family%build(critical%stands, scene, error)
-            if (allocated(critical%standing%contacts%joint)) joint_row = &
-               & joint_rows(critical%standing%contacts, scene%joint_angle_deg, scene%origin)
+            if (allocated(critical%standing%contacts%joint)) then
+               joint = critical%standing%contacts%joint
+               joint_row = joint_rows(critical%standing%contacts, scene%joint_angle_deg, &
+                  & scene%origin)
+            end if
          else if (allocated(critical%fallen)) then
+            joint = critical%fallen%contacts%joint
             joint_row = joint_rows(critical%fallen%contacts, scene%joint_angle_deg, scene%origin)
          end if
          if (allocated(scene%system%equation)) call tell_blocks(scene, blocks)
          if (.not. allocated(critical%fallen)) return
-         if (size(joint_row) > 0) call tell_roles(critical%fallen%contacts, joint_row)
+         if (size(joint) > 0) call tell_roles(critical%fallen%contacts, joint, joint_row, &
+            & critical%fallen%outcome%motion)
          call tell_fall(critical%fallen, scene, blocks)
       end associate
    end subroutine tell_nearest
@@ -276,16 +284,16 @@ contains
    end subroutine tell_bracket
 
    !> Fill the columns of a collapse
-   pure subroutine tell_mechanism(contacts, joint_angle_deg, row)
-      !> Contacts at the end of the collapse
-      type(contacts_t), intent(in) :: contacts
+   pure subroutine tell_mechanism(fallen, joint_angle_deg, row)
+      !> The collapse
+      type(decision_t), intent(in) :: fallen
       !> Angle of each joint from the crown: (n_joint) [deg]
       real(wp), intent(in) :: joint_angle_deg(:)
       !> The row
       type(result_row_t), intent(inout) :: row
       type(mechanism_t) :: mechanism
 
-      call mechanism_of(contacts, joint_angle_deg, mechanism)
+      call mechanism_of(fallen%contacts, joint_angle_deg, mechanism, fallen%outcome%motion)
       row%collapse_mode = mechanism%mode
       row%sliding_share = some_number(mechanism%sliding_share)
       row%intrados_hinge_deg = mechanism%intrados_deg

@@ -5,6 +5,7 @@ module dda_frame_rows
    use dda_frames, only : frame_t
    use dda_friction_cone, only : contact_state
    use dda_kinds, only : wp
+   use dda_mechanism, only : slides
    use dda_write_frames, only : frame_joint_row_t
    implicit none
    private
@@ -44,7 +45,7 @@ contains
       end do
    end function frame_joint_rows
 
-   !> States of the two contacts of a joint
+   !> States of the two contacts of a joint: whether it slides is seen in the last step
    pure function contact_states(frame, joint) result(states)
       !> The picture
       type(frame_t), intent(in) :: frame
@@ -54,7 +55,8 @@ contains
       integer :: states(2)
 
       states = contact_state%locked
-      if (frame%face(joint)%slip /= 0) states = contact_state%sliding
+      if (slides(frame%face(joint), frame%slip(joint), frame%farthest)) &
+         & states = contact_state%sliding
       where (frame%face(joint)%open) states = contact_state%open
    end function contact_states
 end module dda_frame_rows

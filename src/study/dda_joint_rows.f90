@@ -1,9 +1,9 @@
 !> The joints of a decision told as rows: forces, openings, and what they do in the collapse
 module dda_joint_rows
    use dda_contact_detection, only : contacts_t
-   use dda_contact_types, only : joint_t
+   use dda_contact_types, only : joint_t, same_joint
    use dda_kinds, only : wp
-   use dda_mechanism, only : joint_role, role_of_joint
+   use dda_mechanism, only : joint_role, largest_of, role_of_joint, slides
    use dda_write_results, only : joint_row_t, some_number
    implicit none
    private
@@ -84,37 +84,52 @@ contains
    end function way_against
 
    !> Tell what each joint does in a collapse; its motion is that of the last step
-   pure subroutine tell_roles(fallen, row)
+   pure subroutine tell_roles(fallen, joint, row, motion)
       !> Contacts at the end of the collapse
       type(contacts_t), intent(in) :: fallen
-      !> The rows, of the same run or of one that stands beside it: (n_joint)
+      !> The joints of the rows: of the same run, or of one that stands beside it: (n_joint)
+      type(joint_t), intent(in) :: joint(:)
+      !> The rows: (n_joint)
       type(joint_row_t), intent(inout) :: row(:)
+      !> Motion of the blocks in the last step, where it is known: (n_dof, n_equation)
+      real(wp), intent(in), optional :: motion(:, :)
       integer :: role(size(fallen%joint)), j, k
+      logical :: slip(size(fallen%joint))
 
-      role = role_of_joint(fallen)
+      role = role_of_joint(fallen, motion)
+      slip = slides(fallen%face, fallen%increment(3, :), largest_of(fallen, motion))
       do j = 1, size(row)
-         k = same_joint(fallen, row(j))
+         row(j)%slides%known = .false.
+         k = place_in(fallen%joint, joint(j), j)
          if (k == 0) cycle
          row(j)%mechanism = role_word(role(k))
-         if (role(k) == joint_role%sliding) row(j)%slides = &
+         if (slip(k)) row(j)%slides = &
             & some_number(sign(1.0_wp, fallen%increment(3, k))*fallen%joint(k)%tangent)
       end do
    end subroutine tell_roles
 
-   !> Number of the joint between the same blocks, that of the same number if it can be; 0 if there
-   !> is none
-   pure integer function same_joint(contacts, row)
-      !> The joints
-      type(contacts_t), intent(in) :: contacts
-      !> A joint of another run
-      type(joint_row_t), intent(in) :: row
+   !> Number of a joint among those of another run: of the same corners and edges, else between the
+   !> same blocks; 0 if there is none
+   pure integer function place_in(joints, joint, guess)
+      !> The joints of the other run
+      type(joint_t), intent(in) :: joints(:)
+      !> The joint
+      type(joint_t), intent(in) :: joint
+      !> Where it may be
+      integer, intent(in) :: guess
+      integer :: k
 
-      same_joint = row%joint
-      if (same_joint <= size(contacts%joint)) then
-         if (all(contacts%joint(same_joint)%block == row%block)) return
+      place_in = 0
+      if (guess <= size(joints)) then
+         if (same_joint(joints(guess), joint)) place_in = guess
       end if
-      do same_joint = size(contacts%joint), 1, -1
-         if (all(contacts%joint(same_joint)%block == row%block)) return
+      if (place_in > 0) return
+      do k = 1, size(joints)
+         if (any(joints(k)%block /= joint%block)) cycle
+         if (place_in == 0) place_in = k
+         if (.not. same_joint(joints(k), joint)) cycle
+         place_in = k
+         return
       end do
-   end function same_joint
+   end function place_in
 end module dda_joint_rows

@@ -2,6 +2,7 @@
 module dda_mechanism
    use dda_contact_detection, only : contacts_t
    use dda_decision, only : decision_t, follow_coulomb
+   use dda_friction_cone, only : joint_face_t
    use dda_kinds, only : wp
    use dda_scene, only : scene_t
    use dda_settings, only : flow_rule
@@ -10,6 +11,7 @@ module dda_mechanism
    private
 
    public :: mechanism_t, mechanism_of, follow_collapse, joint_role, joint_role_enum, role_of_joint
+   public :: largest_of, slides
 
    !> What a joint does in a mechanism
    type :: joint_role_enum
@@ -17,7 +19,7 @@ module dda_mechanism
       integer :: locked = 0
       !> Both corners open
       integer :: open = 1
-      !> At the Coulomb limit
+      !> Slides, and does not open
       integer :: sliding = 2
       !> Turns about its first corner: in an arch the intrados
       integer :: hinge_first = 3
@@ -30,9 +32,9 @@ module dda_mechanism
 
    !> A collapse mechanism
    type :: mechanism_t
-      !> rotational, mixed or sliding; none if nothing moves
+      !> rotational, mixed or sliding; none if no joint turns or slides
       character(len=10) :: mode = "none"
-      !> Slip over slip and opening
+      !> Slip of closed joints over this and the opening of hinges
       real(wp) :: sliding_share = 0.0_wp
       !> Hinges at the intrados, as angles from the crown, each once: (n) [deg]
       real(wp), allocatable :: intrados_deg(:)
@@ -44,6 +46,8 @@ module dda_mechanism
 
    !> An opening below this share of the largest opening or slip is elastic
    real(wp), parameter :: elastic_share = 1.0e-4_wp
+   !> A slip below this share of the largest displacement is rounding
+   real(wp), parameter :: least_slip = 1.0e-6_wp
    !> Sliding shares below this one count as none, and those above its complement as all
    real(wp), parameter :: little = 1.0e-3_wp
 
@@ -66,21 +70,26 @@ contains
    end subroutine follow_collapse
 
    !> The mechanism of the last step of a collapse
-   pure subroutine mechanism_of(contacts, joint_angle_deg, mechanism)
+   pure subroutine mechanism_of(contacts, joint_angle_deg, mechanism, motion)
       !> Contacts at the end of the collapse
       type(contacts_t), intent(in) :: contacts
       !> Angle of each joint from the crown, or none where there is no arch: (n_joint) or (0) [deg]
       real(wp), intent(in) :: joint_angle_deg(:)
       !> The mechanism
       type(mechanism_t), intent(out) :: mechanism
+      !> Motion of the blocks in the step, where it is known: (n_dof, n_equation)
+      real(wp), intent(in), optional :: motion(:, :)
       integer :: role(size(contacts%face)), n
       real(wp) :: opening, slip
 
-      role = role_of_joint(contacts)
+      role = role_of_joint(contacts, motion)
       n = size(joint_angle_deg)
-      slip = sum(abs(contacts%increment(3, :)), mask=contacts%face%slip /= 0)
-      opening = sum(max(0.0_wp, contacts%increment(1, :)), mask=contacts%face%open(1)) &
-         & + sum(max(0.0_wp, contacts%increment(2, :)), mask=contacts%face%open(2))
+      associate (increment => contacts%increment)
+         slip = sum(abs(increment(3, :)), mask=slides(contacts%face, increment(3, :), &
+            & largest_of(contacts, motion)))
+         opening = sum(increment(1, :), mask=role == joint_role%hinge_second) &
+            & + sum(increment(2, :), mask=role == joint_role%hinge_first)
+      end associate
       allocate (mechanism%intrados_deg(0), mechanism%extrados_deg(0))
       if (n > 0) then
          mechanism%springing = "none"
@@ -98,10 +107,13 @@ contains
       if (mechanism%sliding_share > 1.0_wp - little) mechanism%mode = "sliding"
    end subroutine mechanism_of
 
-   !> What every joint does in the last step; openings small beside the largest motion are elastic
-   pure function role_of_joint(contacts) result(role)
+   !> What every joint does in the last step; openings small beside the largest motion are elastic.
+   !> A joint turns about a corner that is closed; if it slides there, too, the turn is told
+   pure function role_of_joint(contacts, motion) result(role)
       !> Contacts at the end of a step
       type(contacts_t), intent(in) :: contacts
+      !> Motion of the blocks in the step, where it is known: (n_dof, n_equation)
+      real(wp), intent(in), optional :: motion(:, :)
       !> One of joint_role each: (n_joint)
       integer :: role(size(contacts%face))
       real(wp) :: least
@@ -109,15 +121,38 @@ contains
       integer :: j
 
       least = elastic_share*maxval(abs(contacts%increment))
+      role = merge(joint_role%sliding, joint_role%locked, slides(contacts%face, &
+         & contacts%increment(3, :), largest_of(contacts, motion)))
       do j = 1, size(role)
          opens = contacts%face(j)%open .and. contacts%increment(1:2, j) > least
-         role(j) = joint_role%locked
-         if (contacts%face(j)%slip /= 0) role(j) = joint_role%sliding
-         if (opens(2) .and. .not. opens(1)) role(j) = joint_role%hinge_first
-         if (opens(1) .and. .not. opens(2)) role(j) = joint_role%hinge_second
-         if (all(opens)) role(j) = joint_role%open
+         if (.not. any(opens)) cycle
+         role(j) = merge(joint_role%hinge_second, joint_role%hinge_first, opens(1))
+         if (all(contacts%face(j)%open)) role(j) = joint_role%open
       end do
    end function role_of_joint
+
+   !> Whether a joint slides: it is closed, at the Coulomb limit, and its slip is more than rounding
+   elemental logical function slides(face, slip, largest)
+      !> Face that its force lies on
+      type(joint_face_t), intent(in) :: face
+      !> Its slip [m]
+      real(wp), intent(in) :: slip
+      !> Largest displacement in the same time [m]
+      real(wp), intent(in) :: largest
+
+      slides = face%slip /= 0 .and. .not. all(face%open) .and. abs(slip) > least_slip*largest
+   end function slides
+
+   !> Largest displacement in the last step: of a centre, or of the sides of a joint past another
+   pure real(wp) function largest_of(contacts, motion)
+      !> Contacts at the end of the step
+      type(contacts_t), intent(in) :: contacts
+      !> Motion of the blocks in the step, where it is known: (n_dof, n_equation)
+      real(wp), intent(in), optional :: motion(:, :)
+
+      largest_of = max(0.0_wp, maxval(abs(contacts%increment)))
+      if (present(motion)) largest_of = max(largest_of, maxval(norm2(motion(1:2, :), dim=1)))
+   end function largest_of
 
    !> Numbers in rising order without repetition; equal but for rounding counts as equal
    pure function each_once(numbers) result(once)
