@@ -1,0 +1,308 @@
+!> Equations of a motion whose joints keep what they do: (A S A' + damping*mass) v = load
+!>
+!> One factor serves many sets of faces. Where the stiffness of joints differs by D from that in the
+!> factor, and U are the answers of the blocks to unit forces at these joints,
+!>
+!>    v = v0 - U y,   y = D (opening of v at these joints)      (Sherman, Morrison and Woodbury)
+!>
+!> is a small full system for y. Answers are kept until the matrix is factored again, so that a
+!> joint may change to and fro for nothing. What a solution leaves of the load is always looked at:
+!> if it is not rounding, the solution is corrected, then the matrix factored.
+module dda_coulomb_equations
+   use dda_block_factor, only : substitute
+   use dda_coulomb_joints, only : coulomb_joints_t
+   use dda_coulomb_law, only : imbalance, joint_stiffness, spring_forces
+   use dda_coulomb_matrix, only : coulomb_matrix_t, factor_stiffness, new_matrix
+   use dda_full_matrix, only : eliminate_full, substitute_full
+   use dda_joint_graph, only : joint_motion
+   use dda_kinds, only : wp
+   implicit none
+   private
+
+   public :: coulomb_equations_t, new_equations, use_faces, solve_equations
+
+   !> A factor, and what has changed since
+   type :: coulomb_equations_t
+      !> Matrix and factor
+      type(coulomb_matrix_t) :: base
+      !> Whether the equations can be solved
+      logical :: usable = .false.
+      !> Multiple of the mass
+      real(wp) :: damping = -1.0_wp
+      !> Faces in the factor: (3, n_joint)
+      integer, allocatable :: base_face(:, :)
+      !> Faces in the equations: (3, n_joint)
+      integer, allocatable :: face(:, :)
+      !> Number of joints that have changed since
+      integer :: n_change = 0
+      !> Their numbers in the order of their first change: (max_answer)
+      integer, allocatable :: joint(:)
+      !> Place of each joint among them, 0 for the others: (n_joint)
+      integer, allocatable :: place(:)
+      !> What their stiffness is more than in the factor: (3, 3, max_answer)
+      real(wp), allocatable :: difference(:, :, :)
+      !> Number of the answer to a unit force along each of their parts, or 0: (3, max_answer)
+      integer, allocatable :: answer(:, :)
+      !> Number of answers
+      integer :: n_answer = 0
+      !> Place and part that each belongs to: (2, max_answer)
+      integer, allocatable :: origin(:, :)
+      !> Motion of all blocks: (n_dof, n_block, max_answer)
+      real(wp), allocatable :: response(:, :, :)
+      !> How the joints that have changed open with it: (3, max_answer, max_answer)
+      real(wp), allocatable :: opening(:, :, :)
+      !> Answers in use: (n_active)
+      integer, allocatable :: active(:)
+      !> The small full matrix, factored: (n_active, n_active)
+      real(wp), allocatable :: capacity(:, :)
+      !> Its exchanges of rows: (n_active)
+      integer, allocatable :: exchange(:)
+   end type coulomb_equations_t
+
+   !> Answers that are kept: more cost as much as a new factor
+   integer, parameter :: max_answer = 48
+
+contains
+
+   !> Pattern of the equations
+   pure subroutine new_equations(joints, equations)
+      !> The joints
+      type(coulomb_joints_t), intent(in) :: joints
+      !> Receives it
+      type(coulomb_equations_t), intent(out) :: equations
+      integer :: n_joint
+
+      n_joint = size(joints%shear_role)
+      call new_matrix(joints, equations%base)
+      allocate (equations%base_face(3, n_joint), equations%place(n_joint), source=0)
+      allocate (equations%joint(max_answer), equations%difference(3, 3, max_answer))
+      allocate (equations%answer(3, max_answer), equations%origin(2, max_answer))
+      allocate (equations%response(joints%graph%n_dof, joints%graph%n_block, max_answer))
+      allocate (equations%opening(3, max_answer, max_answer), equations%active(0))
+   end subroutine new_equations
+
+   !> Make the equations those of a set of faces: by few changes of the factor, or by a new one
+   pure subroutine use_faces(equations, joints, faces, damping)
+      !> The equations
+      type(coulomb_equations_t), intent(inout) :: equations
+      !> The joints
+      type(coulomb_joints_t), intent(in) :: joints
+      !> What corners and joints do: (3, n_joint)
+      integer, intent(in) :: faces(:, :)
+      !> Multiple of the mass
+      real(wp), intent(in) :: damping
+      logical :: few
+
+      few = equations%usable .and. .not. abs(damping - equations%damping) > 0.0_wp
+      equations%face = faces
+      equations%damping = damping
+      if (few) call note_changes(equations, joints, few)
+      if (few) call factor_capacity(equations, few)
+      if (.not. few) call factor_faces(equations, joints)
+   end subroutine use_faces
+
+   !> Factor the matrix of the faces
+   pure subroutine factor_faces(equations, joints)
+      !> The equations
+      type(coulomb_equations_t), intent(inout) :: equations
+      !> The joints
+      type(coulomb_joints_t), intent(in) :: joints
+      real(wp) :: stiffness(3, 3, size(equations%place))
+      integer :: j
+
+      do j = 1, size(stiffness, 3)
+         stiffness(:, :, j) = joint_stiffness(joints, j, equations%face(:, j))
+      end do
+      call factor_stiffness(equations%base, joints, stiffness, equations%damping)
+      equations%usable = equations%base%factor%usable
+      equations%base_face = equations%face
+      equations%place(equations%joint(:equations%n_change)) = 0
+      equations%n_change = 0
+      equations%n_answer = 0
+      equations%active = [integer ::]
+   end subroutine factor_faces
+
+   !> List what differs from the factor, and find the answers that this takes
+   pure subroutine note_changes(equations, joints, few)
+      !> The equations
+      type(coulomb_equations_t), intent(inout) :: equations
+      !> The joints
+      type(coulomb_joints_t), intent(in) :: joints
+      !> Whether there was room for them
+      logical, intent(out) :: few
+      integer :: c, j, k
+
+      few = .false.
+      do j = 1, size(equations%place)
+         if (all(equations%face(:, j) == equations%base_face(:, j))) cycle
+         if (equations%place(j) > 0) cycle
+         if (equations%n_change == max_answer) return
+         equations%n_change = equations%n_change + 1
+         equations%joint(equations%n_change) = j
+         equations%place(j) = equations%n_change
+         equations%answer(:, equations%n_change) = 0
+         do k = 1, equations%n_answer
+            equations%opening(:, equations%n_change, k) = opening_of(joints, j, &
+               & equations%response(:, :, k))
+         end do
+      end do
+      do c = 1, equations%n_change
+         j = equations%joint(c)
+         equations%difference(:, :, c) = joint_stiffness(joints, j, equations%face(:, j)) &
+            & - joint_stiffness(joints, j, equations%base_face(:, j))
+         do k = 1, 3
+            if (.not. any(abs(equations%difference(k, :, c)) > 0.0_wp)) cycle
+            if (equations%answer(k, c) > 0) cycle
+            if (equations%n_answer == max_answer) return
+            call find_answer(equations, joints, c, k)
+         end do
+      end do
+      few = .true.
+   end subroutine note_changes
+
+   !> Answer of the blocks to a unit force at a joint
+   pure subroutine find_answer(equations, joints, place, part)
+      !> The equations
+      type(coulomb_equations_t), intent(inout) :: equations
+      !> The joints
+      type(coulomb_joints_t), intent(in) :: joints
+      !> Place of the joint among those that have changed
+      integer, intent(in) :: place
+      !> The force: N1, N2 or T
+      integer, intent(in) :: part
+      integer :: a, b, c, side
+
+      equations%n_answer = equations%n_answer + 1
+      a = equations%n_answer
+      equations%answer(part, place) = a
+      equations%origin(:, a) = [place, part]
+      associate (response => equations%response(:, :, a), j => equations%joint(place))
+         response = 0.0_wp
+         do side = 1, 2
+            b = joints%graph%block(side, j)
+            if (b > 0) response(:, b) = response(:, b) + joints%graph%row(:, part, side, j)
+         end do
+         call substitute(equations%base%factor, response)
+         do c = 1, equations%n_change
+            equations%opening(:, c, a) = opening_of(joints, equations%joint(c), response)
+         end do
+      end associate
+   end subroutine find_answer
+
+   !> How one joint opens and slips with a motion
+   pure function opening_of(joints, j, motion) result(opening)
+      !> The joints
+      type(coulomb_joints_t), intent(in) :: joints
+      !> Number of the joint
+      integer, intent(in) :: j
+      !> Motion of the blocks: (n_dof, n_block)
+      real(wp), intent(in) :: motion(:, :)
+      !> Opening 1, opening 2, slip
+      real(wp) :: opening(3)
+      integer :: b, k, side
+
+      opening = 0.0_wp
+      do side = 1, 2
+         b = joints%graph%block(side, j)
+         if (b == 0) cycle
+         do k = 1, 3
+            opening(k) = opening(k) + dot_product(joints%graph%row(:, k, side, j), motion(:, b))
+         end do
+      end do
+   end function opening_of
+
+   !> The small full matrix of the answers in use: unity and differences times openings
+   pure subroutine factor_capacity(equations, regular)
+      !> The equations
+      type(coulomb_equations_t), intent(inout) :: equations
+      !> Whether it has factors
+      logical, intent(out) :: regular
+      integer :: a, i, n
+      logical :: used(equations%n_answer)
+
+      do a = 1, size(used)
+         associate (place => equations%origin(1, a), part => equations%origin(2, a))
+            used(a) = any(abs(equations%difference(part, :, place)) > 0.0_wp)
+         end associate
+      end do
+      n = count(used)
+      equations%active = pack([(a, a=1, size(used))], used)
+      if (allocated(equations%capacity)) deallocate (equations%capacity, equations%exchange)
+      allocate (equations%capacity(n, n), equations%exchange(n))
+      do i = 1, n
+         associate (place => equations%origin(1, equations%active(i)), &
+            & part => equations%origin(2, equations%active(i)))
+            do a = 1, n
+               equations%capacity(i, a) = dot_product(equations%difference(part, :, place), &
+                  & equations%opening(:, place, equations%active(a)))
+            end do
+            equations%capacity(i, i) = equations%capacity(i, i) + 1.0_wp
+         end associate
+      end do
+      call eliminate_full(equations%capacity, equations%exchange, regular)
+   end subroutine factor_capacity
+
+   !> Solve for one load
+   pure subroutine solve_equations(equations, joints, load, motion, opening)
+      !> Usable equations; their matrix is factored again where changes have made them inexact
+      type(coulomb_equations_t), intent(inout) :: equations
+      !> The joints
+      type(coulomb_joints_t), intent(in) :: joints
+      !> The load: (n_dof, n_block)
+      real(wp), intent(in) :: load(:, :)
+      !> Motion of the blocks: (n_dof, n_block)
+      real(wp), intent(out) :: motion(:, :)
+      !> How the joints open with it: (3, n_joint)
+      real(wp), intent(out) :: opening(:, :)
+      !> What may be left of the load, and rounding of the openings of blocks that move far
+      real(wp), parameter :: exact = 1.0e-11_wp, rounding = 1.0e-14_wp
+      real(wp) :: force(3, size(opening, 2)), rest(size(load, 1), size(load, 2)), bound
+      integer :: turn
+
+      motion = load
+      call substitute_changes(equations, joints, motion)
+      do turn = 1, 3
+         call joint_motion(joints%graph, motion, opening)
+         if (size(equations%active) == 0) exit
+         call spring_forces(joints, equations%face, opening, force)
+         call imbalance(joints, load - equations%damping*joints%graph%mass*motion, force, rest)
+         bound = exact*maxval(abs(load)) + rounding*maxval(abs(motion))
+         if (maxval(abs(rest)) <= bound) exit
+         if (turn == 1) then
+            call substitute_changes(equations, joints, rest)
+            motion = motion + rest
+         else
+            call factor_faces(equations, joints)
+            if (.not. equations%usable) return
+            motion = load
+            call substitute(equations%base%factor, motion)
+         end if
+      end do
+   end subroutine solve_equations
+
+   !> Substitute with the factor and its changes
+   pure subroutine substitute_changes(equations, joints, x)
+      !> The equations
+      type(coulomb_equations_t), intent(in) :: equations
+      !> The joints
+      type(coulomb_joints_t), intent(in) :: joints
+      !> Load in, motion out: (n_dof, n_block)
+      real(wp), intent(inout) :: x(:, :)
+      real(wp) :: y(size(equations%active))
+      integer :: i
+
+      call substitute(equations%base%factor, x)
+      if (size(y) == 0) return
+      do i = 1, size(y)
+         associate (place => equations%origin(1, equations%active(i)), &
+            & part => equations%origin(2, equations%active(i)))
+            y(i) = dot_product(equations%difference(part, :, place), &
+               & opening_of(joints, equations%joint(place), x))
+         end associate
+      end do
+      call substitute_full(equations%capacity, equations%exchange, y)
+      do i = 1, size(y)
+         x = x - equations%response(:, :, equations%active(i))*y(i)
+      end do
+   end subroutine substitute_changes
+end module dda_coulomb_equations

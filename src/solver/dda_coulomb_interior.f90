@@ -1,0 +1,343 @@
+!> Coulomb's law by interior springs: the forces and the motion of an assembly under a load that is
+!> applied at once
+!>
+!>    A f + load = damping*mass*v,   C f + gap + A'v = F_flow' z,   s = F f >= 0, z >= 0, s z = 0
+!>
+!> The rows of F are N1, N2, friction*(N1 + N2) + T and friction*(N1 + N2) - T; those of F_flow are
+!> N1, N2, T and -T, for joints that slide do not open. With d = z/s the spring of a joint is the
+!> inverse of
+!>
+!>    K = C + F_flow' d F, a lower triangle: the normal springs know nothing of friction
+!>
+!> so that an iteration is one assembly and one factorisation, with a predictor and a corrector
+!> (Mehrotra 1992) and one length of step for all.
+module dda_coulomb_interior
+   use dda_block_factor, only : substitute
+   use dda_coulomb_joints, only : coulomb_joints_t, end_role, shear_role
+   use dda_coulomb_law, only : imbalance
+   use dda_coulomb_matrix, only : coulomb_matrix_t, factor_stiffness
+   use dda_joint_graph, only : add_joint_forces, joint_motion
+   use dda_kinds, only : wp
+   implicit none
+   private
+
+   public :: interior_motion
+
+   !> An iterate, or a step from it
+   type :: interior_t
+      !> Motion: (n_dof, n_block)
+      real(wp), allocatable :: motion(:, :)
+      !> N1, N2, T: (3, n_joint)
+      real(wp), allocatable :: force(:, :)
+      !> Distance of the forces from each face: (4, n_joint)
+      real(wp), allocatable :: slack(:, :)
+      !> Opening or slip at each face: (4, n_joint)
+      real(wp), allocatable :: flow(:, :)
+   end type interior_t
+
+   !> What an iterate leaves of the equations, and what a step is to change of the products
+   type :: rest_t
+      !> Of the balance of the blocks: (n_dof, n_block)
+      real(wp), allocatable :: balance(:, :)
+      !> Of the opening of the joints: (3, n_joint)
+      real(wp), allocatable :: opening(:, :)
+      !> Of the slacks: (4, n_joint)
+      real(wp), allocatable :: slack(:, :)
+      !> Change of slack times flow: (4, n_joint)
+      real(wp), allocatable :: product(:, :)
+   end type rest_t
+
+contains
+
+   !> Motion under a load from rest without forces; false in settled if it was not found
+   pure subroutine interior_motion(joints, matrix, load, damping, tolerance, motion, settled)
+      !> The joints
+      type(coulomb_joints_t), intent(in) :: joints
+      !> Their matrix
+      type(coulomb_matrix_t), intent(inout) :: matrix
+      !> The load: (n_dof, n_block)
+      real(wp), intent(in) :: load(:, :)
+      !> Multiple of the mass
+      real(wp), intent(in) :: damping
+      !> Of what is left of the equations and of the work of the load
+      real(wp), intent(in) :: tolerance
+      !> Motion: (n_dof, n_block)
+      real(wp), intent(out) :: motion(:, :)
+      !> Whether it was found
+      logical, intent(out) :: settled
+      integer, parameter :: max_iteration = 150, patience = 15
+      real(wp), parameter :: shortfall = 0.995_wp, nothing = 1.0e-30_wp
+      type(interior_t) :: x, step
+      type(rest_t) :: rest
+      real(wp) :: best, gap, length, mean, merit
+      integer :: i, n_face, waited
+      logical :: face(4, size(joints%shear_role))
+
+      call list_faces(joints, face)
+      n_face = count(face)
+      call begin(joints, load, face, x)
+      step = x
+      best = huge(1.0_wp)
+      waited = 0
+      settled = .false.
+      do i = 1, max_iteration
+         call find_rest(joints, load, damping, face, x, rest)
+         mean = sum(x%slack*x%flow, face)/real(max(1, n_face), wp)
+         gap = mean*real(n_face, wp)/max(abs(sum(load*x%motion)), nothing)
+         merit = max(gap, max(maxval(abs(rest%balance)), &
+            & maxval(abs(rest%slack)))/maxval(abs(load)), &
+            & maxval(abs(rest%opening))/max(maxval(abs(x%motion)), nothing))
+         settled = merit < tolerance
+         waited = merge(0, waited + 1, merit < 0.9_wp*best)
+         best = min(best, merit)
+         if (settled .or. waited == patience .or. .not. merit <= huge(1.0_wp)) exit
+         call factor_springs(joints, matrix, damping, face, x)
+         if (.not. matrix%factor%usable) exit
+         rest%product = -x%slack*x%flow
+         call find_step(joints, matrix, damping, face, x, rest, step)
+         length = longest(face, x, step, 1.0_wp)
+         rest%product = rest%product - step%slack*step%flow + mean*min(1.0_wp, &
+            & (sum((x%slack + length*step%slack)*(x%flow + length*step%flow), face) &
+            & /(real(max(1, n_face), wp)*mean))**3)
+         call find_step(joints, matrix, damping, face, x, rest, step)
+         length = longest(face, x, step, min(max(shortfall, 1.0_wp - gap), 1.0_wp - 1.0e-6_wp))
+         x%motion = x%motion + length*step%motion
+         x%force = x%force + length*step%force
+         x%slack = x%slack + length*step%slack
+         x%flow = x%flow + length*step%flow
+      end do
+      motion = x%motion
+   end subroutine interior_motion
+
+   !> Which faces the forces of each joint have
+   pure subroutine list_faces(joints, face)
+      !> The joints
+      type(coulomb_joints_t), intent(in) :: joints
+      !> Whether there is a face: (4, n_joint)
+      logical, intent(out) :: face(:, :)
+
+      face(:2, :) = joints%end_role == end_role%contact
+      face(3, :) = joints%shear_role == shear_role%frictional
+      face(4, :) = face(3, :)
+   end subroutine list_faces
+
+   !> An iterate in the middle of the cones
+   pure subroutine begin(joints, load, face, x)
+      !> The joints
+      type(coulomb_joints_t), intent(in) :: joints
+      !> The load: (n_dof, n_block)
+      real(wp), intent(in) :: load(:, :)
+      !> Whether there is a face: (4, n_joint)
+      logical, intent(in) :: face(:, :)
+      !> The iterate
+      type(interior_t), intent(out) :: x
+      real(wp) :: push
+      integer :: n_joint
+
+      n_joint = size(face, 2)
+      push = max(1.0_wp, sqrt(sum(abs(load))))
+      allocate (x%motion(size(load, 1), size(load, 2)), source=0.0_wp)
+      allocate (x%force(3, n_joint), source=0.0_wp)
+      allocate (x%slack(4, n_joint), x%flow(4, n_joint), source=1.0_wp)
+      where (face(:2, :)) x%force(:2, :) = push
+      call add_faces(joints, x%force, x%slack)
+      where (face)
+         x%slack = max(x%slack, 1.0e-3_wp*push)
+      elsewhere
+         x%slack = 1.0_wp
+         x%flow = 0.0_wp
+      end where
+   end subroutine begin
+
+   !> Distance of forces from the faces
+   pure subroutine add_faces(joints, force, slack)
+      !> The joints
+      type(coulomb_joints_t), intent(in) :: joints
+      !> N1, N2, T: (3, n_joint)
+      real(wp), intent(in) :: force(:, :)
+      !> Distances: (4, n_joint)
+      real(wp), intent(out) :: slack(:, :)
+
+      slack(:2, :) = force(:2, :)
+      slack(3, :) = joints%graph%friction*(force(1, :) + force(2, :))
+      slack(4, :) = slack(3, :) - force(3, :)
+      slack(3, :) = slack(3, :) + force(3, :)
+   end subroutine add_faces
+
+   !> What an iterate leaves of the equations
+   pure subroutine find_rest(joints, load, damping, face, x, rest)
+      !> The joints
+      type(coulomb_joints_t), intent(in) :: joints
+      !> The load: (n_dof, n_block)
+      real(wp), intent(in) :: load(:, :)
+      !> Multiple of the mass
+      real(wp), intent(in) :: damping
+      !> Whether there is a face: (4, n_joint)
+      logical, intent(in) :: face(:, :)
+      !> The iterate
+      type(interior_t), intent(in) :: x
+      !> What is left
+      type(rest_t), intent(inout) :: rest
+      integer :: n_joint
+
+      n_joint = size(face, 2)
+      if (.not. allocated(rest%balance)) then
+         allocate (rest%balance(size(load, 1), size(load, 2)), rest%opening(3, n_joint))
+         allocate (rest%slack(4, n_joint), rest%product(4, n_joint))
+      end if
+      call imbalance(joints, load - damping*joints%graph%mass*x%motion, x%force, rest%balance)
+      call joint_motion(joints%graph, x%motion, rest%opening)
+      rest%opening = -rest%opening - joints%graph%compliance*x%force
+      rest%opening(:2, :) = rest%opening(:2, :) - joints%graph%gap + x%flow(:2, :)
+      rest%opening(3, :) = rest%opening(3, :) + x%flow(3, :) - x%flow(4, :)
+      where (joints%end_role == end_role%absent) rest%opening(:2, :) = 0.0_wp
+      where (joints%shear_role == shear_role%absent) rest%opening(3, :) = 0.0_wp
+      call add_faces(joints, x%force, rest%slack)
+      rest%slack = merge(rest%slack - x%slack, 0.0_wp, face)
+   end subroutine find_rest
+
+   !> Assemble the springs of an iterate and factor their equations
+   pure subroutine factor_springs(joints, matrix, damping, face, x)
+      !> The joints
+      type(coulomb_joints_t), intent(in) :: joints
+      !> Their matrix
+      type(coulomb_matrix_t), intent(inout) :: matrix
+      !> Multiple of the mass
+      real(wp), intent(in) :: damping
+      !> Whether there is a face: (4, n_joint)
+      logical, intent(in) :: face(:, :)
+      !> The iterate
+      type(interior_t), intent(in) :: x
+      real(wp) :: ratio(4), spring(3, 3, size(face, 2))
+      integer :: i, j
+
+      spring = 0.0_wp
+      do j = 1, size(face, 2)
+         ratio = merge(x%flow(:, j)/x%slack(:, j), 0.0_wp, face(:, j))
+         do i = 1, 2
+            if (joints%end_role(i, j) == end_role%absent) cycle
+            spring(i, i, j) = 1.0_wp/(joints%graph%compliance(i, j) + ratio(i))
+         end do
+         if (joints%shear_role(j) == shear_role%absent) cycle
+         spring(3, 3, j) = 1.0_wp/(joints%graph%compliance(3, j) + ratio(3) + ratio(4))
+         do i = 1, 2
+            spring(3, i, j) = -joints%graph%friction(j)*(ratio(3) - ratio(4))*spring(i, i, j) &
+               & *spring(3, 3, j)
+         end do
+      end do
+      call factor_stiffness(matrix, joints, spring, damping)
+   end subroutine factor_springs
+
+   !> The step that brings what is left to nothing, corrected until forces balance
+   pure subroutine find_step(joints, matrix, damping, face, x, rest, step)
+      !> The joints
+      type(coulomb_joints_t), intent(in) :: joints
+      !> Their matrix, factored
+      type(coulomb_matrix_t), intent(in) :: matrix
+      !> Multiple of the mass
+      real(wp), intent(in) :: damping
+      !> Whether there is a face: (4, n_joint)
+      logical, intent(in) :: face(:, :)
+      !> The iterate
+      type(interior_t), intent(in) :: x
+      !> What is left of the equations
+      type(rest_t), intent(in) :: rest
+      !> The step
+      type(interior_t), intent(inout) :: step
+      integer, parameter :: max_correction = 3
+      real(wp), parameter :: rounding = 1.0e-15_wp
+      type(interior_t) :: part
+      real(wp) :: drive(3, size(face, 2)), left(size(step%motion, 1), size(step%motion, 2))
+      real(wp) :: last, ratio(4, size(face, 2)), source(4, size(face, 2))
+      integer :: turn
+
+      ratio = merge(x%flow/x%slack, 0.0_wp, face)
+      source = merge(rest%product/x%slack - ratio*rest%slack, 0.0_wp, face)
+      drive = rest%opening
+      drive(:2, :) = drive(:2, :) + source(:2, :)
+      drive(3, :) = drive(3, :) + source(3, :) - source(4, :)
+      step%motion = 0.0_wp
+      step%force = 0.0_wp
+      step%slack = merge(rest%slack, 0.0_wp, face)
+      left = rest%balance
+      part = step
+      last = huge(1.0_wp)
+      do turn = 0, max_correction
+         part%motion = left
+         call answer_joints(joints, face, ratio, drive, part)
+         call add_joint_forces(joints%graph, part%force, part%motion)
+         call substitute(matrix%factor, part%motion)
+         step%motion = step%motion + part%motion
+         call joint_motion(joints%graph, part%motion, part%force)
+         call answer_joints(joints, face, ratio, drive - part%force, part)
+         step%force = step%force + part%force
+         step%slack = step%slack + part%slack
+         drive = 0.0_wp
+         call imbalance(joints, rest%balance - damping*joints%graph%mass*step%motion, &
+            & step%force, left)
+         if (.not. maxval(abs(left)) < 0.5_wp*last .or. maxval(abs(left)) < rounding) exit
+         last = maxval(abs(left))
+      end do
+      step%flow = merge((rest%product - x%flow*step%slack)/x%slack, 0.0_wp, face)
+   end subroutine find_step
+
+   !> Forces of the springs under a drive, and what they add to the slacks, as sums that cancel
+   !> nothing
+   pure subroutine answer_joints(joints, face, ratio, drive, part)
+      !> The joints
+      type(coulomb_joints_t), intent(in) :: joints
+      !> Whether there is a face: (4, n_joint)
+      logical, intent(in) :: face(:, :)
+      !> Flow over slack: (4, n_joint)
+      real(wp), intent(in) :: ratio(:, :)
+      !> What the springs are pressed together by: (3, n_joint)
+      real(wp), intent(in) :: drive(:, :)
+      !> Receives forces and slacks
+      type(interior_t), intent(inout) :: part
+      real(wp) :: bound, spring
+      integer :: i, j
+
+      part%force = 0.0_wp
+      part%slack = 0.0_wp
+      do j = 1, size(drive, 2)
+         associate (c => joints%graph%compliance(:, j), f => part%force(:, j), r => ratio(:, j))
+            do i = 1, 2
+               if (joints%end_role(i, j) == end_role%absent) cycle
+               f(i) = drive(i, j)/(c(i) + r(i))
+            end do
+            part%slack(:2, j) = merge(f(:2), 0.0_wp, face(:2, j))
+            if (joints%shear_role(j) == shear_role%absent) cycle
+            spring = 1.0_wp/(c(3) + r(3) + r(4))
+            bound = joints%graph%friction(j)*(f(1) + f(2))
+            f(3) = (drive(3, j) - (r(3) - r(4))*bound)*spring
+            if (.not. face(3, j)) cycle
+            part%slack(3, j) = (bound*(c(3) + 2.0_wp*r(4)) + drive(3, j))*spring
+            part%slack(4, j) = (bound*(c(3) + 2.0_wp*r(3)) - drive(3, j))*spring
+         end associate
+      end do
+   end subroutine answer_joints
+
+   !> The longest step, 1 at most, that keeps a share of every slack and flow
+   pure real(wp) function longest(face, x, step, share)
+      !> Whether there is a face: (4, n_joint)
+      logical, intent(in) :: face(:, :)
+      !> The iterate
+      type(interior_t), intent(in) :: x
+      !> The step
+      type(interior_t), intent(in) :: step
+      !> How much of the way to the first zero is gone
+      real(wp), intent(in) :: share
+      integer :: i, j
+
+      longest = 1.0_wp
+      do j = 1, size(face, 2)
+         do i = 1, 4
+            if (.not. face(i, j)) cycle
+            if (step%slack(i, j) < 0.0_wp) &
+               & longest = min(longest, -share*x%slack(i, j)/step%slack(i, j))
+            if (step%flow(i, j) < 0.0_wp) &
+               & longest = min(longest, -share*x%flow(i, j)/step%flow(i, j))
+         end do
+      end do
+   end function longest
+end module dda_coulomb_interior

@@ -1,0 +1,194 @@
+!> Joints of an assembly as a loading path works on them: in units of their own, with what each of
+!> their parts can do
+!>
+!> In these units the mean weight of a block, the mean compliance of a joint, half the mean length
+!> of a joint and the mean mass of a block are 1, so that every threshold of a path is a plain
+!> number. An elastic displacement is of order 1.
+module dda_coulomb_joints
+   use dda_joint_graph, only : joint_graph_t, joint_kind
+   use dda_kinds, only : wp
+   implicit none
+   private
+
+   public :: coulomb_joints_t, end_role, end_role_enum, shear_role, shear_role_enum
+   public :: new_coulomb_joints, in_units, in_newtons, in_motion_units, in_metres
+
+   !> What a corner of a joint can do
+   type :: end_role_enum
+      !> It pushes or is open
+      integer :: contact = 1
+      !> It pushes and pulls
+      integer :: tied = 2
+      !> There is none
+      integer :: absent = 3
+   end type end_role_enum
+
+   !> What a joint can do along itself
+   type :: shear_role_enum
+      !> It sticks, or slides at Coulomb's limit
+      integer :: frictional = 1
+      !> It never slides
+      integer :: tied = 2
+      !> It carries no shear force
+      integer :: absent = 3
+   end type shear_role_enum
+
+   !> Names of what corners can do
+   type(end_role_enum), parameter :: end_role = end_role_enum()
+   !> Names of what joints can do along themselves
+   type(shear_role_enum), parameter :: shear_role = shear_role_enum()
+
+   !> Joints in units of their own
+   type :: coulomb_joints_t
+      !> The joints, every quantity in these units
+      type(joint_graph_t) :: graph
+      !> What each corner can do: (2, n_joint)
+      integer, allocatable :: end_role(:, :)
+      !> What each joint can do along itself: (n_joint)
+      integer, allocatable :: shear_role(:)
+      !> Unit of forces [N/m]
+      real(wp) :: force_unit = 1.0_wp
+      !> Unit of arms [m]
+      real(wp) :: arm_unit = 1.0_wp
+      !> Unit of displacements and gaps [m]
+      real(wp) :: motion_unit = 1.0_wp
+   end type coulomb_joints_t
+
+contains
+
+   !> Joints in units of their own
+   pure subroutine new_coulomb_joints(graph, load, joints)
+      !> The joints in SI units
+      type(joint_graph_t), intent(in) :: graph
+      !> What they carry, by which their unit of force is chosen: (n_dof, n_block)
+      real(wp), intent(in) :: load(:, :)
+      !> The same in units of their own
+      type(coulomb_joints_t), intent(out) :: joints
+      real(wp) :: compliance, mass
+
+      joints%graph = graph
+      joints%arm_unit = positive_or_one(0.5_wp*mean(graph%length))
+      joints%force_unit = mean(norm2(load(:2, :), 1))
+      if (.not. joints%force_unit > 0.0_wp) then
+         joints%force_unit = positive_or_one(mean(maxval(abs(load), 1))/joints%arm_unit)
+      end if
+      compliance = positive_or_one(mean(sum(graph%compliance, 1)/3.0_wp))
+      mass = positive_or_one(mean(graph%mass(1, :)))
+      joints%motion_unit = joints%force_unit*compliance
+      associate (scaled => joints%graph)
+         scaled%row(3:, :, :, :) = scaled%row(3:, :, :, :)/joints%arm_unit
+         scaled%length = scaled%length/joints%arm_unit
+         scaled%compliance = scaled%compliance/compliance
+         scaled%gap = scaled%gap/joints%motion_unit
+         scaled%mass = scaled%mass/mass
+         scaled%mass(3:, :) = scaled%mass(3:, :)/joints%arm_unit**2
+      end associate
+      call set_roles(joints)
+   end subroutine new_coulomb_joints
+
+   !> Roles of corners and of joints by their kind
+   pure subroutine set_roles(joints)
+      !> Receives them
+      type(coulomb_joints_t), intent(inout) :: joints
+      integer :: j
+
+      allocate (joints%end_role(2, size(joints%graph%kind)), &
+         & joints%shear_role(size(joints%graph%kind)))
+      do j = 1, size(joints%shear_role)
+         associate (ends => joints%end_role(:, j), shear => joints%shear_role(j))
+            ends = end_role%contact
+            shear = shear_role%tied
+            select case (joints%graph%kind(j))
+            case (joint_kind%contact)
+               shear = friction_role(joints%graph%friction(j))
+            case (joint_kind%corner)
+               ends(2) = end_role%absent
+               shear = friction_role(joints%graph%friction(j))
+            case (joint_kind%corner_no_slip)
+               ends(2) = end_role%absent
+            case (joint_kind%pin)
+               ends = [end_role%tied, end_role%absent]
+            case (joint_kind%mirror)
+               ends = end_role%tied
+               shear = shear_role%absent
+            end select
+         end associate
+      end do
+   end subroutine set_roles
+
+   !> What a joint with friction can do along itself
+   pure integer function friction_role(friction)
+      !> Its coefficient
+      real(wp), intent(in) :: friction
+
+      friction_role = merge(shear_role%frictional, shear_role%absent, friction > 0.0_wp)
+   end function friction_role
+
+   !> Loads in the units of the joints
+   pure function in_units(joints, load) result(scaled)
+      !> The joints
+      type(coulomb_joints_t), intent(in) :: joints
+      !> Loads: (n_dof, n_block) [N/m, N/m, N ...]
+      real(wp), intent(in) :: load(:, :)
+      !> The same in units: (n_dof, n_block)
+      real(wp) :: scaled(size(load, 1), size(load, 2))
+
+      scaled(:2, :) = load(:2, :)/joints%force_unit
+      scaled(3:, :) = load(3:, :)/(joints%force_unit*joints%arm_unit)
+   end function in_units
+
+   !> Loads in SI units
+   pure function in_newtons(joints, load) result(newtons)
+      !> The joints
+      type(coulomb_joints_t), intent(in) :: joints
+      !> Loads in units: (n_dof, n_block)
+      real(wp), intent(in) :: load(:, :)
+      !> Loads: (n_dof, n_block) [N/m, N/m, N ...]
+      real(wp) :: newtons(size(load, 1), size(load, 2))
+
+      newtons(:2, :) = load(:2, :)*joints%force_unit
+      newtons(3:, :) = load(3:, :)*(joints%force_unit*joints%arm_unit)
+   end function in_newtons
+
+   !> Motion of blocks in the units of the joints
+   pure function in_motion_units(joints, motion) result(scaled)
+      !> The joints
+      type(coulomb_joints_t), intent(in) :: joints
+      !> Motion: (n_dof, n_block) [m, m, 1 ...]
+      real(wp), intent(in) :: motion(:, :)
+      !> The same in units: (n_dof, n_block)
+      real(wp) :: scaled(size(motion, 1), size(motion, 2))
+
+      scaled(:2, :) = motion(:2, :)/joints%motion_unit
+      scaled(3:, :) = motion(3:, :)*(joints%arm_unit/joints%motion_unit)
+   end function in_motion_units
+
+   !> Motion of blocks in SI units
+   pure function in_metres(joints, motion) result(metres)
+      !> The joints
+      type(coulomb_joints_t), intent(in) :: joints
+      !> Motion in units: (n_dof, n_block)
+      real(wp), intent(in) :: motion(:, :)
+      !> Motion: (n_dof, n_block) [m, m, 1 ...]
+      real(wp) :: metres(size(motion, 1), size(motion, 2))
+
+      metres(:2, :) = motion(:2, :)*joints%motion_unit
+      metres(3:, :) = motion(3:, :)*(joints%motion_unit/joints%arm_unit)
+   end function in_metres
+
+   !> Mean of numbers, 0 if there are none
+   pure real(wp) function mean(x)
+      !> The numbers: (:)
+      real(wp), intent(in) :: x(:)
+
+      mean = sum(x)/real(max(1, size(x)), wp)
+   end function mean
+
+   !> The number itself if it is positive, else 1
+   pure real(wp) function positive_or_one(x)
+      !> The number
+      real(wp), intent(in) :: x
+
+      positive_or_one = merge(x, 1.0_wp, x > 0.0_wp)
+   end function positive_or_one
+end module dda_coulomb_joints

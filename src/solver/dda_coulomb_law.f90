@@ -1,0 +1,258 @@
+!> Coulomb's law at the joints of an assembly, with slip remembered
+!>
+!> A corner is closed and pushes, or is open; a joint sticks with the shear force that it has, or
+!> slides at +-friction*(N1 + N2). Between two states the blocks move and
+!>
+!>    N = max(0, t),  gap = max(0, -compliance*t),  t = N_before - (opening + gap_before)/compliance
+!>    T = t_T within +-friction*(N1 + N2),          t_T = T_before - slip/compliance_T
+!>
+!> Where both corners are open the joint carries no shear force and forgets the one it had.
+module dda_coulomb_law
+   use dda_coulomb_joints, only : coulomb_joints_t, end_role, shear_role
+   use dda_joint_graph, only : add_joint_forces
+   use dda_kinds, only : wp
+   implicit none
+   private
+
+   public :: coulomb_state_t, face, face_enum
+   public :: unloaded_state, apply_law, joint_stiffness, spring_forces, imbalance, &
+      & change_faces, shear_face
+
+   !> What a corner or a joint does: a corner is open or closed, a joint sticks, slides or is free
+   type :: face_enum
+      !> The corner is open: no force
+      integer :: open = 0
+      !> The corner is closed
+      integer :: closed = 1
+      !> The joint slides against a negative shear force
+      integer :: slides_back = -1
+      !> The joint sticks
+      integer :: stuck = 0
+      !> The joint slides against a positive shear force
+      integer :: slides = 1
+      !> The joint carries no shear force
+      integer :: free = 2
+   end type face_enum
+
+   !> Names of what corners and joints do
+   type(face_enum), parameter :: face = face_enum()
+
+   !> State of an assembly under a load
+   type :: coulomb_state_t
+      !> Motion of the blocks since nothing was loaded: (n_dof, n_block)
+      real(wp), allocatable :: motion(:, :)
+      !> N1, N2, T of each joint: (3, n_joint)
+      real(wp), allocatable :: force(:, :)
+      !> Opening of each corner beyond the point where it would push: (2, n_joint)
+      real(wp), allocatable :: gap(:, :)
+      !> Slip of each joint that its spring does not give back: (n_joint)
+      real(wp), allocatable :: slip(:)
+      !> What corner 1, corner 2 and the joint along itself do: (3, n_joint)
+      integer, allocatable :: face(:, :)
+      !> Load that it carries: (n_dof, n_block)
+      real(wp), allocatable :: load(:, :)
+   end type coulomb_state_t
+
+contains
+
+   !> The state of joints that carry nothing
+   pure function unloaded_state(joints) result(state)
+      !> The joints
+      type(coulomb_joints_t), intent(in) :: joints
+      !> No force, no motion; corners are open where they have gaps
+      type(coulomb_state_t) :: state
+      integer :: i, j, n_block, n_dof, n_joint
+
+      n_dof = joints%graph%n_dof
+      n_block = joints%graph%n_block
+      n_joint = size(joints%shear_role)
+      allocate (state%motion(n_dof, n_block), state%load(n_dof, n_block))
+      allocate (state%force(3, n_joint), state%gap(2, n_joint), state%slip(n_joint))
+      allocate (state%face(3, n_joint))
+      state%motion = 0.0_wp
+      state%load = 0.0_wp
+      state%force = 0.0_wp
+      state%slip = 0.0_wp
+      state%gap = joints%graph%gap
+      do j = 1, n_joint
+         do i = 1, 2
+            if (joints%end_role(i, j) == end_role%absent) state%gap(i, j) = 0.0_wp
+            state%face(i, j) = merge(face%closed, face%open, &
+               & joints%end_role(i, j) == end_role%tied .or. &
+               & (joints%end_role(i, j) == end_role%contact .and. .not. state%gap(i, j) > 0.0_wp))
+         end do
+         state%face(3, j) = shear_face(joints, j, state%face(:2, j), face%stuck)
+      end do
+   end function unloaded_state
+
+   !> What a joint does along itself, where it can do nothing else
+   pure integer function shear_face(joints, j, ends, otherwise)
+      !> The joints
+      type(coulomb_joints_t), intent(in) :: joints
+      !> Number of the joint
+      integer, intent(in) :: j
+      !> What its corners do: (2)
+      integer, intent(in) :: ends(2)
+      !> What it does if it has the choice
+      integer, intent(in) :: otherwise
+
+      shear_face = otherwise
+      if (joints%shear_role(j) == shear_role%absent) then
+         shear_face = face%free
+      else if (joints%shear_role(j) == shear_role%tied) then
+         shear_face = face%stuck
+      else if (all(ends == face%open)) then
+         shear_face = face%free
+      end if
+   end function shear_face
+
+   !> Forces, gaps and faces after an increment of openings
+   pure subroutine apply_law(joints, before, opening, after)
+      !> The joints
+      type(coulomb_joints_t), intent(in) :: joints
+      !> State before
+      type(coulomb_state_t), intent(in) :: before
+      !> Increments of opening 1, opening 2 and slip: (3, n_joint)
+      real(wp), intent(in) :: opening(:, :)
+      !> State after; its motion and load are left alone
+      type(coulomb_state_t), intent(inout) :: after
+      real(wp) :: bound, trial
+      integer :: i, j
+
+      do j = 1, size(opening, 2)
+         do i = 1, 2
+            associate (c => joints%graph%compliance(i, j), f => after%force(i, j))
+               after%gap(i, j) = 0.0_wp
+               select case (joints%end_role(i, j))
+               case (end_role%contact)
+                  trial = before%force(i, j) - (opening(i, j) + before%gap(i, j))/c
+                  f = max(trial, 0.0_wp)
+                  after%gap(i, j) = max(-trial*c, 0.0_wp)
+                  after%face(i, j) = merge(face%open, face%closed, trial < 0.0_wp)
+               case (end_role%tied)
+                  f = before%force(i, j) - (opening(i, j) + before%gap(i, j))/c
+                  after%face(i, j) = face%closed
+               case default
+                  f = 0.0_wp
+                  after%face(i, j) = face%open
+               end select
+            end associate
+         end do
+         trial = before%force(3, j) - opening(3, j)/joints%graph%compliance(3, j)
+         after%face(3, j) = face%stuck
+         after%force(3, j) = trial
+         if (joints%shear_role(j) == shear_role%frictional) then
+            bound = joints%graph%friction(j)*(after%force(1, j) + after%force(2, j))
+            if (abs(trial) > bound) then
+               after%face(3, j) = merge(face%slides, face%slides_back, trial > 0.0_wp)
+               after%force(3, j) = sign(bound, trial)
+            end if
+         end if
+         after%face(3, j) = shear_face(joints, j, after%face(:2, j), after%face(3, j))
+         if (after%face(3, j) == face%free) after%force(3, j) = 0.0_wp
+         after%slip(j) = before%slip(j) &
+            & + joints%graph%compliance(3, j)*(after%force(3, j) - trial)
+      end do
+   end subroutine apply_law
+
+   !> How the forces of a joint answer its openings: rate of force = -stiffness*rate of opening
+   pure function joint_stiffness(joints, j, faces) result(stiffness)
+      !> The joints
+      type(coulomb_joints_t), intent(in) :: joints
+      !> Number of the joint
+      integer, intent(in) :: j
+      !> What it does: (3)
+      integer, intent(in) :: faces(3)
+      !> Rows N1, N2, T; columns opening 1, opening 2, slip
+      real(wp) :: stiffness(3, 3)
+      integer :: i
+
+      stiffness = 0.0_wp
+      do i = 1, 2
+         if (faces(i) == face%closed) stiffness(i, i) = 1.0_wp/joints%graph%compliance(i, j)
+      end do
+      select case (faces(3))
+      case (face%slides, face%slides_back)
+         do i = 1, 2
+            stiffness(3, i) = real(faces(3), wp)*joints%graph%friction(j)*stiffness(i, i)
+         end do
+      case (face%stuck)
+         stiffness(3, 3) = 1.0_wp/joints%graph%compliance(3, j)
+      end select
+   end function joint_stiffness
+
+   !> Forces by which the springs of all joints answer openings while the faces stay
+   pure subroutine spring_forces(joints, faces, opening, force)
+      !> The joints
+      type(coulomb_joints_t), intent(in) :: joints
+      !> What corners and joints do: (3, n_joint)
+      integer, intent(in) :: faces(:, :)
+      !> Opening 1, opening 2, slip: (3, n_joint)
+      real(wp), intent(in) :: opening(:, :)
+      !> N1, N2, T: (3, n_joint)
+      real(wp), intent(out) :: force(:, :)
+      integer :: j
+
+      do j = 1, size(faces, 2)
+         where (faces(:2, j) == face%closed)
+            force(:2, j) = -opening(:2, j)/joints%graph%compliance(:2, j)
+         elsewhere
+            force(:2, j) = 0.0_wp
+         end where
+         select case (faces(3, j))
+         case (face%stuck)
+            force(3, j) = -opening(3, j)/joints%graph%compliance(3, j)
+         case (face%free)
+            force(3, j) = 0.0_wp
+         case default
+            force(3, j) = real(faces(3, j), wp)*joints%graph%friction(j)*(force(1, j) + force(2, j))
+         end select
+      end do
+   end subroutine spring_forces
+
+   !> What is not balanced of a load
+   pure subroutine imbalance(joints, load, force, rest)
+      !> The joints
+      type(coulomb_joints_t), intent(in) :: joints
+      !> The load: (n_dof, n_block)
+      real(wp), intent(in) :: load(:, :)
+      !> Joint forces: (3, n_joint)
+      real(wp), intent(in) :: force(:, :)
+      !> Load and joint forces: (n_dof, n_block)
+      real(wp), intent(out) :: rest(:, :)
+
+      rest = load
+      call add_joint_forces(joints%graph, force, rest)
+   end subroutine imbalance
+
+   !> Forces of a state whose joints take other faces, before anything has moved
+   pure subroutine change_faces(joints, state, faces, change)
+      !> The joints
+      type(coulomb_joints_t), intent(in) :: joints
+      !> The state
+      type(coulomb_state_t), intent(in) :: state
+      !> What corners and joints are to do: (3, n_joint)
+      integer, intent(in) :: faces(:, :)
+      !> Change of N1, N2 and T: (3, n_joint)
+      real(wp), intent(out) :: change(:, :)
+      integer :: i, j
+
+      do j = 1, size(faces, 2)
+         do i = 1, 2
+            change(i, j) = -state%force(i, j)
+            if (faces(i, j) == face%closed) then
+               change(i, j) = -state%gap(i, j)/joints%graph%compliance(i, j)
+            end if
+         end do
+         select case (faces(3, j))
+         case (face%stuck)
+            change(3, j) = 0.0_wp
+         case (face%free)
+            change(3, j) = -state%force(3, j)
+         case default
+            change(3, j) = real(faces(3, j), wp)*joints%graph%friction(j) &
+               & *sum(state%force(:2, j) + change(:2, j)) - state%force(3, j)
+         end select
+      end do
+   end subroutine change_faces
+end module dda_coulomb_law

@@ -1,0 +1,366 @@
+!> The loading path under Coulomb friction: what is dead at once, what is live from event to event,
+!> with slip remembered
+!>
+!>    call begin_path(graph, dead_load, path, state, result)
+!>    call follow_path(path, state, rate, h_end, cap, result)
+!>
+!> Forces that balance a load may exist where no way leads to them. So a load is followed: between
+!> two events, at which a joint opens, closes or begins to slide, everything grows in proportion,
+!> and each event is a small change of the equations. Where no rates go on from an event the blocks
+!> move at a fixed load until they find balance (a jump) or fall. The first load at which they fall
+!> is the collapse; a state in balance can go on with any other rate.
+module dda_loading_path
+   use dda_coulomb_equations, only : coulomb_equations_t, new_equations
+   use dda_coulomb_joints, only : coulomb_joints_t, in_metres, in_motion_units, in_newtons, &
+      & in_units, &
+      & new_coulomb_joints
+   use dda_coulomb_law, only : apply_law, coulomb_state_t, face, face_enum, imbalance
+   use dda_coulomb_start, only : load_at_once
+   use dda_damped_steps, only : step_to_balance
+   use dda_event_rates, only : find_rates, new_rates, rates_t
+   use dda_joint_graph, only : joint_graph_t
+   use dda_kinds, only : wp
+   use dda_load_jump, only : jump_t, jump_to_balance, motion_end, moves_unbalanced, path_damping
+   use dda_path_event, only : event_kind, event_t, move_on, next_event
+   implicit none
+   private
+
+   public :: loading_path_t, path_rate_t, path_result_t, coulomb_state_t, face, face_enum
+   public :: path_end, path_end_enum, path_reason, path_reason_enum
+   public :: begin_path, follow_path, new_rate
+
+   !> How a path ends
+   type :: path_end_enum
+      !> It is not known whether the assembly stands
+      integer :: undecided = 0
+      !> The end was reached, forces balance
+      integer :: reached = 1
+      !> The assembly falls
+      integer :: collapsed = 2
+   end type path_end_enum
+
+   !> What proves a collapse, or prevents a decision
+   type :: path_reason_enum
+      !> The end was reached
+      integer :: none = 0
+      !> A motion that nothing stops and that the load drives
+      integer :: mechanism = 1
+      !> A motion ten thousand times as large as the dead load's
+      integer :: far_motion = 2
+      !> No forces balance more, under whatever law of friction
+      integer :: associated_limit = 3
+      !> A motion at a fixed load did not settle
+      integer :: unsettled_motion = 4
+      !> Too many events
+      integer :: too_many = 5
+   end type path_reason_enum
+
+   !> Names of the ends of a path
+   type(path_end_enum), parameter :: path_end = path_end_enum()
+   !> Names of the reasons
+   type(path_reason_enum), parameter :: path_reason = path_reason_enum()
+
+   !> What is made once for an assembly
+   type :: loading_path_t
+      private
+      !> Its joints in units of their own
+      type(coulomb_joints_t) :: joints
+      !> Their equations
+      type(coulomb_equations_t) :: equations
+      !> A motion beyond this is far
+      real(wp) :: far = huge(1.0_wp)
+   end type loading_path_t
+
+   !> What grows along a path
+   type :: path_rate_t
+      !> Load: (n_dof, n_block) [N/m, N/m, N ...]
+      real(wp), allocatable :: load(:, :)
+      !> Opening 1, opening 2 and slip that moving supports prescribe: (3, n_joint) [m]
+      real(wp), allocatable :: opening(:, :)
+   end type path_rate_t
+
+   !> The same in units of the joints
+   type :: way_t
+      !> Load: (n_dof, n_block)
+      real(wp), allocatable :: load(:, :)
+      !> Prescribed openings: (3, n_joint)
+      real(wp), allocatable :: opening(:, :)
+      !> Largest force that grows
+      real(wp) :: strength = 0.0_wp
+      !> How much of it is asked for
+      real(wp) :: h_end = 0.0_wp
+   end type way_t
+
+   !> How a path went
+   type :: path_result_t
+      !> One of path_end
+      integer :: end = 0
+      !> One of path_reason
+      integer :: reason = 0
+      !> How far it came, as a multiple of the rate
+      real(wp) :: reached = 0.0_wp
+      !> Joints that changed what they do
+      integer :: n_event = 0
+      !> Jumps to another state at the same load
+      integer :: n_jump = 0
+      !> Largest displacement of a jump [m]
+      real(wp) :: largest_jump = 0.0_wp
+      !> Factorisations
+      integer :: n_factorisation = 0
+      !> Damped steps
+      integer :: n_damped_step = 0
+      !> What the joint forces leave of the load at the end, by the mean weight of a block
+      real(wp) :: imbalance = 0.0_wp
+      !> Velocities of the collapse, the largest 1: (n_dof, n_block) [1, 1, 1/m ...]; without
+      !> entries if there is none
+      real(wp), allocatable :: mechanism(:, :)
+   end type path_result_t
+
+   !> A load is raised by this part of a block's weight to see how the blocks move
+   real(wp), parameter :: nudge = 1.0e-6_wp
+   !> Largest of them
+   real(wp), parameter :: largest_nudge = 1.0e-3_wp
+   !> What a motion may leave of a nudge
+   real(wp), parameter :: nudge_left = 1.0e-3_wp
+   !> Rounding of forces
+   real(wp), parameter :: rounding = 1.0e-12_wp
+   !> So many times the motion under the dead load is far
+   real(wp), parameter :: far_factor = 1.0e4_wp
+   !> An event no further off than this makes no way
+   real(wp), parameter :: no_way = 1.0e-13_wp
+   !> So many events without way lead nowhere
+   integer, parameter :: max_standstill = 60
+   !> Most events and jumps
+   integer, parameter :: max_event = 400000
+   !> Within this share of the cap a load is at it
+   real(wp), parameter :: cap_share = 1.0e-9_wp
+
+contains
+
+   !> Nothing grows
+   pure subroutine new_rate(graph, rate)
+      !> The joints
+      type(joint_graph_t), intent(in) :: graph
+      !> The rate
+      type(path_rate_t), intent(out) :: rate
+
+      allocate (rate%load(graph%n_dof, graph%n_block), rate%opening(3, size(graph%kind)))
+      rate%load = 0.0_wp
+      rate%opening = 0.0_wp
+   end subroutine new_rate
+
+   !> The state under the dead load
+   pure subroutine begin_path(graph, dead_load, path, state, result)
+      !> The joints
+      type(joint_graph_t), intent(in) :: graph
+      !> Load that is there from the beginning: (n_dof, n_block) [N/m, N/m, N ...]
+      real(wp), intent(in) :: dead_load(:, :)
+      !> What is made once
+      type(loading_path_t), intent(out) :: path
+      !> The state, where one was reached
+      type(coulomb_state_t), intent(out) :: state
+      !> How it went; "reached" is 1 for the whole load
+      type(path_result_t), intent(out) :: result
+      type(jump_t) :: jump
+      integer :: end
+
+      call new_coulomb_joints(graph, dead_load, path%joints)
+      call new_equations(path%joints, path%equations)
+      call load_at_once(path%joints, path%equations, in_units(path%joints, dead_load), state, &
+         & jump, end)
+      result%end = path_end%reached
+      result%reason = path_reason%none
+      result%reached = 1.0_wp
+      if (end /= motion_end%balanced) call note_fall(end, jump, result)
+      path%far = far_factor*max(1.0_wp, maxval(abs(state%motion)))
+      result%n_damped_step = jump%n_step
+      call finish(path, state, result)
+   end subroutine begin_path
+
+   !> Follow a load, or supports that move, from a state in balance
+   pure subroutine follow_path(path, state, rate, h_end, cap, result)
+      !> What was made once
+      type(loading_path_t), intent(inout) :: path
+      !> In: a state in balance; out: the last one in balance on the way
+      type(coulomb_state_t), intent(inout) :: state
+      !> What grows
+      type(path_rate_t), intent(in) :: rate
+      !> How much of it is asked for, as a multiple
+      real(wp), intent(in) :: h_end
+      !> The multiple at which the associated limit lies; huge if it is not known
+      real(wp), intent(in) :: cap
+      !> How it went
+      type(path_result_t), intent(out) :: result
+      type(way_t) :: way
+
+      path%equations%base%n_factorisation = 0
+      call scale_state(path%joints, state)
+      way%load = in_units(path%joints, rate%load)
+      way%opening = rate%opening/path%joints%motion_unit
+      way%strength = max(maxval(abs(way%load)), &
+         & maxval(abs(way%opening/path%joints%graph%compliance)))
+      way%h_end = min(h_end, cap*(1.0_wp - cap_share))
+      result%end = path_end%reached
+      if (way%strength > 0.0_wp) call follow(path, state, way, result)
+      if (result%end == path_end%reached .and. way%h_end < h_end) then
+         result%end = path_end%collapsed
+         result%reason = path_reason%associated_limit
+      end if
+      call finish(path, state, result)
+   end subroutine follow_path
+
+   !> From event to event, with jumps where no rates go on
+   pure subroutine follow(path, state, way, result)
+      !> What was made once
+      type(loading_path_t), intent(inout) :: path
+      !> The state
+      type(coulomb_state_t), intent(inout) :: state
+      !> What grows
+      type(way_t), intent(in) :: way
+      !> How it went
+      type(path_result_t), intent(inout) :: result
+      type(event_t) :: event
+      type(rates_t) :: rates
+      real(wp) :: first_load(size(way%load, 1), size(way%load, 2)), width
+      integer :: standstill, i, last_jump
+      logical :: found
+
+      first_load = state%load
+      standstill = 0
+      last_jump = -1
+      width = nudge
+      rates = new_rates(state)
+      do i = 1, max_event
+         if (result%reached >= way%h_end) return
+         call find_rates(path%joints, path%equations, state, way%load, way%opening, path_damping, &
+            & rates, found)
+         if (found .and. rates%unbalanced <= moves_unbalanced &
+            & .and. standstill <= max_standstill) then
+            event = next_event(path%joints, state, rates, way%h_end - result%reached)
+            standstill = merge(standstill + 1, 0, event%distance*way%strength < no_way)
+            call move_on(path%joints, rates, event, state)
+            result%reached = merge(way%h_end, result%reached + event%distance, &
+               & event%kind == event_kind%none)
+            result%n_event = result%n_event + 1
+         else
+            width = merge(min(4.0_wp*width, largest_nudge), nudge, last_jump == i - 1)
+            last_jump = i
+            standstill = 0
+            call nudge_on(path, state, way, width, result)
+            if (result%end /= path_end%reached) return
+         end if
+         state%load = first_load + result%reached*way%load
+      end do
+      result%end = path_end%undecided
+      result%reason = path_reason%too_many
+   end subroutine follow
+
+   !> Raise the load by a little and let the blocks move
+   pure subroutine nudge_on(path, state, way, width, result)
+      !> What was made once
+      type(loading_path_t), intent(inout) :: path
+      !> The state, left as it is unless another in balance is found
+      type(coulomb_state_t), intent(inout) :: state
+      !> What grows
+      type(way_t), intent(in) :: way
+      !> By how much, as a part of a block's weight
+      real(wp), intent(in) :: width
+      !> Receives the jump, or how the blocks fall
+      type(path_result_t), intent(inout) :: result
+      integer, parameter :: max_try = 4
+      type(coulomb_state_t) :: moved
+      type(jump_t) :: jump
+      real(wp) :: more
+      integer :: end, try
+
+      jump%far = path%far
+      do try = 0, max_try - 1
+         more = min(width*10.0_wp**try/way%strength, way%h_end - result%reached)
+         jump%tolerance = max(rounding, nudge_left*more*way%strength)
+         moved = state
+         call apply_law(path%joints, state, more*way%opening, moved)
+         call jump_to_balance(path%joints, path%equations, state%load + more*way%load, moved, &
+            & jump, &
+            & end)
+         if (end == motion_end%unsettled) then
+            call apply_law(path%joints, state, more*way%opening, moved)
+            moved%motion = state%motion
+            call step_to_balance(path%joints, path%equations, state%load + more*way%load, moved, &
+               & jump, end)
+         end if
+         if (end /= motion_end%unsettled) exit
+      end do
+      result%n_damped_step = result%n_damped_step + jump%n_step
+      if (end == motion_end%balanced) then
+         result%n_jump = result%n_jump + 1
+         result%largest_jump = max(result%largest_jump, maxval(abs(moved%motion - state%motion)))
+         result%reached = result%reached + more
+         state = moved
+      else
+         call note_fall(end, jump, result)
+      end if
+   end subroutine nudge_on
+
+   !> What a fall, or a motion that did not settle, means for a path
+   pure subroutine note_fall(end, jump, result)
+      !> How the motion ended
+      integer, intent(in) :: end
+      !> What it tells
+      type(jump_t), intent(in) :: jump
+      !> Receives it
+      type(path_result_t), intent(inout) :: result
+
+      result%end = path_end%collapsed
+      if (end == motion_end%endless) then
+         result%reason = path_reason%mechanism
+      else if (end == motion_end%far) then
+         result%reason = path_reason%far_motion
+      else
+         result%end = path_end%undecided
+         result%reason = path_reason%unsettled_motion
+      end if
+      if (allocated(jump%mechanism)) result%mechanism = jump%mechanism
+   end subroutine note_fall
+
+   !> Counts, the last imbalance, and SI units
+   pure subroutine finish(path, state, result)
+      !> What was made once
+      type(loading_path_t), intent(in) :: path
+      !> The state, brought to SI units
+      type(coulomb_state_t), intent(inout) :: state
+      !> How it went
+      type(path_result_t), intent(inout) :: result
+      real(wp) :: rest(size(state%load, 1), size(state%load, 2))
+
+      call imbalance(path%joints, state%load, state%force, rest)
+      result%imbalance = maxval(abs(rest))
+      result%n_factorisation = path%equations%base%n_factorisation
+      result%largest_jump = result%largest_jump*path%joints%motion_unit
+      if (.not. allocated(result%mechanism)) allocate (result%mechanism(size(rest, 1), 0))
+      if (size(result%mechanism) > 0) then
+         result%mechanism = in_metres(path%joints, result%mechanism)
+         result%mechanism = result%mechanism/maxval(abs(result%mechanism(:2, :)))
+      end if
+      associate (joints => path%joints)
+         state%motion = in_metres(joints, state%motion)
+         state%load = in_newtons(joints, state%load)
+         state%force = state%force*joints%force_unit
+         state%gap = state%gap*joints%motion_unit
+         state%slip = state%slip*joints%motion_unit
+      end associate
+   end subroutine finish
+
+   !> Bring a state to the units of the joints
+   pure subroutine scale_state(joints, state)
+      !> The joints
+      type(coulomb_joints_t), intent(in) :: joints
+      !> The state
+      type(coulomb_state_t), intent(inout) :: state
+
+      state%motion = in_motion_units(joints, state%motion)
+      state%load = in_units(joints, state%load)
+      state%force = state%force/joints%force_unit
+      state%gap = state%gap/joints%motion_unit
+      state%slip = state%slip/joints%motion_unit
+   end subroutine scale_state
+end module dda_loading_path

@@ -1,0 +1,192 @@
+!> The next event on a path, at which a joint changes what it does: between two events everything
+!> changes in proportion
+module dda_path_event
+   use dda_coulomb_joints, only : coulomb_joints_t, end_role, shear_role
+   use dda_coulomb_law, only : coulomb_state_t, face, shear_face
+   use dda_event_rates, only : rates_t
+   use dda_kinds, only : wp
+   implicit none
+   private
+
+   public :: event_t, event_kind, event_kind_enum
+   public :: next_event, move_on, hold_forces
+
+   !> What can happen to a joint
+   type :: event_kind_enum
+      !> Nothing
+      integer :: none = 0
+      !> A corner no longer pushes
+      integer :: opens = 1
+      !> A gap closes
+      integer :: closes = 2
+      !> The joint begins to slide against a positive shear force
+      integer :: slides = 3
+      !> The joint begins to slide against a negative shear force
+      integer :: slides_back = 4
+   end type event_kind_enum
+
+   !> Names of what can happen
+   type(event_kind_enum), parameter :: event_kind = event_kind_enum()
+
+   !> The next change of a joint
+   type :: event_t
+      !> How far off it is
+      real(wp) :: distance = 0.0_wp
+      !> What happens
+      integer :: kind = 0
+      !> To which joint
+      integer :: joint = 0
+      !> At which corner, where one opens or closes
+      integer :: corner = 0
+   end type event_t
+
+contains
+
+   !> Rates of a motion that goes on with forces that stay as they are: what moves does so a million
+   !> times as fast as joints deform, and the rounding of its openings is no force
+   pure subroutine hold_forces(rates)
+      !> The rates
+      type(rates_t), intent(inout) :: rates
+      real(wp), parameter :: rounding = 1.0e-8_wp
+      real(wp) :: largest
+
+      largest = maxval(abs(rates%opening))
+      where (abs(rates%opening) < rounding*largest) rates%opening = 0.0_wp
+      where (rates%face(3, :) == face%stuck) rates%opening(3, :) = 0.0_wp
+      rates%force = 0.0_wp
+   end subroutine hold_forces
+
+   !> The next event, or none within a distance
+   pure function next_event(joints, state, rates, longest) result(event)
+      !> The joints
+      type(coulomb_joints_t), intent(in) :: joints
+      !> Where the assembly is
+      type(coulomb_state_t), intent(in) :: state
+      !> Its rates
+      type(rates_t), intent(in) :: rates
+      !> Distance within which an event counts
+      real(wp), intent(in) :: longest
+      !> The event; its distance is the longest one if there is none
+      type(event_t) :: event
+      real(wp) :: bound(2)
+      integer :: i, j
+
+      event%distance = longest
+      do j = 1, size(rates%face, 2)
+         do i = 1, 2
+            if (joints%end_role(i, j) /= end_role%contact) cycle
+            if (rates%face(i, j) == face%closed) then
+               call meet(state%force(i, j), rates%force(i, j), event_kind%opens, j, i, event)
+            else
+               call meet(state%gap(i, j), rates%opening(i, j), event_kind%closes, j, i, event)
+            end if
+         end do
+         if (rates%face(3, j) /= face%stuck) cycle
+         if (joints%shear_role(j) /= shear_role%frictional) cycle
+         bound = joints%graph%friction(j) &
+            & *[state%force(1, j) + state%force(2, j), rates%force(1, j) + rates%force(2, j)]
+         call meet(bound(1) - state%force(3, j), bound(2) - rates%force(3, j), event_kind%slides, &
+            & j, 0, event)
+         call meet(bound(1) + state%force(3, j), bound(2) + rates%force(3, j), &
+            & event_kind%slides_back, j, 0, event)
+      end do
+   end function next_event
+
+   !> Take an event that comes before the others: something positive falls to zero
+   pure subroutine meet(rest, rate, kind, joint, corner, event)
+      !> What falls
+      real(wp), intent(in) :: rest
+      !> Its rate
+      real(wp), intent(in) :: rate
+      !> What happens at zero
+      integer, intent(in) :: kind
+      !> Number of the joint
+      integer, intent(in) :: joint
+      !> Corner of the joint, or 0
+      integer, intent(in) :: corner
+      !> The first event so far
+      type(event_t), intent(inout) :: event
+
+      if (.not. (rate < 0.0_wp .and. rest > 0.0_wp)) return
+      if (-rest/rate < event%distance) event = event_t(-rest/rate, kind, joint, corner)
+   end subroutine meet
+
+   !> Move a state on to its next event and let that happen
+   pure subroutine move_on(joints, rates, event, state)
+      !> The joints
+      type(coulomb_joints_t), intent(in) :: joints
+      !> Rates of the state
+      type(rates_t), intent(in) :: rates
+      !> The event, or the end of the way
+      type(event_t), intent(in) :: event
+      !> The state
+      type(coulomb_state_t), intent(inout) :: state
+      real(wp) :: shear
+      integer :: i, j
+
+      state%motion = state%motion + event%distance*rates%motion
+      state%face = rates%face
+      do j = 1, size(rates%face, 2)
+         do i = 1, 2
+            if (joints%end_role(i, j) == end_role%tied) then
+               state%force(i, j) = state%force(i, j) + event%distance*rates%force(i, j)
+            else if (rates%face(i, j) == face%open) then
+               state%force(i, j) = 0.0_wp
+               if (joints%end_role(i, j) == end_role%contact) state%gap(i, j) = &
+                  & max(0.0_wp, state%gap(i, j) + event%distance*rates%opening(i, j))
+            else
+               state%force(i, j) = max(0.0_wp, state%force(i, j) + event%distance*rates%force(i, j))
+               state%gap(i, j) = 0.0_wp
+            end if
+         end do
+         shear = state%force(3, j)
+         call take_shear(joints, j, state%face(3, j), shear + event%distance*rates%force(3, j), &
+            & state)
+         state%slip(j) = state%slip(j) + event%distance*rates%opening(3, j) &
+            & + joints%graph%compliance(3, j)*(state%force(3, j) - shear)
+      end do
+      j = event%joint
+      select case (event%kind)
+      case (event_kind%opens)
+         state%force(event%corner, j) = 0.0_wp
+         state%face(event%corner, j) = face%open
+         state%face(3, j) = shear_face(joints, j, state%face(:2, j), state%face(3, j))
+         call take_shear(joints, j, state%face(3, j), state%force(3, j), state)
+      case (event_kind%closes)
+         state%gap(event%corner, j) = 0.0_wp
+         state%face(event%corner, j) = face%closed
+         state%face(3, j) = shear_face(joints, j, state%face(:2, j), &
+            & merge(face%stuck, state%face(3, j), state%face(3, j) == face%free))
+      case (event_kind%slides, event_kind%slides_back)
+         state%face(3, j) = merge(face%slides, face%slides_back, event%kind == event_kind%slides)
+         call take_shear(joints, j, state%face(3, j), state%force(3, j), state)
+      end select
+   end subroutine move_on
+
+   !> Set the shear force of a joint as what it does allows
+   pure subroutine take_shear(joints, j, does, trial, state)
+      !> The joints
+      type(coulomb_joints_t), intent(in) :: joints
+      !> Number of the joint
+      integer, intent(in) :: j
+      !> What it does along itself
+      integer, intent(in) :: does
+      !> The force if it sticks
+      real(wp), intent(in) :: trial
+      !> The state
+      type(coulomb_state_t), intent(inout) :: state
+      real(wp) :: bound
+
+      bound = joints%graph%friction(j)*(state%force(1, j) + state%force(2, j))
+      select case (does)
+      case (face%stuck)
+         state%force(3, j) = trial
+         if (joints%shear_role(j) == shear_role%frictional) state%force(3, j) = &
+            & max(-bound, min(bound, trial))
+      case (face%free)
+         state%force(3, j) = 0.0_wp
+      case default
+         state%force(3, j) = real(does, wp)*bound
+      end select
+   end subroutine take_shear
+end module dda_path_event
