@@ -35,6 +35,7 @@ contains
       integer, allocatable :: edge_pair(:, :)
       integer :: j, n
 
+      scene%origin = deck%cut%scale%origin
       call split_edges(deck%cut, split)
       call make_system(deck, split, scene%system)
       split%pair = pack(split%pair, scene%system%equation(split%pair%side(1)) > 0 &

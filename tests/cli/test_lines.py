@@ -226,3 +226,24 @@ def test_a_changed_file_of_lines_is_computed_anew(tmp_path: Path) -> None:
     assert run_dda("export", "ring.nml", cwd=tmp_path).returncode == 0
     assert run_dda("run", "a.nml", "--resume", cwd=tmp_path).returncode == 0
     assert ",collapsed," in (tmp_path / "a" / "results.csv").read_text()
+
+
+@pytest.mark.parametrize("mode", ["static", "limerick"])
+def test_a_model_far_away_is_told_where_it_is(tmp_path: Path, mode: str) -> None:
+    """A block of 1 x 2 m on a ground, 2**20 m to the right and 2**18 m below zero."""
+    x, y = 2.0**20, -(2.0**18)
+    ground, block = [(-3, -1), (4, -1), (4, 0), (-3, 0)], [(0, 0), (1, 0), (1, 2), (0, 2)]
+    sides = [(*a, *b) for ring in (ground, block) for a, b in zip(ring, ring[1:] + ring[:1])]
+    sides.remove((0, 0, 1, 0))
+    fixed = [(-2, -0.5, -2, -0.5), (3, -0.5, 3, -0.5)]
+    rows = [f"{a + x!r} {b + y!r} {c + x!r} {d + y!r}" for a, b, c, d in sides + fixed]
+    text = "\n".join(["0.01", f"{len(sides)} 0 0 0 2 0 0 0", *(row + " 1" for row in rows[:-2]), *rows[-2:]])
+    (tmp_path / "a.geo").write_text(text + "\n")
+    row_of(tmp_path, "far", f"&scene kind='lines', geometry='a.geo' /\n&analysis mode='{mode}' /\n")
+    with (tmp_path / "far" / "joints.csv").open() as table:
+        (joint,) = csv.DictReader(table)
+    assert {round(float(joint[f"x_{end}"]) - x, 2) for end in ("intrados", "extrados")} == {0, 1}
+    assert float(joint["y_intrados"]) - y == pytest.approx(0, abs=0.01)
+    with (tmp_path / "far" / "blocks.csv").open() as table:
+        corners = {(float(line["x"]) - x, float(line["y"]) - y) for line in csv.DictReader(table)}
+    assert corners >= {*ground, *block}
