@@ -3,9 +3,10 @@ module dda_export
    use, intrinsic :: iso_fortran_env, only : error_unit
    use dda_arch_lines, only : arch_analysis, arch_lines, what_is_lost
    use dda_command_line, only : command_t, name_of
-   use dda_deck, only : deck_t, has_group
+   use dda_deck, only : deck_error, deck_t, has_group, place_of, word_of
+   use dda_deck_keys, only : key_index
    use dda_deck_sweep, only : case_deck, n_cases
-   use dda_error, only : error_line, error_t, fatal_error
+   use dda_error, only : error_line, error_t
    use dda_limerick_analysis, only : limerick_analysis_t
    use dda_line_model, only : line_model_t
    use dda_process, only : exit_status, make_folder, worst_status
@@ -35,8 +36,10 @@ contains
       status = exit_status%success
       do i = 1, size(command%name)
          call read_deck(name_of(command, i), command%setting, deck, error)
-         if (.not. allocated(error) .and. allocated(deck%cut)) call fatal_error(error, &
-            & "a deck with an arch is wanted, found one that names files; copy those", deck%file, 1)
+         if (.not. allocated(error) .and. word_of(deck, "scene", "kind") /= "arch") call deck_error( &
+            & error, "dda export expected scene%kind = 'arch', got '" &
+            & //trim(word_of(deck, "scene", "kind"))//"'; copy the file that it names", deck, &
+            & place_of(deck, key_index("scene", "kind")))
          if (allocated(error)) then
             write (error_unit, "(a)") error_line(error)
             deck_status = exit_status%bad_input
