@@ -57,7 +57,7 @@ contains
       !> Name of the deck
       character(len=*), intent(in) :: name
       !> The deck, checked
-      type(deck_t), intent(in) :: deck
+      type(deck_t), intent(inout) :: deck
       type(deck_t) :: first
       type(scene_t) :: scene
       type(error_t), allocatable :: error
@@ -83,11 +83,11 @@ contains
       else
          call tell(screen, "searched", "nothing: each case is decided as it is")
       end if
-      if (allocated(deck%cut)) call check_lines(deck, error)
-      if (allocated(error)) call tell(screen, "not to run", error%message)
+      call check_lines(deck, error)
+      if (allocated(error)) call tell(screen, "not to run", error_line(error))
       call print_line(screen, "   the first case:")
       if (word_of(first, "analysis", "mode") == "limerick") then
-         call print_limerick_plan(screen, first)
+         call print_limerick_plan(screen, first, scene)
          return
       end if
       call tell(screen, "blocks", &
@@ -141,21 +141,23 @@ contains
    end function tables_text
 
    !> Print what a case of the original's scheme is made of
-   subroutine print_limerick_plan(screen, deck)
+   subroutine print_limerick_plan(screen, deck, scene)
       !> Where it goes
       type(screen_t), intent(in) :: screen
       !> The deck of the case
       type(deck_t), intent(in) :: deck
+      !> Its scene
+      type(scene_t), intent(in) :: scene
       type(limerick_model_t) :: model
       integer :: n
 
-      call limerick_scene(deck, model)
+      call limerick_scene(deck, scene, model)
       n = size(model%block_material)
-      if (allocated(deck%cut)) then
-         call tell(screen, "blocks", &
-            & to_text(n)//", held at "//to_text(size(model%fixed_block))//" points")
-      else
+      if (word_of(deck, "scene", "kind") == "arch") then
          call tell(screen, "blocks", to_text(n - 2)//" and 2 abutments, each held at 4 points")
+      else
+         call tell(screen, "blocks", to_text(n)//", held at " &
+            & //to_text(size(model%boundary%held))//" points")
       end if
       call tell(screen, "half size", &
          & to_text(half_size(model))//" m: what penetration, opening and "// &

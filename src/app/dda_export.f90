@@ -36,8 +36,8 @@ contains
       status = exit_status%success
       do i = 1, size(command%name)
          call read_deck(name_of(command, i), command%setting, deck, error)
-         if (.not. allocated(error) .and. word_of(deck, "scene", "kind") /= "arch") call deck_error( &
-            & error, "dda export expected scene%kind = 'arch', got '" &
+         if (.not. allocated(error) .and. word_of(deck, "scene", "kind") /= "arch") &
+            & call deck_error(error, "dda export expected scene%kind = 'arch', got '" &
             & //trim(word_of(deck, "scene", "kind"))//"'; copy the file that it names", deck, &
             & place_of(deck, key_index("scene", "kind")))
          if (allocated(error)) then

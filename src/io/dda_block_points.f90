@@ -71,6 +71,7 @@ contains
       end if
       call read_history(entry, has_value, value, history, error)
       if (allocated(error)) return
+      plan%ground_line = entry%head%number
       if (entry%head%word(1) == "base_acceleration") then
          plan%boundary%base_acceleration = history
       else if (size(history%time) < 2) then
@@ -98,6 +99,7 @@ contains
 
       i = 1
       ends = 0.0_wp
+      held%line = entry%head%number
       call take_numbers(entry%head, i, ends, error)
       if (allocated(error)) return
       call take_directions(entry, i, held%along, error)
@@ -147,6 +149,7 @@ contains
       if (entry%n_column == 3) call read_history(entry, has_value, value, history, error)
       if (allocated(error)) return
       held%path = history
+      held%line = entry%head%number
       if (entry%head%word(1) == "fix") then
          call take_directions(entry, i, held%along, error)
       else if (i <= entry%head%n) then

@@ -188,7 +188,7 @@ contains
 
       call attribute_words(tree, at, "numpoints", words, error)
       if (.not. allocated(error)) &
-         & call take_whole(words, "the attribute numpoints", 2, most_records, n, error)
+         & call take_whole(words, "the attribute numpoints", 1, most_records, n, error)
       if (allocated(error)) return
       call split_words(tree%element(at)%text, tree%file, tree%element(at)%row, words, &
          & also_blank=";")

@@ -14,7 +14,8 @@ module dda_deck
 
    public :: deck_t, deck_value_t, deck_sweep_t, deck_place_t, parameter_t, new_deck
    public :: real_of, integer_of, word_of, text_of, flag_of, list_of
-   public :: is_given, has_group, line_of, place_of, deck_error, file_beside
+   public :: geometry_of, is_given, has_group, keeps_velocities, line_of, place_of, deck_error
+   public :: file_beside
 
    !> Where a value was written
    type :: deck_place_t
@@ -255,6 +256,33 @@ contains
       yes = .false.
       if (i > 0) yes = deck%group(i)%line > 0
    end function has_group
+
+   !> Whether velocities are kept from step to step: asked by the mode, and in that of the original
+   !> by its key, or else by the analysis file
+   pure function keeps_velocities(deck) result(yes)
+      !> The deck of a case
+      type(deck_t), intent(in) :: deck
+      !> The answer
+      logical :: yes
+
+      yes = word_of(deck, "analysis", "mode") == "dynamic"
+      if (word_of(deck, "analysis", "mode") /= "limerick") return
+      yes = flag_of(deck, "limerick", "dynamic")
+      if (allocated(deck%analysis) .and. .not. is_given(deck, "limerick", "dynamic")) &
+         & yes = deck%analysis%dynamic
+   end function keeps_velocities
+
+   !> Geometry of a case; in the mode of the original blocks always move
+   pure function geometry_of(deck) result(word)
+      !> The deck of the case
+      type(deck_t), intent(in) :: deck
+      !> reference or current
+      character(len=word_length) :: word
+
+      word = word_of(deck, "analysis", "geometry")
+      if (word_of(deck, "analysis", "mode") == "limerick" &
+         & .and. .not. is_given(deck, "analysis", "geometry")) word = "current"
+   end function geometry_of
 
    !> Line where a key was given
    pure function line_of(deck, group, key) result(line)

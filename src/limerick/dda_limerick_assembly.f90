@@ -8,7 +8,7 @@ module dda_limerick_assembly
    use dda_kinds, only : wp
    use dda_limerick_contact, only : contact_list_t, contact_spring_t, generalised, &
       & limerick_contact_t
-   use dda_limerick_model, only : force_at, limerick_model_t
+   use dda_limerick_model, only : contact_law, force_at, limerick_model_t
    use dda_limerick_state, only : contact_state, limerick_blocks_t, limerick_march_t
    implicit none
    private
@@ -117,8 +117,8 @@ contains
       real(wp) :: row(n_unknown), axis(2)
       integer :: b, i, k
 
-      do i = 1, size(model%fixed_block)
-         b = model%fixed_block(i)
+      do i = 1, size(model%boundary%held)
+         b = model%boundary%held(i)%block
          do k = 1, 2
             axis = 0.0_wp
             axis(k) = 1.0_wp
@@ -128,10 +128,10 @@ contains
                & - march%fixed_stiffness*blocks%fixed_drift(k, i)*row
          end do
       end do
-      do i = 1, size(model%load_block)
-         b = model%load_block(i)
+      do i = 1, size(model%boundary%loaded)
+         b = model%boundary%loaded(i)%block
          equations%load(:, b) = equations%load(:, b) &
-            & + generalised(force_at(model%load(i), march%time + march%time_step), &
+            & + generalised(force_at(model, i, march%time + march%time_step), &
             & blocks%load_point(:, i), blocks%centroid(:, b))
       end do
    end subroutine add_points
@@ -240,7 +240,7 @@ contains
       real(wp) :: friction
 
       if (.not. abs(contact%shear) > 0.0_wp) return
-      associate (law => model%law(model%edge_law(contact%vertex(3, 1))))
+      associate (law => contact_law(model, contact%block(1), contact%vertex(3, 1)))
          friction = max(0.0_wp, -contact%gap)*penalty*law%friction
          if (contact%bonded) friction = friction + law%cohesion*contact%length
       end associate

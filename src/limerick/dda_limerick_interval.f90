@@ -2,7 +2,7 @@
 module dda_limerick_interval
    use dda_kinds, only : wp
    use dda_limerick_contact, only : contact_list_t
-   use dda_limerick_model, only : force_at, limerick_model_t
+   use dda_limerick_model, only : force_at, limerick_model_t, next_record
    use dda_limerick_state, only : contact_state, limerick_march_t
    implicit none
    private
@@ -17,18 +17,21 @@ module dda_limerick_interval
    real(wp), parameter :: too_far = 3.0_wp
    !> A penetration beyond this multiple of its aim is tried again with a penalty ten times as large
    real(wp), parameter :: too_deep = 2.5_wp
+   !> A record of a load that is nearer than this share of the step has been reached
+   real(wp), parameter :: short = 1.0e-6_wp
    !> Least penalty over that of the step before
    real(wp), parameter :: relaxation = 1.0_wp/3.0_wp
 
 contains
 
-   !> Length of the next step from the largest acceleration (Shi: step)
+   !> Length of the next step from the largest acceleration (Shi: step); no step passes over a
+   !> record of a load
    pure subroutine choose_interval(model, march)
       !> The model
       type(limerick_model_t), intent(in) :: model
       !> The march; its time step is set
       type(limerick_march_t), intent(inout) :: march
-      real(wp) :: acceleration, velocity, allowed, mass, longest
+      real(wp) :: acceleration, velocity, allowed, mass, longest, record
 
       if (.not. model%constants%auto_time_step) return
       allowed = model%constants%max_displacement_ratio*march%half_size
@@ -52,6 +55,8 @@ contains
       velocity = velocity + sqrt(velocity**2 + 2.0_wp*acceleration*allowed)
       march%time_step = longest
       if (velocity > 0.0_wp) march%time_step = min(longest, 2.0_wp*allowed/velocity)
+      record = next_record(model, march%time + short*march%time_step)
+      march%time_step = min(march%time_step, record - march%time)
    end subroutine choose_interval
 
    !> Largest initial stress of a material [Pa]
@@ -89,11 +94,11 @@ contains
       integer :: i
 
       largest_load = 0.0_wp
-      do i = 1, size(model%load_block)
+      do i = 1, size(model%boundary%loaded)
          if (ever) then
-            largest_load = max(largest_load, maxval(abs(model%load(i)%force)))
+            largest_load = max(largest_load, maxval(abs(model%boundary%loaded(i)%force%value)))
          else
-            largest_load = max(largest_load, maxval(abs(force_at(model%load(i), time))))
+            largest_load = max(largest_load, maxval(abs(force_at(model, i, time))))
          end if
       end do
    end function largest_load

@@ -1,12 +1,16 @@
 !> A model in the terms of the original program: polygons, materials, points, and its constants
 module dda_limerick_model
+   use dda_boundary, only : boundary_t, records_before, value_at
    use dda_kinds, only : wp
-   use dda_material, only : joint_law_t, material_t
+   use dda_material, only : friction_coefficient, joint_law_t, material_t
    implicit none
    private
 
-   public :: limerick_model_t, limerick_constants_t, limerick_material_t, load_history_t
-   public :: half_size, force_at
+   public :: limerick_model_t, limerick_constants_t, limerick_material_t
+   public :: contact_law, finite_law, force_at, half_size, loads_end, next_record
+
+   !> Friction angle of a joint that cannot slide [deg]
+   real(wp), parameter :: no_slip_deg = 89.9_wp
 
    !> Constants of the scheme, with the original's defaults and letters
    type :: limerick_constants_t
@@ -53,14 +57,6 @@ module dda_limerick_model
       real(wp) :: velocity(3) = 0.0_wp
    end type limerick_material_t
 
-   !> Force on a load point
-   type :: load_history_t
-      !> Times, increasing, two or more: (n) [s]
-      real(wp), allocatable :: time(:)
-      !> Forces at these times: (2, n) [N/m]
-      real(wp), allocatable :: force(:, :)
-   end type load_history_t
-
    !> Everything that a run is told
    type :: limerick_model_t
       !> First vertex of each block, and one beyond the last: (n_block + 1)
@@ -73,24 +69,18 @@ module dda_limerick_model
       integer, allocatable :: block_material(:)
       !> Materials
       type(limerick_material_t), allocatable :: material(:)
-      !> Laws of the joints
-      type(joint_law_t), allocatable :: law(:)
+      !> Laws of the joints, of the corners of blocks of each kind on edges of each number: (n_kind,
+      !> n_law)
+      type(joint_law_t), allocatable :: law(:, :)
+      !> Kind of each block's corners: (n_block)
+      integer, allocatable :: kind(:)
       !> Direction of the weight; its length scales it: (2)
       real(wp) :: load_direction(2) = [0.0_wp, -1.0_wp]
-      !> Fixed points: (2, n_fixed) [m]
-      real(wp), allocatable :: fixed_point(:, :)
-      !> Their blocks: (n_fixed)
-      integer, allocatable :: fixed_block(:)
-      !> Load points: (2, n_load) [m]
-      real(wp), allocatable :: load_point(:, :)
-      !> Their blocks: (n_load)
-      integer, allocatable :: load_block(:)
-      !> Their forces: (n_load)
-      type(load_history_t), allocatable :: load(:)
-      !> Measured points: (2, n_measured) [m]
-      real(wp), allocatable :: measured_point(:, :)
-      !> Their blocks: (n_measured)
-      integer, allocatable :: measured_block(:)
+      !> Points that are held where they are, loaded, measured; all three lists are allocated
+      type(boundary_t) :: boundary
+      !> Whether loads go straight on before the first and beyond the last two of their records, as
+      !> the original's files want it; otherwise they stay as they are
+      logical :: loads_go_on = .true.
       !> Constants of the scheme
       type(limerick_constants_t) :: constants
    end type limerick_model_t
@@ -105,21 +95,87 @@ contains
       half_size = maxval(maxval(model%vertex, dim=2) - minval(model%vertex, dim=2))/2.0_wp
    end function half_size
 
-   !> Force at a time: linear between the given times, and on beyond the last two (Shi: df09)
-   pure function force_at(load, time) result(force)
-      !> The history
-      type(load_history_t), intent(in) :: load
+   !> The scheme knows friction alone: a joint that cannot slide has the most of it
+   elemental function finite_law(given) result(law)
+      !> A law
+      type(joint_law_t), intent(in) :: given
+      !> The law of the scheme
+      type(joint_law_t) :: law
+
+      law = given
+      if (law%no_slip) law%friction = friction_coefficient(no_slip_deg)
+   end function finite_law
+
+   !> Law of a corner on an edge: that of the edge, for corners of the block's kind
+   pure function contact_law(model, block, edge) result(law)
+      !> The model
+      type(limerick_model_t), intent(in) :: model
+      !> Block of the corner
+      integer, intent(in) :: block
+      !> Vertex at which the edge starts
+      integer, intent(in) :: edge
+      !> The law
+      type(joint_law_t) :: law
+
+      law = model%law(model%kind(block), model%edge_law(edge))
+   end function contact_law
+
+   !> Force on a load point at a time: linear between the records (Shi: df09)
+   pure function force_at(model, point, time) result(force)
+      !> The model
+      type(limerick_model_t), intent(in) :: model
+      !> Number of the load point
+      integer, intent(in) :: point
       !> The time [s]
       real(wp), intent(in) :: time
       !> The force: (2) [N/m]
       real(wp) :: force(2)
       real(wp) :: share
-      integer :: i
+      integer :: i, n
 
-      do i = 1, size(load%time) - 2
-         if (time < load%time(i + 1)) exit
-      end do
-      share = (time - load%time(i))/(load%time(i + 1) - load%time(i))
-      force = (1.0_wp - share)*load%force(:, i) + share*load%force(:, i + 1)
+      associate (load => model%boundary%loaded(point)%force)
+         n = size(load%time)
+         if (.not. model%loads_go_on .or. n < 2) then
+            force = value_at(load, time)
+            return
+         end if
+         i = min(max(1, records_before(load%time, time)), n - 1)
+         share = (time - load%time(i))/(load%time(i + 1) - load%time(i))
+         force = (1.0_wp - share)*load%value(:, i) + share*load%value(:, i + 1)
+      end associate
    end function force_at
+
+   !> Time of the last record of all loads that change: before it nothing is at rest for good
+   pure real(wp) function loads_end(model)
+      !> The model
+      type(limerick_model_t), intent(in) :: model
+      integer :: i, n
+
+      loads_end = 0.0_wp
+      do i = 1, size(model%boundary%loaded)
+         associate (load => model%boundary%loaded(i)%force)
+            n = size(load%time)
+            if (any(abs(load%value(:, 2:) - load%value(:, :n - 1)) > 0.0_wp)) &
+               & loads_end = max(loads_end, load%time(n))
+         end associate
+      end do
+   end function loads_end
+
+   !> Time of the first record of any load after a time; huge if there is none
+   pure real(wp) function next_record(model, time)
+      !> The model
+      type(limerick_model_t), intent(in) :: model
+      !> The time [s]
+      real(wp), intent(in) :: time
+      integer :: i, n
+
+      next_record = huge(next_record)
+      do i = 1, size(model%boundary%loaded)
+         associate (load => model%boundary%loaded(i)%force)
+            n = records_before(load%time, time) + 1
+            if (n <= size(load%time)) n = n + merge(0, 1, load%time(n) > time)
+            if (n <= size(load%time)) next_record = min(next_record, load%time(n))
+         end associate
+      end do
+   end function next_record
 end module dda_limerick_model

@@ -5,7 +5,7 @@ module dda_limerick_open_close
    use dda_limerick_assembly, only : add_contacts, limerick_equations_t
    use dda_limerick_contact, only : contact_list_t, contact_spring_t, limerick_contact_t, &
       & place_shear_spring, projection
-   use dda_limerick_model, only : limerick_constants_t, limerick_model_t
+   use dda_limerick_model, only : contact_law, limerick_constants_t, limerick_model_t
    use dda_limerick_state, only : contact_state, limerick_blocks_t, limerick_march_t
    use dda_deformation, only : displacement_matrix
    use dda_material, only : joint_law_t
@@ -83,7 +83,7 @@ contains
       real(wp) :: gap(2)
 
       associate (a => motion(:, contact%block(1)), b => motion(:, contact%block(2)), &
-         & law => model%law(model%edge_law(contact%vertex(3, 1))))
+         & law => contact_law(model, contact%block(1), contact%vertex(3, 1)))
          contact%before = contact%state
          gap(1) = spring%gap(1) + dot(spring%normal(:, 1, 1), a) + dot(spring%normal(:, 2, 1), b)
          gap(2) = gap(1)

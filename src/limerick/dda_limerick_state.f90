@@ -99,10 +99,17 @@ contains
       nv = size(model%vertex, 2)
       blocks%first_vertex = model%first_vertex
       blocks%vertex = model%vertex
-      blocks%fixed_point = model%fixed_point
-      blocks%load_point = model%load_point
-      blocks%measured_point = model%measured_point
-      allocate (blocks%fixed_drift(2, size(model%fixed_block)), source=0.0_wp)
+      associate (boundary => model%boundary)
+         allocate (blocks%fixed_point(2, size(boundary%held)))
+         allocate (blocks%load_point(2, size(boundary%loaded)))
+         allocate (blocks%measured_point(2, size(boundary%measured)))
+         do v = 1, 2
+            blocks%fixed_point(v, :) = boundary%held%point(v)
+            blocks%load_point(v, :) = boundary%loaded%point(v)
+            blocks%measured_point(v, :) = boundary%measured%point(v)
+         end do
+         allocate (blocks%fixed_drift(2, size(boundary%held)), source=0.0_wp)
+      end associate
       allocate (blocks%owner(nv), blocks%next(nv), blocks%previous(nv))
       allocate (blocks%area(n), blocks%centroid(2, n), blocks%second(3, n), blocks%stress(3, n))
       allocate (blocks%velocity(n_unknown, n), source=0.0_wp)

@@ -87,18 +87,18 @@ contains
       real(wp) :: step(2)
       integer :: b, i
 
-      do i = 1, size(model%fixed_block)
-         step = point_step(blocks%fixed_point(:, i), model%fixed_block(i))
+      do i = 1, size(model%boundary%held)
+         step = point_step(blocks%fixed_point(:, i), model%boundary%held(i)%block)
          blocks%fixed_point(:, i) = blocks%fixed_point(:, i) + step
          blocks%fixed_drift(:, i) = blocks%fixed_drift(:, i) + step
       end do
-      do i = 1, size(model%load_block)
+      do i = 1, size(model%boundary%loaded)
          blocks%load_point(:, i) = blocks%load_point(:, i) &
-            & + point_step(blocks%load_point(:, i), model%load_block(i))
+            & + point_step(blocks%load_point(:, i), model%boundary%loaded(i)%block)
       end do
-      do i = 1, size(model%measured_block)
+      do i = 1, size(model%boundary%measured)
          blocks%measured_point(:, i) = blocks%measured_point(:, i) &
-            & + point_step(blocks%measured_point(:, i), model%measured_block(i))
+            & + point_step(blocks%measured_point(:, i), model%boundary%measured(i)%block)
       end do
       do b = 1, size(blocks%area)
          blocks%stress(:, b) = blocks%stress(:, b) + matmul(elasticity_matrix( &

@@ -54,6 +54,8 @@ module dda_block_input
       type(law_plan_t), allocatable :: laws(:)
       !> Points; they are seen from the origin of the plan too
       type(boundary_t) :: boundary
+      !> Line of the file that moves the ground, 0 if there is none
+      integer :: ground_line = 0
       !> What the user should know: (n)
       character(len=160), allocatable :: warning(:)
       !> Lines that the warnings speak of: (n)

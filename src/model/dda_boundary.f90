@@ -5,7 +5,7 @@ module dda_boundary
    private
 
    public :: boundary_t, held_point_t, history_t, loaded_point_t, measured_point_t
-   public :: constant_history, mean_over, rate_at, value_at
+   public :: constant_history, mean_over, rate_at, records_before, value_at
 
    !> A vector given at some times, linear between them, constant before the first and after the
    !> last of them; zero if nothing is given
@@ -26,6 +26,8 @@ module dda_boundary
       logical :: along(2) = .true.
       !> Its displacement [m]
       type(history_t) :: path
+      !> Line of the file that holds it, 0 if there is none
+      integer :: line = 0
    end type held_point_t
 
    !> A force on a point of a block; it goes with the point and keeps its direction
@@ -86,7 +88,7 @@ contains
 
       value = 0.0_wp
       if (.not. allocated(history%time)) return
-      i = segment_before(history%time, time)
+      i = records_before(history%time, time)
       if (i == 0) then
          value = history%value(:, 1)
       else if (i == size(history%time)) then
@@ -112,7 +114,7 @@ contains
 
       mean = value_at(history, (start + finish)/2.0_wp)
       if (.not. allocated(history%time)) return
-      i = segment_before(history%time, start) + 1
+      i = records_before(history%time, start) + 1
       if (i > size(history%time)) return
       if (.not. history%time(i) < finish) return
       mean = 0.0_wp
@@ -142,29 +144,29 @@ contains
 
       rate = 0.0_wp
       if (.not. allocated(history%time)) return
-      i = segment_before(history%time, time)
+      i = records_before(history%time, time)
       if (i == 0 .or. i == size(history%time)) return
       rate = (history%value(:, i + 1) - history%value(:, i)) &
          & /(history%time(i + 1) - history%time(i))
    end function rate_at
 
-   !> Number of the last of some increasing times that lies before a time, 0 if none does
-   pure integer function segment_before(times, time)
+   !> How many of some increasing times lie before a time
+   pure integer function records_before(times, time)
       !> The times: (n) [s]
       real(wp), intent(in) :: times(:)
       !> The time [s]
       real(wp), intent(in) :: time
       integer :: high, middle
 
-      segment_before = 0
+      records_before = 0
       high = size(times) + 1
-      do while (high - segment_before > 1)
-         middle = (segment_before + high)/2
+      do while (high - records_before > 1)
+         middle = (records_before + high)/2
          if (times(middle) < time) then
-            segment_before = middle
+            records_before = middle
          else
             high = middle
          end if
       end do
-   end function segment_before
+   end function records_before
 end module dda_boundary

@@ -125,7 +125,7 @@ contains
             & call see_collapse(this, this%critical%falls, this%critical%fallen)
       else if (this%limerick) then
          call deck_scene(this%deck, this%scene)
-         call decide_limerick(this%deck, this%decision)
+         call decide_limerick(this%deck, this%decision, this%album)
       else
          call compute_decision(this)
          if (.not. allocated(this%error)) call see_collapse(this, &
@@ -135,8 +135,8 @@ contains
          & .and. .not. allocated(this%critical%fallen) .and. allocated(this%critical%standing)) &
          & call this%family%build(this%critical%stands, this%scene, error)
       if (this%plan%shared_forces) call share_told_forces(this)
-      if (integer_of(this%deck, "output", "frames") > 0 .or. size(this%album%point) > 0) &
-         & call take_pictures(this)
+      if (.not. this%limerick .and. (integer_of(this%deck, "output", "frames") > 0 &
+         & .or. size(this%album%point) > 0)) call take_pictures(this)
       call system_clock(finish)
       this%seconds = real(finish - start, wp)/real(rate, wp)
    end subroutine compute_case

@@ -6,13 +6,14 @@ module dda_deck_scene
    use dda_block_scene, only : base_t, block_scene, floating_block
    use dda_chain, only : chain_t
    use dda_constants, only : degree, pi
-   use dda_deck, only : deck_error, deck_t, file_beside, is_given, parameter_t, place_of, &
-      & real_of, text_of, word_of
+   use dda_deck, only : deck_error, deck_t, file_beside, is_given, keeps_velocities, parameter_t, &
+      & place_of, real_of, text_of, word_of
    use dda_deck_keys, only : key_index
    use dda_deck_set, only : number_fits, put_number
-   use dda_deck_sweep, only : n_cases
+   use dda_deck_sweep, only : n_cases, turn_to_case
    use dda_error, only : error_t, fatal_error
    use dda_kinds, only : wp
+   use dda_limerick_blocks, only : check_limerick_blocks
    use dda_limerick_lines, only : check_limerick_lines
    use dda_line_scene, only : check_line_scene, held_blocks, line_scene
    use dda_read_deck, only : geometry_file
@@ -21,7 +22,7 @@ module dda_deck_scene
    use dda_scene_plan, only : scene_plan_t
    use dda_settings, only : load_direction, settings_t
    use dda_text, only : to_text
-   use dda_warnings, only : add_warning
+   use dda_warnings, only : add_warning, warnings_t
    implicit none
    private
 
@@ -128,13 +129,14 @@ contains
       !> The scene
       type(scene_t), intent(out) :: scene
 
-      if (allocated(deck%cut)) then
-         call line_scene(deck, scene)
-      else if (word_of(deck, "scene", "kind") == "blocks") then
-         call file_scene(deck, scene)
-      else
+      select case (word_of(deck, "scene", "kind"))
+      case ("arch")
          call arch_scene(deck, scene)
-      end if
+      case ("lines")
+         call line_scene(deck, scene)
+      case ("blocks")
+         call file_scene(deck, scene)
+      end select
    end subroutine deck_scene
 
    !> Number of blocks that can move in the scene of a case
@@ -168,21 +170,6 @@ contains
       call block_scene(deck%plan, base, scene)
    end subroutine file_scene
 
-   !> Whether this version can run the blocks that were cut from lines
-   pure subroutine check_lines(deck, error)
-      !> The deck of a case
-      type(deck_t), intent(in) :: deck
-      !> What it cannot do
-      type(error_t), allocatable, intent(inout) :: error
-
-      if (.not. allocated(deck%cut)) return
-      if (word_of(deck, "analysis", "mode") == "limerick") then
-         call check_limerick_lines(deck, error)
-      else
-         call check_line_scene(deck, error)
-      end if
-   end subroutine check_lines
-
    !> A warning about the blocks as the line that a user sees
    pure function warning_line(deck, i) result(line)
       !> The deck
@@ -196,60 +183,153 @@ contains
          & //trim(deck%plan%warning(i))
    end function warning_line
 
-   !> Check that a static scene can come to rest at all, and that a run that goes on has a file;
-   !> warn of blocks that will fall, and of units that are no metres
+   !> Check that the modes of a deck can run the blocks of its file, and that a run that goes on has
+   !> a file; warn of blocks that will fall, and of units that are no metres
    subroutine check_scene(deck, error)
       !> The deck, checked; receives the warnings
       type(deck_t), intent(inout) :: deck
-      !> Allocated if nothing holds a block, or no file is there
+      !> What cannot be run, or a file that is not there
+      type(error_t), allocatable, intent(out) :: error
+
+      if (is_given(deck, "analysis", "restart")) call check_start(deck, error)
+      if (allocated(error) .or. word_of(deck, "scene", "kind") /= "blocks") return
+      call check_modes(deck, error)
+   end subroutine check_scene
+
+   !> Check that the modes of a deck can run the blocks that were cut from its lines
+   pure subroutine check_lines(deck, error)
+      !> The deck, checked; receives the warnings
+      type(deck_t), intent(inout) :: deck
+      !> What cannot be run
+      type(error_t), allocatable, intent(out) :: error
+
+      if (word_of(deck, "scene", "kind") == "lines") call check_modes(deck, error)
+   end subroutine check_lines
+
+   !> Check the first case of each mode
+   pure subroutine check_modes(deck, error)
+      !> The deck, checked; receives the warnings
+      type(deck_t), intent(inout) :: deck
+      !> What cannot be run
+      type(error_t), allocatable, intent(out) :: error
+      type(deck_t) :: work
+      integer :: number, mode
+      logical :: seen(4)
+
+      seen = .false.
+      do number = 1, n_cases(deck)
+         call turn_to_case(deck, number, work, error)
+         if (allocated(error)) return
+         mode = findloc(["static  ", "dynamic ", "limerick"] == &
+            & word_of(work, "analysis", "mode"), .true., dim=1)
+         if (mode == 3 .and. keeps_velocities(work)) mode = 4
+         if (.not. seen(mode)) call check_mode(work, number == 1, deck%warnings, error)
+         seen(mode) = .true.
+         if (allocated(error) .or. all(seen) .or. .not. any(deck%sweep%parameter%key == &
+            & key_index("analysis", "mode") .or. deck%sweep%parameter%key == &
+            & key_index("limerick", "dynamic"))) return
+      end do
+   end subroutine check_modes
+
+   !> Check that the mode of one case can run its scene
+   pure subroutine check_mode(deck, warns, warnings, error)
+      !> The deck of the case
+      type(deck_t), intent(in) :: deck
+      !> Whether doubts are told
+      logical, intent(in) :: warns
+      !> Receives them
+      type(warnings_t), intent(inout) :: warnings
+      !> What it cannot run
       type(error_t), allocatable, intent(out) :: error
       type(scene_t) :: scene
-      integer :: b
+
+      select case (word_of(deck, "scene", "kind"))
+      case ("lines")
+         if (word_of(deck, "analysis", "mode") == "limerick") then
+            call check_limerick_lines(deck, error)
+         else
+            call check_line_scene(deck, error)
+         end if
+      case ("blocks")
+         if (word_of(deck, "analysis", "mode") == "limerick") call check_limerick_blocks( &
+            & deck%plan, geometry_file(deck), keeps_velocities(deck), error)
+         if (allocated(error)) return
+         call deck_scene(deck, scene)
+         if (word_of(deck, "analysis", "mode") == "static") &
+            & call check_support(deck, scene, error)
+         if (warns .and. .not. allocated(error)) call doubt_scene(deck, scene, warnings)
+      end select
+   end subroutine check_mode
+
+   !> Check that a restart file is there and fits
+   subroutine check_start(deck, error)
+      !> The deck
+      type(deck_t), intent(in) :: deck
+      !> No file, or one of other blocks
+      type(error_t), allocatable, intent(out) :: error
+      character(len=:), allocatable :: name
+      type(scene_t) :: scene
       logical :: exists
 
-      if (is_given(deck, "analysis", "restart")) then
-         inquire (file=file_beside(deck, text_of(deck, "analysis", "restart")), exist=exists)
-         if (.not. exists) then
-            call deck_error(error, "there is no restart file '"// &
-               & text_of(deck, "analysis", "restart")//"'; check the name", deck, &
-               & place_of(deck, key_index("analysis", "restart")))
-            return
-         end if
+      name = text_of(deck, "analysis", "restart")
+      inquire (file=file_beside(deck, name), exist=exists)
+      if (.not. exists) then
+         call deck_error(error, "there is no restart file '"//name//"'; check the name", deck, &
+            & place_of(deck, key_index("analysis", "restart")))
+      else if (n_cases(deck) == 1) then
          call deck_scene(deck, scene)
-         if (n_cases(deck) == 1) then
-            call check_restart(file_beside(deck, text_of(deck, "analysis", "restart")), &
-               & scene%system, error)
-         else
-            call check_restart(file_beside(deck, text_of(deck, "analysis", "restart")), error=error)
-         end if
-         if (allocated(error)) return
+         call check_restart(file_beside(deck, name), scene%system, error)
+      else
+         call check_restart(file_beside(deck, name), error=error)
       end if
-      if (word_of(deck, "scene", "kind") /= "blocks") return
-      call deck_scene(deck, scene)
+   end subroutine check_start
+
+   !> Check that a static scene can come to rest at all
+   pure subroutine check_support(deck, scene, error)
+      !> The deck of a case
+      type(deck_t), intent(in) :: deck
+      !> Its scene
+      type(scene_t), intent(in) :: scene
+      !> Allocated if nothing holds a block
+      type(error_t), allocatable, intent(out) :: error
+      integer :: b
+
       b = floating_block(scene)
-      if (b > 0 .and. word_of(deck, "analysis", "mode") == "static") then
-         call fatal_error(error, "block "//to_text(b)//" rests on nothing: no chain of joints "// &
-            & "ties it to a fixed block, as mode = 'static' wants; add a joint or remove it", &
-            & geometry_file(deck), deck%plan%line(b))
-         return
-      end if
-      call doubt_units(deck, scene)
-      if (b > 0 .and. any(deck%plan%fixed)) call add_warning(deck%warnings, "block " &
+      if (b > 0) call fatal_error(error, "block "//to_text(b)//" rests on nothing: no chain of "// &
+         & "joints ties it to a fixed block, as mode = 'static' wants; add a joint or remove it", &
+         & geometry_file(deck), deck%plan%line(b))
+   end subroutine check_support
+
+   !> Warn of blocks that will fall, and of units that are no metres
+   pure subroutine doubt_scene(deck, scene, warnings)
+      !> The deck of a case
+      type(deck_t), intent(in) :: deck
+      !> Its scene
+      type(scene_t), intent(in) :: scene
+      !> Receives the warnings
+      type(warnings_t), intent(inout) :: warnings
+      integer :: b
+
+      call doubt_units(deck, scene, warnings)
+      b = floating_block(scene)
+      if (b > 0 .and. any(deck%plan%fixed)) call add_warning(warnings, "block " &
          & //to_text(b)//" rests on nothing, and will fall", geometry_file(deck), &
          & deck%plan%line(b))
       if (any(deck%plan%fixed)) return
       b = 0
       if (allocated(deck%plan%boundary%held)) b = size(deck%plan%boundary%held)
-      if (b == 0) call add_warning(deck%warnings, "nothing is fixed", geometry_file(deck), 1)
-   end subroutine check_scene
+      if (b == 0) call add_warning(warnings, "nothing is fixed", geometry_file(deck), 1)
+   end subroutine doubt_scene
 
    !> Warn where the weight of the blocks would strain them as no masonry is strained: lengths are
    !> then often millimetres
-   pure subroutine doubt_units(deck, scene)
-      !> The deck; receives the warning
-      type(deck_t), intent(inout) :: deck
+   pure subroutine doubt_units(deck, scene, warnings)
+      !> The deck of a case
+      type(deck_t), intent(in) :: deck
       !> Its scene
       type(scene_t), intent(in) :: scene
+      !> Receives the warning
+      type(warnings_t), intent(inout) :: warnings
       character(len=10) :: figure
       real(wp) :: height, strain
       integer :: b
@@ -268,7 +348,7 @@ contains
       end associate
       if (.not. strain > doubtful_strain) return
       write (figure, "(es10.1)") strain
-      call add_warning(deck%warnings, "the weight of a block strains it by "// &
+      call add_warning(warnings, "the weight of a block strains it by "// &
          & trim(adjustl(figure))//": lengths, weights or young in other units than m, N, Pa?", &
          & geometry_file(deck), 1)
    end subroutine doubt_units

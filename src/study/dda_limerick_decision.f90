@@ -1,17 +1,20 @@
 !> A run of the original's scheme as a decision of ours: its verdict and the joints at its end
 module dda_limerick_decision
+   use dda_block_system, only : block_system_t
    use dda_contact_detection, only : contacts_t
    use dda_contact_types, only : place_joint
    use dda_decision, only : decision_t
-   use dda_deck, only : deck_t
+   use dda_deck, only : deck_t, word_of
    use dda_deck_scene, only : deck_scene
+   use dda_frames, only : album_t
    use dda_kinds, only : wp
    use dda_limerick_contact, only : limerick_contact_t
-   use dda_limerick_model, only : limerick_model_t
+   use dda_limerick_model, only : contact_law, finite_law, limerick_model_t
    use dda_limerick_run, only : limerick_outcome_t, limerick_verdict, run_limerick
    use dda_limerick_scene, only : limerick_scene
    use dda_limerick_state, only : contact_state
    use dda_limerick_step, only : limerick_run_t
+   use dda_material, only : joint_law_t
    use dda_scene, only : scene_t
    use dda_verdict, only : verdict
    implicit none
@@ -21,22 +24,30 @@ module dda_limerick_decision
 
 contains
 
-   !> Run the arch or the blocks of a deck under the original's scheme
-   pure subroutine decide_limerick(deck, decision)
+   !> Run what a deck describes under the original's scheme
+   pure subroutine decide_limerick(deck, decision, album)
       !> The deck of one case, checked
       type(deck_t), intent(in) :: deck
       !> The decision
       type(decision_t), intent(out) :: decision
+      !> Receives the ways of its points, if it has some
+      type(album_t), intent(inout), optional :: album
       type(limerick_model_t) :: model
       type(limerick_run_t) :: run
       type(limerick_outcome_t) :: outcome
       type(scene_t) :: scene
 
-      call limerick_scene(deck, model)
-      call run_limerick(model, run, outcome)
       call deck_scene(deck, scene)
+      call limerick_scene(deck, scene, model)
+      if (present(album)) then
+         call run_limerick(model, run, outcome, size(album%point))
+         call keep_ways(outcome, album)
+      else
+         call run_limerick(model, run, outcome)
+      end if
       decision%system = scene%system
       decision%contacts = scene%contacts
+      call place_corners(word_of(deck, "scene", "kind"), run, decision%system)
       call tell_joints(scene, model, run, decision%system%moved, decision%contacts)
       associate (told => decision%outcome)
          told%steps = outcome%steps
@@ -50,71 +61,108 @@ contains
       end associate
    end subroutine decide_limerick
 
+   !> Keep the ways of the measured points
+   pure subroutine keep_ways(outcome, album)
+      !> The outcome
+      type(limerick_outcome_t), intent(in) :: outcome
+      !> Receives them
+      type(album_t), intent(inout) :: album
+      integer :: i, n
+
+      if (size(album%point) == 0) return
+      n = outcome%steps + 1
+      album%n_track = n
+      allocate (album%when(2, n))
+      album%when(1, :) = [(real(i, wp), i=0, outcome%steps)]
+      album%when(2, :) = outcome%time(:n)
+      album%track = outcome%track(:, :, :n)
+   end subroutine keep_ways
+
+   !> Corners of the scene's blocks at the end of a run
+   pure subroutine place_corners(kind, run, system)
+      !> What the blocks are made from
+      character(len=*), intent(in) :: kind
+      !> The run at its end
+      type(limerick_run_t), intent(in) :: run
+      !> The blocks; where their corners have moved to is set
+      type(block_system_t), intent(inout) :: system
+      integer :: n
+
+      n = size(system%moved, 2)
+      select case (kind)
+      case ("arch")
+         ! the last eight are springings, which stand for abutments and do not move
+         system%moved(:, :n - 8) = run%blocks%vertex(:, :n - 8)
+      case ("lines")
+         ! edges are parted at the joints: these corners are the last of the measured points
+         associate (point => run%blocks%measured_point)
+            system%moved = point(:, size(point, 2) - n + 1:)
+         end associate
+      case ("blocks")
+         system%moved = run%blocks%vertex
+      end select
+   end subroutine place_corners
+
    !> Joints at the end of a run: openings and slips from the corners, forces from the contacts. The
    !> increments are those of the whole run, for single steps of this scheme jitter
    pure subroutine tell_joints(scene, model, run, now, contacts)
-      !> The scene at the beginning; springings of arches stand for the abutments, which do not move
+      !> The scene at the beginning
       type(scene_t), intent(in) :: scene
       !> The model
       type(limerick_model_t), intent(in) :: model
       !> The run at its end
       type(limerick_run_t), intent(in) :: run
       !> The corners at the end: (2, n_vertex) [m]
-      real(wp), intent(inout) :: now(:, :)
+      real(wp), intent(in) :: now(:, :)
       !> The joints: at the beginning in, at the end out
       type(contacts_t), intent(inout) :: contacts
-      real(wp) :: elastic_slip
-      integer :: j, n
+      type(joint_law_t) :: law
+      real(wp) :: deepest
+      integer :: j
 
-      if (size(model%measured_block) > 0) then
-         ! the corners of a scene of lines are the last of the measured points
-         n = size(model%measured_block) - size(now, 2)
-         now = run%blocks%measured_point(:, n + 1:)
-      else
-         n = size(now, 2) - 8
-         now(:, :n) = run%blocks%vertex(:, :n)
-         now(:, n + 1:) = scene%system%vertex(:, n + 1:)
-      end if
-      elastic_slip = model%constants%stiffness_ratio*model%law(1)%friction &
-         & *max(0.0_wp, -minval(run%contacts%item(:run%contacts%n)%gap))
+      deepest = max(0.0_wp, -minval(run%contacts%item(:run%contacts%n)%gap))
       do j = 1, size(contacts%joint)
          call place_joint(scene%system, now, contacts%joint(j), contacts%gap(:, j))
-         call tell_forces(model, run, j, contacts)
-         if (any(contacts%face(j)%open)) cycle
+      end do
+      call tell_forces(model, run, contacts)
+      do j = 1, size(contacts%joint)
+         if (any(contacts%face(j)%open(:contacts%joint(j)%n_contact))) cycle
          ! shear springs give no more before the joint slides
-         if (abs(contacts%gap(3, j)) > elastic_slip) &
+         law = finite_law(contacts%joint(j)%law)
+         if (abs(contacts%gap(3, j)) > model%constants%stiffness_ratio*law%friction*deepest) &
             & contacts%face(j)%slip = nint(sign(1.0_wp, contacts%gap(3, j)))
       end do
       contacts%increment = contacts%gap
    end subroutine tell_joints
 
-   !> Forces and open corners of one joint from the contacts between its blocks
-   pure subroutine tell_forces(model, run, j, contacts)
+   !> Forces and open corners of the joints from the contacts between their blocks
+   pure subroutine tell_forces(model, run, contacts)
       !> The model
       type(limerick_model_t), intent(in) :: model
       !> The run at its end
       type(limerick_run_t), intent(in) :: run
-      !> Number of the joint
-      integer, intent(in) :: j
       !> The joints; points are set, forces and open corners become so
       type(contacts_t), intent(inout) :: contacts
       real(wp) :: force(2), along
-      integer :: c, corner
+      integer :: c, corner, j
 
-      contacts%force(:, j) = 0.0_wp
-      contacts%face(j)%open = .true.
-      contacts%face(j)%slip = 0
+      contacts%force = 0.0_wp
+      contacts%face%slip = 0
+      do j = 1, size(contacts%joint)
+         contacts%face(j)%open = .true.
+      end do
       do c = 1, run%contacts%n
-         associate (contact => run%contacts%item(c), joint => contacts%joint(j))
+         associate (contact => run%contacts%item(c))
             if (contact%state == contact_state%open) cycle
-            if (minval(contact%block) /= minval(joint%block)) cycle
-            if (maxval(contact%block) /= maxval(joint%block)) cycle
-            corner = nearest_corner(contacts, j, run%blocks%vertex(:, contact%vertex(1, 1)))
+            call find_corner(contacts, contact%block, &
+               & run%blocks%vertex(:, contact%vertex(1, 1)), j, corner)
+            if (j == 0) cycle
             force = contact_force(model, run, contact)
-            along = dot_product(joint%tangent, run%blocks%vertex(:, contact%vertex(3, 1)) &
+            along = dot_product(contacts%joint(j)%tangent, &
+               & run%blocks%vertex(:, contact%vertex(3, 1)) &
                & - run%blocks%vertex(:, contact%vertex(2, 1)))
             ! of the contact's force, what its edge's block does to the other block
-            if (contact%block(1) == joint%block(1)) along = -along
+            if (contact%block(1) == contacts%joint(j)%block(1)) along = -along
             contacts%force(corner, j) = contacts%force(corner, j) + force(1)
             contacts%force(3, j) = contacts%force(3, j) - sign(1.0_wp, along)*force(2)
             contacts%face(j)%open(corner) = .false.
@@ -122,18 +170,36 @@ contains
       end do
    end subroutine tell_forces
 
-   !> Corner of a joint that lies nearer to a point
-   pure integer function nearest_corner(contacts, j, point)
+   !> The corner of a joint between two blocks that lies nearest to a point
+   pure subroutine find_corner(contacts, block, point, joint, corner)
       !> The joints
       type(contacts_t), intent(in) :: contacts
-      !> Number of the joint
-      integer, intent(in) :: j
+      !> Numbers of the blocks: (2)
+      integer, intent(in) :: block(2)
       !> The point: (2) [m]
       real(wp), intent(in) :: point(2)
+      !> Number of the joint; 0 if these blocks have none
+      integer, intent(out) :: joint
+      !> Its corner, 1 or 2
+      integer, intent(out) :: corner
+      real(wp) :: nearest, distance
+      integer :: j, k
 
-      nearest_corner = merge(1, 2, norm2(contacts%joint(j)%contact(1)%point - point) &
-         & <= norm2(contacts%joint(j)%contact(2)%point - point))
-   end function nearest_corner
+      joint = 0
+      corner = 0
+      nearest = huge(nearest)
+      do j = 1, size(contacts%joint)
+         if (minval(block) /= minval(contacts%joint(j)%block)) cycle
+         if (maxval(block) /= maxval(contacts%joint(j)%block)) cycle
+         do k = 1, contacts%joint(j)%n_contact
+            distance = norm2(contacts%joint(j)%contact(k)%point - point)
+            if (.not. distance < nearest) cycle
+            nearest = distance
+            joint = j
+            corner = k
+         end do
+      end do
+   end subroutine find_corner
 
    !> Normal force and force along the edge on the edge's block
    pure function contact_force(model, run, contact) result(force)
@@ -145,6 +211,7 @@ contains
       type(limerick_contact_t), intent(in) :: contact
       !> Compression, and force on the edge's block in the direction of slip: (2) [N/m]
       real(wp) :: force(2)
+      type(joint_law_t) :: law
 
       force(1) = -run%march%used_penalty*contact%gap
       force(2) = 0.0_wp
@@ -152,8 +219,8 @@ contains
       if (contact%state == contact_state%locked) then
          force(2) = run%march%used_penalty*contact%shear/model%constants%stiffness_ratio
       else
-         force(2) = sign(max(0.0_wp, force(1)) &
-            & *model%law(model%edge_law(contact%vertex(3, 1)))%friction, contact%shear)
+         law = contact_law(model, contact%block(1), contact%vertex(3, 1))
+         force(2) = sign(max(0.0_wp, force(1))*law%friction, contact%shear)
       end if
    end function contact_force
 end module dda_limerick_decision

@@ -1,54 +1,45 @@
 !> The model of the original program that files of lines describe
 module dda_limerick_lines
-   use dda_cut_model, only : block_point_t, cut_model_t, point_kind
+   use dda_boundary, only : boundary_t, constant_history, history_t, measured_point_t
+   use dda_cut_model, only : point_kind
    use dda_deck, only : deck_error, deck_t
    use dda_deck_keys, only : key_index
    use dda_error, only : error_t
    use dda_kinds, only : wp
    use dda_limerick_analysis, only : limerick_analysis_t
-   use dda_limerick_model, only : limerick_constants_t, limerick_model_t, load_history_t
-   use dda_line_scene, only : law_of_joint, line_scene
-   use dda_material, only : friction_coefficient
+   use dda_limerick_model, only : finite_law, limerick_constants_t, limerick_model_t
+   use dda_line_scene, only : law_of_joint
    use dda_scene, only : scene_t
-   use dda_settings, only : load_direction
    use dda_text, only : to_text
    implicit none
    private
 
    public :: lines_model, take_constants, check_limerick_lines
 
-   !> Friction angle of a joint that cannot slide [deg]
-   real(wp), parameter :: no_slip_deg = 89.9_wp
-
 contains
 
    !> The model of the blocks that a deck's files make, without its constants. The corners of the
    !> scene's joints are measured points, the last ones
-   pure subroutine lines_model(deck, model)
+   pure subroutine lines_model(deck, scene, model)
       !> The deck of one case, with its blocks; checked
       type(deck_t), intent(in) :: deck
-      !> The model
-      type(limerick_model_t), intent(out) :: model
-      type(scene_t) :: scene
+      !> Its scene
+      type(scene_t), intent(in) :: scene
+      !> The model; its parts but for the direction of the weight are set
+      type(limerick_model_t), intent(inout) :: model
       integer :: j
 
-      call line_scene(deck, scene)
       allocate (model%first_vertex, source=deck%cut%first_vertex)
       allocate (model%vertex, source=deck%cut%vertex)
       allocate (model%edge_law, source=deck%cut%edge_joint)
       allocate (model%block_material, source=scene%system%material)
-      model%load_direction = load_direction(scene%settings)
+      allocate (model%kind(size(model%block_material)), source=1)
       call set_materials(deck, scene, model)
-      allocate (model%law(max(1, maxval(model%edge_law))))
+      allocate (model%law(1, max(1, maxval(model%edge_law))))
       do j = 1, size(model%law)
-         model%law(j) = law_of_joint(deck, j)
-         if (model%law(j)%no_slip) model%law(j)%friction = friction_coefficient(no_slip_deg)
+         model%law(1, j) = finite_law(law_of_joint(deck, j))
       end do
-      call take_points(deck%cut, point_kind%fixed, model%fixed_point, model%fixed_block)
-      call take_points(deck%cut, point_kind%load, model%load_point, model%load_block)
-      call take_points(deck%cut, point_kind%measured, model%measured_point, model%measured_block)
-      call take_loads(deck, model)
-      call follow_corners(scene, model)
+      call take_points(deck, scene, model%boundary)
    end subroutine lines_model
 
    !> Materials with their weights and states at the beginning
@@ -78,71 +69,63 @@ contains
       end do
    end subroutine set_materials
 
-   !> The points of one kind
-   pure subroutine take_points(cut, kind, place, block)
-      !> The blocks
-      type(cut_model_t), intent(in) :: cut
-      !> One of point_kind
-      integer, intent(in) :: kind
-      !> Where they are: (2, n) [m]
-      real(wp), allocatable, intent(out) :: place(:, :)
-      !> Their blocks: (n)
-      integer, allocatable, intent(out) :: block(:)
-      integer :: i, n
-
-      n = count(cut%point%kind == kind)
-      allocate (place(2, n), block(n))
-      n = 0
-      do i = 1, size(cut%point)
-         if (cut%point(i)%kind /= kind) cycle
-         n = n + 1
-         place(:, n) = cut%point(i)%place
-         block(n) = cut%point(i)%block
-      end do
-   end subroutine take_points
-
-   !> Forces of the load points; those of which the analysis says nothing have none
-   pure subroutine take_loads(deck, model)
+   !> Points that are held, loaded and measured; among the last the corners of the scene's blocks,
+   !> from which its joints are told
+   pure subroutine take_points(deck, scene, boundary)
       !> The deck
       type(deck_t), intent(in) :: deck
-      !> The model; its loads are set
-      type(limerick_model_t), intent(inout) :: model
-      type(block_point_t), allocatable :: point(:)
-      integer :: i
-
-      allocate (point, source=pack(deck%cut%point, deck%cut%point%kind == point_kind%load))
-      allocate (model%load(size(point)))
-      do i = 1, size(point)
-         model%load(i) = load_history_t([0.0_wp, 1.0_wp], reshape(spread(0.0_wp, 1, 4), [2, 2]))
-         if (.not. allocated(deck%analysis)) cycle
-         if (point(i)%source > size(deck%analysis%load)) cycle
-         associate (record => deck%analysis%load(point(i)%source)%record)
-            model%load(i) = load_history_t(record(1, :), record(2:3, :))
-         end associate
-      end do
-   end subroutine take_loads
-
-   !> Let the run follow the corners of the scene's blocks, from which its joints are told
-   pure subroutine follow_corners(scene, model)
       !> The scene; edges that lie together in part are parted there
       type(scene_t), intent(in) :: scene
-      !> The model; its measured points are lengthened
-      type(limerick_model_t), intent(inout) :: model
-      real(wp), allocatable :: place(:, :)
-      integer, allocatable :: block(:)
-      integer :: n, b
+      !> The points
+      type(boundary_t), intent(out) :: boundary
+      integer :: n(3), b, i, v
 
-      n = size(model%measured_block)
-      allocate (place(2, n + size(scene%system%vertex, 2)), block(n + size(scene%system%vertex, 2)))
-      place(:, :n) = model%measured_point
-      block(:n) = model%measured_block
-      place(:, n + 1:) = scene%system%vertex
-      do b = 1, size(scene%system%area)
-         block(n + scene%system%first_vertex(b):n + scene%system%first_vertex(b + 1) - 1) = b
-      end do
-      call move_alloc(place, model%measured_point)
-      call move_alloc(block, model%measured_block)
-   end subroutine follow_corners
+      associate (point => deck%cut%point, system => scene%system)
+         allocate (boundary%held(count(point%kind == point_kind%fixed)))
+         allocate (boundary%loaded(count(point%kind == point_kind%load)))
+         allocate (boundary%measured(count(point%kind == point_kind%measured) &
+            & + size(system%vertex, 2)))
+         n = 0
+         do i = 1, size(point)
+            if (point(i)%kind == point_kind%fixed) then
+               n(1) = n(1) + 1
+               boundary%held(n(1))%block = point(i)%block
+               boundary%held(n(1))%point = point(i)%place
+            else if (point(i)%kind == point_kind%load) then
+               n(2) = n(2) + 1
+               boundary%loaded(n(2))%block = point(i)%block
+               boundary%loaded(n(2))%point = point(i)%place
+               boundary%loaded(n(2))%force = force_of(deck, point(i)%source)
+            else if (point(i)%kind == point_kind%measured) then
+               n(3) = n(3) + 1
+               boundary%measured(n(3)) = measured_point_t(point(i)%block, point(i)%place)
+            end if
+         end do
+         do b = 1, size(system%area)
+            do v = system%first_vertex(b), system%first_vertex(b + 1) - 1
+               boundary%measured(n(3) + v) = measured_point_t(b, system%vertex(:, v))
+            end do
+         end do
+      end associate
+   end subroutine take_points
+
+   !> Force on a load point; one of which the analysis says nothing has none
+   pure function force_of(deck, source) result(force)
+      !> The deck
+      type(deck_t), intent(in) :: deck
+      !> Number of the load point
+      integer, intent(in) :: source
+      !> The force
+      type(history_t) :: force
+
+      force = constant_history([0.0_wp, 0.0_wp])
+      if (.not. allocated(deck%analysis)) return
+      if (source > size(deck%analysis%load)) return
+      associate (record => deck%analysis%load(source)%record)
+         force%time = record(1, :)
+         force%value = record(2:3, :)
+      end associate
+   end function force_of
 
    !> Take the constants of the scheme that an analysis file gives
    pure subroutine take_constants(analysis, constants)

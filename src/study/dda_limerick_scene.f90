@@ -1,12 +1,10 @@
-!> The model of the original program that a deck describes: an arch between blocks held by points,
-!> or blocks cut from lines
+!> The model of the original program that a deck describes, from its scene
 module dda_limerick_scene
-   use dda_arch_scene, only : arch_scene
    use dda_deck, only : deck_t, flag_of, integer_of, is_given, real_of, word_of
    use dda_kinds, only : wp
+   use dda_limerick_blocks, only : blocks_model, inner_points
    use dda_limerick_lines, only : lines_model, take_constants
-   use dda_limerick_model, only : half_size, limerick_constants_t, limerick_model_t
-   use dda_material, only : friction_coefficient
+   use dda_limerick_model, only : finite_law, half_size, limerick_constants_t, limerick_model_t
    use dda_scene, only : scene_t
    use dda_settings, only : load_direction
    use dda_vector, only : along, right_normal
@@ -18,30 +16,33 @@ module dda_limerick_scene
    !> Depth of the abutments over the radius: with the overhang as large, an arch of 10 m has the
    !> half size of 14.9 m that the published results of the original point to
    real(wp), parameter :: usual_depth = 0.43_wp
-   !> Motion that means collapse over the radius, or over the half size
+   !> Motion that means collapse over the radius of an arch, over the half size of anything else
    real(wp), parameter :: usual_collapse = 0.05_wp
-   !> Where the four points are that hold an abutment: this share of its sides from its corners
-   real(wp), parameter :: inset = 0.15_wp
-   !> Friction angle of a joint that cannot slide [deg]
-   real(wp), parameter :: no_slip_deg = 89.9_wp
 
 contains
 
    !> The model that the deck of one case describes
-   pure subroutine limerick_scene(deck, model)
+   pure subroutine limerick_scene(deck, scene, model)
       !> The deck, checked
       type(deck_t), intent(in) :: deck
+      !> Its scene
+      type(scene_t), intent(in) :: scene
       !> The model
       type(limerick_model_t), intent(out) :: model
       real(wp) :: acceleration
 
-      if (allocated(deck%cut)) then
-         call lines_model(deck, model)
-         model%constants%collapse_displacement = usual_collapse*half_size(model)
-      else
-         call arch_model(deck, model)
+      select case (word_of(deck, "scene", "kind"))
+      case ("arch")
+         call arch_model(deck, scene, model)
          model%constants%collapse_displacement = usual_collapse*real_of(deck, "arch", "radius")
-      end if
+      case ("lines")
+         call lines_model(deck, scene, model)
+         model%constants%collapse_displacement = usual_collapse*half_size(model)
+      case ("blocks")
+         call blocks_model(deck%plan, scene, model)
+         model%constants%collapse_displacement = usual_collapse*half_size(model)
+      end select
+      model%load_direction = load_direction(scene%settings)
       if (allocated(deck%analysis)) call take_constants(deck%analysis, model%constants)
       call set_constants(deck, model%constants)
       if (allocated(deck%analysis) .or. .not. model%constants%auto_time_step) return
@@ -52,31 +53,34 @@ contains
    end subroutine limerick_scene
 
    !> The arch that a deck describes, between its abutments
-   pure subroutine arch_model(deck, model)
+   pure subroutine arch_model(deck, scene, model)
       !> The deck, checked
       type(deck_t), intent(in) :: deck
-      !> The model
-      type(limerick_model_t), intent(out) :: model
-      type(scene_t) :: scene
-      integer :: b, n, nv
+      !> Its scene; the springings are its last two blocks
+      type(scene_t), intent(in) :: scene
+      !> The model; its parts but for the direction of the weight are set
+      type(limerick_model_t), intent(inout) :: model
+      integer :: b, i, n, nv
 
-      call arch_scene(deck, scene)
       n = size(scene%system%area) - 2
       nv = scene%system%first_vertex(n + 1) - 1
       allocate (model%first_vertex, source=scene%system%first_vertex)
       allocate (model%vertex, source=scene%system%vertex)
-      allocate (model%edge_law(size(model%vertex, 2)), model%block_material(n + 2), source=1)
-      allocate (model%fixed_point(2, 8), model%fixed_block(8))
-      allocate (model%load_point(2, 0), model%load_block(0), model%load(0))
-      allocate (model%measured_point(2, 0), model%measured_block(0))
+      allocate (model%edge_law(size(model%vertex, 2)), model%block_material(n + 2), &
+         & model%kind(n + 2), source=1)
+      allocate (model%boundary%held(8), model%boundary%loaded(0), model%boundary%measured(0))
       allocate (model%material(1))
       model%material(1)%material_t = scene%system%materials(1)
       model%material(1)%unit_weight = scene%system%unit_weight(1)
-      model%load_direction = load_direction(scene%settings)
       do b = 1, 2
-         call widen(deck, model%vertex(:, nv + 4*b - 3:nv + 4*b), &
-            & model%fixed_point(:, 4*b - 3:4*b))
-         model%fixed_block(4*b - 3:4*b) = n + b
+         associate (abutment => model%vertex(:, nv + 4*b - 3:nv + 4*b), &
+            & held => model%boundary%held(4*b - 3:4*b))
+            call widen(deck, abutment)
+            held%block = n + b
+            do i = 1, 2
+               held%point(i) = inner_points(abutment(i, :))
+            end do
+         end associate
       end do
       call set_laws(scene, n, nv, model)
    end subroutine arch_model
@@ -98,16 +102,13 @@ contains
          & overhang = real_of(deck, "arch", "abutment_overhang")
    end subroutine abutment_sides
 
-   !> Make an abutment as large as the deck says, and place the points that hold it
-   pure subroutine widen(deck, vertex, fixed_point)
+   !> Make an abutment as large as the deck says
+   pure subroutine widen(deck, vertex)
       !> The deck
       type(deck_t), intent(in) :: deck
       !> Corners, counter-clockwise; the last edge contains the springing joint: (2, 4) [m]
       real(wp), intent(inout) :: vertex(:, :)
-      !> The points: (2, 4) [m]
-      real(wp), intent(out) :: fixed_point(:, :)
       real(wp) :: depth, overhang, tangent(2), outward(2)
-      integer :: i
 
       call abutment_sides(deck, depth, overhang)
       tangent = along(vertex(:, 1), vertex(:, 4))
@@ -116,10 +117,6 @@ contains
       vertex(:, 4) = vertex(:, 4) + overhang*tangent
       vertex(:, 2) = vertex(:, 1) + outward
       vertex(:, 3) = vertex(:, 4) + outward
-      do i = 1, 4
-         fixed_point(:, i) = (1.0_wp - 2.0_wp*inset)*vertex(:, i) &
-            & + 2.0_wp*inset*sum(vertex, dim=2)/4.0_wp
-      end do
    end subroutine widen
 
    !> Laws of the edges: the first for all joints, the second for springings that cannot slide
@@ -134,12 +131,8 @@ contains
       type(limerick_model_t), intent(inout) :: model
       integer :: i
 
-      allocate (model%law(2))
-      model%law(1) = scene%contacts%joint(2)%law
-      model%law(2) = scene%contacts%joint(1)%law
-      do i = 1, 2
-         if (model%law(i)%no_slip) model%law(i)%friction = friction_coefficient(no_slip_deg)
-      end do
+      allocate (model%law(1, 2))
+      model%law(1, :) = finite_law(scene%contacts%joint([2, 1])%law)
       ! the abutments' faces, and the voussoirs' edges upon them
       model%edge_law([nv + 4, nv + 8]) = 2
       model%edge_law(model%first_vertex(2) - 1) = 2

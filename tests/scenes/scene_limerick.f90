@@ -1,5 +1,6 @@
 !> Models of the original's scheme built block by block
 module scene_limerick
+   use dda_boundary, only : held_point_t
    use dda_kinds, only : wp
    use dda_limerick_model, only : limerick_material_t, limerick_model_t
    use dda_material, only : joint_law_t
@@ -24,12 +25,10 @@ contains
       material%young = 1.0e9_wp
       law%friction = friction
       allocate (model%material(1), source=material)
-      allocate (model%law(1), source=law)
+      allocate (model%law(1, 1), source=law)
       allocate (model%first_vertex(1), source=1)
-      allocate (model%vertex(2, 0), model%edge_law(0), model%block_material(0))
-      allocate (model%fixed_point(2, 0), model%fixed_block(0), model%load_point(2, 0))
-      allocate (model%load_block(0), model%load(0), model%measured_point(2, 0))
-      allocate (model%measured_block(0))
+      allocate (model%vertex(2, 0), model%edge_law(0), model%block_material(0), model%kind(0))
+      allocate (model%boundary%held(0), model%boundary%loaded(0), model%boundary%measured(0))
    end function empty_model
 
    !> Add a block
@@ -49,6 +48,7 @@ contains
       n = size(model%vertex, 2)
       model%first_vertex = [model%first_vertex, n + 1]
       model%block_material = [model%block_material, 1]
+      model%kind = [model%kind, 1]
       deallocate (model%edge_law)
       allocate (model%edge_law(n), source=1)
    end subroutine add_block
@@ -57,17 +57,19 @@ contains
    pure subroutine hold(model)
       !> The model
       type(limerick_model_t), intent(inout) :: model
-      real(wp), allocatable :: point(:, :)
+      type(held_point_t), allocatable :: held(:)
       integer :: block, n, first, i
 
       block = size(model%block_material)
       first = model%first_vertex(block)
-      n = size(model%fixed_block)
-      model%fixed_block = [model%fixed_block, [(block, i=first, size(model%vertex, 2))]]
-      allocate (point(2, size(model%fixed_block)))
-      point(:, :n) = model%fixed_point
-      point(:, n + 1:) = model%vertex(:, first:)
-      call move_alloc(point, model%fixed_point)
+      n = size(model%boundary%held)
+      allocate (held(n + size(model%vertex, 2) - first + 1))
+      held(:n) = model%boundary%held
+      held(n + 1:)%block = block
+      do i = 1, 2
+         held(n + 1:)%point(i) = model%vertex(i, first:)
+      end do
+      call move_alloc(held, model%boundary%held)
    end subroutine hold
 
    !> A rectangle

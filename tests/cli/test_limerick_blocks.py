@@ -1,0 +1,251 @@
+"""Files of blocks under the original's scheme: what it decides, and what it refuses."""
+
+from __future__ import annotations
+
+import csv
+import math
+from pathlib import Path
+
+import pytest
+from dda_command import run_dda
+
+GROUND = "block fixed\n -2 -1\n 4 -1\n 4 0\n -2 0\n"
+BLOCK = "block\n 0 0\n 1 0\n 1 2\n 0 2\n"
+# 2 m2 of 20 kN/m3
+WEIGHT = 40e3
+MATERIAL = "&material density = 2000.0, unit_weight = 20e3, young = 1e9 /\n"
+MODE = "&analysis mode = 'limerick' /\n"
+
+
+def polygon(*corners: tuple[float, float], head: str = "block") -> str:
+    """One block of a file."""
+    return "\n".join([head, *(f"{x!r} {y!r}" for x, y in corners)]) + "\n"
+
+
+def portal(scale: float = 1.0, x: float = 0.0, y: float = 0.0) -> str:
+    """The portal of docs/howto_blocks.md, of another size, at another place."""
+
+    def box(left: float, low: float, right: float, high: float, head: str = "block") -> str:
+        corners = ((left, low), (right, low), (right, high), (left, high))
+        return polygon(*((x + scale * a, y + scale * b) for a, b in corners), head=head)
+
+    return (box(-1, -0.5, 6, 0, "block fixed") + box(0, 0, 1, 3) + box(4, 0, 5, 3)
+            + box(0, 3, 5, 3.8))
+
+
+def run(folder: Path, blocks: str, groups: str = MATERIAL + MODE, *options: str) -> dict[str, str]:
+    """The row of results.csv of a deck of blocks."""
+    (folder / "x.blocks").write_text(blocks)
+    (folder / "x.nml").write_text(f"&scene kind = 'blocks', geometry = 'x.blocks' /\n{groups}")
+    done = run_dda("run", "x.nml", "--quiet", *options, cwd=folder)
+    assert done.returncode == 0, done.stderr
+    (row,) = table(folder / "x" / "results.csv")
+    return row
+
+
+def table(file: Path) -> list[dict[str, str]]:
+    """Rows of a result table."""
+    with file.open(newline="") as lines:
+        return list(csv.DictReader(lines))
+
+
+def normal_force(folder: Path) -> float:
+    """Normal force of the only joint."""
+    (joint,) = table(folder / "x" / "joints.csv")
+    return float(joint["normal_force"])
+
+
+@pytest.mark.parametrize(
+    "place", [{}, {"scale": 10.0}, {"scale": 0.1}, {"x": 4096.0, "y": -65536.0}],
+    ids=["as it is", "ten times", "a tenth", "far away"],
+)
+def test_portal_falls_at_a_third_of_its_weight(tmp_path: Path, place: dict[str, float]) -> None:
+    """Both posts turn about their right feet: 1/3, whatever the size."""
+    row = run(tmp_path, portal(**place),
+              "&material density = 2400.0 /\n&joint friction_deg = 35.0 /\n" + MODE
+              + "&search parameter = 'horizontal_coefficient' /\n")
+    assert row["verdict"] == "found" and row["blocks"] == "3"
+    assert float(row["critical"]) == pytest.approx(1 / 3, rel=0.01)
+    assert row["collapse_mode"] == "rotational"
+
+
+def test_leaning_block_falls(tmp_path: Path) -> None:
+    leaning = polygon((0, 0), (1, 0), (6.5, 8), (5.5, 8))
+    wide = polygon((-5, -1), (5, -1), (5, 0), (-5, 0), head="block fixed")
+    assert run(tmp_path, wide + leaning, MODE)["verdict"] == "collapsed"
+
+
+def test_one_square_alone_falls_or_rests_where_it_is_fixed(tmp_path: Path) -> None:
+    square = ((0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0))
+    assert run(tmp_path, polygon(*square))["verdict"] == "collapsed"
+    assert run(tmp_path, polygon(*square, head="block fixed"))["verdict"] == "stable"
+
+
+def test_check_counts_the_blocks_of_the_file(tmp_path: Path) -> None:
+    run(tmp_path, GROUND + BLOCK)
+    done = run_dda("check", "x.nml", cwd=tmp_path)
+    assert "2, held at 4 points" in done.stdout
+    # 6 m wide, 3 m high
+    assert "half size   3 m" in done.stdout
+
+
+@pytest.mark.parametrize("rows", ["0 -10e3", "\n 0 0 -10e3", "\n 0 0 -10e3\n 5 0 -10e3",
+                                  "\n 0 0 0\n 1 0 -20e3\n 2 0 -10e3"],
+                         ids=["constant", "one row", "two rows", "three rows"])
+def test_load_adds_to_the_weight(tmp_path: Path, rows: str) -> None:
+    row = run(tmp_path, GROUND + BLOCK + f"load 0.5 1 {rows}\n")
+    assert row["verdict"] == "stable"
+    assert normal_force(tmp_path) == pytest.approx(WEIGHT + 10e3, rel=1e-3)
+
+
+def test_load_that_comes_late_overturns(tmp_path: Path) -> None:
+    """At the upper corner a quarter of the weight is just borne: 40 kN 0.5 m = 2 m 10 kN."""
+    late = "load 0 2\n 0 0 0\n 100 {} 0\n"
+    assert run(tmp_path, GROUND + BLOCK + late.format(9.5e3))["verdict"] == "stable"
+    assert run(tmp_path, GROUND + BLOCK + late.format(10.5e3))["verdict"] == "collapsed"
+
+
+def test_steps_that_end_before_the_load_leave_it_undecided(tmp_path: Path) -> None:
+    (tmp_path / "x.blocks").write_text(GROUND + BLOCK + "load 0 2\n 0 0 0\n 1e6 1e5 0\n")
+    (tmp_path / "x.nml").write_text("&scene kind = 'blocks', geometry = 'x.blocks' /\n" + MODE)
+    done = run_dda("run", "x.nml", "--set", "analysis%steps=3000", cwd=tmp_path)
+    assert done.returncode == 3
+    assert "step limit reached before the last record of a load" in done.stdout
+
+
+def test_held_points_carry_a_block_without_ground(tmp_path: Path) -> None:
+    assert run(tmp_path, BLOCK + "fix 0.2 0.2\nfix 0.8 0.2\n")["verdict"] == "stable"
+    # about one point it turns, for its centre lies above
+    assert run(tmp_path, BLOCK + "fix 0.2 0.2\n")["verdict"] == "collapsed"
+
+
+def test_held_line_carries_every_block_that_it_crosses(tmp_path: Path) -> None:
+    beside = polygon((1, 0), (2, 0), (2, 2), (1, 2))
+    assert run(tmp_path, BLOCK + beside + "fix_line -1 1 3 1\n")["verdict"] == "stable"
+    assert run(tmp_path, BLOCK + beside + "fix_line -1 1 0.9 1\n")["verdict"] == "collapsed"
+
+
+def test_materials_have_their_own_weights(tmp_path: Path) -> None:
+    run(tmp_path, GROUND + BLOCK.replace("block", "block material 2")
+        + "material 2 density 500 unit_weight 7000\n")
+    assert normal_force(tmp_path) == pytest.approx(14e3, rel=1e-3)
+
+
+@pytest.mark.parametrize("own, other, verdict", [(12.0, 60.0, "stable"), (10.0, 60.0, "collapsed")])
+def test_law_is_that_of_the_two_materials(
+    tmp_path: Path, own: float, other: float, verdict: str
+) -> None:
+    """A push of 0.2 needs 11.3 degrees between the two, whatever the others are."""
+    blocks = GROUND + BLOCK.replace("block", "block material 2") + "material 2\n"
+    laws = f"joint 1 2 friction_deg {own}\njoint 2 2 friction_deg {other}\n"
+    row = run(tmp_path, blocks + laws, MATERIAL + MODE + f"&joint friction_deg = {other} /\n"
+              "&load horizontal_coefficient = 0.2 /\n")
+    assert row["verdict"] == verdict
+
+
+def test_measured_point_ends_where_its_corner_does(tmp_path: Path) -> None:
+    row = run(tmp_path, GROUND + BLOCK + "measure 1 2\nmeasure 0.5 0\n")
+    points = table(tmp_path / "x" / "points.csv")
+    assert [points[0]["step"], points[-1]["step"]] == ["0", row["steps"]]
+    assert len(points) == 2 * (int(row["steps"]) + 1)
+    corner = next(line for line in table(tmp_path / "x" / "blocks.csv")
+                  if (line["block"], line["x"], line["y"]) == ("2", "1", "2"))
+    last = points[-2]
+    assert float(last["u"]) == pytest.approx(float(corner["u"]), abs=1e-15)
+    assert float(last["v"]) == pytest.approx(float(corner["v"]), rel=1e-12)
+    # it sinks by the penetration that the penalty aims at, 4e-4 of the half size of 3 m, and strain
+    assert float(last["v"]) == pytest.approx(-1.2e-3, rel=0.1)
+
+
+def test_blocks_fly_with_their_velocities(tmp_path: Path) -> None:
+    flying = BLOCK.replace("block", "block velocity 3 4 0")
+    row = run(tmp_path, flying + "measure 0.5 1\n", MATERIAL + "&limerick dynamic = .true. /\n"
+              "&analysis mode = 'limerick', steps = 100, time_step = 0.01, "
+              "max_displacement_ratio = 0.1 /\n")
+    assert row["verdict"] == "completed"
+    last = table(tmp_path / "x" / "points.csv")[-1]
+    assert float(last["time"]) == pytest.approx(1.0, rel=1e-12)
+    assert float(last["u"]) == pytest.approx(3.0, rel=1e-9)
+    # unit weight over density is 10 m/s2
+    assert float(last["v"]) == pytest.approx(4.0 - 5.0, rel=1e-9)
+
+
+def test_stress_at_the_beginning_lets_go(tmp_path: Path) -> None:
+    """sx = -1 kPa strains a block that is held upright by (1 - 0.2**2) 1 kPa over 1 GPa.
+
+    Springs that hold it are 5000 times as stiff as its material.
+    """
+    pressed = BLOCK.replace("block", "block stress -1e3 0 0")
+    run(tmp_path, pressed + "fix 0.5 0.5\nfix 0.5 1.5\nmeasure 0 1\nmeasure 1 1\n")
+    left, right = table(tmp_path / "x" / "points.csv")[-2:]
+    assert float(right["u"]) - float(left["u"]) == pytest.approx(0.96e-6, rel=1e-4)
+
+
+def test_joint_of_one_corner_tells_its_force(tmp_path: Path) -> None:
+    """A roof of 1 m base and 1 m height stands on its tip between two walls' corners."""
+    tip = polygon((0.5, 0), (1.0, 1.0), (0, 1.0))
+    walls = "".join(polygon((x, 0.5), (x + 1, 0.5), (x + 1, 1), (x, 1), head="block fixed")
+                    for x in (-1.0, 1.0))
+    run(tmp_path, GROUND.replace("-1", "-2") + tip + walls)
+    (joint,) = (row for row in table(tmp_path / "x" / "joints.csv")
+                if {row["block_1"], row["block_2"]} == {"1", "2"})
+    assert float(joint["normal_force"]) == pytest.approx(10e3, rel=1e-2)
+    assert joint["x_intrados"] == joint["x_extrados"]
+
+
+def test_two_joints_between_two_blocks_share_the_weight(tmp_path: Path) -> None:
+    """A bridge of two feet on one ground: half the weight each."""
+    bridge = polygon((0, 0), (0.5, 0), (0.5, 1), (1.5, 1), (1.5, 0), (2, 0), (2, 2), (0, 2))
+    run(tmp_path, GROUND + bridge)
+    forces = [float(row["normal_force"]) for row in table(tmp_path / "x" / "joints.csv")]
+    assert forces == pytest.approx([30e3, 30e3], rel=1e-3)
+
+
+@pytest.mark.parametrize(
+    "line, text, words",
+    [
+        (11, "fix 0.5 1 x\n", "holds points along x and y"),
+        (11, "fix_line 0 1 1 1 y\n", "holds points along x and y"),
+        (11, "displacement 0.5 1 0.1 0\n", "holds points where they are"),
+        (12, "measure 1 2\ndisplacement 0.5 1\n 0 0 0\n 1 0.1 0\n", "holds points where they are"),
+        (11, "base_acceleration 0.1 0\n", "no motion of the ground"),
+        (12, "measure 1 2\nbase_velocity\n 0 0 0\n 1 1 0\n 2 0 0\n", "no motion of the ground"),
+        (11, polygon((2, 0), (3, 0), (3, 1), head="block velocity 1 0 0"), "step at rest"),
+    ],
+    ids=["roller", "line", "led", "led in time", "ground", "ground by velocity", "velocity"],
+)
+def test_what_the_scheme_cannot_do_is_refused(
+    tmp_path: Path, line: int, text: str, words: str
+) -> None:
+    (tmp_path / "x.blocks").write_text(GROUND + BLOCK + text)
+    (tmp_path / "x.nml").write_text("&scene kind = 'blocks', geometry = 'x.blocks' /\n" + MODE)
+    for command in ("check", "run"):
+        done = run_dda(command, "x.nml", cwd=tmp_path)
+        assert done.returncode == 2
+        (message,) = done.stderr.splitlines()
+        assert message.startswith(f"x.blocks:{line}: error: ") and words in message
+    assert not (tmp_path / "x").exists()
+
+
+def test_every_mode_of_a_sweep_is_checked(tmp_path: Path) -> None:
+    (tmp_path / "x.blocks").write_text(GROUND + BLOCK + "fix 0.5 1 x\n")
+    (tmp_path / "x.nml").write_text("&scene kind = 'blocks', geometry = 'x.blocks' /\n"
+                                    "&sweep parameter = 'mode', texts = 'static', 'limerick' /\n")
+    done = run_dda("run", "x.nml", cwd=tmp_path)
+    assert done.returncode == 2
+    assert done.stderr.startswith("x.blocks:11: error: ")
+
+
+def test_slope_holds_by_friction(tmp_path: Path) -> None:
+    """A block slides on a slope of 20 degrees with less friction than that."""
+    turn = complex(math.cos(math.radians(20)), math.sin(math.radians(20)))
+
+    def turned(*corners: complex, head: str = "block") -> str:
+        return polygon(*(((c * turn).real, (c * turn).imag) for c in corners), head=head)
+
+    blocks = (turned(-4 - 1j, 4 - 1j, 4 + 0j, -4 + 0j, head="block fixed")
+              + turned(-1 + 0j, 1 + 0j, 1 + 1j, -1 + 1j))
+    row = run(tmp_path, blocks, MATERIAL + "&analysis mode = 'limerick', steps = 40000 /\n"
+              "&search parameter = 'friction_deg', low = 10, high = 30, tolerance = 1e-2 /\n")
+    assert float(row["critical"]) == pytest.approx(20.0, rel=0.01)
+    assert row["collapse_mode"] == "sliding"
