@@ -1,0 +1,143 @@
+!> Largest load factor that joints can carry, by a primal-dual interior-point method
+!>
+!>    largest f with  A x + f live + dead = 0,  x >= 0      A: arms of the rays, x: their forces
+!>    least -dead.v with  s = A'v >= 0,  live.v = 1         v: velocities of a mechanism
+!>
+!> Both problems at once, by Mehrotra's predictor and corrector. A turn is the assembly and
+!> factorisation of a DDA step with a spring of stiffness x/s along each ray.
+module dda_interior_point
+   use dda_interior_state, only : interior_goal_t, interior_point_t, interior_state, &
+      & load_path_t, no_limit
+   use dda_interior_turn, only : begin_turns, correct, least_lift, move, predict, see_residuals, &
+      & turn_t
+   use dda_joint_rays, only : joint_rays_t, ray_rates
+   use dda_kinds, only : wp
+   use dda_ray_matrix, only : ray_matrix_t, set_springs, solve_springs
+   implicit none
+   private
+
+   public :: start_by_springs, find_largest_factor
+
+   !> Turns without progress before the iteration ends
+   integer, parameter :: patience = 8
+   !> Share of a target that counts as the whole
+   real(wp), parameter :: at_target = 1.0_wp - 4.0_wp*epsilon(1.0_wp)
+
+contains
+
+   !> Springs of equal stiffness carry the dead load; all forces and rates are then pushed inside
+   !> their bounds by the same amount (Mehrotra)
+   pure subroutine start_by_springs(rays, path, springs, point)
+      !> The rays
+      type(joint_rays_t), intent(in) :: rays
+      !> The loads
+      type(load_path_t), intent(in) :: path
+      !> The matrix
+      type(ray_matrix_t), intent(inout) :: springs
+      !> Where the iteration begins
+      type(interior_point_t), intent(out) :: point
+      real(wp) :: product, power
+
+      allocate (point%x, point%s, mold=rays%bounded)
+      allocate (point%v, mold=path%dead)
+      springs%max_turn = 0
+      call set_springs(rays, rays%bounded + rays%free, least_lift, springs)
+      call solve_springs(rays, springs, -path%dead, point%v)
+      call ray_rates(rays, point%v, point%x)
+      call solve_springs(rays, springs, path%live, point%v)
+      power = sum(path%live*point%v)
+      if (power > 0.0_wp) point%v = point%v/power
+      call ray_rates(rays, point%v, point%s)
+      point%x = (point%x + max(0.0_wp, -1.5_wp*minval(point%x, rays%bounded > 0.0_wp)))
+      point%s = (point%s + max(0.0_wp, -1.5_wp*minval(point%s, rays%bounded > 0.0_wp)))
+      product = sum(point%x*point%s*rays%bounded)
+      power = sum(point%s*rays%bounded)
+      point%s = point%s + 0.5_wp*product/sum(point%x*rays%bounded) + 1.0e-12_wp
+      point%x = point%x + 0.5_wp*product/power + 1.0e-12_wp
+      point%x = point%x*rays%bounded
+      point%s = point%s*rays%bounded + (1.0_wp - rays%bounded)
+   end subroutine start_by_springs
+
+   !> Largest factor from a point inside the bounds
+   pure subroutine find_largest_factor(rays, path, goal, springs, point)
+      !> The rays
+      type(joint_rays_t), intent(in) :: rays
+      !> The loads
+      type(load_path_t), intent(in) :: path
+      !> What is asked for
+      type(interior_goal_t), intent(in) :: goal
+      !> The matrix
+      type(ray_matrix_t), intent(inout) :: springs
+      !> Where it begins and ends
+      type(interior_point_t), intent(inout) :: point
+      type(interior_point_t) :: best
+      type(turn_t) :: turn
+      integer :: idle
+      real(wp) :: merit
+
+      call begin_turns(rays, path, turn)
+      merit = huge(merit)
+      idle = 0
+      do
+         call see_residuals(rays, path, point, turn)
+         idle = idle + 1
+         if (worst(point) < merit) then
+            merit = worst(point)
+            best = point
+            idle = 0
+         end if
+         call judge(path, goal, turn, idle, point)
+         if (point%state /= interior_state%running) exit
+         point%n_turn = point%n_turn + 1
+         call predict(rays, path, springs, point, turn)
+         if (.not. springs%factor%usable) then
+            point%state = interior_state%stalled
+            exit
+         end if
+         call correct(rays, path, goal, springs, point, turn)
+         call move(rays, goal, turn, point)
+      end do
+      if (point%state /= interior_state%stalled) return
+      best%n_turn = point%n_turn
+      best%state = point%state
+      point = best
+   end subroutine find_largest_factor
+
+   !> The worst of the three figures
+   pure real(wp) function worst(point)
+      !> The point
+      type(interior_point_t), intent(in) :: point
+
+      worst = max(point%gap, point%imbalance, point%violation)
+   end function worst
+
+   !> Whether the iteration ends here
+   pure subroutine judge(path, goal, turn, idle, point)
+      !> The loads
+      type(load_path_t), intent(in) :: path
+      !> What is asked for
+      type(interior_goal_t), intent(in) :: goal
+      !> The turn
+      type(turn_t), intent(in) :: turn
+      !> Turns without progress
+      integer, intent(in) :: idle
+      !> Receives its state
+      type(interior_point_t), intent(inout) :: point
+
+      point%state = interior_state%running
+      if (point%imbalance < 1.0e-9_wp .and. point%factor >= at_target*goal%target) then
+         point%state = interior_state%reached
+      else if (point%violation < 1.0e-12_wp .and. point%upper < goal%target &
+         & .and. goal%target < no_limit) then
+         point%state = interior_state%blocked
+      else if (worst(point) < goal%tolerance) then
+         point%state = interior_state%optimal
+      else if (idle >= patience .or. point%n_turn == goal%max_turn &
+         & .or. .not. abs(turn%barrier) <= huge(turn%barrier)) then
+         point%state = interior_state%stalled
+      else if (point%factor > 1.0e9_wp*max(1.0_wp, path%largest_dead &
+         & /max(path%largest_live, tiny(1.0_wp)))) then
+         point%state = interior_state%unbounded
+      end if
+   end subroutine judge
+end module dda_interior_point

@@ -1,0 +1,93 @@
+!> What an interior-point method for load factors is told, and what it carries from turn to turn
+module dda_interior_state
+   use dda_kinds, only : wp
+   implicit none
+   private
+
+   public :: no_limit, load_path_t, interior_point_t, interior_goal_t, interior_state
+   public :: set_path
+
+   !> A factor beyond all others
+   real(wp), parameter :: no_limit = 1.0e200_wp
+
+   !> How the iteration has ended
+   type :: interior_state_enum
+      !> Not yet
+      integer :: running = 0
+      !> Forces and velocities agree to the tolerance
+      integer :: optimal = 1
+      !> Forces that balance at the target
+      integer :: reached = 2
+      !> Velocities that no forces balance at the target
+      integer :: blocked = 3
+      !> No more progress
+      integer :: stalled = 4
+      !> The factor grows without bound
+      integer :: unbounded = 5
+   end type interior_state_enum
+
+   !> Names of these ends
+   type(interior_state_enum), parameter :: interior_state = interior_state_enum()
+
+   !> Loads dead + factor*live in the units of the rays, the entries of live sum up to one
+   type :: load_path_t
+      !> Loads at factor zero: (3, 0:n_block)
+      real(wp), allocatable :: dead(:, :)
+      !> What a unit of the factor adds: (3, 0:n_block)
+      real(wp), allocatable :: live(:, :)
+      !> Factor of this path that is one for the caller
+      real(wp) :: size = 1.0_wp
+      !> Largest entries of both
+      real(wp) :: largest_dead = 0.0_wp, largest_live = 0.0_wp
+   end type load_path_t
+
+   !> What is asked for
+   type :: interior_goal_t
+      !> Relative gap of both problems
+      real(wp) :: tolerance = 1.0e-9_wp
+      !> Factor of which it is enough to know whether it can be reached
+      real(wp) :: target = no_limit
+      !> Turns at most
+      integer :: max_turn = 100
+   end type interior_goal_t
+
+   !> Forces, velocities and the factor
+   type :: interior_point_t
+      !> Force along each ray: (n_side, n_joint)
+      real(wp), allocatable :: x(:, :)
+      !> Rate of opening along each ray: (n_side, n_joint)
+      real(wp), allocatable :: s(:, :)
+      !> Velocities: (3, 0:n_block)
+      real(wp), allocatable :: v(:, :)
+      !> Factor that the forces carry
+      real(wp) :: factor = 0.0_wp
+      !> Factor that the velocities do not let pass
+      real(wp) :: upper = no_limit
+      !> Relative gap, imbalance, and violation of the flow rule
+      real(wp) :: gap = huge(1.0_wp), imbalance = huge(1.0_wp), violation = huge(1.0_wp)
+      !> How the iteration has ended, one of interior_state
+      integer :: state = 0
+      !> Turns
+      integer :: n_turn = 0
+   end type interior_point_t
+
+contains
+
+   !> Loads along a path
+   pure subroutine set_path(dead, live, path)
+      !> Loads at factor zero, in the units of the rays: (3, 0:n_block)
+      real(wp), intent(in) :: dead(:, 0:)
+      !> What a factor of one adds: (3, 0:n_block)
+      real(wp), intent(in) :: live(:, 0:)
+      !> The path
+      type(load_path_t), intent(out) :: path
+
+      allocate (path%dead(3, 0:ubound(dead, 2)), path%live(3, 0:ubound(dead, 2)))
+      path%size = sum(abs(live))
+      if (.not. path%size > 0.0_wp) path%size = 1.0_wp
+      path%dead = dead
+      path%live = live/path%size
+      path%largest_dead = maxval(abs(path%dead))
+      path%largest_live = maxval(abs(path%live))
+   end subroutine set_path
+end module dda_interior_state

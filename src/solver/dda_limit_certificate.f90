@@ -1,0 +1,186 @@
+!> What forces and velocities prove, from these and the graph alone
+!>
+!> Forces that balance a load and keep the law of every joint prove that it can be carried;
+!> velocities that no joint resists, on which the load has power, that it cannot. Moments are
+!> compared with forces, and spins with velocities, by half the mean length of a joint.
+module dda_limit_certificate
+   use dda_joint_graph, only : add_joint_forces, joint_graph_t, joint_kind, joint_motion
+   use dda_kinds, only : wp
+   implicit none
+   private
+
+   public :: unit_of_length, check_forces, check_velocities, carried_factor, stopping_factor
+
+contains
+
+   !> Half the mean length of the joints; one without joints
+   pure real(wp) function unit_of_length(graph) result(unit)
+      !> The joints
+      type(joint_graph_t), intent(in) :: graph
+
+      unit = 1.0_wp
+      if (any(graph%length > 0.0_wp)) unit = 0.5_wp*sum(graph%length, graph%length > 0.0_wp) &
+         & /real(count(graph%length > 0.0_wp), wp)
+   end function unit_of_length
+
+   !> Factor of the live load that forces carry best beside the dead load
+   pure real(wp) function carried_factor(graph, dead, live, force) result(factor)
+      !> The joints
+      type(joint_graph_t), intent(in) :: graph
+      !> Loads at factor zero: (n_dof, n_block) [N/m, N/m, N ...]
+      real(wp), intent(in) :: dead(:, :)
+      !> What a factor of one adds: (n_dof, n_block) [N/m, N/m, N ...]
+      real(wp), intent(in) :: live(:, :)
+      !> N1, N2, T of each joint: (3, n_joint) [N/m]
+      real(wp), intent(in) :: force(:, :)
+      real(wp) :: left(size(dead, 1), size(dead, 2)), weight(3), size_of_live
+      integer :: b
+
+      left = dead
+      call add_joint_forces(graph, force, left)
+      weight = [1.0_wp, 1.0_wp, 1.0_wp/unit_of_length(graph)**2]
+      factor = 0.0_wp
+      size_of_live = 0.0_wp
+      do b = 1, size(live, 2)
+         factor = factor - sum(weight*live(1:3, b)*left(1:3, b))
+         size_of_live = size_of_live + sum(weight*live(1:3, b)**2)
+      end do
+      factor = factor/max(size_of_live, tiny(factor))
+   end function carried_factor
+
+   !> Factor at which the loads have no power on a mechanism: above it they drive it
+   pure real(wp) function stopping_factor(dead, live, velocity) result(factor)
+      !> Loads at factor zero: (n_dof, n_block) [N/m, N/m, N ...]
+      real(wp), intent(in) :: dead(:, :)
+      !> What a factor of one adds: (n_dof, n_block) [N/m, N/m, N ...]
+      real(wp), intent(in) :: live(:, :)
+      !> Velocities: (n_dof, n_block) [m/s, m/s, 1/s ...]
+      real(wp), intent(in) :: velocity(:, :)
+      real(wp) :: power
+
+      power = sum(live(1:3, :)*velocity(1:3, :))
+      factor = huge(factor)
+      if (power > 0.0_wp) factor = -sum(dead(1:3, :)*velocity(1:3, :))/power
+   end function stopping_factor
+
+   !> How far forces are from balance with a load and from the law of the joints
+   pure subroutine check_forces(graph, load, force, imbalance, violation)
+      !> The joints
+      type(joint_graph_t), intent(in) :: graph
+      !> Loads: (n_dof, n_block) [N/m, N/m, N ...]
+      real(wp), intent(in) :: load(:, :)
+      !> N1, N2, T of each joint: (3, n_joint) [N/m]
+      real(wp), intent(in) :: force(:, :)
+      !> Largest force or moment left on a block, over the largest load [1]
+      real(wp), intent(out) :: imbalance
+      !> Largest force beyond the law of a joint, over the largest load [1]
+      real(wp), intent(out) :: violation
+      real(wp) :: left(size(load, 1), size(load, 2)), largest
+      integer :: j
+
+      left = load
+      call add_joint_forces(graph, force, left)
+      largest = larger_load(graph, load)
+      imbalance = larger_load(graph, left)/max(largest, tiny(largest))
+      violation = 0.0_wp
+      do j = 1, size(force, 2)
+         violation = max(violation, beyond_law(graph%kind(j), graph%friction(j), force(:, j)))
+      end do
+      violation = violation/max(largest, tiny(largest))
+   end subroutine check_forces
+
+   !> Largest force or moment on a block that moves as a rigid body
+   pure real(wp) function larger_load(graph, load) result(largest)
+      !> The joints
+      type(joint_graph_t), intent(in) :: graph
+      !> Loads: (n_dof, n_block)
+      real(wp), intent(in) :: load(:, :)
+
+      largest = 0.0_wp
+      if (size(load, 2) > 0) largest = max(maxval(abs(load(1:2, :))), &
+         & maxval(abs(load(3, :)))/unit_of_length(graph))
+   end function larger_load
+
+   !> How far the forces of one joint lie beyond its law [N/m]
+   pure real(wp) function beyond_law(kind, friction, force) result(beyond)
+      !> What it can carry, one of joint_kind
+      integer, intent(in) :: kind
+      !> Coefficient of friction
+      real(wp), intent(in) :: friction
+      !> N1, N2, T: (3)
+      real(wp), intent(in) :: force(3)
+
+      beyond = 0.0_wp
+      associate (n1 => force(1), n2 => force(2), t => abs(force(3)))
+         select case (kind)
+         case (joint_kind%contact)
+            beyond = max(0.0_wp, -n1, -n2, t - friction*(n1 + n2))
+         case (joint_kind%no_slip)
+            beyond = max(0.0_wp, -n1, -n2)
+         case (joint_kind%corner)
+            beyond = max(0.0_wp, -n1, abs(n2), t - friction*n1)
+         case (joint_kind%corner_no_slip)
+            beyond = max(0.0_wp, -n1, abs(n2))
+         case (joint_kind%pin)
+            beyond = abs(n2)
+         case (joint_kind%mirror)
+            beyond = t
+         end select
+      end associate
+   end function beyond_law
+
+   !> How far velocities are from a mechanism, and the power of a load on them
+   pure subroutine check_velocities(graph, load, velocity, violation, power)
+      !> The joints
+      type(joint_graph_t), intent(in) :: graph
+      !> Loads: (n_dof, n_block) [N/m, N/m, N ...]
+      real(wp), intent(in) :: load(:, :)
+      !> Velocities: (n_dof, n_block) [m/s, m/s, 1/s ...]
+      real(wp), intent(in) :: velocity(:, :)
+      !> Largest rate at which a joint is closed that cannot close, over the largest velocity [1]
+      real(wp), intent(out) :: violation
+      !> Power of the load [W/m]
+      real(wp), intent(out) :: power
+      real(wp) :: rate(3, size(graph%kind)), largest
+      integer :: j
+
+      power = sum(load(1:3, :)*velocity(1:3, :))
+      call joint_motion(graph, velocity, rate)
+      violation = 0.0_wp
+      do j = 1, size(rate, 2)
+         violation = max(violation, beyond_flow(graph%kind(j), graph%friction(j), rate(:, j)))
+      end do
+      largest = maxval(abs(velocity(1:2, :)))
+      largest = max(largest, unit_of_length(graph)*maxval(abs(velocity(3, :))))
+      violation = violation/max(largest, tiny(largest))
+   end subroutine check_velocities
+
+   !> How fast one joint moves against what it resists, along the worst of its forces whose normal
+   !> part is one; of joints with much friction, whose shear part is one [m/s]
+   pure real(wp) function beyond_flow(kind, friction, rate) result(beyond)
+      !> What it can carry, one of joint_kind
+      integer, intent(in) :: kind
+      !> Coefficient of friction
+      real(wp), intent(in) :: friction
+      !> Opening 1, opening 2, slip: (3)
+      real(wp), intent(in) :: rate(3)
+
+      beyond = 0.0_wp
+      associate (o1 => rate(1), o2 => rate(2), slip => abs(rate(3)))
+         select case (kind)
+         case (joint_kind%contact)
+            beyond = max(0.0_wp, friction*slip - min(o1, o2))/max(1.0_wp, friction)
+         case (joint_kind%no_slip)
+            beyond = max(0.0_wp, -o1, -o2, slip)
+         case (joint_kind%corner)
+            beyond = max(0.0_wp, friction*slip - o1)/max(1.0_wp, friction)
+         case (joint_kind%corner_no_slip)
+            beyond = max(0.0_wp, -o1, slip)
+         case (joint_kind%pin)
+            beyond = max(abs(o1), slip)
+         case (joint_kind%mirror)
+            beyond = max(abs(o1), abs(o2))
+         end select
+      end associate
+   end function beyond_flow
+end module dda_limit_certificate

@@ -1,0 +1,208 @@
+!> Whether an assembly can carry a load: forces that do, or a mechanism on which the load has power
+!>
+!> Forces well inside the cones of all joints carry some load. From that load a straight path leads
+!> to the one in question: it can be carried if and only if the path's largest factor is one or
+!> more. The interior-point method starts at those forces, in balance, and stops as soon as forces
+!> reach the end of the path or velocities say that none do.
+module dda_limit_decision
+   use dda_interior_point, only : find_largest_factor
+   use dda_interior_state, only : interior_goal_t, interior_point_t, interior_state, &
+      & load_path_t, set_path
+   use dda_joint_graph, only : joint_graph_t
+   use dda_joint_rays, only : add_ray_forces, joint_forces, joint_rays_t, scale_load, set_rays
+   use dda_kinds, only : wp
+   use dda_limit_certificate, only : check_forces, check_velocities
+   use dda_ray_matrix, only : plan_matrix, ray_matrix_t
+   implicit none
+   private
+
+   public :: load_decision_t, load_state
+   public :: decide_load, find_margin, unit_of_force, keep_velocities, go_to_load
+
+   !> Whether a load can be carried
+   type :: load_state_enum
+      !> Neither is proven
+      integer :: undecided = 0
+      !> There are forces that balance it and keep the law of each joint
+      integer :: stands = 1
+      !> There is a mechanism on which it has power
+      integer :: falls = 2
+   end type load_state_enum
+
+   !> Names of these states
+   type(load_state_enum), parameter :: load_state = load_state_enum()
+
+   !> A decision with what proves it
+   type :: load_decision_t
+      !> One of load_state
+      integer :: state = 0
+      !> N1, N2, T of each joint that carry the load, where it stands: (3, n_joint) [N/m]
+      real(wp), allocatable :: force(:, :)
+      !> Velocities of a mechanism, the largest one, where it falls: (n_dof, n_block)
+      real(wp), allocatable :: velocity(:, :)
+      !> Largest force left on a block where it stands, over the largest load [1]
+      real(wp) :: imbalance = 0.0_wp
+      !> Largest violation of the law of a joint: by forces, over the largest load, where it
+      !> stands; by velocities, over the largest, where it falls [1]
+      real(wp) :: violation = 0.0_wp
+      !> Power of the load on the mechanism where it falls [W/m]
+      real(wp) :: power = 0.0_wp
+      !> How far the end of the path lies inside what can be carried, in lengths of the path:
+      !> positive where it stands, negative where it falls
+      real(wp) :: margin = 0.0_wp
+      !> Factorisations
+      integer :: n_factorisation = 0
+   end type load_decision_t
+
+   !> Gap at which a decision that is not made ends
+   real(wp), parameter :: resolution = 1.0e-12_wp
+
+contains
+
+   !> Whether a load can be carried
+   pure subroutine decide_load(graph, load, decision)
+      !> The joints
+      type(joint_graph_t), intent(in) :: graph
+      !> Loads: (n_dof, n_block) [N/m, N/m, N ...]
+      real(wp), intent(in) :: load(:, :)
+      !> The decision
+      type(load_decision_t), intent(out) :: decision
+
+      call decide(graph, load, resolution, .true., decision)
+   end subroutine decide_load
+
+   !> Whether a load can be carried, and by how much: the margin is followed to its end
+   pure subroutine find_margin(graph, load, tolerance, decision)
+      !> The joints
+      type(joint_graph_t), intent(in) :: graph
+      !> Loads: (n_dof, n_block) [N/m, N/m, N ...]
+      real(wp), intent(in) :: load(:, :)
+      !> Relative accuracy of the margin's path
+      real(wp), intent(in) :: tolerance
+      !> The decision
+      type(load_decision_t), intent(out) :: decision
+
+      call decide(graph, load, tolerance, .false., decision)
+   end subroutine find_margin
+
+   !> Decide, at once or with the margin
+   pure subroutine decide(graph, load, tolerance, at_once, decision)
+      !> The joints
+      type(joint_graph_t), intent(in) :: graph
+      !> Loads: (n_dof, n_block) [N/m, N/m, N ...]
+      real(wp), intent(in) :: load(:, :)
+      !> Relative gap at which it ends
+      real(wp), intent(in) :: tolerance
+      !> Whether the first proof is enough
+      logical, intent(in) :: at_once
+      !> The decision
+      type(load_decision_t), intent(out) :: decision
+      type(joint_rays_t) :: rays
+      type(ray_matrix_t) :: springs
+      type(interior_point_t) :: point
+
+      allocate (decision%force(3, size(graph%kind)), source=0.0_wp)
+      allocate (decision%velocity(graph%n_dof, graph%n_block), source=0.0_wp)
+      if (all(abs(load(1:3, :)) <= 0.0_wp)) then
+         decision%state = load_state%stands
+         return
+      end if
+      call set_rays(graph, rays)
+      call plan_matrix(rays, springs)
+      call go_to_load(rays, load, tolerance, at_once, springs, point)
+      decision%n_factorisation = springs%n_factorisation
+      call joint_forces(rays, point%x, unit_of_force(load), decision%force)
+      call keep_velocities(rays, point%v, decision%velocity)
+      call conclude(graph, load, point, decision)
+   end subroutine decide
+
+   !> Follow the path from a load that strictly admissible forces carry to a given one
+   pure subroutine go_to_load(rays, load, tolerance, at_once, springs, point)
+      !> The rays
+      type(joint_rays_t), intent(in) :: rays
+      !> Loads: (n_dof, n_block) [N/m, N/m, N ...]
+      real(wp), intent(in) :: load(:, :)
+      !> Relative gap at which it ends
+      real(wp), intent(in) :: tolerance
+      !> Whether the first proof is enough
+      logical, intent(in) :: at_once
+      !> The matrix
+      type(ray_matrix_t), intent(inout) :: springs
+      !> Where the path ends; the load is at factor one
+      type(interior_point_t), intent(out) :: point
+      type(interior_goal_t) :: goal
+      type(load_path_t) :: path
+      real(wp) :: start(3, 0:rays%n_block), finish(3, 0:rays%n_block), force
+
+      call scale_load(rays, load, unit_of_force(load), finish)
+      force = max(1.0_wp, sqrt(sum(abs(finish))))
+      point%x = force*rays%bounded
+      start = 0.0_wp
+      call add_ray_forces(rays, point%x, start)
+      call set_path(-start, start + finish, path)
+      point%s = path%size/(real(max(1, rays%n_bounded), wp)*force)*rays%bounded &
+         & + (1.0_wp - rays%bounded)
+      allocate (point%v(3, 0:rays%n_block), source=0.0_wp)
+      goal%tolerance = tolerance
+      if (at_once) goal%target = path%size
+      call find_largest_factor(rays, path, goal, springs, point)
+      point%factor = point%factor/path%size
+      point%upper = point%upper/path%size
+   end subroutine go_to_load
+
+   !> Mean load of a block; moments count where no forces do
+   pure real(wp) function unit_of_force(load) result(unit)
+      !> Loads: (n_dof, n_block) [N/m, N/m, N ...]
+      real(wp), intent(in) :: load(:, :)
+
+      unit = sum(hypot(load(1, :), load(2, :)))
+      if (.not. unit > 0.0_wp) unit = sum(abs(load(3, :)))
+      unit = unit/real(max(1, size(load, 2)), wp)
+      if (.not. unit > 0.0_wp) unit = 1.0_wp
+   end function unit_of_force
+
+   !> Velocities in the user's units, the largest one
+   pure subroutine keep_velocities(rays, v, velocity)
+      !> The rays
+      type(joint_rays_t), intent(in) :: rays
+      !> In the units of the rays: (3, 0:n_block)
+      real(wp), intent(in) :: v(:, 0:)
+      !> Velocities: (n_dof, n_block) [m/s, m/s, 1/s ...]
+      real(wp), intent(out) :: velocity(:, :)
+      real(wp) :: largest
+
+      largest = max(maxval(abs(v)), tiny(largest))
+      velocity = 0.0_wp
+      velocity(1:2, :) = v(1:2, 1:)/largest
+      velocity(3, :) = v(3, 1:)/(largest*rays%length)
+   end subroutine keep_velocities
+
+   !> The decision, and the figures that prove it
+   pure subroutine conclude(graph, load, point, decision)
+      !> The joints
+      type(joint_graph_t), intent(in) :: graph
+      !> Loads: (n_dof, n_block) [N/m, N/m, N ...]
+      real(wp), intent(in) :: load(:, :)
+      !> Where the path has ended
+      type(interior_point_t), intent(in) :: point
+      !> Forces and velocities in, state and figures out
+      type(load_decision_t), intent(inout) :: decision
+      real(wp) :: imbalance, beyond_cone, beyond_flow, power
+
+      call check_forces(graph, load, decision%force, imbalance, beyond_cone)
+      call check_velocities(graph, load, decision%velocity, beyond_flow, power)
+      if (point%state == interior_state%reached .or. point%state == interior_state%optimal &
+         & .and. min(point%factor, point%upper) >= 1.0_wp) then
+         decision%state = load_state%stands
+         decision%margin = point%factor - 1.0_wp
+         decision%imbalance = imbalance
+         decision%violation = beyond_cone
+      else if (point%state == interior_state%blocked .or. point%state == interior_state%optimal &
+         & .and. max(point%factor, point%upper) < 1.0_wp .and. power > 0.0_wp) then
+         decision%state = load_state%falls
+         decision%margin = point%upper - 1.0_wp
+         decision%violation = beyond_flow
+         decision%power = power
+      end if
+   end subroutine conclude
+end module dda_limit_decision

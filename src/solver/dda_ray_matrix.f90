@@ -1,0 +1,232 @@
+!> The stiffness matrix of springs along the rays of all joints, and systems solved with it
+!>
+!>    matrix = sum over rays of stiffness * arm * arm'
+!>
+!> is the matrix of a DDA step whose joints have these springs. Stiffness may spread over many
+!> decades: what rounding takes from the factor of a soft motion comes back by conjugate gradients,
+!> for which the factor is the preconditioner.
+module dda_ray_matrix
+   use dda_block_factor, only : block_factor_t, factorise, plan_factor, substitute
+   use dda_block_matrix, only : block_matrix_t, set_pattern
+   use dda_joint_rays, only : add_ray_forces, joint_rays_t, n_side, ray_rates
+   use dda_kinds, only : wp
+   implicit none
+   private
+
+   public :: ray_matrix_t, plan_matrix, set_springs, solve_springs
+
+   !> The matrix, its factor, and what work on them needs
+   type :: ray_matrix_t
+      !> The matrix
+      type(block_matrix_t) :: matrix
+      !> Its factor
+      type(block_factor_t) :: factor
+      !> Entry of the matrix that each joint couples, 0 for none: (n_joint)
+      integer, allocatable :: entry(:)
+      !> Whether the second block of a joint has the rows of its entry: (n_joint)
+      logical, allocatable :: second_is_row(:)
+      !> Stiffness of each ray: (n_side, n_joint)
+      real(wp), allocatable :: stiffness(:, :)
+      !> Turns of conjugate gradients at most, none if zero
+      integer :: max_turn = 0
+      !> Factorisations so far
+      integer :: n_factorisation = 0
+      !> Substitutions so far
+      integer :: n_substitution = 0
+      !> Residual, its correction, direction, product: (3, 0:n_block)
+      real(wp), allocatable :: residual(:, :), corrected(:, :), direction(:, :), product(:, :)
+      !> Best solution yet: (3, 0:n_block)
+      real(wp), allocatable :: best(:, :)
+      !> Force along each ray: (n_side, n_joint)
+      real(wp), allocatable :: force(:, :)
+   end type ray_matrix_t
+
+contains
+
+   !> Pattern of the matrix and of its factor
+   pure subroutine plan_matrix(rays, springs)
+      !> The rays
+      type(joint_rays_t), intent(in) :: rays
+      !> The matrix, without numbers
+      type(ray_matrix_t), intent(out) :: springs
+      integer :: j, n, pair(2, size(rays%block, 2))
+
+      allocate (springs%entry(size(rays%block, 2)), springs%second_is_row(size(rays%block, 2)))
+      springs%entry = 0
+      n = 0
+      do j = 1, size(springs%entry)
+         if (any(rays%block(:, j) == 0)) cycle
+         n = n + 1
+         springs%entry(j) = n
+         pair(:, n) = rays%block(:, j)
+      end do
+      call set_pattern(springs%matrix, 3, rays%n_block, pair(:, :n))
+      call plan_factor(springs%matrix, springs%factor)
+      do j = 1, size(springs%entry)
+         springs%second_is_row(j) = .false.
+         if (springs%entry(j) == 0) cycle
+         springs%second_is_row(j) = &
+            & springs%matrix%pair(1, springs%entry(j)) == rays%block(2, j)
+      end do
+      allocate (springs%stiffness(n_side, size(rays%block, 2)))
+      allocate (springs%force(n_side, size(rays%block, 2)))
+      allocate (springs%residual(3, 0:rays%n_block), source=0.0_wp)
+      allocate (springs%corrected, springs%direction, springs%product, springs%best, &
+         & source=springs%residual)
+   end subroutine plan_matrix
+
+   !> Assemble the springs and factor their matrix
+   pure subroutine set_springs(rays, stiffness, lift, springs)
+      !> The rays
+      type(joint_rays_t), intent(in) :: rays
+      !> Stiffness of each: (n_side, n_joint)
+      real(wp), intent(in) :: stiffness(:, :)
+      !> Share of itself that each diagonal entry is raised by; what no spring holds gets one
+      real(wp), intent(in) :: lift
+      !> The matrix; its factor may be unusable
+      type(ray_matrix_t), intent(inout) :: springs
+      integer :: b, k
+
+      springs%stiffness = stiffness
+      call assemble(rays, springs)
+      do b = 1, rays%n_block
+         do k = 1, 3
+            associate (d => springs%matrix%diagonal(k, k, b))
+               d = merge(d*(1.0_wp + lift), 1.0_wp, d > 0.0_wp)
+            end associate
+         end do
+      end do
+      call factorise(springs%matrix, springs%factor)
+      springs%n_factorisation = springs%n_factorisation + 1
+   end subroutine set_springs
+
+   !> Sum of all springs
+   pure subroutine assemble(rays, springs)
+      !> The rays
+      type(joint_rays_t), intent(in) :: rays
+      !> Stiffness in, matrix out
+      type(ray_matrix_t), intent(inout) :: springs
+      real(wp) :: pushed(n_side, 6)
+      integer :: a, b, j, k
+
+      springs%matrix%diagonal = 0.0_wp
+      do j = 1, size(rays%block, 2)
+         a = rays%block(1, j)
+         b = rays%block(2, j)
+         do k = 1, 6
+            pushed(:, k) = springs%stiffness(:, j)*rays%arm(:, k, j)
+         end do
+         if (a /= 0) call add_product(pushed(1, 1), rays%arm(1, 1, j), &
+            & springs%matrix%diagonal(1, 1, a))
+         if (b /= 0) call add_product(pushed(1, 4), rays%arm(1, 4, j), &
+            & springs%matrix%diagonal(1, 1, b))
+         if (springs%entry(j) == 0) cycle
+         associate (e => springs%entry(j))
+            springs%matrix%coupling(:, :, e) = 0.0_wp
+            if (springs%second_is_row(j)) then
+               call add_product(pushed(1, 4), rays%arm(1, 1, j), springs%matrix%coupling(1, 1, e))
+            else
+               call add_product(pushed(1, 1), rays%arm(1, 4, j), springs%matrix%coupling(1, 1, e))
+            end if
+         end associate
+      end do
+   end subroutine assemble
+
+   !> sum = sum + a' b
+   pure subroutine add_product(a, b, sum)
+      !> First factor, transposed
+      real(wp), intent(in) :: a(n_side, 3)
+      !> Second factor
+      real(wp), intent(in) :: b(n_side, 3)
+      !> What it is added to
+      real(wp), intent(inout) :: sum(3, 3)
+      integer :: c, r
+
+      do c = 1, 3
+         do r = 1, 3
+            sum(r, c) = sum(r, c) + (a(1, r)*b(1, c) + a(2, r)*b(2, c) &
+               & + a(3, r)*b(3, c) + a(4, r)*b(4, c))
+         end do
+      end do
+   end subroutine add_product
+
+   !> Motion of the blocks by loads
+   pure subroutine solve_springs(rays, springs, load, motion)
+      !> The rays
+      type(joint_rays_t), intent(in) :: rays
+      !> The matrix with a usable factor
+      type(ray_matrix_t), intent(inout) :: springs
+      !> Loads: (3, 0:n_block)
+      real(wp), intent(in) :: load(:, 0:)
+      !> Motion, none of what cannot move: (3, 0:n_block)
+      real(wp), intent(out) :: motion(:, 0:)
+
+      motion = load
+      motion(:, 0) = 0.0_wp
+      call substitute(springs%factor, motion(:, 1:))
+      springs%n_substitution = springs%n_substitution + 1
+      if (springs%max_turn > 0) call correct_by_gradients(rays, load, springs, motion)
+   end subroutine solve_springs
+
+   !> Conjugate gradients from the motion that the factor has given; the motion with the smallest
+   !> residual is kept
+   pure subroutine correct_by_gradients(rays, load, springs, motion)
+      !> The rays
+      type(joint_rays_t), intent(in) :: rays
+      !> Loads: (3, 0:n_block)
+      real(wp), intent(in) :: load(:, 0:)
+      !> The matrix with a usable factor
+      type(ray_matrix_t), intent(inout) :: springs
+      !> Motion: (3, 0:n_block)
+      real(wp), intent(inout) :: motion(:, 0:)
+      real(wp) :: largest, least, length, rz, rz_before, pq
+      integer :: turn
+
+      call push_back(rays, springs, motion, springs%product)
+      springs%residual = load - springs%product
+      springs%residual(:, 0) = 0.0_wp
+      least = huge(least)
+      rz_before = 1.0_wp
+      do turn = 0, springs%max_turn
+         largest = maxval(abs(springs%residual))
+         if (largest < least) then
+            least = largest
+            springs%best = motion
+         end if
+         if (largest < 1.0e-11_wp*maxval(abs(load)) .or. largest > 1.0e3_wp*least) exit
+         if (turn == springs%max_turn) exit
+         springs%corrected = springs%residual
+         call substitute(springs%factor, springs%corrected(:, 1:))
+         springs%n_substitution = springs%n_substitution + 1
+         rz = sum(springs%residual*springs%corrected)
+         if (.not. rz > 0.0_wp) exit
+         if (turn == 0) springs%direction = 0.0_wp
+         springs%direction = springs%corrected + (rz/rz_before)*springs%direction
+         rz_before = rz
+         call push_back(rays, springs, springs%direction, springs%product)
+         pq = sum(springs%direction*springs%product)
+         if (.not. pq > 0.0_wp) exit
+         length = rz/pq
+         motion = motion + length*springs%direction
+         springs%residual = springs%residual - length*springs%product
+      end do
+      motion = springs%best
+   end subroutine correct_by_gradients
+
+   !> Force with which the springs answer a motion
+   pure subroutine push_back(rays, springs, motion, force)
+      !> The rays
+      type(joint_rays_t), intent(in) :: rays
+      !> The matrix; its work space is used
+      type(ray_matrix_t), intent(inout) :: springs
+      !> Motion: (3, 0:n_block)
+      real(wp), intent(in) :: motion(:, 0:)
+      !> Force: (3, 0:n_block)
+      real(wp), intent(out) :: force(:, 0:)
+
+      call ray_rates(rays, motion, springs%force)
+      springs%force = springs%stiffness*springs%force
+      force = 0.0_wp
+      call add_ray_forces(rays, springs%force, force)
+   end subroutine push_back
+end module dda_ray_matrix
