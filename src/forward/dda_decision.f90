@@ -7,7 +7,7 @@ module dda_decision
    use dda_block_system, only : block_system_t
    use dda_contact_detection, only : contacts_t
    use dda_forward, only : outcome_t, run_to_verdict
-   use dda_frames, only : album_t
+   use dda_frames, only : album_t, blank_album
    use dda_settings, only : flow_rule, settings_t
    use dda_step_context, only : march_t
    use dda_verdict, only : verdict
@@ -45,7 +45,7 @@ contains
       type(contacts_t), intent(in) :: contacts
       !> The decision
       type(decision_t), intent(out) :: decision
-      !> Receives pictures of a dynamic run
+      !> Receives pictures of the run that decides
       type(album_t), intent(inout), optional :: album
       !> Where a dynamic run goes on and where it ended
       type(march_t), intent(inout), optional :: onward
@@ -60,11 +60,12 @@ contains
       decision%flow = convex%flow
       decision%system = system
       decision%contacts = contacts
-      call run_to_verdict(convex, decision%system, decision%contacts, decision%outcome)
+      call run_to_verdict(convex, decision%system, decision%contacts, decision%outcome, album)
       if (decision%outcome%verdict /= verdict%stable) return
       if (settings%verdict_flow == flow_rule%associated) return
-      if (any(decision%contacts%face%slip /= 0)) &
-         & call follow_coulomb(settings, system, contacts, decision)
+      if (.not. any(decision%contacts%face%slip /= 0)) return
+      if (present(album)) album = blank_album(album)
+      call follow_coulomb(settings, system, contacts, decision, album)
    end subroutine decide
 
    !> Run a structure under Coulomb friction from its beginning

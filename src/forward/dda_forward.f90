@@ -11,7 +11,7 @@ module dda_forward
    use dda_energy, only : audit_step, keep_energy
    use dda_entry, only : refuse_entry
    use dda_error, only : error_t, fatal_error
-   use dda_frames, only : album_t, keep_frame, keep_track
+   use dda_frames, only : album_t, keep_pictures
    use dda_impact_time, only : meet_impact
    use dda_kinds, only : wp
    use dda_multipliers, only : settle_joints
@@ -42,8 +42,10 @@ module dda_forward
       real(wp) :: elastic_time = 0.0_wp
       !> Estimated condition number of the last equations, if it was wanted
       real(wp) :: condition = 0.0_wp
-      !> Motion of the last step: (n_dof, n_equation)
+      !> Motion of the step that gave the verdict: (n_dof, n_equation)
       real(wp), allocatable :: motion(:, :)
+      !> Contacts after that step, if a collapse has been followed from there for its pictures
+      type(contacts_t), allocatable :: fallen
       !> Accepted steps
       integer :: steps = 0
       !> Passes of the open-close loop
@@ -92,7 +94,8 @@ contains
       end if
       if (settings%dynamic .and. march%steps == 0) call audit_step(settings, system, equations, &
          & contacts, step, 0.0_wp, march%energy)
-      if (present(album)) call keep_pictures(system, contacts, march, 0.0_wp, .false., album)
+      if (present(album)) call keep_pictures(settings, system, contacts, march, 0.0_wp, .false., &
+         & album)
       do while (.not. allocated(error))
          if (march%steps == settings%max_steps) exit
          call advance(settings, system, contacts, equations, march, step, error)
@@ -103,8 +106,8 @@ contains
             & march%displacement = largest_displacement(system, settings%current)
          if (step%whole .and. .not. settings%dynamic) &
             & outcome%verdict = judge_verdict(march, step, settings)
-         if (present(album)) call keep_pictures(system, contacts, march, step%farthest, &
-            & outcome%verdict /= verdict%undecided, album)
+         if (present(album)) call keep_pictures(settings, system, contacts, march, &
+            & step%farthest, .false., album)
          if (outcome%verdict /= verdict%undecided) exit
          if (settings%duration > 0.0_wp .and. march%time >= settings%duration) exit
          call next_interval(settings, system, step, march)
@@ -112,16 +115,18 @@ contains
       march%held_force = equations%fixed%force
       if (present(onward)) onward = march
       outcome%rest_tolerance = settings%rest_tolerance
-      outcome%steps = march%steps
-      outcome%passes = march%passes
-      outcome%factorisations = equations%factorisations
       if (march%free_acceleration > 0.0_wp) then
          outcome%acceleration_ratio = step%acceleration/march%free_acceleration
          outcome%elastic_time = sqrt(2.0_wp*march%elastic_motion/march%free_acceleration)
       end if
       if (settings%tells_condition) &
          & outcome%condition = factored_condition(equations%matrix, equations%factor)
-      call move_alloc(step%state%motion, outcome%motion)
+      allocate (outcome%motion, source=step%state%motion)
+      if (present(album)) call end_pictures(settings, system, contacts, equations, march, step, &
+         & outcome, album)
+      outcome%steps = march%steps
+      outcome%passes = march%passes
+      outcome%factorisations = equations%factorisations
       if (allocated(error)) then
          outcome%verdict = verdict%undecided
          outcome%reason = error%message
@@ -151,25 +156,39 @@ contains
          & equations%fixed%force = march%held_force
    end subroutine go_on
 
-   !> Keep a picture if one is due, and where the measured points are
-   pure subroutine keep_pictures(system, contacts, march, farthest, last, album)
+   !> Follow a collapse beyond its verdict as far as the album wants to see it, and keep a picture
+   !> of the end
+   pure subroutine end_pictures(settings, system, contacts, equations, march, step, outcome, album)
+      !> Settings of the run
+      type(settings_t), intent(in) :: settings
       !> The blocks
-      type(block_system_t), intent(in) :: system
+      type(block_system_t), intent(inout) :: system
       !> The contacts
-      type(contacts_t), intent(in) :: contacts
+      type(contacts_t), intent(inout) :: contacts
+      !> The equations
+      type(equations_t), intent(inout) :: equations
       !> The march
-      type(march_t), intent(in) :: march
-      !> Largest motion of a point in the last step [m]
-      real(wp), intent(in) :: farthest
-      !> Whether the run ends here
-      logical, intent(in) :: last
-      !> Receives the picture
+      type(march_t), intent(inout) :: march
+      !> The last step
+      type(step_context_t), intent(inout) :: step
+      !> How the run ended; receives the contacts of a collapse that is followed
+      type(outcome_t), intent(inout) :: outcome
+      !> Receives the pictures
       type(album_t), intent(inout) :: album
+      type(error_t), allocatable :: error
 
-      call keep_frame(system, contacts, march%steps, march%time, march%displacement, farthest, &
-         & last, album)
-      call keep_track(system, march%steps, march%time, album)
-   end subroutine keep_pictures
+      if (outcome%verdict == verdict%collapsed .and. march%displacement < album%follow) &
+         & outcome%fallen = contacts
+      do while (allocated(outcome%fallen) .and. march%displacement < album%follow)
+         if (march%steps == settings%max_steps) exit
+         call next_interval(settings, system, step, march)
+         call advance(settings, system, contacts, equations, march, step, error)
+         if (allocated(error)) exit
+         march%displacement = largest_displacement(system, settings%current)
+         call keep_pictures(settings, system, contacts, march, step%farthest, .false., album)
+      end do
+      call keep_pictures(settings, system, contacts, march, step%farthest, .true., album)
+   end subroutine end_pictures
 
    !> One step: blocks and contacts change only when it is accepted
    pure subroutine advance(settings, system, contacts, equations, march, step, error)

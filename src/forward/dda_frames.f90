@@ -4,14 +4,16 @@ module dda_frames
    use dda_boundary, only : measured_point_t
    use dda_contact_detection, only : contacts_t
    use dda_contact_types, only : joint_t
-   use dda_deformation, only : moved_point
+   use dda_deformation, only : displacement_matrix, moved_point
    use dda_friction_cone, only : joint_face_t
    use dda_energy, only : audit_t
    use dda_kinds, only : wp
+   use dda_settings, only : settings_t
+   use dda_step_context, only : march_t
    implicit none
    private
 
-   public :: frame_t, album_t, keep_frame, keep_track
+   public :: frame_t, album_t, blank_album, keep_frame, keep_pictures
 
    !> One picture
    type :: frame_t
@@ -43,6 +45,9 @@ module dda_frames
    type :: album_t
       !> Displacement from one picture to the next; 0 to keep none [m]
       real(wp) :: spacing = 0.0_wp
+      !> Displacement to which a collapse goes on after its verdict, for the pictures of it; 0 to
+      !> end there [m]
+      real(wp) :: follow = 0.0_wp
       !> Steps from one picture to the next, in time; 0 to go by displacement
       integer :: every = 0
       !> Time from one picture to the next; 0 to go by steps or displacement [s]
@@ -69,6 +74,43 @@ module dda_frames
    real(wp), parameter :: almost = 1.0_wp - 1.0e-9_wp
 
 contains
+
+   !> An album of the same kind without pictures, for another run
+   pure function blank_album(album) result(blank)
+      !> The album
+      type(album_t), intent(in) :: album
+      !> The blank one
+      type(album_t) :: blank
+
+      blank%spacing = album%spacing
+      blank%follow = album%follow
+      blank%every = album%every
+      blank%interval = album%interval
+      blank%audit%wanted = album%audit%wanted
+      if (allocated(album%point)) blank%point = album%point
+   end function blank_album
+
+   !> Keep a picture if one is due, and where the measured points are
+   pure subroutine keep_pictures(settings, system, contacts, march, farthest, last, album)
+      !> Settings of the run
+      type(settings_t), intent(in) :: settings
+      !> The blocks
+      type(block_system_t), intent(in) :: system
+      !> The contacts
+      type(contacts_t), intent(in) :: contacts
+      !> The march
+      type(march_t), intent(in) :: march
+      !> Largest motion of a point in the last step [m]
+      real(wp), intent(in) :: farthest
+      !> Whether the run has ended here, with a step that has been offered
+      logical, intent(in) :: last
+      !> Receives the picture
+      type(album_t), intent(inout) :: album
+
+      call keep_frame(system, contacts, march%steps, march%time, march%displacement, farthest, &
+         & last, album)
+      if (.not. last) call keep_track(system, settings%current, march%steps, march%time, album)
+   end subroutine keep_pictures
 
    !> Keep a picture if one is due
    pure subroutine keep_frame(system, contacts, step, time, displacement, farthest, last, album)
@@ -101,7 +143,8 @@ contains
       if (.not. (spacing > 0.0_wp .or. album%every > 0)) return
       is_due = way >= album%due*almost
       if (album%every > 0) is_due = modulo(step, album%every) == 0
-      if (.not. (is_due .or. last)) return
+      if (last .and. album%n > 0) is_due = album%frame(album%n)%step < step
+      if (.not. (is_due .or. last .and. album%n == 0)) return
       if (.not. allocated(album%frame)) allocate (album%frame(8))
       if (album%n == size(album%frame)) then
          allocate (longer(2*album%n))
@@ -126,9 +169,11 @@ contains
    end subroutine keep_frame
 
    !> Keep where the measured points are
-   pure subroutine keep_track(system, step, time, album)
+   pure subroutine keep_track(system, current, step, time, album)
       !> The blocks
       type(block_system_t), intent(in) :: system
+      !> Whether they move; otherwise displacements are small
+      logical, intent(in) :: current
       !> Accepted steps so far
       integer, intent(in) :: step
       !> Sum of their lengths [s]
@@ -152,9 +197,14 @@ contains
       album%n_track = n + 1
       album%when(:, n + 1) = [real(step, wp), time]
       do i = 1, size(album%point)
-         associate (point => album%point(i))
-            album%track(:, i, n + 1) = moved_point(point%point, system%centroid(:, point%block), &
-               & system%motion(:, point%block))
+         associate (point => album%point(i)%point, b => album%point(i)%block, &
+            & place => album%track(:, i, n + 1))
+            if (current) then
+               place = moved_point(point, system%centroid(:, b), system%motion(:, b))
+            else
+               place = point + matmul(displacement_matrix(point, system%centroid(:, b)), &
+                  & system%motion(:, b))
+            end if
          end associate
       end do
    end subroutine keep_track

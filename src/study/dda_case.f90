@@ -27,7 +27,7 @@ module dda_case
    use dda_mechanism, only : follow_collapse
    use dda_scene, only : scene_t
    use dda_scene_plan, only : plan_scene, scene_plan_t
-   use dda_settings, only : flow_rule, settings_t
+   use dda_settings, only : settings_t
    use dda_shared_forces, only : share_forces
    use dda_verdict, only : verdict
    implicit none
@@ -135,8 +135,8 @@ contains
          & .and. .not. allocated(this%critical%fallen) .and. allocated(this%critical%standing)) &
          & call this%family%build(this%critical%stands, this%scene, error)
       if (this%plan%shared_forces) call share_told_forces(this)
-      if (.not. this%limerick .and. (integer_of(this%deck, "output", "frames") > 0 &
-         & .or. size(this%album%point) > 0)) call take_pictures(this)
+      if (this%searches .and. integer_of(this%deck, "output", "frames") > 0) &
+         & call take_pictures(this)
       call system_clock(finish)
       this%seconds = real(finish - start, wp)/real(rate, wp)
    end subroutine compute_case
@@ -159,6 +159,7 @@ contains
       if (decided) call decide_chain(settings, chain, this%decision, decided)
       if (decided) return
       call deck_scene(this%deck, this%scene)
+      call plan_fall(this)
       system = this%scene%system
       contacts = this%scene%contacts
       if (is_given(this%deck, "analysis", "restart")) then
@@ -191,7 +192,7 @@ contains
       if (collapsed) wanted = wanted .or. any(decision%contacts%face%slip /= 0)
       if (wanted .and. .not. allocated(this%scene%contacts%joint)) &
          & call this%family%build(value, this%scene, error)
-      if (collapsed) call follow_collapse(this%scene, decision)
+      if (collapsed) call follow_collapse(this%scene, decision, this%album)
       if (allocated(this%scene%contacts%joint) .and. .not. allocated(decision%contacts%joint)) &
          & decision%contacts%joint = this%scene%contacts%joint
    end subroutine see_collapse
@@ -231,34 +232,43 @@ contains
          & this%critical%standing%contacts%joint = scene%contacts%joint
    end subroutine share_told_forces
 
-   !> Run a static scene once more for its pictures, a collapse until a corner has moved a tenth of
-   !> the radius, or of the size of the blocks
+   !> Let the pictures of a static run lie evenly on the way of a collapse, until a corner has moved
+   !> a tenth of the radius, or of the size of the blocks
+   pure subroutine plan_fall(this)
+      !> The case, with its scene
+      type(case_t), intent(inout) :: this
+      integer :: frames
+
+      frames = integer_of(this%deck, "output", "frames")
+      if (frames == 0 .or. this%scene%settings%dynamic) return
+      this%album%follow = this%scene%settings%collapse_displacement
+      if (.not. this%album%follow > 0.0_wp) this%album%follow = 0.1_wp*scene_size(this)
+      this%album%spacing = this%album%follow/real(frames, wp)
+   end subroutine plan_fall
+
+   !> Repeat the run nearest to critical that a search has found to fall, else to stand, for its
+   !> pictures
    pure subroutine take_pictures(this)
-      !> The case, computed
+      !> The case, searched
       type(case_t), intent(inout) :: this
       type(error_t), allocatable :: error
       type(outcome_t) :: outcome
       type(settings_t) :: settings
       type(block_system_t) :: system
       type(contacts_t) :: contacts
-      logical :: slides
 
-      if (this%scene%settings%dynamic) return
-      slides = this%decision%flow == flow_rule%coulomb
       if (allocated(this%critical%fallen)) then
-         slides = this%critical%fallen%flow == flow_rule%coulomb
+         call this%family%build(this%critical%falls, this%scene, error)
+         settings = this%scene%settings
+         settings%flow = this%critical%fallen%flow
       else if (allocated(this%critical%standing)) then
-         slides = this%critical%standing%flow == flow_rule%coulomb
          call this%family%build(this%critical%stands, this%scene, error)
+         settings = this%scene%settings
+         settings%flow = this%critical%standing%flow
+      else
+         return
       end if
-      if (.not. allocated(this%scene%contacts%joint)) return
-      settings = this%scene%settings
-      settings%flow = merge(flow_rule%coulomb, flow_rule%associated, slides)
-      if (.not. settings%collapse_displacement > 0.0_wp) &
-         & settings%collapse_displacement = 0.1_wp*scene_size(this)
-      if (integer_of(this%deck, "output", "frames") > 0) &
-         & this%album%spacing = settings%collapse_displacement &
-         & /real(integer_of(this%deck, "output", "frames"), wp)
+      call plan_fall(this)
       system = this%scene%system
       contacts = this%scene%contacts
       call run_to_verdict(settings, system, contacts, outcome, this%album)

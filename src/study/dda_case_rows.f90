@@ -2,6 +2,7 @@
 module dda_case_rows
    use dda_block_scene, only : lacks_friction
    use dda_case, only : case_t, searched_name
+   use dda_contact_detection, only : contacts_t
    use dda_contact_types, only : joint_t
    use dda_critical, only : critical_t
    use dda_decision, only : decision_t
@@ -131,7 +132,7 @@ contains
             & joint_rows(this%decision%contacts, this%scene%joint_angle_deg, this%scene%origin)
          if (outcome%verdict == verdict%collapsed) then
             call tell_mechanism(this%decision, this%scene%joint_angle_deg, row)
-            if (size(joint_row) > 0) call tell_roles(this%decision%contacts, &
+            if (size(joint_row) > 0) call tell_roles(fallen_contacts(this%decision), &
                & this%decision%contacts%joint, joint_row, outcome%motion)
          end if
          if (allocated(this%decision%system%equation)) call tell_end(this, blocks)
@@ -283,6 +284,20 @@ contains
          & some_number((row%critical%value - row%exact%value)/row%exact%value)
    end subroutine tell_bracket
 
+   !> Contacts of the step that has shown a collapse
+   pure function fallen_contacts(fallen) result(contacts)
+      !> The collapse, which may have been followed beyond that step
+      type(decision_t), intent(in) :: fallen
+      !> The contacts
+      type(contacts_t) :: contacts
+
+      if (allocated(fallen%outcome%fallen)) then
+         contacts = fallen%outcome%fallen
+      else
+         contacts = fallen%contacts
+      end if
+   end function fallen_contacts
+
    !> Fill the columns of a collapse
    pure subroutine tell_mechanism(fallen, joint_angle_deg, row)
       !> The collapse
@@ -293,7 +308,7 @@ contains
       type(result_row_t), intent(inout) :: row
       type(mechanism_t) :: mechanism
 
-      call mechanism_of(fallen%contacts, joint_angle_deg, mechanism, fallen%outcome%motion)
+      call mechanism_of(fallen_contacts(fallen), joint_angle_deg, mechanism, fallen%outcome%motion)
       row%collapse_mode = mechanism%mode
       row%sliding_share = some_number(mechanism%sliding_share)
       row%intrados_hinge_deg = mechanism%intrados_deg

@@ -2,6 +2,7 @@
 module dda_mechanism
    use dda_contact_detection, only : contacts_t
    use dda_decision, only : decision_t, follow_coulomb
+   use dda_frames, only : album_t, blank_album
    use dda_friction_cone, only : joint_face_t
    use dda_kinds, only : wp
    use dda_scene, only : scene_t
@@ -55,18 +56,24 @@ contains
 
    !> Follow a collapse under Coulomb friction where joints slide in it, for its motion to be that
    !> of joints that do not open by sliding
-   pure subroutine follow_collapse(scene, decision)
+   pure subroutine follow_collapse(scene, decision, album)
       !> The scene that fell
       type(scene_t), intent(in) :: scene
       !> Its decision; becomes that of the run under Coulomb friction if that one falls too
       type(decision_t), intent(inout) :: decision
+      !> Its pictures; become those of the other run with it
+      type(album_t), intent(inout) :: album
       type(decision_t) :: other
+      type(album_t) :: pictures
 
       if (decision%flow == flow_rule%coulomb) return
       if (scene%settings%verdict_flow == flow_rule%associated) return
       if (.not. any(decision%contacts%face%slip /= 0)) return
-      call follow_coulomb(scene%settings, scene%system, scene%contacts, other)
-      if (other%outcome%verdict == verdict%collapsed) decision = other
+      pictures = blank_album(album)
+      call follow_coulomb(scene%settings, scene%system, scene%contacts, other, pictures)
+      if (other%outcome%verdict /= verdict%collapsed) return
+      decision = other
+      album = pictures
    end subroutine follow_collapse
 
    !> The mechanism of the last step of a collapse
