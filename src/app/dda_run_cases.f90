@@ -242,7 +242,7 @@ contains
 
       if (.not. flag_of(this%deck, "output", "restart")) return
       if (.not. this%scene%settings%dynamic .or. allocated(this%error)) return
-      call save_restart(folder//"/case_"//to_text(number)//".restart", this%decision%system, &
-         & this%decision%contacts, this%onward, error)
+      call save_restart(folder//"/case_"//to_text(number)//".restart", this%scene%settings, &
+         & this%decision%system, this%decision%contacts, this%onward, error)
    end subroutine write_end
 end module dda_run_cases

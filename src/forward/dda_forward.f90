@@ -18,7 +18,7 @@ module dda_forward
    use dda_parting, only : judge_parting
    use dda_settings, only : settings_t
    use dda_step_context, only : march_t, step_context_t
-   use dda_step_interval, only : first_interval, judge_step, next_interval
+   use dda_step_interval, only : first_interval, judge_step, measure_scales, next_interval
    use dda_step_reach, only : first_reach, judge_reach, next_reach, travel_by, travel_of
    use dda_step_state, only : step_state_t
    use dda_velocity, only : settle_velocities, stiffen_contacts
@@ -86,7 +86,7 @@ contains
       end if
       call new_equations(system, contacts%springs, settings, equations)
       call begin_step(contacts, size(equations%weight, 1), size(equations%weight, 2), step%state)
-      if (present(onward)) call go_on(onward, march, equations)
+      if (present(onward)) call go_on(settings, system, onward, march, equations)
       if (march%steps == 0) then
          call first_interval(system, contacts%springs, settings, equations, step%state, march, &
             & error)
@@ -97,7 +97,8 @@ contains
       if (present(album)) call keep_pictures(settings, system, contacts, march, 0.0_wp, .false., &
          & album)
       do while (.not. allocated(error))
-         if (march%steps == settings%max_steps) exit
+         if (march%steps >= settings%max_steps) exit
+         if (settings%duration > 0.0_wp .and. march%time >= settings%duration) exit
          call advance(settings, system, contacts, equations, march, step, error)
          if (allocated(error)) exit
          if (present(album)) call keep_energy(march%energy, album%audit)
@@ -109,7 +110,6 @@ contains
          if (present(album)) call keep_pictures(settings, system, contacts, march, &
             & step%farthest, .false., album)
          if (outcome%verdict /= verdict%undecided) exit
-         if (settings%duration > 0.0_wp .and. march%time >= settings%duration) exit
          call next_interval(settings, system, step, march)
       end do
       march%held_force = equations%fixed%force
@@ -141,8 +141,12 @@ contains
    end subroutine run_to_verdict
 
    !> Take over the march of a run that goes on, and the forces at its held points; points that are
-   !> held otherwise than before begin without force
-   pure subroutine go_on(onward, march, equations)
+   !> held otherwise than before begin without force. Scales are those of the run as it is now
+   pure subroutine go_on(settings, system, onward, march, equations)
+      !> Settings of the run
+      type(settings_t), intent(in) :: settings
+      !> The blocks
+      type(block_system_t), intent(in) :: system
       !> Where the run ended
       type(march_t), intent(in) :: onward
       !> The march
@@ -151,6 +155,9 @@ contains
       type(equations_t), intent(inout) :: equations
 
       march = onward
+      if (march%steps == 0) return
+      call measure_scales(system, settings, equations, march)
+      march%dt = min(march%dt, march%longest)
       if (.not. allocated(march%held_force)) return
       if (size(march%held_force) == size(equations%fixed%force)) &
          & equations%fixed%force = march%held_force

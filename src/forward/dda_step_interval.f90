@@ -14,7 +14,7 @@ module dda_step_interval
    implicit none
    private
 
-   public :: first_interval, judge_step, next_interval, largest_motion
+   public :: first_interval, judge_step, next_interval, largest_motion, measure_scales
    public :: longest_static_step
 
    !> Free fall in the first static step over the elastic motion
@@ -64,26 +64,15 @@ contains
       type(cone_t) :: glued(size(springs%stiffness))
       type(joint_face_t) :: closed(size(springs%stiffness))
       real(wp) :: mean_mass, stiffest
-      integer :: e
 
-      mean_mass = 0.0_wp
-      do e = 1, size(equations%mass, 3)
-         mean_mass = mean_mass + equations%mass(1, 1, e)/real(size(equations%mass, 3), wp)
-         march%free_acceleration = max(march%free_acceleration, &
-            & norm2(equations%weight(1:2, e))/equations%mass(1, 1, e))
-      end do
-      march%last_acceleration = march%free_acceleration
-      march%resolution = epsilon(1.0_wp)*maxval(abs(system%vertex))
-      if (settings%current) march%rounding = feigned_motion(system)
-      march%allowed_motion = settings%max_displacement_ratio &
-         & *sqrt(minval(system%area, mask=system%equation > 0))
+      call measure_scales(system, settings, equations, march)
       if (settings%dynamic) then
-         march%longest = dynamic_step(settings, march)
          march%dt = march%longest
          call fit_interval(settings, largest_motion(system, &
             & packed_velocity(system, size(equations%weight, 1))), march)
          return
       end if
+      mean_mass = sum(equations%mass(1, 1, :)/real(size(equations%mass, 3), wp))
       stiffest = maxval(system%materials%young)
       if (size(springs%stiffness) > 0) stiffest = maxval(springs%stiffness)
       march%longest = longest_static_step(mean_mass, stiffest)
@@ -103,6 +92,30 @@ contains
          & sqrt(2.0_wp*first_fall*march%elastic_motion/march%free_acceleration))
       if (settings%time_step > 0.0_wp) march%dt = min(march%longest, settings%time_step)
    end subroutine first_interval
+
+   !> Scales of the problem; they do not change as it goes on
+   pure subroutine measure_scales(system, settings, equations, march)
+      !> The blocks
+      type(block_system_t), intent(in) :: system
+      !> Settings of the run
+      type(settings_t), intent(in) :: settings
+      !> The equations, for masses and weights
+      type(equations_t), intent(in) :: equations
+      !> Receives the scales, and of a dynamic run the longest step
+      type(march_t), intent(inout) :: march
+      integer :: e
+
+      do e = 1, size(equations%mass, 3)
+         march%free_acceleration = max(march%free_acceleration, &
+            & norm2(equations%weight(1:2, e))/equations%mass(1, 1, e))
+      end do
+      march%last_acceleration = march%free_acceleration
+      march%resolution = epsilon(1.0_wp)*maxval(abs(system%vertex))
+      if (settings%current) march%rounding = feigned_motion(system)
+      march%allowed_motion = settings%max_displacement_ratio &
+         & *sqrt(minval(system%area, mask=system%equation > 0))
+      if (settings%dynamic) march%longest = dynamic_step(settings, march)
+   end subroutine measure_scales
 
    !> Longest static step: its inertia must not drown in the rounding of the stiffness
    pure real(wp) function longest_static_step(mean_mass, stiffest)
@@ -208,7 +221,7 @@ contains
       if (.not. settings%duration > 0.0_wp) return
       left = settings%duration - march%time
       ! what many rounded steps leave over is no step of its own
-      if (left < march%dt*(1.0_wp + 1.0e-6_wp)) march%dt = left
+      if (left > 0.0_wp .and. left < march%dt*(1.0_wp + 1.0e-6_wp)) march%dt = left
    end subroutine fit_interval
 
    !> Accept a step, or cut its length for another try: it must have settled and, where blocks move,

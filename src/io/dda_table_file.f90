@@ -9,10 +9,7 @@ module dda_table_file
    private
 
    public :: table_file_t, open_table, append_line, close_table, remove_file
-   public :: open_part, keep_line, settle_part, rename_part, sync_table, length_of
-
-   !> Ending of a table that is not whole yet
-   character(len=*), parameter :: part = ".part"
+   public :: open_part, keep_line, settle_part, part_name, rename_part, sync_table, length_of
 
    !> An open table
    type :: table_file_t
@@ -114,8 +111,18 @@ contains
       !> Allocated if the file cannot be written
       type(error_t), allocatable, intent(out) :: error
 
-      call open_table(file//part, header, table, error)
+      call open_table(part_name(file), header, table, error)
    end subroutine open_part
+
+   !> Name of a file that is not whole yet
+   pure function part_name(file) result(name)
+      !> Name that it will have
+      character(len=*), intent(in) :: file
+      !> The name
+      character(len=:), allocatable :: name
+
+      name = file//".part"
+   end function part_name
 
    !> Write one line that need not be safe yet
    subroutine keep_line(table, line)
@@ -148,8 +155,9 @@ contains
       !> Allocated if it cannot be replaced
       type(error_t), allocatable, intent(out) :: error
 
-      if (c_rename(file//part//c_null_char, file//c_null_char) /= 0) &
-         & call fatal_error(error, "a file that can be replaced is wanted, this one cannot", file)
+      if (c_rename(part_name(file)//c_null_char, file//c_null_char) /= 0) &
+         & call fatal_error(error, "expected a file that can be replaced, got one "// &
+         & "that cannot; choose another folder with --out", file)
    end subroutine rename_part
 
    !> Remove a file of an earlier run; one that is not there is no failure

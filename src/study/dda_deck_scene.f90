@@ -17,10 +17,11 @@ module dda_deck_scene
    use dda_limerick_lines, only : check_limerick_lines
    use dda_line_scene, only : check_line_scene, held_blocks, line_scene
    use dda_read_deck, only : geometry_file
-   use dda_restart, only : check_restart
+   use dda_restart, only : check_restart, load_restart
    use dda_scene, only : family_t, scene_t
    use dda_scene_plan, only : scene_plan_t
    use dda_settings, only : load_direction, settings_t
+   use dda_step_context, only : march_t
    use dda_text, only : to_text
    use dda_warnings, only : add_warning, warnings_t
    implicit none
@@ -261,14 +262,15 @@ contains
       end select
    end subroutine check_mode
 
-   !> Check that a restart file is there and fits
+   !> Check the file that a run goes on from: a single case must be able to, of many each finds out
    subroutine check_start(deck, error)
       !> The deck
       type(deck_t), intent(in) :: deck
-      !> No file, or one of other blocks
+      !> No file, or one that a single case cannot go on from
       type(error_t), allocatable, intent(out) :: error
       character(len=:), allocatable :: name
       type(scene_t) :: scene
+      type(march_t) :: march
       logical :: exists
 
       name = text_of(deck, "analysis", "restart")
@@ -278,9 +280,10 @@ contains
             & place_of(deck, key_index("analysis", "restart")))
       else if (n_cases(deck) == 1) then
          call deck_scene(deck, scene)
-         call check_restart(file_beside(deck, name), scene%system, error)
+         call load_restart(file_beside(deck, name), scene%settings, scene%system, &
+            & scene%contacts, march, error)
       else
-         call check_restart(file_beside(deck, name), error=error)
+         call check_restart(file_beside(deck, name), error)
       end if
    end subroutine check_start
 

@@ -1,27 +1,80 @@
 !> The state of a run as a file, from which it goes on to the last bit as if it had not been broken
+!>
+!> The file holds what a run cannot make anew: motions, velocities, stresses, joints with their
+!> forces, and the march; everything else follows from the deck. Each number is checked on reading,
+!> for a check sum does not say who has written it.
 module dda_restart
+   use, intrinsic :: ieee_arithmetic, only : ieee_is_finite
+   use, intrinsic :: iso_fortran_env, only : int32, int64
    use dda_block_system, only : block_system_t
-   use dda_contact_detection, only : contacts_t, set_joints
-   use dda_contact_types, only : joint_t
+   use dda_block_update, only : displaced_blocks
+   use dda_contact_detection, only : contacts_t
    use dda_error, only : error_t, fatal_error
-   use dda_file_seal, only : seal_file, seal_holds
    use dda_kinds, only : wp
+   use dda_number_file, only : read_numbers, write_numbers
+   use dda_restart_joints, only : n_joint_number, n_joint_whole, pack_joints, unpack_joints
    use dda_settings, only : settings_t
-   use dda_step_context, only : march_t
+   use dda_step_context, only : energy_t, march_t
    implicit none
    private
 
    public :: check_restart, load_restart, save_restart
 
    !> First bytes of the file; another layout wants another number
-   character(len=*), parameter :: magic = "voussoir restart 2"
+   character(len=*), parameter :: title = "voussoir restart 3"
+
+   !> Whole numbers of a file beside those of its joints: blocks, corners, unknowns of a block,
+   !> whether blocks move, whether joints are searched; joints, springs at held points, steps,
+   !> passes
+   integer, parameter :: n_count = 9
+   !> Numbers of the march: time, length of the next step, energies with their time
+   integer, parameter :: n_march = 12
+
+   !> What a file holds
+   type :: state_t
+      !> The whole numbers: (n_count)
+      integer(int32) :: count(n_count) = 0
+      !> The joints as whole numbers: (n_joint_whole, n_joint)
+      integer(int32), allocatable :: joint_whole(:, :)
+      !> The joints as numbers: (n_joint_number, n_joint)
+      real(wp), allocatable :: joint_number(:, :)
+      !> Corners in the reference shape: (2, n_vertex) [m]
+      real(wp), allocatable :: vertex(:, :)
+      !> Motion of the blocks: (6, n_block)
+      real(wp), allocatable :: motion(:, :)
+      !> Rates of the same: (6, n_block)
+      real(wp), allocatable :: velocity(:, :)
+      !> Stress of the blocks: (3, n_block) [Pa]
+      real(wp), allocatable :: stress(:, :)
+      !> Reach of the blocks, zero where nothing is searched: (n_block) [m]
+      real(wp), allocatable :: reach(:)
+      !> Forces at held points: (n_spring) [N/m]
+      real(wp), allocatable :: held_force(:)
+      !> The march: (n_march)
+      real(wp) :: march(n_march) = 0.0_wp
+   end type state_t
+
+   !> Larger than any number of a run, and small enough to be squared twice
+   real(wp), parameter :: beyond_all = 1.0e60_wp
+   !> Larger than any displacement over the size of the model, any rotation and any strain
+   real(wp), parameter :: far = 1.0e12_wp
+   !> Longest reach over the width and height of a block: a step moves no corner by half as much
+   real(wp), parameter :: longest_reach = 20.0_wp
+   !> More passes than a run can have
+   integer, parameter :: most_passes = 1000000000
+   !> Shortest and longest step [s]
+   real(wp), parameter :: shortest = 1.0e-40_wp, longest = 1.0e15_wp
+   !> An edge that is left with this share of its length bounds no block
+   real(wp), parameter :: least_edge = 1.0e-3_wp
 
 contains
 
    !> Write blocks, contacts and march at the end of a step
-   subroutine save_restart(file, system, contacts, march, error)
+   subroutine save_restart(file, settings, system, contacts, march, error)
       !> Name of the file
       character(len=*), intent(in) :: file
+      !> Settings of the run
+      type(settings_t), intent(in) :: settings
       !> The blocks
       type(block_system_t), intent(in) :: system
       !> The contacts
@@ -30,33 +83,33 @@ contains
       type(march_t), intent(in) :: march
       !> Allocated if it cannot be written
       type(error_t), allocatable, intent(out) :: error
-      integer :: unit, stat
-      character(len=200) :: reason
+      type(state_t) :: state
+      integer(int32), allocatable :: whole(:)
+      real(wp), allocatable :: number(:)
+      integer(int64) :: n(2)
+      integer :: n_held
 
-      open (newunit=unit, file=file, access="stream", form="unformatted", status="replace", &
-         & action="readwrite", iostat=stat, iomsg=reason)
-      if (stat == 0) write (unit, iostat=stat, iomsg=reason) magic, size(system%area), &
-         & size(system%vertex, 2), size(contacts%joint), system%vertex, system%moved, &
-         & system%motion, system%velocity, system%stress, system%initial_stress
-      if (stat == 0) write (unit, iostat=stat, iomsg=reason) contacts%joint, contacts%face, &
-         & contacts%trial, contacts%force, contacts%gap, contacts%increment, contacts%past_slip, &
-         & contacts%broken, contacts%springs%stiffness, contacts%springs%cone, &
-         & contacts%springs%shift
-      if (stat == 0) write (unit, iostat=stat, iomsg=reason) march%steps, march%time, march%dt, &
-         & march%allowed_motion, march%resolution, march%rounding, march%displacement, &
-         & march%longest, march%elastic_motion, march%free_acceleration, march%last_acceleration, &
-         & march%passes, march%energy, allocated(march%reach), allocated(march%last_motion), &
-         & allocated(march%held_force)
-      if (stat == 0 .and. allocated(march%reach)) &
-         & write (unit, iostat=stat, iomsg=reason) march%reach
-      if (stat == 0 .and. allocated(march%last_motion)) &
-         & write (unit, iostat=stat, iomsg=reason) shape(march%last_motion), march%last_motion
-      if (stat == 0 .and. allocated(march%held_force)) &
-         & write (unit, iostat=stat, iomsg=reason) size(march%held_force), march%held_force
-      if (stat == 0) call seal_file(unit, stat, reason)
-      if (stat == 0) close (unit, iostat=stat, iomsg=reason)
-      if (stat /= 0) call fatal_error(error, "the restart file cannot be written: "// &
-         & trim(reason), file)
+      n_held = 0
+      if (allocated(march%held_force)) n_held = size(march%held_force)
+      state%count = [owner_of(settings, system, contacts), size(contacts%joint), n_held, &
+         & march%steps, march%passes]
+      call make_room(state)
+      state%vertex = system%vertex
+      state%motion = system%motion
+      state%velocity = system%velocity
+      state%stress = system%stress
+      state%reach = 0.0_wp
+      if (allocated(march%reach)) state%reach = march%reach
+      if (n_held > 0) state%held_force = march%held_force
+      call pack_joints(system, contacts, state%joint_whole, state%joint_number)
+      associate (e => march%energy)
+         state%march = [march%time, march%dt, e%time, e%kinetic, e%elastic, e%contact, e%gravity, &
+            & e%work, e%friction, e%damping, e%impact, e%numerical]
+      end associate
+      n = lengths(state%count)
+      allocate (whole(n(1)), number(n(2)))
+      call pass_state(.false., whole, number, state)
+      call write_numbers(file, title, whole, number, error)
    end subroutine save_restart
 
    !> Put blocks, contacts and march into the state of a file
@@ -71,150 +124,267 @@ contains
       type(contacts_t), intent(inout) :: contacts
       !> The march of the file
       type(march_t), intent(out) :: march
-      !> Allocated if the file is missing, broken or of another scene
+      !> Allocated if the file is missing, broken, of another scene or made up
       type(error_t), allocatable, intent(out) :: error
-      integer :: unit, stat, n_joint
+      type(state_t) :: state
+      integer(int32), allocatable :: whole(:)
+      real(wp), allocatable :: number(:)
+      character(len=70) :: fault
+      logical :: sound
 
-      call open_restart(file, unit, error)
+      call read_numbers(file, title, whole, number, error)
       if (allocated(error)) return
-      call read_beginning(unit, file, system, n_joint, error)
-      if (.not. allocated(error)) then
-         call read_state(unit, n_joint, settings, system, contacts, stat)
-         if (stat == 0) call read_march(unit, size(system%area), march, stat)
-         if (stat /= 0) call fatal_error(error, "wanted a restart file of the same settings, "// &
-            & "found one of others; make it anew", file, 1)
+      fault = ""
+      call check_counts(settings, system, contacts, whole, size(number), fault)
+      if (fault == "" .and. .not. all(ieee_is_finite(number))) fault = "numbers that are none"
+      if (fault == "") call pass_state(.true., whole, number, state)
+      if (fault == "") call take_blocks(settings, state, system, fault)
+      if (fault == "") call take_march(settings, contacts, state, march, fault)
+      if (fault == "") then
+         sound = all(abs(state%joint_number) <= beyond_all)
+         if (sound) call unpack_joints(settings, system, state%joint_whole, state%joint_number, &
+            & contacts, sound)
+         if (.not. sound) fault = "joints that these blocks cannot have"
       end if
-      close (unit)
+      if (fault /= "") call fatal_error(error, "expected the end of a run of these blocks, got "// &
+         & trim(fault)//"; make the file anew", file, 1)
    end subroutine load_restart
 
-   !> Check that a run can go on from a file
-   subroutine check_restart(file, system, error)
+   !> Check that a file is whole and a restart file, whatever its blocks
+   subroutine check_restart(file, error)
       !> Name of the file
       character(len=*), intent(in) :: file
-      !> The blocks at their beginning; without them whose blocks the file tells of is not checked
-      type(block_system_t), intent(in), optional :: system
-      !> Allocated if the file is missing, broken or of other blocks
+      !> Allocated if the file is missing, broken or another one
       type(error_t), allocatable, intent(out) :: error
-      integer :: unit, n_joint
+      integer(int32), allocatable :: whole(:)
+      real(wp), allocatable :: number(:)
 
-      call open_restart(file, unit, error)
-      if (allocated(error)) return
-      if (present(system)) call read_beginning(unit, file, system, n_joint, error)
-      close (unit)
+      call read_numbers(file, title, whole, number, error)
    end subroutine check_restart
 
-   !> Open a file that is whole
-   subroutine open_restart(file, unit, error)
-      !> Name of the file
-      character(len=*), intent(in) :: file
-      !> Its unit, open unless there is an error
-      integer, intent(out) :: unit
-      !> Allocated if the file is missing or damaged
-      type(error_t), allocatable, intent(out) :: error
-      character(len=len(magic)) :: found
-      integer :: stat
-
-      open (newunit=unit, file=file, access="stream", form="unformatted", status="old", &
-         & action="read", iostat=stat)
-      if (stat /= 0) then
-         call fatal_error(error, "wanted a restart file that can be read, found none; "// &
-            & "check its name", file, 1)
-         return
-      end if
-      found = ""
-      read (unit, iostat=stat) found
-      if (stat /= 0 .or. found /= magic) then
-         call fatal_error(error, "wanted a restart file of this version, found another file; "// &
-            & "make it anew", file, 1)
-      else if (.not. seal_holds(unit)) then
-         call fatal_error(error, "wanted a restart file as it was written, found a damaged one; " &
-            & //"make it anew", file, 1)
-      end if
-      if (allocated(error)) close (unit)
-   end subroutine open_restart
-
-   !> Read the beginning of a file, which must tell of the same blocks
-   subroutine read_beginning(unit, file, system, n_joint, error)
-      !> Unit of the file; its state comes next afterwards
-      integer, intent(in) :: unit
-      !> Name of the file
-      character(len=*), intent(in) :: file
-      !> The blocks at their beginning
-      type(block_system_t), intent(in) :: system
-      !> Number of joints in the file
-      integer, intent(out) :: n_joint
-      !> Allocated if the file is that of other blocks
-      type(error_t), allocatable, intent(inout) :: error
-      character(len=len(magic)) :: found
-      real(wp) :: vertex(2, size(system%vertex, 2))
-      integer :: stat, n(2)
-
-      rewind (unit)
-      read (unit, iostat=stat) found, n, n_joint
-      vertex = huge(vertex)
-      if (all(n == [size(system%area), size(system%vertex, 2)])) read (unit, iostat=stat) vertex
-      if (any(abs(vertex - system%vertex) > 0.0_wp)) &
-         & call fatal_error(error, "wanted a restart file of these blocks, found one of other "// &
-         & "blocks; check its name", file, 1)
-   end subroutine read_beginning
-
-   !> Read the march
-   subroutine read_march(unit, n_block, march, stat)
-      !> Unit of the file
-      integer, intent(in) :: unit
-      !> Number of blocks
-      integer, intent(in) :: n_block
-      !> Receives the march
-      type(march_t), intent(inout) :: march
-      !> 0 if all is well
-      integer, intent(out) :: stat
-      integer :: n(2)
-      logical :: has(3)
-
-      read (unit, iostat=stat) march%steps, march%time, march%dt, march%allowed_motion, &
-         & march%resolution, march%rounding, march%displacement, march%longest, &
-         & march%elastic_motion, march%free_acceleration, march%last_acceleration, march%passes, &
-         & march%energy, has
-      if (stat == 0 .and. has(1)) then
-         allocate (march%reach(n_block))
-         read (unit, iostat=stat) march%reach
-      end if
-      if (stat == 0 .and. has(2)) then
-         read (unit, iostat=stat) n
-         if (stat == 0) allocate (march%last_motion(n(1), n(2)))
-         if (stat == 0) read (unit, iostat=stat) march%last_motion
-      end if
-      if (stat /= 0 .or. .not. has(3)) return
-      read (unit, iostat=stat) n(1)
-      if (stat == 0) allocate (march%held_force(n(1)))
-      if (stat == 0) read (unit, iostat=stat) march%held_force
-   end subroutine read_march
-
-   !> Read the state of blocks and contacts
-   subroutine read_state(unit, n_joint, settings, system, contacts, stat)
-      !> Unit of the file
-      integer, intent(in) :: unit
-      !> Number of joints in the file
-      integer, intent(in) :: n_joint
+   !> What a file must have in common with the run that goes on from it
+   pure function owner_of(settings, system, contacts) result(owner)
       !> Settings of the run
       type(settings_t), intent(in) :: settings
-      !> Receives the blocks
-      type(block_system_t), intent(inout) :: system
-      !> Receives the contacts
-      type(contacts_t), intent(inout) :: contacts
-      !> 0 if all is well
-      integer, intent(out) :: stat
-      type(joint_t) :: joint(n_joint)
-      real(wp) :: motion(6, size(system%area))
+      !> The blocks
+      type(block_system_t), intent(in) :: system
+      !> The contacts
+      type(contacts_t), intent(in) :: contacts
+      !> The first of its whole numbers: (5)
+      integer(int32) :: owner(5)
 
-      read (unit, iostat=stat) system%moved, system%motion, system%velocity, system%stress, &
-         & system%initial_stress
-      if (stat == 0) read (unit, iostat=stat) joint
-      if (stat /= 0) return
-      motion = merge(1.0_wp, 0.0_wp, settings%current)*system%motion
-      call set_joints(system, motion, joint, settings%penalty_ratio, settings%n_dof, contacts)
-      read (unit, iostat=stat) contacts%face, contacts%trial, contacts%force, contacts%gap, &
-         & contacts%increment, contacts%past_slip, contacts%broken, contacts%springs%stiffness, &
-         & contacts%springs%cone, contacts%springs%shift
-   end subroutine read_state
+      owner = [size(system%area), size(system%vertex, 2), settings%n_dof, &
+         & merge(1, 0, settings%current), merge(1, 0, contacts%searched)]
+   end function owner_of
+
+   !> How many whole numbers and numbers a file has
+   pure function lengths(count) result(n)
+      !> Its first whole numbers: (n_count)
+      integer(int32), intent(in) :: count(n_count)
+      !> How many: (2)
+      integer(int64) :: n(2)
+
+      n(1) = n_count + n_joint_whole*int(count(6), int64)
+      n(2) = n_march + 16*int(count(1), int64) + 2*int(count(2), int64) + count(7) &
+         & + n_joint_number*int(count(6), int64)
+   end function lengths
+
+   !> Check what a file says of its owner and of its lengths
+   pure subroutine check_counts(settings, system, contacts, whole, n_number, fault)
+      !> Settings of the run
+      type(settings_t), intent(in) :: settings
+      !> The blocks at their beginning
+      type(block_system_t), intent(in) :: system
+      !> The contacts likewise
+      type(contacts_t), intent(in) :: contacts
+      !> Whole numbers of the file: (:)
+      integer(int32), intent(in) :: whole(:)
+      !> How many other numbers it has
+      integer, intent(in) :: n_number
+      !> What is wrong; left as it is if nothing is
+      character(len=*), intent(inout) :: fault
+      logical :: same(5)
+
+      if (size(whole) < n_count) then
+         fault = "too few numbers"
+         return
+      end if
+      same = whole(:5) == owner_of(settings, system, contacts)
+      if (.not. all(same(:2))) then
+         fault = "that of other blocks"
+      else if (.not. all(same)) then
+         fault = "that of a run with other unknowns or another geometry"
+      else if (any(whole(6:n_count) < 0)) then
+         fault = "counts below zero"
+      else if (any(lengths(whole(:n_count)) /= [size(whole), n_number])) then
+         fault = "counts that do not fit the length of the file"
+      end if
+   end subroutine check_counts
+
+   !> Carry a state to the numbers of a file, or from there
+   subroutine pass_state(reading, whole, number, state)
+      !> Whether the state is made from the numbers; otherwise they are made from it
+      logical, intent(in) :: reading
+      !> Whole numbers of the file: (:)
+      integer(int32), intent(inout) :: whole(:)
+      !> Its other numbers: (:)
+      real(wp), intent(inout) :: number(:)
+      !> The state; its counts are set if it is made
+      type(state_t), intent(inout) :: state
+      integer :: at
+
+      if (reading) then
+         state%count = whole(:n_count)
+         call make_room(state)
+         state%joint_whole = reshape(whole(n_count + 1:), shape(state%joint_whole))
+      else
+         whole(:n_count) = state%count
+         whole(n_count + 1:) = reshape(state%joint_whole, [size(state%joint_whole)])
+      end if
+      at = 0
+      call pass(size(state%vertex), state%vertex)
+      call pass(size(state%motion), state%motion)
+      call pass(size(state%velocity), state%velocity)
+      call pass(size(state%stress), state%stress)
+      call pass(size(state%reach), state%reach)
+      call pass(size(state%held_force), state%held_force)
+      call pass(n_march, state%march)
+      call pass(size(state%joint_number), state%joint_number)
+
+   contains
+
+      !> Carry the next numbers
+      subroutine pass(n, values)
+         !> How many
+         integer, intent(in) :: n
+         !> The numbers of the state: (n)
+         real(wp), intent(inout) :: values(n)
+
+         if (reading) then
+            values = number(at + 1:at + n)
+         else
+            number(at + 1:at + n) = values
+         end if
+         at = at + n
+      end subroutine pass
+   end subroutine pass_state
+
+   !> Make room for what a file holds
+   pure subroutine make_room(state)
+      !> The state; its counts are known
+      type(state_t), intent(inout) :: state
+
+      associate (n_block => state%count(1), n_joint => state%count(6))
+         allocate (state%vertex(2, state%count(2)))
+         allocate (state%motion(6, n_block), state%velocity(6, n_block), state%stress(3, n_block))
+         allocate (state%reach(n_block), state%held_force(state%count(7)))
+         allocate (state%joint_whole(n_joint_whole, n_joint))
+         allocate (state%joint_number(n_joint_number, n_joint))
+      end associate
+   end subroutine make_room
+
+   !> Put the blocks where they were; where blocks move, their corners and stresses are made from
+   !> their motion, as each step makes them
+   pure subroutine take_blocks(settings, state, system, fault)
+      !> Settings of the run
+      type(settings_t), intent(in) :: settings
+      !> The state, finite
+      type(state_t), intent(in) :: state
+      !> The blocks at their beginning in, where they were out
+      type(block_system_t), intent(inout) :: system
+      !> What is wrong; left as it is if nothing is
+      character(len=*), intent(inout) :: fault
+      real(wp) :: no_motion(settings%n_dof, maxval(system%equation)), size_of_all
+      integer :: b
+
+      no_motion = 0.0_wp
+      size_of_all = maxval(maxval(system%vertex, dim=2) - minval(system%vertex, dim=2))
+      if (any(abs(state%vertex - system%vertex) > 0.0_wp)) then
+         fault = "that of other blocks"
+      else if (any(abs(state%motion(1:2, :)) > far*size_of_all) &
+         & .or. any(abs(state%motion(3:, :)) > far) .or. any(abs(state%velocity) > beyond_all) &
+         & .or. any(abs(state%stress) > beyond_all)) then
+         fault = "motions that no block has"
+      end if
+      do b = 1, size(system%equation)
+         associate (corner => system%vertex(:, &
+            & system%first_vertex(b):system%first_vertex(b + 1) - 1))
+            if (state%reach(b) < 0.0_wp .or. state%reach(b) > longest_reach &
+               & *sum(maxval(corner, dim=2) - minval(corner, dim=2))) &
+               & fault = "reaches that no block has"
+         end associate
+         if (system%equation(b) > 0) cycle
+         if (any(abs(state%motion(:, b)) > 0.0_wp) .or. any(abs(state%velocity(:, b)) > 0.0_wp)) &
+            & fault = "fixed blocks that move"
+      end do
+      if (fault /= "") return
+      system%motion = state%motion
+      system%velocity = state%velocity
+      system%stress = state%stress
+      if (.not. settings%current) return
+      system = displaced_blocks(system, settings, no_motion)
+      if (.not. are_blocks(system)) fault = "strains that leave no block"
+   end subroutine take_blocks
+
+   !> Whether strain has left blocks their shapes: no edge is gone, none is turned inside out
+   pure logical function are_blocks(system)
+      !> The blocks where they are
+      type(block_system_t), intent(in) :: system
+      integer :: b
+
+      are_blocks = .true.
+      do b = 1, size(system%equation)
+         if (system%equation(b) == 0) cycle
+         associate (first => system%first_vertex(b), last => system%first_vertex(b + 1) - 1, &
+            & strain => system%motion(4:6, b))
+            are_blocks = all(edge_lengths(system%moved(:, first:last)) &
+               & > least_edge*edge_lengths(system%vertex(:, first:last))) &
+               & .and. strain(1) > -1.0_wp .and. strain(2) > -1.0_wp &
+               & .and. (1.0_wp + strain(1))*(1.0_wp + strain(2)) > strain(3)**2/4.0_wp
+         end associate
+         if (.not. are_blocks) return
+      end do
+   end function are_blocks
+
+   !> Lengths of the edges of a polygon
+   pure function edge_lengths(corner) result(length)
+      !> Its corners: (2, n) [m]
+      real(wp), intent(in) :: corner(:, :)
+      !> The lengths: (n) [m]
+      real(wp) :: length(size(corner, 2))
+
+      length = norm2(cshift(corner, 1, dim=2) - corner, dim=1)
+   end function edge_lengths
+
+   !> The march of a file
+   pure subroutine take_march(settings, contacts, state, march, fault)
+      !> Settings of the run
+      type(settings_t), intent(in) :: settings
+      !> The contacts
+      type(contacts_t), intent(in) :: contacts
+      !> The state, finite
+      type(state_t), intent(in) :: state
+      !> The march
+      type(march_t), intent(out) :: march
+      !> What is wrong; left as it is if nothing is
+      character(len=*), intent(inout) :: fault
+
+      march%steps = state%count(8)
+      march%passes = state%count(9)
+      march%time = state%march(1)
+      march%dt = state%march(2)
+      march%energy = energy_t(state%march(3), state%march(4), state%march(5), state%march(6), &
+         & state%march(7), state%march(8), state%march(9), state%march(10), state%march(11), &
+         & state%march(12))
+      march%held_force = state%held_force
+      if (contacts%searched .and. settings%current .and. march%steps > 0) march%reach = state%reach
+      if (march%steps > 0 .and. (march%dt < shortest .or. march%dt > longest)) then
+         fault = "a step of a length that no step has"
+      else if (march%time < 0.0_wp .or. abs(march%time - march%energy%time) > 0.0_wp &
+         & .or. march%passes > most_passes .or. any(abs(state%march) > beyond_all)) then
+         fault = "a time or energies that no run has"
+      else if (any(abs(state%held_force) > beyond_all)) then
+         fault = "forces that no point has"
+      end if
+   end subroutine take_march
 end module dda_restart

@@ -1,14 +1,13 @@
 #!/usr/bin/env python3
-"""Seeded mutation fuzzer of files of blocks, of restart files, and of decks that run them.
+"""Seeded mutation fuzzer of files of blocks, and of decks that run them.
 
 usage: fuzz_blocks.py --dda build/bin/dda [--mutants N] [--runs N] [--seed N]
 
 Mutates good files of blocks and decks of mode dynamic and limerick, and has `dda check` read them,
 many a call. Every deck must either be accepted or give lines FILE:LINE: error: ... with lines that
 the file has; the exit status must be 0 or 2; nothing may crash or hang. Of those that are accepted
-some are computed, a few steps long: status 0 or 3. Restart files with bytes changed, cut off or put
-in are never taken: status 2. The same seed makes the same mutants. Ends with status 1 and keeps the
-files that failed.
+some are computed, a few steps long: status 0 or 3. The same seed makes the same mutants. Ends with
+status 1 and keeps the files that failed.
 """
 
 from __future__ import annotations
@@ -17,7 +16,6 @@ import argparse
 import random
 import re
 import shutil
-import subprocess
 import sys
 import tempfile
 from pathlib import Path
@@ -186,61 +184,6 @@ def compute(dda: str, deck: Path, folder: Path) -> str:
     return broken
 
 
-def spoil(rng: random.Random, good: bytes) -> bytes:
-    """A restart file with bytes changed, cut off, put in or exchanged."""
-    place, kind = rng.randrange(len(good)), rng.randrange(4)
-    if kind == 0:
-        return good[:place] + bytes([good[place] ^ (1 << rng.randrange(8))]) + good[place + 1:]
-    if kind == 1:
-        return good[:place]
-    if kind == 2:
-        return good[:place] + rng.randbytes(rng.choice([1, 4, 8, 64])) + good[place:]
-    number = rng.choice([b"\xff" * 8, b"\0" * 8, b"\xff\xff\xff\x7f", rng.randbytes(8)])
-    spoilt = good[:place] + number + good[place + len(number):]
-    return spoilt if spoilt != good else good[:-1]
-
-
-def fuzz_restart(dda: str, rng: random.Random, mutants: int, folder: Path) -> list[str]:
-    """Run a deck on spoilt restart files.
-
-    Parameters
-    ----------
-    dda
-        The program
-    rng
-        Source of all choices
-    mutants
-        How many
-    folder
-        Where the files go
-
-    Returns
-    -------
-    list of str
-        What is broken
-    """
-    (folder / "r.blocks").write_bytes(BLOCKS[1])
-    scene = "&scene kind = 'blocks', geometry = 'r.blocks' /\n"
-    moves = "&analysis mode = 'dynamic', geometry = 'current', time_step = 0.001, steps = {} {} /\n"
-    (folder / "r.nml").write_text(scene + moves.format(5, "") + "&output restart = .true. /\n")
-    words = [dda, "run", "r.nml", "--out", "r", "--quiet"]
-    subprocess.run(words, cwd=folder, check=False, capture_output=True)
-    good = (folder / "r" / "case_1.restart").read_bytes()
-    failed = []
-    for number in range(mutants):
-        deck = folder / f"s{number}.nml"
-        deck.write_text(scene + moves.format(8, f", restart = 's{number}.restart'"))
-        content = good if number == 0 else spoil(rng, good)
-        (folder / f"s{number}.restart").write_bytes(content)
-        status, lines = run([dda, "run", "--quiet", "--out", str(folder / "o")], [deck], 20.0)
-        broken = complaint(status, lines, folder)
-        if number == 0 and status == 2 or number > 0 and status != 2:
-            broken = broken or f"status {status}"
-        if broken:
-            failed.append(f"s{number}.restart: {broken}")
-    return failed
-
-
 def main() -> int:
     """Fuzz and report."""
     parser = argparse.ArgumentParser(description=__doc__,
@@ -249,7 +192,6 @@ def main() -> int:
                         help="the program")
     parser.add_argument("--mutants", type=int, default=20000)
     parser.add_argument("--runs", type=int, default=2000, help="accepted decks to compute at most")
-    parser.add_argument("--restarts", type=int, default=500, help="spoilt restart files")
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--batch", type=int, default=40, help="decks a call")
     parser.add_argument("--keep", default="fuzz_failed", help="folder for files that failed")
@@ -286,10 +228,9 @@ def main() -> int:
                 deck.with_suffix(".blocks").unlink()
             if together and len(failed) == before:
                 failed.append(f"only together, from {decks[0].name}: {together}")
-        failed += fuzz_restart(options.dda, rng, options.restarts, folder)
     print("\n".join(failed))
     print(f"{options.mutants} mutants, seed {options.seed}: {accepted} accepted, {computed} "
-          f"computed, {options.restarts} restart files, {len(failed)} failed")
+          f"computed, {len(failed)} failed")
     return 1 if failed else 0
 
 

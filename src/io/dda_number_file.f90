@@ -1,0 +1,144 @@
+!> Files of numbers in the machine's own form, whole and with a check sum at their end, by which a
+!> damaged one is known
+module dda_number_file
+   use, intrinsic :: iso_fortran_env, only : int32, int64
+   use dda_binary_file, only : append_integers, append_length, append_reals, append_text, &
+      & binary_file_t, close_binary, open_binary, sync_binary
+   use dda_error, only : error_t, fatal_error
+   use dda_kinds, only : wp
+   use dda_table_file, only : part_name, rename_part
+   implicit none
+   private
+
+   public :: write_numbers, read_numbers
+
+   !> The sum is a polynomial at this place, modulo this prime: any change of a half-word changes it
+   integer(int64), parameter :: place = 257, prime = 2147483647
+
+contains
+
+   !> Write a file; one of that name is replaced at once, when the new one is on the disk
+   subroutine write_numbers(file, title, whole, number, error)
+      !> Name of the file
+      character(len=*), intent(in) :: file
+      !> Its first bytes, which tell what it holds
+      character(len=*), intent(in) :: title
+      !> Whole numbers: (:)
+      integer(int32), intent(in) :: whole(:)
+      !> Numbers: (:)
+      real(wp), intent(in) :: number(:)
+      !> Allocated if it cannot be written
+      type(error_t), allocatable, intent(out) :: error
+      type(error_t), allocatable :: late
+      type(binary_file_t) :: opened
+      integer(int32) :: n(2)
+
+      call open_binary(part_name(file), opened, error)
+      if (allocated(error)) return
+      n = [size(whole), size(number)]
+      call append_text(opened, title)
+      call append_integers(opened, n)
+      call append_integers(opened, whole)
+      call append_reals(opened, reshape(number, [size(number), 1]))
+      call append_length(opened, check_sum(n, whole, number))
+      call sync_binary(opened, error)
+      call close_binary(opened, late)
+      if (allocated(late) .and. .not. allocated(error)) call move_alloc(late, error)
+      if (.not. allocated(error)) call rename_part(file, error)
+   end subroutine write_numbers
+
+   !> Read a file that is whole
+   subroutine read_numbers(file, title, whole, number, error)
+      !> Name of the file
+      character(len=*), intent(in) :: file
+      !> What its first bytes must be
+      character(len=*), intent(in) :: title
+      !> Its whole numbers: (:)
+      integer(int32), allocatable, intent(out) :: whole(:)
+      !> Its numbers: (:)
+      real(wp), allocatable, intent(out) :: number(:)
+      !> Allocated if it is missing, another file, or damaged
+      type(error_t), allocatable, intent(out) :: error
+      character(len=len(title)) :: found
+      integer(int64) :: length
+      integer(int32) :: n(2)
+      integer :: unit, stat
+
+      open (newunit=unit, file=file, access="stream", form="unformatted", status="old", &
+         & action="read", iostat=stat)
+      if (stat /= 0) then
+         call fatal_error(error, "expected a file that can be read, got none; check its name", &
+            & file, 1)
+         return
+      end if
+      found = ""
+      read (unit, iostat=stat) found
+      if (stat /= 0 .or. found /= title) then
+         call fatal_error(error, "expected a "//title//" file, got another one; make it anew", &
+            & file, 1)
+      else
+         inquire (unit=unit, size=length)
+         read (unit, iostat=stat) n
+         if (stat == 0 .and. any(n < 0)) stat = 1
+         if (stat == 0) then
+            if (length /= len(title) + 16 + 4*int(n(1), int64) + 8*int(n(2), int64)) stat = 1
+         end if
+         if (stat == 0) call read_sealed(unit, n, whole, number, stat)
+         if (stat /= 0) call fatal_error(error, "expected a file as it was written, got a "// &
+            & "damaged one; make it anew", file, 1)
+      end if
+      close (unit)
+   end subroutine read_numbers
+
+   !> Read numbers and compare their check sum
+   subroutine read_sealed(unit, n, whole, number, stat)
+      !> Unit of the file, at the first of them
+      integer, intent(in) :: unit
+      !> How many there are: (2)
+      integer(int32), intent(in) :: n(2)
+      !> The whole ones: (n(1))
+      integer(int32), allocatable, intent(out) :: whole(:)
+      !> The others: (n(2))
+      real(wp), allocatable, intent(out) :: number(:)
+      !> 0 if all is well
+      integer, intent(out) :: stat
+      integer(int64) :: seal
+
+      allocate (whole(n(1)), number(n(2)), stat=stat)
+      if (stat == 0) read (unit, iostat=stat) whole, number, seal
+      if (stat /= 0) return
+      if (seal /= check_sum(n, whole, number)) stat = 1
+   end subroutine read_sealed
+
+   !> The check sum of a file
+   pure integer(int64) function check_sum(n, whole, number)
+      !> How many numbers there are: (2)
+      integer(int32), intent(in) :: n(2)
+      !> The whole ones: (n(1))
+      integer(int32), intent(in) :: whole(:)
+      !> The others: (n(2))
+      real(wp), intent(in) :: number(:)
+      integer :: i
+
+      check_sum = 1
+      call add_words(n, check_sum)
+      call add_words(whole, check_sum)
+      do i = 1, size(number)
+         call add_words(transfer(number(i), n), check_sum)
+      end do
+   end function check_sum
+
+   !> Add words of 32 bits to a check sum, half a word at a time: what is added is below the prime
+   pure subroutine add_words(words, sum_so_far)
+      !> The words: (:)
+      integer(int32), intent(in) :: words(:)
+      !> The check sum
+      integer(int64), intent(inout) :: sum_so_far
+      integer :: i
+
+      do i = 1, size(words)
+         sum_so_far = mod(sum_so_far*place + ibits(words(i), 0, 16), prime)
+         sum_so_far = mod(sum_so_far*place + ibits(words(i), 16, 16), prime)
+      end do
+   end subroutine add_words
+end module dda_number_file

@@ -1,0 +1,196 @@
+!> The joints of a restart file: corners, edges and states as whole numbers, the rest as numbers
+module dda_restart_joints
+   use, intrinsic :: iso_fortran_env, only : int32
+   use dda_block_system, only : block_system_t
+   use dda_contact_detection, only : contacts_t, set_joints, set_strength
+   use dda_contact_types, only : joint_t, place_joint, vertex_number
+   use dda_kinds, only : wp
+   use dda_outline, only : outline_of, outline_t
+   use dda_settings, only : settings_t
+   implicit none
+   private
+
+   public :: n_joint_whole, n_joint_number, pack_joints, unpack_joints
+
+   !> Whole numbers of a joint: contacts; of both contacts which block owns the edge, corner, edge,
+   !> whether it is open; direction of sliding; of both contacts whether it is broken
+   integer, parameter :: n_joint_whole = 12
+   !> Numbers of a joint: length; of both contacts length, share, lock and height at which it is
+   !> closed; past slip; trial force, force, gap and increment
+   integer, parameter :: n_joint_number = 22
+
+contains
+
+   !> Joints as numbers
+   pure subroutine pack_joints(system, contacts, whole, number)
+      !> The blocks
+      type(block_system_t), intent(in) :: system
+      !> The contacts
+      type(contacts_t), intent(in) :: contacts
+      !> Their whole numbers: (n_joint_whole, n_joint)
+      integer(int32), allocatable, intent(out) :: whole(:, :)
+      !> Their numbers: (n_joint_number, n_joint)
+      real(wp), allocatable, intent(out) :: number(:, :)
+      integer :: j, k
+
+      allocate (whole(n_joint_whole, size(contacts%joint)))
+      allocate (number(n_joint_number, size(contacts%joint)))
+      do j = 1, size(contacts%joint)
+         associate (joint => contacts%joint(j), face => contacts%face(j))
+            whole(:, j) = [joint%n_contact, joint%contact%edge_side, &
+               & (vertex_number(system, joint%contact(k)%vertex_block, joint%contact(k)%vertex), &
+               & k=1, 2), (vertex_number(system, joint%contact(k)%edge_block, &
+               & joint%contact(k)%edge), k=1, 2), merge(1, 0, face%open), face%slip, &
+               & merge(1, 0, contacts%broken(:, j))]
+            number(:, j) = [joint%length, joint%contact%length, joint%contact%share, &
+               & joint%contact%lock, joint%contact%closed_at, contacts%past_slip(j), &
+               & contacts%trial(:, j), contacts%force(:, j), contacts%gap(:, j), &
+               & contacts%increment(:, j)]
+         end associate
+      end do
+   end subroutine pack_joints
+
+   !> Joints from numbers that are finite: found ones made anew where blocks move, given ones with
+   !> the state that they had
+   pure subroutine unpack_joints(settings, system, whole, number, contacts, sound)
+      !> Settings of the run
+      type(settings_t), intent(in) :: settings
+      !> The blocks where they are
+      type(block_system_t), intent(in) :: system
+      !> Whole numbers: (n_joint_whole, n_joint)
+      integer(int32), intent(in) :: whole(:, :)
+      !> Numbers: (n_joint_number, n_joint)
+      real(wp), intent(in) :: number(:, :)
+      !> The contacts at their beginning in, with these joints out
+      type(contacts_t), intent(inout) :: contacts
+      !> Whether the numbers are those of joints between the blocks
+      logical, intent(out) :: sound
+      type(joint_t) :: joint(size(whole, 2))
+      integer(int32), allocatable :: given(:, :)
+      real(wp), allocatable :: ignored(:, :)
+      integer :: j
+
+      sound = all(whole(8:9, :) == 0 .or. whole(8:9, :) == 1) .and. all(abs(whole(10, :)) <= 1) &
+         & .and. all(whole(11:12, :) == 0 .or. whole(11:12, :) == 1)
+      if (.not. sound) return
+      if (contacts%searched .and. settings%current) then
+         call make_joints(system, contacts, whole, number, joint, sound)
+         if (sound) call set_joints(system, system%motion, joint, settings%penalty_ratio, &
+            & settings%n_dof, contacts)
+      else
+         sound = size(contacts%joint) == size(joint)
+         if (sound) call pack_joints(system, contacts, given, ignored)
+         if (sound) sound = all(given(:7, :) == whole(:7, :))
+      end if
+      if (.not. sound) return
+      do j = 1, size(joint)
+         contacts%face(j)%open = whole(8:9, j) == 1
+         contacts%face(j)%slip = whole(10, j)
+         contacts%broken(:, j) = whole(11:12, j) == 1
+         contacts%past_slip(j) = number(10, j)
+         contacts%trial(:, j) = number(11:13, j)
+         contacts%force(:, j) = number(14:16, j)
+         contacts%gap(:, j) = number(17:19, j)
+         contacts%increment(:, j) = number(20:22, j)
+      end do
+      call set_strength(contacts)
+   end subroutine unpack_joints
+
+   !> Joints that a search had found, where the blocks are
+   pure subroutine make_joints(system, contacts, whole, number, joint, sound)
+      !> The blocks
+      type(block_system_t), intent(in) :: system
+      !> Hold the laws
+      type(contacts_t), intent(in) :: contacts
+      !> Whole numbers: (n_joint_whole, n_joint)
+      integer(int32), intent(in) :: whole(:, :)
+      !> Numbers: (n_joint_number, n_joint)
+      real(wp), intent(in) :: number(:, :)
+      !> The joints: (n_joint)
+      type(joint_t), intent(out) :: joint(:)
+      !> Whether the numbers are those of joints between the blocks
+      logical, intent(out) :: sound
+      type(outline_t) :: outline
+      real(wp) :: gap(3)
+      integer :: j, k
+
+      outline = outline_of(system)
+      sound = .true.
+      do j = 1, size(joint)
+         sound = is_joint(system, outline, whole(:, j), number(:, j))
+         if (sound) sound = edges_face(system, outline, whole(:, j))
+         if (.not. sound) return
+         do k = 1, 2
+            joint(j)%contact(k)%vertex_block = outline%block(whole(3 + k, j))
+            joint(j)%contact(k)%vertex = whole(3 + k, j) &
+               & - system%first_vertex(outline%block(whole(3 + k, j))) + 1
+            joint(j)%contact(k)%edge_block = outline%block(whole(5 + k, j))
+            joint(j)%contact(k)%edge = whole(5 + k, j) &
+               & - system%first_vertex(outline%block(whole(5 + k, j))) + 1
+         end do
+         joint(j)%found = .true.
+         joint(j)%n_contact = whole(1, j)
+         joint(j)%block = blocks_of(outline, whole(:, j), 1)
+         joint(j)%law = contacts%search%law(system%material(joint(j)%block(1)), &
+            & system%material(joint(j)%block(2)))
+         joint(j)%length = number(1, j)
+         joint(j)%contact%edge_side = whole(2:3, j)
+         joint(j)%contact%length = number(2:3, j)
+         joint(j)%contact%share = number(4:5, j)
+         joint(j)%contact%lock = number(6:7, j)
+         joint(j)%contact%closed_at = number(8:9, j)
+         call place_joint(system, system%moved, joint(j), gap)
+      end do
+   end subroutine make_joints
+
+   !> Whether numbers are those of a joint of two blocks, of which one moves
+   pure logical function is_joint(system, outline, whole, number)
+      !> The blocks
+      type(block_system_t), intent(in) :: system
+      !> Their corners by number
+      type(outline_t), intent(in) :: outline
+      !> Whole numbers: (n_joint_whole)
+      integer(int32), intent(in) :: whole(:)
+      !> Numbers: (n_joint_number)
+      real(wp), intent(in) :: number(:)
+      real(wp), parameter :: rounding = 1.0e-9_wp
+      integer :: block(2)
+
+      is_joint = all(whole(:3) == 1 .or. whole(:3) == 2) &
+         & .and. all(whole(4:7) >= 1 .and. whole(4:7) <= size(outline%block)) &
+         & .and. all(number(1:5) >= 0.0_wp) .and. abs(sum(number(4:5)) - 1.0_wp) <= rounding
+      if (.not. is_joint) return
+      block = blocks_of(outline, whole, 1)
+      is_joint = block(1) /= block(2) .and. any(system%equation(block) > 0) &
+         & .and. all(block == blocks_of(outline, whole, 2))
+   end function is_joint
+
+   !> Whether the edges of a joint run against one another, if they are of both blocks
+   pure logical function edges_face(system, outline, whole)
+      !> The blocks where they are
+      type(block_system_t), intent(in) :: system
+      !> Their corners by number
+      type(outline_t), intent(in) :: outline
+      !> Whole numbers of the joint: (n_joint_whole)
+      integer(int32), intent(in) :: whole(:)
+      real(wp) :: edge(2, 2)
+
+      edge = system%moved(:, outline%next(whole(6:7))) - system%moved(:, whole(6:7))
+      edges_face = whole(2) == whole(3) .or. dot_product(edge(:, 1), edge(:, 2)) < 0.0_wp
+   end function edges_face
+
+   !> The two blocks that a contact is of
+   pure function blocks_of(outline, whole, k) result(block)
+      !> Corners by number
+      type(outline_t), intent(in) :: outline
+      !> Whole numbers of the joint: (n_joint_whole)
+      integer(int32), intent(in) :: whole(:)
+      !> Which of its contacts
+      integer, intent(in) :: k
+      !> First and second block of the joint: (2)
+      integer :: block(2)
+
+      block(whole(1 + k)) = outline%block(whole(5 + k))
+      block(3 - whole(1 + k)) = outline%block(whole(3 + k))
+   end function blocks_of
+end module dda_restart_joints
