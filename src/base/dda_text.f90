@@ -2,6 +2,7 @@
 module dda_text
    use, intrinsic :: ieee_arithmetic, only : ieee_is_finite
    use, intrinsic :: iso_fortran_env, only : int64
+   use dda_decimal, only : exact_product, read_short_decimal
    use dda_kinds, only : wp
    implicit none
    private
@@ -55,7 +56,7 @@ contains
    end function real_to_text
 
    !> The 17 digits of a number of usual size: a power of ten up to the 22nd is a double, and its
-   !> product with another double the sum of two (Dekker 1971)
+   !> product with another double the sum of two
    pure subroutine scale(value, digits, exponent, known)
       !> The number, positive
       real(wp), intent(in) :: value
@@ -65,35 +66,18 @@ contains
       integer, intent(out) :: exponent
       !> Whether they could be found so
       logical, intent(out) :: known
-      real(wp) :: a(2), b(2), power, product, rest
+      real(wp) :: product, rest
 
       digits = 0
       exponent = floor(log10(max(value, tiny(value))))
       known = exponent <= 16 .and. exponent >= 16 - 22
       if (.not. known) return
-      power = 10.0_wp**(16 - exponent)
-      product = value*power
-      a = halves(value)
-      b = halves(power)
-      rest = ((a(1)*b(1) - product) + a(1)*b(2) + a(2)*b(1)) + a(2)*b(2)
+      call exact_product(value, 10.0_wp**(16 - exponent), product, rest)
       ! beyond 2**53 the product is whole; what is left of it rounds, but for a tie
       known = product > 1.0e16_wp .and. product < 0.9999e17_wp &
          & .and. abs(rest - anint(rest)) < 0.5_wp
       if (known) digits = int(product, int64) + nint(rest, int64)
    end subroutine scale
-
-   !> Two numbers of half the digits that add up to one
-   pure function halves(value)
-      !> The one
-      real(wp), intent(in) :: value
-      !> The two
-      real(wp) :: halves(2)
-      real(wp) :: high
-
-      high = 134217729.0_wp*value
-      halves(1) = high - (high - value)
-      halves(2) = value - halves(1)
-   end function halves
 
    !> Leave out of 17 digits those that the number does not need to be read back
    pure subroutine shorten(value, digits, exponent, known)
@@ -297,6 +281,8 @@ contains
       value = 0.0_wp
       ok = .false.
       if (len(text) == 0 .or. len(text) > 400) return
+      call read_short_decimal(text, value, ok)
+      if (ok) return
       mark = scan(text, "eEdD")
       mantissa = text
       if (mark > 0) mantissa = text(:mark - 1)

@@ -1,0 +1,152 @@
+!> Decimal numbers of few digits to the nearest double, without the run-time library
+module dda_decimal
+   use, intrinsic :: iso_fortran_env, only : int64
+   use dda_kinds, only : wp
+   implicit none
+   private
+
+   public :: exact_product, read_short_decimal
+
+   !> Most digits whose number fits into a whole number of 64 bits
+   integer, parameter :: most_digits = 18
+   !> Powers of ten that are doubles
+   real(wp), parameter :: ten_to(0:22) = [1.0e0_wp, 1.0e1_wp, 1.0e2_wp, 1.0e3_wp, 1.0e4_wp, &
+      & 1.0e5_wp, 1.0e6_wp, 1.0e7_wp, 1.0e8_wp, 1.0e9_wp, 1.0e10_wp, 1.0e11_wp, 1.0e12_wp, &
+      & 1.0e13_wp, 1.0e14_wp, 1.0e15_wp, 1.0e16_wp, 1.0e17_wp, 1.0e18_wp, 1.0e19_wp, 1.0e20_wp, &
+      & 1.0e21_wp, 1.0e22_wp]
+   !> Share by which the small part of a result may be off
+   real(wp), parameter :: slack = 1.0e-10_wp
+
+contains
+
+   !> Product of two doubles as the sum of two (Dekker 1971)
+   pure subroutine exact_product(a, b, product, rest)
+      !> One factor
+      real(wp), intent(in) :: a
+      !> The other
+      real(wp), intent(in) :: b
+      !> The product, rounded
+      real(wp), intent(out) :: product
+      !> What rounding has taken from it
+      real(wp), intent(out) :: rest
+      real(wp) :: x(2), y(2)
+
+      product = a*b
+      x = halves(a)
+      y = halves(b)
+      rest = ((x(1)*y(1) - product) + x(1)*y(2) + x(2)*y(1)) + x(2)*y(2)
+   end subroutine exact_product
+
+   !> Two numbers of half the digits that add up to one
+   pure function halves(value)
+      !> The one
+      real(wp), intent(in) :: value
+      !> The two
+      real(wp) :: halves(2)
+      real(wp) :: high
+
+      high = 134217729.0_wp*value
+      halves(1) = high - (high - value)
+      halves(2) = value - halves(1)
+   end function halves
+
+   !> Read a decimal number of usual size, rounded to the nearest double
+   pure subroutine read_short_decimal(text, value, known)
+      !> Text such as -1.5e-3 or 1d3
+      character(len=*), intent(in) :: text
+      !> The number; 0 if it is not known
+      real(wp), intent(out) :: value
+      !> Whether it is known: the text is one number of at most 18 digits, its last one within 22
+      !> places of the point, and not so near to the middle of two doubles that more is needed
+      logical, intent(out) :: known
+      integer(int64) :: digits
+      integer :: power
+      real(wp) :: high, low, rest, product, error
+
+      value = 0.0_wp
+      call split_decimal(text, digits, power, known)
+      known = known .and. (digits == 0 .or. abs(power) <= 22)
+      if (.not. known) return
+      if (digits > 0) then
+         ! high and low add up to the digits; value and low to the number
+         high = real(digits, wp)
+         low = real(digits - int(high, int64), wp)
+         if (power >= 0) then
+            call exact_product(high, ten_to(power), value, rest)
+            low = low*ten_to(power)
+            error = slack*(abs(rest) + abs(low))
+            low = rest + low
+         else
+            value = high/ten_to(-power)
+            call exact_product(value, ten_to(-power), product, rest)
+            rest = (high - product) - rest
+            error = slack*(abs(rest) + abs(low))/ten_to(-power)
+            low = (rest + low)/ten_to(-power)
+         end if
+         known = .not. abs((value + (low + error)) - (value + (low - error))) > 0.0_wp
+         value = merge(value + low, 0.0_wp, known)
+      end if
+      if (text(1:1) == "-") value = -value
+   end subroutine read_short_decimal
+
+   !> Digits of a decimal number as a whole number, and its power of ten
+   pure subroutine split_decimal(text, digits, power, ok)
+      !> The text
+      character(len=*), intent(in) :: text
+      !> All digits, without sign
+      integer(int64), intent(out) :: digits
+      !> Power of ten of the last of them
+      integer, intent(out) :: power
+      !> Whether the text is a number of at most 18 digits, its exponent of at most 4
+      logical, intent(out) :: ok
+      integer :: i, n, point, code, first
+
+      digits = 0
+      power = 0
+      n = 0
+      point = 0
+      first = 1
+      ok = .false.
+      if (len(text) == 0) return
+      if (text(1:1) == "-" .or. text(1:1) == "+") first = 2
+      do i = first, len(text)
+         code = iachar(text(i:i)) - iachar("0")
+         if (code >= 0 .and. code <= 9) then
+            if (digits > 0 .or. code > 0) n = n + 1
+            ok = n <= most_digits
+            if (.not. ok) return
+            digits = 10_int64*digits + int(code, int64)
+         else if (text(i:i) == "." .and. point == 0) then
+            point = i
+         else
+            exit
+         end if
+      end do
+      if (point > 0) power = point + 1 - i
+      if (ok .and. i <= len(text)) call add_exponent(text(i:), power, ok)
+   end subroutine split_decimal
+
+   !> Add what stands behind the digits of a number to its power of ten
+   pure subroutine add_exponent(text, power, ok)
+      !> Text such as e-3, not empty
+      character(len=*), intent(in) :: text
+      !> The power
+      integer, intent(inout) :: power
+      !> Whether it is a letter and a whole number of at most 4 digits
+      logical, intent(out) :: ok
+      integer :: exponent, first, i
+
+      ok = scan(text(1:1), "eEdD") == 1 .and. len(text) > 1
+      if (.not. ok) return
+      first = 2
+      if (scan(text(2:2), "+-") == 1) first = 3
+      ok = len(text) >= first .and. len(text) - first < 4
+      if (ok) ok = verify(text(first:), "0123456789") == 0
+      if (.not. ok) return
+      exponent = 0
+      do i = first, len(text)
+         exponent = 10*exponent + iachar(text(i:i)) - iachar("0")
+      end do
+      power = power + merge(-exponent, exponent, text(2:2) == "-")
+   end subroutine add_exponent
+end module dda_decimal
