@@ -4,13 +4,14 @@ module dda_check
    use dda_boundary, only : boundary_t
    use dda_command_line, only : command_t, name_of
    use dda_deck, only : deck_t, flag_of, has_group, integer_of, text_of, word_of
-   use dda_deck_scene, only : check_lines, check_scene, deck_scene, warning_line
+   use dda_deck_scene, only : check_lines, check_scene, deck_scene
    use dda_deck_sweep, only : case_deck, n_cases, swept_names
    use dda_cut, only : print_warnings
    use dda_error, only : error_line, error_t
    use dda_limerick_model, only : half_size, limerick_model_t
    use dda_limerick_scene, only : limerick_scene
-   use dda_process, only : exit_status
+   use dda_process, only : error_is_terminal, exit_status
+   use dda_progress, only : end_watch, terminal_watch_t
    use dda_read_deck, only : read_deck
    use dda_scene, only : scene_t
    use dda_scene_plan, only : plan_scene, scene_plan_t, strain_reason
@@ -30,36 +31,38 @@ contains
       !> Exit status of the program
       integer, intent(out) :: status
       type(deck_t) :: deck
+      type(scene_t) :: scene
+      type(terminal_watch_t) :: watch
       type(error_t), allocatable :: error
-      integer :: i, w
+      integer :: i
 
       status = exit_status%success
+      watch%shown = error_is_terminal() .and. .not. command%quiet
       do i = 1, size(command%name)
-         call read_deck(name_of(command, i), command%setting, deck, error)
-         if (.not. allocated(error)) call check_scene(deck, error)
+         call read_deck(name_of(command, i), command%setting, deck, error, watch)
+         if (.not. allocated(error)) call check_scene(deck, scene, error, watch)
+         call end_watch(watch)
          if (allocated(error)) then
             write (error_unit, "(a)") error_line(error)
             status = exit_status%bad_input
          else if (.not. command%quiet) then
             call print_warnings(deck%warnings)
-            do w = 1, size(deck%plan%warning)
-               write (error_unit, "(a)") warning_line(deck, w)
-            end do
-            call print_plan(command%screen, name_of(command, i), deck)
+            call print_plan(command%screen, name_of(command, i), deck, scene)
          end if
       end do
    end subroutine check_decks
 
    !> Print what a deck's cases are made of
-   subroutine print_plan(screen, name, deck)
+   subroutine print_plan(screen, name, deck, scene)
       !> Where it goes
       type(screen_t), intent(in) :: screen
       !> Name of the deck
       character(len=*), intent(in) :: name
       !> The deck, checked
       type(deck_t), intent(inout) :: deck
+      !> The scene of its first case, if its blocks are from a file
+      type(scene_t), intent(inout) :: scene
       type(deck_t) :: first
-      type(scene_t) :: scene
       type(error_t), allocatable :: error
       character(len=:), allocatable :: swept
       integer :: s, blocks
@@ -67,7 +70,7 @@ contains
 
       arch = word_of(deck, "scene", "kind") == "arch"
       call case_deck(deck, 1, first, error)
-      call deck_scene(first, scene)
+      if (word_of(deck, "scene", "kind") /= "blocks") call deck_scene(first, scene)
       blocks = maxval(scene%system%equation)
       swept = ""
       associate (names => swept_names(deck))

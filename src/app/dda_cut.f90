@@ -73,11 +73,11 @@ contains
       integer :: i
 
       if (.not. allocated(warnings%item)) return
-      do i = 1, min(size(warnings%item), most_rows)
+      do i = 1, size(warnings%item)
          write (error_unit, "(a)") warning_line(warnings%item(i))
       end do
-      if (size(warnings%item) > most_rows) write (error_unit, "(a)") "and " &
-         & //to_text(size(warnings%item) - most_rows)//" more warnings"
+      if (warnings%left_out > 0) &
+         & write (error_unit, "(a)") "and "//to_text(warnings%left_out)//" more warnings"
    end subroutine print_warnings
 
    !> Write the blocks; the ending of the name says how

@@ -7,15 +7,16 @@ module dda_run
    use dda_deck, only : deck_t
    use dda_deck_record, only : deck_record
    use dda_deck_sweep, only : n_cases
-   use dda_deck_scene, only : check_lines, check_scene, warning_line
+   use dda_deck_scene, only : check_lines, check_scene
    use dda_error, only : error_line, error_t, fatal_error
    use dda_help, only : version
    use dda_process, only : error_is_terminal, exit_status, worst_status
-   use dda_progress, only : clear_progress, progress_t
+   use dda_progress, only : clear_progress, end_watch, progress_t, terminal_watch_t
    use dda_read_deck, only : read_deck
    use dda_result_tables, only : close_tables, name_tables, open_tables, result_tables_t
    use dda_resume, only : find_finished, finished_t, reopen_tables
    use dda_run_cases, only : deck_stem, run_cases
+   use dda_scene, only : scene_t
    use dda_summary, only : print_resumed, print_total
    use dda_text, only : to_text
    implicit none
@@ -37,24 +38,19 @@ contains
       type(error_t), allocatable :: error
       logical, allocatable :: chosen(:)
       logical :: good(size(command%name))
-      integer :: i, deck_status, w
+      integer :: i, deck_status
 
       allocate (deck(size(command%name)))
       status = exit_status%success
       do i = 1, size(deck)
-         call read_deck(name_of(command, i), command%setting, deck(i), error)
-         if (.not. allocated(error)) call check_scene(deck(i), error)
+         call read_and_check(command, i, deck(i), error)
          if (.not. allocated(error)) call check_lines(deck(i), error)
          if (.not. command%quiet) call print_warnings(deck(i)%warnings)
          if (.not. allocated(error)) call check_folder(command, i, good(:i - 1), error)
          if (.not. allocated(error)) call choose_cases(command%cases, &
             & n_cases(deck(i)), chosen, error)
          good(i) = .not. allocated(error)
-         if (good(i) .and. .not. command%quiet) then
-            do w = 1, size(deck(i)%plan%warning)
-               write (error_unit, "(a)") warning_line(deck(i), w)
-            end do
-         else if (.not. good(i)) then
+         if (.not. good(i)) then
             write (error_unit, "(a)") error_line(error)
             status = exit_status%bad_input
          end if
@@ -65,6 +61,25 @@ contains
          status = worst_status(status, deck_status)
       end do
    end subroutine run_decks
+
+   !> Read a deck, and check that its scene can be run
+   subroutine read_and_check(command, number, deck, error)
+      !> What the user asked for
+      type(command_t), intent(in) :: command
+      !> Number of the deck
+      integer, intent(in) :: number
+      !> The deck
+      type(deck_t), intent(out) :: deck
+      !> Allocated if it is not to be run
+      type(error_t), allocatable, intent(out) :: error
+      type(scene_t) :: scene
+      type(terminal_watch_t) :: watch
+
+      watch%shown = error_is_terminal() .and. .not. command%quiet
+      call read_deck(name_of(command, number), command%setting, deck, error, watch)
+      if (.not. allocated(error)) call check_scene(deck, scene, error, watch)
+      call end_watch(watch)
+   end subroutine read_and_check
 
    !> No two decks may write into the same folder
    subroutine check_folder(command, number, good, error)

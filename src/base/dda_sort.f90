@@ -5,7 +5,10 @@ module dda_sort
    implicit none
    private
 
-   public :: sorted_order, rising_order, place_in
+   public :: sorted_order, rising_order, sort_numbers, place_in
+
+   !> Fewer numbers are sorted without counting their digits
+   integer, parameter :: few = 512
 
 contains
 
@@ -27,9 +30,85 @@ contains
       integer(int64), intent(in) :: number(:)
       !> number(order) rises: (n)
       integer :: order(size(number))
+      integer(int64) :: least, most
 
-      call merge_sort(number, spread(0.0_wp, 1, size(number)), order)
+      least = 0
+      most = 0
+      if (size(number) >= few) then
+         least = minval(number)
+         most = maxval(number)
+      end if
+      ! the difference must not overflow
+      if (size(number) < few .or. least < 0 .and. most > huge(most) + least) then
+         call merge_sort(number, spread(0.0_wp, 1, size(number)), order)
+      else
+         call radix_sort(number, least, most, order)
+      end if
    end function rising_order
+
+   !> Put numbers in rising order
+   pure subroutine sort_numbers(number)
+      !> The numbers: (n)
+      integer, intent(inout) :: number(:)
+      integer :: i, j, this
+
+      if (size(number) >= few) then
+         number = number(rising_order(int(number, int64)))
+         return
+      end if
+      do i = 2, size(number)
+         this = number(i)
+         do j = i, 2, -1
+            if (number(j - 1) <= this) exit
+            number(j) = number(j - 1)
+         end do
+         number(j) = this
+      end do
+   end subroutine sort_numbers
+
+   !> Sort by digits, the last one first, each keeping the order of the one before; linear
+   pure subroutine radix_sort(number, least, most, order)
+      !> The numbers: (n)
+      integer(int64), intent(in) :: number(:)
+      !> The least of them
+      integer(int64), intent(in) :: least
+      !> The largest of them
+      integer(int64), intent(in) :: most
+      !> Places of the items, smallest first: (n)
+      integer, intent(out) :: order(:)
+      integer, parameter :: bits = 11
+      integer :: next(0:2**bits - 1), other(size(order)), digit, i, shift
+
+      order = [(i, i=1, size(order))]
+      do shift = 0, 63, bits
+         if (shift > 0 .and. ishft(most - least, -shift) == 0) exit
+         next = 0
+         do i = 1, size(order)
+            digit = digit_of(number(i))
+            next(digit) = next(digit) + 1
+         end do
+         next = eoshift(next, -1, boundary=1)
+         do i = 1, ubound(next, 1)
+            next(i) = next(i - 1) + next(i)
+         end do
+         do i = 1, size(order)
+            digit = digit_of(number(order(i)))
+            other(next(digit)) = order(i)
+            next(digit) = next(digit) + 1
+         end do
+         order = other
+      end do
+
+   contains
+
+      !> The digit that is sorted by
+      pure integer function digit_of(value)
+         !> A number
+         integer(int64), intent(in) :: value
+
+         digit_of = int(ibits(value - least, shift, min(bits, 63 - shift)))
+      end function digit_of
+   end subroutine radix_sort
 
    !> Merge sort from runs of one
    pure subroutine merge_sort(major, minor, order)

@@ -5,13 +5,24 @@ module dda_warnings
    implicit none
    private
 
-   public :: warnings_t, add_warning, warning_line
+   public :: warning_t, warnings_t, add_warning, warning_line
 
-   !> A list of warnings
+   !> A warning, and how often it came again
+   type, extends(error_t) :: warning_t
+      !> How many of the same words were given for later lines
+      integer :: repeats = 0
+   end type warning_t
+
+   !> A list of warnings; a file of a million faults has a short one
    type :: warnings_t
-      !> The warnings; unallocated if there is none
-      type(error_t), allocatable :: item(:)
+      !> The warnings, each message once; unallocated if there is none
+      type(warning_t), allocatable :: item(:)
+      !> How many other ones found no place in it
+      integer :: left_out = 0
    end type warnings_t
+
+   !> Longest list
+   integer, parameter :: most_items = 50
 
 contains
 
@@ -25,26 +36,39 @@ contains
       character(len=*), intent(in) :: file
       !> Line of that file
       integer, intent(in) :: line
-      type(error_t), allocatable :: longer(:), new
-      integer :: n
+      type(error_t), allocatable :: new
+      type(warning_t), allocatable :: longer(:)
+      integer :: i, n
 
-      n = 0
-      if (allocated(warnings%item)) n = size(warnings%item)
+      if (.not. allocated(warnings%item)) allocate (warnings%item(0))
+      n = size(warnings%item)
+      do i = 1, n
+         associate (item => warnings%item(i))
+            if (item%message /= message .or. item%file /= file) cycle
+            item%repeats = item%repeats + 1
+            return
+         end associate
+      end do
+      if (n == most_items) then
+         warnings%left_out = warnings%left_out + 1
+         return
+      end if
       call fatal_error(new, message, file, line)
       allocate (longer(n + 1))
-      if (n > 0) longer(:n) = warnings%item
-      longer(n + 1) = new
+      longer(:n) = warnings%item
+      longer(n + 1)%error_t = new
       call move_alloc(longer, warnings%item)
    end subroutine add_warning
 
    !> The line a user sees: FILE:LINE: warning: message
    pure function warning_line(warning) result(line)
       !> The warning
-      type(error_t), intent(in) :: warning
+      type(warning_t), intent(in) :: warning
       !> One line of text
       character(len=:), allocatable :: line
 
       line = "warning: "//warning%message
+      if (warning%repeats > 0) line = line//" (and "//to_text(warning%repeats)//" more like it)"
       if (allocated(warning%file)) &
          & line = warning%file//":"//to_text(max(warning%line, 1))//": "//line
    end function warning_line

@@ -1,16 +1,14 @@
-!> Which of many boxes overlap: a balanced tree of boxes over the curve that visits near ones one
-!> after the other; n log n whatever their sizes
+!> Which of many boxes overlap: a balanced tree of boxes; n log n whatever their sizes and wherever
+!> they are
 module dda_box_tree
-   use, intrinsic :: iso_fortran_env, only : int64
+   use dda_growth, only : make_room
    use dda_kinds, only : wp
-   use dda_sort, only : rising_order
+   use dda_sort, only : sort_numbers
    implicit none
    private
 
-   public :: box_pairs
+   public :: box_distance, box_pairs, box_tree_t, boxes_along, find_boxes, max_levels, new_box_tree
 
-   !> Steps of the curve along each side
-   integer, parameter :: curve_bits = 20
    !> Levels that a tree can have
    integer, parameter :: max_levels = 64
 
@@ -41,108 +39,235 @@ contains
       !> The pairs, the first smaller than the second: (2, n_pair)
       integer, allocatable, intent(out) :: pair(:, :)
       type(box_tree_t) :: tree
-      integer, allocatable :: found(:, :), wider(:, :)
-      integer :: stack(max_levels), top, node, i, j, n
+      integer, allocatable :: found(:, :), wider(:, :), near(:)
+      integer :: i, k, n, n_near
 
       allocate (found(2, 8*size(group) + 8))
       n = 0
-      if (size(group) > 1) call build_tree(low, high, tree)
+      if (size(group) > 1) call new_box_tree(low, high, tree)
       do i = 1, merge(size(group), 0, size(group) > 1)
-         top = 1
-         stack(1) = 1
-         do while (top > 0)
-            node = stack(top)
-            top = top - 1
-            if (tree%last(node) <= i) cycle
-            if (tree%low(1, node) > high(1, i) .or. tree%low(2, node) > high(2, i)) cycle
-            if (tree%high(1, node) < low(1, i) .or. tree%high(2, node) < low(2, i)) cycle
-            if (node < tree%n_leaf) then
-               stack(top + 1:top + 2) = [2*node + 1, 2*node]
-               top = top + 2
-               cycle
-            end if
-            j = tree%box(node - tree%n_leaf + 1)
-            if (group(j) == group(i)) cycle
-            if (n == size(found, 2)) then
-               allocate (wider(2, 2*n))
-               wider(:, :n) = found
-               call move_alloc(wider, found)
-            end if
+         call find_boxes(tree, low(:, i), high(:, i), near, n_near, above=i)
+         call sort_numbers(near(:n_near))
+         if (n + n_near > size(found, 2)) then
+            allocate (wider(2, 2*n + n_near))
+            wider(:, :n) = found(:, :n)
+            call move_alloc(wider, found)
+         end if
+         do k = 1, n_near
+            if (group(near(k)) == group(i)) cycle
             n = n + 1
-            found(:, n) = [i, j]
+            found(:, n) = [i, near(k)]
          end do
       end do
-      call sort_pairs(found(:, :n), size(group), pair)
+      allocate (pair(2, n))
+      pair = found(:, :n)
    end subroutine box_pairs
 
-   !> Put pairs in rising order
-   pure subroutine sort_pairs(found, n_box, pair)
-      !> The pairs: (2, n_pair)
-      integer, intent(in) :: found(:, :)
-      !> Number of boxes
-      integer, intent(in) :: n_box
-      !> The pairs, sorted: (2, n_pair)
-      integer, allocatable, intent(out) :: pair(:, :)
-      integer(int64) :: key(size(found, 2))
+   !> Boxes that overlap or touch another box, or meet a segment
+   pure subroutine find_boxes(tree, low, high, found, n, above, segment, margin)
+      !> The tree
+      type(box_tree_t), intent(in) :: tree
+      !> Lower left corner of the other box: (2) [m]
+      real(wp), intent(in) :: low(2)
+      !> Upper right corner: (2) [m]
+      real(wp), intent(in) :: high(2)
+      !> Numbers of the boxes, the first n of them set; its room is used again
+      integer, allocatable, intent(inout) :: found(:)
+      !> How many there are
+      integer, intent(out) :: n
+      !> Only boxes of a larger number than this
+      integer, intent(in), optional :: above
+      !> Only boxes that this segment inside the other box meets: (4) [m]
+      real(wp), intent(in), optional :: segment(4)
+      !> Distance within which it does [m]
+      real(wp), intent(in), optional :: margin
+      real(wp) :: wide
+      integer :: stack(max_levels), top, node, least
 
-      key = int(found(1, :), int64)*int(n_box + 1, int64) + int(found(2, :), int64)
-      allocate (pair(2, size(found, 2)))
-      pair = found(:, rising_order(key))
-   end subroutine sort_pairs
+      least = 0
+      if (present(above)) least = above
+      wide = 0.0_wp
+      if (present(margin)) wide = margin
+      call make_room(found, 1)
+      n = 0
+      top = 1
+      stack(1) = 1
+      do while (top > 0)
+         node = stack(top)
+         top = top - 1
+         if (tree%last(node) <= least) cycle
+         if (tree%low(1, node) > high(1) .or. tree%low(2, node) > high(2)) cycle
+         if (tree%high(1, node) < low(1) .or. tree%high(2, node) < low(2)) cycle
+         if (present(segment)) then
+            if (.not. meets_line(tree%low(:, node) - wide, tree%high(:, node) + wide, segment)) &
+               & cycle
+         end if
+         if (node < tree%n_leaf) then
+            stack(top + 1:top + 2) = [2*node + 1, 2*node]
+            top = top + 2
+            cycle
+         end if
+         call make_room(found, n + 1)
+         n = n + 1
+         found(n) = tree%box(node - tree%n_leaf + 1)
+      end do
+   end subroutine find_boxes
 
-   !> Leaves in the order of the curve, and above them the boxes that hold them
-   pure subroutine build_tree(low, high, tree)
+   !> Boxes that a segment meets, or a point where both its ends are one, in rising order
+   pure function boxes_along(tree, segment) result(box)
+      !> The tree
+      type(box_tree_t), intent(in) :: tree
+      !> Ends of the segment: (4) [m]
+      real(wp), intent(in) :: segment(4)
+      !> Numbers of the boxes: (n)
+      integer, allocatable :: box(:)
+      integer, allocatable :: found(:)
+      integer :: n
+
+      call find_boxes(tree, min(segment(1:2), segment(3:4)), max(segment(1:2), segment(3:4)), &
+         & found, n, segment=segment)
+      allocate (box(n))
+      if (n > 0) box = found(:n)
+      call sort_numbers(box)
+   end function boxes_along
+
+   !> Distance of a point from the box of a node; huge if it has none [m]
+   pure real(wp) function box_distance(tree, node, point)
+      !> The tree
+      type(box_tree_t), intent(in) :: tree
+      !> Number of the node
+      integer, intent(in) :: node
+      !> The point: (2) [m]
+      real(wp), intent(in) :: point(2)
+
+      box_distance = huge(box_distance)
+      if (tree%last(node) > 0) box_distance = &
+         & norm2(max(tree%low(:, node) - point, point - tree%high(:, node), 0.0_wp))
+   end function box_distance
+
+   !> Whether the line of a segment meets a box, or passes it by no more than rounding
+   pure logical function meets_line(low, high, segment)
+      !> Lower left corner: (2) [m]
+      real(wp), intent(in) :: low(2)
+      !> Upper right corner: (2) [m]
+      real(wp), intent(in) :: high(2)
+      !> Ends of the segment: (4) [m]
+      real(wp), intent(in) :: segment(4)
+      real(wp) :: along(2), arm(2), half(2), room
+
+      along = segment(3:4) - segment(1:2)
+      arm = (low + high)/2.0_wp - segment(1:2)
+      half = (high - low)/2.0_wp
+      room = abs(along(1))*half(2) + abs(along(2))*half(1)
+      room = room + 64.0_wp*epsilon(room)*(abs(along(1)*arm(2)) + abs(along(2)*arm(1)))
+      meets_line = abs(along(1)*arm(2) - along(2)*arm(1)) <= room
+   end function meets_line
+
+   !> A tree of boxes: each node is cut in two across its longer side, as many boxes on either side
+   pure subroutine new_box_tree(low, high, tree)
       !> Lower left corners: (2, n), n >= 1 [m]
       real(wp), intent(in) :: low(:, :)
       !> Upper right corners: (2, n) [m]
       real(wp), intent(in) :: high(:, :)
       !> The tree
       type(box_tree_t), intent(out) :: tree
-      integer :: order(size(low, 2)), i, n, leaf
+      real(wp), allocatable :: centre(:, :)
+      integer, allocatable :: item(:)
+      integer :: i
 
-      n = size(low, 2)
-      do while (tree%n_leaf < n)
+      do while (tree%n_leaf < size(low, 2))
          tree%n_leaf = 2*tree%n_leaf
       end do
       allocate (tree%box(tree%n_leaf), source=0)
       allocate (tree%low(2, 2*tree%n_leaf - 1), source=huge(1.0_wp))
       allocate (tree%high(2, 2*tree%n_leaf - 1), source=-huge(1.0_wp))
       allocate (tree%last(2*tree%n_leaf - 1), source=0)
-      order = rising_order(curve_places((low + high)/2.0_wp))
-      tree%box(:n) = order
-      do i = 1, n
-         leaf = tree%n_leaf - 1 + i
-         tree%last(leaf) = order(i)
-         tree%low(:, leaf) = low(:, order(i))
-         tree%high(:, leaf) = high(:, order(i))
+      allocate (centre(2, size(low, 2)), item(size(low, 2)))
+      centre = low/2.0_wp + high/2.0_wp
+      item = [(i, i=1, size(item))]
+      call fill_leaves(centre, item, 1, tree)
+      do i = 1, tree%n_leaf
+         if (tree%box(i) == 0) cycle
+         associate (leaf => tree%n_leaf - 1 + i, box => tree%box(i))
+            tree%last(leaf) = box
+            tree%low(:, leaf) = low(:, box)
+            tree%high(:, leaf) = high(:, box)
+         end associate
       end do
       do i = tree%n_leaf - 1, 1, -1
          tree%last(i) = max(tree%last(2*i), tree%last(2*i + 1))
          tree%low(:, i) = min(tree%low(:, 2*i), tree%low(:, 2*i + 1))
          tree%high(:, i) = max(tree%high(:, 2*i), tree%high(:, 2*i + 1))
       end do
-   end subroutine build_tree
+   end subroutine new_box_tree
 
-   !> Places of points on Morton's curve: the bits of x and y taken in turn
-   pure function curve_places(point) result(place)
-      !> The points: (2, n) [m]
-      real(wp), intent(in) :: point(:, :)
-      !> Their places: (n)
-      integer(int64) :: place(size(point, 2))
-      integer(int64) :: cell(2)
-      real(wp) :: origin(2), extent
-      integer :: bit, i
+   !> Give the leaves below a node their boxes
+   pure recursive subroutine fill_leaves(centre, item, node, tree)
+      !> Centres of the boxes; their order changes: (2, n) [m]
+      real(wp), intent(inout) :: centre(:, :)
+      !> Numbers of the boxes, in the same order: (n)
+      integer, intent(inout) :: item(:)
+      !> The node; it has at least n leaves
+      integer, intent(in) :: node
+      !> Receives the boxes
+      type(box_tree_t), intent(inout) :: tree
+      integer :: axis, half
 
-      origin = minval(point, dim=2)
-      extent = maxval(maxval(point, dim=2) - origin)
-      place = 0_int64
-      if (.not. extent > 0.0_wp) return
-      do i = 1, size(place)
-         cell = int((point(:, i) - origin)/extent*real(2**curve_bits - 1, wp), int64)
-         do bit = 0, curve_bits - 1
-            place(i) = ior(place(i), ishft(ibits(cell(1), bit, 1), 2*bit))
-            place(i) = ior(place(i), ishft(ibits(cell(2), bit, 1), 2*bit + 1))
+      if (size(item) == 0) return
+      if (node >= tree%n_leaf) then
+         tree%box(node - tree%n_leaf + 1) = item(1)
+         return
+      end if
+      half = (size(item) + 1)/2
+      axis = maxloc(maxval(centre, dim=2) - minval(centre, dim=2), dim=1)
+      call part_at(centre, item, axis, half)
+      call fill_leaves(centre(:, :half), item(:half), 2*node, tree)
+      call fill_leaves(centre(:, half + 1:), item(half + 1:), 2*node + 1, tree)
+   end subroutine fill_leaves
+
+   !> Bring the boxes with the smaller coordinates to the front (Hoare 1961)
+   pure subroutine part_at(centre, item, axis, n)
+      !> Centres of the boxes: (2, :) [m]
+      real(wp), intent(inout) :: centre(:, :)
+      !> Their numbers
+      integer, intent(inout) :: item(:)
+      !> Which coordinate counts
+      integer, intent(in) :: axis
+      !> How many come to the front
+      integer, intent(in) :: n
+      real(wp) :: middle
+      integer :: first, last, i, j
+
+      first = 1
+      last = size(item)
+      do while (first < last)
+         middle = centre(axis, (first + last)/2)
+         middle = max(min(centre(axis, first), middle), &
+            & min(max(centre(axis, first), middle), centre(axis, last)))
+         i = first
+         j = last
+         do
+            do while (centre(axis, i) < middle)
+               i = i + 1
+            end do
+            do while (centre(axis, j) > middle)
+               j = j - 1
+            end do
+            if (i <= j) then
+               centre(:, [i, j]) = centre(:, [j, i])
+               item([i, j]) = item([j, i])
+               i = i + 1
+               j = j - 1
+            end if
+            if (i > j) exit
          end do
+         if (n <= j) then
+            last = j
+         else if (n >= i) then
+            first = i
+         else
+            exit
+         end if
       end do
-   end function curve_places
+   end subroutine part_at
 end module dda_box_tree

@@ -1,13 +1,20 @@
 !> Polygons: what they hold, how deep a point lies inside, where their edges cross
 module dda_polygon
-   use dda_box_tree, only : box_pairs
+   use dda_box_tree, only : box_distance, box_pairs, box_tree_t, find_boxes, max_levels, &
+      & new_box_tree
+   use dda_growth, only : make_room
    use dda_kinds, only : wp
    use dda_segment, only : meeting_points, segment_distance
+   use dda_sort, only : sorted_order
    use dda_vector, only : cross
    implicit none
    private
 
-   public :: contains_point, polygon_distance, depth_in, find_crossing, find_overlap, parts_inside
+   public :: contains_point, polygon_distance, depth_in, find_crossing, parts_inside
+   public :: edge_ends, edge_tree, edges_near, has_tree
+
+   !> A corner whose sides turn by less than this tangent is none
+   real(wp), parameter :: flat = 1.0e-9_wp
 
 contains
 
@@ -39,69 +46,208 @@ contains
       real(wp), intent(in) :: vertex(:, :)
       !> The point: (2) [m]
       real(wp), intent(in) :: point(2)
-      integer :: i, n
+      integer :: edge
 
-      n = size(vertex, 2)
-      polygon_distance = segment_distance(point, [vertex(:, n), vertex(:, 1)])
-      do i = 2, n
-         polygon_distance = min(polygon_distance, &
-            & segment_distance(point, [vertex(:, i - 1), vertex(:, i)]))
-      end do
+      call nearest_edge(vertex, point, edge, polygon_distance)
    end function polygon_distance
 
    !> How deep a point lies inside a polygon, negative outside [m]
-   pure real(wp) function depth_in(vertex, point)
+   pure real(wp) function depth_in(vertex, point, tree)
+      !> Corners, counter-clockwise: (2, n) [m]
+      real(wp), intent(in) :: vertex(:, :)
+      !> The point: (2) [m]
+      real(wp), intent(in) :: point(2)
+      !> Its edges, where they are many
+      type(box_tree_t), intent(in), optional :: tree
+      real(wp) :: distance
+      integer :: edge
+
+      if (has_tree(tree)) then
+         call search_nearest(vertex, point, tree, edge, distance)
+      else
+         call nearest_edge(vertex, point, edge, distance)
+      end if
+      depth_in = merge(distance, -distance, is_left_of(vertex, point, edge))
+   end function depth_in
+
+   !> Whether a polygon has a tree of its edges
+   pure logical function has_tree(tree)
+      !> The tree, made or not, or none
+      type(box_tree_t), intent(in), optional :: tree
+
+      has_tree = present(tree)
+      if (has_tree) has_tree = allocated(tree%box)
+   end function has_tree
+
+   !> A tree of the edges of a polygon
+   pure subroutine edge_tree(vertex, tree)
+      !> Corners in order: (2, n) [m]
+      real(wp), intent(in) :: vertex(:, :)
+      !> The tree
+      type(box_tree_t), intent(out) :: tree
+      real(wp) :: next(2, size(vertex, 2))
+
+      next = cshift(vertex, 1, dim=2)
+      call new_box_tree(min(vertex, next), max(vertex, next), tree)
+   end subroutine edge_tree
+
+   !> Ends of an edge
+   pure function edge_ends(vertex, edge) result(ends)
+      !> Corners in order: (2, n) [m]
+      real(wp), intent(in) :: vertex(:, :)
+      !> Number of the edge, that of the corner where it starts
+      integer, intent(in) :: edge
+      !> The ends: (4) [m]
+      real(wp) :: ends(4)
+      integer :: next
+
+      next = edge + 1
+      if (next > size(vertex, 2)) next = 1
+      ends(1:2) = vertex(:, edge)
+      ends(3:4) = vertex(:, next)
+   end function edge_ends
+
+   !> The edge of a polygon that is nearest to a point
+   pure subroutine nearest_edge(vertex, point, edge, distance)
       !> Corners in order: (2, n) [m]
       real(wp), intent(in) :: vertex(:, :)
       !> The point: (2) [m]
       real(wp), intent(in) :: point(2)
+      !> Its number
+      integer, intent(out) :: edge
+      !> Its distance [m]
+      real(wp), intent(out) :: distance
+      real(wp) :: here
+      integer :: i
 
-      depth_in = polygon_distance(vertex, point)
-      if (.not. contains_point(vertex, point)) depth_in = -depth_in
-   end function depth_in
+      edge = 1
+      distance = huge(distance)
+      do i = 1, size(vertex, 2)
+         here = segment_distance(point, edge_ends(vertex, i))
+         if (here >= distance) cycle
+         distance = here
+         edge = i
+      end do
+   end subroutine nearest_edge
+
+   !> The same by a tree of the edges
+   pure subroutine search_nearest(vertex, point, tree, edge, distance)
+      !> Corners in order: (2, n) [m]
+      real(wp), intent(in) :: vertex(:, :)
+      !> The point: (2) [m]
+      real(wp), intent(in) :: point(2)
+      !> The edges
+      type(box_tree_t), intent(in) :: tree
+      !> Number of the nearest
+      integer, intent(out) :: edge
+      !> Its distance [m]
+      real(wp), intent(out) :: distance
+      integer :: stack(max_levels), top, node
+      real(wp) :: here
+
+      edge = 1
+      distance = huge(distance)
+      top = 1
+      stack(1) = 1
+      do while (top > 0)
+         node = stack(top)
+         top = top - 1
+         if (tree%last(node) == 0) cycle
+         if (box_distance(tree, node, point) >= distance) cycle
+         if (node < tree%n_leaf) then
+            ! the nearer half comes first
+            stack(top + 1:top + 2) = [2*node + 1, 2*node]
+            if (box_distance(tree, 2*node, point) > box_distance(tree, 2*node + 1, point)) &
+               & stack(top + 1:top + 2) = [2*node, 2*node + 1]
+            top = top + 2
+            cycle
+         end if
+         here = segment_distance(point, edge_ends(vertex, tree%last(node)))
+         if (here >= distance) cycle
+         distance = here
+         edge = tree%last(node)
+      end do
+   end subroutine search_nearest
+
+   !> Whether a point lies on the inner side of the edge that is nearest to it; at a corner, of both
+   !> its edges: a notch is nearest to points inside, a corner that sticks out to points outside
+   pure logical function is_left_of(vertex, point, edge)
+      !> Corners, counter-clockwise: (2, n) [m]
+      real(wp), intent(in) :: vertex(:, :)
+      !> The point: (2) [m]
+      real(wp), intent(in) :: point(2)
+      !> The edge
+      integer, intent(in) :: edge
+      real(wp) :: ends(4), beside(4), before(2), after(2), arm(2), turn
+      logical :: straight
+
+      ends = edge_ends(vertex, edge)
+      before = ends(3:4) - ends(1:2)
+      arm = point - ends(1:2)
+      is_left_of = cross(before, arm) > 0.0_wp
+      if (dot_product(arm, before) <= 0.0_wp) then
+         after = before
+         beside = edge_ends(vertex, merge(edge - 1, size(vertex, 2), edge > 1))
+         before = beside(3:4) - beside(1:2)
+      else if (dot_product(point - ends(3:4), before) >= 0.0_wp) then
+         beside = edge_ends(vertex, merge(edge + 1, 1, edge < size(vertex, 2)))
+         after = beside(3:4) - beside(1:2)
+      else
+         return
+      end if
+      turn = cross(before, after)
+      straight = abs(turn) <= flat*dot_product(before, after)
+      if (.not. straight) is_left_of = turn < 0.0_wp
+   end function is_left_of
 
    !> Ends of the parts of a segment that lie in a polygon or on its outline, in order along it;
    !> parts that follow one another count as one
-   pure function parts_inside(vertex, segment, reach) result(part)
-      !> Corners in order: (2, n) [m]
+   pure function parts_inside(vertex, segment, reach, tree) result(part)
+      !> Corners, counter-clockwise: (2, n) [m]
       real(wp), intent(in) :: vertex(:, :)
       !> Ends of the segment: (4) [m]
       real(wp), intent(in) :: segment(4)
       !> Distance within which things touch [m]
       real(wp), intent(in) :: reach
+      !> Its edges, where they are many
+      type(box_tree_t), intent(in), optional :: tree
       !> Ends of each part: (2, 2*n_part) [m]
       real(wp), allocatable :: part(:, :)
-      real(wp) :: place(2*size(vertex, 2) + 2), point(2, 2), along(2), length, from
-      integer :: i, j, n, met
+      real(wp), allocatable :: place(:)
+      integer, allocatable :: near(:)
+      real(wp) :: point(2, 2), along(2), from, length
+      integer :: i, j, n, n_near, met
 
       along = segment(3:4) - segment(1:2)
       length = norm2(along)
       along = along/length
+      call edges_near(vertex, segment, reach, near, n_near, tree)
+      allocate (place(2*n_near + 2))
       place(1:2) = [0.0_wp, length]
       n = 2
-      do i = 1, size(vertex, 2)
-         j = modulo(i, size(vertex, 2)) + 1
-         call meeting_points(segment, [vertex(:, i), vertex(:, j)], reach, met, point)
+      do i = 1, n_near
+         call meeting_points(segment, edge_ends(vertex, near(i)), reach, met, point)
          do j = 1, met
             n = n + 1
             place(n) = dot_product(point(:, j) - segment(1:2), along)
          end do
       end do
-      do i = 1, n - 1
-         j = i - 1 + minloc(place(i:n), dim=1)
-         place([i, j]) = place([j, i])
-      end do
-      allocate (part(2, 0))
-      from = -1.0_wp
+      place = place(sorted_order(spread(0, 1, n), place(:n)))
+      allocate (part(2, 2*n))
+      j = 0
+      from = 0.0_wp
       do i = 2, n
          if (place(i) - place(i - 1) <= reach) cycle
-         if (depth_in(vertex, segment(1:2) + (place(i) + place(i - 1))/2.0_wp*along) < -reach) cycle
-         if (.not. abs(from - place(i - 1)) <= reach) &
-            & part = reshape([part, segment(1:2) + place(i - 1)*along], [2, size(part, 2) + 1])
-         if (abs(from - place(i - 1)) <= reach) part = part(:, :size(part, 2) - 1)
-         part = reshape([part, segment(1:2) + place(i)*along], [2, size(part, 2) + 1])
+         if (depth_in(vertex, segment(1:2) + (place(i) + place(i - 1))/2.0_wp*along, tree) &
+            & < -reach) cycle
+         if (j == 0 .or. .not. abs(from - place(i - 1)) <= reach) then
+            part(:, j + 1) = segment(1:2) + place(i - 1)*along
+            j = j + 2
+         end if
+         part(:, j) = segment(1:2) + place(i)*along
          from = place(i)
       end do
+      part = part(:, :j)
    end function parts_inside
 
    !> The first two edges of a polygon that cross, or touch where they do not follow one another
@@ -155,74 +301,29 @@ contains
       segments_meet = all(max(min(a, b), min(c, d)) <= min(max(a, b), max(c, d)))
    end function segments_meet
 
-   !> The point of one polygon's outline that lies deepest in another, of the corners and the
-   !> middles of the pieces into which the other cuts the edges
-   pure subroutine deepest_on_outline(outline, other, deepest, point)
-      !> Corners of the one: (2, n) [m]
-      real(wp), intent(in) :: outline(:, :)
-      !> Corners of the other: (2, m) [m]
-      real(wp), intent(in) :: other(:, :)
-      !> How deep it lies, negative outside [m]
-      real(wp), intent(out) :: deepest
-      !> The point: (2) [m]
-      real(wp), intent(out) :: point(2)
-      real(wp) :: a(2), b(2), c(2), area, cut(size(other, 2) + 2), depth, middle(2)
-      integer :: i, j, n
-
-      deepest = -huge(deepest)
-      point = outline(:, 1)
-      do i = 1, size(outline, 2)
-         a = outline(:, i)
-         b = outline(:, modulo(i, size(outline, 2)) + 1) - a
-         n = 2
-         cut(:2) = [0.0_wp, 1.0_wp]
-         do j = 1, size(other, 2)
-            c = other(:, modulo(j, size(other, 2)) + 1) - other(:, j)
-            area = cross(b, c)
-            if (.not. abs(area) > 0.0_wp) cycle
-            n = n + 1
-            cut(n) = min(max(cross(other(:, j) - a, c)/area, 0.0_wp), 1.0_wp)
-         end do
-         do j = 1, n
-            middle = a + b
-            if (cut(j) < 1.0_wp) &
-               & middle = a + b*(cut(j) + minval(cut(:n), mask=cut(:n) > cut(j)))/2.0_wp
-            depth = depth_in(other, middle)
-            if (.not. depth > deepest) cycle
-            deepest = depth
-            point = middle
-         end do
-      end do
-   end subroutine deepest_on_outline
-
-   !> Whether two polygons overlap by more than a tolerance
-   pure subroutine find_overlap(first, second, tolerance, overlaps, inside, point)
-      !> Corners of the first: (2, n) [m]
-      real(wp), intent(in) :: first(:, :)
-      !> Corners of the second: (2, m) [m]
-      real(wp), intent(in) :: second(:, :)
-      !> The tolerance [m]
-      real(wp), intent(in) :: tolerance
-      !> Whether they overlap
-      logical, intent(out) :: overlaps
-      !> Which of them lies wholly inside the other: 1, 2 or 0 for none
-      integer, intent(out) :: inside
-      !> A point that both hold: (2) [m]
-      real(wp), intent(out) :: point(2)
-      real(wp) :: depth(size(first, 2)), other_depth(size(second, 2)), deepest(2)
-      real(wp) :: place(2, 2)
+   !> Edges of a polygon that may touch a segment; all of them where there is no tree
+   pure subroutine edges_near(vertex, segment, reach, near, n, tree)
+      !> Corners in order: (2, n) [m]
+      real(wp), intent(in) :: vertex(:, :)
+      !> Ends of the segment: (4) [m]
+      real(wp), intent(in) :: segment(4)
+      !> Distance within which things touch [m]
+      real(wp), intent(in) :: reach
+      !> Their numbers, the first n of them set; its room is used again
+      integer, allocatable, intent(inout) :: near(:)
+      !> How many there are
+      integer, intent(out) :: n
+      !> The edges
+      type(box_tree_t), intent(in), optional :: tree
       integer :: i
 
-      inside = 0
-      depth = [(depth_in(second, first(:, i)), i=1, size(first, 2))]
-      other_depth = [(depth_in(first, second(:, i)), i=1, size(second, 2))]
-      call deepest_on_outline(first, second, deepest(1), place(:, 1))
-      call deepest_on_outline(second, first, deepest(2), place(:, 2))
-      overlaps = any(deepest > tolerance)
-      point = place(:, maxloc(deepest, dim=1))
-      if (all(depth > -tolerance)) inside = 1
-      if (all(other_depth > -tolerance)) inside = 2
-      if (inside == 0) return
-      overlaps = .true.
-   end subroutine find_overlap
+      if (has_tree(tree)) then
+         call find_boxes(tree, min(segment(1:2), segment(3:4)) - reach, &
+            & max(segment(1:2), segment(3:4)) + reach, near, n, segment=segment, margin=reach)
+      else
+         n = size(vertex, 2)
+         call make_room(near, n)
+         near(:n) = [(i, i=1, n)]
+      end if
+   end subroutine edges_near
 end module dda_polygon

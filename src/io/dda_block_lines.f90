@@ -8,6 +8,7 @@ module dda_block_lines
    private
 
    public :: entry_t, line_t, split_line, take_keys, take_numbers, word_size
+   public :: keep_entry, take_entry, waiting_entry_t
 
    !> Longest word of a line [characters]
    integer, parameter :: word_size = 32
@@ -27,7 +28,7 @@ module dda_block_lines
    type :: entry_t
       !> Its first line
       type(line_t) :: head
-      !> Rows of numbers below it: (3, n)
+      !> Rows of numbers below it: (3, n_row or more)
       real(wp), allocatable :: row(:, :)
       !> Number of rows
       integer :: n_row = 0
@@ -35,7 +36,62 @@ module dda_block_lines
       integer :: n_column = 0
    end type entry_t
 
+   !> An entry that waits, in as much room as it needs
+   type :: waiting_entry_t
+      !> Number of its first line
+      integer :: number = 0
+      !> Numbers of each row
+      integer :: n_column = 0
+      !> Words of its first line: (n)
+      character(len=word_size), allocatable :: word(:)
+      !> Rows of numbers below it: (3, n_row)
+      real(wp), allocatable :: row(:, :)
+   end type waiting_entry_t
+
 contains
+
+   !> Put an entry behind those that wait
+   pure subroutine keep_entry(entry, later, n)
+      !> The entry
+      type(entry_t), intent(in) :: entry
+      !> Entries that wait: (n or more)
+      type(waiting_entry_t), allocatable, intent(inout) :: later(:)
+      !> Their number
+      integer, intent(inout) :: n
+      type(waiting_entry_t), allocatable :: longer(:)
+      integer :: i
+
+      if (n == size(later)) then
+         allocate (longer(2*n + 8))
+         do i = 1, n
+            longer(i)%number = later(i)%number
+            longer(i)%n_column = later(i)%n_column
+            call move_alloc(later(i)%word, longer(i)%word)
+            call move_alloc(later(i)%row, longer(i)%row)
+         end do
+         call move_alloc(longer, later)
+      end if
+      n = n + 1
+      later(n)%number = entry%head%number
+      later(n)%n_column = entry%n_column
+      allocate (later(n)%word, source=entry%head%word(:entry%head%n))
+      allocate (later(n)%row, source=entry%row(:, :entry%n_row))
+   end subroutine keep_entry
+
+   !> An entry that has waited as it was
+   pure subroutine take_entry(waiting, entry)
+      !> The entry that has waited; its rows go
+      type(waiting_entry_t), intent(inout) :: waiting
+      !> The entry
+      type(entry_t), intent(out) :: entry
+
+      entry%head%number = waiting%number
+      entry%head%n = size(waiting%word)
+      entry%head%word(:entry%head%n) = waiting%word
+      entry%n_column = waiting%n_column
+      entry%n_row = size(waiting%row, 2)
+      call move_alloc(waiting%row, entry%row)
+   end subroutine take_entry
 
    !> Part a line into words; what follows a ! is a comment
    pure subroutine split_line(text, number, line, error)

@@ -1,46 +1,89 @@
 !> Points of a file of blocks, and what acts on them in time
 module dda_block_points
-   use dda_block_input, only : block_at, block_plan_t, holds_point, rivals_at
-   use dda_block_lines, only : entry_t, take_numbers
-   use dda_boundary, only : held_point_t, history_t, loaded_point_t, measured_point_t
-   use dda_check_plan, only : warn
+   use dda_block_input, only : block_plan_t
+   use dda_block_lines, only : entry_t, take_entry, take_numbers, waiting_entry_t
+   use dda_block_sites, only : site_t, add_held, block_at, blocks_along, close_held, &
+      & holds_point, rivals_at
+   use dda_boundary, only : boundary_t, held_point_t, history_t, measured_point_t
    use dda_deck_token, only : shown
    use dda_error, only : error_t, fatal_error
    use dda_ground_motion, only : acceleration_of_displacement, acceleration_of_velocity
-   use dda_held_paths, only : contradicts
    use dda_kinds, only : wp
    use dda_polygon, only : parts_inside
    use dda_text, only : read_integer, to_text
+   use dda_warnings, only : add_warning, warnings_t
+   use dda_watch, only : watch_t
    implicit none
    private
 
-   public :: add_point
+   public :: add_points
 
    !> Points nearer than this share of the block's size are one
    real(wp), parameter :: touching = 1.0e-8_wp
 
 contains
 
-   !> Take in a point, a line that is held, or the motion of the ground, once all blocks are known
-   pure subroutine add_point(entry, plan, error)
-      !> The entry
-      type(entry_t), intent(in) :: entry
-      !> Receives it
+   !> Take in points, lines that are held, and the motion of the ground, once all blocks are known
+   subroutine add_points(later, plan, site, file, warnings, error, watch)
+      !> Their entries in the order of the file; rows of numbers go
+      type(waiting_entry_t), intent(inout) :: later(:)
+      !> Receives them
       type(block_plan_t), intent(inout) :: plan
+      !> Where the blocks are; receives the points too
+      type(site_t), intent(inout) :: site
+      !> Name of the file, for warnings
+      character(len=*), intent(in) :: file
+      !> Receives points that several blocks have
+      type(warnings_t), intent(inout) :: warnings
       !> Anything wrong
       type(error_t), allocatable, intent(out) :: error
+      !> Is told how far this is
+      class(watch_t), intent(inout), optional :: watch
+      type(entry_t) :: entry
+      integer :: i
 
-      if (.not. allocated(plan%boundary%held)) allocate (plan%boundary%held(0), &
-         & plan%boundary%loaded(0), plan%boundary%measured(0))
-      select case (entry%head%word(1))
-      case ("base_acceleration", "base_velocity", "base_displacement")
-         call take_ground(entry, plan, error)
-      case ("fix_line")
-         call hold_line(entry, plan, error)
-      case default
-         call take_point(entry, plan, error)
-      end select
-   end subroutine add_point
+      if (size(later) == 0) return
+      call make_lists(later, plan%boundary)
+      do i = 1, size(later)
+         if (present(watch) .and. modulo(i, 1000) == 0) &
+            & call watch%tell("reading points", real(i, wp)/real(size(later), wp))
+         call take_entry(later(i), entry)
+         select case (entry%head%word(1))
+         case ("base_acceleration", "base_velocity", "base_displacement")
+            call take_ground(entry, plan, error)
+         case ("fix_line")
+            call hold_line(entry, plan, site, error)
+         case default
+            call take_point(entry, plan, site, file, warnings, error)
+         end select
+         if (allocated(error)) return
+      end do
+      call close_held(site%n_held, plan%boundary%held)
+   end subroutine add_points
+
+   !> Lists as long as the file says; lines may hold more points than these
+   pure subroutine make_lists(later, boundary)
+      !> Entries of the file
+      type(waiting_entry_t), intent(in) :: later(:)
+      !> Receives the lists
+      type(boundary_t), intent(inout) :: boundary
+      integer :: i, n_held, n_loaded, n_measured
+
+      n_held = 0
+      n_loaded = 0
+      n_measured = 0
+      do i = 1, size(later)
+         select case (later(i)%word(1))
+         case ("fix", "displacement")
+            n_held = n_held + 1
+         case ("load")
+            n_loaded = n_loaded + 1
+         case ("measure")
+            n_measured = n_measured + 1
+         end select
+      end do
+      allocate (boundary%held(n_held), boundary%loaded(n_loaded), boundary%measured(n_measured))
+   end subroutine make_lists
 
    !> Take in the motion of the ground
    pure subroutine take_ground(entry, plan, error)
@@ -85,16 +128,19 @@ contains
    end subroutine take_ground
 
    !> Hold a line: the ends of its part in each block that it crosses or runs along
-   pure subroutine hold_line(entry, plan, error)
+   pure subroutine hold_line(entry, plan, site, error)
       !> The entry
       type(entry_t), intent(in) :: entry
       !> Receives the held points
       type(block_plan_t), intent(inout) :: plan
+      !> Where the blocks are, and which points hold them
+      type(site_t), intent(inout) :: site
       !> A line without length or in no block, or an unknown word
       type(error_t), allocatable, intent(out) :: error
       type(held_point_t) :: held
       real(wp), allocatable :: part(:, :)
-      real(wp) :: ends(4), size_of_block
+      real(wp) :: ends(4)
+      integer, allocatable :: near(:)
       integer :: b, i, k, n_before
 
       i = 1
@@ -105,31 +151,37 @@ contains
       call take_directions(entry, i, held%along, error)
       if (allocated(error)) return
       ends = ends - [plan%origin, plan%origin]
-      n_before = size(plan%boundary%held)
-      do b = 1, size(plan%fixed)
-         if (.not. norm2(ends(3:4) - ends(1:2)) > 0.0_wp) exit
-         associate (vertex => plan%vertex(:, plan%first_vertex(b):plan%first_vertex(b + 1) - 1))
-            size_of_block = norm2(maxval(vertex, dim=2) - minval(vertex, dim=2))
-            part = parts_inside(vertex, ends, touching*size_of_block)
-         end associate
+      n_before = site%n_held
+      allocate (near(0))
+      if (norm2(ends(3:4) - ends(1:2)) > 0.0_wp) near = blocks_along(site, ends)
+      do i = 1, size(near)
+         b = near(i)
+         part = parts_inside(plan%vertex(:, plan%first_vertex(b):plan%first_vertex(b + 1) - 1), &
+            & ends, touching*site%size_of(b), site%edges(site%edges_of(b)))
          do k = 1, size(part, 2)
             held%block = b
             held%point = part(:, k)
-            call add_held(entry, held, plan, error)
+            call add_held(held, plan, site, error)
             if (allocated(error)) return
          end do
       end do
-      if (size(plan%boundary%held) == n_before) call fatal_error(error, &
+      if (site%n_held == n_before) call fatal_error(error, &
          & "wanted a line that crosses a block or runs along its edge, found none", &
          & line=entry%head%number)
    end subroutine hold_line
 
    !> Take in a point of a block
-   pure subroutine take_point(entry, plan, error)
+   pure subroutine take_point(entry, plan, site, file, warnings, error)
       !> The entry
       type(entry_t), intent(in) :: entry
       !> Receives it
       type(block_plan_t), intent(inout) :: plan
+      !> Where the blocks are, and which points hold them
+      type(site_t), intent(inout) :: site
+      !> Name of the file, for warnings
+      character(len=*), intent(in) :: file
+      !> Receives points that several blocks have
+      type(warnings_t), intent(inout) :: warnings
       !> Anything wrong
       type(error_t), allocatable, intent(out) :: error
       type(history_t) :: history
@@ -138,7 +190,10 @@ contains
       integer :: i
       logical :: has_value
 
-      call take_place(entry, plan, i, held%block, held%point, error)
+      call take_place(entry, plan, site, i, held%block, held%point, error)
+      if (.not. allocated(error) .and. entry%head%word(2) /= "block") &
+         & call warn_of_rivals(entry, held%block, rivals_at(plan, site, held%point, held%block), &
+         & file, warnings)
       if (allocated(error)) return
       has_value = entry%n_column == 3 .and. entry%head%n >= i
       if (has_value) then
@@ -160,21 +215,27 @@ contains
       associate (boundary => plan%boundary)
          select case (entry%head%word(1))
          case ("fix", "displacement")
-            call add_held(entry, held, plan, error)
+            call add_held(held, plan, site, error)
          case ("load")
-            call keep_load(boundary%loaded, held%block, held%point, history)
+            site%n_loaded = site%n_loaded + 1
+            boundary%loaded(site%n_loaded)%block = held%block
+            boundary%loaded(site%n_loaded)%point = held%point
+            boundary%loaded(site%n_loaded)%force = history
          case ("measure")
-            boundary%measured = [boundary%measured, measured_point_t(held%block, held%point)]
+            site%n_measured = site%n_measured + 1
+            boundary%measured(site%n_measured) = measured_point_t(held%block, held%point)
          end select
       end associate
    end subroutine take_point
 
    !> Read where a point is: [block N] x y; without a number it belongs to the block that holds it
-   pure subroutine take_place(entry, plan, i, block, point, error)
+   pure subroutine take_place(entry, plan, site, i, block, point, error)
       !> The entry
       type(entry_t), intent(in) :: entry
-      !> The blocks; receives a warning where several hold the point
-      type(block_plan_t), intent(inout) :: plan
+      !> The blocks
+      type(block_plan_t), intent(in) :: plan
+      !> Where they are
+      type(site_t), intent(in) :: site
       !> Place of the word after the coordinates
       integer, intent(out) :: i
       !> Number of its block
@@ -206,29 +267,27 @@ contains
       shown_point = "("//to_text(point(1) + plan%origin(1))//", " &
          & //to_text(point(2) + plan%origin(2))//")"
       if (block == 0) then
-         block = block_at(plan, point)
-         if (block == 0) then
-            call fatal_error(error, "expected a point of a block, got "//shown_point &
-               & //", which lies in none", line=entry%head%number)
-         else
-            call warn_of_rivals(entry, plan, block, rivals_at(plan, point, block))
-         end if
-      else if (.not. holds_point(plan, block, point)) then
+         block = block_at(plan, site, point)
+         if (block == 0) call fatal_error(error, "expected a point of a block, got " &
+            & //shown_point//", which lies in none", line=entry%head%number)
+      else if (.not. holds_point(plan, site, block, point)) then
          call fatal_error(error, "expected a point of block "//to_text(block)//", got " &
             & //shown_point//", which lies outside it", line=entry%head%number)
       end if
    end subroutine take_place
 
    !> Warn of a point that lies on several blocks, and name them
-   pure subroutine warn_of_rivals(entry, plan, block, rival)
+   pure subroutine warn_of_rivals(entry, block, rival, file, warnings)
       !> The entry
       type(entry_t), intent(in) :: entry
-      !> Receives the warning
-      type(block_plan_t), intent(inout) :: plan
       !> The block that the point belongs to
       integer, intent(in) :: block
       !> The others: (n)
       integer, intent(in) :: rival(:)
+      !> Name of the file
+      character(len=*), intent(in) :: file
+      !> Receives the warning
+      type(warnings_t), intent(inout) :: warnings
       character(len=:), allocatable :: others
       integer :: k
 
@@ -238,9 +297,9 @@ contains
          others = others//", "//to_text(rival(k))
       end do
       if (size(rival) > 3) others = others//" and others"
-      call warn(plan, entry%head%number, "the point lies on block "//to_text(block) &
+      call add_warning(warnings, "the point lies on block "//to_text(block) &
          & //", which it is taken for, and on block "//others//"; write '" &
-         & //trim(entry%head%word(1))//" block N x y' to say which")
+         & //trim(entry%head%word(1))//" block N x y' to say which", file, entry%head%number)
    end subroutine warn_of_rivals
 
    !> Directions in which something is held: both, or the one that is named
@@ -262,75 +321,6 @@ contains
          & //shown(trim(entry%head%word(i)))//"'", &
          & line=entry%head%number)
    end subroutine take_directions
-
-   !> Add a held point, unless others hold the block in its way
-   pure subroutine add_held(entry, held, plan, error)
-      !> Its entry
-      type(entry_t), intent(in) :: entry
-      !> The point
-      type(held_point_t), intent(in) :: held
-      !> Receives it
-      type(block_plan_t), intent(inout) :: plan
-      !> A fixed block that is to move, or a point that cannot go its way
-      type(error_t), allocatable, intent(out) :: error
-      real(wp) :: size_of_block
-
-      if (plan%fixed(held%block) .and. allocated(held%path%value)) then
-         if (any(abs(held%path%value) > 0.0_wp)) then
-            call fatal_error(error, "block "//to_text(held%block)//" is fixed and cannot be led", &
-               & line=entry%head%number)
-            return
-         end if
-      end if
-      associate (vertex => plan%vertex(:, plan%first_vertex(held%block): &
-         & plan%first_vertex(held%block + 1) - 1))
-         size_of_block = norm2(maxval(vertex, dim=2) - minval(vertex, dim=2))
-      end associate
-      if (contradicts(plan%boundary%held, held, size_of_block)) then
-         call fatal_error(error, "wanted a way that the block can go with the points of it that " &
-            & //"are held or led already, found another", line=entry%head%number)
-         return
-      end if
-      call keep_held(plan%boundary%held, held)
-   end subroutine add_held
-
-   !> Add a held point to a list; gfortran's array constructors would lose the memory of histories
-   pure subroutine keep_held(list, held)
-      !> The list
-      type(held_point_t), allocatable, intent(inout) :: list(:)
-      !> The point
-      type(held_point_t), intent(in) :: held
-      type(held_point_t), allocatable :: longer(:)
-      integer :: n
-
-      n = size(list)
-      allocate (longer(n + 1))
-      longer(:n) = list
-      longer(n + 1) = held
-      call move_alloc(longer, list)
-   end subroutine keep_held
-
-   !> Add a loaded point to a list likewise
-   pure subroutine keep_load(list, block, point, history)
-      !> The list
-      type(loaded_point_t), allocatable, intent(inout) :: list(:)
-      !> Block that owns the point
-      integer, intent(in) :: block
-      !> The point: (2) [m]
-      real(wp), intent(in) :: point(2)
-      !> Its force in time
-      type(history_t), intent(in) :: history
-      type(loaded_point_t), allocatable :: longer(:)
-      integer :: n
-
-      n = size(list) + 1
-      allocate (longer(n))
-      longer(:n - 1) = list
-      longer(n)%block = block
-      longer(n)%point = point
-      longer(n)%force = history
-      call move_alloc(longer, list)
-   end subroutine keep_load
 
    !> A vector in time: one value behind the word, or rows of time and components below it
    pure subroutine read_history(entry, has_value, value, history, error)

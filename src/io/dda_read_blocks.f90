@@ -1,13 +1,19 @@
 !> Read a file of blocks: polygons, materials, points and what acts on them, one thing a line
 module dda_read_blocks
-   use dda_block_input, only : block_plan_t, law_plan_t, material_plan_t, new_plan
-   use dda_block_lines, only : entry_t, line_t, split_line, take_keys, take_numbers, word_size
-   use dda_block_points, only : add_point
-   use dda_check_plan, only : add_plan_block, check_plan
+   use dda_block_input, only : block_plan_t, law_plan_t, material_plan_t, most_materials, new_plan
+   use dda_block_lines, only : entry_t, keep_entry, line_t, split_line, take_keys, take_numbers, &
+      & waiting_entry_t, word_size
+   use dda_block_points, only : add_points
+   use dda_block_sites, only : site_t, survey
+   use dda_check_plan, only : check_overlaps, check_plan
    use dda_deck_token, only : shown
    use dda_error, only : error_t, fatal_error
+   use dda_growth, only : make_room
    use dda_kinds, only : wp
+   use dda_plan_growth, only : add_law_plan, add_plan_block, close_plan, growing_plan_t
    use dda_text, only : read_integer, read_number, to_text
+   use dda_warnings, only : warnings_t
+   use dda_watch, only : watch_t
    implicit none
    private
 
@@ -23,93 +29,119 @@ module dda_read_blocks
    character(len=*), parameter :: entries = "block, material, joint, fix, fix_line, "// &
       & "measure, load, displacement, base_acceleration, base_velocity, base_displacement"
 
-   !> A point entry, kept until all blocks are known
-   type :: point_entry_t
-      !> The entry
+   !> Lines between two that the watch is told of
+   integer, parameter :: told_lines = 10000
+
+   !> What has been read of a file
+   type :: reading_t
+      !> Name of the file
+      character(len=:), allocatable :: file
+      !> Blocks, materials and laws so far
+      type(growing_plan_t) :: growing
+      !> The entry that is being read
       type(entry_t) :: entry
-   end type point_entry_t
+      !> Entries of points, kept until all blocks are known: (n_later or more)
+      type(waiting_entry_t), allocatable :: later(:)
+      !> Number of these
+      integer :: n_later = 0
+   end type reading_t
 
 contains
 
    !> Blocks from the text of a file
-   pure subroutine parse_blocks(text, file, plan, error)
+   subroutine parse_blocks(text, file, plan, warnings, error, watch)
       !> The text, lines ended by line feeds
       character(len=*), intent(in) :: text
       !> Name that errors will show
       character(len=*), intent(in) :: file
       !> The blocks
       type(block_plan_t), intent(out) :: plan
+      !> Receives what is doubtful
+      type(warnings_t), intent(inout) :: warnings
       !> Bad input, with file and line
       type(error_t), allocatable, intent(out) :: error
-      type(point_entry_t), allocatable :: later(:)
-      type(entry_t) :: entry
+      !> Is told how far the reading is
+      class(watch_t), intent(inout), optional :: watch
+      type(reading_t) :: reading
+      type(site_t) :: site
       type(line_t) :: line
       integer :: number, start, finish
 
-      call new_plan(plan)
-      allocate (later(0))
+      reading%file = file
+      call new_plan(reading%growing%plan)
+      allocate (reading%later(0), reading%entry%row(3, 0))
       start = 1
       number = 0
       do while (start <= len(text) .and. .not. allocated(error))
-         finish = index(text(start:)//achar(10), achar(10)) + start - 2
+         finish = line_end(text, start)
          number = number + 1
          call split_line(text(start:finish), number, line, error)
-         if (.not. allocated(error) .and. line%n > 0) &
-            & call take_line(line, entry, later, plan, error)
+         if (.not. allocated(error) .and. line%n > 0) call take_line(line, reading, warnings, error)
          start = finish + 2
+         if (present(watch) .and. modulo(number, told_lines) == 0) &
+            & call watch%tell("reading blocks", real(start, wp)/real(len(text), wp))
       end do
-      if (.not. allocated(error)) call close_entry(entry, later, plan, error)
-      if (.not. allocated(error)) call check_plan(plan, error)
-      do number = 1, size(later)
-         if (.not. allocated(error)) call add_point(later(number)%entry, plan, error)
-      end do
+      if (.not. allocated(error)) call close_entry(reading, warnings, error)
+      call close_plan(reading%growing, plan)
+      if (.not. allocated(error)) call check_plan(plan, file, warnings, error)
+      if (.not. allocated(error)) call survey(plan, site)
+      if (.not. allocated(error)) call check_overlaps(plan, site, error, watch)
+      if (.not. allocated(error)) &
+         & call add_points(reading%later(:reading%n_later), plan, site, file, warnings, error, &
+         & watch)
       if (allocated(error)) error%file = file
    end subroutine parse_blocks
 
+   !> Place of the last character of a line
+   pure integer function line_end(text, start)
+      !> Lines ended by line feeds
+      character(len=*), intent(in) :: text
+      !> Place of its first character
+      integer, intent(in) :: start
+
+      do line_end = start - 1, len(text) - 1
+         if (text(line_end + 1:line_end + 1) == achar(10)) return
+      end do
+      line_end = len(text)
+   end function line_end
+
    !> Take a line: the beginning of an entry, or a row of the one before
-   pure subroutine take_line(line, entry, later, plan, error)
+   pure subroutine take_line(line, reading, warnings, error)
       !> The line
       type(line_t), intent(in) :: line
-      !> The entry that is being read
-      type(entry_t), intent(inout) :: entry
-      !> Entries of points so far
-      type(point_entry_t), allocatable, intent(inout) :: later(:)
-      !> The blocks so far
-      type(block_plan_t), intent(inout) :: plan
+      !> What has been read so far
+      type(reading_t), intent(inout) :: reading
+      !> Receives what is doubtful
+      type(warnings_t), intent(inout) :: warnings
       !> Anything wrong
       type(error_t), allocatable, intent(out) :: error
-      real(wp), allocatable :: wider(:, :)
       real(wp) :: value
       integer :: i
       logical :: ok
 
       if (scan(line%word(1)(1:1), "0123456789+-.") == 0) then
-         call close_entry(entry, later, plan, error)
-         if (allocated(error)) return
-         call open_entry(line, entry, error)
+         call close_entry(reading, warnings, error)
+         if (.not. allocated(error)) call open_entry(line, reading%entry, error)
          return
       end if
-      if (line%n /= entry%n_column) then
-         call fatal_error(error, row_wanted(entry)//", found "//to_text(line%n)//" words", &
-            & line=line%number)
-         return
-      end if
-      if (.not. allocated(entry%row)) allocate (entry%row(3, 8))
-      if (entry%n_row == size(entry%row, 2)) then
-         allocate (wider(3, 2*entry%n_row))
-         wider(:, :entry%n_row) = entry%row
-         call move_alloc(wider, entry%row)
-      end if
-      entry%n_row = entry%n_row + 1
-      do i = 1, line%n
-         call read_number(trim(line%word(i)), value, ok)
-         if (.not. ok) then
-            call fatal_error(error, row_wanted(entry)//", found '" &
-               & //shown(trim(line%word(i)))//"'", line=line%number)
+      associate (entry => reading%entry)
+         if (line%n /= entry%n_column) then
+            call fatal_error(error, row_wanted(entry)//", found "//to_text(line%n)//" words", &
+               & line=line%number)
             return
          end if
-         entry%row(i, entry%n_row) = value
-      end do
+         call make_room(entry%row, entry%n_row + 1)
+         entry%n_row = entry%n_row + 1
+         do i = 1, line%n
+            call read_number(line%word(i)(:len_trim(line%word(i))), value, ok)
+            if (.not. ok) then
+               call fatal_error(error, row_wanted(entry)//", found '" &
+                  & //shown(trim(line%word(i)))//"'", line=line%number)
+               return
+            end if
+            entry%row(i, entry%n_row) = value
+         end do
+      end associate
    end subroutine take_line
 
    !> What a row below an entry ought to be
@@ -134,7 +166,7 @@ contains
       !> Its first line
       type(line_t), intent(in) :: line
       !> The entry
-      type(entry_t), intent(out) :: entry
+      type(entry_t), intent(inout) :: entry
       !> No such entry
       type(error_t), allocatable, intent(out) :: error
 
@@ -154,79 +186,86 @@ contains
    end subroutine open_entry
 
    !> Take in an entry that is complete; points wait until all blocks are known
-   pure subroutine close_entry(entry, later, plan, error)
-      !> The entry; left without a head
-      type(entry_t), intent(inout) :: entry
-      !> Entries of points so far
-      type(point_entry_t), allocatable, intent(inout) :: later(:)
-      !> The blocks so far
-      type(block_plan_t), intent(inout) :: plan
+   pure subroutine close_entry(reading, warnings, error)
+      !> What has been read so far; its entry is left without a head
+      type(reading_t), intent(inout) :: reading
+      !> Receives what is doubtful
+      type(warnings_t), intent(inout) :: warnings
       !> Anything wrong
       type(error_t), allocatable, intent(out) :: error
-      type(point_entry_t) :: point
 
-      if (.not. allocated(entry%row)) allocate (entry%row(3, 0))
-      select case (entry%head%word(1))
+      select case (reading%entry%head%word(1))
       case ("block")
-         call close_block(entry, plan, error)
+         call close_block(reading, warnings, error)
       case ("material")
-         call add_material(entry%head, plan, error)
+         call add_material(reading%entry%head, reading%growing%plan, error)
       case ("joint")
-         call add_law(entry%head, plan, error)
+         call add_law(reading%entry%head, reading%growing, error)
       case ("fix", "fix_line", "measure", "load", "displacement", "base_acceleration", &
          & "base_velocity", "base_displacement")
-         point%entry = entry
-         later = [later, point]
+         call keep_entry(reading%entry, reading%later, reading%n_later)
       end select
-      entry = entry_t()
+      reading%entry%head%n = 0
+      reading%entry%head%word(1) = ""
+      reading%entry%n_row = 0
+      reading%entry%n_column = 0
    end subroutine close_entry
 
    !> Take in a block: block [fixed] [material N] [velocity vx vy w] [stress sx sy txy]
-   pure subroutine close_block(entry, plan, error)
-      !> The entry
-      type(entry_t), intent(in) :: entry
-      !> Receives the block
-      type(block_plan_t), intent(inout) :: plan
+   pure subroutine close_block(reading, warnings, error)
+      !> What has been read so far; receives the block
+      type(reading_t), intent(inout) :: reading
+      !> Receives what was changed of the block
+      type(warnings_t), intent(inout) :: warnings
       !> Anything wrong
       type(error_t), allocatable, intent(out) :: error
+      character(len=*), parameter :: known(4) = [character(len=8) :: "fixed", "material", &
+         & "velocity", "stress"]
       real(wp) :: velocity(3), stress(3), number(1)
-      integer :: i, material
-      logical :: fixed
+      integer :: i, k
+      logical :: given(size(known))
 
-      fixed = .false.
+      given = .false.
       velocity = 0.0_wp
       stress = 0.0_wp
       number = 1.0_wp
-      i = 2
-      do while (i <= entry%head%n .and. .not. allocated(error))
-         select case (entry%head%word(i))
-         case ("fixed")
-            fixed = .true.
-            i = i + 1
-         case ("material")
-            call take_numbers(entry%head, i, number, error)
-         case ("velocity")
-            call take_numbers(entry%head, i, velocity, error)
-         case ("stress")
-            call take_numbers(entry%head, i, stress, error)
-         case default
-            call fatal_error(error, "wanted fixed, material, velocity or stress, found '" &
-               & //shown(trim(entry%head%word(i)))//"'", line=entry%head%number)
-         end select
-      end do
-      if (allocated(error)) return
-      material = nint(number(1))
-      if (abs(number(1) - anint(number(1))) > 0.0_wp .or. number(1) < 1.0_wp &
-         & .or. number(1) > 1000.0_wp) then
-         call fatal_error(error, "wanted the number of a material from 1 to 1000, found " &
-            & //to_text(number(1)), line=entry%head%number)
-         return
-      end if
-      call add_plan_block(plan, entry%row(:2, :entry%n_row), fixed, material, &
-         & entry%head%number, error)
-      if (allocated(error)) return
-      plan%velocity(:, size(plan%fixed)) = velocity
-      plan%stress(:, size(plan%fixed)) = stress
+      associate (head => reading%entry%head, growing => reading%growing)
+         i = 2
+         do while (i <= head%n .and. .not. allocated(error))
+            k = findloc(known == head%word(i), .true., dim=1)
+            if (k > 0) then
+               if (given(k)) call fatal_error(error, trim(known(k))//" is given twice", &
+                  & line=head%number)
+               given(k) = .true.
+            end if
+            if (allocated(error)) return
+            select case (k)
+            case (1)
+               i = i + 1
+            case (2)
+               call take_numbers(head, i, number, error)
+            case (3)
+               call take_numbers(head, i, velocity, error)
+            case (4)
+               call take_numbers(head, i, stress, error)
+            case default
+               call fatal_error(error, "wanted fixed, material, velocity or stress, found '" &
+                  & //shown(trim(head%word(i)))//"'", line=head%number)
+            end select
+         end do
+         if (allocated(error)) return
+         if (abs(number(1) - anint(number(1))) > 0.0_wp .or. number(1) < 1.0_wp &
+            & .or. number(1) > real(most_materials, wp)) then
+            call fatal_error(error, "wanted the number of a material from 1 to " &
+               & //to_text(most_materials)//", found "//to_text(number(1)), line=head%number)
+            return
+         end if
+         call add_plan_block(growing, reading%entry%row(:2, :reading%entry%n_row), given(1), &
+            & nint(number(1)), head%number, reading%file, warnings, error)
+         if (allocated(error)) return
+         growing%plan%velocity(:, growing%n_block) = velocity
+         growing%plan%stress(:, growing%n_block) = stress
+      end associate
    end subroutine close_block
 
    !> Take in a material: material N [density d] [unit_weight w] [young e] [poisson p]
@@ -241,9 +280,10 @@ contains
       logical :: ok
 
       call read_integer(trim(line%word(2)), material%number, ok)
-      if (.not. ok .or. material%number < 2 .or. material%number > 1000) then
-         call fatal_error(error, "wanted the number of a material from 2 to 1000 (1 is that of " &
-            & //"the deck), found '"//shown(trim(line%word(2)))//"'", line=line%number)
+      if (.not. ok .or. material%number < 2 .or. material%number > most_materials) then
+         call fatal_error(error, "wanted the number of a material from 2 to " &
+            & //to_text(most_materials)//" (1 is that of the deck), found '" &
+            & //shown(trim(line%word(2)))//"'", line=line%number)
          return
       else if (any(plan%materials%number == material%number)) then
          call fatal_error(error, "material "//to_text(material%number)//" is given twice", &
@@ -264,11 +304,11 @@ contains
    end subroutine add_material
 
    !> Take in a law: joint I J [friction_deg f] [cohesion c] [tension t]
-   pure subroutine add_law(line, plan, error)
+   pure subroutine add_law(line, growing, error)
       !> The line
       type(line_t), intent(in) :: line
       !> Receives the law
-      type(block_plan_t), intent(inout) :: plan
+      type(growing_plan_t), intent(inout) :: growing
       !> Anything wrong
       type(error_t), allocatable, intent(out) :: error
       type(law_plan_t) :: law
@@ -278,9 +318,9 @@ contains
       do i = 1, 2
          call read_integer(trim(line%word(i + 1)), law%material(i), ok(i))
       end do
-      if (.not. all(ok) .or. any(law%material < 1) .or. any(law%material > 1000)) then
-         call fatal_error(error, "wanted the numbers of two materials from 1 to 1000 after joint", &
-            & line=line%number)
+      if (.not. all(ok) .or. any(law%material < 1) .or. any(law%material > most_materials)) then
+         call fatal_error(error, "wanted the numbers of two materials from 1 to " &
+            & //to_text(most_materials)//" after joint", line=line%number)
          return
       end if
       call take_keys(line, 4, law_key, law%value, law%given, error)
@@ -289,7 +329,8 @@ contains
          call fatal_error(error, "wanted 0 <= friction_deg <= 90 and no negative strength", &
             & line=line%number)
       else
-         plan%laws = [plan%laws, law]
+         law%line = line%number
+         call add_law_plan(growing, law)
       end if
    end subroutine add_law
 end module dda_read_blocks

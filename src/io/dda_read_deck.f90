@@ -16,6 +16,7 @@ module dda_read_deck
    use dda_deck_check, only : check_deck
    use dda_deck_lines, only : read_lines
    use dda_read_blocks, only : parse_blocks
+   use dda_watch, only : watch_t
    implicit none
    private
 
@@ -24,7 +25,7 @@ module dda_read_deck
 contains
 
    !> Read and check a deck and all cases of its sweeps
-   subroutine read_deck(file, settings, deck, error)
+   subroutine read_deck(file, settings, deck, error, watch)
       !> Name of the file
       character(len=*), intent(in) :: file
       !> The --set values: group%key=value: (n)
@@ -33,6 +34,8 @@ contains
       type(deck_t), intent(out) :: deck
       !> Bad input, with file and line, or with --set and its number
       type(error_t), allocatable, intent(out) :: error
+      !> Is told how far the reading is
+      class(watch_t), intent(inout), optional :: watch
       character(len=:), allocatable :: text, geometry
 
       call read_text_file(file, text, error)
@@ -43,8 +46,8 @@ contains
       geometry = geometry_file(deck)
       call read_text_file(geometry, text, error)
       if (allocated(error)) return
-      deck%geometry_text = text
-      call parse_blocks(text, geometry, deck%plan, error)
+      call parse_blocks(text, geometry, deck%plan, deck%warnings, error, watch)
+      call move_alloc(text, deck%geometry_text)
    end subroutine read_deck
 
    !> Name of the file of blocks: beside the deck unless it begins with a slash

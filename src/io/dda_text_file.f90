@@ -12,7 +12,7 @@ module dda_text_file
    !> One megabyte [bytes]
    integer, parameter :: megabyte = 1024**2
    !> Largest file that is read [bytes]
-   integer, parameter :: max_file_size = 64*megabyte
+   integer, parameter :: max_file_size = 512*megabyte
 
    ! Through the C library: Fortran's open cuts the blanks at the end of a name.
    interface

@@ -2,12 +2,13 @@
 module dda_block_input
    use dda_boundary, only : boundary_t
    use dda_kinds, only : wp
-   use dda_polygon, only : depth_in
    implicit none
    private
 
-   public :: block_plan_t, material_plan_t, law_plan_t, new_plan, block_at
-   public :: holds_point, rivals_at, unsupported_block
+   public :: block_plan_t, material_plan_t, law_plan_t, most_materials, new_plan, unsupported_block
+
+   !> Largest number of a material
+   integer, parameter :: most_materials = 1000
 
    !> What a file says of a material; what it leaves out is that of the deck
    type :: material_plan_t
@@ -27,6 +28,8 @@ module dda_block_input
       real(wp) :: value(3) = 0.0_wp
       !> Which of them are given: (3)
       logical :: given(3) = .false.
+      !> Line of the file
+      integer :: line = 0
    end type law_plan_t
 
    !> Blocks and what is said of them
@@ -56,14 +59,7 @@ module dda_block_input
       type(boundary_t) :: boundary
       !> Line of the file that moves the ground, 0 if there is none
       integer :: ground_line = 0
-      !> What the user should know: (n)
-      character(len=160), allocatable :: warning(:)
-      !> Lines that the warnings speak of: (n)
-      integer, allocatable :: warning_line(:)
    end type block_plan_t
-
-   !> A point may lie outside its block by this share of the block's size: coordinates are rounded
-   real(wp), parameter :: rounded = 1.0e-4_wp
 
 contains
 
@@ -75,104 +71,7 @@ contains
       allocate (plan%first_vertex(1), source=1)
       allocate (plan%vertex(2, 0), plan%fixed(0), plan%material(0), plan%velocity(3, 0))
       allocate (plan%stress(3, 0), plan%line(0), plan%materials(0), plan%laws(0))
-      allocate (plan%warning(0), plan%warning_line(0))
    end subroutine new_plan
-
-   !> Block that holds a point most deeply or has it on its outline; 0 if none does
-   pure integer function block_at(plan, point)
-      !> The plan
-      type(block_plan_t), intent(in) :: plan
-      !> The point, seen from the origin of the plan: (2) [m]
-      real(wp), intent(in) :: point(2)
-      real(wp) :: deepest, depth
-      integer :: b
-
-      block_at = 0
-      deepest = -huge(deepest)
-      do b = 1, size(plan%fixed)
-         depth = depth_of(plan, b, point)
-         if (depth < -margin_of(plan, b) .or. .not. depth > deepest) cycle
-         deepest = depth
-         block_at = b
-      end do
-   end function block_at
-
-   !> Blocks that have a point on their outlines together with a block, as far as rounding tells
-   pure function rivals_at(plan, point, block) result(rival)
-      !> The plan
-      type(block_plan_t), intent(in) :: plan
-      !> The point, seen from the origin of the plan: (2) [m]
-      real(wp), intent(in) :: point(2)
-      !> The block, which holds it
-      integer, intent(in) :: block
-      !> The others: (n)
-      integer, allocatable :: rival(:)
-      real(wp) :: depth
-      integer :: b
-
-      depth = depth_of(plan, block, point)
-      if (depth > margin_of(plan, block)) then
-         allocate (rival(0))
-      else
-         rival = pack([(b, b=1, size(plan%fixed))], [(b /= block .and. is_rival(b), &
-            & b=1, size(plan%fixed))])
-      end if
-
-   contains
-
-      !> Whether a block has the point on its outline, too
-      pure logical function is_rival(b)
-         !> Number of the block
-         integer, intent(in) :: b
-         real(wp) :: margin
-
-         margin = min(margin_of(plan, b), margin_of(plan, block))
-         is_rival = depth <= margin .and. depth_of(plan, b, point) >= -margin
-      end function is_rival
-   end function rivals_at
-
-   !> Whether a block holds a point or has it on its outline
-   pure logical function holds_point(plan, b, point)
-      !> The plan
-      type(block_plan_t), intent(in) :: plan
-      !> Number of the block
-      integer, intent(in) :: b
-      !> The point, seen from the origin of the plan: (2) [m]
-      real(wp), intent(in) :: point(2)
-
-      holds_point = depth_of(plan, b, point) >= -margin_of(plan, b)
-   end function holds_point
-
-   !> How deep a point lies in a block, negative outside; far outside its box only that it does [m]
-   pure real(wp) function depth_of(plan, b, point)
-      !> The plan
-      type(block_plan_t), intent(in) :: plan
-      !> Number of the block
-      integer, intent(in) :: b
-      !> The point, seen from the origin of the plan: (2) [m]
-      real(wp), intent(in) :: point(2)
-      real(wp) :: margin
-
-      depth_of = -huge(depth_of)
-      margin = margin_of(plan, b)
-      associate (vertex => plan%vertex(:, plan%first_vertex(b):plan%first_vertex(b + 1) - 1))
-         if (any(point < minval(vertex, dim=2) - margin)) return
-         if (any(point > maxval(vertex, dim=2) + margin)) return
-         depth_of = depth_in(vertex, point)
-      end associate
-   end function depth_of
-
-   !> How far outside a block a point may lie that is still on its outline [m]
-   pure real(wp) function margin_of(plan, b)
-      !> The plan
-      type(block_plan_t), intent(in) :: plan
-      !> Number of the block
-      integer, intent(in) :: b
-
-      associate (vertex => plan%vertex(:, plan%first_vertex(b):plan%first_vertex(b + 1) - 1))
-         margin_of = rounded*norm2(maxval(vertex, dim=2) - minval(vertex, dim=2))
-      end associate
-   end function margin_of
 
    !> The first movable block that no chain of joints ties to a fixed one; 0 if there is none
    pure integer function unsupported_block(fixed, pair)
@@ -180,19 +79,48 @@ contains
       logical, intent(in) :: fixed(:)
       !> Blocks of each joint: (2, n_joint)
       integer, intent(in) :: pair(:, :)
-      logical :: tied(size(fixed)), grows
-      integer :: j
+      integer :: leader(0:size(fixed)), b, j
 
-      tied = fixed
-      grows = .true.
-      do while (grows)
-         grows = .false.
-         do j = 1, size(pair, 2)
-            if (tied(pair(1, j)) .eqv. tied(pair(2, j))) cycle
-            tied(pair(:, j)) = .true.
-            grows = .true.
-         end do
+      ! blocks with one leader are tied to one another, those that are fixed to the ground, block 0
+      leader = [0, merge(0, [(b, b=1, size(fixed))], fixed)]
+      do j = 1, size(pair, 2)
+         call tie(leader, pair(1, j), pair(2, j))
       end do
-      unsupported_block = findloc(tied, .false., dim=1)
+      do unsupported_block = 1, size(fixed)
+         b = unsupported_block
+         call find_leader(leader, b)
+         if (b > 0) return
+      end do
+      unsupported_block = 0
    end function unsupported_block
+
+   !> Give the groups of two blocks one leader, the smaller of theirs
+   pure subroutine tie(leader, first, second)
+      !> A block that each follows, itself at the end: (0:n_block)
+      integer, intent(inout) :: leader(0:)
+      !> One block
+      integer, intent(in) :: first
+      !> The other
+      integer, intent(in) :: second
+      integer :: a, b
+
+      a = first
+      b = second
+      call find_leader(leader, a)
+      call find_leader(leader, b)
+      leader(max(a, b)) = min(a, b)
+   end subroutine tie
+
+   !> Go from a block to its leader, and halve the way for those who come after (Tarjan 1975)
+   pure subroutine find_leader(leader, block)
+      !> A block that each follows, itself at the end: (0:n_block)
+      integer, intent(inout) :: leader(0:)
+      !> The block in, its leader out
+      integer, intent(inout) :: block
+
+      do while (leader(block) /= block)
+         leader(block) = leader(leader(block))
+         block = leader(block)
+      end do
+   end subroutine find_leader
 end module dda_block_input

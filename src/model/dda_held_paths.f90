@@ -6,45 +6,63 @@ module dda_held_paths
    implicit none
    private
 
-   public :: contradicts
+   public :: compare_paths
 
    !> Places nearer than this share of the block's size are the same
    real(wp), parameter :: same = 1.0e-9_wp
+   !> So many points of a block along a direction, of which three would do, are kept to choose from
+   integer, parameter :: enough = 16
 
 contains
 
    !> Whether a point is to go where the points held already do not let it. A block moves and
    !> strains linearly, so along each direction a point that is a mixture of held ones goes where
    !> the mixture of their ways leads
-   pure logical function contradicts(held, more, size_of_block)
+   pure subroutine compare_paths(held, other, more, size_of_block, contradicts, telling)
       !> Points that are held: (n)
       type(held_point_t), intent(in) :: held(:)
+      !> Those of the same block that have told something: (n)
+      integer, intent(in) :: other(:)
       !> The point
       type(held_point_t), intent(in) :: more
       !> Size of its block [m]
       real(wp), intent(in) :: size_of_block
-      integer, allocatable :: other(:)
+      !> Whether it cannot go its way
+      logical, intent(out) :: contradicts
+      !> Whether it tells something: those that follow need not be compared with others
+      logical, intent(out) :: telling
+      integer, allocatable :: same_axis(:)
       real(wp), allocatable :: row(:, :), share(:)
       integer :: axis, i
 
       contradicts = .false.
+      telling = .false.
       do axis = 1, 2
          if (.not. more%along(axis)) cycle
-         other = pack([(i, i=1, size(held))], held%block == more%block .and. held%along(axis))
-         if (size(other) == 0) cycle
-         row = reshape([(1.0_wp, (held(other(i))%point - more%point)/size_of_block, &
-            & i=1, size(other))], [3, size(other)])
+         same_axis = pack(other, held(other)%along(axis))
+         telling = telling .or. size(same_axis) < enough
+         if (size(same_axis) == 0) cycle
+         row = reshape([(1.0_wp, (held(same_axis(i))%point - more%point)/size_of_block, &
+            & i=1, size(same_axis))], [3, size(same_axis)])
          share = least_squares(row, [1.0_wp, 0.0_wp, 0.0_wp], same)
-         if (norm2(matmul(row, share) - [1.0_wp, 0.0_wp, 0.0_wp]) > same) cycle
-         contradicts = contradicts .or. far_from(held(other), share, more, axis, same*size_of_block)
+         if (norm2(matmul(row, share) - [1.0_wp, 0.0_wp, 0.0_wp]) > same) then
+            telling = .true.
+            cycle
+         end if
+         same_axis = pack(same_axis, abs(share) > 0.0_wp)
+         share = pack(share, abs(share) > 0.0_wp)
+         contradicts = contradicts .or. &
+            & far_from(held, same_axis, share, more, axis, same*size_of_block)
       end do
-   end function contradicts
+   end subroutine compare_paths
 
    !> Whether a way is ever off the mixture of others; all are linear between their times
-   pure logical function far_from(held, share, more, axis, tolerance)
-      !> The others: (n)
+   pure logical function far_from(held, other, share, more, axis, tolerance)
+      !> Points that are held: (n)
       type(held_point_t), intent(in) :: held(:)
-      !> Their shares: (n)
+      !> Numbers of the others: (m)
+      integer, intent(in) :: other(:)
+      !> Their shares: (m)
       real(wp), intent(in) :: share(:)
       !> The point
       type(held_point_t), intent(in) :: more
@@ -53,22 +71,23 @@ contains
       !> How far off it may be [m]
       real(wp), intent(in) :: tolerance
       real(wp), allocatable :: time(:)
-      real(wp) :: way(2), mixture
+      real(wp) :: way(2), off
       integer :: i, k
 
       allocate (time, source=times_of(more%path))
-      do i = 1, size(held)
-         time = [time, times_of(held(i)%path)]
+      do i = 1, size(other)
+         time = [time, times_of(held(other(i))%path)]
       end do
       far_from = .false.
       do k = 1, size(time)
-         mixture = 0.0_wp
-         do i = 1, size(held)
-            way = value_at(held(i)%path, time(k))
-            mixture = mixture + share(i)*way(axis)
-         end do
          way = value_at(more%path, time(k))
-         far_from = far_from .or. abs(way(axis) - mixture) > tolerance
+         off = way(axis)
+         do i = 1, size(other)
+            way = value_at(held(other(i))%path, time(k))
+            off = off - share(i)*way(axis)
+         end do
+         far_from = abs(off) > tolerance
+         if (far_from) return
       end do
    end function far_from
 

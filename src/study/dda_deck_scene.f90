@@ -24,11 +24,11 @@ module dda_deck_scene
    use dda_step_context, only : march_t
    use dda_text, only : to_text
    use dda_warnings, only : add_warning, warnings_t
+   use dda_watch, only : watch_t
    implicit none
    private
 
    public :: check_lines, check_scene, deck_family_t, deck_scene, movable_blocks, new_family
-   public :: warning_line
 
    !> The scenes of one deck whose searched parameter varies
    type, extends(family_t) :: deck_family_t
@@ -171,30 +171,22 @@ contains
       call block_scene(deck%plan, base, scene)
    end subroutine file_scene
 
-   !> A warning about the blocks as the line that a user sees
-   pure function warning_line(deck, i) result(line)
-      !> The deck
-      type(deck_t), intent(in) :: deck
-      !> Number of the warning
-      integer, intent(in) :: i
-      !> FILE:LINE: warning: message
-      character(len=:), allocatable :: line
-
-      line = geometry_file(deck)//":"//to_text(max(1, deck%plan%warning_line(i)))//": warning: " &
-         & //trim(deck%plan%warning(i))
-   end function warning_line
-
    !> Check that the modes of a deck can run the blocks of its file, and that a run that goes on has
    !> a file; warn of blocks that will fall, and of units that are no metres
-   subroutine check_scene(deck, error)
+   subroutine check_scene(deck, scene, error, watch)
       !> The deck, checked; receives the warnings
       type(deck_t), intent(inout) :: deck
+      !> The scene of the first case, if its blocks are from a file
+      type(scene_t), intent(out) :: scene
       !> What cannot be run, or a file that is not there
       type(error_t), allocatable, intent(out) :: error
+      !> Is told what is done
+      class(watch_t), intent(inout), optional :: watch
 
+      if (present(watch)) call watch%tell("looking for joints", -1.0_wp)
       if (is_given(deck, "analysis", "restart")) call check_start(deck, error)
       if (allocated(error) .or. word_of(deck, "scene", "kind") /= "blocks") return
-      call check_modes(deck, error)
+      call check_modes(deck, scene, error)
    end subroutine check_scene
 
    !> Check that the modes of a deck can run the blocks that were cut from its lines
@@ -203,14 +195,17 @@ contains
       type(deck_t), intent(inout) :: deck
       !> What cannot be run
       type(error_t), allocatable, intent(out) :: error
+      type(scene_t) :: scene
 
-      if (word_of(deck, "scene", "kind") == "lines") call check_modes(deck, error)
+      if (word_of(deck, "scene", "kind") == "lines") call check_modes(deck, scene, error)
    end subroutine check_lines
 
    !> Check the first case of each mode
-   pure subroutine check_modes(deck, error)
+   pure subroutine check_modes(deck, scene, error)
       !> The deck, checked; receives the warnings
       type(deck_t), intent(inout) :: deck
+      !> The scene of the first case, if its blocks are from a file
+      type(scene_t), intent(out) :: scene
       !> What cannot be run
       type(error_t), allocatable, intent(out) :: error
       type(deck_t) :: work
@@ -224,7 +219,9 @@ contains
          mode = findloc(["static  ", "dynamic ", "limerick"] == &
             & word_of(work, "analysis", "mode"), .true., dim=1)
          if (mode == 3 .and. keeps_velocities(work)) mode = 4
-         if (.not. seen(mode)) call check_mode(work, number == 1, deck%warnings, error)
+         if (number == 1 .and. word_of(work, "scene", "kind") == "blocks") &
+            & call deck_scene(work, scene)
+         if (.not. seen(mode)) call check_mode(work, number == 1, scene, deck%warnings, error)
          seen(mode) = .true.
          if (allocated(error) .or. all(seen) .or. .not. any(deck%sweep%parameter%key == &
             & key_index("analysis", "mode") .or. deck%sweep%parameter%key == &
@@ -233,16 +230,17 @@ contains
    end subroutine check_modes
 
    !> Check that the mode of one case can run its scene
-   pure subroutine check_mode(deck, warns, warnings, error)
+   pure subroutine check_mode(deck, warns, scene, warnings, error)
       !> The deck of the case
       type(deck_t), intent(in) :: deck
       !> Whether doubts are told
       logical, intent(in) :: warns
+      !> A scene of these blocks and joints, if they are from a file
+      type(scene_t), intent(in) :: scene
       !> Receives them
       type(warnings_t), intent(inout) :: warnings
       !> What it cannot run
       type(error_t), allocatable, intent(out) :: error
-      type(scene_t) :: scene
 
       select case (word_of(deck, "scene", "kind"))
       case ("lines")
@@ -255,7 +253,6 @@ contains
          if (word_of(deck, "analysis", "mode") == "limerick") call check_limerick_blocks( &
             & deck%plan, geometry_file(deck), keeps_velocities(deck), error)
          if (allocated(error)) return
-         call deck_scene(deck, scene)
          if (word_of(deck, "analysis", "mode") == "static") &
             & call check_support(deck, scene, error)
          if (warns .and. .not. allocated(error)) call doubt_scene(deck, scene, warnings)

@@ -1,0 +1,72 @@
+!> Arrays whose room doubles where it must, so that many items cost no more than each of them
+module dda_growth
+   use dda_kinds, only : wp
+   implicit none
+   private
+
+   public :: make_room
+
+   !> Make sure that an array has room for so many items; those that it holds stay
+   interface make_room
+      module procedure room_for_integers
+      module procedure room_for_logicals
+      module procedure room_for_columns
+   end interface make_room
+
+contains
+
+   !> Room that an array is given where it has too little
+   pure integer function next_room(room, n)
+      !> Room that it has
+      integer, intent(in) :: room
+      !> Room that it needs
+      integer, intent(in) :: n
+
+      next_room = max(n, 8, room + min(room, huge(room) - room))
+   end function next_room
+
+   !> Room for whole numbers
+   pure subroutine room_for_integers(array, n)
+      !> The numbers
+      integer, allocatable, intent(inout) :: array(:)
+      !> How many there may be
+      integer, intent(in) :: n
+      integer, allocatable :: longer(:)
+
+      if (.not. allocated(array)) allocate (array(0))
+      if (n <= size(array)) return
+      allocate (longer(next_room(size(array), n)))
+      longer(:size(array)) = array
+      call move_alloc(longer, array)
+   end subroutine room_for_integers
+
+   !> Room for truth values
+   pure subroutine room_for_logicals(array, n)
+      !> The values
+      logical, allocatable, intent(inout) :: array(:)
+      !> How many there may be
+      integer, intent(in) :: n
+      logical, allocatable :: longer(:)
+
+      if (.not. allocated(array)) allocate (array(0))
+      if (n <= size(array)) return
+      allocate (longer(next_room(size(array), n)))
+      longer(:size(array)) = array
+      call move_alloc(longer, array)
+   end subroutine room_for_logicals
+
+   !> Room for columns of numbers
+   pure subroutine room_for_columns(array, n)
+      !> The columns, at least one of them if their height is not 2
+      real(wp), allocatable, intent(inout) :: array(:, :)
+      !> How many there may be
+      integer, intent(in) :: n
+      real(wp), allocatable :: longer(:, :)
+
+      if (.not. allocated(array)) allocate (array(2, 0))
+      if (n <= size(array, 2)) return
+      allocate (longer(size(array, 1), next_room(size(array, 2), n)))
+      longer(:, :size(array, 2)) = array
+      call move_alloc(longer, array)
+   end subroutine room_for_columns
+end module dda_growth

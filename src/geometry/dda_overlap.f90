@@ -1,0 +1,206 @@
+!> Whether two polygons overlap by more than rounded coordinates make them
+module dda_overlap
+   use dda_box_tree, only : box_tree_t, find_boxes
+   use dda_growth, only : make_room
+   use dda_kinds, only : wp
+   use dda_polygon, only : depth_in, edge_ends, edges_near, has_tree
+   use dda_sort, only : sorted_order
+   use dda_vector, only : cross, right_normal
+   implicit none
+   private
+
+   public :: find_overlap
+
+contains
+
+   !> Whether two polygons overlap by more than a tolerance
+   pure subroutine find_overlap(first, second, tolerance, overlaps, inside, point, first_tree, &
+      & second_tree)
+      !> Corners of the first, counter-clockwise: (2, n) [m]
+      real(wp), intent(in) :: first(:, :)
+      !> Corners of the second, counter-clockwise: (2, m) [m]
+      real(wp), intent(in) :: second(:, :)
+      !> The tolerance [m]
+      real(wp), intent(in) :: tolerance
+      !> Whether they overlap
+      logical, intent(out) :: overlaps
+      !> Which of them lies wholly inside the other: 1, 2 or 0 for none
+      integer, intent(out) :: inside
+      !> A point that both hold: (2) [m]
+      real(wp), intent(out) :: point(2)
+      !> Edges of the first, where they are many
+      type(box_tree_t), intent(in), optional :: first_tree
+      !> Edges of the second, where they are many
+      type(box_tree_t), intent(in), optional :: second_tree
+      real(wp) :: box(2, 2, 2), common(2, 2), deepest(2), place(2, 2)
+
+      inside = 0
+      overlaps = .false.
+      point = first(:, 1)
+      box(:, :, 1) = box_of(first, first_tree)
+      box(:, :, 2) = box_of(second, second_tree)
+      common(:, 1) = maxval(box(:, 1, :), dim=2)
+      common(:, 2) = minval(box(:, 2, :), dim=2)
+      if (any(common(:, 2) - common(:, 1) <= tolerance)) return
+      if (.not. (has_tree(first_tree) .or. has_tree(second_tree))) then
+         if (are_apart(first, second, tolerance)) return
+         if (are_apart(second, first, tolerance)) return
+      end if
+      common(:, 1) = common(:, 1) - tolerance
+      common(:, 2) = common(:, 2) + tolerance
+      call deepest_on_outline(first, second, common, deepest(1), place(:, 1), first_tree, &
+         & second_tree)
+      call deepest_on_outline(second, first, common, deepest(2), place(:, 2), second_tree, &
+         & first_tree)
+      point = place(:, maxloc(deepest, dim=1))
+      if (holds_all(second, first, box(:, :, 1), common, tolerance, second_tree)) inside = 1
+      if (holds_all(first, second, box(:, :, 2), common, tolerance, first_tree)) inside = 2
+      overlaps = any(deepest > tolerance) .or. inside > 0
+   end subroutine find_overlap
+
+   !> Box around a polygon
+   pure function box_of(vertex, tree) result(box)
+      !> Its corners: (2, n) [m]
+      real(wp), intent(in) :: vertex(:, :)
+      !> Its edges, where they are many
+      type(box_tree_t), intent(in), optional :: tree
+      !> Lower left and upper right corner: (2, 2) [m]
+      real(wp) :: box(2, 2)
+
+      if (has_tree(tree)) then
+         box(:, 1) = tree%low(:, 1)
+         box(:, 2) = tree%high(:, 1)
+      else
+         box(:, 1) = minval(vertex, dim=2)
+         box(:, 2) = maxval(vertex, dim=2)
+      end if
+   end function box_of
+
+   !> Whether the line of an edge of one polygon parts it from another: each then lies on its side,
+   !> but for a strip that is no wider than the tolerance
+   pure logical function are_apart(one, other, tolerance)
+      !> Corners of the one: (2, n) [m]
+      real(wp), intent(in) :: one(:, :)
+      !> Corners of the other: (2, m) [m]
+      real(wp), intent(in) :: other(:, :)
+      !> The tolerance [m]
+      real(wp), intent(in) :: tolerance
+      real(wp) :: ends(4), normal(2), top, bottom
+      integer :: e, i
+
+      are_apart = .false.
+      do e = 1, size(one, 2)
+         ends = edge_ends(one, e)
+         normal = right_normal(ends(3:4) - ends(1:2))
+         top = 0.0_wp
+         do i = 1, size(one, 2)
+            top = max(top, dot_product(normal, one(:, i) - ends(1:2)))
+         end do
+         bottom = huge(bottom)
+         do i = 1, size(other, 2)
+            bottom = min(bottom, dot_product(normal, other(:, i) - ends(1:2)))
+         end do
+         are_apart = top - bottom <= tolerance*norm2(normal)
+         if (are_apart) return
+      end do
+   end function are_apart
+
+   !> Whether a polygon holds all corners of another
+   pure logical function holds_all(vertex, other, box, common, tolerance, tree)
+      !> Corners of the one: (2, n) [m]
+      real(wp), intent(in) :: vertex(:, :)
+      !> Corners of the other: (2, m) [m]
+      real(wp), intent(in) :: other(:, :)
+      !> Box around the other: (2, 2) [m]
+      real(wp), intent(in) :: box(2, 2)
+      !> What is common to both boxes, and the tolerance around it: (2, 2) [m]
+      real(wp), intent(in) :: common(2, 2)
+      !> How far corners may lie outside [m]
+      real(wp), intent(in) :: tolerance
+      !> Edges of the one, where they are many
+      type(box_tree_t), intent(in), optional :: tree
+      integer :: i
+
+      holds_all = all(box(:, 1) >= common(:, 1)) .and. all(box(:, 2) <= common(:, 2))
+      do i = 1, size(other, 2)
+         if (.not. holds_all) return
+         holds_all = depth_in(vertex, other(:, i), tree) > -tolerance
+      end do
+   end function holds_all
+
+   !> The point of one polygon's outline that lies deepest in another, of the corners and the
+   !> middles of the pieces into which the lines of near edges cut its edges
+   pure subroutine deepest_on_outline(outline, other, common, deepest, point, tree, other_tree)
+      !> Corners of the one: (2, n) [m]
+      real(wp), intent(in) :: outline(:, :)
+      !> Corners of the other: (2, m) [m]
+      real(wp), intent(in) :: other(:, :)
+      !> Where both of them can be: lower left and upper right corner: (2, 2) [m]
+      real(wp), intent(in) :: common(2, 2)
+      !> How deep it lies, negative outside [m]
+      real(wp), intent(out) :: deepest
+      !> The point: (2) [m]
+      real(wp), intent(out) :: point(2)
+      !> Edges of the one, where they are many
+      type(box_tree_t), intent(in), optional :: tree
+      !> Edges of the other, where they are many
+      type(box_tree_t), intent(in), optional :: other_tree
+      integer, allocatable :: edge(:), near(:)
+      real(wp), allocatable :: cut(:)
+      real(wp) :: ends(4), depth, middle(2)
+      integer :: i, j, n, n_edge
+
+      deepest = -huge(deepest)
+      point = outline(:, 1)
+      if (has_tree(tree)) then
+         call find_boxes(tree, common(:, 1), common(:, 2), edge, n_edge)
+      else
+         n_edge = size(outline, 2)
+         allocate (edge(n_edge), source=[(i, i=1, n_edge)])
+      end if
+      do i = 1, n_edge
+         ends = edge_ends(outline, edge(i))
+         if (any(max(ends(1:2), ends(3:4)) < common(:, 1))) cycle
+         if (any(min(ends(1:2), ends(3:4)) > common(:, 2))) cycle
+         call edges_near(other, ends, 0.0_wp, near, n, other_tree)
+         call cut_edge(other, ends, near(:n), cut)
+         do j = 2, size(cut)
+            middle = ends(1:2) + (ends(3:4) - ends(1:2))*(cut(j - 1) + cut(j))/2.0_wp
+            if (any(middle < common(:, 1) .or. middle > common(:, 2))) cycle
+            depth = depth_in(other, middle, other_tree)
+            if (.not. depth > deepest) cycle
+            deepest = depth
+            point = middle
+         end do
+      end do
+   end subroutine deepest_on_outline
+
+   !> Where the lines of edges cut another edge, as shares of its length, rising; its end is there
+   !> twice
+   pure subroutine cut_edge(vertex, ends, near, cut)
+      !> Corners of the polygon whose edges cut: (2, n) [m]
+      real(wp), intent(in) :: vertex(:, :)
+      !> Ends of the edge that is cut: (4) [m]
+      real(wp), intent(in) :: ends(4)
+      !> Numbers of the edges: (n_near)
+      integer, intent(in) :: near(:)
+      !> The shares: (n_cut)
+      real(wp), allocatable, intent(out) :: cut(:)
+      real(wp) :: share(size(near) + 3), other(4), b(2), c(2), area, way
+      integer :: i, n
+
+      n = 3
+      share(:3) = [0.0_wp, 1.0_wp, 1.0_wp]
+      b = ends(3:4) - ends(1:2)
+      do i = 1, size(near)
+         other = edge_ends(vertex, near(i))
+         c = other(3:4) - other(1:2)
+         area = cross(b, c)
+         way = sign(1.0_wp, area)*cross(other(1:2) - ends(1:2), c)
+         if (way <= 0.0_wp .or. way >= abs(area)) cycle
+         n = n + 1
+         share(n) = way/abs(area)
+      end do
+      allocate (cut, source=share(sorted_order(spread(0, 1, n), share(:n))))
+   end subroutine cut_edge
+end module dda_overlap

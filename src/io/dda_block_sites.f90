@@ -1,0 +1,250 @@
+!> Where the blocks of a file are, which of them holds a point, and which points hold them
+module dda_block_sites
+   use dda_block_input, only : block_plan_t
+   use dda_boundary, only : held_point_t
+   use dda_box_tree, only : box_tree_t, boxes_along, new_box_tree
+   use dda_error, only : error_t, fatal_error
+   use dda_growth, only : make_room
+   use dda_held_paths, only : compare_paths
+   use dda_kinds, only : wp
+   use dda_polygon, only : depth_in, edge_tree
+   use dda_text, only : to_text
+   implicit none
+   private
+
+   public :: site_t, add_held, block_at, blocks_along, close_held, holds_point, rivals_at, survey
+
+   !> A point may lie outside its block by this share of the block's size: coordinates are rounded
+   real(wp), parameter :: rounded = 1.0e-4_wp
+
+   !> Where the blocks are, and the points that have been found on them
+   type :: site_t
+      !> Boxes of the blocks, as wide as rounded coordinates ask for
+      type(box_tree_t) :: tree
+      !> Their diagonals: (n_block) [m]
+      real(wp), allocatable :: size_of(:)
+      !> Place of the tree of each block's edges, 0 where they are few: (n_block)
+      integer, allocatable :: edges_of(:)
+      !> These trees, the first of them empty: (0:n)
+      type(box_tree_t), allocatable :: edges(:)
+      !> Number of held, loaded and measured points so far
+      integer :: n_held = 0, n_loaded = 0, n_measured = 0
+      !> The last held point of each block that tells something of its motion: (n_block)
+      integer, allocatable :: last_held(:)
+      !> The one of the same block before: (n_held or more)
+      integer, allocatable :: before(:)
+   end type site_t
+
+   !> A block of more corners than this has a tree of its edges
+   integer, parameter :: few_corners = 32
+
+contains
+
+   !> Know where the blocks are
+   pure subroutine survey(plan, site)
+      !> The blocks
+      type(block_plan_t), intent(in) :: plan
+      !> Where they are
+      type(site_t), intent(out) :: site
+      real(wp), allocatable :: low(:, :), high(:, :)
+      integer :: b, k, n
+
+      n = size(plan%fixed)
+      allocate (low(2, n), high(2, n), site%size_of(n))
+      allocate (site%last_held(n), site%edges_of(n), source=0)
+      allocate (site%edges(0:count(plan%first_vertex(2:) - plan%first_vertex(:n) > few_corners)))
+      k = 0
+      do b = 1, n
+         associate (vertex => plan%vertex(:, plan%first_vertex(b):plan%first_vertex(b + 1) - 1))
+            low(:, b) = minval(vertex, dim=2)
+            high(:, b) = maxval(vertex, dim=2)
+            if (size(vertex, 2) > few_corners) then
+               k = k + 1
+               site%edges_of(b) = k
+               call edge_tree(vertex, site%edges(k))
+            end if
+         end associate
+         site%size_of(b) = norm2(high(:, b) - low(:, b))
+         low(:, b) = low(:, b) - rounded*site%size_of(b)
+         high(:, b) = high(:, b) + rounded*site%size_of(b)
+      end do
+      call new_box_tree(low, high, site%tree)
+   end subroutine survey
+
+   !> Block that holds a point most deeply or has it on its outline; 0 if none does
+   pure integer function block_at(plan, site, point)
+      !> The plan
+      type(block_plan_t), intent(in) :: plan
+      !> Where its blocks are
+      type(site_t), intent(in) :: site
+      !> The point, seen from the origin of the plan: (2) [m]
+      real(wp), intent(in) :: point(2)
+      real(wp) :: deepest, depth
+      integer, allocatable :: near(:)
+      integer :: i
+
+      block_at = 0
+      deepest = -huge(deepest)
+      allocate (near, source=boxes_along(site%tree, [point, point]))
+      do i = 1, size(near)
+         depth = depth_of(plan, site, near(i), point)
+         if (depth < -rounded*site%size_of(near(i)) .or. .not. depth > deepest) cycle
+         deepest = depth
+         block_at = near(i)
+      end do
+   end function block_at
+
+   !> Blocks that have a point on their outlines together with a block, as far as rounding tells
+   pure function rivals_at(plan, site, point, block) result(rival)
+      !> The plan
+      type(block_plan_t), intent(in) :: plan
+      !> Where its blocks are
+      type(site_t), intent(in) :: site
+      !> The point, seen from the origin of the plan: (2) [m]
+      real(wp), intent(in) :: point(2)
+      !> The block, which holds it
+      integer, intent(in) :: block
+      !> The others: (n)
+      integer, allocatable :: rival(:)
+      integer, allocatable :: near(:)
+      real(wp) :: depth, margin
+      integer :: i, n
+
+      n = 0
+      depth = depth_of(plan, site, block, point)
+      allocate (near, source=boxes_along(site%tree, [point, point]))
+      do i = 1, size(near)
+         if (near(i) == block) cycle
+         margin = rounded*minval(site%size_of([near(i), block]))
+         if (depth > margin) cycle
+         if (depth_of(plan, site, near(i), point) < -margin) cycle
+         n = n + 1
+         near(n) = near(i)
+      end do
+      allocate (rival, source=near(:n))
+   end function rivals_at
+
+   !> Whether a block holds a point or has it on its outline
+   pure logical function holds_point(plan, site, block, point)
+      !> The plan
+      type(block_plan_t), intent(in) :: plan
+      !> Where its blocks are
+      type(site_t), intent(in) :: site
+      !> Number of the block
+      integer, intent(in) :: block
+      !> The point, seen from the origin of the plan: (2) [m]
+      real(wp), intent(in) :: point(2)
+
+      holds_point = depth_of(plan, site, block, point) >= -rounded*site%size_of(block)
+   end function holds_point
+
+   !> How deep a point lies in a block, negative outside [m]
+   pure real(wp) function depth_of(plan, site, block, point)
+      !> The plan
+      type(block_plan_t), intent(in) :: plan
+      !> Where its blocks are
+      type(site_t), intent(in) :: site
+      !> Number of the block
+      integer, intent(in) :: block
+      !> The point, seen from the origin of the plan: (2) [m]
+      real(wp), intent(in) :: point(2)
+
+      depth_of = depth_in(plan%vertex(:, plan%first_vertex(block): &
+         & plan%first_vertex(block + 1) - 1), point, site%edges(site%edges_of(block)))
+   end function depth_of
+
+   !> Blocks that a segment may meet
+   pure function blocks_along(site, segment) result(block)
+      !> Where the blocks are
+      type(site_t), intent(in) :: site
+      !> Its ends, seen from the origin of the plan: (4) [m]
+      real(wp), intent(in) :: segment(4)
+      !> Their numbers, rising: (n)
+      integer, allocatable :: block(:)
+
+      allocate (block, source=boxes_along(site%tree, segment))
+   end function blocks_along
+
+   !> Add a held point, unless others hold the block in its way
+   pure subroutine add_held(held, plan, site, error)
+      !> The point
+      type(held_point_t), intent(in) :: held
+      !> Receives it
+      type(block_plan_t), intent(inout) :: plan
+      !> Receives it too
+      type(site_t), intent(inout) :: site
+      !> A fixed block that is to move, or a point that cannot go its way
+      type(error_t), allocatable, intent(out) :: error
+      logical :: contradicts, telling
+
+      if (plan%fixed(held%block) .and. allocated(held%path%value)) then
+         if (any(abs(held%path%value) > 0.0_wp)) then
+            call fatal_error(error, "block "//to_text(held%block)//" is fixed and cannot be led", &
+               & line=held%line)
+            return
+         end if
+      end if
+      call compare_paths(plan%boundary%held, held_before(site, held%block), held, &
+         & site%size_of(held%block), contradicts, telling)
+      if (contradicts) then
+         call fatal_error(error, "wanted a way that the block can go with the points of it that " &
+            & //"are held or led already, found another", line=held%line)
+         return
+      end if
+      if (site%n_held == size(plan%boundary%held)) &
+         & call close_held(2*site%n_held + 8, plan%boundary%held)
+      site%n_held = site%n_held + 1
+      plan%boundary%held(site%n_held) = held
+      call make_room(site%before, site%n_held)
+      if (.not. telling) return
+      site%before(site%n_held) = site%last_held(held%block)
+      site%last_held(held%block) = site%n_held
+   end subroutine add_held
+
+   !> Points that tell all that is known of how a block is held
+   pure function held_before(site, block) result(list)
+      !> Where the points are
+      type(site_t), intent(in) :: site
+      !> Number of the block
+      integer, intent(in) :: block
+      !> Their numbers: (n)
+      integer, allocatable :: list(:)
+      integer :: i, n
+
+      n = 0
+      i = site%last_held(block)
+      do while (i > 0)
+         n = n + 1
+         i = site%before(i)
+      end do
+      allocate (list(n))
+      i = site%last_held(block)
+      do n = n, 1, -1
+         list(n) = i
+         i = site%before(i)
+      end do
+   end function held_before
+
+   !> Give the list of held points another length; gfortran's array constructors would lose the
+   !> memory of histories
+   pure subroutine close_held(n, list)
+      !> The length
+      integer, intent(in) :: n
+      !> The list
+      type(held_point_t), allocatable, intent(inout) :: list(:)
+      type(held_point_t), allocatable :: other(:)
+      integer :: i
+
+      if (n == size(list)) return
+      allocate (other(n))
+      do i = 1, min(n, size(list))
+         other(i)%block = list(i)%block
+         other(i)%point = list(i)%point
+         other(i)%along = list(i)%along
+         other(i)%line = list(i)%line
+         call move_alloc(list(i)%path%time, other(i)%path%time)
+         call move_alloc(list(i)%path%value, other(i)%path%value)
+      end do
+      call move_alloc(other, list)
+   end subroutine close_held
+end module dda_block_sites
