@@ -1,22 +1,23 @@
 !> An order of the blocks that parts them again and again: nested dissection (A. George, 1973)
 !>
 !> The few blocks that part a group in two are eliminated after both parts. Elimination then costs
-!> n**1.5 for n blocks in a plane, where a narrow order of a square wall costs n**2. Where to part
-!> is read from the steps that a search in breadth takes from a block at the rim (A. George and
-!> J. W. H. Liu, 1978).
+!> n**1.5 for n blocks in a plane, where a narrow order of a square wall costs n**2. Groups are cut
+!> where it is as far to one of their corners as to another, which of six such cuts meets the fewest
+!> blocks; parts that are small enough are eliminated by minimum degree.
 module dda_block_dissection
    use dda_block_order, only : neighbour_lists
+   use dda_minimum_degree, only : minimum_degree_order
    implicit none
    private
 
-   public :: dissected_order
+   public :: dissected_order, smallest_part
 
-   !> Groups of no more blocks are not parted: their order hardly matters
-   integer, parameter :: smallest = 6
+   !> Parting of smaller groups gains nothing
+   integer, parameter :: smallest_part = 200
    !> Each part has at least this share of a group, if there is such a level of the search
-   real, parameter :: least_share = 0.3
-   !> Most searches for the rim of a group
-   integer, parameter :: max_searches = 4
+   real, parameter :: least_share = 0.25
+   !> Corners of a group: blocks far from one another
+   integer, parameter :: n_corner = 4
 
    !> The blocks and where they have got to
    type :: dissection_t
@@ -30,44 +31,57 @@ module dda_block_dissection
       integer, allocatable :: group(:)
       !> Step at which the search reached each block; -1 before: (n_block)
       integer, allocatable :: level(:)
+      !> Steps from each corner of its group to a block: (n_block, n_corner)
+      integer, allocatable :: steps(:, :)
       !> Blocks in the order of the search: (n_block)
       integer, allocatable :: queue(:)
       !> First and last place of each group that waits: (2, n_block)
       integer, allocatable :: waiting(:, :)
       !> Number of groups that wait
       integer :: n_waiting = 0
+      !> Groups of no more blocks are not parted
+      integer :: smallest = 0
    end type dissection_t
 
 contains
 
    !> Place of each block in the order of elimination
-   pure function dissected_order(n_block, pair) result(place)
+   pure function dissected_order(n_block, pair, smallest) result(place)
       !> Number of blocks
       integer, intent(in) :: n_block
       !> Coupled blocks, both between 1 and n_block: (2, n_pair)
       integer, intent(in) :: pair(:, :)
+      !> Groups of no more blocks are not parted
+      integer, intent(in) :: smallest
       !> The places: (n_block)
       integer :: place(n_block)
       type(dissection_t) :: d
+      logical :: late(n_block)
       integer :: first, last, i, n
 
       call neighbour_lists(n_block, pair, d%start, d%neighbour)
       allocate (d%order(n_block), d%group(n_block), d%level(n_block), d%queue(n_block))
+      allocate (d%steps(n_block, n_corner))
       allocate (d%waiting(2, n_block))
       d%order = [(i, i=1, n_block)]
+      d%smallest = smallest
       call put_off(1, n_block, d)
       do while (d%n_waiting > 0)
          first = d%waiting(1, d%n_waiting)
          last = d%waiting(2, d%n_waiting)
          d%n_waiting = d%n_waiting - 1
-         call search_from_rim(first, last, d, n)
+         call search_from_corners(first, last, d, n)
          if (n <= last - first) then
             call part_groups(first, last, d)
          else
             call part_in_two(first, last, d)
          end if
       end do
-      place(d%order) = [(i, i=1, n_block)]
+      late = d%group == 0
+      n = count(.not. late)
+      d%queue = minimum_degree_order(d%start, d%neighbour, late)
+      d%queue(n + 1:) = pack(d%order, late(d%order))
+      place(d%queue) = [(i, i=1, n_block)]
    end function dissected_order
 
    !> Let a group wait for its parting; one that is too small stays as it is
@@ -80,35 +94,41 @@ contains
       type(dissection_t), intent(inout) :: d
 
       d%group(d%order(first:last)) = first
-      if (last - first < smallest) return
+      if (last - first < d%smallest) return
       d%n_waiting = d%n_waiting + 1
       d%waiting(:, d%n_waiting) = [first, last]
    end subroutine put_off
 
-   !> Search a group in breadth from a block at its rim: the last one that a search reaches,
-   !> searched again from there until it gets no farther
-   pure subroutine search_from_rim(first, last, d, n)
+   !> Search a connected group in breadth from its corners: each is farthest from those before it
+   pure subroutine search_from_corners(first, last, d, n)
       !> First place of the group in the order
       integer, intent(in) :: first
       !> Last place
       integer, intent(in) :: last
-      !> The blocks; levels and queue are set
+      !> The blocks; steps and queue are set
       type(dissection_t), intent(inout) :: d
-      !> Number of blocks that the search has reached
+      !> Number of blocks that a search has reached
       integer, intent(out) :: n
-      integer :: reached, root, search
+      integer :: corner, near(last - first + 1), root
 
-      root = d%order(first)
-      reached = -1
-      do search = 1, max_searches
-         d%level(d%order(first:last)) = -1
-         n = 0
-         call spread_from(root, d, n)
-         if (d%level(d%queue(n)) <= reached) exit
-         reached = d%level(d%queue(n))
-         root = d%queue(n)
-      end do
-   end subroutine search_from_rim
+      associate (block => d%order(first:last))
+         root = block(1)
+         near = huge(near)
+         do corner = 0, n_corner
+            d%level(block) = -1
+            n = 0
+            call spread_from(root, d, n)
+            if (n < size(block)) return
+            if (corner == 0) then
+               root = d%queue(n)
+            else
+               d%steps(block, corner) = d%level(block)
+               near = min(near, d%level(block))
+               root = block(maxloc(near, dim=1))
+            end if
+         end do
+      end associate
+   end subroutine search_from_corners
 
    !> Search in breadth from a block through its group
    pure subroutine spread_from(root, d, n)
@@ -164,7 +184,8 @@ contains
       end do
    end subroutine part_groups
 
-   !> Part a connected group that was searched: two parts, and the blocks between them behind both
+   !> Part a connected group in two parts, and the blocks between them behind both: by how much
+   !> nearer blocks are to one corner than to another
    pure subroutine part_in_two(first, last, d)
       !> First place of the group in the order
       integer, intent(in) :: first
@@ -172,70 +193,84 @@ contains
       integer, intent(in) :: last
       !> The blocks
       type(dissection_t), intent(inout) :: d
-      integer :: block(last - first + 1), part(last - first + 1), i, cut, low, high
+      integer :: block(last - first + 1), part(last - first + 1), i, k
+      real :: least
 
       block = d%order(first:last)
-      cut = best_level(d, size(block))
-      if (cut == 0) return
-      do i = 1, size(block)
-         part(i) = 1
-         if (d%level(block(i)) > cut) part(i) = 2
-         if (d%level(block(i)) == cut .and. meets_level(d, block(i), cut + 1)) part(i) = 3
+      least = huge(least)
+      do i = 1, n_corner
+         do k = 1, i - 1
+            d%level(block) = d%steps(block, i) - d%steps(block, k)
+            call cut_between(block, least, d, part)
+         end do
       end do
+      if (least >= huge(least)) return
       d%order(first:last) = [pack(block, part == 1), pack(block, part == 2), pack(block, part == 3)]
-      low = count(part == 1)
-      high = count(part == 2)
       d%group(pack(block, part == 3)) = 0
-      call put_off(first, first + low - 1, d)
-      call put_off(first + low, first + low + high - 1, d)
+      i = count(part == 1)
+      k = count(part == 2)
+      call put_off(first, first + i - 1, d)
+      call put_off(first + i, first + i + k - 1, d)
    end subroutine part_in_two
 
-   !> The level with the fewest blocks that leaves enough on both sides; 0 if there are too few
-   pure integer function best_level(d, n)
-      !> The blocks
+   !> The cut between two levels of a group that costs the least: blocks on one side of it that meet
+   !> the other side lie between the parts
+   pure subroutine cut_between(block, least, d, part)
+      !> The group
+      integer, intent(in) :: block(:)
+      !> Cost of the best cut in, and out
+      real, intent(inout) :: least
+      !> The blocks and their levels
       type(dissection_t), intent(in) :: d
-      !> Number of blocks that the search has reached
-      integer, intent(in) :: n
-      integer :: i, next, fewest, least
+      !> Receives 1 and 2 for the two sides, 3 for what is between, if the cut is better
+      integer, intent(inout) :: part(:)
+      integer :: low(size(block)), high(size(block)), i, k, side, cut(2), below
+      integer :: meets(minval(d%level(block)):maxval(d%level(block)) + 1, 2)
+      integer :: many(minval(d%level(block)):maxval(d%level(block)) + 1)
+      real :: cost, former
 
-      best_level = 0
-      fewest = huge(fewest)
-      least = 0
-      i = 1
-      do while (i <= n)
-         next = i
-         do while (next <= n)
-            if (d%level(d%queue(next)) /= d%level(d%queue(i))) exit
-            next = next + 1
+      meets = 0
+      many = 0
+      do i = 1, size(block)
+         associate (own => d%level(block(i)))
+            low(i) = own
+            high(i) = own
+            do k = d%start(block(i)), d%start(block(i) + 1) - 1
+               if (d%group(d%neighbour(k)) /= d%group(block(i))) cycle
+               low(i) = min(low(i), d%level(d%neighbour(k)))
+               high(i) = max(high(i), d%level(d%neighbour(k)))
+            end do
+            many(own) = many(own) + 1
+            ! the block is the last below, or the first above, all cuts behind these levels
+            meets(own, 1) = meets(own, 1) + 1
+            meets(high(i), 1) = meets(high(i), 1) - 1
+            meets(low(i), 2) = meets(low(i), 2) + 1
+            meets(own, 2) = meets(own, 2) - 1
+         end associate
+      end do
+      former = least
+      cut = 0
+      below = 0
+      do i = lbound(many, 1), ubound(many, 1) - 2
+         below = below + many(i)
+         if (i > lbound(many, 1)) meets(i, :) = meets(i, :) + meets(i - 1, :)
+         do side = 1, 2
+            associate (one => real(below - merge(meets(i, 1), 0, side == 1)), &
+               & other => real(size(block) - below - merge(meets(i, 2), 0, side == 2)))
+               if (min(one, other) < least_share*size(block)) cycle
+               cost = real(meets(i, side))/(one*other)
+               if (cost >= least) cycle
+               least = cost
+               cut = [i, side]
+            end associate
          end do
-         associate (side => min(i - 1, n + 1 - next))
-            if (side > least .and. least < least_share*n &
-               & .or. side >= least_share*n .and. next - i < fewest) then
-               best_level = d%level(d%queue(i))
-               fewest = next - i
-               least = side
-            end if
-         end associate
-         i = next
       end do
-   end function best_level
-
-   !> Whether a block has a neighbour in its group at a level of the search
-   pure logical function meets_level(d, block, level)
-      !> The blocks
-      type(dissection_t), intent(in) :: d
-      !> The block
-      integer, intent(in) :: block
-      !> The level
-      integer, intent(in) :: level
-      integer :: i
-
-      meets_level = .false.
-      do i = d%start(block), d%start(block + 1) - 1
-         associate (other => d%neighbour(i))
-            meets_level = meets_level &
-               & .or. d%group(other) == d%group(block) .and. d%level(other) == level
-         end associate
-      end do
-   end function meets_level
+      if (least >= former) return
+      part = merge(1, 2, d%level(block) <= cut(1))
+      if (cut(2) == 1) then
+         where (part == 1 .and. high > cut(1)) part = 3
+      else
+         where (part == 2 .and. low <= cut(1)) part = 3
+      end if
+   end subroutine cut_between
 end module dda_block_dissection

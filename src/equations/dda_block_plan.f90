@@ -1,6 +1,6 @@
 !> The factor of a matrix of small blocks, and which of its blocks are not zero
 module dda_block_plan
-   use dda_block_dissection, only : dissected_order
+   use dda_block_dissection, only : dissected_order, smallest_part
    use dda_block_matrix, only : block_matrix_t
    use dda_kinds, only : wp
    implicit none
@@ -51,30 +51,30 @@ module dda_block_plan
 
    !> A matrix that is no wider than this in the narrow order is eliminated in it without a thought:
    !> no other order does with much less
-   integer, parameter :: narrow = 8
+   integer, parameter :: narrow = 3
+   !> Fewer blocks are not dissected
+   integer, parameter :: few = 500
 
 contains
 
    !> Lay out the factor of a matrix: order of elimination, and the entries that it fills. The
-   !> narrow order is eliminated from both ends to the middle; where dissection does with fewer
-   !> products, it gives the order
+   !> narrow order is eliminated from both ends to the middle; where minimum degree or dissection do
+   !> with fewer products, they give the order
    pure subroutine plan_factor(matrix, factor)
       !> The matrix, of which the pattern counts
       type(block_matrix_t), intent(in) :: matrix
       !> The factor, without numbers
       type(block_factor_t), intent(out) :: factor
-      type(block_factor_t) :: other
       integer :: n
 
       n = size(matrix%place)
-      factor%n_dof = matrix%n_dof
-      call lay_out(matrix, merge(2*matrix%place - 1, 2*(n + 1 - matrix%place), &
-         & 2*matrix%place <= n + 1), factor)
-      if (matrix%width > narrow) then
-         other%n_dof = matrix%n_dof
-         call lay_out(matrix, dissected_order(n, matrix%pair), other)
-         if (products(other) < products(factor)) factor = other
+      if (matrix%width <= narrow) then
+         call lay_out(matrix, merge(2*matrix%place - 1, 2*(n + 1 - matrix%place), &
+            & 2*matrix%place <= n + 1), factor)
+      else
+         call lay_out_least(matrix, factor)
       end if
+      factor%n_dof = matrix%n_dof
       call list_rows(factor)
       factor%symmetric = matrix%symmetric
       associate (nd => matrix%n_dof, other => merge(0, 1, matrix%symmetric))
@@ -85,6 +85,23 @@ contains
       end associate
       allocate (factor%lifted(n), source=.false.)
    end subroutine plan_factor
+
+   !> Lay out the factor in the order that takes the fewest products
+   pure subroutine lay_out_least(matrix, factor)
+      !> The matrix
+      type(block_matrix_t), intent(in) :: matrix
+      !> The factor, without numbers
+      type(block_factor_t), intent(inout) :: factor
+      type(block_factor_t) :: other
+      integer :: n
+
+      n = size(matrix%place)
+      call lay_out(matrix, by_branches(matrix, dissected_order(n, matrix%pair, n)), factor)
+      if (n < few) return
+      call lay_out(matrix, &
+         & by_branches(matrix, dissected_order(n, matrix%pair, smallest_part)), other)
+      if (products(other) < products(factor)) factor = other
+   end subroutine lay_out_least
 
    !> Products of two blocks that a factorisation takes
    pure real(wp) function products(factor)
@@ -100,6 +117,49 @@ contains
       end do
    end function products
 
+   !> The same order as far as the fill goes, but such that what is eliminated into a block is
+   !> eliminated shortly before it, and still near at hand: branch by branch of the tree of
+   !> eliminations
+   pure function by_branches(matrix, place) result(better)
+      !> The matrix
+      type(block_matrix_t), intent(in) :: matrix
+      !> Place of each block: (n_block)
+      integer, intent(in) :: place(:)
+      !> Better place of each block: (n_block)
+      integer :: better(size(place))
+      type(block_factor_t) :: rows
+      integer, dimension(0:size(place)) :: parent, ancestor, room, branch
+      integer :: g, i, j, above
+
+      call list_couplings(matrix, place, rows)
+      parent = 0
+      ancestor = 0
+      do i = 1, size(place)
+         do g = rows%first_given(i), rows%first_given(i + 1) - 1
+            j = rows%given_column(g)
+            do while (ancestor(j) /= i)
+               above = ancestor(j)
+               ancestor(j) = i
+               if (above == 0) parent(j) = i
+               j = merge(i, above, above == 0)
+               if (j == i) exit
+            end do
+         end do
+      end do
+      branch = 1
+      do i = 1, size(place)
+         branch(parent(i)) = branch(parent(i)) + branch(i)
+      end do
+      room(0) = size(place)
+      do i = size(place), 1, -1
+         j = room(parent(i))
+         room(parent(i)) = j - branch(i)
+         room(i) = j - 1
+         ancestor(i) = j
+      end do
+      better = ancestor(place)
+   end function by_branches
+
    !> Couplings and columns of the factor in an order of elimination
    pure subroutine lay_out(matrix, place, factor)
       !> The matrix
@@ -113,7 +173,7 @@ contains
       allocate (factor%block(size(place)))
       factor%block(place) = [(i, i=1, size(place))]
       call list_couplings(matrix, place, factor)
-      call fill_columns(matrix, place, factor)
+      call fill_columns(size(place), factor)
    end subroutine lay_out
 
    !> The couplings of the matrix by the rows of the factor
@@ -141,30 +201,29 @@ contains
          factor%given(next(row(e))) = merge(e, -e, place(matrix%pair(1, e)) == row(e))
          next(row(e)) = next(row(e)) + 1
       end do
+      allocate (factor%given_column(size(row)))
+      do e = 1, size(row)
+         factor%given_column(e) = minval(place(matrix%pair(:, abs(factor%given(e)))))
+      end do
    end subroutine list_couplings
 
    !> Rows of each column: the couplings, and what elimination fills. A row has its couplings, and
    !> from the column of each the way to the root of the tree of eliminations (J. W. H. Liu, 1990);
    !> it is gone twice, to count and to list
-   pure subroutine fill_columns(matrix, place, factor)
-      !> The matrix
-      type(block_matrix_t), intent(in) :: matrix
-      !> Place of each block: (n_block)
-      integer, intent(in) :: place(:)
+   pure subroutine fill_columns(n, factor)
+      !> Number of blocks
+      integer, intent(in) :: n
       !> Receives the rows of the columns
       type(block_factor_t), intent(inout) :: factor
-      integer :: parent(size(place)), seen(size(place)), next(size(place))
+      integer, dimension(n) :: parent, seen, next
       integer :: g, i, j, pass
 
-      allocate (factor%first_below(size(place) + 1), factor%given_column(size(factor%given)))
-      do g = 1, size(factor%given)
-         factor%given_column(g) = minval(place(matrix%pair(:, abs(factor%given(g)))))
-      end do
+      allocate (factor%first_below(n + 1))
       parent = 0
       next = 0
       do pass = 1, 2
          seen = 0
-         do i = 1, size(place)
+         do i = 1, n
             do g = factor%first_given(i), factor%first_given(i + 1) - 1
                j = factor%given_column(g)
                do while (seen(j) /= i .and. j /= i)
@@ -178,11 +237,11 @@ contains
          end do
          if (pass == 2) exit
          factor%first_below(1) = 1
-         do i = 1, size(place)
+         do i = 1, n
             factor%first_below(i + 1) = factor%first_below(i) + next(i)
          end do
-         next = factor%first_below(:size(place))
-         allocate (factor%row(factor%first_below(size(place) + 1) - 1))
+         next = factor%first_below(:n)
+         allocate (factor%row(factor%first_below(n + 1) - 1))
       end do
    end subroutine fill_columns
 

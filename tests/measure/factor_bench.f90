@@ -1,0 +1,206 @@
+!> Times the factor of walls: lay out, factorise and substitute, symmetric and not
+!>
+!>    factor_bench [6] [UNITSxCOURSES ...]
+!>
+!> "6" lets each block have 6 unknowns. Times of the processor, the least of several.
+program factor_bench
+   use, intrinsic :: iso_fortran_env, only : output_unit
+   use dda_block_factor, only : block_factor_t, factorise, plan_factor, substitute
+   use dda_block_matrix, only : block_matrix_t, set_pattern
+   use dda_block_plan, only : products
+   use dda_joint_graph, only : joint_graph_t
+   use dda_kinds, only : wp
+   use graph_wall, only : new_wall
+   implicit none
+
+   !> Walls where none is asked for
+   character(len=7), parameter :: usual(5) = &
+      & ["4x8    ", "10x10  ", "20x20  ", "40x40  ", "100x100"]
+   !> Time that each measurement may take [s]
+   real(wp), parameter :: budget = 0.5_wp
+   integer :: i, n_dof, n
+   character(len=20) :: argument
+
+   n_dof = 3
+   n = 0
+   write (output_unit, "(a)") "wall     blocks  entries products/block  plan us " &
+      & //"  factor us   L U us   substitute us   L U us   residual   L U"
+   do i = 1, command_argument_count()
+      call get_command_argument(i, argument)
+      if (argument == "6") then
+         n_dof = 6
+      else
+         n = n + 1
+         call measure(argument)
+      end if
+   end do
+   if (n == 0) then
+      do i = 1, size(usual)
+         call measure(usual(i))
+      end do
+   end if
+
+contains
+
+   !> One line for a wall
+   subroutine measure(wall)
+      !> Bricks of a course, "x", courses
+      character(len=*), intent(in) :: wall
+      type(joint_graph_t) :: graph
+      type(block_matrix_t) :: matrix(2)
+      type(block_factor_t) :: factor(2)
+      real(wp), allocatable :: weight(:, :), push(:, :), x(:, :), load(:, :)
+      real(wp) :: plan, make(2), solve(2), residual(2)
+      integer :: cross, units, courses, k
+
+      cross = index(wall, "x")
+      read (wall(:cross - 1), *) units
+      read (wall(cross + 1:), *) courses
+      call new_wall(units, courses, 0.6_wp, graph, weight, push)
+      allocate (load(n_dof, graph%n_block), source=1.0_wp)
+      load(:3, :) = weight + push
+      do k = 1, 2
+         call fill(graph, k == 1, matrix(k))
+         plan = least_time(1, matrix(k), factor(k), load, x)
+         make(k) = least_time(2, matrix(k), factor(k), load, x)
+         solve(k) = least_time(3, matrix(k), factor(k), load, x)
+         if (.not. factor(k)%usable) error stop "the factor is not usable"
+         residual(k) = maxval(abs(load - product_of(matrix(k), x)))/maxval(abs(load))
+      end do
+      write (output_unit, "(a8,i7,f9.1,f15.0,f9.0,f12.1,f9.1,f16.1,f9.1,2es10.1)") wall, &
+         & graph%n_block, real(size(factor(1)%row), wp)/graph%n_block, &
+         & products(factor(1))/graph%n_block, 1.0e6_wp*plan, 1.0e6_wp*make, 1.0e6_wp*solve, residual
+      flush (output_unit)
+   end subroutine measure
+
+   !> Least processor time of some work in several tries, each of a millisecond or more [s]
+   real(wp) function least_time(work, matrix, factor, load, x)
+      !> 1: plan; 2: factorise; 3: substitute
+      integer, intent(in) :: work
+      !> The matrix
+      type(block_matrix_t), intent(in) :: matrix
+      !> Its factor
+      type(block_factor_t), intent(inout) :: factor
+      !> The right-hand side: (n_dof, n_block)
+      real(wp), intent(in) :: load(:, :)
+      !> Receives the solution: (n_dof, n_block)
+      real(wp), allocatable, intent(inout) :: x(:, :)
+      real(wp) :: before, after, spent
+      integer :: batch, done, try
+
+      least_time = huge(1.0_wp)
+      spent = 0.0_wp
+      batch = 1
+      try = 0
+      do while (try < 5 .or. spent < budget)
+         call cpu_time(before)
+         do done = 1, batch
+            select case (work)
+            case (1)
+               call plan_factor(matrix, factor)
+            case (2)
+               call factorise(matrix, factor)
+            case (3)
+               x = load
+               call substitute(factor, x)
+            end select
+         end do
+         call cpu_time(after)
+         spent = spent + after - before
+         if (after - before < 1.0e-3_wp) then
+            batch = 2*batch
+            cycle
+         end if
+         try = try + 1
+         least_time = min(least_time, (after - before)/batch)
+      end do
+   end function least_time
+
+   !> Stiffness of the joints' springs, some far stiffer than others, and some that slide with
+   !> friction where the matrix is not symmetric
+   subroutine fill(graph, symmetric, matrix)
+      !> The joints
+      type(joint_graph_t), intent(in) :: graph
+      !> Whether it is
+      logical, intent(in) :: symmetric
+      !> The matrix
+      type(block_matrix_t), intent(out) :: matrix
+      integer :: pair(2, size(graph%block, 2)), e, j, c
+      real(wp) :: spring(3, 3), a(3, 3), b(3, 3)
+
+      e = 0
+      do j = 1, size(pair, 2)
+         if (any(graph%block(:, j) == 0)) cycle
+         e = e + 1
+         pair(:, e) = graph%block(:, j)
+      end do
+      call set_pattern(matrix, n_dof, graph%n_block, pair(:, :e), symmetric)
+      matrix%diagonal = 0.0_wp
+      matrix%coupling = 0.0_wp
+      matrix%upper = 0.0_wp
+      do c = 1, n_dof
+         matrix%diagonal(c, c, :) = merge(1.0e-3_wp, 1.0_wp, c <= 3)
+      end do
+      e = 0
+      do j = 1, size(pair, 2)
+         spring = 0.0_wp
+         do c = 1, 3
+            spring(c, c) = 10.0_wp**modulo(7*j + 3*c, 5)
+         end do
+         if (.not. symmetric .and. modulo(j, 3) == 0) then
+            spring(3, 1) = 0.6_wp*spring(1, 1)
+            spring(3, 2) = 0.6_wp*spring(2, 2)
+         end if
+         if (all(graph%block(:, j) > 0)) e = e + 1
+         a = 0.0_wp
+         b = 0.0_wp
+         associate (p => graph%block(1, j), q => graph%block(2, j))
+            if (p > 0) then
+               a = graph%row(:, :, 1, j)
+               matrix%diagonal(:3, :3, p) = matrix%diagonal(:3, :3, p) &
+                  & + matmul(a, matmul(spring, transpose(a)))
+            end if
+            if (q > 0) then
+               b = graph%row(:, :, 2, j)
+               matrix%diagonal(:3, :3, q) = matrix%diagonal(:3, :3, q) &
+                  & + matmul(b, matmul(spring, transpose(b)))
+            end if
+            if (p == 0 .or. q == 0) cycle
+            if (matrix%pair(1, e) == q) then
+               matrix%coupling(:3, :3, e) = matmul(b, matmul(spring, transpose(a)))
+               if (.not. symmetric) &
+                  & matrix%upper(:3, :3, e) = matmul(a, matmul(spring, transpose(b)))
+            else
+               matrix%coupling(:3, :3, e) = matmul(a, matmul(spring, transpose(b)))
+               if (.not. symmetric) &
+                  & matrix%upper(:3, :3, e) = matmul(b, matmul(spring, transpose(a)))
+            end if
+         end associate
+      end do
+   end subroutine fill
+
+   !> Product of the matrix and a vector
+   function product_of(matrix, x) result(y)
+      !> The matrix
+      type(block_matrix_t), intent(in) :: matrix
+      !> The vector: (n_dof, n_block)
+      real(wp), intent(in) :: x(:, :)
+      !> The product: (n_dof, n_block)
+      real(wp) :: y(size(x, 1), size(x, 2))
+      integer :: b, e
+
+      do b = 1, size(x, 2)
+         y(:, b) = matmul(matrix%diagonal(:, :, b), x(:, b))
+      end do
+      do e = 1, size(matrix%pair, 2)
+         associate (p => matrix%pair(1, e), q => matrix%pair(2, e))
+            y(:, p) = y(:, p) + matmul(matrix%coupling(:, :, e), x(:, q))
+            if (matrix%symmetric) then
+               y(:, q) = y(:, q) + matmul(x(:, p), matrix%coupling(:, :, e))
+            else
+               y(:, q) = y(:, q) + matmul(matrix%upper(:, :, e), x(:, p))
+            end if
+         end associate
+      end do
+   end function product_of
+end program factor_bench
