@@ -5,14 +5,13 @@
 !> springs with strong damping find which joints stick and slide, an open-close loop with ever less
 !> damping has the last word.
 module dda_coulomb_start
-   use dda_coulomb_equations, only : coulomb_equations_t
+   use dda_coulomb_equations, only : coulomb_equations_t, solve_equations, use_faces
    use dda_coulomb_interior, only : interior_motion
    use dda_coulomb_joints, only : coulomb_joints_t
-   use dda_coulomb_law, only : apply_law, coulomb_state_t, unloaded_state
-   use dda_damped_steps, only : settle_faces, step_to_balance
+   use dda_coulomb_law, only : apply_law, change_faces, coulomb_state_t, imbalance, unloaded_state
    use dda_joint_graph, only : joint_motion
    use dda_kinds, only : wp
-   use dda_load_jump, only : jump_t, motion_end
+   use dda_load_jump, only : far_factor, jump_t, jump_to_balance, motion_end, path_damping
    implicit none
    private
 
@@ -33,11 +32,12 @@ contains
       real(wp), intent(in) :: load(:, :)
       !> The state
       type(coulomb_state_t), intent(out) :: state
-      !> What damped steps tell, where they were needed
+      !> What a motion tells, where one was needed
       type(jump_t), intent(inout) :: jump
       !> How it ends, one of motion_end
       integer, intent(out) :: end
       real(wp), parameter :: damping(3) = [1.0e-5_wp, 1.0e-4_wp, 1.0e-3_wp]
+      real(wp) :: largest
       integer :: i
       logical :: stands
 
@@ -48,8 +48,29 @@ contains
       end do
       state = unloaded_state(joints)
       jump%tolerance = balance
-      call step_to_balance(joints, equations, load, state, jump, end)
+      call find_elastic_motion(joints, equations, load, state, largest)
+      jump%far = far_factor*max(1.0_wp, largest)
+      call jump_to_balance(joints, equations, load, state, jump, end)
    end subroutine load_at_once
+
+   !> Largest displacement where no joint opens or slides
+   pure subroutine find_elastic_motion(joints, equations, load, state, largest)
+      !> The joints
+      type(coulomb_joints_t), intent(in) :: joints
+      !> Their equations
+      type(coulomb_equations_t), intent(inout) :: equations
+      !> The load: (n_dof, n_block)
+      real(wp), intent(in) :: load(:, :)
+      !> The joints unloaded
+      type(coulomb_state_t), intent(in) :: state
+      !> The displacement
+      real(wp), intent(out) :: largest
+      real(wp) :: motion(size(load, 1), size(load, 2)), opening(3, size(state%slip))
+
+      call use_faces(equations, joints, state%face, path_damping)
+      call solve_equations(equations, joints, load, motion, opening)
+      largest = maxval(abs(motion))
+   end subroutine find_elastic_motion
 
    !> Interior springs at a damping, then the open-close loop at ever less of it
    pure subroutine try_interior(joints, equations, load, first, state, stands)
@@ -100,6 +121,55 @@ contains
       end do
       state%load = load
    end subroutine try_interior
+
+   !> One damped step to a load: faces are chosen until they agree with the motion
+   pure subroutine settle_faces(joints, equations, load, damping, most, before, after, left, passes)
+      !> The joints
+      type(coulomb_joints_t), intent(in) :: joints
+      !> Their equations
+      type(coulomb_equations_t), intent(inout) :: equations
+      !> The load: (n_dof, n_block)
+      real(wp), intent(in) :: load(:, :)
+      !> Multiple of the mass
+      real(wp), intent(in) :: damping
+      !> Passes at most
+      integer, intent(in) :: most
+      !> State before the step
+      type(coulomb_state_t), intent(in) :: before
+      !> In: the faces to begin with; out: the state after the step
+      type(coulomb_state_t), intent(inout) :: after
+      !> What the forces leave of the load
+      real(wp), intent(out) :: left
+      !> Number of passes, 0 if the faces did not settle
+      integer, intent(out) :: passes
+      real(wp), parameter :: rounding = 1.0e-13_wp
+      real(wp) :: change(3, size(before%slip)), rest(size(load, 1), size(load, 2))
+      real(wp) :: step(size(load, 1), size(load, 2)), first(size(load, 1), size(load, 2))
+      integer :: faces(3, size(before%slip)), pass
+
+      passes = 0
+      left = huge(1.0_wp)
+      call imbalance(joints, load, before%force, first)
+      faces = after%face
+      do pass = 1, most
+         call use_faces(equations, joints, faces, damping)
+         if (.not. equations%usable) return
+         call change_faces(joints, before, faces, change)
+         call imbalance(joints, first, change, rest)
+         call solve_equations(equations, joints, rest, step, change)
+         if (.not. (equations%usable .and. all(abs(step) <= huge(1.0_wp)))) return
+         call apply_law(joints, before, change, after)
+         after%motion = before%motion + step
+         call imbalance(joints, load, after%force, rest)
+         left = maxval(abs(rest))
+         if (all(after%face == faces) .or. maxval(abs(rest - damping*joints%graph%mass*step)) &
+            & < rounding*real(size(step, 2), wp)) then
+            passes = pass
+            return
+         end if
+         faces = after%face
+      end do
+   end subroutine settle_faces
 
    !> Faces by interior springs
    pure subroutine take_interior(joints, equations, load, damping, tolerance, unloaded, state, &

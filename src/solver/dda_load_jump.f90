@@ -14,7 +14,7 @@ module dda_load_jump
    private
 
    public :: motion_end, motion_end_enum, jump_t, path_damping, moves_unbalanced
-   public :: jump_to_balance, where_it_is, see_ray
+   public :: far_factor, jump_to_balance
 
    !> How a motion ends
    type :: motion_end_enum
@@ -37,8 +37,6 @@ module dda_load_jump
       real(wp) :: tolerance = 0.0_wp
       !> A motion beyond this is far
       real(wp) :: far = huge(1.0_wp)
-      !> Number of damped steps
-      integer :: n_step = 0
       !> Velocities of a motion without end: (n_dof, n_block)
       real(wp), allocatable :: mechanism(:, :)
    end type jump_t
@@ -48,16 +46,24 @@ module dda_load_jump
    real(wp), parameter :: path_damping = 1.0e-10_wp
    !> Blocks move where damping takes more than this share of the load
    real(wp), parameter :: moves_unbalanced = 0.01_wp
+   !> So many times the motion under the dead load is far
+   real(wp), parameter :: far_factor = 1.0e4_wp
    !> An event no further off than this makes no way
    real(wp), parameter :: no_way = 1.0e-13_wp
    !> So many events without way lead nowhere
    integer, parameter :: max_standstill = 60
-   !> Events of a jump
-   integer, parameter :: max_event = 400
+   !> Steps of a jump: at least so many, and so many more for each joint
+   integer, parameter :: least_patience = 1000, patience = 20
+   !> Change of damping after a step that meets no event, and its inverse where there are no rates
+   real(wp), parameter :: calmer = 0.1_wp
+   !> With so much damping there are always rates
+   real(wp), parameter :: strongest = 1.0e5_wp
 
 contains
 
-   !> Move from event to event at a load that does not change
+   !> Move from event to event at a load that does not change. Where friction lets forces drop, only
+   !> motion that is damped enough has rates: damping rises until it has, and falls again with every
+   !> step that meets no event
    pure subroutine jump_to_balance(joints, equations, load, state, jump, end)
       !> The joints
       type(coulomb_joints_t), intent(in) :: joints
@@ -73,31 +79,41 @@ contains
       integer, intent(out) :: end
       type(rates_t) :: rates
       type(event_t) :: event
-      real(wp) :: rest(size(load, 1), size(load, 2)), start(size(load, 1), size(load, 2))
+      real(wp) :: damping, rest(size(load, 1), size(load, 2)), start(size(load, 1), size(load, 2))
       real(wp) :: still(3, size(state%slip))
       integer :: i, standstill
-      logical :: found, pushed
+      logical :: failed, found, pushed
 
       still = 0.0_wp
       start = state%motion
       standstill = 0
       pushed = .false.
+      failed = .false.
+      damping = path_damping
       rates = new_rates(state)
-      do i = 1, max_event
+      do i = 1, least_patience + patience*size(state%slip)
          call imbalance(joints, load, state%force, rest)
          end = where_it_is(maxval(abs(rest)), state%motion - start, jump)
          if (end == motion_end%balanced) state%load = load
-         if (end == motion_end%far) jump%mechanism = rates%motion
+         if (end == motion_end%far) call end_far(joints, equations, rest, state, start, jump, end)
          if (end /= motion_end%unsettled) return
-         call find_rates(joints, equations, state, rest, still, path_damping, rates, found)
-         if (.not. found) return
+         if (event%kind == event_kind%none .and. .not. failed) &
+            & damping = max(path_damping, calmer*damping)
+         call find_rates(joints, equations, state, rest, still, damping, rates, found)
+         failed = .not. found
+         if (failed) then
+            if (damping > strongest) return
+            damping = damping/calmer
+            cycle
+         end if
          if (pushed .and. rates%unbalanced > moves_unbalanced) then
             call see_ray(joints, state, rest, rates, event, jump, end)
             if (event%kind == event_kind%none) return
          else
             event = next_event(joints, state, rates, 1.0_wp)
          end if
-         pushed = rates%unbalanced > moves_unbalanced .and. event%kind == event_kind%none
+         pushed = .not. damping > path_damping .and. rates%unbalanced > moves_unbalanced &
+            & .and. event%kind == event_kind%none
          standstill = merge(standstill + 1, 0, event%distance < no_way)
          if (standstill > max_standstill) return
          call move_on(joints, rates, event, state)
@@ -120,6 +136,39 @@ contains
          end = motion_end%far
       end if
    end function where_it_is
+
+   !> Whether a motion that has gone far has no end. If that is not seen, the blocks have fallen by
+   !> all that it went
+   pure subroutine end_far(joints, equations, rest, state, start, jump, end)
+      !> The joints
+      type(coulomb_joints_t), intent(in) :: joints
+      !> Their equations
+      type(coulomb_equations_t), intent(inout) :: equations
+      !> What the forces leave of the load: (n_dof, n_block)
+      real(wp), intent(in) :: rest(:, :)
+      !> The state
+      type(coulomb_state_t), intent(in) :: state
+      !> Motion where it began: (n_dof, n_block)
+      real(wp), intent(in) :: start(:, :)
+      !> Receives the mechanism
+      type(jump_t), intent(inout) :: jump
+      !> endless or far
+      integer, intent(out) :: end
+      type(rates_t) :: rates
+      type(event_t) :: event
+      real(wp) :: still(3, size(state%slip))
+      logical :: found
+
+      still = 0.0_wp
+      rates = new_rates(state)
+      end = motion_end%unsettled
+      call find_rates(joints, equations, state, rest, still, path_damping, rates, found)
+      if (found .and. rates%unbalanced > moves_unbalanced) &
+         & call see_ray(joints, state, rest, rates, event, jump, end)
+      if (end == motion_end%endless) return
+      end = motion_end%far
+      jump%mechanism = state%motion - start
+   end subroutine end_far
 
    !> Follow a motion whose forces stay as they are: to the next gap that closes, or without end
    pure subroutine see_ray(joints, state, rest, rates, event, jump, end)

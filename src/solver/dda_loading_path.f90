@@ -16,11 +16,11 @@ module dda_loading_path
       & new_coulomb_joints
    use dda_coulomb_law, only : apply_law, coulomb_state_t, face, face_enum, imbalance
    use dda_coulomb_start, only : load_at_once
-   use dda_damped_steps, only : step_to_balance
    use dda_event_rates, only : find_rates, new_rates, rates_t
    use dda_joint_graph, only : joint_graph_t
    use dda_kinds, only : wp
-   use dda_load_jump, only : jump_t, jump_to_balance, motion_end, moves_unbalanced, path_damping
+   use dda_load_jump, only : far_factor, jump_t, jump_to_balance, motion_end, moves_unbalanced, &
+      & path_damping
    use dda_path_event, only : event_kind, event_t, move_on, next_event
    implicit none
    private
@@ -107,8 +107,6 @@ module dda_loading_path
       real(wp) :: largest_jump = 0.0_wp
       !> Factorisations
       integer :: n_factorisation = 0
-      !> Damped steps
-      integer :: n_damped_step = 0
       !> What the joint forces leave of the load at the end, by the mean weight of a block
       real(wp) :: imbalance = 0.0_wp
       !> Velocities of the collapse, the largest 1: (n_dof, n_block) [1, 1, 1/m ...]; without
@@ -124,8 +122,6 @@ module dda_loading_path
    real(wp), parameter :: nudge_left = 1.0e-3_wp
    !> Rounding of forces
    real(wp), parameter :: rounding = 1.0e-12_wp
-   !> So many times the motion under the dead load is far
-   real(wp), parameter :: far_factor = 1.0e4_wp
    !> An event no further off than this makes no way
    real(wp), parameter :: no_way = 1.0e-13_wp
    !> So many events without way lead nowhere
@@ -173,7 +169,6 @@ contains
       result%reached = 1.0_wp
       if (end /= motion_end%balanced) call note_fall(end, jump, result)
       path%far = far_factor*max(1.0_wp, maxval(abs(state%motion)))
-      result%n_damped_step = jump%n_step
       call finish(path, state, result)
    end subroutine begin_path
 
@@ -282,15 +277,8 @@ contains
          call jump_to_balance(path%joints, path%equations, state%load + more*way%load, moved, &
             & jump, &
             & end)
-         if (end == motion_end%unsettled) then
-            call apply_law(path%joints, state, more*way%opening, moved)
-            moved%motion = state%motion
-            call step_to_balance(path%joints, path%equations, state%load + more*way%load, moved, &
-               & jump, end)
-         end if
          if (end /= motion_end%unsettled) exit
       end do
-      result%n_damped_step = result%n_damped_step + jump%n_step
       if (end == motion_end%balanced) then
          result%n_jump = result%n_jump + 1
          result%largest_jump = max(result%largest_jump, maxval(abs(moved%motion - state%motion)))

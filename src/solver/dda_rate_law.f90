@@ -1,0 +1,229 @@
+!> Coulomb's law for rates: what joints do when an assembly goes on from a state
+!>
+!> A corner that pushes stays closed, one with a gap stays open, a joint within Coulomb's limit
+!> sticks. A corner without force and without gap, and a joint at its limit, are weak: they follow
+!> the rates of opening, so that the rates of the forces are a function of these, in straight
+!> pieces.
+module dda_rate_law
+   use dda_coulomb_joints, only : coulomb_joints_t, end_role, shear_role
+   use dda_coulomb_law, only : coulomb_state_t, face, shear_face
+   use dda_kinds, only : wp
+   implicit none
+   private
+
+   public :: rate_law_t, break_t, set_rate_law, follow_law, next_break, cross_break, break_rate
+
+   !> What a state leaves open
+   type :: rate_law_t
+      !> Whether each corner is weak: (2, n_joint)
+      logical, allocatable :: weak(:, :)
+      !> Limits that each joint may slide at, a positive and a negative shear force: (2, n_joint)
+      logical, allocatable :: limit(:, :)
+      !> Faces where they are given: (3, n_joint)
+      integer, allocatable :: given(:, :)
+   end type rate_law_t
+
+   !> Where the line of a motion meets a bend of the law
+   type :: break_t
+      !> How far off it is
+      real(wp) :: distance = 0.0_wp
+      !> Joint that changes, 0 if there is none
+      integer :: joint = 0
+      !> Corner 1 or 2 that opens or closes, 3 or 4 where the joint begins or ends to slide against
+      !> a positive or a negative shear force
+      integer :: part = 0
+      !> Whether what decides it rises: the pressure of the corner, or the shear force beyond the
+      !> limit
+      logical :: rises = .false.
+   end type break_t
+
+   !> A force below this part of a block's weight is none, a gap that it would close is none
+   real(wp), parameter :: weak_force = 1.0e-9_wp
+   !> A joint at its limit sticks unless its shear force would grow beyond it by this share
+   real(wp), parameter :: slide_margin = 1.0e-12_wp
+
+contains
+
+   !> The law of a state
+   pure subroutine set_rate_law(joints, state, law)
+      !> The joints
+      type(coulomb_joints_t), intent(in) :: joints
+      !> The state
+      type(coulomb_state_t), intent(in) :: state
+      !> Its law
+      type(rate_law_t), intent(out) :: law
+      real(wp) :: bound
+      integer :: i, j
+      logical :: pushes(2)
+
+      allocate (law%weak(2, size(state%slip)), law%limit(2, size(state%slip)))
+      allocate (law%given(3, size(state%slip)))
+      do j = 1, size(state%slip)
+         do i = 1, 2
+            pushes(i) = joints%end_role(i, j) == end_role%tied .or. state%force(i, j) > weak_force
+            law%weak(i, j) = .not. (pushes(i) .or. joints%end_role(i, j) == end_role%absent &
+               & .or. state%gap(i, j) > weak_force*joints%graph%compliance(i, j))
+            law%given(i, j) = merge(face%closed, face%open, pushes(i))
+         end do
+         law%given(3, j) = shear_face(joints, j, law%given(:2, j), face%stuck)
+         bound = joints%graph%friction(j)*(state%force(1, j) + state%force(2, j))
+         law%limit(:, j) = .not. any(pushes)
+         if (any(pushes)) law%limit(:, j) = [bound - state%force(3, j) <= weak_force, &
+            & bound + state%force(3, j) <= weak_force]
+         if (joints%shear_role(j) /= shear_role%frictional) law%limit(:, j) = .false.
+      end do
+   end subroutine set_rate_law
+
+   !> What joints do with rates of opening
+   pure subroutine follow_law(joints, law, opening, faces)
+      !> The joints
+      type(coulomb_joints_t), intent(in) :: joints
+      !> The law
+      type(rate_law_t), intent(in) :: law
+      !> Rates of opening 1, opening 2, slip: (3, n_joint)
+      real(wp), intent(in) :: opening(:, :)
+      !> What they do: (3, n_joint)
+      integer, intent(out) :: faces(:, :)
+      real(wp) :: beyond(2), margin
+      integer :: i, j
+
+      faces = law%given
+      do j = 1, size(faces, 2)
+         do i = 1, 2
+            if (law%weak(i, j)) faces(i, j) = merge(face%open, face%closed, opening(i, j) > 0.0_wp)
+         end do
+         if (any(law%weak(:, j))) faces(3, j) = shear_face(joints, j, faces(:2, j), face%stuck)
+         if (faces(3, j) == face%free .or. .not. any(law%limit(:, j))) cycle
+         beyond = beyond_limit(joints, j, faces(:2, j), opening(:, j))
+         margin = slide_margin*abs(opening(3, j))/joints%graph%compliance(3, j)
+         if (law%limit(1, j) .and. beyond(1) > margin) then
+            faces(3, j) = face%slides
+         else if (law%limit(2, j) .and. beyond(2) > margin) then
+            faces(3, j) = face%slides_back
+         end if
+      end do
+   end subroutine follow_law
+
+   !> How fast a joint that sticks would go beyond its limits
+   pure function beyond_limit(joints, j, ends, opening) result(beyond)
+      !> The joints
+      type(coulomb_joints_t), intent(in) :: joints
+      !> Number of the joint
+      integer, intent(in) :: j
+      !> What its corners do: (2)
+      integer, intent(in) :: ends(2)
+      !> Rates of opening 1, opening 2, slip
+      real(wp), intent(in) :: opening(3)
+      !> Rate of the shear force less that of the limit: of a positive one, of a negative one
+      real(wp) :: beyond(2)
+      real(wp) :: push(3)
+
+      push = -opening/joints%graph%compliance(:, j)
+      beyond = [push(3), -push(3)] - joints%graph%friction(j)*sum(push(:2), ends == face%closed)
+   end function beyond_limit
+
+   !> The first bend of the law on a line of rates of opening
+   pure function next_break(joints, law, faces, opening, change) result(first)
+      !> The joints
+      type(coulomb_joints_t), intent(in) :: joints
+      !> The law
+      type(rate_law_t), intent(in) :: law
+      !> What the joints do: (3, n_joint)
+      integer, intent(in) :: faces(:, :)
+      !> Where the line begins: (3, n_joint)
+      real(wp), intent(in) :: opening(:, :)
+      !> Where it leads: (3, n_joint)
+      real(wp), intent(in) :: change(:, :)
+      !> The bend; without a joint if there is none
+      type(break_t) :: first
+      real(wp) :: beyond(2), rate(2)
+      integer :: i, j
+      logical :: slides
+
+      first%distance = huge(1.0_wp)
+      do j = 1, size(faces, 2)
+         do i = 1, 2
+            if (law%weak(i, j)) call meet(faces(i, j) == face%closed, -opening(i, j), &
+               & -change(i, j), j, i, first)
+         end do
+         if (faces(3, j) == face%free .or. .not. any(law%limit(:, j))) cycle
+         beyond = beyond_limit(joints, j, faces(:2, j), opening(:, j))
+         rate = beyond_limit(joints, j, faces(:2, j), change(:, j))
+         do i = 1, 2
+            slides = faces(3, j) == merge(face%slides, face%slides_back, i == 1)
+            if (law%limit(i, j)) call meet(slides, beyond(i), rate(i), j, i + 2, first)
+         end do
+      end do
+   end function next_break
+
+   !> Take a bend that comes before the others: what is positive in one piece and negative in the
+   !> other falls or rises to zero
+   pure subroutine meet(positive, value, rate, joint, part, first)
+      !> Whether it is the piece where the value is positive
+      logical, intent(in) :: positive
+      !> The value; on the wrong side by rounding alone
+      real(wp), intent(in) :: value
+      !> Its rate
+      real(wp), intent(in) :: rate
+      !> Number of the joint
+      integer, intent(in) :: joint
+      !> Part of the joint
+      integer, intent(in) :: part
+      !> The first bend so far
+      type(break_t), intent(inout) :: first
+      real(wp) :: distance
+
+      if (positive .eqv. rate >= 0.0_wp) return
+      if (.not. abs(rate) > 0.0_wp) return
+      distance = max(0.0_wp, -value/rate)
+      if (distance < first%distance) first = break_t(distance, joint, part, rate > 0.0_wp)
+   end subroutine meet
+
+   !> How fast what decides a bend rises along a line
+   pure real(wp) function break_rate(joints, break, faces, change)
+      !> The joints
+      type(coulomb_joints_t), intent(in) :: joints
+      !> The bend
+      type(break_t), intent(in) :: break
+      !> What the joints do: (3, n_joint)
+      integer, intent(in) :: faces(:, :)
+      !> Where the line leads: (3, n_joint)
+      real(wp), intent(in) :: change(:, :)
+      real(wp) :: rate(2)
+
+      associate (j => break%joint)
+         if (break%part > 2) then
+            rate = beyond_limit(joints, j, faces(:2, j), change(:, j))
+            break_rate = rate(break%part - 2)
+         else
+            break_rate = -change(break%part, j)
+         end if
+      end associate
+   end function break_rate
+
+   !> Faces of a joint beyond a bend
+   pure subroutine cross_break(joints, break, opening, faces)
+      !> The joints
+      type(coulomb_joints_t), intent(in) :: joints
+      !> The bend
+      type(break_t), intent(in) :: break
+      !> Rates of opening there: (3, n_joint)
+      real(wp), intent(in) :: opening(:, :)
+      !> What the joints do: (3, n_joint)
+      integer, intent(inout) :: faces(:, :)
+      integer :: j
+
+      j = break%joint
+      if (break%part > 2) then
+         faces(3, j) = merge(merge(face%slides, face%slides_back, break%part == 3), face%stuck, &
+            & break%rises)
+      else
+         faces(break%part, j) = merge(face%closed, face%open, break%rises)
+         ! a joint that begins to push slides as it moves
+         if (faces(3, j) == face%free) faces(3, j) = merge(face%slides_back, face%slides, &
+            & opening(3, j) > 0.0_wp)
+         if (joints%shear_role(j) /= shear_role%frictional) faces(3, j) = face%stuck
+         faces(3, j) = shear_face(joints, j, faces(:2, j), faces(3, j))
+      end if
+   end subroutine cross_break
+end module dda_rate_law
