@@ -10,6 +10,7 @@ module dda_forward
    use dda_curved_motion, only : follow_curves
    use dda_energy, only : audit_step, keep_energy
    use dda_entry, only : refuse_entry
+   use dda_fall, only : has_fallen, neighbours_of
    use dda_error, only : error_t, fatal_error
    use dda_frames, only : album_t, keep_pictures
    use dda_impact_time, only : meet_impact
@@ -77,6 +78,7 @@ contains
       type(step_context_t) :: step
       type(march_t) :: march
       type(error_t), allocatable :: error
+      integer, allocatable :: neighbours(:, :)
 
       if (maxval(system%equation) == 0) then
          ! nothing can move
@@ -84,6 +86,7 @@ contains
          allocate (outcome%motion(settings%n_dof, 0))
          return
       end if
+      neighbours = neighbours_of(contacts%joint)
       call new_equations(system, contacts%springs, settings, equations)
       call begin_step(contacts, size(equations%weight, 1), size(equations%weight, 2), step%state)
       if (present(onward)) call go_on(settings, system, onward, march, equations)
@@ -105,6 +108,8 @@ contains
          outcome%verdict = verdict%undecided
          if (settings%current .or. settings%collapse_displacement > 0.0_wp) &
             & march%displacement = largest_displacement(system, settings%current)
+         if (settings%current .and. .not. settings%dynamic) &
+            & march%has_fallen = has_fallen(system, neighbours, settings%boundary%held)
          if (step%whole .and. .not. settings%dynamic) &
             & outcome%verdict = judge_verdict(march, step, settings)
          if (present(album)) call keep_pictures(settings, system, contacts, march, &

@@ -81,6 +81,8 @@ module dda_step_context
       real(wp), allocatable :: reach(:)
       !> Largest motion of a corner since the beginning [m]
       real(wp) :: displacement = 0.0_wp
+      !> Whether a block has turned over or left what carried it, where blocks move
+      logical :: has_fallen = .false.
       !> Motions that the coordinates of corners cannot tell from none [m]
       real(wp) :: resolution = 0.0_wp
       !> Motion that the rounding of coordinates may feign, where blocks move [m]

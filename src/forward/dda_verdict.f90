@@ -160,7 +160,8 @@ contains
    !> It stands if the joint forces balance the full load but for a residue that would accelerate no
    !> point noticeably. It falls if the blocks have fallen far beyond any elastic motion, and the
    !> loads' work turns into speed alone, or acceleration is steady while no energy is stored; or,
-   !> where a displacement that means collapse is set, if a corner has moved as far
+   !> where a displacement that means collapse is set, if a corner has moved as far. What rests once
+   !> a block has fallen does not stand
    pure function judge_verdict(march, step, settings) result(answer)
       !> The march, with the acceleration of the step before
       type(march_t), intent(in) :: march
@@ -199,7 +200,9 @@ contains
          & .and. step%farthest <= max(still*march%displacement, march%resolution, &
          & min(march%rounding, barely*march%displacement))
       answer = verdict%undecided
-      if (at_rest) then
+      if (march%has_fallen .and. (at_rest .or. .not. settings%collapse_displacement > 0.0_wp)) then
+         answer = verdict%collapsed
+      else if (at_rest) then
          answer = verdict%stable
       else if (far > 0.0_wp) then
          if (march%displacement > far .and. march%steps >= 2 .and. goes_on) &
