@@ -3,13 +3,15 @@ module dda_check
    use, intrinsic :: iso_fortran_env, only : error_unit
    use dda_boundary, only : boundary_t
    use dda_command_line, only : command_t, name_of
-   use dda_deck, only : deck_t, flag_of, has_group, integer_of, text_of, word_of
+   use dda_deck, only : deck_t, flag_of, geometry_of, has_group, integer_of, keeps_velocities, &
+      & text_of, word_of
    use dda_deck_scene, only : check_lines, check_scene, deck_scene
    use dda_deck_sweep, only : case_deck, n_cases, swept_names
    use dda_cut, only : print_warnings
    use dda_error, only : error_line, error_t
    use dda_limerick_model, only : half_size, limerick_model_t
    use dda_limerick_scene, only : limerick_scene
+   use dda_model_table, only : models_of, searches_of
    use dda_process, only : error_is_terminal, exit_status
    use dda_progress, only : end_watch, terminal_watch_t
    use dda_read_deck, only : read_deck
@@ -89,6 +91,7 @@ contains
       call check_lines(deck, error)
       if (allocated(error)) call tell(screen, "not to run", error_line(error))
       call print_line(screen, "   the first case:")
+      call print_model(screen, first)
       if (word_of(first, "analysis", "mode") == "limerick") then
          call print_limerick_plan(screen, first, scene)
          return
@@ -104,6 +107,22 @@ contains
       call print_parts(screen, first, blocks)
       call tell(screen, "also told", tables_text(first))
    end subroutine print_plan
+
+   !> Print which model it is, which others there are, and what can be searched in it
+   subroutine print_model(screen, deck)
+      !> Where it goes
+      type(screen_t), intent(in) :: screen
+      !> The deck of the case
+      type(deck_t), intent(in) :: deck
+      character(len=:), allocatable :: kind, mode
+
+      kind = trim(word_of(deck, "scene", "kind"))
+      mode = trim(word_of(deck, "analysis", "mode"))
+      call tell(screen, "model", kind//", "//mode//" "//trim(geometry_of(deck))//"; "//kind &
+         & //" are run: "//models_of(kind))
+      if (keeps_velocities(deck)) mode = "dynamic"
+      call tell(screen, "searchable", searches_of(kind, mode))
+   end subroutine print_model
 
    !> The points that are held, loaded and measured
    pure function points_text(boundary) result(text)

@@ -4,6 +4,7 @@ module dda_help
    use dda_command_line, only : command_t
    use dda_deck_token, only : shown
    use dda_deck_words, only : deck_help, near_one
+   use dda_model_table, only : models_help
    use dda_process, only : exit_status
    use dda_screen, only : print_line, print_text, screen_t
    implicit none
@@ -15,7 +16,7 @@ module dda_help
    character(len=*), parameter :: version = "0.1.0"
    !> What there is help on
    character(len=*), parameter :: topics(*) = [character(len=6) :: "run", "check", "cut", &
-      & "export", "keys", "help"]
+      & "export", "keys", "models", "help"]
 
    !> dda help
    character(len=*), parameter :: general(*) = [character(len=96) :: &
@@ -28,6 +29,7 @@ module dda_help
       & "   dda help run | check | cut | export", &
       & "                               options of a subcommand (dda run --help does the same)", &
       & "   dda help keys               every group and key of a deck: unit, range, default", &
+      & "   dda help models             what is run with which mode, and what can be searched", &
       & "   dda --help | -h             this page", &
       & "   dda --version               the version", &
       & "", &
@@ -109,9 +111,10 @@ module dda_help
 
    !> dda help help
    character(len=*), parameter :: on_help(*) = [character(len=96) :: &
-      & "dda help [run | check | cut | export | keys | help]", &
+      & "dda help [run | check | cut | export | keys | models | help]", &
       & "", &
-      & "Prints help on a subcommand or on the keys of a deck (without a topic: the first page)."]
+      & "Prints help on a subcommand, on the keys of a deck, or on the models that there are", &
+      & "(without a topic: the first page)."]
 
 contains
 
@@ -141,9 +144,11 @@ contains
          call print_lines(command%screen, on_help)
       case ("keys")
          call print_text(command%screen, deck_help())
+      case ("models")
+         call print_text(command%screen, models_help())
       case default
          write (error_unit, "(a)") "dda:2: error: wanted help on run, check, cut, export, " &
-            & //"keys or help, found '"//shown(topic)//"'"//near_one(topic, topics) &
+            & //"keys, models or help, found '"//shown(topic)//"'"//near_one(topic, topics) &
             & //"; write one of them"
          status = exit_status%bad_input
       end select

@@ -4,14 +4,16 @@ module dda_deck_check_case
    use dda_error, only : error_t
    use dda_text, only : to_text
    use dda_deck_keys, only : deck_key, key_index, group_index
-   use dda_deck, only : deck_t, deck_place_t, parameter_t, deck_error, &
-      flag_of, integer_of, real_of, word_of, is_given, place_of
+   use dda_deck, only : deck_t, deck_place_t, parameter_t, deck_error, flag_of, geometry_of, &
+      integer_of, keeps_velocities, real_of, word_of, is_given, place_of
    use dda_deck_parameter, only : parameter_name
    use dda_deck_set, only : put_number, number_problem
+   use dda_deck_words, only : full_name
+   use dda_model_table, only : model_problem, search_problem
    implicit none
    private
 
-   public :: check_case, bracket_of
+   public :: check_case, check_model, bracket_of
 
    !> Joints closer than this are one joint [deg]
    real(wp), parameter :: same_angle = 1.0e-9_wp
@@ -26,48 +28,15 @@ contains
       type(parameter_t), intent(in) :: searched
       !> The first thing that is wrong
       type(error_t), allocatable, intent(out) :: error
-      logical :: is_static, is_limerick, has_weight
 
-      is_limerick = word_of(deck, "analysis", "mode") == "limerick"
-      is_static = word_of(deck, "analysis", "mode") == "static"
-      if (is_limerick) is_static = .not. flag_of(deck, "limerick", "dynamic")
-      has_weight = real_of(deck, "load", "gravity") > 0.0_wp .or. &
-         is_given(deck, "material", "unit_weight") .or. is_given(deck, "scene", "analysis")
-      if (is_static .and. .not. has_weight) then
+      call check_model(deck, searched, error)
+      if (.not. allocated(error)) call check_use(deck, error)
+      if (allocated(error)) return
+      if (.not. keeps_velocities(deck) .and. .not. (real_of(deck, "load", "gravity") > 0.0_wp .or. &
+         is_given(deck, "material", "unit_weight") .or. is_given(deck, "scene", "analysis"))) then
          call deck_error(error, "a static analysis wants a weight: load%gravity is 0 and "// &
             "material%unit_weight is not given; give one of them", deck, &
             deck%value(key_index("load", "gravity"))%place)
-      else if (searched%key > 0 .and. .not. is_static) then
-         call deck_error(error, "a search wants mode = 'static'; a dynamic run ends "// &
-            "'completed', neither standing nor fallen; remove &search or mode = 'dynamic'", deck, &
-            place_of(deck, key_index("search", "parameter")))
-      else if (is_limerick .and. is_given(deck, "analysis", "geometry") .and. &
-         word_of(deck, "analysis", "geometry") /= "current") then
-         call deck_error(error, "mode = 'limerick' wants geometry = 'current' or none: its "// &
-            "blocks always move", deck, place_of(deck, key_index("analysis", "geometry")))
-      else if (is_limerick .and. integer_of(deck, "output", "frames") > 0) then
-         call deck_error(error, "output%frames wants another mode than 'limerick', which "// &
-            "keeps no pictures", deck, place_of(deck, key_index("output", "frames")))
-      else if (real_of(deck, "analysis", "restitution") > 0.0_wp .and. (is_static .or. &
-         word_of(deck, "analysis", "geometry") /= "current")) then
-         call deck_error(error, "restitution wants mode = 'dynamic' and geometry = 'current'", &
-            deck, place_of(deck, key_index("analysis", "restitution")))
-      else if ((is_limerick .or. .not. is_static) .and. &
-         word_of(deck, "analysis", "flow") == "associated") then
-         call deck_error(error, "flow = 'associated' expects mode = 'static', got '"// &
-            trim(word_of(deck, "analysis", "mode"))//"'; remove one of the two", deck, &
-            place_of(deck, key_index("analysis", "flow")))
-      else if (is_static .and. is_given(deck, "analysis", "duration")) then
-         call deck_error(error, "duration wants mode = 'dynamic': a static run has no time", &
-            deck, place_of(deck, key_index("analysis", "duration")))
-      else if (integer_of(deck, "output", "frames") > 0 .and. &
-         word_of(deck, "analysis", "geometry") /= "current") then
-         call deck_error(error, "output%frames wants geometry = 'current': in reference "// &
-            "geometry no block moves; change one of the two", deck, &
-            place_of(deck, key_index("output", "frames")))
-      else if (is_static .and. is_given(deck, "analysis", "restart")) then
-         call deck_error(error, "analysis%restart wants mode = 'dynamic': a static run comes "// &
-            "to rest by itself", deck, place_of(deck, key_index("analysis", "restart")))
       else if (is_given(deck, "analysis", "unknowns") .and. &
          all(integer_of(deck, "analysis", "unknowns") /= [3, 6])) then
          call deck_error(error, "analysis%unknowns wants 3 or 6, found "// &
@@ -79,6 +48,87 @@ contains
          call check_bracket(deck, searched, error)
       end if
    end subroutine check_case
+
+   !> Check that there is such a model, and that the parameter can be searched in it
+   pure subroutine check_model(deck, searched, error)
+      !> The deck of the case
+      type(deck_t), intent(in) :: deck
+      !> What is searched; key 0 if nothing is
+      type(parameter_t), intent(in) :: searched
+      !> What the table of models does not have
+      type(error_t), allocatable, intent(out) :: error
+      character(len=:), allocatable :: mode, kind, problem
+
+      mode = trim(word_of(deck, "analysis", "mode"))
+      kind = trim(word_of(deck, "scene", "kind"))
+      problem = model_problem(kind, mode, trim(geometry_of(deck)))
+      if (len(problem) > 0) then
+         call deck_error(error, "expected a geometry that mode = '"//mode//"' of scene%kind = '"// &
+            kind//"' runs, got '"//trim(geometry_of(deck))//"': "//problem// &
+            "; 'dda help models' lists them", deck, &
+            place_of(deck, key_index("analysis", "geometry")))
+         return
+      end if
+      if (searched%key == 0) return
+      if (keeps_velocities(deck)) mode = "dynamic"
+      problem = search_problem(deck_key(searched%key), kind, mode)
+      if (len(problem) > 0) call deck_error(error, "search%parameter: expected a key that "// &
+         "mode = '"//trim(word_of(deck, "analysis", "mode"))//"' of scene%kind = '"//kind// &
+         "' searches, got "//full_name(deck_key(searched%key))//": "//problem// &
+         "; 'dda help models' lists them", deck, &
+         place_of(deck, key_index("search", "parameter")))
+   end subroutine check_model
+
+   !> Check that the mode and the geometry have a use for the keys that are given
+   pure subroutine check_use(deck, error)
+      !> The deck of the case
+      type(deck_t), intent(in) :: deck
+      !> A key without effect
+      type(error_t), allocatable, intent(out) :: error
+      character(len=:), allocatable :: mode, problem
+      logical :: moves
+      integer :: key
+
+      mode = trim(word_of(deck, "analysis", "mode"))
+      moves = word_of(deck, "analysis", "geometry") == "current"
+      key = 0
+      if (real_of(deck, "analysis", "restitution") > 0.0_wp &
+         .and. .not. (mode == "dynamic" .and. moves)) then
+         key = key_index("analysis", "restitution")
+         problem = "restitution wants mode = 'dynamic' and geometry = 'current'"
+      else if (real_of(deck, "analysis", "damping") > 0.0_wp .and. mode /= "dynamic") then
+         key = key_index("analysis", "damping")
+         problem = "damping expects mode = 'dynamic', got '"//mode//"'; remove one of the two"
+      else if (is_given(deck, "analysis", "duration") .and. mode /= "dynamic") then
+         key = key_index("analysis", "duration")
+         problem = "duration wants mode = 'dynamic': a static run has no time"
+      else if (is_given(deck, "analysis", "restart") .and. mode /= "dynamic") then
+         key = key_index("analysis", "restart")
+         problem = "analysis%restart wants mode = 'dynamic': a static run comes to rest by itself"
+      else if (word_of(deck, "analysis", "flow") == "associated" .and. mode /= "static") then
+         key = key_index("analysis", "flow")
+         problem = "flow = 'associated' expects mode = 'static', got '"//mode// &
+            "'; remove one of the two"
+      else if (is_given(deck, "analysis", "unknowns") .and. mode == "limerick") then
+         key = key_index("analysis", "unknowns")
+         problem = "analysis%unknowns expects another mode than 'limerick', whose blocks "// &
+            "have 6; remove it"
+      else if (integer_of(deck, "output", "frames") > 0 .and. mode == "limerick") then
+         key = key_index("output", "frames")
+         problem = "output%frames wants another mode than 'limerick', which keeps no pictures"
+      else if (flag_of(deck, "output", "energy") .and. mode == "limerick") then
+         key = key_index("output", "energy")
+         problem = "output%energy expects mode = 'dynamic', got 'limerick'; remove one of the two"
+      else if (flag_of(deck, "output", "restart") .and. mode == "limerick") then
+         key = key_index("output", "restart")
+         problem = "output%restart expects mode = 'dynamic', got 'limerick'; remove one of the two"
+      else if (integer_of(deck, "output", "frames") > 0 .and. .not. moves) then
+         key = key_index("output", "frames")
+         problem = "output%frames wants geometry = 'current': in reference geometry no block "// &
+            "moves; change one of the two"
+      end if
+      if (key > 0) call deck_error(error, problem, deck, place_of(deck, key))
+   end subroutine check_use
 
    !> Check the joints of the arch
    pure subroutine check_shape(deck, error)

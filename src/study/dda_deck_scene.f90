@@ -6,9 +6,11 @@ module dda_deck_scene
    use dda_block_scene, only : base_t, block_scene, floating_block
    use dda_chain, only : chain_t
    use dda_constants, only : degree, pi
-   use dda_deck, only : deck_error, deck_t, file_beside, is_given, keeps_velocities, parameter_t, &
-      & place_of, real_of, text_of, word_of
+   use dda_deck, only : deck_error, deck_t, file_beside, has_group, is_given, keeps_velocities, &
+      & parameter_t, place_of, real_of, text_of, word_of
+   use dda_deck_check_case, only : check_model
    use dda_deck_keys, only : key_index
+   use dda_deck_parameter, only : find_parameter
    use dda_deck_set, only : number_fits, put_number
    use dda_deck_sweep, only : n_cases, turn_to_case
    use dda_error, only : error_t, fatal_error
@@ -241,9 +243,16 @@ contains
       type(warnings_t), intent(inout) :: warnings
       !> What it cannot run
       type(error_t), allocatable, intent(out) :: error
+      type(parameter_t) :: searched
+      character(len=:), allocatable :: problem
 
       select case (word_of(deck, "scene", "kind"))
       case ("lines")
+         ! the analysis file may ask for velocities
+         if (has_group(deck, "search")) call find_parameter(text_of(deck, "search", "parameter"), &
+            & searched, problem)
+         call check_model(deck, searched, error)
+         if (allocated(error)) return
          if (word_of(deck, "analysis", "mode") == "limerick") then
             call check_limerick_lines(deck, error)
          else

@@ -1,0 +1,246 @@
+!> Which models there are, and what can be searched in them: the one place that says so. Decks are
+!> checked by it; `dda check` prints what it says of a deck, `dda help models` all of it
+module dda_model_table
+   use dda_deck_keys, only : key_t
+   implicit none
+   private
+
+   public :: model_problem, models_of, models_help, search_problem, searches_of
+
+   !> What blocks are made from
+   character(len=*), parameter :: kinds(3) = [character(len=6) :: "arch", "lines", "blocks"]
+   !> All of them
+   character(len=*), parameter :: all_kinds = "arch lines blocks"
+   !> What a number of the method is no answer to
+   character(len=*), parameter :: of_the_method = "a number of the method, not of the structure"
+   !> End of a line
+   character(len=1), parameter :: lf = achar(10)
+
+   !> A mode with a geometry
+   type :: model_t
+      !> Word of analysis%mode
+      character(len=8) :: mode = ""
+      !> Word of analysis%geometry
+      character(len=9) :: geometry = ""
+      !> Kinds of scene%kind that it runs, parted by blanks
+      character(len=20) :: kinds = ""
+      !> Why it runs no others
+      character(len=60) :: why = ""
+   end type model_t
+
+   !> Keys that are searched alike
+   type :: search_t
+      !> Their group
+      character(len=16) :: group = ""
+      !> Their names, parted by blanks; all others of the group if there are none
+      character(len=40) :: names = ""
+      !> Kinds of scene%kind with mode = 'static' in which they are searched, parted by blanks
+      character(len=20) :: static = ""
+      !> Likewise with mode = 'limerick'
+      character(len=20) :: limerick = ""
+      !> Why not in the others
+      character(len=60) :: why = ""
+   end type search_t
+
+   !> All modes and geometries
+   type(model_t), parameter :: model(6) = [ &
+      model_t("static", "reference", all_kinds), &
+      model_t("static", "current", all_kinds), &
+      model_t("dynamic", "reference", all_kinds), &
+      model_t("dynamic", "current", all_kinds), &
+      model_t("limerick", "reference", "", "its blocks always move"), &
+      model_t("limerick", "current", all_kinds)]
+
+   !> All keys that have real values
+   type(search_t), parameter :: search(8) = [ &
+      search_t("arch", "abutment_size abutment_overhang", "", "arch", &
+         "abutments are blocks with mode = 'limerick' alone"), &
+      search_t("arch", "", "arch", "arch", "there is no generated arch"), &
+      search_t("material", "", all_kinds, all_kinds), &
+      search_t("joint", "cohesion tension", all_kinds, "", &
+         "joints of the original begin open: what is bonded lets go"), &
+      search_t("joint", "", all_kinds, all_kinds), &
+      search_t("load", "", all_kinds, all_kinds), &
+      search_t("analysis", "", "", "", of_the_method), &
+      search_t("limerick", "", "", "", of_the_method)]
+
+contains
+
+   !> Why blocks of a kind cannot be run so
+   pure function model_problem(kind, mode, geometry) result(why)
+      !> Word of scene%kind
+      character(len=*), intent(in) :: kind
+      !> Word of analysis%mode
+      character(len=*), intent(in) :: mode
+      !> Word of analysis%geometry
+      character(len=*), intent(in) :: geometry
+      !> The reason; empty if they can
+      character(len=:), allocatable :: why
+      integer :: i
+
+      why = "there is no such model"
+      do i = 1, size(model)
+         if (model(i)%mode /= mode .or. model(i)%geometry /= geometry) cycle
+         why = trim(model(i)%why)
+         if (holds(model(i)%kinds, kind)) why = ""
+      end do
+   end function model_problem
+
+   !> Why a key cannot be searched
+   pure function search_problem(key, kind, mode) result(why)
+      !> The key, which has real values
+      type(key_t), intent(in) :: key
+      !> Word of scene%kind
+      character(len=*), intent(in) :: kind
+      !> Word of analysis%mode
+      character(len=*), intent(in) :: mode
+      !> The reason; empty if it can
+      character(len=:), allocatable :: why
+      integer :: i
+
+      why = "no rule says what it does"
+      do i = size(search), 1, -1
+         if (search(i)%group /= key%group) cycle
+         if (search(i)%names /= "" .and. .not. holds(search(i)%names, key%name)) cycle
+         why = trim(search(i)%why)
+         if (holds(kinds_of(search(i), mode), kind)) why = ""
+      end do
+      if (mode == "dynamic") why = "a dynamic run ends 'completed', neither standing nor "// &
+         & "fallen: choose mode = 'static'"
+   end function search_problem
+
+   !> Kinds in which keys are searched with a mode
+   pure function kinds_of(rule, mode) result(list)
+      !> The keys
+      type(search_t), intent(in) :: rule
+      !> Word of analysis%mode
+      character(len=*), intent(in) :: mode
+      !> The kinds, parted by blanks
+      character(len=20) :: list
+
+      list = ""
+      if (mode == "static") list = rule%static
+      if (mode == "limerick") list = rule%limerick
+   end function kinds_of
+
+   !> Whether a list of words holds one
+   pure logical function holds(list, word)
+      !> The words, parted by blanks
+      character(len=*), intent(in) :: list
+      !> The word
+      character(len=*), intent(in) :: word
+
+      holds = index(" "//list//" ", " "//trim(word)//" ") > 0
+   end function holds
+
+   !> Modes and geometries that blocks of a kind are run with
+   pure function models_of(kind) result(text)
+      !> Word of scene%kind
+      character(len=*), intent(in) :: kind
+      !> Such as: static reference, static current
+      character(len=:), allocatable :: text
+      integer :: i
+
+      text = ""
+      do i = 1, size(model)
+         if (holds(model(i)%kinds, kind)) text = text//", "//trim(model(i)%mode)//" " &
+            & //trim(model(i)%geometry)
+      end do
+      text = text(3:)
+   end function models_of
+
+   !> What is searched in scenes of a kind with a mode
+   pure function searches_of(kind, mode) result(text)
+      !> Word of scene%kind
+      character(len=*), intent(in) :: kind
+      !> Word of analysis%mode
+      character(len=*), intent(in) :: mode
+      !> Such as: numbers of &material, numbers of &load
+      character(len=:), allocatable :: text
+      integer :: i
+
+      text = ""
+      do i = 1, size(search)
+         if (holds(kinds_of(search(i), mode), kind)) text = text//", "//name_of(search(i), "")
+      end do
+      if (text == "") text = ", nothing: a dynamic run neither stands nor falls"
+      text = text(3:)
+   end function searches_of
+
+   !> Names of keys that are searched alike
+   pure function name_of(rule, quote) result(text)
+      !> The keys
+      type(search_t), intent(in) :: rule
+      !> What stands before and after a name
+      character(len=*), intent(in) :: quote
+      !> Such as: tension, or: other numbers of &joint
+      character(len=:), allocatable :: text
+      integer :: first, blank
+
+      if (rule%names == "") then
+         text = "numbers of "//quote//"&"//trim(rule%group)//quote
+         if (count(search%group == rule%group) > 1) text = "other "//text
+         return
+      end if
+      text = ""
+      first = 1
+      do while (first <= len_trim(rule%names))
+         blank = index(rule%names(first:)//" ", " ")
+         text = text//", "//quote//rule%names(first:first + blank - 2)//quote
+         first = first + blank
+      end do
+      text = text(3:)
+   end function name_of
+
+   !> Both tables as docs/input.md has them
+   pure function models_help() result(text)
+      !> Lines, each ended by a line feed
+      character(len=:), allocatable :: text
+      integer :: i, k
+
+      text = "| mode | geometry | arch | lines | blocks | why not |"//lf &
+         & //"| --- | --- | --- | --- | --- | --- |"//lf
+      do i = 1, size(model)
+         text = text//"| `"//trim(model(i)%mode)//"` | `"//trim(model(i)%geometry)//"` |"
+         do k = 1, size(kinds)
+            text = text//" "//trim(merge("yes", "no ", holds(model(i)%kinds, kinds(k))))//" |"
+         end do
+         text = text//ending(model(i)%why)
+      end do
+      text = text//lf//"| searched | arch | lines | blocks | why not |"//lf &
+         & //"| --- | --- | --- | --- | --- |"//lf
+      do i = 1, size(search)
+         text = text//"| "//name_of(search(i), "`")//" |"
+         do k = 1, size(kinds)
+            text = text//" "//modes_of(search(i), trim(kinds(k)))//" |"
+         end do
+         text = text//ending(search(i)%why)
+      end do
+   end function models_help
+
+   !> Modes in which keys are searched in scenes of a kind
+   pure function modes_of(rule, kind) result(text)
+      !> The keys
+      type(search_t), intent(in) :: rule
+      !> Word of scene%kind
+      character(len=*), intent(in) :: kind
+      !> Such as: static, limerick
+      character(len=:), allocatable :: text
+
+      text = ""
+      if (holds(rule%static, kind)) text = ", static"
+      if (holds(rule%limerick, kind)) text = text//", limerick"
+      if (text == "") text = ", no"
+      text = text(3:)
+   end function modes_of
+
+   !> Last field of a row
+   pure function ending(why) result(text)
+      !> Why something is not; may be empty
+      character(len=*), intent(in) :: why
+      !> The field and the end of the line
+      character(len=:), allocatable :: text
+
+      text = trim(" "//why)//" |"//lf
+   end function ending
+end module dda_model_table
