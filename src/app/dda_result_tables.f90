@@ -5,7 +5,6 @@ module dda_result_tables
    use dda_deck_sweep, only : n_cases, swept_names, swept_texts
    use dda_disk_record, only : write_disk_record
    use dda_error, only : error_t
-   use dda_process, only : make_folder
    use dda_table_file, only : append_line, close_table, length_of, open_table, remove_file, &
       & sync_table, table_file_t
    use dda_text, only : to_text
@@ -144,7 +143,7 @@ contains
       end subroutine name_table
    end subroutine name_tables
 
-   !> Make the folder and begin all tables; those of an earlier run are replaced or removed
+   !> Begin all tables; those of an earlier run are replaced or removed
    subroutine open_tables(tables, record, error)
       !> The tables, named
       type(result_tables_t), intent(inout) :: tables
@@ -155,7 +154,6 @@ contains
       integer(int64) :: now, rate
       integer :: i
 
-      call make_folder(tables%folder)
       ! killed on the way, old rows must not pass for those of this deck
       call remove_file(tables%record_file)
       call remove_file(tables%disk_file)

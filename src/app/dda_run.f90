@@ -9,8 +9,9 @@ module dda_run
    use dda_deck_sweep, only : n_cases
    use dda_deck_scene, only : check_lines, check_scene
    use dda_error, only : error_line, error_t, fatal_error
+   use dda_folder_lock, only : lock_folder
    use dda_help, only : version
-   use dda_process, only : error_is_terminal, exit_status, worst_status
+   use dda_process, only : error_is_terminal, exit_status, make_folder, worst_status
    use dda_progress, only : clear_progress, end_watch, progress_t, terminal_watch_t
    use dda_read_deck, only : read_deck
    use dda_result_tables, only : close_tables, name_tables, open_tables, result_tables_t
@@ -186,8 +187,11 @@ contains
       type(error_t), allocatable, intent(out) :: error
       character(len=:), allocatable :: record
 
-      record = deck_record(deck, "dda "//version//" on "//deck_stem(name))
       allocate (finished%case(total), source=.false.)
+      call make_folder(tables%folder)
+      call lock_folder(tables%folder, command%quiet, error)
+      if (allocated(error)) return
+      record = deck_record(deck, "dda "//version//" on "//deck_stem(name))
       if (command%resume) then
          call find_finished(tables, record, total, finished)
          if (.not. command%quiet) &

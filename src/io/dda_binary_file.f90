@@ -135,18 +135,23 @@ module dda_binary_file
 contains
 
    !> Begin a file
-   subroutine open_binary(name, file, error)
+   subroutine open_binary(name, file, error, keep)
       !> Name of the file; one that exists is replaced
       character(len=*), intent(in) :: name
       !> The file
       type(binary_file_t), intent(out) :: file
       !> Allocated if it cannot be written
       type(error_t), allocatable, intent(out) :: error
+      !> Whether what it holds is kept and added to instead
+      logical, intent(in), optional :: keep
+      character(len=2) :: mode
 
+      mode = "wb"
+      if (present(keep)) mode = merge("ab", "wb", keep)
       file%name = name
-      file%handle = c_fopen(name//c_null_char, "wb"//c_null_char)
+      file%handle = c_fopen(name//c_null_char, mode//c_null_char)
       if (.not. c_associated(file%handle)) &
-         & call fatal_error(error, "wanted a file that can be written, found one that cannot; "// &
+         & call fatal_error(error, "expected a file that can be written, got one that cannot; "// &
          & "choose another folder with --out", name, 1)
    end subroutine open_binary
 

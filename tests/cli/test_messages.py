@@ -81,7 +81,7 @@ def test_folder_that_cannot_be_written_is_named(tmp_path: Path) -> None:
     (tmp_path / "taken").write_text("a file, not a folder")
     done = run_dda("run", "deck.nml", "--out", "taken", cwd=tmp_path)
     assert done.returncode == 4
-    assert assert_whole(done.stderr)["file"] == "taken/results.csv"
+    assert assert_whole(done.stderr)["file"] == "taken/run.lock"
 
 
 MISSPELT = {
