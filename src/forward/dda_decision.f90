@@ -2,19 +2,25 @@
 !>
 !> The convex problem, in which sliding opens the joint, comes first: what falls there falls under
 !> every flow rule. What stands there without sliding stands. What slides before it comes to rest is
-!> run again under Coulomb friction.
+!> run again under Coulomb friction. Where blocks keep their places and friction alone holds them,
+!> the verdict is that of the joint graph, with a proof, and the run only tells how the forces are
+!> shared out.
 module dda_decision
    use dda_block_system, only : block_system_t
    use dda_contact_detection, only : contacts_t
    use dda_forward, only : outcome_t, run_to_verdict
-   use dda_frames, only : album_t, blank_album
+   use dda_frames, only : album_t, blank_album, keep_pictures
+   use dda_graph_decision, only : decide_graph, decides_as_graph, graph_verdict_t, show_mechanism, &
+      & show_state
+   use dda_kinds, only : wp
+   use dda_loading_path, only : path_end
    use dda_settings, only : flow_rule, settings_t
    use dda_step_context, only : march_t
    use dda_verdict, only : verdict
    implicit none
    private
 
-   public :: decision_t, decide, follow_coulomb
+   public :: decision_t, decide, decide_by_steps, follow_coulomb, record_collapse, record_rest
 
    !> A decided structure
    type :: decision_t
@@ -36,7 +42,7 @@ module dda_decision
 contains
 
    !> Decide a static structure, or run a dynamic one
-   pure subroutine decide(settings, system, contacts, decision, album, onward)
+   pure subroutine decide(settings, system, contacts, decision, album, onward, verdict_only)
       !> Settings of the run
       type(settings_t), intent(in) :: settings
       !> The blocks at the beginning
@@ -49,12 +55,177 @@ contains
       type(album_t), intent(inout), optional :: album
       !> Where a dynamic run goes on and where it ended
       type(march_t), intent(inout), optional :: onward
-      type(settings_t) :: convex
+      !> Whether forces and motions of what stands are not asked for
+      logical, intent(in), optional :: verdict_only
+      logical :: bare
 
+      bare = .false.
+      if (present(verdict_only)) bare = verdict_only
       if (settings%dynamic) then
          call follow_coulomb(settings, system, contacts, decision, album, onward)
-         return
+      else if (decides_as_graph(settings, contacts)) then
+         call decide_by_graph(settings, system, contacts, bare, decision, album)
+      else
+         call decide_by_steps(settings, system, contacts, decision, album)
       end if
+   end subroutine decide
+
+   !> Decide by the joint graph
+   pure subroutine decide_by_graph(settings, system, contacts, bare, decision, album)
+      !> Settings of the run
+      type(settings_t), intent(in) :: settings
+      !> The blocks
+      type(block_system_t), intent(in) :: system
+      !> The contacts
+      type(contacts_t), intent(in) :: contacts
+      !> Whether forces and motions of what stands are not asked for
+      logical, intent(in) :: bare
+      !> The decision
+      type(decision_t), intent(out) :: decision
+      !> Receives pictures of the state that is told
+      type(album_t), intent(inout), optional :: album
+      type(graph_verdict_t) :: proof
+
+      call decide_graph(settings, system, contacts, bare, proof)
+      if (proof%end == path_end%collapsed) then
+         call record_collapse(settings, system, contacts, proof, decision, album)
+      else if (proof%end == path_end%reached .and. bare) then
+         call record_rest(system, contacts, proof, decision)
+      else if (proof%end == path_end%reached) then
+         call share_forces(settings, system, contacts, proof, decision, album)
+      else if (proof%unproven) then
+         call decide_by_steps(settings, system, contacts, decision, album)
+      else
+         decision%system = system
+         decision%contacts = contacts
+         decision%outcome%reason = proof%reason
+      end if
+      associate (outcome => decision%outcome)
+         outcome%steps = outcome%steps + proof%n_event + 1
+         outcome%factorisations = outcome%factorisations + proof%n_factorisation
+         if (.not. allocated(outcome%motion)) &
+            & allocate (outcome%motion(settings%n_dof, maxval(system%equation)), source=0.0_wp)
+      end associate
+   end subroutine decide_by_graph
+
+   !> How the blocks of what stands share out the forces: as elastic blocks do, or where joints
+   !> slide, as the loading path leaves them
+   pure subroutine share_forces(settings, system, contacts, proof, decision, album)
+      !> Settings of the run
+      type(settings_t), intent(in) :: settings
+      !> The blocks
+      type(block_system_t), intent(in) :: system
+      !> The contacts
+      type(contacts_t), intent(in) :: contacts
+      !> That it stands
+      type(graph_verdict_t), intent(in) :: proof
+      !> Receives blocks and contacts
+      type(decision_t), intent(inout) :: decision
+      !> Receives pictures of them
+      type(album_t), intent(inout), optional :: album
+      type(settings_t) :: convex
+      logical :: shared
+
+      convex = settings
+      convex%flow = flow_rule%associated
+      decision%flow = convex%flow
+      decision%system = system
+      decision%contacts = contacts
+      call run_to_verdict(convex, decision%system, decision%contacts, decision%outcome, album)
+      shared = decision%outcome%verdict == verdict%stable
+      if (settings%verdict_flow == flow_rule%coulomb) &
+         & shared = shared .and. .not. any(decision%contacts%face%slip /= 0)
+      decision%outcome%verdict = verdict%stable
+      if (allocated(decision%outcome%reason)) deallocate (decision%outcome%reason)
+      if (shared) return
+      call record_rest(system, contacts, proof, decision)
+      if (present(album)) call show_end(convex, decision, album)
+   end subroutine share_forces
+
+   !> Blocks and contacts of what stands, as its proof has them
+   pure subroutine record_rest(system, contacts, proof, decision)
+      !> The blocks
+      type(block_system_t), intent(in) :: system
+      !> The contacts
+      type(contacts_t), intent(in) :: contacts
+      !> That it stands
+      type(graph_verdict_t), intent(in) :: proof
+      !> Receives them; what its outcome counts is kept
+      type(decision_t), intent(inout) :: decision
+
+      decision%outcome%verdict = verdict%stable
+      decision%flow = proof%flow
+      decision%system = system
+      decision%contacts = contacts
+      call show_state(proof, decision%system, decision%contacts)
+   end subroutine record_rest
+
+   !> Blocks and contacts of what falls. Limit analysis proves that it does by any mechanism that
+   !> will do; how it falls is what a run tells
+   pure subroutine record_collapse(settings, system, contacts, proof, decision, album)
+      !> Settings of the run
+      type(settings_t), intent(in) :: settings
+      !> The blocks
+      type(block_system_t), intent(in) :: system
+      !> The contacts
+      type(contacts_t), intent(in) :: contacts
+      !> That it falls
+      type(graph_verdict_t), intent(in) :: proof
+      !> Receives them
+      type(decision_t), intent(inout) :: decision
+      !> Receives pictures of them
+      type(album_t), intent(inout), optional :: album
+      type(settings_t) :: convex
+
+      decision%flow = proof%flow
+      decision%system = system
+      decision%contacts = contacts
+      if (proof%flow == flow_rule%associated) then
+         convex = settings
+         convex%flow = flow_rule%associated
+         call run_to_verdict(convex, decision%system, decision%contacts, decision%outcome, album)
+         if (decision%outcome%verdict == verdict%collapsed) return
+         decision%system = system
+         decision%contacts = contacts
+         if (allocated(decision%outcome%reason)) deallocate (decision%outcome%reason)
+      end if
+      decision%outcome%verdict = verdict%collapsed
+      if (allocated(decision%outcome%motion)) deallocate (decision%outcome%motion)
+      allocate (decision%outcome%motion(settings%n_dof, maxval(system%equation)), source=0.0_wp)
+      decision%outcome%motion(:3, :) = proof%mechanism
+      call show_mechanism(settings, system, proof, decision%contacts)
+      if (present(album)) call show_end(settings, decision, album)
+   end subroutine record_collapse
+
+   !> Where the measured points are in a state that no run has led to
+   pure subroutine show_end(settings, decision, album)
+      !> Settings of the run
+      type(settings_t), intent(in) :: settings
+      !> The state
+      type(decision_t), intent(in) :: decision
+      !> Receives it alone
+      type(album_t), intent(inout) :: album
+      type(march_t) :: march
+
+      album = blank_album(album)
+      call keep_pictures(settings, decision%system, decision%contacts, march, 0.0_wp, .false., &
+         & album)
+   end subroutine show_end
+
+   !> Decide by steps to rest or collapse
+   pure subroutine decide_by_steps(settings, system, contacts, decision, album)
+      !> Settings of the run
+      type(settings_t), intent(in) :: settings
+      !> The blocks at the beginning
+      type(block_system_t), intent(in) :: system
+      !> The contacts at the beginning
+      type(contacts_t), intent(in) :: contacts
+      !> The decision
+      type(decision_t), intent(out) :: decision
+      !> Receives pictures of the run that decides
+      type(album_t), intent(inout), optional :: album
+      type(settings_t) :: convex
+
       convex = settings
       convex%flow = flow_rule%associated
       decision%flow = convex%flow
@@ -66,7 +237,7 @@ contains
       if (.not. any(decision%contacts%face%slip /= 0)) return
       if (present(album)) album = blank_album(album)
       call follow_coulomb(settings, system, contacts, decision, album)
-   end subroutine decide
+   end subroutine decide_by_steps
 
    !> Run a structure under Coulomb friction from its beginning
    pure subroutine follow_coulomb(settings, system, contacts, decision, album, onward)

@@ -70,6 +70,10 @@ module dda_write_results
       real(wp) :: seconds = 0.0_wp
       !> Unknowns of a block in the decisions
       integer :: unknowns = 0
+      !> Associated limit of what is searched, proven from below
+      type(number_t) :: exact_low
+      !> Likewise, from above
+      type(number_t) :: exact_high
       !> Whether the table has a column of condition numbers
       logical :: tells_condition = .false.
       !> Estimated condition number of the last equations
@@ -139,7 +143,8 @@ contains
       line = "deck,case,"//swept//"blocks,half_angle_deg,thickness_ratio,friction_deg,mode," &
          & //"geometry,verdict,critical,critical_low,critical_high,collapses_at,exact," &
          & //"relative_error,collapse_mode,sliding_share,intrados_hinge_deg,extrados_hinge_deg," &
-         & //"springing_hinge,steps,open_close_iterations,factorisations,seconds,unknowns"
+         & //"springing_hinge,steps,open_close_iterations,factorisations,seconds,unknowns," &
+         & //"exact_low,exact_high"
       if (tells_condition) line = line//",condition"
    end function results_header
 
@@ -161,7 +166,8 @@ contains
          & //joined(row%intrados_hinge_deg)//","//joined(row%extrados_hinge_deg)//"," &
          & //trim(row%springing_hinge)//","//to_text(row%steps)//"," &
          & //to_text(row%open_close_iterations)//","//to_text(row%factorisations)//"," &
-         & //to_text(row%seconds)//","//to_text(row%unknowns)
+         & //to_text(row%seconds)//","//to_text(row%unknowns)//"," &
+         & //number_text(row%exact_low)//","//number_text(row%exact_high)
       if (row%tells_condition) line = line//","//number_text(row%condition)
    end function results_line
 

@@ -57,6 +57,10 @@ module dda_limit_decision
    !> Gap at which a decision that is not made ends
    real(wp), parameter :: resolution = 1.0e-12_wp
 
+   !> A mechanism whose power is less than this share of what the loads could do has none but by
+   !> rounded coordinates
+   real(wp), parameter :: rounding = 1.0e-13_wp
+
 contains
 
    !> Whether a load can be carried
@@ -197,8 +201,9 @@ contains
          decision%margin = point%factor - 1.0_wp
          decision%imbalance = imbalance
          decision%violation = beyond_cone
-      else if (point%state == interior_state%blocked .or. point%state == interior_state%optimal &
-         & .and. max(point%factor, point%upper) < 1.0_wp .and. power > 0.0_wp) then
+      else if ((point%state == interior_state%blocked .or. point%state == interior_state%optimal &
+         & .and. max(point%factor, point%upper) < 1.0_wp) .and. power > rounding*sum( &
+         & norm2(load(1:2, :), dim=1)*norm2(decision%velocity(1:2, :), dim=1))) then
          decision%state = load_state%falls
          decision%margin = point%upper - 1.0_wp
          decision%violation = beyond_flow

@@ -122,6 +122,8 @@ module dda_loading_path
    real(wp), parameter :: nudge_left = 1.0e-3_wp
    !> Rounding of forces
    real(wp), parameter :: rounding = 1.0e-12_wp
+   !> What need not be taken away of an imbalance
+   real(wp), parameter :: exact = 1.0e-14_wp
    !> An event no further off than this makes no way
    real(wp), parameter :: no_way = 1.0e-13_wp
    !> So many events without way lead nowhere
@@ -169,6 +171,7 @@ contains
       result%reached = 1.0_wp
       if (end /= motion_end%balanced) call note_fall(end, jump, result)
       path%far = far_factor*max(1.0_wp, maxval(abs(state%motion)))
+      if (result%end == path_end%reached) call balance_rest(path, state)
       call finish(path, state, result)
    end subroutine begin_path
 
@@ -201,6 +204,7 @@ contains
          result%end = path_end%collapsed
          result%reason = path_reason%associated_limit
       end if
+      if (result%end == path_end%reached) call balance_rest(path, state)
       call finish(path, state, result)
    end subroutine follow_path
 
@@ -309,6 +313,32 @@ contains
       end if
       if (allocated(jump%mechanism)) result%mechanism = jump%mechanism
    end subroutine note_fall
+
+   !> Take away what the forces leave of the load, but for rounding
+   pure subroutine balance_rest(path, state)
+      !> What was made once
+      type(loading_path_t), intent(inout) :: path
+      !> A state in balance
+      type(coulomb_state_t), intent(inout) :: state
+      integer, parameter :: max_turn = 3
+      type(event_t) :: event
+      type(rates_t) :: rates
+      real(wp) :: rest(size(state%load, 1), size(state%load, 2)), closed(3, size(state%slip))
+      integer :: turn
+      logical :: found
+
+      closed = 0.0_wp
+      rates = new_rates(state)
+      do turn = 1, max_turn
+         call imbalance(path%joints, state%load, state%force, rest)
+         if (.not. maxval(abs(rest)) > exact) return
+         call find_rates(path%joints, path%equations, state, rest, closed, path_damping, rates, &
+            & found)
+         if (.not. found .or. rates%unbalanced > moves_unbalanced) return
+         event = next_event(path%joints, state, rates, 1.0_wp)
+         call move_on(path%joints, rates, event, state)
+      end do
+   end subroutine balance_rest
 
    !> Counts, the last imbalance, and SI units
    pure subroutine finish(path, state, result)

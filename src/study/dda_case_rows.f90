@@ -182,6 +182,12 @@ contains
                & remark = "at "//to_text(critical%undecided_at)//" "//critical%reason
          end if
          if (critical%verdict == verdict%found) call tell_bracket(critical, row)
+         if (critical%has_limit) then
+            row%exact_low = some_number(minval(critical%limit))
+            row%exact_high = some_number(maxval(critical%limit))
+         end if
+         if (critical%has_other) remark = "it falls at "//to_text(critical%other)//", too"
+         if (critical%jumps > 0) remark = jump_remark(critical, remark)
          if (allocated(critical%fallen)) &
             & call tell_mechanism(critical%fallen, this%scene%joint_angle_deg, row)
          if (this%tells_tables) call tell_nearest(this, joint_row, blocks)
@@ -195,6 +201,21 @@ contains
          end if
       end associate
    end subroutine tell_search
+
+   !> What the user should know of jumps on the loading path
+   pure function jump_remark(critical, before) result(remark)
+      !> What was found
+      type(critical_t), intent(in) :: critical
+      !> What else there is to know
+      character(len=*), intent(in) :: before
+      !> All of it
+      character(len=:), allocatable :: remark
+
+      remark = before
+      if (len(remark) > 0) remark = remark//"; "
+      remark = remark//"jumps on the loading path: "//to_text(critical%jumps)//", the largest " &
+         & //to_text(critical%largest_jump)//" m"
+   end function jump_remark
 
    !> Joints and blocks of the decision nearest to critical that stands, else of that which falls
    pure subroutine tell_nearest(this, joint_row, blocks)

@@ -11,9 +11,11 @@ module dda_critical
    use dda_collapse_trace, only : proposal_t, trace
    use dda_decision, only : decide, decision_t
    use dda_error, only : error_t
+   use dda_graph_decision, only : decides_as_graph
    use dda_joint_springs, only : joint_springs_t
    use dda_kinds, only : wp
-   use dda_scene, only : family_t, scene_t
+   use dda_load_search, only : find_critical_load
+   use dda_scene, only : family_t, scene_t, searched_load
    use dda_search, only : critical_t, search_t
    use dda_settings, only : settings_t
    use dda_verdict, only : verdict
@@ -44,8 +46,14 @@ contains
       type(search_t), intent(in) :: search
       !> What was found
       type(critical_t), intent(out) :: critical
+      logical :: done
 
+      done = .false.
+      if (family%load /= searched_load%none) &
+         & call find_critical_load(family, search, critical, done)
+      if (done) return
       call close_bracket(family, search, critical)
+      if (allocated(critical%standing)) call share_forces(family, critical)
       if (allocated(critical%fallen)) call unfold(critical%fallen)
       if (allocated(critical%standing)) call unfold(critical%standing)
    end subroutine find_critical
@@ -189,7 +197,7 @@ contains
             return
          end if
          critical%current = scene%settings%current
-         call decide(scene%settings, scene%system, scene%contacts, decision)
+         call decide(scene%settings, scene%system, scene%contacts, decision, verdict_only=.true.)
       end if
       critical%steps = critical%steps + decision%outcome%steps
       critical%passes = critical%passes + decision%outcome%passes
@@ -207,6 +215,28 @@ contains
          critical%undecided_at = value
       end if
    end subroutine decide_at
+
+   !> Share out the forces of what stands nearest to critical, which its proof alone does not tell
+   pure subroutine share_forces(family, critical)
+      !> The family
+      class(family_t), intent(in) :: family
+      !> What was found, its decision that stands among it
+      type(critical_t), intent(inout) :: critical
+      type(decision_t) :: decision
+      type(error_t), allocatable :: error
+      type(scene_t) :: scene
+
+      if (family%decides_chains) return
+      call family%build(critical%stands, scene, error)
+      if (allocated(error)) return
+      if (.not. decides_as_graph(scene%settings, scene%contacts)) return
+      call decide(scene%settings, scene%system, scene%contacts, decision)
+      critical%steps = critical%steps + decision%outcome%steps
+      critical%factorisations = critical%factorisations + decision%outcome%factorisations
+      if (decision%outcome%verdict /= verdict%stable) return
+      call shed(decision)
+      critical%standing = decision
+   end subroutine share_forces
 
    !> Give back what a search does not ask a kept decision for: its blocks and springs, which the
    !> family makes anew at any value

@@ -20,7 +20,7 @@ module dda_deck_scene
    use dda_line_scene, only : check_line_scene, held_blocks, line_scene
    use dda_read_deck, only : geometry_file
    use dda_restart, only : check_restart, load_restart
-   use dda_scene, only : family_t, scene_t
+   use dda_scene, only : family_t, scene_t, searched_load
    use dda_scene_plan, only : scene_plan_t
    use dda_settings, only : load_direction, settings_t
    use dda_step_context, only : march_t
@@ -73,6 +73,10 @@ contains
 
       family%deck = deck
       family%parameter = parameter
+      if (parameter%key == key_index("load", "horizontal_coefficient")) &
+         & family%load = searched_load%push
+      if (parameter%key == key_index("load", "gravity_direction_deg")) &
+         & family%load = searched_load%tilt
       family%chains = plan%row .and. parameter%key == key_index("arch", "thickness_ratio")
       family%decides_chains = family%chains .and. plan%chain
       if (.not. family%chains) return

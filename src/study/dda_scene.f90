@@ -9,7 +9,20 @@ module dda_scene
    implicit none
    private
 
-   public :: scene_t, family_t
+   public :: scene_t, family_t, searched_load, searched_load_enum
+
+   !> Load coefficients that come last on the loading path
+   type :: searched_load_enum
+      !> The parameter is none
+      integer :: none = 0
+      !> Horizontal coefficient
+      integer :: push = 1
+      !> Direction of gravity
+      integer :: tilt = 2
+   end type searched_load_enum
+
+   !> Their names
+   type(searched_load_enum), parameter :: searched_load = searched_load_enum()
 
    !> Blocks and contacts at the beginning, and how to run them
    type :: scene_t
@@ -30,6 +43,8 @@ module dda_scene
       !> Whether its chains, if there are any, are decided as such; otherwise collapses alone are
       !> traced on them
       logical :: decides_chains = .false.
+      !> Load coefficient that the parameter is, one of searched_load
+      integer :: load = 0
    contains
       !> Make the scene of one value
       procedure(build_scene), deferred :: build

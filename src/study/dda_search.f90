@@ -49,6 +49,18 @@ module dda_search
       type(decision_t), allocatable :: fallen
       !> Decision at stands, if there is one; likewise, and without its motion
       type(decision_t), allocatable :: standing
+      !> Value at which it falls in the other direction
+      real(wp) :: other = 0.0_wp
+      !> Whether it does so within the range
+      logical :: has_other = .false.
+      !> The associated limit of a load coefficient, from below and from above
+      real(wp) :: limit(2) = 0.0_wp
+      !> Whether it is known
+      logical :: has_limit = .false.
+      !> Jumps on the loading path, at fixed load
+      integer :: jumps = 0
+      !> The largest of them [m]
+      real(wp) :: largest_jump = 0.0_wp
       !> Whether the blocks move
       logical :: current = .false.
       !> Number of decisions

@@ -23,6 +23,7 @@ MOVING = """&arch voussoirs = 6, thickness_ratio = 0.1 /
 &sweep parameter = 'radius', values = 5, 8, 10, 12 /
 """
 UNDECIDED = """&arch thickness_ratio = 0.12 /
+&analysis geometry = 'current' /
 &sweep parameter = 'steps', values = 400, 1, 400 /
 """
 
@@ -136,8 +137,8 @@ def test_case_without_its_joints_is_computed_again(tmp_path: Path) -> None:
         lambda line: line.replace("deck,3,", "deck,300,"),
         lambda line: line.replace("deck,3,", "deck,-3,"),
         lambda line: line.rpartition(",")[0] + "\n",
-        lambda line: line.rpartition(",")[0] + ",\n",
-        lambda line: line.rsplit(",", 2)[0] + ",,3\n",
+        lambda line: line.rsplit(",", 3)[0] + ",,,\n",
+        lambda line: line.rsplit(",", 4)[0] + ",,3,,\n",
         lambda line: "",
     ],
     ids=["twice", "zeros", "beyond", "negative", "short", "no unknowns", "no seconds", "gone"],

@@ -14,7 +14,7 @@ import pytest
 from dda_command import run_dda
 
 STABLE = "&arch thickness_ratio = 0.12 /\n"
-UNDECIDED = "&arch thickness_ratio = 0.12 /\n&analysis steps = 1 /\n"
+UNDECIDED = "&arch thickness_ratio = 0.12 /\n&analysis geometry = 'current', steps = 1 /\n"
 BAD = "&arch\n thickness_ratio = 2 /\n"
 TABLES = ["blocks.csv", "joints.csv", "log.txt", "results.csv"]
 FILES = sorted(["deck.record", "disk.record", "run.lock", *TABLES])
@@ -125,7 +125,7 @@ def test_first_of_4_2_3_is_the_exit_status(tmp_path: Path, decks: list[str], sta
 
 def test_one_undecided_case_among_many_gives_3(tmp_path: Path) -> None:
     sweep = "&sweep parameter = 'steps', values = 400, 1, 400 /\n"
-    write_decks(tmp_path, deck=STABLE + sweep)
+    write_decks(tmp_path, deck=STABLE + "&analysis geometry = 'current' /\n" + sweep)
     assert run_dda("run", "deck.nml", cwd=tmp_path).returncode == 3
     verdicts = [row["verdict"] for row in rows_of(tmp_path / "deck")]
     assert verdicts == ["stable", "undecided", "stable"]
@@ -133,7 +133,7 @@ def test_one_undecided_case_among_many_gives_3(tmp_path: Path) -> None:
 
 
 def test_undecided_search_gives_3_and_no_critical_value(tmp_path: Path) -> None:
-    write_decks(tmp_path, deck="&search /\n&analysis unknowns = 6, steps = 1 /\n")
+    write_decks(tmp_path, deck="&search /\n&analysis geometry = 'current', steps = 1 /\n")
     assert run_dda("run", "deck.nml", cwd=tmp_path).returncode == 3
     (row,) = rows_of(tmp_path / "deck")
     assert row["verdict"] == "undecided"

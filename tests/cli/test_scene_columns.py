@@ -98,7 +98,7 @@ def test_an_undecided_search_tells_how_many_blocks_it_had(
     tmp_path: Path, scene: str, blocks: str
 ) -> None:
     (tmp_path / "x.blocks").write_text(BASE + BLOCK + BLOCK.replace("0\n", "2\n", 2).replace("1 2\n0 2", "1 3\n0 3"))
-    search = "&search parameter = 'friction_deg' /\n&analysis unknowns = 6, steps = 1 /\n"
+    search = "&search parameter = 'friction_deg' /\n&analysis geometry = 'current', steps = 1 /\n"
     ((row,), joints) = run(tmp_path, f"{scene}\n{search}", status=3)
     assert (row["verdict"], row["blocks"], joints) == ("undecided", blocks, [])
 

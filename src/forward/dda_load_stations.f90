@@ -1,10 +1,10 @@
-!> The way of a static scene from nothing to its full load
+!> The loading path of a static scene: its stations from nothing to the full load
 !>
 !> Dead loads come first and at once: weight, upright, and forces on points as they are at the
 !> beginning. Then what is live comes from nothing to its value, one after the other: supports that
 !> are led, gravity that tilts, the horizontal push, histories from their beginning to their end.
 !> Between two stations everything is linear.
-module dda_load_path
+module dda_load_stations
    use dda_block_system, only : block_system_t
    use dda_boundary, only : history_t, value_at
    use dda_joint_graph, only : joint_graph_t, joint_kind
@@ -15,10 +15,10 @@ module dda_load_path
    implicit none
    private
 
-   public :: load_path_t, load_path, loads_at, last_history_time
+   public :: load_stations_t, load_stations, loads_at, last_history_time
 
-   !> Stations of the way; station 0 has the dead loads alone
-   type :: load_path_t
+   !> Stations of the path; station 0 has the dead loads alone
+   type :: load_stations_t
       !> Share of what led supports have gone at the beginning of their histories: (0:n_leg)
       real(wp), allocatable :: led(:)
       !> Angle of gravity from upright, to the right: (0:n_leg) [rad]
@@ -27,7 +27,7 @@ module dda_load_path
       real(wp), allocatable :: push(:)
       !> Time of the histories: (0:n_leg) [s]
       real(wp), allocatable :: time(:)
-   end type load_path_t
+   end type load_stations_t
 
    !> Longest leg of gravity that tilts: its chord is off by the square of it [rad]
    real(wp), parameter :: longest_tilt = 4.4e-3_wp
@@ -35,31 +35,33 @@ module dda_load_path
 contains
 
    !> Stations of a scene
-   pure function load_path(settings) result(path)
+   pure function load_stations(settings, upright) result(stations)
       !> Settings of the run
       type(settings_t), intent(in) :: settings
+      !> Whether gravity is upright at first and then tilts; otherwise it is dead as it is
+      logical, intent(in) :: upright
       !> The stations
-      type(load_path_t) :: path
+      type(load_stations_t) :: stations
       real(wp), allocatable :: time(:)
       integer :: at, n_led, n_push, n_tilt
 
       allocate (time, source=history_times(settings))
       n_led = merge(1, 0, leads_at_once(settings))
-      n_tilt = ceiling(abs(settings%tilt)/longest_tilt)
+      n_tilt = merge(ceiling(abs(settings%tilt)/longest_tilt), 0, upright)
       n_push = merge(1, 0, abs(settings%push) > 0.0_wp)
       at = n_led + n_tilt + n_push
-      allocate (path%led(0:at + size(time)), source=1.0_wp)
-      allocate (path%tilt(0:at + size(time)), source=settings%tilt)
-      allocate (path%push(0:at + size(time)), source=settings%push)
-      allocate (path%time(0:at + size(time)), source=0.0_wp)
-      path%led(0) = 0.0_wp
-      path%tilt(:n_led) = 0.0_wp
-      path%tilt(n_led:n_led + n_tilt) = shares(n_tilt)*settings%tilt
-      path%push(:n_led + n_tilt) = 0.0_wp
-      path%time(at + 1:) = time
-   end function load_path
+      allocate (stations%led(0:at + size(time)), source=1.0_wp)
+      allocate (stations%tilt(0:at + size(time)), source=settings%tilt)
+      allocate (stations%push(0:at + size(time)), source=settings%push)
+      allocate (stations%time(0:at + size(time)), source=0.0_wp)
+      stations%led(0) = 0.0_wp
+      if (n_tilt > 0) stations%tilt(:n_led) = 0.0_wp
+      stations%tilt(n_led:n_led + n_tilt) = shares(n_tilt)*settings%tilt
+      stations%push(:n_led + n_tilt) = 0.0_wp
+      stations%time(at + 1:) = time
+   end function load_stations
 
-   !> Shares of a way in equal legs; all of it where there is none
+   !> Shares of a path in equal legs; all of it where there is none
    pure function shares(n) result(share)
       !> Number of legs
       integer, intent(in) :: n
@@ -71,10 +73,10 @@ contains
       if (n == 0) share = 1.0_wp
    end function shares
 
-   !> Loads on the blocks and ways of their supports at a station
-   pure subroutine loads_at(path, station, settings, system, graph, load, opening)
+   !> Loads on the blocks and displacements of their supports at a station
+   pure subroutine loads_at(stations, station, settings, system, graph, load, opening)
       !> The stations
-      type(load_path_t), intent(in) :: path
+      type(load_stations_t), intent(in) :: stations
       !> Number of the station, from 0
       integer, intent(in) :: station
       !> Settings of the run
@@ -90,9 +92,9 @@ contains
       real(wp) :: direction(2), shaking(2), of_block(6)
       integer :: b, e, i
 
-      direction = gravity_direction(path%tilt(station))
-      direction(1) = direction(1) + path%push(station)
-      shaking = -value_at(settings%boundary%base_acceleration, path%time(station))
+      direction = gravity_direction(stations%tilt(station))
+      direction(1) = direction(1) + stations%push(station)
+      shaking = -value_at(settings%boundary%base_acceleration, stations%time(station))
       do b = 1, size(system%equation)
          e = system%equation(b)
          if (e == 0) cycle
@@ -101,13 +103,13 @@ contains
          load(:, e) = of_block(:size(load, 1))
       end do
       opening = 0.0_wp
-      call lead_pins(path, station, settings, system, graph, opening)
+      call lead_pins(stations, station, settings, system, graph, opening)
       if (.not. allocated(settings%boundary%loaded)) return
       do i = 1, size(settings%boundary%loaded)
          associate (loaded => settings%boundary%loaded(i))
             e = system%equation(loaded%block)
             if (e == 0) cycle
-            of_block = point_load(value_at(loaded%force, path%time(station)), loaded%point, &
+            of_block = point_load(value_at(loaded%force, stations%time(station)), loaded%point, &
                & system%centroid(:, loaded%block))
             load(:, e) = load(:, e) + of_block(:size(load, 1))
          end associate
@@ -115,9 +117,9 @@ contains
    end subroutine loads_at
 
    !> What led points make of their pins
-   pure subroutine lead_pins(path, station, settings, system, graph, opening)
+   pure subroutine lead_pins(stations, station, settings, system, graph, opening)
       !> The stations
-      type(load_path_t), intent(in) :: path
+      type(load_stations_t), intent(in) :: stations
       !> Number of the station
       integer, intent(in) :: station
       !> Settings of the run
@@ -128,7 +130,7 @@ contains
       type(joint_graph_t), intent(in) :: graph
       !> Opening of the joints; that of the pins is set: (3, n_joint) [m]
       real(wp), intent(inout) :: opening(:, :)
-      real(wp) :: way(2)
+      real(wp) :: displacement(2)
       integer :: i, j
 
       if (.not. allocated(settings%boundary%held)) return
@@ -137,10 +139,10 @@ contains
          associate (held => settings%boundary%held(i))
             if (system%equation(held%block) == 0) cycle
             j = j + 1
-            way = path%led(station)*value_at(held%path, path%time(station))
-            if (.not. held%along(1)) way(1) = way(2)
-            if (.not. held%along(2)) way(2) = way(1)
-            opening([1, 3], j) = -way
+            displacement = stations%led(station)*value_at(held%path, stations%time(station))
+            if (.not. held%along(1)) displacement(1) = displacement(2)
+            if (.not. held%along(2)) displacement(2) = displacement(1)
+            opening([1, 3], j) = -displacement
          end associate
       end do
    end subroutine lead_pins
@@ -218,4 +220,4 @@ contains
 
       last_history_time = maxval([0.0_wp, history_times(settings)])
    end function last_history_time
-end module dda_load_path
+end module dda_load_stations

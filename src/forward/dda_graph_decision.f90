@@ -1,0 +1,302 @@
+!> Verdict of rigid blocks that keep their places, with what proves it
+!>
+!> What no forces can balance falls under every law of friction: limit analysis decides that first,
+!> by forces or by a mechanism. What remains is decided by the loading path under Coulomb friction:
+!> dead loads at once, then what is live, from event to event, with slip remembered. The first load
+!> at which the blocks fall is the collapse, and all beyond it is collapsed.
+module dda_graph_decision
+   use dda_block_system, only : block_system_t
+   use dda_contact_detection, only : contacts_t
+   use dda_contact_types, only : joint_t
+   use dda_friction_cone, only : joint_face_t
+   use dda_joint_graph, only : joint_graph_t, joint_kind, joint_motion
+   use dda_kinds, only : wp
+   use dda_limit_decision, only : decide_load, load_decision_t, load_state
+   use dda_load_stations, only : load_stations, load_stations_t, loads_at
+   use dda_loading_path, only : begin_path, coulomb_state_t, face, follow_path, loading_path_t, &
+      & new_rate, path_end, path_rate_t, path_reason, path_result_t
+   use dda_scene_graph, only : has_pure_friction, scene_graph
+   use dda_settings, only : flow_rule, settings_t
+   implicit none
+   private
+
+   public :: graph_verdict_t, decide_graph, decides_as_graph, follow_stations, has_friction
+   public :: show_mechanism, show_state
+
+   !> A verdict and its proof
+   type :: graph_verdict_t
+      !> One of path_end
+      integer :: end = 0
+      !> Why it is undecided; unallocated otherwise
+      character(len=:), allocatable :: reason
+      !> Flow rule that it was found under, one of flow_rule
+      integer :: flow = flow_rule%associated
+      !> Velocities of the collapse: (3, n_block)
+      real(wp), allocatable :: mechanism(:, :)
+      !> Last state in balance under Coulomb friction
+      type(coulomb_state_t), allocatable :: state
+      !> Forces of what stands under the associated rule: (3, n_joint) [N/m]
+      real(wp), allocatable :: force(:, :)
+      !> Whether steps may prove what limit analysis did not, as no path leads to the load
+      logical :: unproven = .false.
+      !> Last station of the path that was reached, and the share of the leg after it
+      integer :: station = 0
+      !> Likewise
+      real(wp) :: share = 0.0_wp
+      !> Jumps on the path
+      integer :: n_jump = 0
+      !> The largest of them [m]
+      real(wp) :: largest_jump = 0.0_wp
+      !> Events on the path
+      integer :: n_event = 0
+      !> Factorisations
+      integer :: n_factorisation = 0
+   end type graph_verdict_t
+
+   !> Motions below this share of the largest are rounding
+   real(wp), parameter :: still = 1.0e-6_wp
+
+contains
+
+   !> Whether a scene is decided so: at rest, where the blocks are, by friction alone
+   pure logical function decides_as_graph(settings, contacts)
+      !> Settings of the run
+      type(settings_t), intent(in) :: settings
+      !> The contacts
+      type(contacts_t), intent(in) :: contacts
+
+      decides_as_graph = .not. (settings%dynamic .or. settings%current &
+         & .or. settings%collapse_displacement > 0.0_wp)
+      if (decides_as_graph) decides_as_graph = has_pure_friction(contacts)
+   end function decides_as_graph
+
+   !> Decide a scene
+   pure subroutine decide_graph(settings, system, contacts, bare, verdict)
+      !> Settings of the run
+      type(settings_t), intent(in) :: settings
+      !> The blocks
+      type(block_system_t), intent(in) :: system
+      !> Their contacts
+      type(contacts_t), intent(in) :: contacts
+      !> Whether no one asks how it falls
+      logical, intent(in) :: bare
+      !> The verdict
+      type(graph_verdict_t), intent(out) :: verdict
+      type(joint_graph_t) :: graph
+      type(load_stations_t) :: stations
+      type(load_decision_t) :: decision
+      type(graph_verdict_t) :: path
+      real(wp), allocatable :: load(:, :), opening(:, :)
+      logical :: dead_alone
+
+      call scene_graph(settings, system, contacts, graph)
+      allocate (load(3, graph%n_block), opening(3, size(graph%kind)))
+      stations = load_stations(settings, .true.)
+      if (abs(settings%tilt) > 0.0_wp) then
+         ! what does not stand upright was drawn for gravity as it is
+         call loads_at(stations, 0, settings, system, graph, load, opening)
+         call decide_load(graph, load, decision)
+         stations = load_stations(settings, decision%state /= load_state%falls)
+      end if
+      call loads_at(stations, ubound(stations%tilt, 1), settings, system, graph, load, opening)
+      call decide_load(graph, load, decision)
+      verdict%n_factorisation = decision%n_factorisation
+      if (decision%state == load_state%falls .and. .not. decision%power > settings%rest_tolerance &
+         & *sum(norm2(load(1:2, :), dim=1)*norm2(decision%velocity(1:2, :), dim=1))) &
+         & decision%state = load_state%undecided
+      if (decision%state == load_state%falls) then
+         verdict%end = path_end%collapsed
+         call move_alloc(decision%velocity, verdict%mechanism)
+      else if (decision%state == load_state%stands) then
+         verdict%end = path_end%reached
+         call move_alloc(decision%force, verdict%force)
+      else
+         verdict%reason = "limit analysis proves neither forces nor a mechanism beyond rounding"
+         verdict%unproven = .true.
+      end if
+      if (settings%verdict_flow == flow_rule%associated .or. .not. has_friction(graph)) return
+      dead_alone = ubound(stations%tilt, 1) == 0
+      if (verdict%end /= path_end%reached .and. dead_alone) return
+      if (verdict%end == path_end%collapsed) then
+         if (bare .or. .not. slides(graph, verdict%mechanism)) return
+      end if
+      call follow_stations(settings, system, graph, stations, huge(1.0_wp), path)
+      path%n_factorisation = path%n_factorisation + verdict%n_factorisation
+      path%unproven = verdict%unproven .or. dead_alone
+      if (dead_alone .and. path%end == path_end%collapsed) path%end = path_end%undecided
+      ! beyond what any forces can balance the path only tells how it falls
+      if (verdict%end == path_end%collapsed .and. path%end /= path_end%collapsed) then
+         verdict%n_factorisation = path%n_factorisation
+      else
+         verdict = path
+      end if
+   end subroutine decide_graph
+
+   !> Follow the loading path from its dead loads to its end or its collapse
+   pure subroutine follow_stations(settings, system, graph, stations, cap, verdict)
+      !> Settings of the run
+      type(settings_t), intent(in) :: settings
+      !> The blocks
+      type(block_system_t), intent(in) :: system
+      !> Their joints
+      type(joint_graph_t), intent(in) :: graph
+      !> The stations
+      type(load_stations_t), intent(in) :: stations
+      !> Share of the last leg at which the associated limit lies; huge if it is not known
+      real(wp), intent(in) :: cap
+      !> How it ended
+      type(graph_verdict_t), intent(out) :: verdict
+      type(loading_path_t) :: path
+      type(coulomb_state_t) :: state
+      type(path_rate_t) :: rate
+      type(path_result_t) :: result
+      real(wp) :: load(3, graph%n_block), opening(3, size(graph%kind))
+      integer :: i, n
+
+      verdict%flow = flow_rule%coulomb
+      n = ubound(stations%tilt, 1)
+      call new_rate(graph, rate)
+      call loads_at(stations, 0, settings, system, graph, load, opening)
+      call begin_path(graph, load, path, state, result)
+      call count_up(result, verdict)
+      do i = 1, n
+         if (result%end /= path_end%reached) exit
+         rate%load = -load
+         rate%opening = -opening
+         call loads_at(stations, i, settings, system, graph, load, opening)
+         rate%load = rate%load + load
+         rate%opening = rate%opening + opening
+         call follow_path(path, state, rate, 1.0_wp, merge(cap, huge(cap), i == n), result)
+         call count_up(result, verdict)
+         verdict%station = i - 1
+         verdict%share = result%reached
+      end do
+      verdict%end = result%end
+      verdict%state = state
+      if (result%end == path_end%collapsed) then
+         call move_alloc(result%mechanism, verdict%mechanism)
+      else if (result%end == path_end%reached) then
+         return
+      else if (result%reason == path_reason%too_many) then
+         verdict%reason = "the loading path has too many jumps"
+      else
+         verdict%reason = "a motion on the loading path does not settle"
+      end if
+   end subroutine follow_stations
+
+   !> Add what one leg took
+   pure subroutine count_up(result, verdict)
+      !> How the leg ended
+      type(path_result_t), intent(in) :: result
+      !> Receives it
+      type(graph_verdict_t), intent(inout) :: verdict
+
+      verdict%n_event = verdict%n_event + result%n_event
+      verdict%n_jump = verdict%n_jump + result%n_jump
+      verdict%largest_jump = max(verdict%largest_jump, result%largest_jump)
+      verdict%n_factorisation = verdict%n_factorisation + result%n_factorisation
+   end subroutine count_up
+
+   !> Whether friction has a say: where joints cannot slide, or slide freely, both rules are one
+   pure logical function has_friction(graph)
+      !> The joints
+      type(joint_graph_t), intent(in) :: graph
+
+      has_friction = any((graph%kind == joint_kind%contact .or. graph%kind == joint_kind%corner) &
+         & .and. graph%friction > 0.0_wp)
+   end function has_friction
+
+   !> Whether a joint with friction slides in a mechanism
+   pure logical function slides(graph, mechanism)
+      !> The joints
+      type(joint_graph_t), intent(in) :: graph
+      !> Velocities of the blocks: (3, n_block)
+      real(wp), intent(in) :: mechanism(:, :)
+      real(wp) :: rate(3, size(graph%kind))
+      integer :: j
+
+      call joint_motion(graph, mechanism, rate)
+      slides = .false.
+      do j = 1, size(graph%kind)
+         if (graph%kind(j) /= joint_kind%contact .and. graph%kind(j) /= joint_kind%corner) cycle
+         if (.not. graph%friction(j) > 0.0_wp) cycle
+         slides = slides .or. is_sliding(rate(:, j), graph%friction(j), still*maxval(abs(rate)))
+      end do
+   end function slides
+
+   !> Whether a joint slides along the edge of its friction cone rather than open while it slips
+   pure logical function is_sliding(rate, friction, least)
+      !> Opening 1, opening 2, slip: (3)
+      real(wp), intent(in) :: rate(3)
+      !> Coefficient of friction
+      real(wp), intent(in) :: friction
+      !> What counts as a motion
+      real(wp), intent(in) :: least
+
+      is_sliding = abs(rate(3)) > least &
+         & .and. minval(rate(1:2)) - friction*abs(rate(3)) <= least
+   end function is_sliding
+
+   !> Openings, slips and faces of the joints in a mechanism. Under the associated rule a joint that
+   !> slides opens by its friction; what it opens beyond that is a hinge. A corner that has opened
+   !> on the loading path is open whatever it does in the end
+   pure subroutine show_mechanism(settings, system, verdict, contacts)
+      !> Settings of the run
+      type(settings_t), intent(in) :: settings
+      !> The blocks
+      type(block_system_t), intent(in) :: system
+      !> The verdict, a collapse
+      type(graph_verdict_t), intent(in) :: verdict
+      !> The contacts; their increments and faces are set
+      type(contacts_t), intent(inout) :: contacts
+      type(joint_graph_t) :: graph
+      real(wp), allocatable :: rate(:, :)
+      real(wp) :: dilatancy, least
+      integer :: j
+
+      call scene_graph(settings, system, contacts, graph)
+      allocate (rate(3, size(graph%kind)))
+      call joint_motion(graph, verdict%mechanism, rate)
+      contacts%increment = rate(:, :size(contacts%joint))
+      least = still*maxval(abs(rate))
+      do j = 1, size(contacts%joint)
+         dilatancy = 0.0_wp
+         if (verdict%flow == flow_rule%associated) dilatancy = graph%friction(j)*abs(rate(3, j))
+         contacts%face(j)%open = rate(1:2, j) - dilatancy > least
+         if (allocated(verdict%state)) contacts%face(j)%open = contacts%face(j)%open &
+            & .or. verdict%state%gap(:, j) > still*maxval(abs(verdict%state%motion(1:2, :)))
+         if (contacts%springs%cone(j)%single) contacts%face(j)%open(2) = .true.
+         contacts%face(j)%slip = 0
+         if (abs(rate(3, j)) > least .and. .not. all(contacts%face(j)%open)) &
+            & contacts%face(j)%slip = merge(-1, 1, rate(3, j) > 0.0_wp)
+      end do
+   end subroutine show_mechanism
+
+   !> Forces, openings and faces of the joints of what stands, and the motion of its blocks
+   pure subroutine show_state(verdict, system, contacts)
+      !> The verdict of what stands
+      type(graph_verdict_t), intent(in) :: verdict
+      !> The blocks; their motions are set where they are known
+      type(block_system_t), intent(inout) :: system
+      !> The contacts; forces, gaps and faces are set
+      type(contacts_t), intent(inout) :: contacts
+      integer :: b, j, n
+
+      n = size(contacts%joint)
+      if (allocated(verdict%force)) contacts%force = verdict%force(:, :n)
+      if (.not. allocated(verdict%state)) return
+      associate (state => verdict%state)
+         contacts%force = state%force(:, :n)
+         contacts%gap(1:2, :) = state%gap(:, :n)
+         contacts%gap(3, :) = state%slip(:n)
+         do j = 1, n
+            contacts%face(j)%open = state%face(1:2, j) == face%open
+            contacts%face(j)%slip = 0
+            if (abs(state%face(3, j)) == face%slides) contacts%face(j)%slip = state%face(3, j)
+         end do
+         do b = 1, size(system%equation)
+            if (system%equation(b) > 0) system%motion(:3, b) = state%motion(:3, system%equation(b))
+         end do
+      end associate
+   end subroutine show_state
+end module dda_graph_decision

@@ -1,0 +1,400 @@
+!> Critical value of a load coefficient: the first collapse on the loading path, with the associated
+!> limit beside it
+!>
+!> The coefficient comes last on the path, so one path finds its critical value. What is searched is
+!> measured from where the coefficient does nothing: the horizontal coefficient itself, or the angle
+!> of gravity from upright.
+module dda_load_search
+   use dda_decision, only : record_collapse, record_rest
+   use dda_error, only : error_t
+   use dda_graph_decision, only : decides_as_graph, follow_stations, graph_verdict_t, has_friction
+   use dda_joint_graph, only : joint_graph_t
+   use dda_kinds, only : wp
+   use dda_limit_load, only : find_limit, limit_load_t, limit_state
+   use dda_load_stations, only : last_history_time, load_stations, load_stations_t, loads_at
+   use dda_loading_path, only : path_end
+   use dda_scene, only : family_t, scene_t, searched_load
+   use dda_scene_graph, only : scene_graph
+   use dda_search, only : critical_t, search_t
+   use dda_settings, only : flow_rule, settings_t
+   use dda_verdict, only : verdict
+   implicit none
+   private
+
+   public :: find_critical_load
+
+   !> Where a structure falls on one side of the unloaded state
+   type :: side_t
+      !> One of path_end
+      integer :: end = 0
+      !> Value at which it falls, from that state; of what stands, the end of the range
+      real(wp) :: value = 0.0_wp
+      !> How far the value may be off
+      real(wp) :: half = 0.0_wp
+      !> The associated limit from below and from above, with the sign of the side
+      real(wp) :: limit(2) = 0.0_wp
+      !> Whether it is known
+      logical :: has_limit = .false.
+      !> Whether the path leads further than its dead loads
+      logical :: stands_upright = .true.
+      !> How it falls, or stands at the end of the range
+      type(graph_verdict_t) :: proof
+   end type side_t
+
+   !> Relative accuracy of a loading path
+   real(wp), parameter :: path_resolution = 1.0e-9_wp
+   !> Least relative gap of the two proofs of a limit
+   real(wp), parameter :: least_gap = 1.0e-13_wp
+
+contains
+
+   !> Search a family whose parameter is a load coefficient
+   pure subroutine find_critical_load(family, search, critical, done)
+      !> The family
+      class(family_t), intent(in) :: family
+      !> What is searched
+      type(search_t), intent(in) :: search
+      !> What was found
+      type(critical_t), intent(inout) :: critical
+      !> Whether the search could be done so; otherwise nothing was
+      logical, intent(out) :: done
+      type(error_t), allocatable :: error
+      type(joint_graph_t) :: graph
+      type(scene_t) :: scene
+      type(side_t) :: right, left
+      real(wp) :: low, high
+
+      call family%build(search%low, scene, error)
+      done = .not. allocated(error)
+      if (done) low = coefficient(family%load, scene%settings)
+      if (done) call family%build(search%high, scene, error)
+      done = done .and. .not. allocated(error)
+      if (done) high = coefficient(family%load, scene%settings)
+      if (done) done = high > low .and. can_follow(family%load, scene)
+      if (.not. done) return
+      call scene_graph(scene%settings, scene%system, scene%contacts, graph)
+      right%end = path_end%reached
+      left%end = path_end%reached
+      right%value = high
+      left%value = low
+      ! from an unloaded state outside the range, the path leads through it
+      if (high > 0.0_wp) call follow_side(family%load, scene, graph, high, search, right)
+      if (low < 0.0_wp) call follow_side(family%load, scene, graph, low, search, left)
+      critical%factorisations = right%proof%n_factorisation + left%proof%n_factorisation
+      critical%steps = right%proof%n_event + left%proof%n_event
+      ! what does not stand upright may do so under gravity that acts another way from the beginning
+      done = family%load /= searched_load%tilt .or. right%stands_upright .and. left%stands_upright
+      if (done) call conclude(search, low, high, scene, right, left, critical)
+   end subroutine find_critical_load
+
+   !> Whether the coefficient comes last on a path that the joint graph can follow
+   pure logical function can_follow(load, scene)
+      !> One of searched_load
+      integer, intent(in) :: load
+      !> The scene at the high end
+      type(scene_t), intent(in) :: scene
+
+      associate (settings => scene%settings)
+         can_follow = decides_as_graph(settings, scene%contacts) &
+            & .and. .not. last_history_time(settings) > 0.0_wp
+         if (load == searched_load%tilt) can_follow = can_follow &
+            & .and. .not. abs(settings%push) > 0.0_wp &
+            & .and. (settings%verdict_flow == flow_rule%coulomb .or. only_weight(settings))
+      end associate
+   end function can_follow
+
+   !> Whether nothing but weight acts, so that gravity that tilts is a push of fixed weight
+   pure logical function only_weight(settings)
+      !> Settings of the run
+      type(settings_t), intent(in) :: settings
+
+      only_weight = .not. allocated(settings%boundary%loaded)
+      if (.not. only_weight) only_weight = size(settings%boundary%loaded) == 0
+      only_weight = only_weight .and. .not. allocated(settings%boundary%base_acceleration%time)
+   end function only_weight
+
+   !> What is searched, from where it does nothing
+   pure real(wp) function coefficient(load, settings)
+      !> One of searched_load
+      integer, intent(in) :: load
+      !> Settings of the run
+      type(settings_t), intent(in) :: settings
+
+      coefficient = merge(settings%tilt, settings%push, load == searched_load%tilt)
+   end function coefficient
+
+   !> Settings with another value of what is searched
+   pure function with_coefficient(settings, load, value) result(other)
+      !> Settings of the run
+      type(settings_t), intent(in) :: settings
+      !> One of searched_load
+      integer, intent(in) :: load
+      !> The value
+      real(wp), intent(in) :: value
+      !> The settings
+      type(settings_t) :: other
+
+      other = settings
+      if (load == searched_load%tilt) then
+         other%tilt = value
+      else
+         other%push = value
+      end if
+   end function with_coefficient
+
+   !> Follow the path to one side: limit analysis says how far it can lead at most
+   pure subroutine follow_side(load, scene, graph, last, search, side)
+      !> One of searched_load
+      integer, intent(in) :: load
+      !> The scene
+      type(scene_t), intent(in) :: scene
+      !> Its joints
+      type(joint_graph_t), intent(in) :: graph
+      !> End of the range on this side
+      real(wp), intent(in) :: last
+      !> What is searched
+      type(search_t), intent(in) :: search
+      !> Where it falls
+      type(side_t), intent(inout) :: side
+      type(load_stations_t) :: stations
+      type(limit_load_t) :: limit
+      type(settings_t) :: settings
+      real(wp) :: far
+
+      call find_associated(load, scene, graph, last, search, side, limit)
+      associate (proof => side%proof)
+         proof%n_factorisation = limit%n_factorisation
+         far = last
+         if (side%has_limit .and. abs(side%limit(1)) < abs(last)) far = side%limit(1)
+         if (scene%settings%verdict_flow == flow_rule%associated &
+            & .or. .not. has_friction(graph)) then
+            call take_associated(last, search, limit, side)
+            return
+         end if
+         if (limit%state == limit_state%no_dead_equilibrium) then
+            call take_associated(last, search, limit, side)
+            side%value = 0.0_wp
+            side%stands_upright = .false.
+            return
+         end if
+         if (abs(far) < abs(last)) far = far*(1.0_wp - path_resolution)
+         settings = with_coefficient(scene%settings, load, far)
+         stations = load_stations(settings, .true.)
+         call follow_stations(settings, scene%system, graph, stations, huge(1.0_wp), proof)
+         proof%n_factorisation = proof%n_factorisation + limit%n_factorisation
+         side%end = proof%end
+         side%value = value_at_end(load, stations, proof)
+         if (proof%end == path_end%reached .and. abs(far) < abs(last)) then
+            ! no forces go on from here, whatever the law of friction
+            side%end = path_end%collapsed
+            side%value = far
+            proof%mechanism = limit%velocity
+            proof%flow = flow_rule%associated
+         end if
+         side%half = max(0.5_wp*search%tolerance, path_resolution)*abs(side%value)
+         ! where nothing slides in the collapse both rules agree, and limit analysis has more digits
+         if (.not. side%has_limit .or. side%end /= path_end%collapsed) return
+         if (abs(side%value - side%limit(2)) <= 10.0_wp*path_resolution*abs(side%value)) &
+            & call take_associated(last, search, limit, side)
+      end associate
+   end subroutine follow_side
+
+   !> The associated limit of what is searched, where it is linear in the load
+   pure subroutine find_associated(load, scene, graph, last, search, side, limit)
+      !> One of searched_load
+      integer, intent(in) :: load
+      !> The scene
+      type(scene_t), intent(in) :: scene
+      !> Its joints
+      type(joint_graph_t), intent(in) :: graph
+      !> End of the range on this side
+      real(wp), intent(in) :: last
+      !> What is searched
+      type(search_t), intent(in) :: search
+      !> Receives the limit
+      type(side_t), intent(inout) :: side
+      !> The limit
+      type(limit_load_t), intent(out) :: limit
+      type(load_stations_t) :: stations
+      type(settings_t) :: settings
+      real(wp) :: dead(3, graph%n_block), live(3, graph%n_block), opening(3, size(graph%kind))
+      real(wp) :: tolerance
+      integer :: n
+
+      if (load == searched_load%tilt .and. .not. only_weight(scene%settings)) return
+      settings = scene%settings
+      if (load == searched_load%tilt) settings%tilt = 0.0_wp
+      settings%push = sign(1.0_wp, last)
+      stations = load_stations(settings, .true.)
+      n = ubound(stations%tilt, 1)
+      call loads_at(stations, n - 1, settings, scene%system, graph, dead, opening)
+      call loads_at(stations, n, settings, scene%system, graph, live, opening)
+      live = live - dead
+      tolerance = min(path_resolution, max(least_gap, 1.0e-2_wp*search%tolerance))
+      call find_limit(graph, dead, live, tolerance, limit)
+      side%has_limit = limit%state == limit_state%found
+      if (.not. side%has_limit) return
+      side%limit = sign(1.0_wp, last)*[limit%lower, limit%upper]
+      if (load == searched_load%tilt) side%limit = atan(side%limit)
+   end subroutine find_associated
+
+   !> Take the associated limit as the answer
+   pure subroutine take_associated(last, search, limit, side)
+      !> End of the range on this side
+      real(wp), intent(in) :: last
+      !> What is searched
+      type(search_t), intent(in) :: search
+      !> The limit
+      type(limit_load_t), intent(in) :: limit
+      !> Where it falls
+      type(side_t), intent(inout) :: side
+
+      associate (proof => side%proof)
+         proof%flow = flow_rule%associated
+         side%end = path_end%collapsed
+         side%value = 0.5_wp*sum(side%limit)
+         side%half = max(0.5_wp*abs(side%limit(2) - side%limit(1)), &
+            & 4.0_wp*epsilon(1.0_wp)*abs(side%value), &
+            & 0.5_wp*min(search%tolerance, path_resolution)*abs(side%value))
+         select case (limit%state)
+         case (limit_state%found, limit_state%no_dead_equilibrium)
+            proof%mechanism = limit%velocity
+         case (limit_state%unbounded)
+            side%end = path_end%reached
+         case default
+            side%end = path_end%undecided
+            proof%reason = "the two proofs of the limit do not meet"
+         end select
+         if (limit%state == limit_state%found .and. abs(side%value) > abs(last)) &
+            & side%end = path_end%reached
+         if (side%end == path_end%reached) side%value = last
+         proof%end = side%end
+         proof%force = limit%force
+      end associate
+   end subroutine take_associated
+
+   !> Value of what is searched at which a path ended
+   pure real(wp) function value_at_end(load, stations, proof) result(value)
+      !> One of searched_load
+      integer, intent(in) :: load
+      !> Stations of the path
+      type(load_stations_t), intent(in) :: stations
+      !> How it ended
+      type(graph_verdict_t), intent(in) :: proof
+      real(wp) :: angle(2)
+      integer :: i
+
+      i = proof%station
+      value = 0.0_wp
+      if (ubound(stations%tilt, 1) == 0) return
+      if (load == searched_load%push) then
+         value = (1.0_wp - proof%share)*stations%push(i) + proof%share*stations%push(i + 1)
+      else
+         angle = stations%tilt(i:i + 1)
+         value = atan2((1.0_wp - proof%share)*sin(angle(1)) + proof%share*sin(angle(2)), &
+            & (1.0_wp - proof%share)*cos(angle(1)) + proof%share*cos(angle(2)))
+      end if
+   end function value_at_end
+
+   !> The verdict of the range. Where it falls on both sides, the critical value is that to the
+   !> right, and the other one is told beside it
+   pure subroutine conclude(search, low, high, scene, right, left, critical)
+      !> What is searched
+      type(search_t), intent(in) :: search
+      !> Low end of the range, from where the coefficient does nothing
+      real(wp), intent(in) :: low
+      !> High end, likewise
+      real(wp), intent(in) :: high
+      !> The scene
+      type(scene_t), intent(in) :: scene
+      !> Where it falls to the right
+      type(side_t), intent(in) :: right
+      !> Where it falls to the left
+      type(side_t), intent(in) :: left
+      !> Receives the verdict
+      type(critical_t), intent(inout) :: critical
+      logical :: falls_left, falls_right
+
+      falls_right = right%end == path_end%collapsed
+      falls_left = left%end == path_end%collapsed
+      if (right%end == path_end%undecided) then
+         critical%reason = right%proof%reason
+         critical%undecided_at = search%high
+      else if (left%end == path_end%undecided) then
+         critical%reason = left%proof%reason
+         critical%undecided_at = search%low
+      else if (falls_right .and. .not. right%value - right%half > low) then
+         critical%verdict = verdict%collapsed
+         critical%falls = search%low
+         call keep_collapse(scene, right, critical)
+      else if (falls_left .and. .not. left%value + left%half < high) then
+         critical%verdict = verdict%collapsed
+         critical%falls = search%high
+         call keep_collapse(scene, left, critical)
+      else if (falls_right) then
+         call close_bracket(search, low, high, scene, right, 1.0_wp, critical)
+         if (falls_left) critical%other = search%low &
+            & + (left%value - low)*(search%high - search%low)/(high - low)
+         critical%has_other = falls_left
+      else if (falls_left) then
+         call close_bracket(search, low, high, scene, left, -1.0_wp, critical)
+      else
+         critical%verdict = verdict%stable
+         critical%stands = search%high
+         allocate (critical%standing)
+         if (high > 0.0_wp) then
+            call record_rest(scene%system, scene%contacts, right%proof, critical%standing)
+         else
+            call record_rest(scene%system, scene%contacts, left%proof, critical%standing)
+         end if
+      end if
+   end subroutine conclude
+
+   !> The bracket about the value at which it falls to one side
+   pure subroutine close_bracket(search, low, high, scene, side, outward, critical)
+      !> What is searched
+      type(search_t), intent(in) :: search
+      !> Low end of the range, from where the coefficient does nothing
+      real(wp), intent(in) :: low
+      !> High end, likewise
+      real(wp), intent(in) :: high
+      !> The scene
+      type(scene_t), intent(in) :: scene
+      !> The side
+      type(side_t), intent(in) :: side
+      !> 1 to the right, -1 to the left
+      real(wp), intent(in) :: outward
+      !> Receives the bracket
+      type(critical_t), intent(inout) :: critical
+      real(wp) :: scale
+
+      scale = (search%high - search%low)/(high - low)
+      critical%verdict = verdict%found
+      critical%half = side%half*scale
+      critical%falls = search%low + (side%value + outward*side%half - low)*scale
+      critical%stands = search%low + (side%value - outward*side%half - low)*scale
+      critical%stop = search%low + (side%value - low)*scale
+      critical%stops = .true.
+      call keep_collapse(scene, side, critical)
+      allocate (critical%standing)
+      call record_rest(scene%system, scene%contacts, side%proof, critical%standing)
+      critical%has_limit = side%has_limit
+      critical%limit = search%low + (side%limit - low)*scale
+      critical%jumps = side%proof%n_jump
+      critical%largest_jump = side%proof%largest_jump
+   end subroutine close_bracket
+
+   !> Keep how it falls
+   pure subroutine keep_collapse(scene, side, critical)
+      !> The scene
+      type(scene_t), intent(in) :: scene
+      !> The side
+      type(side_t), intent(in) :: side
+      !> Receives the collapse
+      type(critical_t), intent(inout) :: critical
+
+      allocate (critical%fallen)
+      call record_collapse(scene%settings, scene%system, scene%contacts, side%proof, &
+         & critical%fallen)
+   end subroutine keep_collapse
+end module dda_load_search
