@@ -55,7 +55,7 @@ def _polygons() -> Iterator[Scene]:
     two = [(0.0, 0.0), (1.0, 0.0)]
     yield _blocks("two corners", BASE + written_block(two), Refused("block 2"))
     twice = [*_SQUARE[:2], _SQUARE[1], *_SQUARE[2:]]
-    merged = Warned("block 2: corners given twice", _STANDS)
+    merged = Warned("corners given twice are merged", _STANDS)
     yield _blocks("a corner twice", BASE + written_block(twice), merged)
     yield _blocks("one corner four times", BASE + written_block([(0, 0)] * 4), Refused("block 2"))
     thin = written_block(rectangle(0.0, 0.0, 1.0, 1e-9))

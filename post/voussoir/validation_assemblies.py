@@ -156,39 +156,34 @@ def _sagging(outcome: Outcome) -> float:
     return _normal(0)(outcome) * 8.0 * left / (25000.0 * 0.5 * 4.0**2)
 
 
-#: Tilts of dry walls in limit analysis with dilatant friction [deg], by coefficient of friction
+#: Dry walls by coefficient of friction: tilt in limit analysis with dilatant friction [deg], and
+#: push at the first collapse on the loading path (7/11 and 5/9 by hand, the others of a prototype
+#: that shares nothing with this program; joints as compliant as l/t)
 WALLS = {
-    "dry_wall_2x4": ((0.75, 34.6551), (0.65, 32.6822)),
-    "dry_wall_4x4": ((0.75, 34.6551), (0.65, 32.6822)),
-    "dry_wall_3x8": ((0.75, 30.4249), (0.65, 28.9392)),
-    "dry_wall_4x8": ((0.75, 31.2911), (0.65, 29.5258), (0.5, 26.5651)),
-    "dry_wall_5x10": ((0.75, 30.0459), (0.65, 28.2934), (0.5, 26.3681)),
+    "dry_wall_2x4": ((0.75, 34.6551, 7 / 11), (0.65, 32.6822, 7 / 11)),
+    "dry_wall_4x4": ((0.75, 34.6551, 7 / 11), (0.65, 32.6822, 7 / 11)),
+    "dry_wall_3x8": ((0.75, 30.4249, 0.530252), (0.65, 28.9392, 0.529590)),
+    "dry_wall_4x8": ((0.75, 31.2911, 5 / 9), (0.65, 29.5258, 0.545441), (0.5, 26.5651, 0.5)),
+    "dry_wall_5x10": ((0.75, 30.0459, 0.527504), (0.65, 28.2934, 0.516492), (0.5, 26.3681, 0.495126)),
 }
 
 
 def _walls() -> list[Scene]:
     """Dry walls on a tilting table."""
     scenes = []
-    what = "tilt, friction {}: 0 to 2 deg below the dilatant limit [deg]"
     for deck, rows in WALLS.items():
         checks = []
-        for case, (mu, limit) in enumerate(rows, 1):
-            checks.append(Check(what.format(mu), limit, _tilt, 2.0, case, scale=1.0))
-            beyond = f"tilt beyond that limit, friction {mu} [deg]"
-            checks.append(Check(beyond, 0.0, _beyond(limit), 1e-3, case, scale=1.0))
-        slow = not deck.endswith("x4")
-        scenes.append(Scene(ASSEMBLIES, deck, "limit analysis", tuple(checks), slow=slow))
+        for case, (mu, limit, push) in enumerate(rows, 1):
+            what = f"tilt of limit analysis, friction {mu} [deg]"
+            checks.append(Check(what, limit, _associated_tilt, 1e-4, case, scale=1.0))
+            checks.append(critical(f"push of first collapse, friction {mu}", push, 2e-6, case))
+        scenes.append(Scene(ASSEMBLIES, deck, "loading path", tuple(checks)))
     return scenes
 
 
-def _tilt(outcome: Outcome) -> float:
-    """Critical push as the tilt of a table [deg]."""
-    return math.degrees(math.atan(outcome.critical))
-
-
-def _beyond(limit: float):
-    """Measure of by how much the critical tilt is more than a limit [deg]."""
-    return lambda outcome: max(0.0, _tilt(outcome) - limit)
+def _associated_tilt(outcome: Outcome) -> float:
+    """The limit of the push under the associated rule as the tilt of a table [deg]."""
+    return math.degrees(math.atan(float(outcome.rows("results")[0]["exact_high"])))
 
 
 def _normal(joint: int):

@@ -89,8 +89,8 @@ contains
       call decide_graph(settings, system, contacts, bare, proof)
       if (proof%end == path_end%collapsed) then
          call record_collapse(settings, system, contacts, proof, decision, album)
-      else if (proof%end == path_end%reached .and. bare) then
-         call record_rest(system, contacts, proof, decision)
+      else if (proof%end == path_end%reached .and. (bare .or. proof%on_path)) then
+         call record_rest(settings, system, contacts, proof, decision)
       else if (proof%end == path_end%reached) then
          call share_forces(settings, system, contacts, proof, decision, album)
       else if (proof%unproven) then
@@ -138,12 +138,14 @@ contains
       decision%outcome%verdict = verdict%stable
       if (allocated(decision%outcome%reason)) deallocate (decision%outcome%reason)
       if (shared) return
-      call record_rest(system, contacts, proof, decision)
+      call record_rest(settings, system, contacts, proof, decision)
       if (present(album)) call show_end(convex, decision, album)
    end subroutine share_forces
 
    !> Blocks and contacts of what stands, as its proof has them
-   pure subroutine record_rest(system, contacts, proof, decision)
+   pure subroutine record_rest(settings, system, contacts, proof, decision)
+      !> Settings of the run
+      type(settings_t), intent(in) :: settings
       !> The blocks
       type(block_system_t), intent(in) :: system
       !> The contacts
@@ -157,7 +159,7 @@ contains
       decision%flow = proof%flow
       decision%system = system
       decision%contacts = contacts
-      call show_state(proof, decision%system, decision%contacts)
+      call show_state(settings, proof, decision%system, decision%contacts)
    end subroutine record_rest
 
    !> Blocks and contacts of what falls. Limit analysis proves that it does by any mechanism that
@@ -180,7 +182,7 @@ contains
       decision%flow = proof%flow
       decision%system = system
       decision%contacts = contacts
-      if (proof%flow == flow_rule%associated) then
+      if (proof%flow == flow_rule%associated .and. .not. proof%is_first) then
          convex = settings
          convex%flow = flow_rule%associated
          call run_to_verdict(convex, decision%system, decision%contacts, decision%outcome, album)

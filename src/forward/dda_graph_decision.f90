@@ -5,6 +5,7 @@
 !> dead loads at once, then what is live, from event to event, with slip remembered. The first load
 !> at which the blocks fall is the collapse, and all beyond it is collapsed.
 module dda_graph_decision
+   use dda_block_strain, only : strain_blocks
    use dda_block_system, only : block_system_t
    use dda_contact_detection, only : contacts_t
    use dda_contact_types, only : joint_t
@@ -12,7 +13,8 @@ module dda_graph_decision
    use dda_joint_graph, only : joint_graph_t, joint_kind, joint_motion
    use dda_kinds, only : wp
    use dda_limit_decision, only : decide_load, load_decision_t, load_state
-   use dda_load_stations, only : load_stations, load_stations_t, loads_at
+   use dda_limit_load, only : find_limit, limit_load_t, limit_state
+   use dda_load_stations, only : last_history_time, load_stations, load_stations_t, loads_at
    use dda_loading_path, only : begin_path, coulomb_state_t, face, follow_path, loading_path_t, &
       & new_rate, path_end, path_rate_t, path_reason, path_result_t
    use dda_scene_graph, only : has_pure_friction, scene_graph
@@ -29,6 +31,8 @@ module dda_graph_decision
       integer :: end = 0
       !> Why it is undecided; unallocated otherwise
       character(len=:), allocatable :: reason
+      !> Whether a joint with friction slides in the mechanism of limit analysis
+      logical :: mixed = .false.
       !> Flow rule that it was found under, one of flow_rule
       integer :: flow = flow_rule%associated
       !> Velocities of the collapse: (3, n_block)
@@ -37,6 +41,10 @@ module dda_graph_decision
       type(coulomb_state_t), allocatable :: state
       !> Forces of what stands under the associated rule: (3, n_joint) [N/m]
       real(wp), allocatable :: force(:, :)
+      !> Whether the mechanism is that in which the blocks first fall as the load grows
+      logical :: is_first = .false.
+      !> Whether something live was followed to the state
+      logical :: on_path = .false.
       !> Whether steps may prove what limit analysis did not, as no path leads to the load
       logical :: unproven = .false.
       !> Last station of the path that was reached, and the share of the leg after it
@@ -53,6 +61,8 @@ module dda_graph_decision
       integer :: n_factorisation = 0
    end type graph_verdict_t
 
+   !> Relative gap of the two proofs of a limit whose mechanism is asked for
+   real(wp), parameter :: limit_gap = 1.0e-9_wp
    !> Motions below this share of the largest are rounding
    real(wp), parameter :: still = 1.0e-6_wp
 
@@ -107,6 +117,7 @@ contains
       if (decision%state == load_state%falls) then
          verdict%end = path_end%collapsed
          call move_alloc(decision%velocity, verdict%mechanism)
+         if (.not. bare) call find_first(settings, system, graph, stations, verdict)
       else if (decision%state == load_state%stands) then
          verdict%end = path_end%reached
          call move_alloc(decision%force, verdict%force)
@@ -117,9 +128,7 @@ contains
       if (settings%verdict_flow == flow_rule%associated .or. .not. has_friction(graph)) return
       dead_alone = ubound(stations%tilt, 1) == 0
       if (verdict%end /= path_end%reached .and. dead_alone) return
-      if (verdict%end == path_end%collapsed) then
-         if (bare .or. .not. slides(graph, verdict%mechanism)) return
-      end if
+      if (verdict%end == path_end%collapsed .and. .not. verdict%mixed) return
       call follow_stations(settings, system, graph, stations, huge(1.0_wp), path)
       path%n_factorisation = path%n_factorisation + verdict%n_factorisation
       path%unproven = verdict%unproven .or. dead_alone
@@ -131,6 +140,34 @@ contains
          verdict = path
       end if
    end subroutine decide_graph
+
+   !> The mechanism in which what has fallen fell first, as what is live grew to its value
+   pure subroutine find_first(settings, system, graph, stations, verdict)
+      !> Settings of the run
+      type(settings_t), intent(in) :: settings
+      !> The blocks
+      type(block_system_t), intent(in) :: system
+      !> Their joints
+      type(joint_graph_t), intent(in) :: graph
+      !> Stations of the loading path
+      type(load_stations_t), intent(in) :: stations
+      !> A collapse; its mechanism is set where there is a first one
+      type(graph_verdict_t), intent(inout) :: verdict
+      type(limit_load_t) :: limit
+      real(wp) :: dead(3, graph%n_block), live(3, graph%n_block), opening(3, size(graph%kind))
+      integer :: n
+
+      n = ubound(stations%tilt, 1)
+      if (n > 0) then
+         call loads_at(stations, 0, settings, system, graph, dead, opening)
+         call loads_at(stations, n, settings, system, graph, live, opening)
+         call find_limit(graph, dead, live - dead, limit_gap, limit)
+         verdict%n_factorisation = verdict%n_factorisation + limit%n_factorisation
+         verdict%is_first = limit%state == limit_state%found
+         if (verdict%is_first) verdict%mechanism = limit%velocity
+      end if
+      verdict%mixed = slides(graph, verdict%mechanism)
+   end subroutine find_first
 
    !> Follow the loading path from its dead loads to its end or its collapse
    pure subroutine follow_stations(settings, system, graph, stations, cap, verdict)
@@ -155,6 +192,7 @@ contains
 
       verdict%flow = flow_rule%coulomb
       n = ubound(stations%tilt, 1)
+      verdict%on_path = n > 0
       call new_rate(graph, rate)
       call loads_at(stations, 0, settings, system, graph, load, opening)
       call begin_path(graph, load, path, state, result)
@@ -272,21 +310,29 @@ contains
       end do
    end subroutine show_mechanism
 
-   !> Forces, openings and faces of the joints of what stands, and the motion of its blocks
-   pure subroutine show_state(verdict, system, contacts)
+   !> Forces, openings and faces of the joints of what stands, and motion and strain of its blocks
+   pure subroutine show_state(settings, verdict, system, contacts)
+      !> Settings of the run
+      type(settings_t), intent(in) :: settings
       !> The verdict of what stands
       type(graph_verdict_t), intent(in) :: verdict
       !> The blocks; their motions are set where they are known
       type(block_system_t), intent(inout) :: system
       !> The contacts; forces, gaps and faces are set
       type(contacts_t), intent(inout) :: contacts
+      real(wp), allocatable :: force(:, :)
       integer :: b, j, n
 
       n = size(contacts%joint)
-      if (allocated(verdict%force)) contacts%force = verdict%force(:, :n)
+      allocate (force(3, 0))
+      if (allocated(verdict%force)) force = verdict%force
+      if (allocated(verdict%state)) force = verdict%state%force
+      if (size(force) == 0) return
+      contacts%force = force(:, :n)
+      if (settings%n_dof == 6) call strain_blocks(settings, last_history_time(settings), &
+         & contacts%force, force(:, n + 1:), contacts, system)
       if (.not. allocated(verdict%state)) return
       associate (state => verdict%state)
-         contacts%force = state%force(:, :n)
          contacts%gap(1:2, :) = state%gap(:, :n)
          contacts%gap(3, :) = state%slip(:n)
          do j = 1, n

@@ -3,6 +3,7 @@ module dda_scene_graph
    use dda_block_system, only : block_system_t
    use dda_boundary, only : held_point_t
    use dda_contact_detection, only : contacts_t
+   use dda_contact_types, only : joint_t
    use dda_deformation, only : displacement_matrix
    use dda_inertia, only : mass_matrix
    use dda_joint_graph, only : joint_graph_t, joint_kind
@@ -15,6 +16,8 @@ module dda_scene_graph
 
    !> Unknowns of a rigid block
    integer, parameter :: n_rigid = 3
+   !> A block counts as no smaller at a joint than this share of the root of its area
+   real(wp), parameter :: least_size = 0.1_wp
    !> A held point is stiffer than the stiffest joint by this factor
    real(wp), parameter :: pin_stiffness = 10.0_wp
 
@@ -45,7 +48,7 @@ contains
             graph%row(:, :, :, j) = contacts%springs%row(:n_rigid, :, :, j)
             graph%length(j) = contacts%joint(j)%length
             graph%friction(j) = law%friction
-            graph%compliance(:, j) = 1.0_wp/contacts%springs%stiffness(j)
+            graph%compliance(:, j) = block_compliance(system, contacts%joint(j))
             if (law%no_slip) then
                graph%kind(j) = merge(joint_kind%corner_no_slip, joint_kind%no_slip, cone%single)
             else
@@ -73,6 +76,29 @@ contains
          graph%mass(:, e) = [full(1, 1), full(2, 2), full(3, 3)]
       end do
    end subroutine scene_graph
+
+   !> Compliance l/(E t) of what lies between two centres of gravity, l across the joint and t along
+   !> it: rigid blocks have that of their halves in the joints
+   pure real(wp) function block_compliance(system, joint) result(compliance)
+      !> The blocks
+      type(block_system_t), intent(in) :: system
+      !> The joint
+      type(joint_t), intent(in) :: joint
+      real(wp) :: across, least, length
+      integer :: side
+
+      compliance = 0.0_wp
+      do side = 1, 2
+         associate (b => joint%block(side))
+            if (system%equation(b) == 0) cycle
+            least = least_size*sqrt(system%area(b))
+            across = abs(dot_product(joint%normal, joint%middle(:, side) - system%centroid(:, b)))
+            length = max(joint%length, least)
+            compliance = compliance + max(across, least) &
+               & /(system%materials(system%material(b))%young*length)
+         end associate
+      end do
+   end function block_compliance
 
    !> Whether no joint has cohesion or tensile strength, which would be spent along the way
    pure logical function has_pure_friction(contacts)

@@ -26,7 +26,7 @@ module dda_load_search
    !> Where a structure falls on one side of the unloaded state
    type :: side_t
       !> One of path_end
-      integer :: end = 0
+      integer :: end = path_end%reached
       !> Value at which it falls, from that state; of what stands, the end of the range
       real(wp) :: value = 0.0_wp
       !> How far the value may be off
@@ -73,8 +73,6 @@ contains
       if (done) done = high > low .and. can_follow(family%load, scene)
       if (.not. done) return
       call scene_graph(scene%settings, scene%system, scene%contacts, graph)
-      right%end = path_end%reached
-      left%end = path_end%reached
       right%value = high
       left%value = low
       ! from an unloaded state outside the range, the path leads through it
@@ -190,6 +188,7 @@ contains
             side%value = far
             proof%mechanism = limit%velocity
             proof%flow = flow_rule%associated
+            proof%is_first = .true.
          end if
          side%half = max(0.5_wp*search%tolerance, path_resolution)*abs(side%value)
          ! where nothing slides in the collapse both rules agree, and limit analysis has more digits
@@ -259,6 +258,7 @@ contains
          select case (limit%state)
          case (limit_state%found, limit_state%no_dead_equilibrium)
             proof%mechanism = limit%velocity
+            proof%is_first = limit%state == limit_state%found
          case (limit_state%unbounded)
             side%end = path_end%reached
          case default
@@ -342,11 +342,10 @@ contains
          critical%verdict = verdict%stable
          critical%stands = search%high
          allocate (critical%standing)
-         if (high > 0.0_wp) then
-            call record_rest(scene%system, scene%contacts, right%proof, critical%standing)
-         else
-            call record_rest(scene%system, scene%contacts, left%proof, critical%standing)
-         end if
+         if (high > 0.0_wp) call record_rest(scene%settings, scene%system, scene%contacts, &
+            & right%proof, critical%standing)
+         if (.not. high > 0.0_wp) call record_rest(scene%settings, scene%system, scene%contacts, &
+            & left%proof, critical%standing)
       end if
    end subroutine conclude
 
@@ -377,7 +376,7 @@ contains
       critical%stops = .true.
       call keep_collapse(scene, side, critical)
       allocate (critical%standing)
-      call record_rest(scene%system, scene%contacts, side%proof, critical%standing)
+      call record_rest(scene%settings, scene%system, scene%contacts, side%proof, critical%standing)
       critical%has_limit = side%has_limit
       critical%limit = search%low + (side%limit - low)*scale
       critical%jumps = side%proof%n_jump

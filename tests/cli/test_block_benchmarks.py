@@ -128,6 +128,6 @@ def test_slope_of_columns_stands_at_40_and_falls_from_32_9_on(geometry: str, tmp
     assert verdict[32.9] == verdict[30.0] == "collapsed"
 
 
-def test_small_dry_wall_falls_two_degrees_below_limit_analysis(tmp_path: Path) -> None:
+def test_small_dry_wall_falls_at_seven_elevenths_of_its_weight(tmp_path: Path) -> None:
     """7/11 on the loading path with friction 0.75 and 0.65; limit analysis says 0.691 and 0.642."""
     assert critical("dry_wall_2x4", tmp_path / "out") == pytest.approx([7 / 11, 7 / 11], abs=1e-6)

@@ -1,6 +1,6 @@
 !> Decisions of scenes, in one word
 module scene_decision
-   use dda_decision, only : decide, decision_t
+   use dda_decision, only : decide, decide_by_steps, decision_t
    use dda_error, only : error_t
    use dda_kinds, only : wp
    use dda_scene, only : family_t, scene_t
@@ -8,7 +8,7 @@ module scene_decision
    implicit none
    private
 
-   public :: decision_at, decision_of, verdicts_around
+   public :: decision_at, decision_of, stepped_at, verdicts_around
 
 contains
 
@@ -26,6 +26,21 @@ contains
       call family%build(value, scene, error)
       call decide(scene%settings, scene%system, scene%contacts, decision)
    end function decision_at
+
+   !> Decision of a family's scene by steps to rest or collapse
+   pure function stepped_at(family, value) result(decision)
+      !> The family
+      class(family_t), intent(in) :: family
+      !> Value of its parameter
+      real(wp), intent(in) :: value
+      !> The decision
+      type(decision_t) :: decision
+      type(scene_t) :: scene
+      type(error_t), allocatable :: error
+
+      call family%build(value, scene, error)
+      call decide_by_steps(scene%settings, scene%system, scene%contacts, decision)
+   end function stepped_at
 
    !> Verdicts of a family just below and just above a value
    pure function verdicts_around(family, value, margin) result(answer)

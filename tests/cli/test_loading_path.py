@@ -1,0 +1,116 @@
+"""Static verdicts under Coulomb friction are those of the loading path: searches and decisions."""
+
+import csv
+import math
+from pathlib import Path
+
+import pytest
+from dda_command import run_dda
+
+BLOCK = "block\n{0} {1}\n{2} {1}\n{2} {3}\n{0} {3}\n"
+
+
+def wall(units: int, courses: int) -> str:
+    """Bricks of 2 m by 1 m in running bond on fixed ground, half bricks at the ends."""
+    length = 2.0 * units
+    text = "block fixed\n-1 -1\n{0} -1\n{0} 0\n-1 0\n".format(length + 1.0)
+    for course in range(courses):
+        inner = [2.0 * k + (1.0 if course % 2 else 0.0) for k in range(units + 1)]
+        heads = sorted({0.0, length, *(x for x in inner if x <= length)})
+        for left, right in zip(heads, heads[1:]):
+            text += BLOCK.format(left, float(course), right, course + 1.0)
+    return text
+
+
+def run_wall(folder: Path, units: int, courses: int, friction: float, more: str) -> list[dict]:
+    """Rows of a deck of a wall with a coefficient of friction."""
+    (folder / "wall.blocks").write_text(wall(units, courses))
+    (folder / "deck.nml").write_text(
+        "&scene kind = 'blocks', geometry = 'wall.blocks' /\n"
+        f"&joint friction_deg = {math.degrees(math.atan(friction))!r} /\n{more}"
+    )
+    done = run_dda("run", "deck.nml", "--quiet", cwd=folder)
+    assert done.returncode == 0, done.stderr
+    with (folder / "deck" / "results.csv").open() as table:
+        return sorted(csv.DictReader(table), key=lambda row: int(row["case"]))
+
+
+@pytest.mark.parametrize(
+    ("units", "courses", "friction", "push", "accept"),
+    [
+        (2, 4, 0.65, 7 / 11, 1e-6),
+        (2, 4, 0.75, 7 / 11, 1e-6),
+        (4, 8, 0.75, 5 / 9, 1e-6),
+        (3, 5, 0.7, 0.6, 1e-6),
+        (4, 6, 0.7, 11 / 19, 1e-6),
+        (4, 8, 0.65, 0.5454, 3e-4),
+        (10, 10, 0.65, 0.5168, 4e-4),
+    ],
+)
+def test_wall_falls_at_the_first_collapse_on_its_path(
+    tmp_path: Path, units: int, courses: int, friction: float, push: float, accept: float
+) -> None:
+    search = "&search parameter = 'horizontal_coefficient', high = 3 /\n"
+    (row,) = run_wall(tmp_path, units, courses, friction, search)
+    assert row["verdict"] == "found"
+    assert row["collapses_at"] == "high"
+    assert float(row["critical"]) == pytest.approx(push, abs=accept)
+    assert float(row["critical"]) <= float(row["exact_high"])
+
+
+@pytest.mark.parametrize("high", [0.8, 1.0, 3.0])
+@pytest.mark.parametrize("tolerance", [1e-3, 1e-8])
+def test_the_range_of_a_search_does_not_matter(
+    tmp_path: Path, high: float, tolerance: float
+) -> None:
+    search = f"&search parameter = 'horizontal_coefficient', high = {high}, tolerance = {tolerance} /"
+    (row,) = run_wall(tmp_path, 4, 8, 0.75, search + "\n")
+    assert float(row["critical"]) == pytest.approx(5 / 9, abs=1e-6)
+
+
+def test_single_decisions_are_monotone_and_agree_with_the_search(tmp_path: Path) -> None:
+    """The wall falls from 5/9 on, up to twice the associated limit of 0.6078."""
+    sweep = "&sweep parameter = 'horizontal_coefficient', first = 0, last = 1.2156, count = 61 /\n"
+    rows = run_wall(tmp_path, 4, 8, 0.75, sweep)
+    for row in rows:
+        expected = "stable" if float(row["horizontal_coefficient"]) < 5 / 9 else "collapsed"
+        assert row["verdict"] == expected, row["horizontal_coefficient"]
+
+
+def test_tilting_is_a_push_of_the_same_wall(tmp_path: Path) -> None:
+    """27.935 degrees with friction 0.75, in steps of a quarter of a degree to 2e-3."""
+    search = "&search parameter = 'gravity_direction_deg', low = -90, high = -50 /\n"
+    (row,) = run_wall(tmp_path, 3, 8, 0.75, search)
+    assert float(row["critical"]) + 90.0 == pytest.approx(27.935, abs=2e-3)
+
+
+@pytest.mark.parametrize(
+    ("units", "courses", "friction", "factor"),
+    [
+        (4, 8, 0.65, 5.556072280552),
+        (10, 10, 0.65, 5.281485919219),
+        (20, 20, 0.65, 4.566975614626),
+        (10, 10, 0.3, 2.943),
+        (10, 10, 0.75, 5.67550933914),
+    ],
+)
+def test_the_associated_limit_is_proven_from_both_sides(
+    tmp_path: Path, units: int, courses: int, friction: float, factor: float
+) -> None:
+    more = "&analysis flow = 'associated' /\n&search parameter = 'horizontal_coefficient' /\n"
+    (row,) = run_wall(tmp_path, units, courses, friction, more)
+    low, high = float(row["exact_low"]), float(row["exact_high"])
+    assert abs(high - low) <= 1e-9 * high
+    assert float(row["critical"]) == pytest.approx(factor / 9.81, rel=2e-9)
+    assert float(row["critical_low"]) < float(row["critical_high"])
+
+
+def test_a_load_that_no_forces_balance_is_proven_so_in_a_few_factorisations(
+    tmp_path: Path,
+) -> None:
+    more = (
+        "&analysis flow = 'associated' /\n&output joints = .false., blocks = .false. /\n"
+        "&sweep parameter = 'horizontal_coefficient', values = 0.283, 0.51, 0.62, 0.85, 2.83 /\n"
+    )
+    rows = run_wall(tmp_path, 4, 8, 0.65, more)
+    assert [row["verdict"] for row in rows] == ["stable"] * 2 + ["collapsed"] * 3
