@@ -8,9 +8,9 @@
 module dda_interior_point
    use dda_interior_state, only : interior_goal_t, interior_point_t, interior_state, &
       & load_path_t, no_limit
-   use dda_interior_turn, only : begin_turns, correct, least_lift, move, predict, see_residuals, &
+   use dda_interior_turn, only : begin_turns, correct, lift, move, predict, see_residuals, &
       & turn_t
-   use dda_joint_rays, only : joint_rays_t, ray_rates
+   use dda_joint_rays, only : joint_rays_t
    use dda_kinds, only : wp
    use dda_ray_matrix, only : ray_matrix_t, set_springs, solve_springs
    implicit none
@@ -20,9 +20,10 @@ module dda_interior_point
 
    !> Turns without progress before the iteration ends
    integer, parameter :: patience = 8
-   !> Share of a target that counts as the whole
-   real(wp), parameter :: at_target = 1.0_wp - 4.0_wp*epsilon(1.0_wp)
-
+   !> Least force and rate that an iteration begins with
+   real(wp), parameter :: inside = 1.0e-6_wp
+   !> Imbalance and violation of forces and velocities that prove something
+   real(wp), parameter :: certain = 1.0e-12_wp
 contains
 
    !> Springs of equal stiffness carry the dead load; all forces and rates are then pushed inside
@@ -40,20 +41,22 @@ contains
 
       allocate (point%x, point%s, mold=rays%bounded)
       allocate (point%v, mold=path%dead)
-      springs%max_turn = 0
-      call set_springs(rays, rays%bounded + rays%free, least_lift, springs)
-      call solve_springs(rays, springs, -path%dead, point%v)
-      call ray_rates(rays, point%v, point%x)
-      call solve_springs(rays, springs, path%live, point%v)
+      springs%stiffness = rays%bounded + rays%free
+      call set_springs(rays, lift, springs)
+      call solve_springs(rays, springs, -path%dead, point%v, point%x)
+      call solve_springs(rays, springs, path%live, point%v, point%s)
       power = sum(path%live*point%v)
-      if (power > 0.0_wp) point%v = point%v/power
-      call ray_rates(rays, point%v, point%s)
-      point%x = (point%x + max(0.0_wp, -1.5_wp*minval(point%x, rays%bounded > 0.0_wp)))
-      point%s = (point%s + max(0.0_wp, -1.5_wp*minval(point%s, rays%bounded > 0.0_wp)))
+      if (power > 0.0_wp) then
+         point%v = point%v/power
+         point%s = point%s/power
+      end if
+      point%x = point%x + max(0.0_wp, -1.5_wp*minval(point%x, rays%bounded > 0.0_wp)) + inside
+      point%s = point%s + max(0.0_wp, -1.5_wp*minval(point%s, rays%bounded > 0.0_wp)) &
+         & + inside*maxval(abs(point%v))
       product = sum(point%x*point%s*rays%bounded)
       power = sum(point%s*rays%bounded)
-      point%s = point%s + 0.5_wp*product/sum(point%x*rays%bounded) + 1.0e-12_wp
-      point%x = point%x + 0.5_wp*product/power + 1.0e-12_wp
+      point%s = point%s + 0.5_wp*product/sum(point%x*rays%bounded)
+      point%x = point%x + 0.5_wp*product/power
       point%x = point%x*rays%bounded
       point%s = point%s*rays%bounded + (1.0_wp - rays%bounded)
    end subroutine start_by_springs
@@ -75,7 +78,7 @@ contains
       integer :: idle
       real(wp) :: merit
 
-      call begin_turns(rays, path, turn)
+      call begin_turns(rays, path, goal, turn)
       merit = huge(merit)
       idle = 0
       do
@@ -90,12 +93,12 @@ contains
          if (point%state /= interior_state%running) exit
          point%n_turn = point%n_turn + 1
          call predict(rays, path, springs, point, turn)
-         if (.not. springs%factor%usable) then
+         if (.not. springs%usable) then
             point%state = interior_state%stalled
             exit
          end if
          call correct(rays, path, goal, springs, point, turn)
-         call move(rays, goal, turn, point)
+         call move(rays, turn, point)
       end do
       if (point%state /= interior_state%stalled) return
       best%n_turn = point%n_turn
@@ -125,9 +128,9 @@ contains
       type(interior_point_t), intent(inout) :: point
 
       point%state = interior_state%running
-      if (point%imbalance < 1.0e-9_wp .and. point%factor >= at_target*goal%target) then
+      if (point%imbalance < certain .and. point%factor >= goal%target) then
          point%state = interior_state%reached
-      else if (point%violation < 1.0e-12_wp .and. point%upper < goal%target &
+      else if (point%violation < certain .and. point%upper < goal%target &
          & .and. goal%target < no_limit) then
          point%state = interior_state%blocked
       else if (worst(point) < goal%tolerance) then

@@ -10,6 +10,9 @@ module dda_interior_state
    !> A factor beyond all others
    real(wp), parameter :: no_limit = 1.0e200_wp
 
+   !> Share of a dead load that counts as none beside it
+   real(wp), parameter :: nothing = 1.0e-14_wp
+
    !> How the iteration has ended
    type :: interior_state_enum
       !> Not yet
@@ -37,7 +40,9 @@ module dda_interior_state
       real(wp), allocatable :: live(:, :)
       !> Factor of this path that is one for the caller
       real(wp) :: size = 1.0_wp
-      !> Largest entries of both
+      !> Factors whose difference is smaller are taken for equal
+      real(wp) :: negligible = 0.0_wp
+      !> Largest entries of both, by which an imbalance is judged
       real(wp) :: largest_dead = 0.0_wp, largest_live = 0.0_wp
    end type load_path_t
 
@@ -87,6 +92,7 @@ contains
       if (.not. path%size > 0.0_wp) path%size = 1.0_wp
       path%dead = dead
       path%live = live/path%size
+      path%negligible = nothing*sum(abs(dead))
       path%largest_dead = maxval(abs(path%dead))
       path%largest_live = maxval(abs(path%live))
    end subroutine set_path

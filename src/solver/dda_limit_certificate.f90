@@ -5,6 +5,7 @@
 !> compared with forces, and spins with velocities, by half the mean length of a joint.
 module dda_limit_certificate
    use dda_joint_graph, only : add_joint_forces, joint_graph_t, joint_kind, joint_motion
+   use dda_interior_state, only : no_limit
    use dda_kinds, only : wp
    implicit none
    private
@@ -59,7 +60,7 @@ contains
       real(wp) :: power
 
       power = sum(live(1:3, :)*velocity(1:3, :))
-      factor = huge(factor)
+      factor = no_limit
       if (power > 0.0_wp) factor = -sum(dead(1:3, :)*velocity(1:3, :))/power
    end function stopping_factor
 

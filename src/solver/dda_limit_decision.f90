@@ -17,7 +17,8 @@ module dda_limit_decision
    private
 
    public :: load_decision_t, load_state
-   public :: decide_load, find_margin, unit_of_force, keep_velocities, go_to_load
+   public :: decide_load, find_margin
+   public :: go_to_load, state_at_end, unit_of_force, keep_velocities, resolution
 
    !> Whether a load can be carried
    type :: load_state_enum
@@ -144,6 +145,9 @@ contains
       start = 0.0_wp
       call add_ray_forces(rays, point%x, start)
       call set_path(-start, start + finish, path)
+      ! what lacks of balance is judged by the load in question
+      path%largest_dead = maxval(abs(finish))
+      path%largest_live = 0.0_wp
       point%s = path%size/(real(max(1, rays%n_bounded), wp)*force)*rays%bounded &
          & + (1.0_wp - rays%bounded)
       allocate (point%v(3, 0:rays%n_block), source=0.0_wp)
@@ -152,6 +156,11 @@ contains
       call find_largest_factor(rays, path, goal, springs, point)
       point%factor = point%factor/path%size
       point%upper = point%upper/path%size
+      if (at_once .and. point%factor > 1.0_wp) then
+         ! between two states in balance all are: back to the load
+         point%x = force*rays%bounded + (point%x - force*rays%bounded)/point%factor
+         point%factor = 1.0_wp
+      end if
    end subroutine go_to_load
 
    !> Mean load of a block; moments count where no forces do
@@ -181,6 +190,26 @@ contains
       velocity(3, :) = v(3, 1:)/(largest*rays%length)
    end subroutine keep_velocities
 
+   !> What the end of a path to a load at factor one proves; forces that reach it but for rounding
+   !> carry it
+   pure integer function state_at_end(point) result(state)
+      !> Where the path has ended
+      type(interior_point_t), intent(in) :: point
+
+      state = load_state%undecided
+      if (point%state == interior_state%reached) then
+         state = load_state%stands
+      else if (point%state == interior_state%blocked) then
+         state = load_state%falls
+      else if (point%state == interior_state%optimal) then
+         if (point%factor >= 1.0_wp - 2.0_wp*resolution) then
+            state = load_state%stands
+         else if (point%upper < 1.0_wp) then
+            state = load_state%falls
+         end if
+      end if
+   end function state_at_end
+
    !> The decision, and the figures that prove it
    pure subroutine conclude(graph, load, point, decision)
       !> The joints
@@ -195,19 +224,19 @@ contains
 
       call check_forces(graph, load, decision%force, imbalance, beyond_cone)
       call check_velocities(graph, load, decision%velocity, beyond_flow, power)
-      if (point%state == interior_state%reached .or. point%state == interior_state%optimal &
-         & .and. min(point%factor, point%upper) >= 1.0_wp) then
-         decision%state = load_state%stands
+      decision%state = state_at_end(point)
+      if (decision%state == load_state%falls .and. .not. power > rounding*sum( &
+         & norm2(load(1:2, :), dim=1)*norm2(decision%velocity(1:2, :), dim=1))) &
+         & decision%state = load_state%undecided
+      select case (decision%state)
+      case (load_state%stands)
          decision%margin = point%factor - 1.0_wp
          decision%imbalance = imbalance
          decision%violation = beyond_cone
-      else if ((point%state == interior_state%blocked .or. point%state == interior_state%optimal &
-         & .and. max(point%factor, point%upper) < 1.0_wp) .and. power > rounding*sum( &
-         & norm2(load(1:2, :), dim=1)*norm2(decision%velocity(1:2, :), dim=1))) then
-         decision%state = load_state%falls
+      case (load_state%falls)
          decision%margin = point%upper - 1.0_wp
          decision%violation = beyond_flow
          decision%power = power
-      end if
+      end select
    end subroutine conclude
 end module dda_limit_decision

@@ -1,8 +1,7 @@
 !> Limit analysis: the largest factor of a live load that an assembly carries beside a dead load
 !>
 !> Forces give a factor from below, a mechanism one from above; both are certificates that need no
-!> trust in the method that found them. The dead load is decided first, and the forces that carry
-!> it are where the search for the factor begins: it is in balance all the way.
+!> trust in the method that found them. The dead load is decided first.
 module dda_limit_load
    use dda_interior_point, only : find_largest_factor, start_by_springs
    use dda_interior_state, only : interior_goal_t, interior_point_t, interior_state, &
@@ -12,7 +11,8 @@ module dda_limit_load
    use dda_kinds, only : wp
    use dda_limit_certificate, only : carried_factor, check_forces, check_velocities, &
       & stopping_factor
-   use dda_limit_decision, only : go_to_load, keep_velocities, unit_of_force
+   use dda_limit_decision, only : go_to_load, keep_velocities, load_state, resolution, &
+      & state_at_end, unit_of_force
    use dda_ray_matrix, only : plan_matrix, ray_matrix_t
    implicit none
    private
@@ -60,9 +60,6 @@ module dda_limit_load
       integer :: n_factorisation = 0
    end type limit_load_t
 
-   !> Accuracy with which dead and live loads alone are decided
-   real(wp), parameter :: resolution = 1.0e-12_wp
-
 contains
 
    !> The limit load
@@ -86,7 +83,7 @@ contains
       call plan_matrix(rays, springs)
       unit = unit_of_force(dead)
       call go_to_load(rays, dead, resolution, .true., springs, point)
-      if (point%state == interior_state%blocked) then
+      if (state_at_end(point) == load_state%falls) then
          limit%state = limit_state%no_dead_equilibrium
       else
          call raise_live_load(rays, dead, live, tolerance, springs, point)
@@ -102,7 +99,7 @@ contains
       limit%n_factorisation = springs%n_factorisation
    end subroutine find_limit
 
-   !> Raise the live load from forces that carry the dead load, if there are such inside the cones
+   !> Raise the live load beside a dead load that stands
    pure subroutine raise_live_load(rays, dead, live, tolerance, springs, point)
       !> The rays
       type(joint_rays_t), intent(in) :: rays
@@ -114,8 +111,8 @@ contains
       real(wp), intent(in) :: tolerance
       !> The matrix
       type(ray_matrix_t), intent(inout) :: springs
-      !> The dead load decided in, the limit out
-      type(interior_point_t), intent(inout) :: point
+      !> The limit
+      type(interior_point_t), intent(out) :: point
       type(load_path_t) :: path
       type(interior_goal_t) :: goal
       real(wp) :: scaled_dead(3, 0:rays%n_block), scaled_live(3, 0:rays%n_block)
@@ -123,11 +120,7 @@ contains
       call scale_load(rays, dead, unit_of_force(dead), scaled_dead)
       call scale_load(rays, live, unit_of_force(dead), scaled_live)
       call set_path(scaled_dead, scaled_live, path)
-      if (point%state == interior_state%reached) then
-         point%factor = 0.0_wp
-      else
-         call start_by_springs(rays, path, springs, point)
-      end if
+      call start_by_springs(rays, path, springs, point)
       goal%tolerance = tolerance
       call find_largest_factor(rays, path, goal, springs, point)
       point%factor = point%factor/path%size
@@ -150,7 +143,7 @@ contains
       type(interior_point_t) :: alone
 
       call go_to_load(rays, live, resolution, .true., springs, alone)
-      if (alone%state /= interior_state%reached) return
+      if (state_at_end(alone) /= load_state%stands) return
       limit%state = limit_state%unbounded
       point = alone
       unit = unit_of_force(live)

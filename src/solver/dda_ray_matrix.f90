@@ -2,18 +2,18 @@
 !>
 !>    matrix = sum over rays of stiffness * arm * arm'
 !>
-!> is the matrix of a DDA step whose joints have these springs. Stiffness may spread over many
-!> decades: what rounding takes from the factor of a soft motion comes back by conjugate gradients,
-!> for which the factor is the preconditioner.
+!> is the matrix of a DDA step whose joints have these springs. Stiffness may spread over more
+!> decades than working precision has: then there is a factor with more digits.
 module dda_ray_matrix
    use dda_block_factor, only : block_factor_t, factorise, plan_factor, substitute
    use dda_block_matrix, only : block_matrix_t, set_pattern
-   use dda_joint_rays, only : add_ray_forces, joint_rays_t, n_side, ray_rates
+   use dda_joint_rays, only : joint_rays_t, n_side, ray_rates
    use dda_kinds, only : wp
+   use dda_wide_factor, only : factorise_wide, substitute_wide, wide_factor_t
    implicit none
    private
 
-   public :: ray_matrix_t, plan_matrix, set_springs, solve_springs
+   public :: ray_matrix_t, plan_matrix, set_springs, set_wide_springs, solve_springs
 
    !> The matrix, its factor, and what work on them needs
    type :: ray_matrix_t
@@ -21,24 +21,21 @@ module dda_ray_matrix
       type(block_matrix_t) :: matrix
       !> Its factor
       type(block_factor_t) :: factor
+      !> A factor with more digits, and whether it is used
+      type(wide_factor_t) :: wide
+      logical :: is_wide = .false.
+      !> Whether either factor can be used
+      logical :: usable = .false.
       !> Entry of the matrix that each joint couples, 0 for none: (n_joint)
       integer, allocatable :: entry(:)
       !> Whether the second block of a joint has the rows of its entry: (n_joint)
       logical, allocatable :: second_is_row(:)
       !> Stiffness of each ray: (n_side, n_joint)
       real(wp), allocatable :: stiffness(:, :)
-      !> Turns of conjugate gradients at most, none if zero
-      integer :: max_turn = 0
       !> Factorisations so far
       integer :: n_factorisation = 0
       !> Substitutions so far
       integer :: n_substitution = 0
-      !> Residual, its correction, direction, product: (3, 0:n_block)
-      real(wp), allocatable :: residual(:, :), corrected(:, :), direction(:, :), product(:, :)
-      !> Best solution yet: (3, 0:n_block)
-      real(wp), allocatable :: best(:, :)
-      !> Force along each ray: (n_side, n_joint)
-      real(wp), allocatable :: force(:, :)
    end type ray_matrix_t
 
 contains
@@ -69,25 +66,18 @@ contains
             & springs%matrix%pair(1, springs%entry(j)) == rays%block(2, j)
       end do
       allocate (springs%stiffness(n_side, size(rays%block, 2)))
-      allocate (springs%force(n_side, size(rays%block, 2)))
-      allocate (springs%residual(3, 0:rays%n_block), source=0.0_wp)
-      allocate (springs%corrected, springs%direction, springs%product, springs%best, &
-         & source=springs%residual)
    end subroutine plan_matrix
 
    !> Assemble the springs and factor their matrix
-   pure subroutine set_springs(rays, stiffness, lift, springs)
+   pure subroutine set_springs(rays, lift, springs)
       !> The rays
       type(joint_rays_t), intent(in) :: rays
-      !> Stiffness of each: (n_side, n_joint)
-      real(wp), intent(in) :: stiffness(:, :)
       !> Share of itself that each diagonal entry is raised by; what no spring holds gets one
       real(wp), intent(in) :: lift
-      !> The matrix; its factor may be unusable
+      !> The matrix with its stiffness; its factor may be unusable
       type(ray_matrix_t), intent(inout) :: springs
       integer :: b, k
 
-      springs%stiffness = stiffness
       call assemble(rays, springs)
       do b = 1, rays%n_block
          do k = 1, 3
@@ -96,9 +86,24 @@ contains
             end associate
          end do
       end do
+      springs%is_wide = .false.
       call factorise(springs%matrix, springs%factor)
+      springs%usable = springs%factor%usable
       springs%n_factorisation = springs%n_factorisation + 1
    end subroutine set_springs
+
+   !> Assemble and factor the same springs with more digits
+   pure subroutine set_wide_springs(rays, springs)
+      !> The rays
+      type(joint_rays_t), intent(in) :: rays
+      !> The matrix with its stiffness
+      type(ray_matrix_t), intent(inout) :: springs
+
+      call factorise_wide(rays, springs%stiffness, springs%factor, springs%wide)
+      springs%is_wide = springs%wide%usable
+      springs%usable = springs%usable .or. springs%is_wide
+      springs%n_factorisation = springs%n_factorisation + 1
+   end subroutine set_wide_springs
 
    !> Sum of all springs
    pure subroutine assemble(rays, springs)
@@ -151,7 +156,7 @@ contains
    end subroutine add_product
 
    !> Motion of the blocks by loads
-   pure subroutine solve_springs(rays, springs, load, motion)
+   pure subroutine solve_springs(rays, springs, load, motion, rate)
       !> The rays
       type(joint_rays_t), intent(in) :: rays
       !> The matrix with a usable factor
@@ -160,73 +165,17 @@ contains
       real(wp), intent(in) :: load(:, 0:)
       !> Motion, none of what cannot move: (3, 0:n_block)
       real(wp), intent(out) :: motion(:, 0:)
+      !> Rates at which it opens the rays: (n_side, n_joint)
+      real(wp), intent(out), contiguous :: rate(:, :)
 
       motion = load
       motion(:, 0) = 0.0_wp
-      call substitute(springs%factor, motion(:, 1:))
       springs%n_substitution = springs%n_substitution + 1
-      if (springs%max_turn > 0) call correct_by_gradients(rays, load, springs, motion)
+      if (springs%is_wide) then
+         call substitute_wide(rays, springs%factor, springs%wide, motion(:, 1:), rate)
+      else
+         call substitute(springs%factor, motion(:, 1:))
+         call ray_rates(rays, motion, rate)
+      end if
    end subroutine solve_springs
-
-   !> Conjugate gradients from the motion that the factor has given; the motion with the smallest
-   !> residual is kept
-   pure subroutine correct_by_gradients(rays, load, springs, motion)
-      !> The rays
-      type(joint_rays_t), intent(in) :: rays
-      !> Loads: (3, 0:n_block)
-      real(wp), intent(in) :: load(:, 0:)
-      !> The matrix with a usable factor
-      type(ray_matrix_t), intent(inout) :: springs
-      !> Motion: (3, 0:n_block)
-      real(wp), intent(inout) :: motion(:, 0:)
-      real(wp) :: largest, least, length, rz, rz_before, pq
-      integer :: turn
-
-      call push_back(rays, springs, motion, springs%product)
-      springs%residual = load - springs%product
-      springs%residual(:, 0) = 0.0_wp
-      least = huge(least)
-      rz_before = 1.0_wp
-      do turn = 0, springs%max_turn
-         largest = maxval(abs(springs%residual))
-         if (largest < least) then
-            least = largest
-            springs%best = motion
-         end if
-         if (largest < 1.0e-11_wp*maxval(abs(load)) .or. largest > 1.0e3_wp*least) exit
-         if (turn == springs%max_turn) exit
-         springs%corrected = springs%residual
-         call substitute(springs%factor, springs%corrected(:, 1:))
-         springs%n_substitution = springs%n_substitution + 1
-         rz = sum(springs%residual*springs%corrected)
-         if (.not. rz > 0.0_wp) exit
-         if (turn == 0) springs%direction = 0.0_wp
-         springs%direction = springs%corrected + (rz/rz_before)*springs%direction
-         rz_before = rz
-         call push_back(rays, springs, springs%direction, springs%product)
-         pq = sum(springs%direction*springs%product)
-         if (.not. pq > 0.0_wp) exit
-         length = rz/pq
-         motion = motion + length*springs%direction
-         springs%residual = springs%residual - length*springs%product
-      end do
-      motion = springs%best
-   end subroutine correct_by_gradients
-
-   !> Force with which the springs answer a motion
-   pure subroutine push_back(rays, springs, motion, force)
-      !> The rays
-      type(joint_rays_t), intent(in) :: rays
-      !> The matrix; its work space is used
-      type(ray_matrix_t), intent(inout) :: springs
-      !> Motion: (3, 0:n_block)
-      real(wp), intent(in) :: motion(:, 0:)
-      !> Force: (3, 0:n_block)
-      real(wp), intent(out) :: force(:, 0:)
-
-      call ray_rates(rays, motion, springs%force)
-      springs%force = springs%stiffness*springs%force
-      force = 0.0_wp
-      call add_ray_forces(rays, springs%force, force)
-   end subroutine push_back
 end module dda_ray_matrix
