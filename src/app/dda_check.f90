@@ -15,6 +15,9 @@ module dda_check
    use dda_process, only : error_is_terminal, exit_status
    use dda_progress, only : end_watch, terminal_watch_t
    use dda_read_deck, only : read_deck
+   use dda_result_tables, only : name_tables, result_tables_t
+   use dda_run_cases, only : deck_stem
+   use dda_run_record, only : run_record
    use dda_scene, only : scene_t
    use dda_scene_plan, only : plan_scene, scene_plan_t, strain_reason
    use dda_screen, only : print_line, screen_t
@@ -36,9 +39,11 @@ contains
       type(scene_t) :: scene
       type(terminal_watch_t) :: watch
       type(error_t), allocatable :: error
+      character(len=:), allocatable :: record
       integer :: i
 
       status = exit_status%success
+      record = ""
       watch%shown = error_is_terminal() .and. .not. command%quiet
       do i = 1, size(command%name)
          call read_deck(name_of(command, i), command%setting, deck, error, watch)
@@ -47,12 +52,36 @@ contains
          if (allocated(error)) then
             write (error_unit, "(a)") error_line(error)
             status = exit_status%bad_input
-         else if (.not. command%quiet) then
+            cycle
+         end if
+         record = record_text(deck, deck_stem(name_of(command, i)))
+         if (.not. command%quiet) then
             call print_warnings(deck%warnings)
             call print_plan(command%screen, name_of(command, i), deck, scene)
          end if
+         if (command%record) call print_line(command%screen, record)
       end do
    end subroutine check_decks
+
+   !> The tables that a run would write, each with its first line, and its deck.record
+   function record_text(deck, stem) result(text)
+      !> The deck, checked
+      type(deck_t), intent(in) :: deck
+      !> Its name without folder and ending
+      character(len=*), intent(in) :: stem
+      !> Lines parted by line ends
+      character(len=:), allocatable :: text
+      type(result_tables_t) :: tables
+      integer :: i
+
+      call name_tables(deck, "", tables)
+      text = "tables:"//new_line("a")
+      do i = 1, size(tables%at)
+         if (tables%at(i)%wanted) text = text//"   "//tables%at(i)%file(2:)//" " &
+            & //tables%at(i)%header//new_line("a")
+      end do
+      text = text//"deck.record:"//new_line("a")//run_record(deck, stem)
+   end function record_text
 
    !> Print what a deck's cases are made of
    subroutine print_plan(screen, name, deck, scene)

@@ -17,7 +17,7 @@ module dda_command_line
       & "export", "help", "--help", "--version"]
    !> Options of those that read files
    character(len=*), parameter :: options(*) = [character(len=8) :: "--out", "--jobs", "--set", &
-      & "--cases", "--resume", "--quiet", "--help"]
+      & "--cases", "--resume", "--record", "--quiet", "--help"]
 
    !> What the user asked for
    type :: command_t
@@ -39,6 +39,8 @@ module dda_command_line
       logical :: quiet = .false.
       !> Skip cases that an earlier run has finished
       logical :: resume = .false.
+      !> Print what deck.record would hold
+      logical :: record = .false.
       !> Where lines for the user go
       type(screen_t) :: screen
    end type command_t
@@ -78,7 +80,7 @@ contains
       !> Allocated if an argument is not understood
       type(error_t), allocatable, intent(out) :: error
       character(len=longest), allocatable :: name(:), setting(:)
-      logical :: takes_decks
+      logical :: takes_decks, takes_options
       integer, allocatable :: name_length(:)
       integer :: i, names, settings
 
@@ -88,24 +90,27 @@ contains
       settings = 0
       takes_decks = .false.
       if (size(argument) > 0) call take_subcommand(argument(1), command, takes_decks, error)
+      takes_options = takes_decks
       i = 2
       do while (i <= size(argument) .and. .not. allocated(error))
-         if (takes_decks) call check_option(argument(i), command, error)
+         if (takes_options) call check_option(argument(i), command, error)
          if (allocated(error)) then
             error%line = i
             exit
          end if
-         if (takes_decks .and. argument(i) == "--set" .and. i < size(argument)) then
+         if (takes_options .and. argument(i) == "--") then
+            takes_options = .false.
+         else if (takes_options .and. argument(i) == "--set" .and. i < size(argument)) then
             settings = settings + 1
             i = i + 1
             setting(settings) = argument(i)
-         else if (takes_decks .and. (argument(i) == "--help" .or. argument(i) == "-h")) then
+         else if (takes_options .and. (argument(i) == "--help" .or. argument(i) == "-h")) then
             names = 1
             name(1) = command%verb
             name_length(1) = len_trim(command%verb)
             command%verb = "help"
             exit
-         else if (takes_decks .and. argument(i)(1:1) == "-") then
+         else if (takes_options .and. argument(i)(1:1) == "-") then
             call take_option(argument, length, i, command, error)
          else
             names = names + 1
@@ -121,13 +126,23 @@ contains
       allocate (command%name, source=name(:names))
       allocate (command%name_length, source=name_length(:names))
       allocate (command%setting, source=setting(:settings))
-      if (takes_decks .and. command%verb /= "help" .and. names == 0 .and. .not. allocated(error)) &
-         & call fatal_error(error, "dda "//trim(command%verb)//" wants the name of a " &
-         & //trim(merge("file of lines", "deck         ", command%verb == "cut"))//", found " &
-         & //"none; 'dda help "//trim(command%verb)//"' says more", line=1)
+      if (takes_decks .and. .not. allocated(error)) call check_names(command, error)
       if (command%verb == "cut" .and. .not. allocated(error)) call check_cut(command, error)
       if (allocated(error)) error%file = "dda"
    end subroutine parse_command
+
+   !> Whether there is anything to read
+   pure subroutine check_names(command, error)
+      !> What the user asked for
+      type(command_t), intent(in) :: command
+      !> Allocated if there is not
+      type(error_t), allocatable, intent(out) :: error
+
+      if (command%verb == "help" .or. size(command%name) > 0) return
+      call fatal_error(error, "dda "//trim(command%verb)//" wants the name of a " &
+         & //trim(merge("file of lines", "deck         ", command%verb == "cut"))//", found " &
+         & //"none; 'dda help "//trim(command%verb)//"' says more", line=1)
+   end subroutine check_names
 
    !> Whether dda cut can do what is asked
    pure subroutine check_cut(command, error)
@@ -186,18 +201,19 @@ contains
       character(len=:), allocatable :: own
 
       select case (command%verb)
+      case ("run")
+         own = "--out --jobs --set --cases --resume --quiet --help"
       case ("check")
-         own = "--set --quiet --help"
+         own = "--set --record --quiet --help"
       case ("cut")
          own = "--out --quiet --help"
-      case ("export")
-         own = "--out --set --quiet --help"
       case default
-         return
+         own = "--out --set --quiet --help"
       end select
       if (all(options /= option) .or. index(own, trim(option)) > 0) return
       call fatal_error(error, "wanted an option of dda "//trim(command%verb)//", found "// &
-         & trim(option)//", which dda run takes; leave it away")
+         & trim(option)//", which dda "//trim(merge("check", "run  ", option == "--record"))// &
+         & " takes; leave it away")
    end subroutine check_option
 
    !> Understand one option and its value
@@ -220,6 +236,9 @@ contains
          return
       case ("--resume")
          command%resume = .true.
+         return
+      case ("--record")
+         command%record = .true.
          return
       case ("--out", "--set", "--jobs", "--cases")
          if (i == size(argument)) then

@@ -62,6 +62,7 @@ module dda_help
       & "               (without it: compute all anew)", &
       & "   --quiet     print nothing but errors (without it: a line a case of up to 100,", &
       & "               the undecided ones of more, and progress where a terminal shows it)", &
+      & "   --          what follows are names of decks, even if they begin with -", &
       & "   --help, -h  this page", &
       & "", &
       & "Writes results.csv (a row a case), joints.csv (a row a joint), blocks.csv (a row a", &
@@ -72,11 +73,14 @@ module dda_help
 
    !> dda help check
    character(len=*), parameter :: on_check(*) = [character(len=96) :: &
-      & "dda check DECK [DECK ...] [--set group%key=value ...] [--quiet]", &
+      & "dda check DECK [DECK ...] [--set group%key=value ...] [--record] [--quiet]", &
       & "", &
       & "   --set group%key=value   overrides the deck; commas for lists; may be repeated", &
       & "               (without it: the deck as it is)", &
+      & "   --record    print the tables of a run with their columns, and its deck.record", &
+      & "               (without it: neither)", &
       & "   --quiet     print nothing but errors (without it: the plan of each deck)", &
+      & "   --          what follows are names of decks, even if they begin with -", &
       & "   --help, -h  this page", &
       & "", &
       & "Reads and checks the decks and prints what would be computed, and why. Writes nothing.", &
@@ -89,6 +93,7 @@ module dda_help
       & "   --out FILE  where the blocks of one LINES.geo go; ends in .vtu or .csv", &
       & "               (without it: nothing is written)", &
       & "   --quiet     print nothing but errors (without it: counts, areas, what was dropped)", &
+      & "   --          what follows are names of files, even if they begin with -", &
       & "   --help, -h  this page", &
       & "", &
       & "Reads geometry files of the Limerick line, plain or DDAML, cuts the lines into blocks,", &
@@ -103,6 +108,7 @@ module dda_help
       & "   --set group%key=value   overrides the deck; commas for lists; may be repeated", &
       & "               (without it: the deck as it is)", &
       & "   --quiet     print nothing but errors (without it: names, and what is lost)", &
+      & "   --          what follows are names of decks, even if they begin with -", &
       & "   --help, -h  this page", &
       & "", &
       & "Writes the arch of each case in the conventions of the Limerick line: NAME.geo and", &

@@ -5,18 +5,17 @@ module dda_run
    use dda_command_line, only : command_t, name_of
    use dda_cut, only : print_warnings
    use dda_deck, only : deck_t
-   use dda_deck_record, only : deck_record
    use dda_deck_sweep, only : n_cases
    use dda_deck_scene, only : check_lines, check_scene
    use dda_error, only : error_line, error_t, fatal_error
    use dda_folder_lock, only : lock_folder
-   use dda_help, only : version
    use dda_process, only : error_is_terminal, exit_status, make_folder, worst_status
    use dda_progress, only : clear_progress, end_watch, progress_t, terminal_watch_t
    use dda_read_deck, only : read_deck
    use dda_result_tables, only : close_tables, name_tables, open_tables, result_tables_t
    use dda_resume, only : find_finished, finished_t, reopen_tables
    use dda_run_cases, only : deck_stem, run_cases
+   use dda_run_record, only : run_record
    use dda_scene, only : scene_t
    use dda_summary, only : print_resumed, print_total
    use dda_text, only : to_text
@@ -191,7 +190,7 @@ contains
       call make_folder(tables%folder)
       call lock_folder(tables%folder, command%quiet, error)
       if (allocated(error)) return
-      record = deck_record(deck, "dda "//version//" on "//deck_stem(name))
+      record = run_record(deck, deck_stem(name))
       if (command%resume) then
          call find_finished(tables, record, total, finished)
          if (.not. command%quiet) &

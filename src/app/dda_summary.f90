@@ -66,7 +66,7 @@ contains
             & //to_text(total)//" cases are there already")
       else
          call print_line(screen, name//": nothing to resume, there are no results of this very "// &
-            & "deck with these settings; all cases are computed")
+            & "deck with these settings by this build of dda; all cases are computed")
       end if
    end subroutine print_resumed
 

@@ -15,7 +15,7 @@ module dda_deck
    public :: deck_t, deck_value_t, deck_sweep_t, deck_place_t, parameter_t, new_deck
    public :: real_of, integer_of, word_of, text_of, flag_of, list_of
    public :: geometry_of, is_given, has_group, keeps_velocities, line_of, place_of, deck_error
-   public :: file_beside
+   public :: add_file_mark, file_beside
 
    !> Where a value was written
    type :: deck_place_t
@@ -79,12 +79,11 @@ module dda_deck
       type(cut_model_t), allocatable :: cut
       !> What the file that scene%analysis names says; unallocated if none is named
       type(limerick_analysis_t), allocatable :: analysis
-      !> Length and checksums of those files, for a record of the deck; unallocated without files
-      character(len=:), allocatable :: file_mark
+      !> Lengths and check sums of all files that the deck names, each with a blank before it, for a
+      !> record of the deck; unallocated without files
+      character(len=:), allocatable :: file_marks
       !> What those files hold that is not read
       type(warnings_t) :: warnings
-      !> Text of the file of blocks; allocated for kind = 'blocks' alone
-      character(len=:), allocatable :: geometry_text
       !> The blocks of that file
       type(block_plan_t) :: plan
    end type deck_t
@@ -328,6 +327,17 @@ contains
          call fatal_error(error, message, file=deck%file, line=max(place%line, 1))
       end if
    end subroutine deck_error
+
+   !> Remember what a file that a deck names holds
+   pure subroutine add_file_mark(mark, deck)
+      !> Mark of the file
+      character(len=*), intent(in) :: mark
+      !> The deck
+      type(deck_t), intent(inout) :: deck
+
+      if (.not. allocated(deck%file_marks)) deck%file_marks = ""
+      deck%file_marks = deck%file_marks//" "//mark
+   end subroutine add_file_mark
 
    !> Name of a file that a deck names: beside the deck unless it begins with a slash
    pure function file_beside(deck, name) result(path)

@@ -1,14 +1,12 @@
 !> The files that a deck of lines names: read, cut and checked with the deck
 module dda_deck_lines
-   use, intrinsic :: iso_fortran_env, only : int64
    use dda_cutting, only : cut_blocks
-   use dda_deck, only : deck_error, deck_t, file_beside, is_given, text_of, word_of
+   use dda_deck, only : add_file_mark, deck_error, deck_t, file_beside, is_given, text_of, word_of
    use dda_deck_keys, only : key_index
    use dda_error, only : error_t
+   use dda_file_mark, only : file_mark
    use dda_line_model, only : line_model_t
    use dda_read_limerick, only : check_materials, read_analysis, read_geometry
-   use dda_text, only : to_text
-   use dda_text_file, only : read_text_file
    implicit none
    private
 
@@ -32,7 +30,7 @@ contains
          call name_key(deck, "geometry", error)
          return
       end if
-      call mark_file(deck, file)
+      call add_file_mark(file_mark(file), deck)
       allocate (deck%cut)
       call cut_blocks(model, deck%cut, error)
       if (allocated(error) .or. .not. is_given(deck, "scene", "analysis")) return
@@ -43,33 +41,9 @@ contains
          call name_key(deck, "analysis", error)
          return
       end if
-      call mark_file(deck, file)
+      call add_file_mark(file_mark(file), deck)
       call check_materials(model, deck%analysis, deck%warnings, error)
    end subroutine read_lines
-
-   !> Remember what a file holds
-   subroutine mark_file(deck, file)
-      !> The deck
-      type(deck_t), intent(inout) :: deck
-      !> Name of the file
-      character(len=*), intent(in) :: file
-      ! two polynomials modulo primes below 2**31
-      integer(int64), parameter :: base(2) = [257_int64, 263_int64]
-      integer(int64), parameter :: prime(2) = [2147483629_int64, 2147483587_int64]
-      character(len=:), allocatable :: text
-      type(error_t), allocatable :: error
-      integer(int64) :: checksum(2)
-      integer :: i
-
-      call read_text_file(file, text, error)
-      checksum = 0
-      do i = 1, len(text)
-         checksum = modulo(checksum*base + ichar(text(i:i)), prime)
-      end do
-      if (.not. allocated(deck%file_mark)) deck%file_mark = ""
-      deck%file_mark = deck%file_mark//" "//to_text(len(text))//" "//to_text(int(checksum(1))) &
-         & //" "//to_text(int(checksum(2)))
-   end subroutine mark_file
 
    !> An error without a line speaks of a file that cannot be read: the line of the deck helps more
    pure subroutine name_key(deck, key, error)

@@ -38,8 +38,7 @@ contains
       do i = 1, size(deck%sweep)
          call add_sweep(lines, deck%sweep(i))
       end do
-      if (allocated(deck%file_mark)) call add_line(lines, "files"//deck%file_mark)
-      if (allocated(deck%geometry_text)) call add_line(lines, deck%geometry_text)
+      if (allocated(deck%file_marks)) call add_line(lines, "files"//deck%file_marks)
       record = lines_of(lines)
    end function deck_record
 

@@ -7,14 +7,15 @@ module dda_read_deck
    use dda_deck_words, only : full_name, near_group, near_key
    use dda_deck_token, only : deck_scan_t, token_kind, token_text, shown
    use dda_deck_scan, only : scan_deck, scan_values
-   use dda_deck, only : deck_t, deck_place_t, parameter_t, new_deck, deck_error, file_beside, &
-      & text_of, word_of
+   use dda_deck, only : add_file_mark, deck_t, deck_place_t, parameter_t, new_deck, deck_error, &
+      & file_beside, is_given, text_of, word_of
    use dda_deck_parameter, only : split_name
    use dda_deck_set, only : put_text
    use dda_deck_entry, only : read_values
    use dda_deck_sweep, only : add_sweep
    use dda_deck_check, only : check_deck
    use dda_deck_lines, only : read_lines
+   use dda_file_mark, only : file_mark, text_mark
    use dda_read_blocks, only : parse_blocks
    use dda_watch, only : watch_t
    implicit none
@@ -42,12 +43,14 @@ contains
       if (.not. allocated(error)) call parse_deck(text, file, settings, deck, error)
       if (.not. allocated(error)) call read_lines(deck, error)
       if (allocated(error)) return
+      if (is_given(deck, "analysis", "restart")) call add_file_mark(file_mark( &
+         & file_beside(deck, text_of(deck, "analysis", "restart"))), deck)
       if (word_of(deck, "scene", "kind") /= "blocks") return
       geometry = geometry_file(deck)
       call read_text_file(geometry, text, error)
       if (allocated(error)) return
       call parse_blocks(text, geometry, deck%plan, deck%warnings, error, watch)
-      call move_alloc(text, deck%geometry_text)
+      call add_file_mark(text_mark(text), deck)
    end subroutine read_deck
 
    !> Name of the file of blocks: beside the deck unless it begins with a slash

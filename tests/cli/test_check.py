@@ -6,6 +6,7 @@ from pathlib import Path
 
 import pytest
 from dda_command import run_dda
+from limerick_files import INPUT
 
 PAPER = Path(__file__).parents[2] / "input" / "paper"
 
@@ -122,3 +123,36 @@ def test_decks_of_the_paper_are_good(tmp_path: Path, table: str, arches: int) ->
     words = done.stdout.split()
     assert int(words[words.index("cases") + 1]) % arches == 0
     assert not list(tmp_path.iterdir())
+
+
+RECORDED = {
+    "arch": "&arch voussoirs = 4 /\n&sweep parameter = 'radius', values = 1, 2 /\n",
+    "blocks": "&scene kind = 'blocks', geometry = 'x.blocks', title = 'Ein Stein' /\n"
+              "&analysis geometry = 'current' / &output frames = 2 /\n",
+    "lines": "&scene kind = 'lines', geometry = 'x.geo' / &analysis geometry = 'current' /\n",
+}
+
+
+@pytest.mark.parametrize("kind", RECORDED)
+def test_record_is_what_a_run_writes_down(tmp_path: Path, kind: str) -> None:
+    """Tables with their first lines, and deck.record to the last byte."""
+    (tmp_path / "x.blocks").write_text(
+        "block fixed\n0 0\n1 0\n1 1\n0 1\nblock\n0 1\n1 1\n1 2\n0 2\nmeasure 0.5 2\n")
+    (tmp_path / "x.geo").write_text((INPUT / "terrace.geo").read_text())
+    (tmp_path / "d.nml").write_text(RECORDED[kind])
+    setting = ["--set", "joint%friction_deg=35"]
+    shown = run_dda("check", "d.nml", "--record", *setting, cwd=tmp_path)
+    assert shown.returncode == 0, shown.stderr
+    only = run_dda("check", "d.nml", "--record", "--quiet", *setting, cwd=tmp_path).stdout
+    assert shown.stdout == run_dda("check", "d.nml", *setting, cwd=tmp_path).stdout + only
+    assert run_dda("run", "d.nml", "--quiet", *setting, cwd=tmp_path).returncode in (0, 3)
+    tables, _, record = only.partition("deck.record:\n")
+    assert record == (tmp_path / "d" / "deck.record").read_text()
+    assert "joint%friction_deg\n  35\n" in record
+    words = [line.split(maxsplit=1) for line in tables.splitlines()[1:]]
+    assert tables.startswith("tables:\n")
+    assert {name for name, _ in words} == {
+        path.name for path in (tmp_path / "d").iterdir() if path.suffix in (".csv", ".txt")
+    }
+    for name, header in words:
+        assert (tmp_path / "d" / name).read_text().splitlines()[0] == header

@@ -116,6 +116,12 @@ def check_set(folder: Path) -> None:
     assert "7 that move" in done.stdout
 
 
+def check_record(folder: Path) -> None:
+    done = run_dda("check", "deck.nml", "--record", cwd=folder)
+    assert "\ndeck.record:\ndda " in done.stdout
+    assert "deck.record:" not in run_dda("check", "deck.nml", cwd=folder).stdout
+
+
 def check_quiet(folder: Path) -> None:
     done = run_dda("check", "deck.nml", "--quiet", cwd=folder)
     assert (done.returncode, done.stdout, done.stderr) == (0, "", "")
@@ -162,6 +168,7 @@ PROOFS: dict[tuple[str, str], Callable[[Path], None]] = {
     ("run", "--resume"): run_resume,
     ("run", "--quiet"): run_quiet,
     ("check", "--set"): check_set,
+    ("check", "--record"): check_record,
     ("check", "--quiet"): check_quiet,
     ("cut", "--out"): cut_out,
     ("cut", "--quiet"): cut_quiet,

@@ -187,3 +187,14 @@ def test_an_earlier_file_stays_where_a_new_one_cannot_be_written(tmp_path: Path)
     (tmp_path / "first" / "case_1.restart.part").mkdir()
     assert run(tmp_path, "first", "steps = 9").returncode == 4
     assert (tmp_path / "first" / "case_1.restart").read_bytes() == before
+
+
+def test_resume_notices_that_the_restart_file_has_changed(tmp_path: Path) -> None:
+    assert run(tmp_path, "first", "steps = 5").returncode == 0
+    assert go_on(tmp_path).returncode == 0
+    words = ["run", "rest.nml", "--resume"]
+    assert "1 of 1 cases are there already" in run_dda(*words, cwd=tmp_path).stdout
+    before = rows(tmp_path / "rest", "points.csv")
+    change(tmp_path, lambda whole, number: number.__setitem__(34, 2.0 * number[34]))
+    assert "nothing to resume" in run_dda(*words, cwd=tmp_path).stdout
+    assert rows(tmp_path / "rest", "points.csv") != before

@@ -5,6 +5,7 @@ from __future__ import annotations
 import csv
 import os
 import random
+import re
 import signal
 import subprocess
 import time
@@ -208,6 +209,16 @@ def test_changed_set_is_computed_anew(
     assert "all cases are computed" in done.stdout
     with (out / "results.csv").open(newline="") as lines:
         assert {row["friction_deg"] for row in csv.DictReader(lines)} == {second or "50"}
+
+
+def test_results_of_another_build_are_computed_anew(tmp_path: Path) -> None:
+    out = write_deck(tmp_path)
+    run(tmp_path)
+    record = (out / "deck.record").read_text()
+    (out / "deck.record").write_text(re.sub("build [0-9a-f]{12} on", "build 0123456789ab on", record))
+    done = run(tmp_path, "--resume")
+    assert "by this build of dda; all cases are computed" in done.stdout
+    assert (out / "deck.record").read_text() == record
 
 
 @pytest.mark.parametrize(

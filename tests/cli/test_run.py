@@ -448,3 +448,15 @@ def test_rows_survive_a_kill(tmp_path: Path) -> None:
     assert 20 < len(rows) < 50000
     assert [int(row["case"]) for row in rows] == list(range(1, len(rows) + 1))
     assert all(row["verdict"] == "stable" and row["seconds"] for row in rows)
+
+
+@pytest.mark.parametrize("name", ["-dash.nml", "--quiet", "--", "-"])
+def test_names_that_begin_with_a_dash_follow_two_dashes(tmp_path: Path, name: str) -> None:
+    (tmp_path / name).write_text(STABLE)
+    for verb in ("check", "export"):
+        assert run_dda(verb, "--", name, cwd=tmp_path).returncode == 0
+    done = run_dda("run", "--out", "out", "--", name, cwd=tmp_path)
+    assert done.returncode == 0, done.stderr
+    assert [row["verdict"] for row in rows_of(tmp_path / "out")] == ["stable"]
+    assert run_dda("run", "--out", "out", f"./{name}", cwd=tmp_path).returncode == 0
+    assert run_dda("run", "--out", "out", "--", "./" + name, "--quiet", cwd=tmp_path).returncode == 2
