@@ -27,6 +27,7 @@ TABLES = (
     "frame_joints.csv",
     "points.csv",
     "energy.csv",
+    "sizes.record",
     "results.csv",
 )
 
@@ -90,7 +91,7 @@ def merge_table(name: str, attempts: list[Path], owner: dict[int, Path], out: Pa
         for case, start, stop in slices_of(source)
         if owner.get(case) == source.parent
     ]
-    if name in ("results.csv", "log.txt"):  # a row a case, however often it was written
+    if name in ("results.csv", "log.txt", "sizes.record"):  # a row a case, however often it was written
         places = list({place[0]: place for place in reversed(places)}.values())
     places.sort()
 

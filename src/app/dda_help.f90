@@ -66,9 +66,10 @@ module dda_help
       & "   --help, -h  this page", &
       & "", &
       & "Writes results.csv (a row a case), joints.csv (a row a joint), blocks.csv (a row a", &
-      & "corner), log.txt, deck.record, by which --resume knows the deck again, disk.record, by", &
-      & "which it knows after a loss of power which rows to trust, and run.lock, which is empty", &
-      & "and locked while a run writes there: a second one ends with 4.", &
+      & "corner), log.txt, and what --resume needs: deck.record (what was asked for),", &
+      & "sizes.record (the bytes of each case) and disk.record (the rows that a loss of power", &
+      & "leaves); and run.lock, which is empty and locked while a run writes there: a second", &
+      & "one ends with 4.", &
       & "'dda help' lists the exit statuses, 'dda help keys' what a deck may say."]
 
    !> dda help check

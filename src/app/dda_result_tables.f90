@@ -5,6 +5,7 @@ module dda_result_tables
    use dda_deck_sweep, only : n_cases, swept_names, swept_texts
    use dda_disk_record, only : write_disk_record
    use dda_error, only : error_t
+   use dda_kinds, only : wp
    use dda_table_file, only : append_line, close_table, length_of, open_table, remove_file, &
       & sync_table, table_file_t
    use dda_text, only : to_text
@@ -19,7 +20,7 @@ module dda_result_tables
 
    public :: result_tables_t, result_table_t, table, table_enum
    public :: name_tables, open_tables, close_tables, write_case, swept_fields
-   public :: sync_tables, sync_when_due
+   public :: common_length, sync_tables, sync_when_due
 
    !> Places of the tables in result_tables_t
    type :: table_enum
@@ -39,6 +40,8 @@ module dda_result_tables
       integer :: energy = 7
       !> A row a corner of a block
       integer :: blocks = 8
+      !> A row a case: its bytes in all tables but this one and results.csv
+      integer :: sizes = 9
    end type table_enum
 
    !> The places by name
@@ -61,7 +64,9 @@ module dda_result_tables
       !> Name of the folder
       character(len=:), allocatable :: folder
       !> The tables, by their places
-      type(result_table_t) :: at(8)
+      type(result_table_t) :: at(9)
+      !> Bytes of all tables but results.csv and the sizes after the last case
+      integer(int64) :: length = 0
       !> File that holds what was asked for
       character(len=:), allocatable :: record_file
       !> File that holds how much of results.csv is on the disk
@@ -110,6 +115,7 @@ contains
          & flag_of(deck, "output", "condition")))
       call name_table(tables%at(table%joints), "/joints.csv", joints_header())
       call name_table(tables%at(table%log), "/log.txt", "case verdict remark")
+      call name_table(tables%at(table%sizes), "/sizes.record", "case,bytes")
       call name_table(tables%at(table%frames), "/frames.csv", frames_header())
       call name_table(tables%at(table%frame_joints), "/frame_joints.csv", frame_joints_header())
       call name_table(tables%at(table%points), "/points.csv", points_header())
@@ -167,6 +173,7 @@ contains
          end associate
          if (allocated(error)) return
       end do
+      tables%length = common_length(tables)
       call write_disk_record(tables%disk_file, 0_int64, error)
       if (.not. allocated(error)) call write_record(tables, record, error)
       call system_clock(now, rate)
@@ -251,10 +258,24 @@ contains
       end associate
    end function swept_fields
 
-   !> Write the rows of one case: that of results.csv last, so that a case with a row is whole
+   !> Bytes of all tables but results.csv and the sizes
+   integer(int64) function common_length(tables)
+      !> The tables, open
+      type(result_tables_t), intent(in) :: tables
+      integer :: i
+
+      common_length = 0
+      do i = 1, size(tables%at)
+         if (i /= table%results .and. i /= table%sizes) &
+            & common_length = common_length + length_of(tables%at(i)%open)
+      end do
+   end function common_length
+
+   !> Write the rows of one case, of which pictures and points are written already: how many bytes
+   !> they are, and last that of results.csv, so that a case with a row is whole
    subroutine write_case(tables, row, joint_row, blocks, remark, error)
       !> The tables
-      type(result_tables_t), intent(in) :: tables
+      type(result_tables_t), intent(inout) :: tables
       !> Row of the case
       type(result_row_t), intent(in) :: row
       !> Rows of its joints
@@ -266,9 +287,10 @@ contains
       !> Allocated if they cannot be written
       type(error_t), allocatable, intent(inout) :: error
       type(growing_text_t) :: lines
+      integer(int64) :: length
       integer :: j
 
-      if (tables%at(table%joints)%wanted .and. size(joint_row) > 0) then
+      if (tables%at(table%joints)%wanted) then
          do j = 1, size(joint_row)
             call add_line(lines, joint_line(joint_row(j)))
          end do
@@ -281,6 +303,11 @@ contains
       end if
       call append_line(tables%at(table%log)%open, to_text(row%number)//" " &
          & //trim(trim(row%verdict)//" "//remark), error)
+      if (allocated(error)) return
+      length = common_length(tables)
+      call append_line(tables%at(table%sizes)%open, to_text(row%number)//"," &
+         & //to_text(real(length - tables%length, wp)), error)
+      tables%length = length
       if (allocated(error)) return
       call append_line(tables%at(table%results)%open, results_line(row), error)
    end subroutine write_case

@@ -1,13 +1,15 @@
 !> dda run --resume: what an earlier run of the same deck has finished
 !>
-!> A case is finished where its row in results.csv is whole: that row is written last. Everything
-!> else of that run, rows cut off by a kill among them, is left out of the tables.
+!> A case is finished where its row in results.csv is whole, for that row is written last, and where
+!> its rows in all other tables have the bytes that sizes.record tells. Everything else of that run,
+!> rows cut off by a kill among them, is left out of the tables.
 module dda_resume
    use, intrinsic :: iso_fortran_env, only : int64
    use dda_disk_record, only : trusted_length
    use dda_error, only : error_t
    use dda_kinds, only : wp
-   use dda_result_tables, only : result_table_t, result_tables_t, sync_tables, table
+   use dda_result_tables, only : common_length, result_table_t, result_tables_t, sync_tables, &
+      & table
    use dda_table_file, only : keep_line, open_part, settle_part
    use dda_table_lines, only : close_lines, field, n_fields, next_line, open_lines, table_lines_t
    use dda_text, only : read_integer, read_number
@@ -53,45 +55,99 @@ contains
       type(finished_t), intent(out) :: finished
       character(len=:), allocatable :: earlier
       type(error_t), allocatable :: none_left
-      integer, allocatable :: joints(:)
+      logical, allocatable :: whole(:)
 
       allocate (finished%case(total), source=.false.)
       call read_text_file(tables%record_file, earlier, none_left)
       if (.not. allocated(none_left)) finished%same_deck = earlier == record//new_line("a")
       if (.not. finished%same_deck) return
-      allocate (joints(total), source=1)
-      if (tables%at(table%joints)%wanted) call count_joints(tables%at(table%joints), joints)
-      call read_results(tables%at(table%results), trusted_length(tables%disk_file), joints, &
+      allocate (whole(total))
+      call compare_sizes(tables, whole)
+      call read_results(tables%at(table%results), trusted_length(tables%disk_file), whole, &
          & finished)
    end subroutine find_finished
 
-   !> Read which cases have a whole row in results.csv, and their joints in joints.csv
-   subroutine read_results(this, length, joints, finished)
+   !> Whether each case has the bytes that were written down of it in the tables beside results.csv
+   subroutine compare_sizes(tables, whole)
+      !> The tables, named
+      type(result_tables_t), intent(in) :: tables
+      !> Whether it has: (n)
+      logical, intent(out) :: whole(:)
+      type(table_lines_t) :: lines
+      type(layout_t) :: layout
+      character(len=:), allocatable :: line
+      integer(int64) :: bytes(size(whole))
+      real(wp) :: told
+      integer :: i, number
+      logical :: found, ok
+
+      bytes = 0
+      do i = 1, size(tables%at)
+         if (tables%at(i)%wanted .and. i /= table%results .and. i /= table%sizes) &
+            & call add_bytes(tables%at(i), bytes)
+      end do
+      whole = .false.
+      layout = layout_of(tables%at(table%sizes)%header)
+      call open_lines(tables%at(table%sizes)%file, lines)
+      do
+         call next_line(lines, line, found)
+         if (.not. found) exit
+         number = case_of(layout, line, size(whole))
+         if (number == 0) cycle
+         call read_number(field(line, 2), told, ok)
+         whole(number) = ok .and. .not. abs(told - real(bytes(number), wp)) > 0.0_wp
+      end do
+      call close_lines(lines)
+   end subroutine compare_sizes
+
+   !> Add the bytes that each case has in a table
+   subroutine add_bytes(this, bytes)
+      !> The table
+      type(result_table_t), intent(in) :: this
+      !> The bytes: (n)
+      integer(int64), intent(inout) :: bytes(:)
+      type(table_lines_t) :: lines
+      type(layout_t) :: layout
+      character(len=:), allocatable :: line
+      integer :: number
+      logical :: found
+
+      layout = layout_of(this%header)
+      call open_lines(this%file, lines)
+      do
+         call next_line(lines, line, found)
+         if (.not. found) exit
+         number = case_of(layout, line, size(bytes))
+         if (number > 0) bytes(number) = bytes(number) + len(line) + 1
+      end do
+      call close_lines(lines)
+   end subroutine add_bytes
+
+   !> Read which cases have a whole row in results.csv
+   subroutine read_results(this, length, whole, finished)
       !> The table
       type(result_table_t), intent(in) :: this
       !> Length up to which its rows count [bytes]
       integer(int64), intent(in) :: length
-      !> Rows of each case in joints.csv: (n)
-      integer, intent(in) :: joints(:)
+      !> Whether a case is whole in the other tables: (n)
+      logical, intent(in) :: whole(:)
       !> Receives the cases
       type(finished_t), intent(inout) :: finished
       type(table_lines_t) :: lines
       type(layout_t) :: layout
       character(len=:), allocatable :: line
-      integer :: number, outcome, blocks, verdict
+      integer :: number, outcome, verdict
       logical :: found
 
       layout = layout_of(this%header)
-      blocks = column(this%header, "blocks")
       verdict = column(this%header, "verdict")
       call open_lines(this%file, lines, length)
       do
          call next_line(lines, line, found)
          if (.not. found) exit
-         number = case_of(layout, line, size(joints))
+         number = case_of(layout, line, size(whole))
          if (number == 0) cycle
-         if (finished%case(number)) cycle
-         if (joints(number) == 0 .and. field(line, blocks) /= "0") cycle
+         if (finished%case(number) .or. .not. whole(number)) cycle
          finished%case(number) = .true.
          outcome = merge(2, 1, field(line, verdict) == "undecided")
          finished%count(outcome) = finished%count(outcome) + 1
@@ -110,10 +166,11 @@ contains
       integer :: i
 
       do i = 1, size(tables%at)
-         if (tables%at(i)%wanted) call keep_rows(tables%at(i), i == table%results, &
-            & finished%case, error)
+         if (tables%at(i)%wanted) call keep_rows(tables%at(i), &
+            & any(i == [table%results, table%sizes]), finished%case, error)
          if (allocated(error)) return
       end do
+      tables%length = common_length(tables)
       call sync_tables(tables, error)
    end subroutine reopen_tables
 
@@ -150,33 +207,6 @@ contains
       call close_lines(lines)
       call settle_part(this%file, this%open, error)
    end subroutine keep_rows
-
-   !> Rows of each case in joints.csv, 0 where they are not numbered from 1 without a gap
-   subroutine count_joints(this, joints)
-      !> The table
-      type(result_table_t), intent(in) :: this
-      !> How many: (n)
-      integer, intent(out) :: joints(:)
-      type(table_lines_t) :: lines
-      type(layout_t) :: layout
-      character(len=:), allocatable :: line
-      integer :: number, joint
-      logical :: found, ok
-
-      joints = 0
-      layout = layout_of(this%header)
-      call open_lines(this%file, lines)
-      do
-         call next_line(lines, line, found)
-         if (.not. found) exit
-         number = case_of(layout, line, size(joints))
-         if (number == 0) cycle
-         call read_integer(field(line, 2), joint, ok)
-         if (ok .and. joint == 1) joints(number) = 0
-         joints(number) = merge(joints(number) + 1, 0, ok .and. joint == joints(number) + 1)
-      end do
-      call close_lines(lines)
-   end subroutine count_joints
 
    !> Where a table has what tells a whole row
    pure function layout_of(header) result(layout)

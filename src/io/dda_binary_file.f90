@@ -204,12 +204,13 @@ contains
          & file%name, 1)
    end subroutine sync_binary
 
-   !> Bytes written so far
+   !> Bytes written so far, 0 of a file that is not open
    integer(int64) function place_of(file)
-      !> The file, open
+      !> The file
       type(binary_file_t), intent(in) :: file
 
-      place_of = int(c_ftell(file%handle), int64)
+      place_of = 0
+      if (c_associated(file%handle)) place_of = int(c_ftell(file%handle), int64)
    end function place_of
 
    !> Close a file

@@ -57,7 +57,7 @@ contains
       if (.not. allocated(error)) call append_line(table, header, error)
    end subroutine open_table
 
-   !> Write one line, or several, so that it survives the end of the program
+   !> Write one line, or several, so that it survives the end of the program; nothing is no line
    subroutine append_line(table, line, error)
       !> The table
       type(table_file_t), intent(in) :: table
@@ -66,6 +66,7 @@ contains
       !> Allocated if it cannot be written
       type(error_t), allocatable, intent(out) :: error
 
+      if (len(line) == 0) return
       call append_text(table%file, line//new_line("a"))
       call flush_binary(table%file, error)
    end subroutine append_line
@@ -80,7 +81,7 @@ contains
       call sync_binary(table%file, error)
    end subroutine sync_table
 
-   !> Length of an open table [bytes]
+   !> Length of an open table, 0 of one that is not open [bytes]
    integer(int64) function length_of(table)
       !> The table
       type(table_file_t), intent(in) :: table

@@ -17,7 +17,7 @@ STABLE = "&arch thickness_ratio = 0.12 /\n"
 UNDECIDED = "&arch thickness_ratio = 0.12 /\n&analysis geometry = 'current', steps = 1 /\n"
 BAD = "&arch\n thickness_ratio = 2 /\n"
 TABLES = ["blocks.csv", "joints.csv", "log.txt", "results.csv"]
-FILES = sorted(["deck.record", "disk.record", "run.lock", *TABLES])
+FILES = sorted(["deck.record", "disk.record", "run.lock", "sizes.record", *TABLES])
 
 
 def write_decks(folder: Path, **texts: str) -> None:
@@ -222,7 +222,7 @@ def test_results_of_an_earlier_run_are_replaced(tmp_path: Path) -> None:
     assert run_dda("run", "many.nml", "--out", "results", cwd=tmp_path).returncode == 0
     assert run_dda("run", "one.nml", "--out", "results", cwd=tmp_path).returncode == 0
     assert len(rows_of(tmp_path / "results")) == 1
-    files = ["deck.record", "disk.record", "log.txt", "results.csv", "run.lock"]
+    files = ["deck.record", "disk.record", "log.txt", "results.csv", "run.lock", "sizes.record"]
     assert names_in(tmp_path / "results") == files
 
 

@@ -69,6 +69,12 @@ def _unused(tree: ast.Module, path: Path) -> Iterator[tuple[int, str]]:
 
 def _traps(tree: ast.Module) -> Iterator[tuple[int, str]]:
     """What Python takes and nobody means."""
+    known: set[str] = set()
+    for node in tree.body:
+        if isinstance(node, Function | ast.ClassDef):
+            if node.name in known:
+                yield node.lineno, f"a second {node.name} hides the first"
+            known.add(node.name)
     for node in ast.walk(tree):
         if isinstance(node, ast.ExceptHandler) and node.type is None:
             yield node.lineno, "an except names what it catches"

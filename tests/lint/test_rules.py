@@ -107,6 +107,7 @@ def test_what_breaks_a_rule_is_found(tmp_path: Path, old: str, new: str, rule: s
         ("path: Path", "path: Path = []", "shared by all calls"),
         ("    return", "    path = path\n" * 60 + "    return", "a function has at most 60 lines"),
         ("return", "return   " + "0 or " * 30, "at most 120 characters"),
+        ("def read", 'def read() -> None:\n    """Read."""\n\n\ndef read', "read hides the first"),
     ],
 )
 def test_what_breaks_a_rule_of_python_is_found(tmp_path: Path, old: str, new: str, rule: str) -> None:
