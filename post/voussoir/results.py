@@ -194,9 +194,18 @@ class Results:
         raise KeyError(f"no case {number} in {self.folder}")
 
     def joints_of(self, number: int) -> Table:
-        """Joints of one case."""
+        """Joints of one case.
+
+        Raises
+        ------
+        KeyError
+            If no joints were written.
+        """
         if self.joints is None:
-            raise KeyError(f"no joints.csv in {self.folder}")
+            raise KeyError(
+                f"no joints.csv in {self.folder}: run the deck again with "
+                f"--set output%joints=.true. --cases {number}"
+            )
         return self.joints.where(case=number)
 
     def blocks_of(self, number: int) -> list[Block]:
@@ -211,7 +220,7 @@ class Results:
         if not rows:
             raise KeyError(
                 f"no blocks of case {number} in {self.folder}: run the deck again with "
-                f"--set output%blocks=.true. --cases {number}"
+                f"--set output%blocks=.true. --set output%joints=.true. --cases {number}"
             )
         corners = np.column_stack((rows["x"], rows["y"]))
         moves = np.column_stack((rows["u"], rows["v"]))

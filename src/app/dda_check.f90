@@ -3,8 +3,8 @@ module dda_check
    use, intrinsic :: iso_fortran_env, only : error_unit
    use dda_boundary, only : boundary_t
    use dda_command_line, only : command_t, name_of
-   use dda_deck, only : deck_t, flag_of, geometry_of, has_group, integer_of, keeps_velocities, &
-      & text_of, word_of
+   use dda_deck, only : deck_t, flag_of, geometry_of, has_group, integer_of, is_given, &
+      & keeps_velocities, text_of, word_of
    use dda_deck_scene, only : check_lines, check_scene, deck_scene
    use dda_deck_sweep, only : case_deck, n_cases, swept_names
    use dda_cut, only : print_warnings
@@ -15,7 +15,7 @@ module dda_check
    use dda_process, only : error_is_terminal, exit_status
    use dda_progress, only : end_watch, terminal_watch_t
    use dda_read_deck, only : read_deck
-   use dda_result_tables, only : name_tables, result_tables_t
+   use dda_result_tables, only : left_out, name_tables, result_tables_t
    use dda_run_cases, only : deck_stem
    use dda_run_record, only : run_record
    use dda_scene, only : scene_t
@@ -117,6 +117,7 @@ contains
       else
          call tell(screen, "searched", "nothing: each case is decided as it is")
       end if
+      if (left_out(deck) /= "") call tell(screen, "tables", left_out(deck))
       call check_lines(deck, error)
       if (allocated(error)) call tell(screen, "not to run", error_line(error))
       call print_line(screen, "   the first case:")
@@ -277,7 +278,8 @@ contains
       else if (flag_of(deck, "output", "joints")) then
          call tell(screen, "joints.csv", "forces of the decision itself")
       else
-         call tell(screen, "joints.csv", "none: output%joints is .false.")
+         call tell(screen, "joints.csv", "none: output%joints is "//trim(merge( &
+            & ".false.  ", "not given", is_given(deck, "output", "joints"))))
       end if
       if (integer_of(deck, "output", "frames") > 0) then
          call tell(screen, "frames", "the case is run once more for its pictures")

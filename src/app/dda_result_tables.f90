@@ -6,6 +6,7 @@ module dda_result_tables
    use dda_disk_record, only : write_disk_record
    use dda_error, only : error_t
    use dda_kinds, only : wp
+   use dda_read_deck, only : few_cases, many_case_tables
    use dda_table_file, only : append_line, close_table, length_of, open_table, remove_file, &
       & sync_table, table_file_t
    use dda_text, only : to_text
@@ -19,7 +20,7 @@ module dda_result_tables
    private
 
    public :: result_tables_t, result_table_t, table, table_enum
-   public :: name_tables, open_tables, close_tables, write_case, swept_fields
+   public :: name_tables, open_tables, close_tables, write_case, swept_fields, left_out
    public :: common_length, sync_tables, sync_when_due
 
    !> Places of the tables in result_tables_t
@@ -85,9 +86,6 @@ module dda_result_tables
    character(len=*), parameter :: own_column(*) = [character(len=16) :: "half_angle_deg", &
       & "thickness_ratio", "friction_deg", "mode", "geometry", "unknowns"]
 
-   !> Corners of the blocks are written unasked for at most so many cases
-   integer, parameter :: few_cases = 100
-
 contains
 
    !> Name the tables that a deck wants; no file is touched
@@ -114,7 +112,8 @@ contains
       call name_table(tables%at(table%results), "/results.csv", results_header(names, &
          & flag_of(deck, "output", "condition")))
       call name_table(tables%at(table%joints), "/joints.csv", joints_header())
-      call name_table(tables%at(table%log), "/log.txt", "case verdict remark")
+      call name_table(tables%at(table%log), "/log.txt", "case verdict remark" &
+         & //parenthesis(left_out(deck)))
       call name_table(tables%at(table%sizes), "/sizes.record", "case,bytes")
       call name_table(tables%at(table%frames), "/frames.csv", frames_header())
       call name_table(tables%at(table%frame_joints), "/frame_joints.csv", frame_joints_header())
@@ -126,9 +125,7 @@ contains
       tables%at(table%energy)%wanted = flag_of(deck, "output", "energy") &
          & .and. .not. has_group(deck, "search")
       call name_table(tables%at(table%blocks), "/blocks.csv", blocks_header())
-      tables%at(table%blocks)%wanted = n_cases(deck) <= few_cases
-      if (is_given(deck, "output", "blocks")) &
-         & tables%at(table%blocks)%wanted = flag_of(deck, "output", "blocks")
+      tables%at(table%blocks)%wanted = flag_of(deck, "output", "blocks")
       tables%at(table%joints)%wanted = flag_of(deck, "output", "joints")
       tables%at([table%frames, table%frame_joints])%wanted = &
          & integer_of(deck, "output", "frames") > 0
@@ -147,7 +144,41 @@ contains
          this%file = folder//name
          this%header = header
       end subroutine name_table
+
+      !> A text in parentheses, with a blank before it; nothing for nothing
+      pure function parenthesis(text) result(put)
+         !> The text
+         character(len=*), intent(in) :: text
+         !> The text put so
+         character(len=:), allocatable :: put
+
+         put = ""
+         if (len(text) > 0) put = " ("//text//")"
+      end function parenthesis
    end subroutine name_tables
+
+   !> Which tables are not written because there are many cases, and what writes them; empty if all
+   !> are
+   pure function left_out(deck) result(text)
+      !> The deck
+      type(deck_t), intent(in) :: deck
+      !> The text
+      character(len=:), allocatable :: text
+      character(len=:), allocatable :: files, keys
+      integer :: i
+
+      text = ""
+      if (n_cases(deck) <= few_cases) return
+      files = ""
+      keys = ""
+      do i = 1, size(many_case_tables)
+         if (is_given(deck, "output", many_case_tables(i))) cycle
+         files = files//" and "//many_case_tables(i)//".csv"
+         keys = keys//", output%"//many_case_tables(i)//" = .true."
+      end do
+      if (files /= "") text = "no "//files(6:)//" of more than "//to_text(few_cases) &
+         & //" cases without "//keys(3:)
+   end function left_out
 
    !> Begin all tables; those of an earlier run are replaced or removed
    subroutine open_tables(tables, record, error)

@@ -215,7 +215,7 @@ contains
       !> The layout
       type(layout_t) :: layout
 
-      if (index(header, ",") == 0) return
+      if (index(header, " ") > 0) return
       layout%columns = n_fields(header)
       layout%case = column(header, "case")
       layout%seconds = column(header, "seconds")

@@ -12,7 +12,7 @@ module dda_run
    use dda_process, only : error_is_terminal, exit_status, make_folder, worst_status
    use dda_progress, only : clear_progress, end_watch, progress_t, terminal_watch_t
    use dda_read_deck, only : read_deck
-   use dda_result_tables, only : close_tables, name_tables, open_tables, result_tables_t
+   use dda_result_tables, only : close_tables, left_out, name_tables, open_tables, result_tables_t
    use dda_resume, only : find_finished, finished_t, reopen_tables
    use dda_run_cases, only : deck_stem, run_cases
    use dda_run_record, only : run_record
@@ -164,7 +164,7 @@ contains
          if (count(3) > 0) write (error_unit, "(a)") to_text(count(3))//" of " &
             & //to_text(total)//" cases are safe in "//tables%folder//"/results.csv"
       else if (.not. command%quiet) then
-         call print_total(command%screen, name, tables%folder, count)
+         call print_total(command%screen, name, tables%folder, count, left_out(deck))
       end if
    end subroutine run_deck
 

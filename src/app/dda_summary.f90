@@ -71,7 +71,7 @@ contains
    end subroutine print_resumed
 
    !> Print the last line
-   subroutine print_total(screen, name, folder, count)
+   subroutine print_total(screen, name, folder, count, left_out)
       !> Where it goes
       type(screen_t), intent(in) :: screen
       !> Name of the deck
@@ -80,9 +80,12 @@ contains
       character(len=*), intent(in) :: folder
       !> Cases decided, undecided, written: (3)
       integer, intent(in) :: count(3)
+      !> Which tables are not written, and why; empty if there is none
+      character(len=*), intent(in) :: left_out
 
       call print_line(screen, name//": "//to_text(count(1))//" decided, "//to_text(count(2)) &
          & //" undecided; results in "//folder//"/results.csv")
+      if (left_out /= "") call print_line(screen, name//": "//left_out)
    end subroutine print_total
 
    !> A number in a column of fixed width, blank if it is unknown

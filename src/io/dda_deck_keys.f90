@@ -288,7 +288,8 @@ module dda_deck_keys
    type(key_t), parameter :: output_keys(*) = [ &
       key_t(group="output", name="vtu", kind=key_kind%flag, default=".true.", varies=.false., &
             meaning="Write the pictures of output%frames for ParaView too."), &
-      key_t(group="output", name="joints", kind=key_kind%flag, default=".true.", varies=.false., &
+      key_t(group="output", name="joints", kind=key_kind%flag, varies=.false., &
+            without="up to 100 cases", &
             meaning="Write forces, openings and states of the joints to joints.csv."), &
       key_t(group="output", name="blocks", kind=key_kind%flag, varies=.false., &
             without="up to 100 cases", &

@@ -12,7 +12,7 @@ module dda_read_deck
    use dda_deck_parameter, only : split_name
    use dda_deck_set, only : put_text
    use dda_deck_entry, only : read_values
-   use dda_deck_sweep, only : add_sweep
+   use dda_deck_sweep, only : add_sweep, n_cases
    use dda_deck_check, only : check_deck
    use dda_deck_lines, only : read_lines
    use dda_file_mark, only : file_mark, text_mark
@@ -21,7 +21,12 @@ module dda_read_deck
    implicit none
    private
 
-   public :: read_deck, parse_deck, geometry_file
+   public :: read_deck, parse_deck, geometry_file, few_cases, many_case_tables
+
+   !> Tables that are written for at most so many cases where the deck does not say
+   integer, parameter :: few_cases = 100
+   !> Their keys in &output
+   character(len=*), parameter :: many_case_tables(*) = ["joints", "blocks"]
 
 contains
 
@@ -90,6 +95,12 @@ contains
          call apply_setting(trim(settings(i)), deck_place_t(i, .true.), deck, error)
       end do
       if (.not. allocated(error)) call check_deck(deck, error)
+      do i = 1, size(many_case_tables)
+         if (allocated(error)) return
+         associate (wanted => deck%value(key_index("output", many_case_tables(i))))
+            if (.not. wanted%given) wanted%flag = n_cases(deck) <= few_cases
+         end associate
+      end do
    end subroutine parse_deck
 
    !> Read one group

@@ -173,16 +173,44 @@ def test_the_original_scheme_tells_how_far_its_blocks_have_moved(tmp_path: Path)
     assert largest["1"] >= 0.5 > 0.1 > largest["2"] > 0.0
 
 
+@pytest.mark.parametrize("kind", ["static", "limerick"])
+@pytest.mark.parametrize("name", ["joints", "blocks"])
 @pytest.mark.parametrize(
     ("cases", "setting", "written"),
-    [(100, "", True), (101, "", False), (101, ".true.", True), (2, ".false.", False)],
+    [(3, "", True), (100, "", True), (101, "", False), (101, ".true.", True), (101, ".false.", False),
+     (2, ".false.", False)],
 )
-def test_blocks_of_many_cases_are_written_on_demand(
-    tmp_path: Path, cases: int, setting: str, written: bool
+def test_joints_and_blocks_of_many_cases_are_written_on_demand(
+    tmp_path: Path, name: str, cases: int, setting: str, written: bool, kind: str
 ) -> None:
-    options = ["--set", f"output%blocks={setting}"] if setting else []
+    """Where they are not for the number of cases, check, screen and log say so."""
+    options = ["--set", f"output%{name}={setting}"] if setting else []
     text = (
         "&arch voussoirs = 2, thickness_ratio = 0.5 /\n"
+        f"&analysis mode = '{kind}', steps = 9 /\n"
         f"&sweep parameter = 'radius', first = 1, last = 2, count = {cases} /\n"
     )
-    assert (run(tmp_path, text, *options) / "blocks.csv").exists() == written
+    (tmp_path / "deck.nml").write_text(text)
+    done = run_dda("run", "deck.nml", *options, cwd=tmp_path)
+    assert (tmp_path / f"deck/{name}.csv").exists() == written
+    plan = run_dda("check", "deck.nml", *options, cwd=tmp_path).stdout
+    log = (tmp_path / "deck/log.txt").read_text().splitlines()
+    for said in (done.stdout, plan, log[0]):
+        words = [f"no {name}.csv", f"and {name}.csv"]
+        silent = written or setting != ""
+        assert any(word in said for word in words) != silent, said
+        assert (f"output%{name} = .true." in said) != silent, said
+    assert len(log) == cases + 1
+
+
+def test_a_run_without_joints_is_resumed(tmp_path: Path) -> None:
+    text = "&search /\n&sweep parameter = 'half_angle_deg', first = 60, last = 90, count = 101 /\n"
+    folder = run(tmp_path, text)
+    before = {path.name: path.read_bytes() for path in folder.iterdir()}
+    again = run_dda("run", "deck.nml", "--resume", cwd=tmp_path)
+    assert "101 of 101 cases are there already" in again.stdout
+    assert {path.name: path.read_bytes() for path in folder.iterdir()} == before
+    # with the joints of one case asked for, it is another question
+    asked = run_dda("run", "deck.nml", "--set", "output%joints=.true.", "--cases", "3", cwd=tmp_path)
+    assert asked.returncode == 0
+    assert {row["case"] for row in rows_of(folder / "joints.csv")} == {"3"}

@@ -201,7 +201,8 @@ def test_what_is_not_told_is_not_drawn(tmp_path: Path, capsys) -> None:
         assert "contact forces" not in legend_of(draw_case(run, 1))
     bare = benchmark(tmp_path / "bare", "stack", "output%blocks=.false.")
     assert main(["plot", str(bare.folder)]) == 2
-    assert "--set output%blocks=.true. --cases 1" in capsys.readouterr().err
+    wanted = "--set output%blocks=.true. --set output%joints=.true. --cases 1"
+    assert wanted in capsys.readouterr().err
 
 
 def test_numbers_have_units_that_suit_them() -> None:
