@@ -1,13 +1,13 @@
 !> What the program asks of the operating system
 module dda_process
-   use, intrinsic :: iso_c_binding, only : c_char, c_funptr, c_int, c_intptr_t, c_null_char, &
-      & c_null_funptr
+   use, intrinsic :: iso_c_binding, only : c_char, c_funptr, c_int, c_intptr_t, c_long, &
+      & c_null_char, c_null_funptr, c_short
    use, intrinsic :: iso_fortran_env, only : error_unit
    implicit none
    private
 
    public :: exit_status, exit_status_enum, leave, worst_status, make_folder, error_is_terminal
-   public :: survive_file_limit
+   public :: survive_file_limit, terminal_width
 
    !> Exit statuses of the program
    type :: exit_status_enum
@@ -29,7 +29,31 @@ module dda_process
    !> What C calls SIG_IGN: the address that means that a signal is ignored
    integer(c_intptr_t), parameter :: ignored = 1
 
+   !> What ioctl calls TIOCGWINSZ, on Linux
+   integer(c_long), parameter :: ask_for_size = int(z'5413', c_long)
+
+   !> What a terminal tells of its size, C's struct winsize
+   type, bind(c) :: terminal_size_t
+      !> Lines and columns; 0 where it does not know
+      integer(c_short) :: lines = 0, columns = 0
+      !> Dots across and upright
+      integer(c_short) :: dots(2) = 0
+   end type terminal_size_t
+
    interface
+      !> C: ask a terminal; after the first two arguments it takes what the request wants
+      function c_ioctl(descriptor, request, answer) bind(c, name="ioctl") result(failed)
+         import :: c_int, c_long, terminal_size_t
+         !> The terminal
+         integer(c_int), intent(in), value :: descriptor
+         !> What is asked
+         integer(c_long), intent(in), value :: request
+         !> The answer
+         type(terminal_size_t), intent(inout) :: answer
+         !> 0 if there is one
+         integer(c_int) :: failed
+      end function c_ioctl
+
       !> C: what to do about a signal
       function c_signal(number, handler) bind(c, name="signal") result(before)
          import :: c_funptr, c_int
@@ -117,6 +141,20 @@ contains
       ! whether the folder can be used shows when a file in it is opened
       failed = c_mkdir(path//c_null_char, int(o'777', c_int))
    end subroutine make_folder
+
+   !> Columns of the terminal that a descriptor leads to: 0 where it is none, -1 where the terminal
+   !> does not know
+   integer function terminal_width(descriptor)
+      !> The descriptor
+      integer, intent(in) :: descriptor
+      type(terminal_size_t) :: size
+
+      terminal_width = 0
+      if (c_isatty(int(descriptor, c_int)) /= 1) return
+      terminal_width = -1
+      if (c_ioctl(int(descriptor, c_int), ask_for_size, size) /= 0) return
+      if (size%columns > 0) terminal_width = int(size%columns)
+   end function terminal_width
 
    !> Whether standard error is a terminal
    logical function error_is_terminal()

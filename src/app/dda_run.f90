@@ -2,6 +2,7 @@
 module dda_run
    use, intrinsic :: iso_fortran_env, only : error_unit
    use dda_case_choice, only : choose_cases
+   use dda_case_table, only : case_table_t, end_case_table, new_case_table
    use dda_command_line, only : command_t, name_of
    use dda_cut, only : print_warnings
    use dda_deck, only : deck_t
@@ -134,6 +135,7 @@ contains
       type(result_tables_t) :: tables
       type(finished_t) :: finished
       type(progress_t) :: progress
+      type(case_table_t) :: shown
       type(error_t), allocatable :: error
       logical, allocatable :: chosen(:)
       integer :: count(3), next, total
@@ -148,12 +150,14 @@ contains
       chosen = chosen .and. .not. finished%case
       progress%total = size(pack(chosen, chosen))
       call system_clock(progress%start)
+      call new_case_table(command%screen, deck, chosen, shown)
       next = 0
       !$omp parallel num_threads(min(command%jobs, total, max_jobs)) default(none) &
-      !$omp shared(deck, name, command, tables, progress, count, error, chosen, next)
-      call run_cases(command, name, deck, chosen, next, tables, progress, count, error)
+      !$omp shared(deck, name, command, tables, progress, shown, count, error, chosen, next)
+      call run_cases(command, name, deck, chosen, next, tables, progress, shown, count, error)
       !$omp end parallel
       call clear_progress(progress)
+      call end_case_table(shown)
       call close_tables(tables, error)
       count = count + [finished%count, sum(finished%count)]
       status = exit_status%success

@@ -2,16 +2,16 @@
 module dda_run_cases
    use dda_case, only : case_t, compute_case, prepare_case
    use dda_case_rows, only : tell_case
+   use dda_case_table, only : add_case, case_table_t
    use dda_command_line, only : command_t
    use dda_deck, only : deck_t, flag_of
-   use dda_deck_sweep, only : n_cases, turn_to_case
+   use dda_deck_sweep, only : turn_to_case
    use dda_error, only : error_t
    use dda_kinds, only : wp
    use dda_picture_files, only : write_album, write_energies, write_track
    use dda_progress, only : clear_progress, progress_t, report_progress
    use dda_restart, only : save_restart
    use dda_result_tables, only : result_tables_t, swept_fields, sync_when_due, table, write_case
-   use dda_summary, only : print_row
    use dda_text, only : to_text
    use dda_write_blocks, only : told_blocks_t
    use dda_write_results, only : joint_row_t, result_row_t
@@ -31,7 +31,7 @@ contains
 
    !> Compute cases until none is left, or none can be written; each thread runs this. Cases are
    !> written down in the same turn in which the next ones are prepared: one wait for other threads
-   subroutine run_cases(command, name, deck, chosen, next, tables, progress, count, error)
+   subroutine run_cases(command, name, deck, chosen, next, tables, progress, shown, count, error)
       !> What the user asked for
       type(command_t), intent(in) :: command
       !> Name of the deck
@@ -46,6 +46,8 @@ contains
       type(result_tables_t), intent(inout) :: tables
       !> What was told so far
       type(progress_t), intent(inout) :: progress
+      !> The table on the screen
+      type(case_table_t), intent(inout) :: shown
       !> Cases decided, undecided, written: (3)
       integer, intent(inout) :: count(3)
       !> Failure to write
@@ -61,7 +63,7 @@ contains
          !$omp critical (texts)
          do i = 1, n
             if (.not. allocated(error)) call write_down(command, name, deck, number(i), &
-               & batch(i), tables, progress, count, error)
+               & batch(i), tables, progress, shown, count, error)
          end do
          n = 0
          if (.not. allocated(error)) then
@@ -166,7 +168,8 @@ contains
    end function deck_stem
 
    !> Write a computed case down
-   subroutine write_down(command, name, deck, number, this, tables, progress, count, error)
+   subroutine write_down(command, name, deck, number, this, tables, progress, shown, count, &
+      & error)
       !> What the user asked for
       type(command_t), intent(in) :: command
       !> Name of the deck
@@ -181,6 +184,8 @@ contains
       type(result_tables_t), intent(inout) :: tables
       !> What was told so far
       type(progress_t), intent(inout) :: progress
+      !> The table on the screen
+      type(case_table_t), intent(inout) :: shown
       !> Cases decided, undecided, written: (3)
       integer, intent(inout) :: count(3)
       !> Failure to write
@@ -204,8 +209,7 @@ contains
       count(merge(2, 1, row%verdict == "undecided")) = &
          & count(merge(2, 1, row%verdict == "undecided")) + 1
       call clear_progress(progress)
-      if (.not. command%quiet) &
-         & call print_row(command%screen, row, remark, n_cases(deck), count(3))
+      if (.not. command%quiet) call add_case(shown, deck, row, remark)
       call report_progress(progress)
    end subroutine write_down
 

@@ -3,10 +3,12 @@ module dda_screen
    use dda_binary_file, only : append_text, binary_file_t, close_binary, descriptor_of, &
       & flush_binary, open_binary, open_descriptor
    use dda_error, only : error_t
+   use dda_process, only : terminal_width
+   use dda_text, only : read_integer
    implicit none
    private
 
-   public :: screen_t, open_screen, print_line, print_text, close_screen
+   public :: screen_t, open_screen, print_line, print_text, close_screen, screen_width
 
    !> Where lines for the user go
    type :: screen_t
@@ -17,6 +19,8 @@ module dda_screen
 
    !> The system's number of standard output, and the last one that has a meaning of its own
    integer, parameter :: standard_output = 1, standard_error = 2
+   !> Columns of what is no terminal, and of a terminal that does not know how many it has
+   integer, parameter :: file_width = 100, unknown_width = 80
 
 contains
 
@@ -66,6 +70,24 @@ contains
       call append_text(screen%file, text)
       call flush_binary(screen%file, late)
    end subroutine print_text
+
+   !> Columns that a line of a table may have: those of the terminal, or where it does not know,
+   !> what the environment says
+   integer function screen_width(screen)
+      !> The screen
+      type(screen_t), intent(in) :: screen
+      character(len=12) :: text
+      integer :: stat
+      logical :: ok
+
+      screen_width = terminal_width(descriptor_of(screen%file))
+      if (screen_width == 0) screen_width = file_width
+      if (screen_width > 0) return
+      call get_environment_variable("COLUMNS", text, status=stat)
+      ok = stat == 0
+      if (ok) call read_integer(trim(text), screen_width, ok)
+      if (.not. ok .or. screen_width <= 0) screen_width = unknown_width
+   end function screen_width
 
    !> End printing
    subroutine close_screen(screen, error)

@@ -1,0 +1,245 @@
+!> The table that a run shows: a line a case, in their order, and no wider than the screen
+module dda_case_table
+   use dda_case, only : searched_name
+   use dda_case_fields, only : column_t, field_of, fit_columns, padded, source, wrapped
+   use dda_deck, only : deck_sweep_t, deck_t, keeps_velocities, word_of
+   use dda_deck_sweep, only : n_cases, swept_names, swept_texts
+   use dda_screen, only : print_line, screen_t, screen_width
+   use dda_text, only : to_text
+   use dda_write_results, only : result_row_t
+   implicit none
+   private
+
+   public :: case_table_t, new_case_table, add_case, end_case_table
+
+   !> Lines of a case that wait for those of an earlier one
+   type :: waiting_t
+      !> Number of the case
+      integer :: number = 0
+      !> Its lines, parted by line ends
+      character(len=:), allocatable :: lines
+   end type waiting_t
+
+   !> The table of a deck
+   type :: case_table_t
+      private
+      !> Where it goes
+      type(screen_t) :: screen
+      !> Widest line that it may have
+      integer :: width = 0
+      !> Its columns
+      type(column_t), allocatable :: column(:)
+      !> Whether its head is printed
+      logical :: begun = .false.
+      !> Whether all cases are printed, or of many only those that are undecided
+      logical :: all_cases = .true.
+      !> Cases that are not computed yet: (n)
+      logical, allocatable :: awaited(:)
+      !> The first case that may still be printed
+      integer :: next = 1
+      !> What waits, by the number of the case: the first n_waiting of these
+      type(waiting_t), allocatable :: waiting(:)
+      !> How many wait
+      integer :: n_waiting = 0
+   end type case_table_t
+
+   !> Most cases that are printed one by one
+   integer, parameter :: max_rows = 100
+   !> Widest number and word of a swept parameter
+   integer, parameter :: number_width = 12, word_width = 20
+
+contains
+
+   !> Begin the table of a deck; nothing is printed before its first row
+   subroutine new_case_table(screen, deck, chosen, table)
+      !> Where it goes
+      type(screen_t), intent(in) :: screen
+      !> The deck
+      type(deck_t), intent(in) :: deck
+      !> Cases that will be computed: (n)
+      logical, intent(in) :: chosen(:)
+      !> The table
+      type(case_table_t), intent(out) :: table
+
+      table%screen = screen
+      table%width = screen_width(screen)
+      table%all_cases = n_cases(deck) <= max_rows
+      allocate (table%awaited, source=chosen)
+      allocate (table%waiting(8))
+      allocate (table%column(0))
+      call choose_columns(deck, table%column)
+      call fit_columns(table%width, table%column)
+   end subroutine new_case_table
+
+   !> The columns that the scenes of a deck have
+   pure subroutine choose_columns(deck, column)
+      !> The deck
+      type(deck_t), intent(in) :: deck
+      !> Receives the columns
+      type(column_t), allocatable, intent(inout) :: column(:)
+      character(len=:), allocatable :: searched
+      logical :: arch, falls
+      integer :: s
+
+      searched = searched_name(deck)
+      arch = word_of(deck, "scene", "kind") == "arch"
+      associate (swept => swept_names(deck))
+         ! a run in time ends when it is over, not with a collapse
+         falls = .not. keeps_velocities(deck) .or. any(swept == "mode" .or. swept == "dynamic")
+         column = [column_t("case", source%case, len(to_text(n_cases(deck))))]
+         do s = 1, size(swept)
+            column = [column, column_t(swept(s), source%swept, longest(deck%sweep(s)), s, &
+               & size(deck%sweep(s)%texts) > 0)]
+         end do
+      end associate
+      if (searched /= "") column = [column, column_t(searched, source%searched, 14)]
+      column = [column, column_t("verdict", source%verdict, 9, left=.true.)]
+      if (arch .and. searched == "thickness_ratio") then
+         column = [column, column_t("exact", source%exact, number_width), &
+            & column_t("error", source%error, 8)]
+      else if (arch .and. searched == "") then
+         column = [column, column_t("exact critical", source%exact, number_width)]
+      end if
+      if (falls) column = [column, column_t("mode", source%mode, 10, left=.true.)]
+      if (falls .and. arch) column = [column, &
+         & column_t("intrados hinge", source%hinges, 10, left=.true.)]
+   end subroutine choose_columns
+
+   !> Width of the longest value of a sweep, as far as it is shown
+   pure integer function longest(sweep)
+      !> The sweep
+      type(deck_sweep_t), intent(in) :: sweep
+      integer :: i
+
+      longest = 1
+      if (size(sweep%texts) > 0) longest = min(maxval(len_trim(sweep%texts)), word_width)
+      do i = 1, size(sweep%numbers)
+         if (longest >= number_width) exit
+         longest = min(max(longest, len(to_text(sweep%numbers(i)))), number_width)
+      end do
+   end function longest
+
+   !> Take a computed case; its lines are printed when all before it are computed
+   subroutine add_case(table, deck, row, remark)
+      !> The table
+      type(case_table_t), intent(inout) :: table
+      !> The deck
+      type(deck_t), intent(in) :: deck
+      !> Row of the case
+      type(result_row_t), intent(in) :: row
+      !> What the user should know beside the row
+      character(len=*), intent(in) :: remark
+      integer :: printed
+
+      table%awaited(row%number) = .false.
+      if (table%all_cases .or. row%verdict == "undecided") &
+         & call let_wait(table, row%number, row_lines(table, deck, row, remark))
+      do while (table%next <= size(table%awaited))
+         if (table%awaited(table%next)) exit
+         table%next = table%next + 1
+      end do
+      printed = 0
+      do while (printed < table%n_waiting)
+         if (table%waiting(printed + 1)%number >= table%next) exit
+         printed = printed + 1
+      end do
+      call print_waiting(table, printed)
+   end subroutine add_case
+
+   !> Print what still waits, if the run ends before its cases
+   subroutine end_case_table(table)
+      !> The table
+      type(case_table_t), intent(inout) :: table
+
+      call print_waiting(table, table%n_waiting)
+   end subroutine end_case_table
+
+   !> Lines of a case, parted by line ends
+   pure function row_lines(table, deck, row, remark) result(lines)
+      !> The table
+      type(case_table_t), intent(in) :: table
+      !> The deck
+      type(deck_t), intent(in) :: deck
+      !> Row of the case
+      type(result_row_t), intent(in) :: row
+      !> What the user should know beside the row
+      character(len=*), intent(in) :: remark
+      !> The lines
+      character(len=:), allocatable :: lines
+      integer :: c
+
+      lines = ""
+      associate (swept => swept_texts(deck, row%number))
+         do c = 1, size(table%column)
+            lines = lines//padded(table%column(c), field_of(table%column(c), row, swept))
+         end do
+      end associate
+      lines = lines(:min(len_trim(lines), table%width))
+      if (remark /= "") lines = lines//new_line("a")//wrapped(remark, table%width)
+   end function row_lines
+
+   !> Put the lines of a case among those that wait
+   pure subroutine let_wait(table, number, lines)
+      !> The table
+      type(case_table_t), intent(inout) :: table
+      !> Number of the case
+      integer, intent(in) :: number
+      !> Its lines
+      character(len=*), intent(in) :: lines
+      type(waiting_t), allocatable :: longer(:)
+      integer :: i
+
+      if (table%n_waiting == size(table%waiting)) then
+         allocate (longer(2*table%n_waiting))
+         do i = 1, table%n_waiting
+            call move_waiting(table%waiting(i), longer(i))
+         end do
+         call move_alloc(longer, table%waiting)
+      end if
+      do i = table%n_waiting, 1, -1
+         if (table%waiting(i)%number < number) exit
+         call move_waiting(table%waiting(i), table%waiting(i + 1))
+      end do
+      table%waiting(i + 1)%number = number
+      table%waiting(i + 1)%lines = lines
+      table%n_waiting = table%n_waiting + 1
+   end subroutine let_wait
+
+   !> Move what waits without copying its text
+   pure subroutine move_waiting(from, to)
+      !> Where it is
+      type(waiting_t), intent(inout) :: from
+      !> Where it goes
+      type(waiting_t), intent(inout) :: to
+
+      to%number = from%number
+      call move_alloc(from%lines, to%lines)
+   end subroutine move_waiting
+
+   !> Print the first of what waits
+   subroutine print_waiting(table, printed)
+      !> The table
+      type(case_table_t), intent(inout) :: table
+      !> How many cases
+      integer, intent(in) :: printed
+      character(len=:), allocatable :: head
+      integer :: i
+
+      if (printed == 0) return
+      if (.not. table%begun) then
+         head = ""
+         do i = 1, size(table%column)
+            head = head//padded(table%column(i), trim(table%column(i)%title))
+         end do
+         call print_line(table%screen, head(:min(len_trim(head), table%width)))
+         table%begun = .true.
+      end if
+      do i = 1, printed
+         call print_line(table%screen, table%waiting(i)%lines)
+      end do
+      do i = printed + 1, table%n_waiting
+         call move_waiting(table%waiting(i), table%waiting(i - printed))
+      end do
+      table%n_waiting = table%n_waiting - printed
+   end subroutine print_waiting
+end module dda_case_table
