@@ -13,6 +13,7 @@ FILE_LINES, PROCEDURE_LINES, LINE_LENGTH = 400, 60, 100
 _STRING = re.compile(r"'[^']*'|\"[^\"]*\"")
 _PROCEDURE = re.compile(r"(?!end\b)(?:[\w()=*:, ]+ )?(?:subroutine|function) (\w+) *(?:\(|$)")
 _END_PROCEDURE = re.compile(r"end (?:subroutine|function)\b")
+_TYPED = re.compile(r"(?:type|class) *\((\w+)\)")
 _BLOCK = re.compile(r"(type\b(?! *\()|interface\b|abstract interface\b)")
 
 
@@ -143,3 +144,70 @@ def _is_variable(text: str) -> bool:
     """Whether a statement declares something that can change."""
     declares = re.match(r"(integer|real|logical|complex|character|type *\(|class *\()", text)
     return bool(declares) and "::" in text and "parameter" not in text.split("::")[0]
+
+
+@dataclass
+class Part:
+    """A component of a type."""
+
+    name: str
+    #: Name of its own type, empty for numbers and texts; of a type that is extended that type
+    type: str
+    allocates: bool
+
+
+def lost_memory(paths: Collection[Path]) -> list[str]:
+    """Constructors of types with allocatable components that gfortran gets wrong.
+
+    GCC 12 leaves components undefined that a structure constructor takes from strided sections, and
+    loses the memory of elements that an array constructor copies.
+
+    Parameters
+    ----------
+    paths : collection of Path
+        The sources, with all types that they use.
+
+    Returns
+    -------
+    list of str
+        FILE:LINE: what is lost.
+    """
+    texts = {path: list(statements(path.read_text().splitlines())) for path in paths}
+    parts = _parts([one.text for text in texts.values() for one in text])
+    owners = {name for name, own in parts.items() if any(part.allocates for part in own)}
+    while grown := {name for name, own in parts.items() if name not in owners and any(
+            part.type in owners for part in own)}:
+        owners |= grown
+    every = [part for own in parts.values() for part in own]
+    lists = {part.name for part in every} - {part.name for part in every if part.type not in owners}
+    found = []
+    for path, text in texts.items():
+        local = {name for one in text if (of := _TYPED.match(one.text)) and of[1] in owners
+                 for name in re.findall(r"(\w+) *\(:", one.text)}
+        for one in text:
+            made = re.search(r"\b(\w+_t)\(.*\(.*:", _TYPED.sub("", one.text))
+            longer = re.match(r"[\w%()]*?\b(\w+) *= *\[.*\b\1\b *,", one.text)
+            if made and made[1] in owners:
+                found.append(f"{path}:{one.first}: {made[1]}(...) of sections: assign its components")
+            if longer and longer[1] in local | lists:
+                found.append(f"{path}:{one.first}: {longer[1]} = [...] loses the memory of its items")
+    return found
+
+
+def _parts(texts: list[str]) -> dict[str, list[Part]]:
+    """Components of each type by the type's name; types of the same name are taken together."""
+    parts: dict[str, list[Part]] = {}
+    name = ""
+    for text in texts:
+        begin = re.match(r"type(?:, *(?:extends *\((\w+)\)|abstract))* *:: *(\w+)$", text)
+        if begin:
+            name = begin[2]
+            parts.setdefault(name, []).extend([Part("", begin[1], False)] if begin[1] else [])
+        elif text.startswith("end type") or text == "contains":
+            name = ""
+        elif name and "::" in text:
+            of = _TYPED.match(text)
+            attributes, names = text.split("::", 1)
+            parts[name] += [Part(one, of[1] if of else "", "allocatable" in attributes)
+                            for one in re.findall(r"\b(\w+)\b(?=\(|,|$| =)", names)]
+    return parts

@@ -56,6 +56,35 @@ def test_fortran_sources_keep_the_rules() -> None:
     assert [line for file in files for line in fortran_rules.offences(file, LONG)] == []
 
 
+def test_no_constructor_is_left_to_what_gfortran_gets_wrong() -> None:
+    assert fortran_rules.lost_memory(sorted((REPOSITORY / "src").rglob("*.f90"))) == []
+
+
+@pytest.mark.parametrize(
+    ("statement", "rule"),
+    [
+        ("load = load_t(record(1, :), record(2:3, :))", "load_t(...) of sections"),
+        ("held = held_t(7, load_t(record(1, :), record))", "of sections"),
+        ("list = [list, load]", "list = [...] loses"),
+        ("model%list = [model%list, load]", "list = [...] loses"),
+        ("load = load_t(time, force)", ""),
+        ("point = point_t(place(:, 1))", ""),
+        ("numbers = [numbers, 1]", ""),
+    ],
+)
+def test_constructors_that_gfortran_gets_wrong_are_found(
+    tmp_path: Path, statement: str, rule: str
+) -> None:
+    (tmp_path / "a.f90").write_text(
+        "type :: load_t\n real, allocatable :: time(:), force(:, :)\nend type load_t\n"
+        "type :: held_t\n integer :: block = 0\n type(load_t) :: path\nend type held_t\n"
+        "type :: point_t\n real :: place(2)\nend type point_t\n"
+        "type :: model_t\n type(held_t), allocatable :: list(:)\nend type model_t\n"
+        f"type(load_t), allocatable :: list(:)\n{statement}\n")
+    found = fortran_rules.lost_memory([tmp_path / "a.f90"])
+    assert [rule in line for line in found] == [True] * bool(rule), found
+
+
 @pytest.mark.parametrize(("folder", "strict"), [("post", True), ("docs", False), ("tests", False)])
 def test_python_sources_keep_the_rules(folder: str, strict: bool) -> None:
     files = sorted((REPOSITORY / folder).rglob("*.py"))
