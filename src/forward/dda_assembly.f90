@@ -44,6 +44,8 @@ module dda_assembly
       real(wp), allocatable :: weight(:, :)
       !> All loads from outside in this step: (n_dof, n_equation)
       real(wp), allocatable :: outer(:, :)
+      !> Sums of their sizes, which do not cancel: (n_dof, n_equation)
+      real(wp), allocatable :: felt(:, :)
       !> Loads of this step without springs: (n_dof, n_equation)
       real(wp), allocatable :: load(:, :)
       !> Springs of the held points
@@ -82,7 +84,7 @@ contains
       n = maxval(system%equation)
       allocate (equations%mass(nd, nd, n), equations%elastic(nd, nd, n), equations%base(nd, nd, n))
       allocate (equations%glued(nd, nd, n), equations%weight(nd, n), equations%outer(nd, n))
-      allocate (equations%load(nd, n), equations%changed(n))
+      allocate (equations%load(nd, n), equations%felt(nd, n), equations%changed(n))
       call new_springs(springs, nd, n, equations)
       do b = 1, size(system%equation)
          e = system%equation(b)

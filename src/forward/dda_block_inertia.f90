@@ -39,8 +39,9 @@ contains
       if (present(time)) start = time
       damping = damping_rate(settings, dt)
       equations%base = equations%elastic + (2.0_wp/dt**2 + damping/dt)*equations%mass
-      call outer_loads(system, settings, start, dt, equations%weight, equations%outer)
-      equations%force_scale = sum(abs(equations%outer(1:2, :)))
+      call outer_loads(system, settings, start, dt, equations%weight, equations%outer, &
+         & equations%felt)
+      equations%force_scale = sum(equations%felt(1:2, :))
       equations%gap_noise = 16.0_wp*epsilon(1.0_wp)*maxval(abs(system%moved))
       do b = 1, size(system%equation)
          e = system%equation(b)

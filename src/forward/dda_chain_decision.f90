@@ -1,5 +1,6 @@
 !> Does a chain stand: the same march of static steps to the same verdict as for any blocks
 module dda_chain_decision
+   use dda_balance, only : is_felt
    use dda_chain, only : chain_t
    use dda_chain_state, only : chain_step_t, new_chain_step
    use dda_chain_step, only : find_opening, go_on, lengthen_step, settle_chain
@@ -9,7 +10,7 @@ module dda_chain_decision
    use dda_settings, only : flow_rule, settings_t
    use dda_step_context, only : march_t, step_context_t
    use dda_step_interval, only : longest_static_step
-   use dda_verdict, only : is_felt, verdict
+   use dda_verdict, only : verdict
    implicit none
    private
 

@@ -58,6 +58,10 @@ module dda_step_context
       real(wp) :: farthest = 0.0_wp
       !> Largest acceleration of a point [m/s2]
       real(wp) :: acceleration = 0.0_wp
+      !> Largest share that the inertia of a block's translation and rotation has of its load
+      real(wp) :: residue = 0.0_wp
+      !> Largest share that the inertia of a block's strains has of what strains it
+      real(wp) :: strain_residue = 0.0_wp
       !> Work of the loads [J/m]
       real(wp) :: work = 0.0_wp
       !> Twice the kinetic energy that the work was turned into [J/m]

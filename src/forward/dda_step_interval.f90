@@ -1,6 +1,7 @@
 !> The length of a step (Shi: step)
 module dda_step_interval
    use dda_assembly, only : equations_t, solve_faces
+   use dda_balance, only : free_acceleration
    use dda_block_inertia, only : assemble_blocks, packed_velocity
    use dda_block_system, only : block_system_t
    use dda_error, only : error_t, fatal_error
@@ -38,6 +39,9 @@ module dda_step_interval
    real(wp), parameter :: too_far = 2.0_wp
    !> Most that free fall from rest may go in a step, over the size of the smallest block
    real(wp), parameter :: longest_fall = 0.25_wp
+   !> The elastic motion is this share of what strain makes of a block at the least: one that is
+   !> held at its centre does not move otherwise
+   real(wp), parameter :: least_of_strain = 0.1_wp
    !> Least ratio of the inertia 2 m/dt**2 to the penalty stiffness: beyond, rounding takes over
    real(wp), parameter :: least_inertia = 1.0e-13_wp
 
@@ -84,10 +88,13 @@ contains
          return
       end if
       call change_faces(equations, springs, state)
-      march%elastic_motion = largest_motion(system, state%motion)
+      march%free_acceleration = free_acceleration(system, equations)
+      march%last_acceleration = march%free_acceleration
+      march%elastic_motion = max(largest_motion(system, state%motion), &
+         & least_of_strain*straining_motion(system, state%motion))
       if (falls_glued(equations, state%motion, march%dt) .and. size(springs%stiffness) > 0) &
          & march%elastic_motion = min(march%elastic_motion, (1.0_wp + settings%penalty_ratio) &
-         & *sum(norm2(equations%weight(1:2, :), dim=1))/minval(springs%stiffness))
+         & *sum(norm2(equations%felt(1:2, :), dim=1))/minval(springs%stiffness))
       if (march%free_acceleration > 0.0_wp) march%dt = min(march%longest, &
          & sqrt(2.0_wp*first_fall*march%elastic_motion/march%free_acceleration))
       if (settings%time_step > 0.0_wp) march%dt = min(march%longest, settings%time_step)
@@ -150,7 +157,7 @@ contains
       integer :: e
 
       kinetic = 0.0_wp
-      work = sum(equations%weight*motion)
+      work = sum(equations%outer*motion)
       do e = 1, size(motion, 2)
          kinetic = kinetic + 2.0_wp/dt**2 &
             & *dot_product(motion(:, e), matmul(equations%mass(:, :, e), motion(:, e)))
@@ -294,6 +301,24 @@ contains
       end if
       march%dt = min(march%longest, factor*march%dt)
    end subroutine next_interval
+
+   !> Largest motion of a point at the radius of gyration by the strain of its block
+   pure function straining_motion(system, motion) result(largest)
+      !> The blocks
+      type(block_system_t), intent(in) :: system
+      !> Motion of the blocks: (n_dof, n_equation)
+      real(wp), intent(in) :: motion(:, :)
+      !> The largest motion [m]
+      real(wp) :: largest
+      integer :: b, e
+
+      largest = 0.0_wp
+      do b = 1, size(system%equation)
+         e = system%equation(b)
+         if (e > 0) largest = max(largest, norm2(motion(4:, e)) &
+            & *sqrt((system%second(1, b) + system%second(2, b))/system%area(b)))
+      end do
+   end function straining_motion
 
    !> Largest motion of the points of all blocks: of the centre, and of a point at the radius of
    !> gyration by rotation

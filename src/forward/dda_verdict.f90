@@ -1,6 +1,7 @@
 !> Does it stand, does it fall, or is it not known yet
 module dda_verdict
    use dda_assembly, only : equations_t
+   use dda_balance, only : measure_balance
    use dda_block_system, only : block_system_t
    use dda_deformation, only : displacement_matrix
    use dda_joint_springs, only : joint_springs_t
@@ -10,7 +11,7 @@ module dda_verdict
    implicit none
    private
 
-   public :: verdict, verdict_enum, measure_step, judge_verdict, largest_displacement, is_felt
+   public :: verdict, verdict_enum, measure_step, judge_verdict, largest_displacement
 
    !> Answers of an analysis
    type :: verdict_enum
@@ -39,10 +40,8 @@ module dda_verdict
    real(wp), parameter :: collapse_multiple = 100.0_wp
    !> What has moved as far and loses more than half of its acceleration in a step may come to rest
    real(wp), parameter :: slowing = 0.5_wp
-   !> A block of less than this share of the mean mass is light
-   real(wp), parameter :: light = 1.0e-2_wp
-   !> Share of the whole weight to which joint forces are balanced, with a margin of ten
-   real(wp), parameter :: left_over = 1.0e-12_wp
+   !> At rest the strains of every block are in balance but for this share of what strains it
+   real(wp), parameter :: unstrained = 1.0e-11_wp
    !> Where blocks move, rest is a step of this share of the displacement so far
    real(wp), parameter :: still = 1.0e-8_wp
    !> Or of this share at most, where rounding alone feigns it
@@ -64,11 +63,9 @@ contains
       type(step_context_t), intent(inout) :: step
       integer :: b, e, nd
 
+      call measure_balance(system, springs, equations, step)
       nd = size(equations%weight, 1)
       associate (motion => step%state%motion)
-         step%acceleration = 2.0_wp*step%farthest/step%dt**2
-         if (has_light_blocks(equations)) &
-            & step%acceleration = felt_acceleration(system, equations, motion, step%dt)
          step%work = sum(equations%outer*motion)
          step%kinetic = 0.0_wp
          step%stored = sum(sum(step%state%force**2 - force_before**2, dim=1) &
@@ -103,62 +100,9 @@ contains
       end do
    end function quadratic
 
-   !> Whether a block is so light that what the open-close loop leaves would move it
-   pure logical function has_light_blocks(equations)
-      !> The equations of the step
-      type(equations_t), intent(in) :: equations
-
-      associate (mass => equations%mass(1, 1, :))
-         has_light_blocks = minval(mass)*real(size(mass), wp) < light*sum(mass)
-      end associate
-   end function has_light_blocks
-
-   !> Largest acceleration of a point, without light blocks that no more than rounding moves: the
-   !> open-close loop balances forces to a share of the whole weight, not of each block's
-   pure function felt_acceleration(system, equations, motion, dt) result(largest)
-      !> The blocks
-      type(block_system_t), intent(in) :: system
-      !> The equations of the step
-      type(equations_t), intent(in) :: equations
-      !> Motion of the step: (n_dof, n_equation)
-      real(wp), intent(in) :: motion(:, :)
-      !> Length of the step [s]
-      real(wp), intent(in) :: dt
-      !> The acceleration [m/s2]
-      real(wp) :: largest
-      real(wp) :: acceleration, gyration, mean_mass, whole
-      integer :: b, e
-
-      whole = sum(abs(equations%weight(1:2, :)))
-      mean_mass = sum(equations%mass(1, 1, :))/real(size(equations%mass, 3), wp)
-      largest = 0.0_wp
-      do b = 1, size(system%equation)
-         e = system%equation(b)
-         if (e == 0) cycle
-         gyration = sqrt((system%second(1, b) + system%second(2, b))/system%area(b))
-         acceleration = (norm2(motion(1:2, e)) + gyration*abs(motion(3, e)))*2.0_wp/dt**2
-         if (is_felt(equations%mass(1, 1, e), mean_mass, whole, acceleration)) &
-            & largest = max(largest, acceleration)
-      end do
-   end function felt_acceleration
-
-   !> Whether the acceleration of a block is more than the open-close loop may leave to a light one
-   elemental logical function is_felt(mass, mean_mass, whole, acceleration)
-      !> Mass of the block [kg/m]
-      real(wp), intent(in) :: mass
-      !> Mean mass of all blocks [kg/m]
-      real(wp), intent(in) :: mean_mass
-      !> Sum of all loads [N/m]
-      real(wp), intent(in) :: whole
-      !> Acceleration of the block [m/s2]
-      real(wp), intent(in) :: acceleration
-
-      is_felt = mass >= light*mean_mass .or. mass*acceleration >= left_over*whole
-   end function is_felt
-
    !> Judge a static run by its last two steps.
-   !> It stands if the joint forces balance the full load but for a residue that would accelerate no
-   !> point noticeably. It falls if the blocks have fallen far beyond any elastic motion, and the
+   !> It stands if the joint forces balance the full load of every block but for a negligible share,
+   !> and its strains. It falls if the blocks have fallen far beyond any elastic motion, and the
    !> loads' work turns into speed alone, or acceleration is steady while no energy is stored; or,
    !> where a displacement that means collapse is set, if a corner has moved as far. What rests once
    !> a block has fallen does not stand
@@ -177,7 +121,7 @@ contains
 
       far = settings%collapse_displacement
       if (settings%current .and. .not. far > 0.0_wp) far = collapse_multiple*march%elastic_motion
-      at_rest = step%acceleration <= settings%rest_tolerance*march%free_acceleration
+      at_rest = step%residue <= settings%rest_tolerance .and. step%strain_residue <= unstrained
       fall = march%free_acceleration*step%dt**2/2.0_wp
       ! what slides must itself have moved that far, for joints settle in their slips for a while
       far_beyond_elastic = fall >= beyond_elastic*march%elastic_motion &

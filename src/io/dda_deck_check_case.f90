@@ -32,8 +32,11 @@ contains
       call check_model(deck, searched, error)
       if (.not. allocated(error)) call check_use(deck, error)
       if (allocated(error)) return
+      ! files of blocks have loads of their own
       if (.not. keeps_velocities(deck) .and. .not. (real_of(deck, "load", "gravity") > 0.0_wp .or. &
-         is_given(deck, "material", "unit_weight") .or. is_given(deck, "scene", "analysis"))) then
+         is_given(deck, "material", "unit_weight") .or. is_given(deck, "scene", "analysis") .or. &
+         word_of(deck, "scene", "kind") == "blocks" .and. &
+         word_of(deck, "analysis", "mode") /= "limerick")) then
          call deck_error(error, "a static analysis wants a weight: load%gravity is 0 and "// &
             "material%unit_weight is not given; give one of them", deck, &
             deck%value(key_index("load", "gravity"))%place)

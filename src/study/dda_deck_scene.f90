@@ -268,6 +268,8 @@ contains
          if (allocated(error)) return
          if (word_of(deck, "analysis", "mode") == "static") &
             & call check_support(deck, scene, error)
+         if (word_of(deck, "analysis", "mode") == "static" .and. .not. allocated(error)) &
+            & call check_loads(deck, scene, error)
          if (warns .and. .not. allocated(error)) call doubt_scene(deck, scene, warnings)
       end select
    end subroutine check_mode
@@ -296,6 +298,29 @@ contains
          call check_restart(file_beside(deck, name), error)
       end if
    end subroutine check_start
+
+   !> Whether anything bears on the blocks of a static scene
+   pure subroutine check_loads(deck, scene, error)
+      !> The deck of a case
+      type(deck_t), intent(in) :: deck
+      !> Its scene
+      type(scene_t), intent(in) :: scene
+      !> Allocated if nothing does
+      type(error_t), allocatable, intent(out) :: error
+      integer :: i
+
+      if (any(scene%system%unit_weight > 0.0_wp)) return
+      if (any(abs(scene%system%initial_stress) > 0.0_wp)) return
+      associate (boundary => scene%settings%boundary)
+         if (size(boundary%loaded) > 0 .or. allocated(boundary%base_acceleration%time)) return
+         do i = 1, size(boundary%held)
+            if (.not. allocated(boundary%held(i)%path%value)) cycle
+            if (any(abs(boundary%held(i)%path%value) > 0.0_wp)) return
+         end do
+      end associate
+      call fatal_error(error, "expected a load, got none: load%gravity is 0, no material has a "// &
+         & "unit_weight, and no point is loaded or led; add one", geometry_file(deck), 1)
+   end subroutine check_loads
 
    !> Check that a static scene can come to rest at all
    pure subroutine check_support(deck, scene, error)

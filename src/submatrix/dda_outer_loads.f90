@@ -16,7 +16,7 @@ contains
 
    !> Loads that change with time added to those that do not: their mean over a dynamic step, what
    !> they are at the end of a static one
-   pure subroutine outer_loads(system, settings, time, dt, weight, load)
+   pure subroutine outer_loads(system, settings, time, dt, weight, load, felt)
       !> The blocks
       type(block_system_t), intent(in) :: system
       !> Settings of the run
@@ -29,11 +29,14 @@ contains
       real(wp), intent(in) :: weight(:, :)
       !> Sum of all loads: (n_dof, n_equation)
       real(wp), intent(out) :: load(:, :)
+      !> Sum of their sizes: (n_dof, n_equation)
+      real(wp), intent(out) :: felt(:, :)
       real(wp) :: of_block(6), shaking(2)
       integer :: b, e, i, nd
 
       nd = size(load, 1)
       load = weight
+      felt = abs(weight)
       shaking = -now(settings%boundary%base_acceleration)
       if (any(abs(shaking) > 0.0_wp)) then
          do b = 1, size(system%equation)
@@ -41,6 +44,7 @@ contains
             if (e == 0) cycle
             of_block = body_load(system%density(b)*shaking, system%area(b))
             load(:, e) = load(:, e) + of_block(:nd)
+            felt(:, e) = felt(:, e) + abs(of_block(:nd))
          end do
       end if
       if (.not. allocated(settings%boundary%loaded)) return
@@ -49,6 +53,7 @@ contains
          if (e == 0) cycle
          of_block = load_at(settings%boundary%loaded(i), now(settings%boundary%loaded(i)%force))
          load(:, e) = load(:, e) + of_block(:nd)
+         felt(:, e) = felt(:, e) + abs(of_block(:nd))
       end do
 
    contains

@@ -1,0 +1,168 @@
+!> How far the blocks are from balance in a step: the inertia of its motion, which is what no force
+!> balances, in translation and rotation and in strain, each against the load that it is part of
+module dda_balance
+   use dda_assembly, only : equations_t
+   use dda_block_system, only : block_system_t
+   use dda_joint_springs, only : joint_springs_t
+   use dda_kinds, only : wp
+   use dda_step_context, only : step_context_t
+   implicit none
+   private
+
+   public :: free_acceleration, is_felt, measure_balance
+
+   !> A block that bears less than this share of the mean load, or of the mean mass, is light
+   real(wp), parameter :: light = 1.0e-2_wp
+   !> Share of forces to which joint forces are balanced, with a margin of ten
+   real(wp), parameter :: left_over = 1.0e-12_wp
+   !> What is left over of the whole load may be this share of a light block's own
+   real(wp), parameter :: felt_share = 1.0e-3_wp
+
+contains
+
+   !> Largest acceleration that the loads would give to free blocks
+   pure real(wp) function free_acceleration(system, equations)
+      !> The blocks
+      type(block_system_t), intent(in) :: system
+      !> The equations, with all loads
+      type(equations_t), intent(in) :: equations
+
+      free_acceleration = maxval(own_load(system, equations)/equations%mass(1, 1, :))
+   end function free_acceleration
+
+   !> Sizes of the loads from outside on each block: forces, and moments over its radius of gyration
+   pure function own_load(system, equations) result(own)
+      !> The blocks
+      type(block_system_t), intent(in) :: system
+      !> The equations, with all loads
+      type(equations_t), intent(in) :: equations
+      !> The loads: (n_equation) [N/m]
+      real(wp) :: own(size(equations%felt, 2))
+      integer :: b, e
+
+      do b = 1, size(system%equation)
+         e = system%equation(b)
+         if (e == 0) cycle
+         own(e) = norm2(equations%felt(1:2, e)) + equations%felt(3, e)/gyration(system, b)
+      end do
+   end function own_load
+
+   !> Radius of gyration of a block
+   pure real(wp) function gyration(system, b)
+      !> The blocks
+      type(block_system_t), intent(in) :: system
+      !> Number of the block
+      integer, intent(in) :: b
+
+      gyration = sqrt((system%second(1, b) + system%second(2, b))/system%area(b))
+   end function gyration
+
+   !> Acceleration of a settled step, and how far it is from balance
+   pure subroutine measure_balance(system, springs, equations, step)
+      !> The blocks before the step
+      type(block_system_t), intent(in) :: system
+      !> The springs of the joints
+      type(joint_springs_t), intent(in) :: springs
+      !> The equations of the step
+      type(equations_t), intent(in) :: equations
+      !> The step; acceleration and residues are set
+      type(step_context_t), intent(inout) :: step
+      real(wp) :: around(size(equations%felt, 1), size(equations%felt, 2))
+      real(wp) :: own(size(equations%felt, 2)), acceleration, mean, residue, whole
+      integer :: b, e
+
+      around = forces_around(springs, equations, step)
+      own = own_load(system, equations)
+      mean = sum(own)/real(size(own), wp)
+      whole = sum(abs(equations%felt(1:2, :))) + sum(abs(equations%fixed%force))
+      step%acceleration = 0.0_wp
+      step%residue = 0.0_wp
+      do b = 1, size(system%equation)
+         e = system%equation(b)
+         if (e == 0) cycle
+         associate (motion => step%state%motion(:, e))
+            acceleration = (norm2(motion(1:2)) + gyration(system, b)*abs(motion(3))) &
+               & *2.0_wp/step%dt**2
+         end associate
+         residue = equations%mass(1, 1, e)*acceleration
+         if (own(e) <= light*mean) then
+            if (residue <= max(left_over*sum(around(1:2, e)), min(left_over*whole, &
+               & felt_share*own(e)))) cycle
+         end if
+         step%acceleration = max(step%acceleration, acceleration)
+         step%residue = max(step%residue, residue/max(own(e), tiny(residue)))
+      end do
+      call measure_strain(system, equations, around, step)
+   end subroutine measure_balance
+
+   !> How far the strains are from balance: the largest share that their inertia has of all that
+   !> strains a block
+   pure subroutine measure_strain(system, equations, around, step)
+      !> The blocks before the step
+      type(block_system_t), intent(in) :: system
+      !> The equations of the step
+      type(equations_t), intent(in) :: equations
+      !> Sizes of the forces around each block: (n_dof, n_equation)
+      real(wp), intent(in) :: around(:, :)
+      !> The step; the residue of its strains is set
+      type(step_context_t), intent(inout) :: step
+      real(wp) :: own, residue
+      integer :: b, e
+
+      step%strain_residue = 0.0_wp
+      if (size(around, 1) < 6) return
+      do b = 1, size(system%equation)
+         e = system%equation(b)
+         if (e == 0) cycle
+         residue = maxval(abs(matmul(equations%mass(4:6, 4:6, e), step%state%motion(4:6, e)))) &
+            & *2.0_wp/step%dt**2
+         own = maxval(around(4:6, e) + abs(system%stress(:, b))*system%area(b))
+         if (residue > 0.0_wp) step%strain_residue = max(step%strain_residue, &
+            & residue/max(own, tiny(residue)))
+      end do
+   end subroutine measure_strain
+
+   !> Sizes of all forces around the blocks, as their unknowns feel them: loads from outside, forces
+   !> of joints and of held points
+   pure function forces_around(springs, equations, step) result(around)
+      !> The springs of the joints
+      type(joint_springs_t), intent(in) :: springs
+      !> The equations of the step
+      type(equations_t), intent(in) :: equations
+      !> The step
+      type(step_context_t), intent(in) :: step
+      !> The forces: (n_dof, n_equation)
+      real(wp) :: around(size(equations%felt, 1), size(equations%felt, 2))
+      integer :: i, j, side
+
+      around = equations%felt
+      do j = 1, size(springs%stiffness)
+         do side = 1, 2
+            associate (e => springs%equation(side, j))
+               if (e > 0) around(:, e) = around(:, e) + matmul(abs(springs%row(:, :, side, j)), &
+                  & abs(step%state%force(:, j)))
+            end associate
+         end do
+      end do
+      associate (fixed => equations%fixed)
+         do i = 1, size(fixed%force)
+            around(:, fixed%equation(i)) = around(:, fixed%equation(i)) &
+               & + abs(fixed%row(:, i)*fixed%force(i))
+         end do
+      end associate
+   end function forces_around
+
+   !> Whether the acceleration of a block is more than the open-close loop may leave to a light one
+   elemental logical function is_felt(mass, mean_mass, whole, acceleration)
+      !> Mass of the block [kg/m]
+      real(wp), intent(in) :: mass
+      !> Mean mass of all blocks [kg/m]
+      real(wp), intent(in) :: mean_mass
+      !> Sum of all loads [N/m]
+      real(wp), intent(in) :: whole
+      !> Acceleration of the block [m/s2]
+      real(wp), intent(in) :: acceleration
+
+      is_felt = mass >= light*mean_mass .or. mass*acceleration >= left_over*whole
+   end function is_felt
+end module dda_balance
