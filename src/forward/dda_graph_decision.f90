@@ -7,6 +7,7 @@
 module dda_graph_decision
    use dda_block_strain, only : strain_blocks
    use dda_block_system, only : block_system_t
+   use dda_boundary, only : value_at
    use dda_contact_detection, only : contacts_t
    use dda_contact_types, only : joint_t
    use dda_friction_cone, only : joint_face_t
@@ -111,9 +112,10 @@ contains
       call loads_at(stations, ubound(stations%tilt, 1), settings, system, graph, load, opening)
       call decide_load(graph, load, decision)
       verdict%n_factorisation = decision%n_factorisation
-      if (decision%state == load_state%falls .and. .not. decision%power > settings%rest_tolerance &
-         & *sum(norm2(load(1:2, :), dim=1)*norm2(decision%velocity(1:2, :), dim=1))) &
-         & decision%state = load_state%undecided
+      if (decision%state == load_state%falls) then
+         if (.not. decision%power > settings%rest_tolerance*power_of_all(settings, system, &
+            & decision%velocity)) decision%state = load_state%undecided
+      end if
       if (decision%state == load_state%falls) then
          verdict%end = path_end%collapsed
          call move_alloc(decision%velocity, verdict%mechanism)
@@ -140,6 +142,35 @@ contains
          verdict = path
       end if
    end subroutine decide_graph
+
+   !> What all weights and forces could do if each went along with the motion: beside it, power that
+   !> rounded coordinates make is nothing
+   pure real(wp) function power_of_all(settings, system, velocity) result(power)
+      !> Settings of the run
+      type(settings_t), intent(in) :: settings
+      !> The blocks
+      type(block_system_t), intent(in) :: system
+      !> Velocities of the blocks: (3, n_block)
+      real(wp), intent(in) :: velocity(:, :)
+      real(wp) :: force(size(system%equation)), gyration
+      integer :: b, e, i
+
+      force = system%unit_weight*system%area
+      if (allocated(settings%boundary%loaded)) then
+         do i = 1, size(settings%boundary%loaded)
+            b = settings%boundary%loaded(i)%block
+            force(b) = force(b) + norm2(value_at(settings%boundary%loaded(i)%force, &
+               & last_history_time(settings)))
+         end do
+      end if
+      power = 0.0_wp
+      do b = 1, size(force)
+         e = system%equation(b)
+         if (e == 0) cycle
+         gyration = sqrt((system%second(1, b) + system%second(2, b))/system%area(b))
+         power = power + force(b)*(norm2(velocity(1:2, e)) + gyration*abs(velocity(3, e)))
+      end do
+   end function power_of_all
 
    !> The mechanism in which what has fallen fell first, as what is live grew to its value
    pure subroutine find_first(settings, system, graph, stations, verdict)

@@ -312,11 +312,16 @@ contains
       if (any(scene%system%unit_weight > 0.0_wp)) return
       if (any(abs(scene%system%initial_stress) > 0.0_wp)) return
       associate (boundary => scene%settings%boundary)
-         if (size(boundary%loaded) > 0 .or. allocated(boundary%base_acceleration%time)) return
-         do i = 1, size(boundary%held)
-            if (.not. allocated(boundary%held(i)%path%value)) cycle
-            if (any(abs(boundary%held(i)%path%value) > 0.0_wp)) return
-         end do
+         if (allocated(boundary%base_acceleration%time)) return
+         if (allocated(boundary%loaded)) then
+            if (size(boundary%loaded) > 0) return
+         end if
+         if (allocated(boundary%held)) then
+            do i = 1, size(boundary%held)
+               if (.not. allocated(boundary%held(i)%path%value)) cycle
+               if (any(abs(boundary%held(i)%path%value) > 0.0_wp)) return
+            end do
+         end if
       end associate
       call fatal_error(error, "expected a load, got none: load%gravity is 0, no material has a "// &
          & "unit_weight, and no point is loaded or led; add one", geometry_file(deck), 1)

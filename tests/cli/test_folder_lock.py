@@ -16,7 +16,10 @@ from pathlib import Path
 import pytest
 from dda_command import run_dda
 
-LONG = "&search /\n&sweep parameter = 'half_angle_deg', first = 40, last = 100, count = {} /\n"
+LONG = """&search /
+&output joints = .true., blocks = .true. /
+&sweep parameter = 'half_angle_deg', first = 40, last = 100, count = {} /
+"""
 SHORT = "&arch thickness_ratio = 0.12, voussoirs = 8 /\n"
 
 

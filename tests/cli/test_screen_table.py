@@ -123,7 +123,7 @@ def test_cases_are_shown_in_order_whoever_computes_them(tmp_path: Path, jobs: st
 def test_of_many_cases_the_undecided_ones_are_shown_in_order(tmp_path: Path, jobs: str) -> None:
     steps = ", ".join(["400", "1", "400", "1", "400"] * 30)
     text = f"&arch thickness_ratio = 0.12 /\n&sweep parameter = 'steps', values = {steps} /\n"
-    text += "&analysis unknowns = 6 /\n"
+    text += "&analysis geometry = 'current' /\n"
     head, *rows = table_of(tmp_path, text, "--jobs", jobs, status=3)
     assert head.split()[:3] == ["case", "steps", "verdict"]
     told = [row.split() for row in rows if row.split()[0].isdigit()]
@@ -143,7 +143,10 @@ def test_a_resumed_run_shows_what_it_computes_in_order(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("columns", [1, 9, 20, 40, 61, 80, 101, 132, 250, 0])
-@pytest.mark.parametrize("text", [SEARCH + THREE, WIDE, "&arch thickness_ratio = 0.12 /\n&analysis steps = 1 /\n"])
+@pytest.mark.parametrize(
+    "text",
+    [SEARCH + THREE, WIDE, "&arch thickness_ratio = 0.12 /\n&analysis geometry = 'current', steps = 1 /\n"],
+)
 def test_no_line_is_wider_than_the_terminal(tmp_path: Path, text: str, columns: int) -> None:
     lines = [line for line in on_terminal(tmp_path, text, columns, {"COLUMNS": ""})
              if not line.startswith("deck.nml: ")]
@@ -182,7 +185,7 @@ def test_a_file_gets_at_most_100_columns(tmp_path: Path) -> None:
 
 
 def test_long_reasons_go_on_in_the_next_line(tmp_path: Path) -> None:
-    text = "&search /\n&analysis unknowns = 6, steps = 1 /\n"
+    text = "&search /\n&analysis geometry = 'current', steps = 1 /\n"
     lines = on_terminal(tmp_path, text, 30, {})
     (log,) = (tmp_path / "deck/log.txt").read_text().splitlines()[1:]
     reason = log.removeprefix("1 undecided ")
