@@ -50,10 +50,12 @@ contains
    pure subroutine sort_numbers(number)
       !> The numbers: (n)
       integer, intent(inout) :: number(:)
+      integer, allocatable :: order(:)
       integer :: i, j, this
 
       if (size(number) >= few) then
-         number = number(rising_order(int(number, int64)))
+         order = rising_order(int(number, int64))
+         number = number(order)
          return
       end if
       do i = 2, size(number)

@@ -3,7 +3,7 @@
 module dda_contact_search
    use, intrinsic :: iso_fortran_env, only : int64
    use dda_block_system, only : block_system_t
-   use dda_box_tree, only : box_pairs
+   use dda_box_tree, only : box_tree_t, least_nearby, least_values, new_box_tree
    use dda_contact_types, only : joint_t
    use dda_edge_pairs, only : edge_pairs_t, find_edge_pairs, remember_edge_pairs
    use dda_entrance, only : add_joints, joint_list_t, neighbourhood_t
@@ -74,8 +74,9 @@ contains
       !> The least reach: (n_block) [m]
       real(wp) :: least(size(reach))
       real(wp) :: high(2, size(reach)), low(2, size(reach))
-      integer, allocatable :: pair(:, :)
-      integer :: b, k
+      real(wp), allocatable :: least_below(:)
+      type(box_tree_t) :: tree
+      integer :: b
 
       do b = 1, size(reach)
          associate (vertex => system%vertex(:, &
@@ -84,13 +85,11 @@ contains
             high(:, b) = maxval(vertex, dim=2) + reach(b)
          end associate
       end do
-      call box_pairs(low, high, [(b, b=1, size(reach))], pair)
+      call new_box_tree(low, high, tree)
+      call least_values(tree, reach, least_below)
       least = reach
-      do k = 1, size(pair, 2)
-         associate (i => pair(1, k), j => pair(2, k))
-            least(i) = min(least(i), reach(j))
-            least(j) = min(least(j), reach(i))
-         end associate
+      do b = 1, size(reach)
+         call least_nearby(tree, least_below, low(:, b), high(:, b), least(b))
       end do
    end function least_beside
 

@@ -1,13 +1,15 @@
 !> Which of many boxes overlap: a balanced tree of boxes; n log n whatever their sizes and wherever
 !> they are
 module dda_box_tree
+   use, intrinsic :: iso_fortran_env, only : int64
    use dda_growth, only : make_room
    use dda_kinds, only : wp
    use dda_sort, only : sort_numbers
    implicit none
    private
 
-   public :: box_distance, box_pairs, box_tree_t, boxes_along, find_boxes, max_levels, new_box_tree
+   public :: box_distance, box_pairs, box_tree_t, boxes_along, find_boxes, least_nearby
+   public :: least_values, max_levels, new_box_tree
 
    !> Levels that a tree can have
    integer, parameter :: max_levels = 64
@@ -28,7 +30,8 @@ module dda_box_tree
 
 contains
 
-   !> Pairs of boxes of different groups that overlap or touch, sorted
+   !> Pairs of boxes of different groups that overlap or touch, sorted. Group 0 may be large, and
+   !> its boxes may lie upon one another
    pure subroutine box_pairs(low, high, group, pair)
       !> Lower left corners: (2, n) [m]
       real(wp), intent(in) :: low(:, :)
@@ -39,14 +42,21 @@ contains
       !> The pairs, the first smaller than the second: (2, n_pair)
       integer, allocatable, intent(out) :: pair(:, :)
       type(box_tree_t) :: tree
-      integer, allocatable :: found(:, :), wider(:, :), near(:)
+      integer, allocatable :: found(:, :), wider(:, :), near(:), other_last(:)
       integer :: i, k, n, n_near
 
       allocate (found(2, 8*size(group) + 8))
       n = 0
-      if (size(group) > 1) call new_box_tree(low, high, tree)
+      if (size(group) > 1) then
+         call new_box_tree(low, high, tree)
+         call last_numbers(tree, group /= 0, other_last)
+      end if
       do i = 1, merge(size(group), 0, size(group) > 1)
-         call find_boxes(tree, low(:, i), high(:, i), near, n_near, above=i)
+         if (group(i) == 0) then
+            call find_boxes(tree, low(:, i), high(:, i), near, n_near, i, other_last)
+         else
+            call find_boxes(tree, low(:, i), high(:, i), near, n_near, i)
+         end if
          call sort_numbers(near(:n_near))
          if (n + n_near > size(found, 2)) then
             allocate (wider(2, 2*n + n_near))
@@ -64,7 +74,7 @@ contains
    end subroutine box_pairs
 
    !> Boxes that overlap or touch another box, or meet a segment
-   pure subroutine find_boxes(tree, low, high, found, n, above, segment, margin)
+   pure subroutine find_boxes(tree, low, high, found, n, above, last, segment, margin)
       !> The tree
       type(box_tree_t), intent(in) :: tree
       !> Lower left corner of the other box: (2) [m]
@@ -77,6 +87,9 @@ contains
       integer, intent(out) :: n
       !> Only boxes of a larger number than this
       integer, intent(in), optional :: above
+      !> Largest number below each node of those boxes that are wanted; without it all are:
+      !> (2*n_leaf - 1)
+      integer, intent(in), optional :: last(:)
       !> Only boxes that this segment inside the other box meets: (4) [m]
       real(wp), intent(in), optional :: segment(4)
       !> Distance within which it does [m]
@@ -96,6 +109,9 @@ contains
          node = stack(top)
          top = top - 1
          if (tree%last(node) <= least) cycle
+         if (present(last)) then
+            if (last(node) <= least) cycle
+         end if
          if (tree%low(1, node) > high(1) .or. tree%low(2, node) > high(2)) cycle
          if (tree%high(1, node) < low(1) .or. tree%high(2, node) < low(2)) cycle
          if (present(segment)) then
@@ -112,6 +128,55 @@ contains
          found(n) = tree%box(node - tree%n_leaf + 1)
       end do
    end subroutine find_boxes
+
+   !> The least value of the boxes that overlap or touch another one, of which it is the first guess
+   pure subroutine least_nearby(tree, least, low, high, value)
+      !> The tree
+      type(box_tree_t), intent(in) :: tree
+      !> Least value below each node: (2*n_leaf - 1)
+      real(wp), intent(in) :: least(:)
+      !> Lower left corner of the other box: (2) [m]
+      real(wp), intent(in) :: low(2)
+      !> Upper right corner: (2) [m]
+      real(wp), intent(in) :: high(2)
+      !> The guess in, the least of all out
+      real(wp), intent(inout) :: value
+      integer :: stack(max_levels), top, node
+
+      top = 1
+      stack(1) = 1
+      do while (top > 0)
+         node = stack(top)
+         top = top - 1
+         if (least(node) >= value) cycle
+         if (any(tree%low(:, node) > high .or. tree%high(:, node) < low)) cycle
+         if (node < tree%n_leaf) then
+            stack(top + 1:top + 2) = [2*node + 1, 2*node]
+            top = top + 2
+         else
+            value = least(node)
+         end if
+      end do
+   end subroutine least_nearby
+
+   !> Least value of the boxes below each node; huge where there is none
+   pure subroutine least_values(tree, value, least)
+      !> The tree
+      type(box_tree_t), intent(in) :: tree
+      !> Value of each box: (n)
+      real(wp), intent(in) :: value(:)
+      !> The least values: (2*n_leaf - 1)
+      real(wp), allocatable, intent(out) :: least(:)
+      integer :: i
+
+      allocate (least(2*tree%n_leaf - 1), source=huge(1.0_wp))
+      do i = 1, tree%n_leaf
+         if (tree%box(i) > 0) least(tree%n_leaf - 1 + i) = value(tree%box(i))
+      end do
+      do i = tree%n_leaf - 1, 1, -1
+         least(i) = min(least(2*i), least(2*i + 1))
+      end do
+   end subroutine least_values
 
    !> Boxes that a segment meets, or a point where both its ends are one, in rising order
    pure function boxes_along(tree, segment) result(box)
@@ -181,7 +246,6 @@ contains
       allocate (tree%box(tree%n_leaf), source=0)
       allocate (tree%low(2, 2*tree%n_leaf - 1), source=huge(1.0_wp))
       allocate (tree%high(2, 2*tree%n_leaf - 1), source=-huge(1.0_wp))
-      allocate (tree%last(2*tree%n_leaf - 1), source=0)
       allocate (centre(2, size(low, 2)), item(size(low, 2)))
       centre = low/2.0_wp + high/2.0_wp
       item = [(i, i=1, size(item))]
@@ -189,17 +253,36 @@ contains
       do i = 1, tree%n_leaf
          if (tree%box(i) == 0) cycle
          associate (leaf => tree%n_leaf - 1 + i, box => tree%box(i))
-            tree%last(leaf) = box
             tree%low(:, leaf) = low(:, box)
             tree%high(:, leaf) = high(:, box)
          end associate
       end do
       do i = tree%n_leaf - 1, 1, -1
-         tree%last(i) = max(tree%last(2*i), tree%last(2*i + 1))
          tree%low(:, i) = min(tree%low(:, 2*i), tree%low(:, 2*i + 1))
          tree%high(:, i) = max(tree%high(:, 2*i), tree%high(:, 2*i + 1))
       end do
+      call last_numbers(tree, [(.true., i=1, size(item))], tree%last)
    end subroutine new_box_tree
+
+   !> Largest number of a box below each node, of the boxes that count; 0 if there is none
+   pure subroutine last_numbers(tree, counts, last)
+      !> The tree
+      type(box_tree_t), intent(in) :: tree
+      !> Which boxes count: (n)
+      logical, intent(in) :: counts(:)
+      !> The numbers: (2*n_leaf - 1)
+      integer, allocatable, intent(out) :: last(:)
+      integer :: i
+
+      allocate (last(2*tree%n_leaf - 1), source=0)
+      do i = 1, tree%n_leaf
+         if (tree%box(i) == 0) cycle
+         if (counts(tree%box(i))) last(tree%n_leaf - 1 + i) = tree%box(i)
+      end do
+      do i = tree%n_leaf - 1, 1, -1
+         last(i) = max(last(2*i), last(2*i + 1))
+      end do
+   end subroutine last_numbers
 
    !> Give the leaves below a node their boxes
    pure recursive subroutine fill_leaves(centre, item, node, tree)
@@ -225,7 +308,8 @@ contains
       call fill_leaves(centre(:, half + 1:), item(half + 1:), 2*node + 1, tree)
    end subroutine fill_leaves
 
-   !> Bring the boxes with the smaller coordinates to the front (Hoare 1961)
+   !> Bring the boxes with the smaller coordinates to the front (Hoare 1961). Boxes come in all
+   !> kinds of orders: a place drawn by lot is as good in each of them
    pure subroutine part_at(centre, item, axis, n)
       !> Centres of the boxes: (2, :) [m]
       real(wp), intent(inout) :: centre(:, :)
@@ -236,14 +320,15 @@ contains
       !> How many come to the front
       integer, intent(in) :: n
       real(wp) :: middle
+      integer(int64) :: lot
       integer :: first, last, i, j
 
+      lot = 20080301_int64
       first = 1
       last = size(item)
       do while (first < last)
-         middle = centre(axis, (first + last)/2)
-         middle = max(min(centre(axis, first), middle), &
-            & min(max(centre(axis, first), middle), centre(axis, last)))
+         lot = modulo(48271_int64*lot, 2147483647_int64)
+         middle = centre(axis, first + int(modulo(lot, int(last - first + 1, int64))))
          i = first
          j = last
          do

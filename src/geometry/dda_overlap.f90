@@ -187,6 +187,7 @@ contains
       !> The shares: (n_cut)
       real(wp), allocatable, intent(out) :: cut(:)
       real(wp) :: share(size(near) + 3), other(4), b(2), c(2), area, way
+      integer, allocatable :: order(:)
       integer :: i, n
 
       n = 3
@@ -201,6 +202,8 @@ contains
          n = n + 1
          share(n) = way/abs(area)
       end do
-      allocate (cut, source=share(sorted_order(spread(0, 1, n), share(:n))))
+      allocate (order(n), cut(n))
+      order = sorted_order(spread(0, 1, n), share(:n))
+      cut = share(order)
    end subroutine cut_edge
 end module dda_overlap

@@ -214,7 +214,7 @@ contains
       !> Ends of each part: (2, 2*n_part) [m]
       real(wp), allocatable :: part(:, :)
       real(wp), allocatable :: place(:)
-      integer, allocatable :: near(:)
+      integer, allocatable :: near(:), order(:)
       real(wp) :: point(2, 2), along(2), from, length
       integer :: i, j, n, n_near, met
 
@@ -232,7 +232,9 @@ contains
             place(n) = dot_product(point(:, j) - segment(1:2), along)
          end do
       end do
-      place = place(sorted_order(spread(0, 1, n), place(:n)))
+      allocate (order(n))
+      order = sorted_order(spread(0, 1, n), place(:n))
+      place(:n) = place(order)
       allocate (part(2, 2*n))
       j = 0
       from = 0.0_wp
