@@ -3,6 +3,7 @@
 module dda_entrance
    use, intrinsic :: iso_fortran_env, only : int64
    use dda_contact_types, only : contact_t, joint_t
+   use dda_key_set, only : add_key, has_key, key_set_t, new_key_set
    use dda_kinds, only : wp
    use dda_outline, only : corner_view_t, edge_direction, edge_length, is_convex, outline_t
    use dda_outline, only : view_corner
@@ -73,24 +74,24 @@ contains
       real(wp), intent(in) :: reach
       !> Receives the joints
       type(joint_list_t), intent(inout) :: list
-      integer(int64) :: taken(5*size(edge_pair, 2))
-      integer :: i, n_taken
+      type(key_set_t) :: taken
+      integer :: i
 
-      n_taken = 0
+      call new_key_set(taken, 5*size(edge_pair, 2))
       do i = 1, size(edge_pair, 2)
-         call join_edges(near, edge_pair(:, i), reach, taken, n_taken, list)
+         call join_edges(near, edge_pair(:, i), reach, taken, list)
       end do
       do i = 1, size(edge_pair, 2)
-         call join_corner(near, edge_pair(1, i), edge_pair(2, i), 2, reach, taken, n_taken, list)
-         call join_corner(near, edge_pair(2, i), edge_pair(1, i), 1, reach, taken, n_taken, list)
+         call join_corner(near, edge_pair(1, i), edge_pair(2, i), 2, reach, taken, list)
+         call join_corner(near, edge_pair(2, i), edge_pair(1, i), 1, reach, taken, list)
       end do
       do i = 1, size(edge_pair, 2)
-         call join_corners(near, edge_pair(:, i), reach, taken, n_taken, list)
+         call join_corners(near, edge_pair(:, i), reach, taken, list)
       end do
    end subroutine add_joints
 
    !> Join two edges that lie together: the overlap ends at a corner of the one or of the other
-   pure subroutine join_edges(near, pair, reach, taken, n_taken, list)
+   pure subroutine join_edges(near, pair, reach, taken, list)
       !> The neighbourhood
       type(neighbourhood_t), intent(in) :: near
       !> Edge of the first block, edge of the second: (2)
@@ -98,14 +99,13 @@ contains
       !> Gaps wider than this are no matter [m]
       real(wp), intent(in) :: reach
       !> Keys of the contacts that belong to a joint
-      integer(int64), intent(inout) :: taken(:)
-      !> Their number
-      integer, intent(inout) :: n_taken
+      type(key_set_t), intent(inout) :: taken
       !> Receives the joint
       type(joint_list_t), intent(inout) :: list
       type(joint_t) :: joint
       type(corner_view_t) :: view
       real(wp) :: first(2), second(2), direction(2), from(2), to(2), angle, length, shorter
+      integer(int64) :: key(2)
       integer :: corner(2), edge(2), k
 
       associate (v => near%vertex, next => near%outline%next)
@@ -134,9 +134,10 @@ contains
          if (abs(view%gap) > reach) return
          joint%contact(k) = new_contact(near, corner(k), edge(k), &
             & merge(1, 2, edge(k) == pair(1)), length/2.0_wp)
-         taken(n_taken + k) = contact_key(corner(k), edge(k), size(near%vertex, 2))
+         key(k) = contact_key(corner(k), edge(k), size(near%vertex, 2))
       end do
-      n_taken = n_taken + 2
+      call add_key(taken, key(1))
+      call add_key(taken, key(2))
       call add_joint(near, pair, joint, list)
    end subroutine join_edges
 
@@ -170,7 +171,7 @@ contains
    end subroutine choose_end
 
    !> Join a corner and an edge that it points to, away from the edge's own corners
-   pure subroutine join_corner(near, corner, edge, edge_side, reach, taken, n_taken, list)
+   pure subroutine join_corner(near, corner, edge, edge_side, reach, taken, list)
       !> The neighbourhood
       type(neighbourhood_t), intent(in) :: near
       !> Number of the corner
@@ -182,14 +183,11 @@ contains
       !> Gaps wider than this are no matter [m]
       real(wp), intent(in) :: reach
       !> Keys of the contacts that belong to a joint
-      integer(int64), intent(inout) :: taken(:)
-      !> Their number
-      integer, intent(inout) :: n_taken
+      type(key_set_t), intent(inout) :: taken
       !> Receives the joint
       type(joint_list_t), intent(inout) :: list
       type(corner_view_t) :: view
       real(wp) :: zone(2)
-      integer(int64) :: key
 
       view = view_corner(near%outline, near%vertex, corner, edge, reach)
       if (.not. view%faces) return
@@ -198,14 +196,13 @@ contains
       if (.not. is_convex(near%outline, near%vertex, edge)) zone(1) = -zone(1)
       if (.not. is_convex(near%outline, near%vertex, near%outline%next(edge))) zone(2) = -zone(2)
       if (view%way < zone(1) .or. view%way > view%length - zone(2)) return
-      key = contact_key(corner, edge, size(near%vertex, 2))
-      if (any(taken(:n_taken) == key)) return
-      call add_single(near, corner, edge, edge_side, taken, n_taken, list)
+      if (has_key(taken, contact_key(corner, edge, size(near%vertex, 2)))) return
+      call add_single(near, corner, edge, edge_side, taken, list)
    end subroutine join_corner
 
    !> Join two corners: of the edges beside them, the one that the other corner would cross last is
    !> the entrance. Corners that touch and nothing else have none
-   pure subroutine join_corners(near, pair, reach, taken, n_taken, list)
+   pure subroutine join_corners(near, pair, reach, taken, list)
       !> The neighbourhood
       type(neighbourhood_t), intent(in) :: near
       !> Corner of the first block, corner of the second: (2)
@@ -213,9 +210,7 @@ contains
       !> Gaps wider than this are no matter [m]
       real(wp), intent(in) :: reach
       !> Keys of the contacts that belong to a joint
-      integer(int64), intent(inout) :: taken(:)
-      !> Their number
-      integer, intent(inout) :: n_taken
+      type(key_set_t), intent(inout) :: taken
       !> Receives the joint
       type(joint_list_t), intent(inout) :: list
       type(corner_view_t) :: view
@@ -228,7 +223,7 @@ contains
       corner = pair([1, 1, 2, 2])
       edge = [pair(2), near%outline%previous(pair(2)), pair(1), near%outline%previous(pair(1))]
       do i = 1, 4
-         if (any(taken(:n_taken) == contact_key(corner(i), edge(i), size(near%vertex, 2)))) return
+         if (has_key(taken, contact_key(corner(i), edge(i), size(near%vertex, 2)))) return
       end do
       if (.not. is_convex(near%outline, near%vertex, pair(1))) return
       if (.not. is_convex(near%outline, near%vertex, pair(2))) return
@@ -255,7 +250,7 @@ contains
          best_time = time
       end do
       if (best == 0 .or. n_level > 1) return
-      call add_single(near, corner(best), edge(best), merge(2, 1, best <= 2), taken, n_taken, list)
+      call add_single(near, corner(best), edge(best), merge(2, 1, best <= 2), taken, list)
    end subroutine join_corners
 
    !> When a corner crosses the line of an edge, in lengths of its travel: never if it stays
@@ -317,7 +312,7 @@ contains
    end function was_closed
 
    !> Add the joint of one corner and one edge
-   pure subroutine add_single(near, corner, edge, edge_side, taken, n_taken, list)
+   pure subroutine add_single(near, corner, edge, edge_side, taken, list)
       !> The neighbourhood
       type(neighbourhood_t), intent(in) :: near
       !> Number of the corner
@@ -327,9 +322,7 @@ contains
       !> 1 if the edge belongs to the first block, 2 if to the second
       integer, intent(in) :: edge_side
       !> Keys of the contacts that belong to a joint
-      integer(int64), intent(inout) :: taken(:)
-      !> Their number
-      integer, intent(inout) :: n_taken
+      type(key_set_t), intent(inout) :: taken
       !> Receives the joint
       type(joint_list_t), intent(inout) :: list
       type(joint_t) :: joint
@@ -340,8 +333,7 @@ contains
       joint%contact(1)%share = 1.0_wp
       joint%contact(2) = joint%contact(1)
       joint%contact(2)%share = 0.0_wp
-      n_taken = n_taken + 1
-      taken(n_taken) = contact_key(corner, edge, size(near%vertex, 2))
+      call add_key(taken, contact_key(corner, edge, size(near%vertex, 2)))
       pair = merge([edge, corner], [corner, edge], edge_side == 1)
       call add_joint(near, pair, joint, list)
    end subroutine add_single

@@ -1,8 +1,8 @@
 !> Two convex blocks are apart as long as an edge of one of them has the other beyond its line. That
 !> line is the entrance: what must not cross it keeps the blocks apart, whichever corners meet
 module dda_parting_line
-   use, intrinsic :: iso_fortran_env, only : int64
    use dda_entrance, only : add_single, join_edges, joint_list_t, neighbourhood_t, was_closed
+   use dda_key_set, only : key_set_t, new_key_set
    use dda_kinds, only : wp
    use dda_vector, only : along, right_normal
    implicit none
@@ -86,8 +86,8 @@ contains
       !> Receives the joint
       type(joint_list_t), intent(inout) :: list
       type(line_t) :: line
-      integer(int64) :: taken(2)
-      integer :: pair(2), n_taken, side, n
+      type(key_set_t) :: taken
+      integer :: pair(2), side, n
 
       line = parting_line(near, edge_pair, reach)
       if (line%gap > reach) return
@@ -95,10 +95,10 @@ contains
       pair(side) = line%edge
       pair(3 - side) = facing_edge(near, line)
       n = list%n
-      n_taken = 0
-      call join_edges(near, pair, reach, taken, n_taken, list)
+      call new_key_set(taken, 2)
+      call join_edges(near, pair, reach, taken, list)
       if (list%n > n) return
-      call add_single(near, line%corner, line%edge, side, taken, n_taken, list)
+      call add_single(near, line%corner, line%edge, side, taken, list)
    end subroutine add_parted_joint
 
    !> The edge whose line parts two blocks: the one that did while they touched; else, of those that

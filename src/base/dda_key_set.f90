@@ -1,0 +1,70 @@
+!> A set of whole numbers that is asked in the same time however many it holds
+module dda_key_set
+   use, intrinsic :: iso_fortran_env, only : int64
+   implicit none
+   private
+
+   public :: key_set_t, add_key, has_key, new_key_set
+
+   !> Numbers in places that they themselves tell, or behind these where others stand already
+   type :: key_set_t
+      private
+      !> The numbers, 0 where there is none; as many places as a power of two: (0:n - 1)
+      integer(int64), allocatable :: key(:)
+   end type key_set_t
+
+   !> A prime number, so that numbers in any step are spread
+   integer(int64), parameter :: prime = 2147483647_int64
+
+contains
+
+   !> A set without numbers
+   pure subroutine new_key_set(set, most)
+      !> The set
+      type(key_set_t), intent(out) :: set
+      !> How many numbers it will hold at most
+      integer, intent(in) :: most
+      integer :: n
+
+      n = 8
+      do while (n < most + most/2 + 1)
+         n = 2*n
+      end do
+      allocate (set%key(0:n - 1), source=0_int64)
+   end subroutine new_key_set
+
+   !> Whether a number is in a set
+   pure logical function has_key(set, key)
+      !> The set
+      type(key_set_t), intent(in) :: set
+      !> The number, above 0
+      integer(int64), intent(in) :: key
+
+      has_key = set%key(place_of(set, key)) == key
+   end function has_key
+
+   !> Put a number into a set; nothing happens if it is there already
+   pure subroutine add_key(set, key)
+      !> The set; it holds fewer than it is made for
+      type(key_set_t), intent(inout) :: set
+      !> The number, above 0
+      integer(int64), intent(in) :: key
+
+      set%key(place_of(set, key)) = key
+   end subroutine add_key
+
+   !> Where a number is, or would be
+   pure integer function place_of(set, key)
+      !> The set
+      type(key_set_t), intent(in) :: set
+      !> The number
+      integer(int64), intent(in) :: key
+      integer :: last
+
+      last = ubound(set%key, 1)
+      place_of = iand(int(modulo(48271_int64*modulo(key, prime), prime)), last)
+      do while (set%key(place_of) /= 0 .and. set%key(place_of) /= key)
+         place_of = iand(place_of + 1, last)
+      end do
+   end function place_of
+end module dda_key_set
