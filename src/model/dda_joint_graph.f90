@@ -73,6 +73,10 @@ contains
       integer :: b, d, j, k, side
       real(wp) :: sum
 
+      if (graph%n_dof == 3) then
+         call joint_motion_3(size(graph%block, 2), graph%block, graph%row, motion, opening)
+         return
+      end if
       do j = 1, size(graph%block, 2)
          opening(:, j) = 0.0_wp
          do side = 1, 2
@@ -89,6 +93,37 @@ contains
       end do
    end subroutine joint_motion
 
+   !> The same for 3 unknowns of a block, with loops that the compiler unrolls
+   pure subroutine joint_motion_3(n_joint, block, row, motion, opening)
+      !> Number of joints
+      integer, intent(in) :: n_joint
+      !> Blocks of each joint
+      integer, intent(in) :: block(2, n_joint)
+      !> Opening and slip by unit motion of each block
+      real(wp), intent(in) :: row(3, 3, 2, n_joint)
+      !> Motion of the blocks: (3, n_block)
+      real(wp), intent(in) :: motion(:, :)
+      !> Opening 1, opening 2, slip: (3, n_joint)
+      real(wp), intent(out) :: opening(:, :)
+      integer :: b, j, k, side
+      real(wp) :: x(3), y(3)
+
+      do j = 1, n_joint
+         y = 0.0_wp
+         do side = 1, 2
+            b = block(side, j)
+            if (b == 0) cycle
+            x = motion(:, b)
+            !GCC$ unroll 3
+            do k = 1, 3
+               y(k) = y(k) + row(1, k, side, j)*x(1) + row(2, k, side, j)*x(2) + row(3, k, &
+                  & side, j)*x(3)
+            end do
+         end do
+         opening(:, j) = y
+      end do
+   end subroutine joint_motion_3
+
    !> Add what joint forces do to the blocks
    pure subroutine add_joint_forces(graph, force, load)
       !> The joints
@@ -99,6 +134,10 @@ contains
       real(wp), intent(inout) :: load(:, :)
       integer :: b, j, k, side
 
+      if (graph%n_dof == 3) then
+         call add_joint_forces_3(size(graph%block, 2), graph%block, graph%row, force, load)
+         return
+      end if
       do j = 1, size(graph%block, 2)
          do side = 1, 2
             b = graph%block(side, j)
@@ -109,4 +148,33 @@ contains
          end do
       end do
    end subroutine add_joint_forces
+
+   !> The same for 3 unknowns of a block
+   pure subroutine add_joint_forces_3(n_joint, block, row, force, load)
+      !> Number of joints
+      integer, intent(in) :: n_joint
+      !> Blocks of each joint
+      integer, intent(in) :: block(2, n_joint)
+      !> Opening and slip by unit motion of each block
+      real(wp), intent(in) :: row(3, 3, 2, n_joint)
+      !> N1, N2, T of each joint: (3, n_joint)
+      real(wp), intent(in) :: force(:, :)
+      !> Forces on the blocks, to which theirs are added: (3, n_block)
+      real(wp), intent(inout) :: load(:, :)
+      integer :: b, d, j, side
+      real(wp) :: f(3)
+
+      do j = 1, n_joint
+         f = force(:, j)
+         do side = 1, 2
+            b = block(side, j)
+            if (b == 0) cycle
+            !GCC$ unroll 3
+            do d = 1, 3
+               load(d, b) = load(d, b) + row(d, 1, side, j)*f(1) + row(d, 2, side, j)*f(2) &
+                  & + row(d, 3, side, j)*f(3)
+            end do
+         end do
+      end do
+   end subroutine add_joint_forces_3
 end module dda_joint_graph
