@@ -301,8 +301,25 @@ contains
          end associate
       end do
       call substitute_full(equations%capacity, equations%exchange, y)
-      do i = 1, size(y)
-         x = x - equations%response(:, :, equations%active(i))*y(i)
-      end do
+      call subtract_answers(size(x), equations%response, equations%active, y, x)
    end subroutine substitute_changes
+
+   !> Take answers from a motion; flat, so that the compiler makes one loop of it
+   pure subroutine subtract_answers(n, response, active, y, x)
+      !> Unknowns of all blocks
+      integer, intent(in) :: n
+      !> Answers
+      real(wp), intent(in) :: response(n, max_answer)
+      !> Those in use: (n_active)
+      integer, intent(in) :: active(:)
+      !> How much of each: (n_active)
+      real(wp), intent(in) :: y(:)
+      !> The motion
+      real(wp), intent(inout) :: x(n)
+      integer :: i
+
+      do i = 1, size(y)
+         x = x - response(:, active(i))*y(i)
+      end do
+   end subroutine subtract_answers
 end module dda_coulomb_equations

@@ -11,7 +11,7 @@ module dda_coulomb_joints
    private
 
    public :: coulomb_joints_t, end_role, end_role_enum, shear_role, shear_role_enum
-   public :: new_coulomb_joints, in_units, in_newtons, in_motion_units, in_metres
+   public :: new_coulomb_joints, set_force_unit, in_units, in_newtons, in_motion_units, in_metres
 
    !> What a corner of a joint can do
    type :: end_role_enum
@@ -52,6 +52,8 @@ module dda_coulomb_joints
       real(wp) :: arm_unit = 1.0_wp
       !> Unit of displacements and gaps [m]
       real(wp) :: motion_unit = 1.0_wp
+      !> Whether a load has chosen the unit of force
+      logical :: has_weight = .false.
    end type coulomb_joints_t
 
 contains
@@ -68,13 +70,9 @@ contains
 
       joints%graph = graph
       joints%arm_unit = positive_or_one(0.5_wp*mean(graph%length))
-      joints%force_unit = mean(norm2(load(:2, :), 1))
-      if (.not. joints%force_unit > 0.0_wp) then
-         joints%force_unit = positive_or_one(mean(maxval(abs(load), 1))/joints%arm_unit)
-      end if
       compliance = positive_or_one(mean(sum(graph%compliance, 1)/3.0_wp))
       mass = positive_or_one(mean(graph%mass(1, :)))
-      joints%motion_unit = joints%force_unit*compliance
+      joints%motion_unit = compliance
       associate (scaled => joints%graph)
          scaled%row(3:, :, :, :) = scaled%row(3:, :, :, :)/joints%arm_unit
          scaled%length = scaled%length/joints%arm_unit
@@ -83,8 +81,26 @@ contains
          scaled%mass = scaled%mass/mass
          scaled%mass(3:, :) = scaled%mass(3:, :)/joints%arm_unit**2
       end associate
+      call set_force_unit(joints, load)
       call set_roles(joints)
    end subroutine new_coulomb_joints
+
+   !> Choose the unit of force, and with it that of motion; not by a load that is zero
+   pure subroutine set_force_unit(joints, load)
+      !> The joints
+      type(coulomb_joints_t), intent(inout) :: joints
+      !> What they carry: (n_dof, n_block) [N/m, N/m, N ...]
+      real(wp), intent(in) :: load(:, :)
+      real(wp) :: unit
+
+      unit = mean(norm2(load(:2, :), 1))
+      if (.not. unit > 0.0_wp) unit = mean(maxval(abs(load), 1))/joints%arm_unit
+      joints%has_weight = unit > 0.0_wp
+      if (.not. joints%has_weight) return
+      joints%graph%gap = joints%graph%gap*(joints%force_unit/unit)
+      joints%motion_unit = joints%motion_unit*(unit/joints%force_unit)
+      joints%force_unit = unit
+   end subroutine set_force_unit
 
    !> Roles of corners and of joints by their kind
    pure subroutine set_roles(joints)

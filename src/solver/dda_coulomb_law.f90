@@ -191,14 +191,14 @@ contains
       real(wp), intent(in) :: opening(:, :)
       !> N1, N2, T: (3, n_joint)
       real(wp), intent(out) :: force(:, :)
-      integer :: j
+      integer :: i, j
 
       do j = 1, size(faces, 2)
-         where (faces(:2, j) == face%closed)
-            force(:2, j) = -opening(:2, j)/joints%graph%compliance(:2, j)
-         elsewhere
-            force(:2, j) = 0.0_wp
-         end where
+         do i = 1, 2
+            force(i, j) = 0.0_wp
+            if (faces(i, j) == face%closed) &
+               & force(i, j) = -opening(i, j)/joints%graph%compliance(i, j)
+         end do
          select case (faces(3, j))
          case (face%stuck)
             force(3, j) = -opening(3, j)/joints%graph%compliance(3, j)

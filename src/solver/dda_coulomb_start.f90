@@ -41,9 +41,11 @@ contains
       integer :: i
       logical :: stands
 
+      state = unloaded_state(joints)
+      end = motion_end%balanced
+      if (.not. maxval(abs(load)) > 0.0_wp) return
       do i = 1, size(damping)
          call try_interior(joints, equations, load, damping(i), state, stands)
-         end = motion_end%balanced
          if (stands) return
       end do
       state = unloaded_state(joints)

@@ -13,7 +13,7 @@ module dda_event_rates
    implicit none
    private
 
-   public :: rates_t, new_rates, find_rates
+   public :: rates_t, new_rates, find_rates, undamp_rates
 
    !> Rates of a state while its joints keep what they do
    type :: rates_t
@@ -25,8 +25,10 @@ module dda_event_rates
       real(wp), allocatable :: force(:, :)
       !> What corners and joints do: (3, n_joint)
       integer, allocatable :: face(:, :)
-      !> Share of the load that goes into damping: near 0 where forces balance the load, near 1
-      !> where blocks move
+      !> Largest load, or force of a joint that is driven
+      real(wp) :: drive = 0.0_wp
+      !> Share of it that goes into damping: near 0 where forces balance the load, near 1 where
+      !> blocks move
       real(wp) :: unbalanced = 0.0_wp
    end type rates_t
 
@@ -87,8 +89,37 @@ contains
       if (.not. found) call pivot_to_load(joints, equations, law, load_rate, opening_rate, &
          & rates%motion, rates%opening, rates%face, found)
       call spring_forces(joints, rates%face, rates%opening, rates%force)
-      rates%unbalanced = damping*maxval(abs(joints%graph%mass*rates%motion))/maxval(abs(load_rate))
+      rates%unbalanced = damping*maxval(abs(joints%graph%mass*rates%motion)) &
+         & /max(rates%drive, tiny(1.0_wp))
    end subroutine find_rates
+
+   !> Give back what damping has taken from the rates of an assembly that does not move
+   pure subroutine undamp_rates(joints, equations, load_rate, rates)
+      !> The joints
+      type(coulomb_joints_t), intent(in) :: joints
+      !> Their equations, those of the rates
+      type(coulomb_equations_t), intent(inout) :: equations
+      !> Rate of the load: (n_dof, n_block)
+      real(wp), intent(in) :: load_rate(:, :)
+      !> The rates
+      type(rates_t), intent(inout) :: rates
+      integer, parameter :: max_turn = 5
+      real(wp), parameter :: exact = 1.0e-12_wp
+      real(wp) :: more(size(load_rate, 1), size(load_rate, 2)), opening(3, size(rates%face, 2))
+      real(wp) :: rest(size(load_rate, 1), size(load_rate, 2)), left
+      integer :: turn
+
+      left = rates%unbalanced*rates%drive
+      do turn = 1, max_turn
+         if (left <= exact*rates%drive) exit
+         call imbalance(joints, load_rate, rates%force, rest)
+         call solve_equations(equations, joints, rest, more, opening)
+         rates%motion = rates%motion + more
+         rates%opening = rates%opening + opening
+         call spring_forces(joints, rates%face, rates%opening, rates%force)
+         left = equations%damping*maxval(abs(joints%graph%mass*more))
+      end do
+   end subroutine undamp_rates
 
    !> Rates while the faces stay
    pure subroutine solve_rates(joints, equations, load_rate, opening_rate, damping, rates)
@@ -110,6 +141,7 @@ contains
       if (.not. equations%usable) return
       call spring_forces(joints, rates%face, opening_rate, rates%force)
       call imbalance(joints, load_rate, rates%force, load)
+      rates%drive = max(maxval(abs(load)), maxval(abs(load_rate)))
       call solve_equations(equations, joints, load, rates%motion, rates%opening)
       if (.not. equations%usable) return
       rates%opening = rates%opening + opening_rate

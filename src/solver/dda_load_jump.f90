@@ -53,7 +53,7 @@ module dda_load_jump
    !> So many events without way lead nowhere
    integer, parameter :: max_standstill = 60
    !> Steps of a jump: at least so many, and so many more for each joint
-   integer, parameter :: least_patience = 1000, patience = 20
+   integer, parameter :: least_patience = 1000, patience = 50
    !> Change of damping after a step that meets no event, and its inverse where there are no rates
    real(wp), parameter :: calmer = 0.1_wp
    !> With so much damping there are always rates

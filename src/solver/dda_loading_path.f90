@@ -13,10 +13,10 @@ module dda_loading_path
    use dda_coulomb_equations, only : coulomb_equations_t, new_equations
    use dda_coulomb_joints, only : coulomb_joints_t, in_metres, in_motion_units, in_newtons, &
       & in_units, &
-      & new_coulomb_joints
+      & new_coulomb_joints, set_force_unit
    use dda_coulomb_law, only : apply_law, coulomb_state_t, face, face_enum, imbalance
    use dda_coulomb_start, only : load_at_once
-   use dda_event_rates, only : find_rates, new_rates, rates_t
+   use dda_event_rates, only : find_rates, new_rates, rates_t, undamp_rates
    use dda_joint_graph, only : joint_graph_t
    use dda_kinds, only : wp
    use dda_load_jump, only : far_factor, jump_t, jump_to_balance, motion_end, moves_unbalanced, &
@@ -67,8 +67,8 @@ module dda_loading_path
       type(coulomb_joints_t) :: joints
       !> Their equations
       type(coulomb_equations_t) :: equations
-      !> A motion beyond this is far
-      real(wp) :: far = huge(1.0_wp)
+      !> Largest displacement under the dead load, 1 at least
+      real(wp) :: elastic = 1.0_wp
    end type loading_path_t
 
    !> What grows along a path
@@ -116,6 +116,8 @@ module dda_loading_path
 
    !> A load is raised by this part of a block's weight to see how the blocks move
    real(wp), parameter :: nudge = 1.0e-6_wp
+   !> It grows where jumps follow one another within so many times as much; its largest value
+   real(wp), parameter :: slow_factor = 10.0_wp
    !> Largest of them
    real(wp), parameter :: largest_nudge = 1.0e-3_wp
    !> What a motion may leave of a nudge
@@ -128,8 +130,10 @@ module dda_loading_path
    real(wp), parameter :: no_way = 1.0e-13_wp
    !> So many events without way lead nowhere
    integer, parameter :: max_standstill = 60
-   !> Most events and jumps
-   integer, parameter :: max_event = 400000
+   !> Events and jumps: at most so many, and so many more for each joint
+   integer, parameter :: least_patience = 2000, patience = 100
+   !> Jumps at most
+   integer, parameter :: max_jump = 1000
    !> Within this share of the cap a load is at it
    real(wp), parameter :: cap_share = 1.0e-9_wp
 
@@ -170,8 +174,10 @@ contains
       result%reason = path_reason%none
       result%reached = 1.0_wp
       if (end /= motion_end%balanced) call note_fall(end, jump, result)
-      path%far = far_factor*max(1.0_wp, maxval(abs(state%motion)))
-      if (result%end == path_end%reached) call balance_rest(path, state)
+      if (result%end == path_end%reached) then
+         path%elastic = max(1.0_wp, maxval(abs(state%motion)))
+         call balance_rest(path, state)
+      end if
       call finish(path, state, result)
    end subroutine begin_path
 
@@ -192,6 +198,7 @@ contains
       type(way_t) :: way
 
       path%equations%base%n_factorisation = 0
+      if (.not. path%joints%has_weight) call set_force_unit(path%joints, rate%load)
       call scale_state(path%joints, state)
       way%load = in_units(path%joints, rate%load)
       way%opening = rate%opening/path%joints%motion_unit
@@ -220,21 +227,23 @@ contains
       type(path_result_t), intent(inout) :: result
       type(event_t) :: event
       type(rates_t) :: rates
-      real(wp) :: first_load(size(way%load, 1), size(way%load, 2)), width
-      integer :: standstill, i, last_jump
-      logical :: found
+      real(wp) :: first_load(size(way%load, 1), size(way%load, 2)), last_jump, width
+      integer :: standstill, i
+      logical :: found, slow
 
       first_load = state%load
       standstill = 0
-      last_jump = -1
+      last_jump = -1.0_wp/way%strength
       width = nudge
       rates = new_rates(state)
-      do i = 1, max_event
+      do i = 1, least_patience + patience*size(state%slip)
          if (result%reached >= way%h_end) return
+         if (result%n_jump > max_jump) exit
          call find_rates(path%joints, path%equations, state, way%load, way%opening, path_damping, &
             & rates, found)
          if (found .and. rates%unbalanced <= moves_unbalanced &
             & .and. standstill <= max_standstill) then
+            call undamp_rates(path%joints, path%equations, way%load, rates)
             event = next_event(path%joints, state, rates, way%h_end - result%reached)
             standstill = merge(standstill + 1, 0, event%distance*way%strength < no_way)
             call move_on(path%joints, rates, event, state)
@@ -242,8 +251,9 @@ contains
                & event%kind == event_kind%none)
             result%n_event = result%n_event + 1
          else
-            width = merge(min(4.0_wp*width, largest_nudge), nudge, last_jump == i - 1)
-            last_jump = i
+            slow = (result%reached - last_jump)*way%strength < slow_factor*width
+            width = merge(min(4.0_wp*width, largest_nudge), nudge, slow)
+            last_jump = result%reached
             standstill = 0
             call nudge_on(path, state, way, width, result)
             if (result%end /= path_end%reached) return
@@ -266,16 +276,17 @@ contains
       real(wp), intent(in) :: width
       !> Receives the jump, or how the blocks fall
       type(path_result_t), intent(inout) :: result
-      integer, parameter :: max_try = 4
+      integer, parameter :: max_try = 2
       type(coulomb_state_t) :: moved
       type(jump_t) :: jump
-      real(wp) :: more
+      real(wp) :: balance, more
       integer :: end, try
 
-      jump%far = path%far
+      jump%far = far_factor*max(path%elastic, maxval(state%gap))
+      balance = rounding*max(1.0_wp, maxval(abs(state%force)))
       do try = 0, max_try - 1
          more = min(width*10.0_wp**try/way%strength, way%h_end - result%reached)
-         jump%tolerance = max(rounding, nudge_left*more*way%strength)
+         jump%tolerance = max(balance, nudge_left*more*way%strength)
          moved = state
          call apply_law(path%joints, state, more*way%opening, moved)
          call jump_to_balance(path%joints, path%equations, state%load + more*way%load, moved, &
