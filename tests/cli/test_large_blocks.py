@@ -142,7 +142,11 @@ def test_blocks_upon_one_another_are_refused_at_once(tmp_path: Path) -> None:
     assert done.returncode == 0 and "all blocks are fixed" in done.stderr
 
 
-@pytest.mark.parametrize("text", ["! " + "x" * 10000000, " " * 10000000, "\n" * 3000000])
+@pytest.mark.parametrize(
+    "text",
+    ["! " + "x" * 10000000, " " * 10000000, "\n" * 3000000],
+    ids=["comment", "blanks", "empty lines"],
+)
 def test_blanks_and_comments_of_any_length_are_skipped(tmp_path: Path, text: str) -> None:
     done = check(tmp_path, text + "\n" + row(2) + text)
     assert done.returncode == 0 and done.stderr == ""
