@@ -5,7 +5,7 @@ module dda_check
    use dda_command_line, only : command_t, name_of
    use dda_deck, only : deck_t, flag_of, geometry_of, has_group, integer_of, is_given, &
       & keeps_velocities, text_of, word_of
-   use dda_deck_scene, only : check_lines, check_scene, deck_scene
+   use dda_deck_scene, only : deck_scene
    use dda_deck_sweep, only : case_deck, n_cases, swept_names
    use dda_cut, only : print_warnings
    use dda_error, only : error_line, error_t
@@ -19,6 +19,7 @@ module dda_check
    use dda_run_cases, only : deck_stem
    use dda_run_record, only : run_record
    use dda_scene, only : scene_t
+   use dda_scene_check, only : check_lines, check_scene
    use dda_scene_plan, only : plan_scene, scene_plan_t, strain_reason
    use dda_screen, only : print_line, screen_t
    use dda_text, only : to_text

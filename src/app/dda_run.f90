@@ -7,7 +7,6 @@ module dda_run
    use dda_cut, only : print_warnings
    use dda_deck, only : deck_t
    use dda_deck_sweep, only : n_cases
-   use dda_deck_scene, only : check_lines, check_scene
    use dda_error, only : error_line, error_t, fatal_error
    use dda_folder_lock, only : lock_folder
    use dda_process, only : error_is_terminal, exit_status, make_folder, worst_status
@@ -18,6 +17,7 @@ module dda_run
    use dda_run_cases, only : deck_stem, run_cases
    use dda_run_record, only : run_record
    use dda_scene, only : scene_t
+   use dda_scene_check, only : check_lines, check_scene
    use dda_summary, only : print_resumed, print_total
    use dda_text, only : to_text
    implicit none

@@ -8,7 +8,7 @@ module dda_block_strain
    use dda_kinds, only : wp
    use dda_loads, only : point_load
    use dda_material, only : elasticity_matrix
-   use dda_settings, only : settings_t
+   use dda_settings, only : factor_of, settings_t
    implicit none
    private
 
@@ -44,8 +44,8 @@ contains
          do i = 1, size(settings%boundary%loaded)
             associate (loaded => settings%boundary%loaded(i))
                b = loaded%block
-               moment(:, b) = moment(:, b) + point_load(value_at(loaded%force, time), &
-                  & loaded%point, system%centroid(:, b))
+               moment(:, b) = moment(:, b) + point_load(factor_of(settings, loaded) &
+                  & *value_at(loaded%force, time), loaded%point, system%centroid(:, b))
             end associate
          end do
       end if

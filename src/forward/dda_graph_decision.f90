@@ -19,7 +19,7 @@ module dda_graph_decision
    use dda_loading_path, only : begin_path, coulomb_state_t, face, follow_path, loading_path_t, &
       & new_rate, path_end, path_rate_t, path_reason, path_result_t
    use dda_scene_graph, only : has_pure_friction, scene_graph
-   use dda_settings, only : flow_rule, settings_t
+   use dda_settings, only : factor_of, flow_rule, settings_t
    implicit none
    private
 
@@ -158,9 +158,11 @@ contains
       force = system%unit_weight*system%area
       if (allocated(settings%boundary%loaded)) then
          do i = 1, size(settings%boundary%loaded)
-            b = settings%boundary%loaded(i)%block
-            force(b) = force(b) + norm2(value_at(settings%boundary%loaded(i)%force, &
-               & last_history_time(settings)))
+            associate (loaded => settings%boundary%loaded(i))
+               b = loaded%block
+               force(b) = force(b) + norm2(factor_of(settings, loaded) &
+                  & *value_at(loaded%force, last_history_time(settings)))
+            end associate
          end do
       end if
       power = 0.0_wp

@@ -2,20 +2,20 @@
 !>
 !> Dead loads come first and at once: weight, upright, and forces on points as they are at the
 !> beginning. Then what is live comes from nothing to its value, one after the other: supports that
-!> are led, gravity that tilts, the horizontal push, histories from their beginning to their end.
-!> Between two stations everything is linear.
+!> are led, gravity that tilts, the horizontal push, live loads, histories from their beginning to
+!> their end. Between two stations everything is linear.
 module dda_load_stations
    use dda_block_system, only : block_system_t
    use dda_boundary, only : history_t, value_at
    use dda_joint_graph, only : joint_graph_t, joint_kind
    use dda_kinds, only : wp
    use dda_loads, only : body_load, point_load
-   use dda_settings, only : gravity_direction, settings_t
+   use dda_settings, only : factor_of, full_push, gravity_direction, settings_t
    use dda_sort, only : sorted_order
    implicit none
    private
 
-   public :: load_stations_t, load_stations, loads_at, last_history_time
+   public :: load_stations_t, bears_live_load, load_stations, loads_at, last_history_time
 
    !> Stations of the path; station 0 has the dead loads alone
    type :: load_stations_t
@@ -25,6 +25,8 @@ module dda_load_stations
       real(wp), allocatable :: tilt(:)
       !> Horizontal coefficient: (0:n_leg)
       real(wp), allocatable :: push(:)
+      !> Share of the live loads: (0:n_leg)
+      real(wp), allocatable :: live(:)
       !> Time of the histories: (0:n_leg) [s]
       real(wp), allocatable :: time(:)
    end type load_stations_t
@@ -43,21 +45,26 @@ contains
       !> The stations
       type(load_stations_t) :: stations
       real(wp), allocatable :: time(:)
-      integer :: at, n_led, n_push, n_tilt
+      integer :: at, n_led, n_live, n_push, n_tilt
 
       allocate (time, source=history_times(settings))
       n_led = merge(1, 0, leads_at_once(settings))
       n_tilt = merge(ceiling(abs(settings%tilt)/longest_tilt), 0, upright)
-      n_push = merge(1, 0, abs(settings%push) > 0.0_wp)
-      at = n_led + n_tilt + n_push
+      n_push = merge(1, 0, abs(settings%push) > 0.0_wp .and. .not. settings%live_push)
+      n_live = merge(1, 0, bears_live_load(settings))
+      at = n_led + n_tilt + n_push + n_live
       allocate (stations%led(0:at + size(time)), source=1.0_wp)
       allocate (stations%tilt(0:at + size(time)), source=settings%tilt)
-      allocate (stations%push(0:at + size(time)), source=settings%push)
+      allocate (stations%push(0:at + size(time)), source=full_push(settings))
+      allocate (stations%live(0:at + size(time)), source=1.0_wp)
       allocate (stations%time(0:at + size(time)), source=0.0_wp)
       stations%led(0) = 0.0_wp
       if (n_tilt > 0) stations%tilt(:n_led) = 0.0_wp
       stations%tilt(n_led:n_led + n_tilt) = shares(n_tilt)*settings%tilt
       stations%push(:n_led + n_tilt) = 0.0_wp
+      stations%live(:at - n_live) = 0.0_wp
+      if (n_live == 0) stations%live = 1.0_wp
+      if (settings%live_push) stations%push = stations%live*full_push(settings)
       stations%time(at + 1:) = time
    end function load_stations
 
@@ -89,7 +96,7 @@ contains
       real(wp), intent(out) :: load(:, :)
       !> Opening of the joints by what supports have gone: (3, n_joint) [m]
       real(wp), intent(out) :: opening(:, :)
-      real(wp) :: direction(2), shaking(2), of_block(6)
+      real(wp) :: direction(2), force(2), shaking(2), of_block(6)
       integer :: b, e, i
 
       direction = gravity_direction(stations%tilt(station))
@@ -109,8 +116,9 @@ contains
          associate (loaded => settings%boundary%loaded(i))
             e = system%equation(loaded%block)
             if (e == 0) cycle
-            of_block = point_load(value_at(loaded%force, stations%time(station)), loaded%point, &
-               & system%centroid(:, loaded%block))
+            force = factor_of(settings, loaded)*value_at(loaded%force, stations%time(station))
+            if (loaded%live) force = stations%live(station)*force
+            of_block = point_load(force, loaded%point, system%centroid(:, loaded%block))
             load(:, e) = load(:, e) + of_block(:size(load, 1))
          end associate
       end do
@@ -146,6 +154,24 @@ contains
          end associate
       end do
    end subroutine lead_pins
+
+   !> Whether something live acts before histories begin
+   pure logical function bears_live_load(settings)
+      !> Settings of the run
+      type(settings_t), intent(in) :: settings
+      integer :: i
+
+      bears_live_load = settings%live_push .and. abs(settings%push) > 0.0_wp
+      if (allocated(settings%boundary%loaded)) then
+         do i = 1, size(settings%boundary%loaded)
+            associate (loaded => settings%boundary%loaded(i))
+               bears_live_load = bears_live_load &
+                  & .or. loaded%live .and. any(abs(value_at(loaded%force, 0.0_wp)) > 0.0_wp)
+            end associate
+         end do
+      end if
+      bears_live_load = bears_live_load .and. abs(settings%load_factor) > 0.0_wp
+   end function bears_live_load
 
    !> Whether a support is led from the first moment on
    pure logical function leads_at_once(settings)

@@ -76,7 +76,7 @@ contains
          select case (later(i)%word(1))
          case ("fix", "displacement")
             n_held = n_held + 1
-         case ("load")
+         case ("load", "live")
             n_loaded = n_loaded + 1
          case ("measure")
             n_measured = n_measured + 1
@@ -216,11 +216,14 @@ contains
          select case (entry%head%word(1))
          case ("fix", "displacement")
             call add_held(held, plan, site, error)
-         case ("load")
+         case ("load", "live")
             site%n_loaded = site%n_loaded + 1
-            boundary%loaded(site%n_loaded)%block = held%block
-            boundary%loaded(site%n_loaded)%point = held%point
-            boundary%loaded(site%n_loaded)%force = history
+            associate (loaded => boundary%loaded(site%n_loaded))
+               loaded%block = held%block
+               loaded%point = held%point
+               loaded%force = history
+               loaded%live = entry%head%word(1) == "live"
+            end associate
          case ("measure")
             site%n_measured = site%n_measured + 1
             boundary%measured(site%n_measured) = measured_point_t(held%block, held%point)

@@ -6,6 +6,7 @@ module dda_deck_check_case
    use dda_deck_keys, only : deck_key, key_index, group_index
    use dda_deck, only : deck_t, deck_place_t, parameter_t, deck_error, flag_of, geometry_of, &
       integer_of, keeps_velocities, real_of, word_of, is_given, place_of
+   use dda_deck_check_live, only : check_live
    use dda_deck_parameter, only : parameter_name
    use dda_deck_set, only : put_number, number_problem
    use dda_deck_words, only : full_name
@@ -31,6 +32,7 @@ contains
 
       call check_model(deck, searched, error)
       if (.not. allocated(error)) call check_use(deck, error)
+      if (.not. allocated(error)) call check_live(deck, searched, error)
       if (allocated(error)) return
       ! files of blocks have loads of their own
       if (.not. keeps_velocities(deck) .and. .not. (real_of(deck, "load", "gravity") > 0.0_wp .or. &

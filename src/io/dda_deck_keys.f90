@@ -91,6 +91,7 @@ module dda_deck_keys
       group_t("material", "the blocks' material"), &
       group_t("joint", "the Mohr-Coulomb law of the joints"), &
       group_t("load", "what acts on the blocks"), &
+      group_t("live", "forces on points that the load factor multiplies"), &
       group_t("analysis", "how a single case is computed"), &
       group_t("limerick", "the original's scheme: with mode = 'limerick' only"), &
       group_t("search", "looks for the critical value of one parameter"), &
@@ -174,7 +175,27 @@ module dda_deck_keys
             meaning="Direction in which the weight acts, anticlockwise from +x; -90 is down."), &
       key_t(group="load", name="horizontal_coefficient", default="0.0", &
             at_least=-1.0e6_wp, at_most=1.0e6_wp, search_low=0.0_wp, search_high=1.0_wp, &
-            meaning="Force towards +x on each block, as a multiple of its weight.")]
+            meaning="Force towards +x on each block, as a multiple of its weight."), &
+      key_t(group="load", name="load_factor", default="1.0", &
+            at_least=-1.0e12_wp, at_most=1.0e12_wp, search_low=0.0_wp, search_high=1.0e9_wp, &
+            meaning="What live loads are multiplied by; dead loads stay."), &
+      key_t(group="load", name="live_horizontal", kind=key_kind%flag, default=".false.", &
+            meaning="Whether the forces of horizontal_coefficient are live.")]
+
+   !> Keys of &live
+   type(key_t), parameter :: live_keys(*) = [ &
+      key_t(group="live", name="x", kind=key_kind%numbers, unit="m", without="no live load", &
+            at_least=-1.0e15_wp, at_most=1.0e15_wp, &
+            meaning="Where live forces act: one number a force."), &
+      key_t(group="live", name="y", kind=key_kind%numbers, unit="m", without="no live load", &
+            at_least=-1.0e15_wp, at_most=1.0e15_wp, meaning="Likewise, upwards."), &
+      key_t(group="live", name="fx", kind=key_kind%numbers, unit="N/m", &
+            without="0 for each force", &
+            at_least=-1.0e30_wp, at_most=1.0e30_wp, &
+            meaning="Their components towards +x, per metre of depth."), &
+      key_t(group="live", name="fy", kind=key_kind%numbers, unit="N/m", &
+            without="0 for each force", &
+            at_least=-1.0e30_wp, at_most=1.0e30_wp, meaning="Their components upwards.")]
 
    !> Keys of &analysis
    type(key_t), parameter :: analysis_keys(*) = [ &
@@ -310,7 +331,7 @@ module dda_deck_keys
 
    !> All keys, group by group
    type(key_t), parameter :: deck_key(*) = [scene_keys, arch_keys, material_keys, joint_keys, &
-      load_keys, analysis_keys, limerick_keys, search_keys, sweep_keys, output_keys]
+      load_keys, live_keys, analysis_keys, limerick_keys, search_keys, sweep_keys, output_keys]
 
 contains
 

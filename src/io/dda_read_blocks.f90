@@ -27,7 +27,7 @@ module dda_read_blocks
       & "friction_deg", "cohesion", "tension"]
    !> Words that begin an entry
    character(len=*), parameter :: entries = "block, material, joint, fix, fix_line, "// &
-      & "measure, load, displacement, base_acceleration, base_velocity, base_displacement"
+      & "measure, load, live, displacement, base_acceleration, base_velocity, base_displacement"
 
    !> Lines between two that the watch is told of
    integer, parameter :: told_lines = 10000
@@ -174,7 +174,8 @@ contains
       select case (line%word(1))
       case ("block")
          entry%n_column = 2
-      case ("load", "displacement", "base_acceleration", "base_velocity", "base_displacement")
+      case ("load", "live", "displacement", &
+         & "base_acceleration", "base_velocity", "base_displacement")
          entry%n_column = 3
       case ("material", "joint", "fix", "fix_line", "measure")
          entry%n_column = 0
@@ -201,8 +202,8 @@ contains
          call add_material(reading%entry%head, reading%growing%plan, error)
       case ("joint")
          call add_law(reading%entry%head, reading%growing, error)
-      case ("fix", "fix_line", "measure", "load", "displacement", "base_acceleration", &
-         & "base_velocity", "base_displacement")
+      case ("fix", "fix_line", "measure", "load", "live", "displacement", &
+         & "base_acceleration", "base_velocity", "base_displacement")
          call keep_entry(reading%entry, reading%later, reading%n_later)
       end select
       reading%entry%head%n = 0

@@ -36,8 +36,10 @@ module dda_boundary
       integer :: block = 0
       !> Where the point is in the reference shape: (2) [m]
       real(wp) :: point(2) = 0.0_wp
-      !> The force [N per metre depth]
+      !> The force; of a live load, at a load factor of one [N per metre depth]
       type(history_t) :: force
+      !> Whether the load factor multiplies it
+      logical :: live = .false.
    end type loaded_point_t
 
    !> A point of a block whose motion is told

@@ -1,11 +1,12 @@
 !> What a run is told once
 module dda_settings
-   use dda_boundary, only : boundary_t
+   use dda_boundary, only : boundary_t, loaded_point_t
    use dda_kinds, only : wp
    implicit none
    private
 
    public :: settings_t, flow_rule, flow_rule_enum, gravity_direction, load_direction
+   public :: factor_of, full_push
 
    !> How a sliding joint moves
    type :: flow_rule_enum
@@ -51,8 +52,12 @@ module dda_settings
       real(wp) :: collapse_displacement = 0.0_wp
       !> Angle of gravity from upright, to the right [rad]
       real(wp) :: tilt = 0.0_wp
-      !> Horizontal force over the weight, to the right
+      !> Horizontal force over the weight, to the right; where it is live, at a load factor of one
       real(wp) :: push = 0.0_wp
+      !> Whether the load factor multiplies it
+      logical :: live_push = .false.
+      !> What live loads are multiplied by
+      real(wp) :: load_factor = 1.0_wp
       !> Held, loaded and measured points, and the motion of the ground
       type(boundary_t) :: boundary
       !> Remaining acceleration over that of the loads below which a structure is at rest
@@ -72,8 +77,27 @@ contains
       real(wp) :: direction(2)
 
       direction = gravity_direction(settings%tilt)
-      direction(1) = direction(1) + settings%push
+      direction(1) = direction(1) + full_push(settings)
    end function load_direction
+
+   !> Horizontal force over the weight, the load factor in it where it is live
+   pure real(wp) function full_push(settings)
+      !> The settings
+      type(settings_t), intent(in) :: settings
+
+      full_push = settings%push
+      if (settings%live_push) full_push = settings%load_factor*settings%push
+   end function full_push
+
+   !> What the force on a point is multiplied by
+   pure real(wp) function factor_of(settings, loaded)
+      !> The settings
+      type(settings_t), intent(in) :: settings
+      !> The point
+      type(loaded_point_t), intent(in) :: loaded
+
+      factor_of = merge(settings%load_factor, 1.0_wp, loaded%live)
+   end function factor_of
 
    !> Direction of gravity that is turned from upright
    pure function gravity_direction(tilt) result(direction)

@@ -3,7 +3,7 @@
 module dda_arch_lines
    use dda_arch_scene, only : arch_scene, unit_weight
    use dda_block_system, only : block_system_t
-   use dda_deck, only : deck_error, deck_t, is_given, real_of, word_of
+   use dda_deck, only : deck_error, deck_t, has_group, is_given, real_of, word_of
    use dda_deck_keys, only : key_index
    use dda_error, only : error_t
    use dda_kinds, only : wp
@@ -274,6 +274,7 @@ contains
          & text = text//", load%gravity_direction_deg"
       if (abs(real_of(deck, "load", "horizontal_coefficient")) > 0.0_wp) &
          & text = text//", load%horizontal_coefficient"
+      if (has_group(deck, "live")) text = text//", &live"
       if (is_given(deck, "analysis", "collapse_displacement")) &
          & text = text//", analysis%collapse_displacement"
       if (len(text) > 0) text = text(3:)

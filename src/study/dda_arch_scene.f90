@@ -5,7 +5,7 @@ module dda_arch_scene
    use dda_arch_chain, only : arch_numbers_t
    use dda_constants, only : degree, pi
    use dda_contact_detection, only : find_contacts
-   use dda_deck, only : deck_t, flag_of, integer_of, is_given, list_of, real_of, word_of
+   use dda_deck, only : deck_t, flag_of, has_group, integer_of, is_given, list_of, real_of, word_of
    use dda_kinds, only : wp
    use dda_material, only : friction_coefficient, joint_law_t, material_t
    use dda_scene, only : scene_t
@@ -192,6 +192,8 @@ contains
       settings%tilt = degree*modulo(real_of(deck, "load", "gravity_direction_deg") + 270.0_wp, &
          & 360.0_wp) - pi
       settings%push = real_of(deck, "load", "horizontal_coefficient")
+      settings%live_push = flag_of(deck, "load", "live_horizontal")
+      settings%load_factor = real_of(deck, "load", "load_factor")
       rise = min(1.0_wp, half_angle**2/2.0_wp)
       settings%rest_tolerance = 1.0e-3_wp*rise*real_of(deck, "search", "tolerance")
       ! the thrust is w r, the weight of a voussoir 2 w r alpha/n: rounding of the one moves the
@@ -227,7 +229,8 @@ contains
       eta = 0.0_wp
       own_weight = unit_weight(deck) > 0.0_wp &
          & .and. .not. abs(real_of(deck, "load", "gravity_direction_deg") + 90.0_wp) > 0.0_wp &
-         & .and. .not. abs(real_of(deck, "load", "horizontal_coefficient")) > 0.0_wp
+         & .and. .not. abs(real_of(deck, "load", "horizontal_coefficient")) > 0.0_wp &
+         & .and. .not. has_group(deck, "live")
       no_strength = .not. (real_of(deck, "joint", "cohesion") > 0.0_wp &
          & .or. real_of(deck, "joint", "tension") > 0.0_wp)
       known = own_weight .and. no_strength

@@ -3,34 +3,23 @@ module dda_deck_scene
    use dda_arch_chain, only : arch_chain, arch_numbers_t, arch_rays_t
    use dda_arch_scene, only : arch_numbers, arch_scene, half_joints_deg, joint_angles_deg, &
       & material_of, settings_of, unit_weight
-   use dda_block_scene, only : base_t, block_scene, floating_block
+   use dda_block_scene, only : base_t, block_scene
    use dda_chain, only : chain_t
    use dda_constants, only : degree, pi
-   use dda_deck, only : deck_error, deck_t, file_beside, has_group, is_given, keeps_velocities, &
-      & parameter_t, place_of, real_of, text_of, word_of
-   use dda_deck_check_case, only : check_model
+   use dda_deck, only : deck_t, parameter_t, real_of, word_of
    use dda_deck_keys, only : key_index
-   use dda_deck_parameter, only : find_parameter
    use dda_deck_set, only : number_fits, put_number
-   use dda_deck_sweep, only : n_cases, turn_to_case
    use dda_error, only : error_t, fatal_error
    use dda_kinds, only : wp
-   use dda_limerick_blocks, only : check_limerick_blocks
-   use dda_limerick_lines, only : check_limerick_lines
-   use dda_line_scene, only : check_line_scene, held_blocks, line_scene
-   use dda_read_deck, only : geometry_file
-   use dda_restart, only : check_restart, load_restart
+   use dda_line_scene, only : held_blocks, line_scene
+   use dda_live_loads, only : add_live_loads, check_live_points
    use dda_scene, only : family_t, scene_t, searched_load
    use dda_scene_plan, only : scene_plan_t
    use dda_settings, only : load_direction, settings_t
-   use dda_step_context, only : march_t
-   use dda_text, only : to_text
-   use dda_warnings, only : add_warning, warnings_t
-   use dda_watch, only : watch_t
    implicit none
    private
 
-   public :: check_lines, check_scene, deck_family_t, deck_scene, movable_blocks, new_family
+   public :: deck_family_t, deck_scene, movable_blocks, new_family
 
    !> The scenes of one deck whose searched parameter varies
    type, extends(family_t) :: deck_family_t
@@ -55,9 +44,6 @@ module dda_deck_scene
       procedure :: build => build_deck_scene
    end type deck_family_t
 
-   !> A block whose weight strains it more than this is doubtful
-   real(wp), parameter :: doubtful_strain = 1.0e-3_wp
-
 contains
 
    !> The family of a deck, its numbers read
@@ -77,6 +63,7 @@ contains
          & family%load = searched_load%push
       if (parameter%key == key_index("load", "gravity_direction_deg")) &
          & family%load = searched_load%tilt
+      if (parameter%key == key_index("load", "load_factor")) family%load = searched_load%factor
       family%chains = plan%row .and. parameter%key == key_index("arch", "thickness_ratio")
       family%decides_chains = family%chains .and. plan%chain
       if (.not. family%chains) return
@@ -126,7 +113,9 @@ contains
       end if
       deck = family%deck
       call put_number(deck, family%parameter, value, deck%value(family%parameter%key)%place, error)
-      if (.not. allocated(error)) call deck_scene(deck, scene)
+      if (allocated(error)) return
+      call deck_scene(deck, scene)
+      call check_live_points(deck, scene, error)
    end subroutine build_deck_scene
 
    !> The scene that the deck of one case describes
@@ -144,6 +133,7 @@ contains
       case ("blocks")
          call file_scene(deck, scene)
       end select
+      call add_live_loads(deck, scene)
    end subroutine deck_scene
 
    !> Number of blocks that can move in the scene of a case
@@ -176,223 +166,4 @@ contains
       scene%settings = settings_of(deck, pi/2.0_wp, size(deck%plan%fixed))
       call block_scene(deck%plan, base, scene)
    end subroutine file_scene
-
-   !> Check that the modes of a deck can run the blocks of its file, and that a run that goes on has
-   !> a file; warn of blocks that will fall, and of units that are no metres
-   subroutine check_scene(deck, scene, error, watch)
-      !> The deck, checked; receives the warnings
-      type(deck_t), intent(inout) :: deck
-      !> The scene of the first case, if its blocks are from a file
-      type(scene_t), intent(out) :: scene
-      !> What cannot be run, or a file that is not there
-      type(error_t), allocatable, intent(out) :: error
-      !> Is told what is done
-      class(watch_t), intent(inout), optional :: watch
-
-      if (present(watch)) call watch%tell("looking for joints", -1.0_wp)
-      if (is_given(deck, "analysis", "restart")) call check_start(deck, error)
-      if (allocated(error) .or. word_of(deck, "scene", "kind") /= "blocks") return
-      call check_modes(deck, scene, error)
-   end subroutine check_scene
-
-   !> Check that the modes of a deck can run the blocks that were cut from its lines
-   pure subroutine check_lines(deck, error)
-      !> The deck, checked; receives the warnings
-      type(deck_t), intent(inout) :: deck
-      !> What cannot be run
-      type(error_t), allocatable, intent(out) :: error
-      type(scene_t) :: scene
-
-      if (word_of(deck, "scene", "kind") == "lines") call check_modes(deck, scene, error)
-   end subroutine check_lines
-
-   !> Check the first case of each mode
-   pure subroutine check_modes(deck, scene, error)
-      !> The deck, checked; receives the warnings
-      type(deck_t), intent(inout) :: deck
-      !> The scene of the first case, if its blocks are from a file
-      type(scene_t), intent(out) :: scene
-      !> What cannot be run
-      type(error_t), allocatable, intent(out) :: error
-      type(deck_t) :: work
-      integer :: number, mode
-      logical :: seen(4)
-
-      seen = .false.
-      do number = 1, n_cases(deck)
-         call turn_to_case(deck, number, work, error)
-         if (allocated(error)) return
-         mode = findloc(["static  ", "dynamic ", "limerick"] == &
-            & word_of(work, "analysis", "mode"), .true., dim=1)
-         if (mode == 3 .and. keeps_velocities(work)) mode = 4
-         if (number == 1 .and. word_of(work, "scene", "kind") == "blocks") &
-            & call deck_scene(work, scene)
-         if (.not. seen(mode)) call check_mode(work, number == 1, scene, deck%warnings, error)
-         seen(mode) = .true.
-         if (allocated(error) .or. all(seen) .or. .not. any(deck%sweep%parameter%key == &
-            & key_index("analysis", "mode") .or. deck%sweep%parameter%key == &
-            & key_index("limerick", "dynamic"))) return
-      end do
-   end subroutine check_modes
-
-   !> Check that the mode of one case can run its scene
-   pure subroutine check_mode(deck, warns, scene, warnings, error)
-      !> The deck of the case
-      type(deck_t), intent(in) :: deck
-      !> Whether doubts are told
-      logical, intent(in) :: warns
-      !> A scene of these blocks and joints, if they are from a file
-      type(scene_t), intent(in) :: scene
-      !> Receives them
-      type(warnings_t), intent(inout) :: warnings
-      !> What it cannot run
-      type(error_t), allocatable, intent(out) :: error
-      type(parameter_t) :: searched
-      character(len=:), allocatable :: problem
-
-      select case (word_of(deck, "scene", "kind"))
-      case ("lines")
-         ! the analysis file may ask for velocities
-         if (has_group(deck, "search")) call find_parameter(text_of(deck, "search", "parameter"), &
-            & searched, problem)
-         call check_model(deck, searched, error)
-         if (allocated(error)) return
-         if (word_of(deck, "analysis", "mode") == "limerick") then
-            call check_limerick_lines(deck, error)
-         else
-            call check_line_scene(deck, error)
-         end if
-      case ("blocks")
-         if (word_of(deck, "analysis", "mode") == "limerick") call check_limerick_blocks( &
-            & deck%plan, geometry_file(deck), keeps_velocities(deck), error)
-         if (allocated(error)) return
-         if (word_of(deck, "analysis", "mode") == "static") &
-            & call check_support(deck, scene, error)
-         if (word_of(deck, "analysis", "mode") == "static" .and. .not. allocated(error)) &
-            & call check_loads(deck, scene, error)
-         if (warns .and. .not. allocated(error)) call doubt_scene(deck, scene, warnings)
-      end select
-   end subroutine check_mode
-
-   !> Check the file that a run goes on from: a single case must be able to, of many each finds out
-   subroutine check_start(deck, error)
-      !> The deck
-      type(deck_t), intent(in) :: deck
-      !> No file, or one that a single case cannot go on from
-      type(error_t), allocatable, intent(out) :: error
-      character(len=:), allocatable :: name
-      type(scene_t) :: scene
-      type(march_t) :: march
-      logical :: exists
-
-      name = text_of(deck, "analysis", "restart")
-      inquire (file=file_beside(deck, name), exist=exists)
-      if (.not. exists) then
-         call deck_error(error, "there is no restart file '"//name//"'; check the name", deck, &
-            & place_of(deck, key_index("analysis", "restart")))
-      else if (n_cases(deck) == 1) then
-         call deck_scene(deck, scene)
-         call load_restart(file_beside(deck, name), scene%settings, scene%system, &
-            & scene%contacts, march, error)
-      else
-         call check_restart(file_beside(deck, name), error)
-      end if
-   end subroutine check_start
-
-   !> Whether anything bears on the blocks of a static scene
-   pure subroutine check_loads(deck, scene, error)
-      !> The deck of a case
-      type(deck_t), intent(in) :: deck
-      !> Its scene
-      type(scene_t), intent(in) :: scene
-      !> Allocated if nothing does
-      type(error_t), allocatable, intent(out) :: error
-      integer :: i
-
-      if (any(scene%system%unit_weight > 0.0_wp)) return
-      if (any(abs(scene%system%initial_stress) > 0.0_wp)) return
-      associate (boundary => scene%settings%boundary)
-         if (allocated(boundary%base_acceleration%time)) return
-         if (allocated(boundary%loaded)) then
-            if (size(boundary%loaded) > 0) return
-         end if
-         if (allocated(boundary%held)) then
-            do i = 1, size(boundary%held)
-               if (.not. allocated(boundary%held(i)%path%value)) cycle
-               if (any(abs(boundary%held(i)%path%value) > 0.0_wp)) return
-            end do
-         end if
-      end associate
-      call fatal_error(error, "expected a load, got none: load%gravity is 0, no material has a "// &
-         & "unit_weight, and no point is loaded or led; add one", geometry_file(deck), 1)
-   end subroutine check_loads
-
-   !> Check that a static scene can come to rest at all
-   pure subroutine check_support(deck, scene, error)
-      !> The deck of a case
-      type(deck_t), intent(in) :: deck
-      !> Its scene
-      type(scene_t), intent(in) :: scene
-      !> Allocated if nothing holds a block
-      type(error_t), allocatable, intent(out) :: error
-      integer :: b
-
-      b = floating_block(scene)
-      if (b > 0) call fatal_error(error, "block "//to_text(b)//" rests on nothing: no chain of "// &
-         & "joints ties it to a fixed block, as mode = 'static' wants; add a joint or remove it", &
-         & geometry_file(deck), deck%plan%line(b))
-   end subroutine check_support
-
-   !> Warn of blocks that will fall, and of units that are no metres
-   pure subroutine doubt_scene(deck, scene, warnings)
-      !> The deck of a case
-      type(deck_t), intent(in) :: deck
-      !> Its scene
-      type(scene_t), intent(in) :: scene
-      !> Receives the warnings
-      type(warnings_t), intent(inout) :: warnings
-      integer :: b
-
-      call doubt_units(deck, scene, warnings)
-      b = floating_block(scene)
-      if (b > 0 .and. any(deck%plan%fixed)) call add_warning(warnings, "block " &
-         & //to_text(b)//" rests on nothing, and will fall", geometry_file(deck), &
-         & deck%plan%line(b))
-      if (any(deck%plan%fixed)) return
-      b = 0
-      if (allocated(deck%plan%boundary%held)) b = size(deck%plan%boundary%held)
-      if (b == 0) call add_warning(warnings, "nothing is fixed", geometry_file(deck), 1)
-   end subroutine doubt_scene
-
-   !> Warn where the weight of the blocks would strain them as no masonry is strained: lengths are
-   !> then often millimetres
-   pure subroutine doubt_units(deck, scene, warnings)
-      !> The deck of a case
-      type(deck_t), intent(in) :: deck
-      !> Its scene
-      type(scene_t), intent(in) :: scene
-      !> Receives the warning
-      type(warnings_t), intent(inout) :: warnings
-      character(len=10) :: figure
-      real(wp) :: height, strain
-      integer :: b
-
-      strain = 0.0_wp
-      associate (system => scene%system)
-         do b = 1, size(system%area)
-            if (system%equation(b) == 0) cycle
-            associate (vertex => system%vertex(:, &
-               & system%first_vertex(b):system%first_vertex(b + 1) - 1))
-               height = maxval(maxval(vertex, dim=2) - minval(vertex, dim=2))
-            end associate
-            strain = max(strain, system%unit_weight(b)*height &
-               & /system%materials(system%material(b))%young)
-         end do
-      end associate
-      if (.not. strain > doubtful_strain) return
-      write (figure, "(es10.1)") strain
-      call add_warning(warnings, "the weight of a block strains it by "// &
-         & trim(adjustl(figure))//": lengths, weights or young in other units than m, N, Pa?", &
-         & geometry_file(deck), 1)
-   end subroutine doubt_units
 end module dda_deck_scene

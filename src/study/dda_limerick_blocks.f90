@@ -48,21 +48,27 @@ contains
       end do
       model%material(1) = model%material(1 + max(1, findloc(plan%fixed, .false., dim=1)))
       model%loads_go_on = .false.
-      call take_points(plan, model%boundary)
+      call take_points(plan, scene%settings%load_factor, model%boundary)
    end subroutine blocks_model
 
    !> The plan's points, and those that hold its fixed blocks
-   pure subroutine take_points(plan, boundary)
+   pure subroutine take_points(plan, load_factor, boundary)
       !> The plan
       type(block_plan_t), intent(in) :: plan
+      !> What live loads are multiplied by
+      real(wp), intent(in) :: load_factor
       !> The points
       type(boundary_t), intent(out) :: boundary
       type(held_point_t), allocatable :: held(:)
-      integer :: b, n, v
+      integer :: b, i, n, v
 
       boundary = plan%boundary
       if (.not. allocated(boundary%held)) &
          & allocate (boundary%held(0), boundary%loaded(0), boundary%measured(0))
+      do i = 1, size(boundary%loaded)
+         if (boundary%loaded(i)%live) &
+            & boundary%loaded(i)%force%value = load_factor*boundary%loaded(i)%force%value
+      end do
       n = size(boundary%held)
       allocate (held(n + size(plan%vertex, 2)))
       held(:n) = boundary%held

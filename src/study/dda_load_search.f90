@@ -1,17 +1,17 @@
 !> Critical value of a load coefficient: the first collapse on the loading path, with the associated
 !> limit beside it
 !>
-!> The coefficient comes last on the path, so one path finds its critical value. What is searched is
-!> measured from where the coefficient does nothing: the horizontal coefficient itself, or the angle
-!> of gravity from upright.
+!> The coefficient comes last on the path, so one path finds its critical value.
 module dda_load_search
    use dda_decision, only : record_collapse, record_rest
    use dda_error, only : error_t
-   use dda_graph_decision, only : decides_as_graph, follow_stations, graph_verdict_t, has_friction
+   use dda_graph_decision, only : follow_stations, graph_verdict_t, has_friction
    use dda_joint_graph, only : joint_graph_t
    use dda_kinds, only : wp
    use dda_limit_load, only : find_limit, limit_load_t, limit_state
-   use dda_load_stations, only : last_history_time, load_stations, load_stations_t, loads_at
+   use dda_load_coefficient, only : can_follow, coefficient, full_loads, only_weight, &
+      & value_at_end, with_coefficient
+   use dda_load_stations, only : load_stations, load_stations_t
    use dda_loading_path, only : path_end
    use dda_scene, only : family_t, scene_t, searched_load
    use dda_scene_graph, only : scene_graph
@@ -85,61 +85,6 @@ contains
       if (done) call conclude(search, low, high, scene, right, left, critical)
    end subroutine find_critical_load
 
-   !> Whether the coefficient comes last on a path that the joint graph can follow
-   pure logical function can_follow(load, scene)
-      !> One of searched_load
-      integer, intent(in) :: load
-      !> The scene at the high end
-      type(scene_t), intent(in) :: scene
-
-      associate (settings => scene%settings)
-         can_follow = decides_as_graph(settings, scene%contacts) &
-            & .and. .not. last_history_time(settings) > 0.0_wp
-         if (load == searched_load%tilt) can_follow = can_follow &
-            & .and. .not. abs(settings%push) > 0.0_wp &
-            & .and. (settings%verdict_flow == flow_rule%coulomb .or. only_weight(settings))
-      end associate
-   end function can_follow
-
-   !> Whether nothing but weight acts, so that gravity that tilts is a push of fixed weight
-   pure logical function only_weight(settings)
-      !> Settings of the run
-      type(settings_t), intent(in) :: settings
-
-      only_weight = .not. allocated(settings%boundary%loaded)
-      if (.not. only_weight) only_weight = size(settings%boundary%loaded) == 0
-      only_weight = only_weight .and. .not. allocated(settings%boundary%base_acceleration%time)
-   end function only_weight
-
-   !> What is searched, from where it does nothing
-   pure real(wp) function coefficient(load, settings)
-      !> One of searched_load
-      integer, intent(in) :: load
-      !> Settings of the run
-      type(settings_t), intent(in) :: settings
-
-      coefficient = merge(settings%tilt, settings%push, load == searched_load%tilt)
-   end function coefficient
-
-   !> Settings with another value of what is searched
-   pure function with_coefficient(settings, load, value) result(other)
-      !> Settings of the run
-      type(settings_t), intent(in) :: settings
-      !> One of searched_load
-      integer, intent(in) :: load
-      !> The value
-      real(wp), intent(in) :: value
-      !> The settings
-      type(settings_t) :: other
-
-      other = settings
-      if (load == searched_load%tilt) then
-         other%tilt = value
-      else
-         other%push = value
-      end if
-   end function with_coefficient
-
    !> Follow the path to one side: limit analysis says how far it can lead at most
    pure subroutine follow_side(load, scene, graph, last, search, side)
       !> One of searched_load
@@ -181,7 +126,7 @@ contains
          call follow_stations(settings, scene%system, graph, stations, huge(1.0_wp), proof)
          proof%n_factorisation = proof%n_factorisation + limit%n_factorisation
          side%end = proof%end
-         side%value = value_at_end(load, stations, proof)
+         side%value = value_at_end(load, far, stations, proof)
          if (proof%end == path_end%reached .and. abs(far) < abs(last)) then
             ! no forces go on from here, whatever the law of friction
             side%end = path_end%collapsed
@@ -214,21 +159,21 @@ contains
       type(side_t), intent(inout) :: side
       !> The limit
       type(limit_load_t), intent(out) :: limit
-      type(load_stations_t) :: stations
       type(settings_t) :: settings
-      real(wp) :: dead(3, graph%n_block), live(3, graph%n_block), opening(3, size(graph%kind))
+      real(wp) :: dead(3, graph%n_block), live(3, graph%n_block)
       real(wp) :: tolerance
-      integer :: n
+      integer :: varied
 
       if (load == searched_load%tilt .and. .not. only_weight(scene%settings)) return
+      varied = load
       settings = scene%settings
-      if (load == searched_load%tilt) settings%tilt = 0.0_wp
-      settings%push = sign(1.0_wp, last)
-      stations = load_stations(settings, .true.)
-      n = ubound(stations%tilt, 1)
-      call loads_at(stations, n - 1, settings, scene%system, graph, dead, opening)
-      call loads_at(stations, n, settings, scene%system, graph, live, opening)
-      live = live - dead
+      if (load == searched_load%tilt) then
+         ! upright gravity and a push are gravity that tilts
+         settings%tilt = 0.0_wp
+         varied = searched_load%push
+      end if
+      dead = full_loads(with_coefficient(settings, varied, 0.0_wp), scene, graph)
+      live = full_loads(with_coefficient(settings, varied, sign(1.0_wp, last)), scene, graph) - dead
       tolerance = min(path_resolution, max(least_gap, 1.0e-2_wp*search%tolerance))
       call find_limit(graph, dead, live, tolerance, limit)
       side%has_limit = limit%state == limit_state%found
@@ -272,29 +217,6 @@ contains
          proof%force = limit%force
       end associate
    end subroutine take_associated
-
-   !> Value of what is searched at which a path ended
-   pure real(wp) function value_at_end(load, stations, proof) result(value)
-      !> One of searched_load
-      integer, intent(in) :: load
-      !> Stations of the path
-      type(load_stations_t), intent(in) :: stations
-      !> How it ended
-      type(graph_verdict_t), intent(in) :: proof
-      real(wp) :: angle(2)
-      integer :: i
-
-      i = proof%station
-      value = 0.0_wp
-      if (ubound(stations%tilt, 1) == 0) return
-      if (load == searched_load%push) then
-         value = (1.0_wp - proof%share)*stations%push(i) + proof%share*stations%push(i + 1)
-      else
-         angle = stations%tilt(i:i + 1)
-         value = atan2((1.0_wp - proof%share)*sin(angle(1)) + proof%share*sin(angle(2)), &
-            & (1.0_wp - proof%share)*cos(angle(1)) + proof%share*cos(angle(2)))
-      end if
-   end function value_at_end
 
    !> The verdict of the range. Where it falls on both sides, the critical value is that to the
    !> right, and the other one is told beside it

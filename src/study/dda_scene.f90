@@ -19,6 +19,8 @@ module dda_scene
       integer :: push = 1
       !> Direction of gravity
       integer :: tilt = 2
+      !> Load factor of the live loads
+      integer :: factor = 3
    end type searched_load_enum
 
    !> Their names

@@ -115,7 +115,7 @@ contains
 
       plan%row = word_of(deck, "scene", "kind") == "arch" &
          & .and. word_of(deck, "analysis", "mode") == "static" &
-         & .and. .not. (plan%moving .or. plan%strength)
+         & .and. .not. (plan%moving .or. plan%strength .or. has_group(deck, "live"))
       if (plan%row) plan%row = real_of(deck, "arch", "half_angle_deg") >= shallow_deg
       plan%chain = plan%row .and. plan%unknowns == n_rigid &
          & .and. .not. (flag_of(deck, "output", "condition") &

@@ -6,7 +6,7 @@ module dda_outer_loads
    use dda_deformation, only : moved_point
    use dda_kinds, only : wp
    use dda_loads, only : body_load, point_load
-   use dda_settings, only : settings_t
+   use dda_settings, only : factor_of, settings_t
    implicit none
    private
 
@@ -49,11 +49,13 @@ contains
       end if
       if (.not. allocated(settings%boundary%loaded)) return
       do i = 1, size(settings%boundary%loaded)
-         e = system%equation(settings%boundary%loaded(i)%block)
-         if (e == 0) cycle
-         of_block = load_at(settings%boundary%loaded(i), now(settings%boundary%loaded(i)%force))
-         load(:, e) = load(:, e) + of_block(:nd)
-         felt(:, e) = felt(:, e) + abs(of_block(:nd))
+         associate (loaded => settings%boundary%loaded(i))
+            e = system%equation(loaded%block)
+            if (e == 0) cycle
+            of_block = load_at(loaded, factor_of(settings, loaded)*now(loaded%force))
+            load(:, e) = load(:, e) + of_block(:nd)
+            felt(:, e) = felt(:, e) + abs(of_block(:nd))
+         end associate
       end do
 
    contains

@@ -9,11 +9,13 @@ from pathlib import Path
 from typing import NamedTuple
 
 import pytest
+from bridges import spans
 from dda_command import run_dda
 
 KINDS = ("arch", "lines", "blocks")
 MODES = ("static", "dynamic", "limerick")
 GEOMETRIES = ("reference", "current")
+DATA = Path(__file__).parents[1] / "data"
 INPUT_DOC = Path(__file__).parents[2] / "docs" / "input.md"
 
 # a block of 1 x 2 m on a ground, as lines and as polygons
@@ -147,6 +149,9 @@ def of_the_block(kind: str, mode: str) -> dict[str, Answer]:
         "load%horizontal_coefficient": Answer(dense + g + rough, 0, 1, 0.5, 0.01),
         "load%gravity_direction_deg": Answer(
             dense + g + rough, -90, -45, -90 + math.degrees(math.atan(0.5)), 0.01),
+        "load%load_factor": Answer(
+            dense + "&load gravity = 10, horizontal_coefficient = 0.2, live_horizontal = T /\n" + rough,
+            0, 9, 2.5, 0.01),
         "joint%friction_deg": Answer(dense + push, 5, 60, math.degrees(math.atan(0.3)), 0.01),
         # no stiffness makes or breaks equilibrium
         "material%young": Answer(dense + push, 1e8, 1e12, "stable"),
@@ -156,7 +161,13 @@ def of_the_block(kind: str, mode: str) -> dict[str, Answer]:
         # 8 kPa on 1 m bear a fifth of 40 kN; it hangs by 40 kPa
         glued = "&joint friction_deg = 0, cohesion = 8e3 /\n"
         fifth = "&load gravity = 10, horizontal_coefficient = 0.2 /\n"
+        live = dense + g + rough + "&live x = {}, y = {}, fx = {}, fy = {} /\n"
         answers |= {
+            # moments about the lower corner, with the 20 kNm of the weight
+            "live%fx(2)": Answer(live.format("0, 0", "0, 2", "0, 1", "0, 0"), 0, 5e4, 10e3),
+            "live%fy(2)": Answer(live.format("0, 0", "2, 2", "12e3, 0", "0, 0"), -1e4, 0, -4e3),
+            "live%y(2)": Answer(live.format("0, 0", "0, 1", "0, 20e3", "0, 0"), 0.1, 1.9, 1.0),
+            "live%x(2)": Answer(live.format("0, 0.3", "2, 2", "15e3, 0", "0, -20e3"), 0.1, 0.9, 0.5),
             "material%density": Answer(light + fifth + glued, 500, 8000, 2000.0),
             "material%unit_weight": Answer(light + fifth + glued, 5e3, 8e4, 20e3),
             "load%gravity": Answer(dense + "&load horizontal_coefficient = 0.2 /\n" + glued, 2, 40, 10.0),
@@ -196,7 +207,24 @@ def of_the_arch(mode: str) -> dict[str, Answer]:
     answers = {key: Answer(thick, low, high, "stable") for key, low, high in (
         ("material%density", 1, 1e5), ("material%unit_weight", 1, 1e6), ("load%gravity", 1, 100),
         ("arch%radius", 1, 100), ("material%young", 1e8, 1e12), ("material%poisson", 0, 0.4))}
+    # the push again, in tenths
+    live = pushed + "&load live_horizontal = T, horizontal_coefficient = 0.1 /\n"
     if mode == "static":
+        # a span of tests/data/practice_multi_span.csv; a load of nothing is carried anywhere
+        one = table(DATA / "practice_multi_span.csv")[0]
+        weight, x, y = -float(spans(one).split()[-1]), *spans(one).split()[-4:-2]
+        span = (f"&arch radius = 1, half_angle_deg = 60, voussoirs = 20 /\n&material unit_weight = 1 /\n"
+                f"&joint friction_deg = {math.degrees(math.atan(0.6))!r} /\n"
+                f"&live x = 2*{x}, y = 2*{y}, fy = 0, {{}} /\n")
+        factor = float(one["P_over_weight_of_one_arch"])
+        answers |= {
+            "load%load_factor": Answer(span.format(-weight), 0, 9, factor),
+            "live%fy(2)": Answer(span.format(-weight), -9 * weight, 0, -factor * weight),
+            "live%fx(2)": Answer(
+                span.format(-1e-9).replace("fy", "fx = 2*0, fy"), -1e-9, 1e-9, "stable"),
+            "live%x(2)": Answer(span.format(-1e-9), float(x) - 0.02, float(x), "stable"),
+            "live%y(2)": Answer(span.format(-1e-9), float(y) - 0.05, float(y) - 0.01, "stable"),
+        }
         twelve = "&arch voussoirs = 12, thickness_ratio = {} /\n" + keyed
         return answers | {
             "arch%thickness_ratio": Answer(keyed, 0.05, 0.2, EXACT_36),
@@ -223,6 +251,7 @@ def of_the_arch(mode: str) -> dict[str, Answer]:
         "joint%friction_deg": Answer("&arch voussoirs = 12, thickness_ratio = 0.13 /\n", 40, 80, "stable"),
         "load%horizontal_coefficient": Answer(pushed, 0.2, 0.5, push, 0.05),
         "load%gravity_direction_deg": Answer(pushed, -80, -60, tilt, 0.05),
+        "load%load_factor": Answer(live, 2, 5, 10 * push, 0.05),
         # 4.3 m are what the original's limit is of
         "arch%abutment_size": Answer(at_limit, 2, 8, 4.3, 0.05),
         "arch%abutment_overhang": Answer(at_limit, 2, 8, 4.3, 0.05),

@@ -1,0 +1,96 @@
+!> What a deck says of live loads
+module dda_deck_check_live
+   use dda_deck, only : deck_error, deck_place_t, deck_t, flag_of, has_group, is_given, list_of, &
+      & parameter_t, place_of, word_of
+   use dda_deck_keys, only : deck_key, group_index, key_index
+   use dda_error, only : error_t
+   use dda_kinds, only : wp
+   use dda_text, only : to_text
+   implicit none
+   private
+
+   public :: check_live
+
+contains
+
+   !> Check the live loads of one case
+   pure subroutine check_live(deck, searched, error)
+      !> The deck of the case
+      type(deck_t), intent(in) :: deck
+      !> What is searched; key 0 if nothing is
+      type(parameter_t), intent(in) :: searched
+      !> Lists that do not go together, or what has no effect
+      type(error_t), allocatable, intent(out) :: error
+      integer :: push
+      logical :: pushed
+
+      if (has_group(deck, "live")) call check_lists(deck, searched, error)
+      if (allocated(error)) return
+      push = key_index("load", "horizontal_coefficient")
+      pushed = searched%key == push .or. abs(deck%value(push)%number) > 0.0_wp
+      if (flag_of(deck, "load", "live_horizontal") .and. .not. pushed) &
+         & call deck_error(error, "load%live_horizontal expects a horizontal_coefficient other "// &
+         & "than 0, got 0; give one, or remove live_horizontal", deck, &
+         & place_of(deck, key_index("load", "live_horizontal")))
+   end subroutine check_live
+
+   !> Check the lists of &live
+   pure subroutine check_lists(deck, searched, error)
+      !> The deck of the case
+      type(deck_t), intent(in) :: deck
+      !> What is searched; key 0 if nothing is
+      type(parameter_t), intent(in) :: searched
+      !> Lists of different lengths, or a mode that has no use for them
+      type(error_t), allocatable, intent(out) :: error
+      character(len=2), parameter :: name(4) = ["x ", "y ", "fx", "fy"]
+      character(len=:), allocatable :: problem
+      type(deck_place_t) :: place
+      integer :: i, n
+
+      place = deck%group(group_index("live"))
+      problem = ""
+      n = size(list_of(deck, "live", "x"))
+      if (n == 0) problem = "&live expects x and y, where its forces act, got none; give both"
+      do i = 2, size(name)
+         if (len(problem) > 0) exit
+         if (i > 2 .and. .not. is_given(deck, "live", name(i))) cycle
+         if (size(list_of(deck, "live", name(i))) == n) cycle
+         problem = "live%"//trim(name(i))//" expects as many numbers as live%x, "//to_text(n) &
+            & //", got "//to_text(size(list_of(deck, "live", name(i))))//"; give one a force"
+         place = place_of(deck, key_index("live", trim(name(i))))
+      end do
+      if (len(problem) > 0) then
+         continue
+      else if (word_of(deck, "analysis", "mode") == "limerick") then
+         problem = "&live expects another mode than 'limerick', whose loads are those of its "// &
+            & "files; remove one of the two"
+      else if (group_of(searched) == "arch") then
+         problem = "&live expects an arch that keeps its shape, but the search changes it, "// &
+            & "and its points stay; sweep the shape, with x and y linked"
+         place = place_of(deck, key_index("search", "parameter"))
+      else if (group_of(searched) /= "live" .and. .not. has_forces(deck)) then
+         problem = "&live expects a force other than 0, got none; give fx or fy"
+      end if
+      if (len(problem) > 0) call deck_error(error, problem, deck, place)
+   end subroutine check_lists
+
+   !> Group of what is searched; empty if nothing is
+   pure function group_of(searched) result(group)
+      !> What is searched; key 0 if nothing is
+      type(parameter_t), intent(in) :: searched
+      !> Name of the group
+      character(len=len(deck_key%group)) :: group
+
+      group = ""
+      if (searched%key > 0) group = deck_key(searched%key)%group
+   end function group_of
+
+   !> Whether a force of &live is not 0
+   pure logical function has_forces(deck)
+      !> The deck of the case
+      type(deck_t), intent(in) :: deck
+
+      has_forces = any(abs(list_of(deck, "live", "fx")) > 0.0_wp) &
+         & .or. any(abs(list_of(deck, "live", "fy")) > 0.0_wp)
+   end function has_forces
+end module dda_deck_check_live

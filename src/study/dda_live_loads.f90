@@ -1,0 +1,155 @@
+!> Live loads that a deck names, on the blocks of its scene
+module dda_live_loads
+   use dda_block_system, only : block_system_t
+   use dda_boundary, only : constant_history, loaded_point_t
+   use dda_deck, only : deck_error, deck_t, flag_of, has_group, is_given, list_of, place_of, &
+      & real_of
+   use dda_deck_keys, only : key_index
+   use dda_error, only : error_t
+   use dda_kinds, only : wp
+   use dda_polygon, only : depth_in
+   use dda_scene, only : scene_t
+   use dda_text, only : to_text
+   implicit none
+   private
+
+   public :: add_live_loads, bears_live, check_live_points
+
+   !> A point may lie outside its block by this share of the block's size: coordinates are rounded
+   real(wp), parameter :: rounded = 1.0e-4_wp
+
+contains
+
+   !> Put the forces of &live on the blocks of a scene
+   pure subroutine add_live_loads(deck, scene)
+      !> The deck of the case
+      type(deck_t), intent(in) :: deck
+      !> The scene; forces in none of its blocks are left out
+      type(scene_t), intent(inout) :: scene
+      type(loaded_point_t), allocatable :: loaded(:)
+      real(wp), allocatable :: point(:, :), force(:, :)
+      integer :: b, before, i, n
+
+      if (.not. has_group(deck, "live")) return
+      call live_lists(deck, scene%origin, point, force)
+      before = 0
+      if (allocated(scene%settings%boundary%loaded)) before = size(scene%settings%boundary%loaded)
+      allocate (loaded(before + size(point, 2)))
+      if (before > 0) loaded(:before) = scene%settings%boundary%loaded
+      n = before
+      do i = 1, size(point, 2)
+         b = block_at(scene%system, point(:, i))
+         if (b == 0) cycle
+         n = n + 1
+         loaded(n)%block = b
+         loaded(n)%point = point(:, i)
+         loaded(n)%force = constant_history(force(:, i))
+         loaded(n)%live = .true.
+      end do
+      if (allocated(scene%settings%boundary%loaded)) deallocate (scene%settings%boundary%loaded)
+      allocate (scene%settings%boundary%loaded, source=loaded(:n))
+   end subroutine add_live_loads
+
+   !> Points and forces of &live
+   pure subroutine live_lists(deck, origin, point, force)
+      !> The deck of the case
+      type(deck_t), intent(in) :: deck
+      !> Origin of the blocks' coordinates: (2) [m]
+      real(wp), intent(in) :: origin(2)
+      !> The points, seen from there: (2, n) [m]
+      real(wp), allocatable, intent(out) :: point(:, :)
+      !> The forces: (2, n) [N/m]
+      real(wp), allocatable, intent(out) :: force(:, :)
+      integer :: n
+
+      n = size(list_of(deck, "live", "x"))
+      allocate (point(2, n))
+      allocate (force(2, n), source=0.0_wp)
+      point(1, :) = list_of(deck, "live", "x") - origin(1)
+      point(2, :) = list_of(deck, "live", "y") - origin(2)
+      if (is_given(deck, "live", "fx")) force(1, :) = list_of(deck, "live", "fx")
+      if (is_given(deck, "live", "fy")) force(2, :) = list_of(deck, "live", "fy")
+   end subroutine live_lists
+
+   !> Block that moves and holds a point most deeply or has it on its outline, else one that is
+   !> fixed and does; 0 if none does
+   pure integer function block_at(system, point)
+      !> The blocks
+      type(block_system_t), intent(in) :: system
+      !> The point: (2) [m]
+      real(wp), intent(in) :: point(2)
+
+      block_at = deepest_block(system, system%equation > 0, point)
+      if (block_at == 0) block_at = deepest_block(system, system%equation == 0, point)
+   end function block_at
+
+   !> Block of some that holds a point most deeply or has it on its outline; 0 if none does
+   pure integer function deepest_block(system, of, point)
+      !> The blocks
+      type(block_system_t), intent(in) :: system
+      !> Which of them: (n_block)
+      logical, intent(in) :: of(:)
+      !> The point: (2) [m]
+      real(wp), intent(in) :: point(2)
+      real(wp) :: deepest, depth, low(2), high(2), margin
+      integer :: b
+
+      deepest_block = 0
+      deepest = -huge(deepest)
+      do b = 1, size(system%area)
+         if (.not. of(b)) cycle
+         associate (vertex => system%vertex(:, &
+            & system%first_vertex(b):system%first_vertex(b + 1) - 1))
+            low = minval(vertex, dim=2)
+            high = maxval(vertex, dim=2)
+            margin = rounded*norm2(high - low)
+            if (any(point < low - margin) .or. any(point > high + margin)) cycle
+            depth = depth_in(vertex, point)
+         end associate
+         if (depth < -margin .or. .not. depth > deepest) cycle
+         deepest = depth
+         deepest_block = b
+      end do
+   end function deepest_block
+
+   !> Check that the forces of &live act on blocks that move
+   pure subroutine check_live_points(deck, scene, error)
+      !> The deck of the case
+      type(deck_t), intent(in) :: deck
+      !> Its scene, with or without them
+      type(scene_t), intent(in) :: scene
+      !> A point in no block, or in one that is fixed
+      type(error_t), allocatable, intent(out) :: error
+      character(len=:), allocatable :: text
+      real(wp), allocatable :: point(:, :), force(:, :)
+      integer :: b, i
+
+      if (.not. has_group(deck, "live")) return
+      call live_lists(deck, scene%origin, point, force)
+      do i = 1, size(point, 2)
+         b = block_at(scene%system, point(:, i))
+         text = "&live expects points of blocks that move, got ("//to_text(point(1, i) &
+            & + scene%origin(1))//", "//to_text(point(2, i) + scene%origin(2))//"), which lies in "
+         if (b == 0) then
+            call deck_error(error, text//"none; move point "//to_text(i), deck, &
+               & place_of(deck, key_index("live", "x")))
+            return
+         else if (scene%system%equation(b) == 0) then
+            call deck_error(error, text//"block "//to_text(b)//", which is fixed; move point " &
+               & //to_text(i), deck, place_of(deck, key_index("live", "x")))
+            return
+         end if
+      end do
+   end subroutine check_live_points
+
+   !> Whether a case has anything that the load factor multiplies
+   pure logical function bears_live(deck)
+      !> The deck of the case
+      type(deck_t), intent(in) :: deck
+
+      bears_live = has_group(deck, "live") .or. flag_of(deck, "load", "live_horizontal") &
+         & .and. abs(real_of(deck, "load", "horizontal_coefficient")) > 0.0_wp
+      if (allocated(deck%plan%boundary%loaded)) bears_live = bears_live &
+         & .or. any(deck%plan%boundary%loaded%live)
+   end function bears_live
+end module dda_live_loads

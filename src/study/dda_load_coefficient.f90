@@ -1,0 +1,144 @@
+!> A load coefficient as something that grows on the loading path: its value, the scene with another
+!> value of it, and its value where a path has ended
+!>
+!> It is measured from where it does nothing: the horizontal coefficient or the load factor itself,
+!> or the angle of gravity from upright.
+module dda_load_coefficient
+   use dda_graph_decision, only : decides_as_graph, graph_verdict_t
+   use dda_joint_graph, only : joint_graph_t
+   use dda_kinds, only : wp
+   use dda_load_stations, only : bears_live_load, last_history_time, load_stations, &
+      & load_stations_t, loads_at
+   use dda_scene, only : scene_t, searched_load
+   use dda_settings, only : flow_rule, full_push, settings_t
+   implicit none
+   private
+
+   public :: can_follow, coefficient, full_loads, only_weight, value_at_end, with_coefficient
+
+contains
+
+   !> Whether the coefficient comes last on a path that the joint graph can follow
+   pure logical function can_follow(load, scene)
+      !> One of searched_load
+      integer, intent(in) :: load
+      !> The scene at the high end
+      type(scene_t), intent(in) :: scene
+
+      associate (settings => scene%settings)
+         can_follow = decides_as_graph(settings, scene%contacts) &
+            & .and. .not. last_history_time(settings) > 0.0_wp
+         ! under the associated rule the order of the loads does not matter
+         if (load /= searched_load%factor .and. bears_live_load(with_dead_push(settings))) &
+            & can_follow = can_follow .and. settings%verdict_flow == flow_rule%associated
+         if (load == searched_load%tilt) can_follow = can_follow &
+            & .and. .not. abs(settings%push) > 0.0_wp &
+            & .and. (settings%verdict_flow == flow_rule%coulomb .or. only_weight(settings))
+      end associate
+   end function can_follow
+
+   !> Settings whose push is not live
+   pure function with_dead_push(settings) result(other)
+      !> Settings of the run
+      type(settings_t), intent(in) :: settings
+      !> The settings
+      type(settings_t) :: other
+
+      other = settings
+      other%push = full_push(settings)
+      other%live_push = .false.
+   end function with_dead_push
+
+   !> Whether nothing but weight acts, so that gravity that tilts is a push of fixed weight
+   pure logical function only_weight(settings)
+      !> Settings of the run
+      type(settings_t), intent(in) :: settings
+
+      only_weight = .not. allocated(settings%boundary%loaded)
+      if (.not. only_weight) only_weight = size(settings%boundary%loaded) == 0
+      only_weight = only_weight .and. .not. allocated(settings%boundary%base_acceleration%time)
+   end function only_weight
+
+   !> What is searched, from where it does nothing
+   pure real(wp) function coefficient(load, settings)
+      !> One of searched_load
+      integer, intent(in) :: load
+      !> Settings of the run
+      type(settings_t), intent(in) :: settings
+
+      coefficient = settings%load_factor
+      if (load == searched_load%push) coefficient = full_push(settings)
+      if (load == searched_load%tilt) coefficient = settings%tilt
+   end function coefficient
+
+   !> Settings with another value of what is searched
+   pure function with_coefficient(settings, load, value) result(other)
+      !> Settings of the run
+      type(settings_t), intent(in) :: settings
+      !> One of searched_load
+      integer, intent(in) :: load
+      !> The value
+      real(wp), intent(in) :: value
+      !> The settings
+      type(settings_t) :: other
+
+      other = settings
+      select case (load)
+      case (searched_load%tilt)
+         other%tilt = value
+      case (searched_load%push)
+         other%push = value
+         other%live_push = .false.
+      case (searched_load%factor)
+         other%load_factor = value
+      end select
+   end function with_coefficient
+
+   !> Loads at the end of the loading path
+   pure function full_loads(settings, scene, graph) result(load)
+      !> Settings of the run, without histories
+      type(settings_t), intent(in) :: settings
+      !> The scene
+      type(scene_t), intent(in) :: scene
+      !> Its joints
+      type(joint_graph_t), intent(in) :: graph
+      !> The loads: (3, n_block) [N/m, N/m, N]
+      real(wp) :: load(3, graph%n_block)
+      type(load_stations_t) :: stations
+      real(wp) :: opening(3, size(graph%kind))
+
+      stations = load_stations(settings, .true.)
+      call loads_at(stations, ubound(stations%tilt, 1), settings, scene%system, graph, load, &
+         & opening)
+   end function full_loads
+
+   !> Value of what is searched at which a path ended
+   pure real(wp) function value_at_end(load, far, stations, proof) result(value)
+      !> One of searched_load
+      integer, intent(in) :: load
+      !> Its value at the end of the path
+      real(wp), intent(in) :: far
+      !> Stations of the path
+      type(load_stations_t), intent(in) :: stations
+      !> How it ended
+      type(graph_verdict_t), intent(in) :: proof
+      real(wp) :: angle(2)
+      integer :: i
+
+      i = proof%station
+      value = 0.0_wp
+      if (ubound(stations%tilt, 1) == 0) return
+      associate (before => 1.0_wp - proof%share, after => proof%share)
+         select case (load)
+         case (searched_load%push)
+            value = before*stations%push(i) + after*stations%push(i + 1)
+         case (searched_load%factor)
+            value = (before*stations%live(i) + after*stations%live(i + 1))*far
+         case default
+            angle = stations%tilt(i:i + 1)
+            value = atan2(before*sin(angle(1)) + after*sin(angle(2)), &
+               & before*cos(angle(1)) + after*cos(angle(2)))
+         end select
+      end associate
+   end function value_at_end
+end module dda_load_coefficient

@@ -1,0 +1,211 @@
+"""Live loads: dead loads stay, the load factor multiplies what is live, and a search finds the first collapse."""
+
+from __future__ import annotations
+
+import csv
+import math
+from pathlib import Path
+
+import pytest
+from bridges import rings, spans
+from dda_command import run_dda
+
+DATA = Path(__file__).parents[1] / "data"
+GROUND = "block fixed\n-5 -1\n5 -1\n5 0\n-5 0\n"
+BLOCK = "block\n0 0\n1 0\n1 2\n0 2\n"
+#: Weight of the block with the default density
+WEIGHT = 2.0 * 2240.0 * 9.81
+#: It turns about a corner, half a metre from its centre of gravity, under a push of 1000 N at 2 m
+TURNS = 0.5 * WEIGHT / 2.0 / 1000.0
+PUSHED = GROUND + BLOCK + "live 0 2 1000 0\n"
+SEARCH = "&search parameter = 'load_factor' /\n"
+
+
+def table(file: str) -> list[dict[str, str]]:
+    """Rows of a table of tests/data."""
+    with (DATA / file).open(newline="") as lines:
+        return list(csv.DictReader(lines))
+
+
+def rows(folder: Path, groups: str, blocks: str = PUSHED, head: str | None = None) -> list[dict[str, str]]:
+    """Rows of a deck, by default of a file of blocks."""
+    (folder / "x.blocks").write_text(blocks)
+    if head is None:
+        head = "&scene kind = 'blocks', geometry = 'x.blocks' /\n"
+    (folder / "x.nml").write_text(head + groups)
+    done = run_dda("run", "x.nml", "--quiet", cwd=folder)
+    assert done.returncode == 0, done.stderr
+    with (folder / "x" / "results.csv").open(newline="") as lines:
+        return sorted(csv.DictReader(lines), key=lambda row: int(row["case"]))
+
+
+def friction_of(word: str) -> str:
+    """A deck's friction angle."""
+    return "90" if word == "rough" else repr(math.degrees(math.atan(float(word))))
+
+
+@pytest.mark.parametrize(("friction", "factor"), [(50, TURNS), (5, WEIGHT * math.tan(math.radians(5)) / 1000.0)])
+@pytest.mark.parametrize("flow", ["coulomb", "associated"])
+def test_a_pushed_block_turns_or_slides(tmp_path: Path, friction: float, factor: float, flow: str) -> None:
+    (row,) = rows(tmp_path, f"&joint friction_deg = {friction} /\n&analysis flow = '{flow}' /\n" + SEARCH)
+    assert row["verdict"] == "found" and row["collapses_at"] == "high"
+    assert float(row["critical"]) == pytest.approx(factor, rel=1e-9)
+    assert float(row["exact_low"]) == pytest.approx(factor, rel=1e-9)
+    assert float(row["exact_high"]) == pytest.approx(factor, rel=1e-9)
+
+
+def test_decisions_flip_where_the_search_says(tmp_path: Path) -> None:
+    values = [-TURNS * 1.001, -TURNS * 0.999, 0.0, TURNS * 0.999999, TURNS * 1.000001, 1e6]
+    sweep = f"&sweep parameter = 'load_factor', values = {', '.join(map(repr, values))} /\n"
+    verdicts = [row["verdict"] for row in rows(tmp_path, sweep)]
+    assert verdicts == ["collapsed", "stable", "stable", "stable", "collapsed", "collapsed"]
+
+
+def test_both_directions_are_searched(tmp_path: Path) -> None:
+    search = "&search parameter = 'load_factor', low = -100.0, high = 5.0 /\n"
+    (row,) = rows(tmp_path, search)
+    assert float(row["critical"]) == pytest.approx(-TURNS, rel=1e-8) and row["collapses_at"] == "low"
+
+
+def test_a_dead_load_stays(tmp_path: Path) -> None:
+    """A dead push of 4000 N at the same corner leaves the rest to the live one."""
+    (row,) = rows(tmp_path, SEARCH, PUSHED + "load 0 2 4000 0\n")
+    assert float(row["critical"]) == pytest.approx(TURNS - 4.0, rel=1e-9)
+
+
+def test_what_falls_without_live_loads_has_no_factor(tmp_path: Path) -> None:
+    (row,) = rows(tmp_path, SEARCH, PUSHED + "load 0 2 40000 0\n")
+    assert row["verdict"] == "collapsed" and row["critical"] == ""
+
+
+def test_a_load_that_only_presses_is_carried_at_any_factor(tmp_path: Path) -> None:
+    (row,) = rows(tmp_path, SEARCH, GROUND + BLOCK + "live block 2 0.5 2 0 -1000\n")
+    assert row["verdict"] == "stable" and row["critical"] == ""
+
+
+@pytest.mark.parametrize("row", table("practice_multi_span.csv"), ids=lambda row: "-".join(list(row.values())[:8]))
+def test_spans_on_piers_carry_what_the_linear_programme_says(tmp_path: Path, row: dict[str, str]) -> None:
+    deck = f"&material unit_weight = 1.0 /\n&joint friction_deg = {friction_of(row['friction'])} /\n" + SEARCH
+    (found,) = rows(tmp_path, deck, spans(row))
+    factor = float(row["P_over_weight_of_one_arch"])
+    assert float(found["critical"]) == pytest.approx(factor, rel=1e-8)
+    assert float(found["exact_low"]) == pytest.approx(factor, rel=1e-8)
+    assert float(found["exact_high"]) == pytest.approx(factor, rel=1e-8)
+
+
+@pytest.mark.parametrize("row", table("practice_multi_ring.csv"), ids=lambda row: "-".join(list(row.values())[:5]))
+def test_rings_carry_what_the_linear_programme_says(tmp_path: Path, row: dict[str, str]) -> None:
+    deck = f"&material unit_weight = 1.0 /\n&joint friction_deg = {friction_of(row['friction_all_joints'])} /\n"
+    associated = float(row["P_over_weight_associated_upper_bound"])
+    (found,) = rows(tmp_path, deck + "&analysis flow = 'associated' /\n" + SEARCH, rings(row))
+    assert float(found["critical"]) == pytest.approx(associated, rel=1e-8)
+    (found,) = rows(tmp_path, deck + SEARCH, rings(row))
+    assert float(found["exact_high"]) == pytest.approx(associated, rel=1e-8)
+    assert float(found["critical"]) <= float(found["exact_high"])
+    if row["P_over_weight_one_coulomb_state"]:
+        # jumps on the loading path choose among states that are a ten-thousandth apart
+        assert float(found["critical"]) >= float(row["P_over_weight_one_coulomb_state"]) * (1.0 - 2e-4)
+
+
+def test_a_live_push_is_the_coefficient_times_the_factor(tmp_path: Path) -> None:
+    (row,) = rows(tmp_path, "&search parameter = 'horizontal_coefficient' /\n", head="")
+    (live,) = rows(tmp_path, "&load horizontal_coefficient = 0.1, live_horizontal = .true. /\n" + SEARCH, head="")
+    assert float(live["critical"]) == pytest.approx(10.0 * float(row["critical"]), rel=1e-8)
+
+
+def test_a_history_of_a_live_load_is_multiplied_too(tmp_path: Path) -> None:
+    """It rises to 1000 N; the first factor at which some of it topples the block is that of the whole."""
+    history = GROUND + BLOCK + "live 0 2\n0 0 0\n1 1000 0\n2 500 0\n"
+    (row,) = rows(tmp_path, "&search parameter = 'load_factor', high = 100.0 /\n", history)
+    assert float(row["critical"]) == pytest.approx(TURNS, rel=1e-7)
+
+
+@pytest.mark.parametrize("mode", ["static", "dynamic"])
+def test_moving_blocks_feel_the_factor(tmp_path: Path, mode: str) -> None:
+    time = ", duration = 0.5, steps = 4000" if mode == "dynamic" else ""
+    deck = f"&analysis mode = '{mode}', geometry = 'current'{time} /\n&output joints = .true. /\n"
+    shear = []
+    for factor in (0.5, 1.5):
+        (row,) = rows(tmp_path, f"&load load_factor = {factor} /\n" + deck)
+        assert row["verdict"] in ("stable", "completed")
+        with (tmp_path / "x" / "joints.csv").open(newline="") as lines:
+            shear.append(sum(abs(float(joint["force_x"])) for joint in csv.DictReader(lines)))
+    if mode == "static":
+        assert shear == pytest.approx([500.0, 1500.0], rel=1e-6)
+    else:
+        assert shear[1] > 2.0 * shear[0]
+
+
+def test_the_original_scheme_feels_the_factor(tmp_path: Path) -> None:
+    sweep = "&sweep parameter = 'load_factor', values = 9.0, 13.0 /\n"
+    verdicts = [row["verdict"] for row in rows(tmp_path, "&analysis mode = 'limerick' /\n" + sweep)]
+    assert verdicts == ["stable", "collapsed"]
+
+
+def test_a_load_on_an_arch_is_one_on_its_blocks(tmp_path: Path) -> None:
+    """The middle of an extrados chord of 120 degrees, one span of the table."""
+    row = table("practice_multi_span.csv")[0]
+    x, y = spans(row).splitlines()[-1].split()[3:5]
+    weight = spans(row).split()[-1]
+    deck = (
+        f"&arch radius = 1.0, half_angle_deg = 60.0, voussoirs = 20, thickness_ratio = {row['thickness_ratio']} /\n"
+        f"&material unit_weight = 1.0 /\n&live x = {x}, y = {y}, fy = {weight} /\n"
+        f"&joint friction_deg = {friction_of(row['friction'])} /\n"
+    )
+    (found,) = rows(tmp_path, deck + SEARCH, head="")
+    assert float(found["critical"]) == pytest.approx(float(row["P_over_weight_of_one_arch"]), rel=1e-8)
+    assert found["exact"] == ""
+
+
+def test_the_place_of_a_load_is_swept(tmp_path: Path) -> None:
+    """Two places that mirror one another carry the same, and one nearer to the crown carries more."""
+    deck = (
+        "&arch radius = 1.0, half_angle_deg = 60.0, voussoirs = 20 /\n&live x = 0.0, y = 1.0, fy = -1e4 /\n"
+        "&sweep parameter = 'x(1)', values = -0.4, 0.2, 0.4 /\n"
+        "&sweep parameter = 'y(1)', values = 0.9, 0.98, 0.9, linked = .true. /\n"
+    )
+    left, inner, right = (float(row["critical"]) for row in rows(tmp_path, deck + SEARCH, head=""))
+    assert left == pytest.approx(right, rel=1e-9)
+    assert inner > 1.2 * left
+
+
+LIVE = "&arch radius = 1.0, half_angle_deg = 60.0, voussoirs = 20 /\n&live x = {x}, y = {y}, fy = {fy} /\n"
+
+DEAD = "&scene kind = 'blocks', geometry = 'dead.blocks' /\n"
+ARCH = LIVE.format(x=0.1, y=1.0, fy=-1.0)
+
+REFUSED = {
+    "no-live-load": (1, SEARCH, "live load"),
+    "no-live-load-of-blocks": (2, DEAD + SEARCH, "live load"),
+    "a-factor-of-nothing": (1, "&load load_factor = 2.0 /\n", "live load"),
+    "a-swept-factor-of-nothing": (1, "&sweep parameter = 'load_factor', values = 1, 2 /\n", "live load"),
+    "outside": (2, LIVE.format(x=0.5, y=2.0, fy=-1.0), "none"),
+    "inside-the-opening": (2, LIVE.format(x=0.0, y=0.5, fy=-1.0), "none"),
+    "lists-of-two-lengths": (2, LIVE.format(x="0.1, 0.2", y=1.0, fy=-1.0), "live%y"),
+    "forces-of-another-length": (2, LIVE.format(x=0.1, y=1.0, fy="-1.0, 2.0"), "live%fy"),
+    "no-place": (1, "&live fy = -1.0 /\n", "x and y"),
+    "no-force": (2, LIVE.format(x=0.1, y=1.0, fy=0.0), "fx or fy"),
+    "the-original-scheme": (2, ARCH + "&analysis mode = 'limerick' /\n", "limerick"),
+    "a-shape-that-is-searched": (3, ARCH + "&search /\n", "shape"),
+    "nothing-horizontal": (1, "&load live_horizontal = .true. /\n", "horizontal_coefficient"),
+    "a-fixed-block": (2, DEAD + "&live x = -2, y = -0.5, fy = 1 /\n", "fixed"),
+    "a-swept-place": (3, ARCH + "&sweep parameter = 'x(1)', values = 0.1, 3.0 /\n", "none"),
+}
+
+
+@pytest.mark.parametrize(("line", "deck", "word"), REFUSED.values(), ids=REFUSED)
+def test_what_cannot_be_is_refused_with_its_line(tmp_path: Path, line: int, deck: str, word: str) -> None:
+    (tmp_path / "dead.blocks").write_text(GROUND + BLOCK)
+    (tmp_path / "x.nml").write_text(deck)
+    for command in ("check", "run"):
+        done = run_dda(command, "x.nml", cwd=tmp_path)
+        assert done.returncode == 2
+        assert done.stderr.startswith(f"x.nml:{line}: error: ") and word in done.stderr
+        assert not (tmp_path / "x").exists()
+
+
+def test_a_live_line_is_read_as_a_load(tmp_path: Path) -> None:
+    (tmp_path / "x.blocks").write_text(GROUND + BLOCK + "live 9 9 1 0\n")
+    (tmp_path / "x.nml").write_text("&scene kind = 'blocks', geometry = 'x.blocks' /\n")
+    done = run_dda("check", "x.nml", cwd=tmp_path)
+    assert done.returncode == 2 and done.stderr.startswith("x.blocks:11: error: expected a point of a block")
