@@ -11,7 +11,7 @@ module dda_graph_decision
    use dda_contact_detection, only : contacts_t
    use dda_contact_types, only : joint_t
    use dda_friction_cone, only : joint_face_t
-   use dda_joint_graph, only : joint_graph_t, joint_kind, joint_motion
+   use dda_joint_graph, only : joint_graph_t, joint_motion, rubs
    use dda_kinds, only : wp
    use dda_limit_decision, only : decide_load, load_decision_t, load_state
    use dda_limit_load, only : find_limit, limit_load_t, limit_state
@@ -273,8 +273,7 @@ contains
       !> The joints
       type(joint_graph_t), intent(in) :: graph
 
-      has_friction = any((graph%kind == joint_kind%contact .or. graph%kind == joint_kind%corner) &
-         & .and. graph%friction > 0.0_wp)
+      has_friction = any(rubs(graph%kind, graph%friction))
    end function has_friction
 
    !> Whether a joint with friction slides in a mechanism
@@ -289,8 +288,7 @@ contains
       call joint_motion(graph, mechanism, rate)
       slides = .false.
       do j = 1, size(graph%kind)
-         if (graph%kind(j) /= joint_kind%contact .and. graph%kind(j) /= joint_kind%corner) cycle
-         if (.not. graph%friction(j) > 0.0_wp) cycle
+         if (.not. rubs(graph%kind(j), graph%friction(j))) cycle
          slides = slides .or. is_sliding(rate(:, j), graph%friction(j), still*maxval(abs(rate)))
       end do
    end function slides

@@ -14,7 +14,7 @@ module dda_joint_graph
    private
 
    public :: joint_graph_t, joint_kind, joint_kind_enum
-   public :: joint_motion, add_joint_forces
+   public :: joint_motion, add_joint_forces, rubs
 
    !> What a joint can carry
    type :: joint_kind_enum
@@ -60,7 +60,23 @@ module dda_joint_graph
       real(wp), allocatable :: mass(:, :)
    end type joint_graph_t
 
+   !> Coefficient of friction, that of 89.9 degrees but for rounding, from which on a closed joint
+   !> cannot slide
+   real(wp), parameter :: rough = 572.9_wp
+
 contains
+
+   !> Whether a joint may slide against friction: under Coulomb friction that is another thing than
+   !> under the associated rule
+   elemental logical function rubs(kind, friction)
+      !> What the joint can carry, one of joint_kind
+      integer, intent(in) :: kind
+      !> Its coefficient of friction
+      real(wp), intent(in) :: friction
+
+      rubs = (kind == joint_kind%contact .or. kind == joint_kind%corner) &
+         & .and. friction > 0.0_wp .and. friction < rough
+   end function rubs
 
    !> Opening at both corners and slip of every joint
    pure subroutine joint_motion(graph, motion, opening)

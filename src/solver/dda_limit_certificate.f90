@@ -11,6 +11,7 @@ module dda_limit_certificate
    private
 
    public :: unit_of_length, check_forces, check_velocities, carried_factor, stopping_factor
+   public :: balance_margin, flow_margin
 
 contains
 
@@ -89,6 +90,57 @@ contains
       end do
       violation = violation/max(largest, tiny(largest))
    end subroutine check_forces
+
+   !> Power on a mechanism of what forces leave of a load: by so much per unit of the live load's
+   !> power a factor that they carry may be too large, as the mechanism is the factor's slope in any
+   !> load
+   pure real(wp) function balance_margin(graph, load, force, velocity) result(margin)
+      !> The joints
+      type(joint_graph_t), intent(in) :: graph
+      !> Loads: (n_dof, n_block) [N/m, N/m, N ...]
+      real(wp), intent(in) :: load(:, :)
+      !> N1, N2, T of each joint: (3, n_joint) [N/m]
+      real(wp), intent(in) :: force(:, :)
+      !> Velocities: (n_dof, n_block) [m/s, m/s, 1/s ...]
+      real(wp), intent(in) :: velocity(:, :)
+      real(wp) :: left(size(load, 1), size(load, 2))
+
+      left = load
+      call add_joint_forces(graph, force, left)
+      margin = sum(abs(left(1:3, :)*velocity(1:3, :)))
+   end function balance_margin
+
+   !> Power that forces would put into velocities where these close joints that cannot close: by so
+   !> much per unit of the live load's power a factor that the velocities stop may be too small, as
+   !> the forces are the factor's slope in any gap
+   pure real(wp) function flow_margin(graph, force, velocity) result(margin)
+      !> The joints
+      type(joint_graph_t), intent(in) :: graph
+      !> N1, N2, T of each joint: (3, n_joint) [N/m]
+      real(wp), intent(in) :: force(:, :)
+      !> Velocities: (n_dof, n_block) [m/s, m/s, 1/s ...]
+      real(wp), intent(in) :: velocity(:, :)
+      real(wp) :: rate(3, size(graph%kind)), slip
+      integer :: j, k
+
+      call joint_motion(graph, velocity, rate)
+      margin = 0.0_wp
+      do j = 1, size(rate, 2)
+         slip = abs(rate(3, j))
+         select case (graph%kind(j))
+         case (joint_kind%contact, joint_kind%corner)
+            do k = 1, 2
+               margin = margin + max(0.0_wp, force(k, j)) &
+                  & *max(0.0_wp, graph%friction(j)*slip - rate(k, j))
+            end do
+         case (joint_kind%no_slip, joint_kind%corner_no_slip)
+            margin = margin + abs(force(3, j))*slip &
+               & + sum(max(0.0_wp, force(1:2, j))*max(0.0_wp, -rate(1:2, j)))
+         case default
+            margin = margin + sum(abs(force(:, j)*rate(:, j)))
+         end select
+      end do
+   end function flow_margin
 
    !> Largest force or moment on a block that moves as a rigid body
    pure real(wp) function larger_load(graph, load) result(largest)

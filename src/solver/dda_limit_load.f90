@@ -9,8 +9,8 @@ module dda_limit_load
    use dda_joint_graph, only : joint_graph_t
    use dda_joint_rays, only : joint_forces, joint_rays_t, scale_load, set_rays
    use dda_kinds, only : wp
-   use dda_limit_certificate, only : carried_factor, check_forces, check_velocities, &
-      & stopping_factor
+   use dda_limit_certificate, only : balance_margin, carried_factor, check_forces, &
+      & check_velocities, flow_margin, stopping_factor
    use dda_limit_decision, only : go_to_load, keep_velocities, load_state, resolution, &
       & state_at_end, unit_of_force
    use dda_ray_matrix, only : plan_matrix, ray_matrix_t
@@ -159,6 +159,7 @@ contains
       real(wp), intent(in) :: live(:, :)
       !> State, forces and velocities in, the rest out
       type(limit_load_t), intent(inout) :: limit
+      real(wp) :: rounding
 
       select case (limit%state)
       case (limit_state%no_dead_equilibrium)
@@ -177,6 +178,14 @@ contains
          call check_forces(graph, dead + limit%lower*live, limit%force, limit%imbalance, &
             & limit%cone_violation)
          call check_velocities(graph, live, limit%velocity, limit%flow_violation, limit%power)
+         if (limit%state /= limit_state%found) return
+         ! what rounding leaves of the proofs moves the factors apart
+         limit%lower = limit%lower - balance_margin(graph, dead + limit%lower*live, limit%force, &
+            & limit%velocity)/limit%power
+         limit%upper = limit%upper + flow_margin(graph, limit%force, limit%velocity)/limit%power
+         rounding = 8.0_wp*spacing(max(abs(limit%lower), abs(limit%upper)))
+         limit%lower = limit%lower - rounding
+         limit%upper = limit%upper + rounding
       end select
    end subroutine certify
 end module dda_limit_load

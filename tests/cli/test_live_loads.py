@@ -44,14 +44,20 @@ def friction_of(word: str) -> str:
     return "90" if word == "rough" else repr(math.degrees(math.atan(float(word))))
 
 
+def assert_proven(row: dict[str, str], factor: float) -> None:
+    """The proven bounds enclose a factor, which other programmes give to 1e-12."""
+    low, high = float(row["exact_low"]), float(row["exact_high"])
+    assert low * (1.0 - 1e-12) <= factor <= high * (1.0 + 1e-12)
+    assert high - low <= 1e-8 * factor
+
+
 @pytest.mark.parametrize(("friction", "factor"), [(50, TURNS), (5, WEIGHT * math.tan(math.radians(5)) / 1000.0)])
 @pytest.mark.parametrize("flow", ["coulomb", "associated"])
 def test_a_pushed_block_turns_or_slides(tmp_path: Path, friction: float, factor: float, flow: str) -> None:
     (row,) = rows(tmp_path, f"&joint friction_deg = {friction} /\n&analysis flow = '{flow}' /\n" + SEARCH)
     assert row["verdict"] == "found" and row["collapses_at"] == "high"
     assert float(row["critical"]) == pytest.approx(factor, rel=1e-9)
-    assert float(row["exact_low"]) == pytest.approx(factor, rel=1e-9)
-    assert float(row["exact_high"]) == pytest.approx(factor, rel=1e-9)
+    assert_proven(row, factor)
 
 
 def test_decisions_flip_where_the_search_says(tmp_path: Path) -> None:
@@ -89,8 +95,7 @@ def test_spans_on_piers_carry_what_the_linear_programme_says(tmp_path: Path, row
     (found,) = rows(tmp_path, deck, spans(row))
     factor = float(row["P_over_weight_of_one_arch"])
     assert float(found["critical"]) == pytest.approx(factor, rel=1e-8)
-    assert float(found["exact_low"]) == pytest.approx(factor, rel=1e-8)
-    assert float(found["exact_high"]) == pytest.approx(factor, rel=1e-8)
+    assert_proven(found, factor)
 
 
 @pytest.mark.parametrize("row", table("practice_multi_ring.csv"), ids=lambda row: "-".join(list(row.values())[:5]))
@@ -100,8 +105,10 @@ def test_rings_carry_what_the_linear_programme_says(tmp_path: Path, row: dict[st
     (found,) = rows(tmp_path, deck + "&analysis flow = 'associated' /\n" + SEARCH, rings(row))
     assert float(found["critical"]) == pytest.approx(associated, rel=1e-8)
     (found,) = rows(tmp_path, deck + SEARCH, rings(row))
-    assert float(found["exact_high"]) == pytest.approx(associated, rel=1e-8)
+    assert_proven(found, associated)
     assert float(found["critical"]) <= float(found["exact_high"])
+    if row["friction_all_joints"] == "rough":
+        assert float(found["critical"]) == pytest.approx(associated, rel=1e-8)
     if row["P_over_weight_one_coulomb_state"]:
         # jumps on the loading path choose among states that are a ten-thousandth apart
         assert float(found["critical"]) >= float(row["P_over_weight_one_coulomb_state"]) * (1.0 - 2e-4)
