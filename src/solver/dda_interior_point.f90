@@ -135,12 +135,12 @@ contains
          point%state = interior_state%blocked
       else if (worst(point) < goal%tolerance) then
          point%state = interior_state%optimal
+      else if (point%factor > goal%ceiling*max(1.0_wp, path%largest_dead &
+         & /max(path%largest_live, tiny(1.0_wp)))) then
+         point%state = interior_state%unbounded
       else if (idle >= patience .or. point%n_turn == goal%max_turn &
          & .or. .not. abs(turn%barrier) <= huge(turn%barrier)) then
          point%state = interior_state%stalled
-      else if (point%factor > 1.0e9_wp*max(1.0_wp, path%largest_dead &
-         & /max(path%largest_live, tiny(1.0_wp)))) then
-         point%state = interior_state%unbounded
       end if
    end subroutine judge
 end module dda_interior_point

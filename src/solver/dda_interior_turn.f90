@@ -1,45 +1,16 @@
 !> One turn of the interior-point method: springs, predictor, corrector
-!>
-!> Corrections of the balance are added to the directions of x, v and the factor one by one, which
-!> keeps the balance when the springs spread over many decades. Free rays have springs of a
-!> stiffness that is large: what they open is led back to zero from turn to turn.
 module dda_interior_turn
+   use dda_interior_direction, only : balance_direction, direct, direct_wide, refine_direction, &
+      & respond_to_live_load, turn_t
    use dda_interior_state, only : interior_goal_t, interior_point_t, load_path_t, no_limit
    use dda_joint_rays, only : add_ray_forces, joint_rays_t, n_side, ray_rates
    use dda_kinds, only : wp
-   use dda_ray_matrix, only : ray_matrix_t, set_springs, set_wide_springs, solve_springs
+   use dda_ray_matrix, only : ray_matrix_t, set_springs
    implicit none
    private
 
    public :: turn_t, lift
    public :: begin_turns, see_residuals, predict, correct, move
-
-   !> What one turn works on
-   type :: turn_t
-      !> What balance lacks, and right-hand sides: (3, 0:n_block)
-      real(wp), allocatable :: lack(:, :), rest(:, :)
-      !> Response to the live load, to the right-hand side: (3, 0:n_block)
-      real(wp), allocatable :: unit_response(:, :), response(:, :)
-      !> Rates less what velocities make of them: (n_side, n_joint)
-      real(wp), allocatable :: excess(:, :)
-      !> What the power of the live load lacks of one
-      real(wp) :: lack_of_power = 0.0_wp
-      !> Smallest factor whose gap is relative to itself
-      real(wp) :: least_factor = 0.0_wp
-      !> Mean of x*s
-      real(wp) :: barrier = 0.0_wp
-      !> Power of the live load on the response to it
-      real(wp) :: flexibility = 0.0_wp
-      !> Change of x at unchanged s: (n_side, n_joint)
-      real(wp), allocatable :: aim(:, :)
-      !> Rates of opening by them: (n_side, n_joint)
-      real(wp), allocatable :: unit_rate(:, :), rate(:, :)
-      !> Direction: (n_side, n_joint), the same, (3, 0:n_block), and of the factor
-      real(wp), allocatable :: dx(:, :), ds(:, :), dv(:, :)
-      real(wp) :: dfactor = 0.0_wp
-      !> Imbalance that the direction leaves, the largest that is accepted
-      real(wp) :: left = 0.0_wp, accepted = 0.0_wp
-   end type turn_t
 
    !> Share by which diagonal entries are raised
    real(wp), parameter :: lift = 1.0e-14_wp
@@ -47,6 +18,16 @@ module dda_interior_turn
    real(wp), parameter :: stiffness_of_free = 1.0e8_wp
    !> Share of the way to the border of the cones
    real(wp), parameter :: share_of_way = 0.995_wp
+   !> Corrections of centrality in a turn, how much longer each tries to make the steps, and what is
+   !> long enough
+   integer, parameter :: max_centring = 3
+   real(wp), parameter :: longer = 0.3_wp, long_enough = 0.9_wp
+   !> Steps that grow by less, both together, are not worth a further correction
+   real(wp), parameter :: worthwhile = 0.03_wp
+   !> After steps shorter than this all products are led towards half their mean
+   real(wp), parameter :: short = 0.1_wp, half = 0.5_wp
+   !> Products beyond these multiples of the one aimed at are corrected
+   real(wp), parameter :: least_product = 0.1_wp, largest_product = 10.0_wp
 
 contains
 
@@ -120,7 +101,7 @@ contains
       call set_springs(rays, lift, springs)
       if (springs%usable) call respond_to_live_load(rays, path, springs, turn)
       turn%aim = -point%x*rays%bounded
-      call direct(rays, path, point, turn%accepted, springs, turn)
+      call direct(rays, path, point, springs, turn)
    end subroutine predict
 
    !> Stiffness of the springs along all rays
@@ -137,115 +118,9 @@ contains
       springs%stiffness = rays%bounded*point%x/point%s + rays%free*stiffness_of_free*mean
    end subroutine set_stiffness
 
-   !> Response of the springs to the live load
-   pure subroutine respond_to_live_load(rays, path, springs, turn)
-      !> The rays
-      type(joint_rays_t), intent(in) :: rays
-      !> The loads
-      type(load_path_t), intent(in) :: path
-      !> The matrix
-      type(ray_matrix_t), intent(inout) :: springs
-      !> Receives it
-      type(turn_t), intent(inout) :: turn
-
-      call solve_springs(rays, springs, path%live, turn%unit_response, turn%unit_rate)
-      turn%flexibility = sum(path%live*turn%unit_response)
-   end subroutine respond_to_live_load
-
-   !> Direction to balance, compatibility and the aim; where that leaves too much, by a factor with
-   !> more digits
-   pure subroutine direct(rays, path, point, enough, springs, turn)
-      !> The rays
-      type(joint_rays_t), intent(in) :: rays
-      !> The loads
-      type(load_path_t), intent(in) :: path
-      !> The point
-      type(interior_point_t), intent(in) :: point
-      !> Imbalance that needs no correction
-      real(wp), intent(in) :: enough
-      !> The matrix
-      type(ray_matrix_t), intent(inout) :: springs
-      !> Aim in, direction out
-      type(turn_t), intent(inout) :: turn
-
-      if (springs%usable) then
-         call find_direction(rays, path, point, enough, springs, turn)
-         if (turn%left <= turn%accepted .or. springs%is_wide) return
-      end if
-      call set_wide_springs(rays, springs)
-      if (.not. springs%usable) return
-      call respond_to_live_load(rays, path, springs, turn)
-      call find_direction(rays, path, point, enough, springs, turn)
-   end subroutine direct
-
-   !> Direction to balance, compatibility and the aim; corrections follow until the imbalance that
-   !> is left no longer halves
-   pure subroutine find_direction(rays, path, point, enough, springs, turn)
-      !> The rays
-      type(joint_rays_t), intent(in) :: rays
-      !> The loads
-      type(load_path_t), intent(in) :: path
-      !> The point
-      type(interior_point_t), intent(in) :: point
-      !> Imbalance that needs no correction
-      real(wp), intent(in) :: enough
-      !> The matrix with a usable factor
-      type(ray_matrix_t), intent(inout) :: springs
-      !> Aim in, direction out
-      type(turn_t), intent(inout) :: turn
-      real(wp) :: before, imbalance
-      integer :: correction
-
-      turn%dv = 0.0_wp
-      turn%dfactor = 0.0_wp
-      turn%ds = -turn%excess
-      turn%dx = turn%aim - springs%stiffness*turn%ds
-      turn%rest = -turn%lack
-      call add_ray_forces(rays, turn%dx, turn%rest)
-      before = huge(before)
-      turn%left = huge(before)
-      do correction = 0, 3
-         call balance_direction(rays, path, point, springs, turn)
-         turn%rest = -turn%lack + turn%dfactor*path%live
-         call add_ray_forces(rays, turn%dx, turn%rest)
-         imbalance = maxval(abs(turn%rest))
-         turn%left = min(turn%left, imbalance)
-         if (.not. imbalance < 0.5_wp*before .or. imbalance < enough) exit
-         before = imbalance
-      end do
-   end subroutine find_direction
-
-   !> Correct a direction by the motion that balances what it leaves. The power of the rest on the
-   !> mechanism is the factor's alone: taken out first, it leads to no large motion that would have
-   !> to cancel
-   pure subroutine balance_direction(rays, path, point, springs, turn)
-      !> The rays
-      type(joint_rays_t), intent(in) :: rays
-      !> The loads
-      type(load_path_t), intent(in) :: path
-      !> The point
-      type(interior_point_t), intent(in) :: point
-      !> The matrix
-      type(ray_matrix_t), intent(inout) :: springs
-      !> Direction and the rest of its balance in, direction out
-      type(turn_t), intent(inout) :: turn
-      real(wp) :: step, taken
-
-      taken = 0.0_wp
-      if (turn%lack_of_power < 0.5_wp) taken = sum(turn%rest*point%v)/(1.0_wp - turn%lack_of_power)
-      turn%rest = turn%rest - taken*path%live
-      call solve_springs(rays, springs, turn%rest, turn%response, turn%rate)
-      step = (turn%lack_of_power - sum(path%live*turn%dv) - sum(path%live*turn%response)) &
-         & /turn%flexibility
-      turn%response = turn%response + step*turn%unit_response
-      turn%dfactor = turn%dfactor + step - taken
-      turn%dv = turn%dv + turn%response
-      turn%rate = turn%rate + step*turn%unit_rate
-      turn%ds = turn%ds + turn%rate
-      turn%dx = turn%dx - springs%stiffness*turn%rate
-   end subroutine balance_direction
-
-   !> Direction to equal products x*s, with the second order of the predictor
+   !> Direction to equal products x*s, with the second order of the predictor; then products that
+   !> would be far smaller or far larger than the others at the end of somewhat longer steps are led
+   !> back (Gondzio 1996)
    pure subroutine correct(rays, path, goal, springs, point, turn)
       !> The rays
       type(joint_rays_t), intent(in) :: rays
@@ -259,44 +134,121 @@ contains
       type(interior_point_t), intent(in) :: point
       !> Predictor in, direction out
       type(turn_t), intent(inout) :: turn
-      real(wp) :: to_x, to_s, after, centring
+      real(wp) :: reach(2), before(2), further(2), product
+      real(wp) :: change(size(point%x, 1), size(point%x, 2))
+      integer :: i
 
-      call longest_steps(rays, point, turn, to_x, to_s)
-      to_x = min(1.0_wp, to_x)
-      to_s = min(1.0_wp, to_s)
-      after = sum((point%x + to_x*turn%dx)*(point%s + to_s*turn%ds)*rays%bounded) &
+      reach = longest_steps(rays, point, turn%dx, turn%ds)
+      product = aimed_product(rays, goal, point, turn, reach)
+      call add_correction(rays, path, (product - turn%dx*turn%ds)/point%s, springs, point, turn, &
+         & reach)
+      do i = 1, max_centring
+         if (minval(reach) > long_enough) exit
+         before = reach
+         further = min(1.0_wp, reach + longer)
+         change = (point%x + further(1)*turn%dx)*(point%s + further(2)*turn%ds)
+         change = max(-largest_product*product, min(max(change, least_product*product), &
+            & largest_product*product) - change)
+         call add_correction(rays, path, change/point%s, springs, point, turn, reach)
+         if (sum(reach) < sum(before) + worthwhile) exit
+      end do
+      if (minval(reach) < short) call add_correction(rays, path, half*turn%barrier/point%s &
+         & - point%x - turn%aim, springs, point, turn, reach)
+      call refine_direction(rays, path, point, 1.0e-14_wp*path%largest_dead, springs, turn)
+      if (turn%left > turn%accepted .and. .not. springs%is_wide) call direct_wide(rays, path, &
+         & point, springs, turn)
+   end subroutine correct
+
+   !> The product x*s that a turn aims at
+   pure real(wp) function aimed_product(rays, goal, point, turn, reach) result(product)
+      !> The rays
+      type(joint_rays_t), intent(in) :: rays
+      !> What is asked for
+      type(interior_goal_t), intent(in) :: goal
+      !> The point
+      type(interior_point_t), intent(in) :: point
+      !> The predictor
+      type(turn_t), intent(in) :: turn
+      !> Steps along it
+      real(wp), intent(in) :: reach(2)
+      real(wp) :: after, centring
+
+      after = sum((point%x + reach(1)*turn%dx)*(point%s + reach(2)*turn%ds)*rays%bounded) &
          & /real(max(1, rays%n_bounded), wp)
       centring = min(1.0_wp, (after/turn%barrier)**3)
       centring = max(centring, min(1.0_wp, 0.02_wp*goal%tolerance*abs(point%factor) &
          & /(real(max(1, rays%n_bounded), wp)*turn%barrier)))
-      turn%aim = ((centring*turn%barrier - turn%dx*turn%ds)/point%s - point%x)*rays%bounded
-      call direct(rays, path, point, 1.0e-14_wp*path%largest_dead, springs, turn)
-   end subroutine correct
+      product = centring*turn%barrier
+   end function aimed_product
 
-   !> Longest steps along a direction that keep forces and rates inside their bounds
-   pure subroutine longest_steps(rays, point, turn, to_x, to_s)
+   !> Change the aim of a direction, and take as much of what that changes as makes the steps longest
+   !> (Colombo and Gondzio 2008)
+   pure subroutine add_correction(rays, path, change, springs, point, turn, reach)
+      !> The rays
+      type(joint_rays_t), intent(in) :: rays
+      !> The loads
+      type(load_path_t), intent(in) :: path
+      !> Change of x that is aimed at: (n_side, n_joint)
+      real(wp), intent(in) :: change(:, :)
+      !> The matrix
+      type(ray_matrix_t), intent(inout) :: springs
+      !> The point
+      type(interior_point_t), intent(in) :: point
+      !> The direction
+      type(turn_t), intent(inout) :: turn
+      !> Steps along it
+      real(wp), intent(out) :: reach(2)
+      real(wp) :: dx(size(change, 1), size(change, 2)), ds(size(change, 1), size(change, 2))
+      real(wp) :: dv(3, 0:rays%n_block), dfactor, share, steps(2)
+      integer, parameter :: n_share = 10
+      integer :: i
+
+      dx = turn%dx
+      ds = turn%ds
+      dv = turn%dv
+      dfactor = turn%dfactor
+      turn%dx = turn%dx + change*rays%bounded
+      call balance_direction(rays, path, point, springs, turn)
+      reach = longest_steps(rays, point, turn%dx, turn%ds)
+      share = 1.0_wp
+      do i = n_share - 1, 1, -1
+         associate (part => real(i, wp)/real(n_share, wp))
+            steps = longest_steps(rays, point, dx + part*(turn%dx - dx), &
+               & ds + part*(turn%ds - ds))
+            if (product(steps) <= 1.02_wp*product(reach)) cycle
+            reach = steps
+            share = part
+         end associate
+      end do
+      turn%aim = turn%aim + share*change*rays%bounded
+      turn%dx = dx + share*(turn%dx - dx)
+      turn%ds = ds + share*(turn%ds - ds)
+      turn%dv = dv + share*(turn%dv - dv)
+      turn%dfactor = dfactor + share*(turn%dfactor - dfactor)
+   end subroutine add_correction
+
+   !> Longest steps of forces and of rates along a direction, at most 1, that keep them inside their
+   !> bounds
+   pure function longest_steps(rays, point, dx, ds) result(reach)
       !> The rays
       type(joint_rays_t), intent(in) :: rays
       !> The point
       type(interior_point_t), intent(in) :: point
-      !> The direction
-      type(turn_t), intent(in) :: turn
-      !> Step of the forces
-      real(wp), intent(out) :: to_x
-      !> Step of the rates
-      real(wp), intent(out) :: to_s
+      !> The direction: (n_side, n_joint)
+      real(wp), intent(in) :: dx(:, :), ds(:, :)
+      !> Steps
+      real(wp) :: reach(2)
       integer :: i, j
 
-      to_x = 1.0e9_wp
-      to_s = 1.0e9_wp
-      do j = 1, size(point%x, 2)
+      reach = 1.0_wp/share_of_way
+      do j = 1, size(dx, 2)
          do i = 1, n_side
             if (.not. rays%bounded(i, j) > 0.0_wp) cycle
-            if (turn%dx(i, j) < 0.0_wp) to_x = min(to_x, -point%x(i, j)/turn%dx(i, j))
-            if (turn%ds(i, j) < 0.0_wp) to_s = min(to_s, -point%s(i, j)/turn%ds(i, j))
+            if (point%x(i, j) + reach(1)*dx(i, j) < 0.0_wp) reach(1) = -point%x(i, j)/dx(i, j)
+            if (point%s(i, j) + reach(2)*ds(i, j) < 0.0_wp) reach(2) = -point%s(i, j)/ds(i, j)
          end do
       end do
-   end subroutine longest_steps
+   end function longest_steps
 
    !> Move along the direction, almost to the border
    pure subroutine move(rays, turn, point)
@@ -306,14 +258,12 @@ contains
       type(turn_t), intent(in) :: turn
       !> The point
       type(interior_point_t), intent(inout) :: point
-      real(wp) :: to_x, to_s
+      real(wp) :: reach(2)
 
-      call longest_steps(rays, point, turn, to_x, to_s)
-      to_x = min(1.0_wp, share_of_way*to_x)
-      to_s = min(1.0_wp, share_of_way*to_s)
-      point%x = point%x + to_x*turn%dx
-      point%factor = point%factor + to_x*turn%dfactor
-      point%s = point%s + to_s*(turn%ds*rays%bounded)
-      point%v = point%v + to_s*turn%dv
+      reach = share_of_way*longest_steps(rays, point, turn%dx, turn%ds)
+      point%x = point%x + reach(1)*turn%dx
+      point%factor = point%factor + reach(1)*turn%dfactor
+      point%s = point%s + reach(2)*(turn%ds*rays%bounded)
+      point%v = point%v + reach(2)*turn%dv
    end subroutine move
 end module dda_interior_turn

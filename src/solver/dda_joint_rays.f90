@@ -88,18 +88,21 @@ contains
       real(wp), parameter :: first(3) = [1.0_wp, 0.0_wp, 0.0_wp]
       real(wp), parameter :: second(3) = [0.0_wp, 1.0_wp, 0.0_wp]
       real(wp), parameter :: shear(3) = [0.0_wp, 0.0_wp, 1.0_wp]
+      real(wp) :: long
 
       select case (kind)
       case (joint_kind%contact, joint_kind%corner)
-         force(:, 1) = first + friction*shear
+         ! rays of joints with much friction are as long as the others
+         long = max(1.0_wp, friction)
+         force(:, 1) = (first + friction*shear)/long
          bounded(1) = 1.0_wp
          if (friction > 0.0_wp) then
-            force(:, 2) = first - friction*shear
+            force(:, 2) = (first - friction*shear)/long
             bounded(2) = 1.0_wp
          end if
          if (kind == joint_kind%contact) then
-            force(:, 3) = second + friction*shear
-            force(:, 4) = second - friction*shear
+            force(:, 3) = (second + friction*shear)/long
+            force(:, 4) = (second - friction*shear)/long
             bounded(3) = 1.0_wp
             bounded(4) = bounded(2)
             if (.not. friction > 0.0_wp) force(:, 4) = 0.0_wp

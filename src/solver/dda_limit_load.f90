@@ -60,6 +60,10 @@ module dda_limit_load
       integer :: n_factorisation = 0
    end type limit_load_t
 
+   !> A live load so many times as large as the dead load may have no limit, one so many times as
+   !> large has none
+   real(wp), parameter :: many = 1.0e3_wp, beyond = 1.0e9_wp
+
 contains
 
    !> The limit load
@@ -86,11 +90,15 @@ contains
       if (state_at_end(point) == load_state%falls) then
          limit%state = limit_state%no_dead_equilibrium
       else
-         call raise_live_load(rays, dead, live, tolerance, springs, point)
-         if (point%state == interior_state%optimal) limit%state = limit_state%found
+         call raise_live_load(rays, dead, live, tolerance, many, springs, point)
+         if (point%state /= interior_state%optimal .and. point%factor > 0.0_wp) &
+            & call try_live_load_alone(rays, live, springs, unit, point, limit)
+         if (limit%state == limit_state%not_converged) then
+            if (point%state == interior_state%unbounded) &
+               & call raise_live_load(rays, dead, live, tolerance, beyond, springs, point)
+            if (point%state == interior_state%optimal) limit%state = limit_state%found
+         end if
       end if
-      if (limit%state == limit_state%not_converged .and. point%factor > 0.0_wp) &
-         & call try_live_load_alone(rays, live, springs, unit, point, limit)
       allocate (limit%force(3, size(graph%kind)))
       allocate (limit%velocity(graph%n_dof, graph%n_block))
       call joint_forces(rays, point%x, unit, limit%force)
@@ -100,7 +108,7 @@ contains
    end subroutine find_limit
 
    !> Raise the live load beside a dead load that stands
-   pure subroutine raise_live_load(rays, dead, live, tolerance, springs, point)
+   pure subroutine raise_live_load(rays, dead, live, tolerance, ceiling, springs, point)
       !> The rays
       type(joint_rays_t), intent(in) :: rays
       !> Loads at factor zero: (n_dof, n_block) [N/m, N/m, N ...]
@@ -109,6 +117,8 @@ contains
       real(wp), intent(in) :: live(:, :)
       !> Relative gap
       real(wp), intent(in) :: tolerance
+      !> Live loads so many times as large as the dead load are beyond bounds
+      real(wp), intent(in) :: ceiling
       !> The matrix
       type(ray_matrix_t), intent(inout) :: springs
       !> The limit
@@ -122,6 +132,7 @@ contains
       call set_path(scaled_dead, scaled_live, path)
       call start_by_springs(rays, path, springs, point)
       goal%tolerance = tolerance
+      goal%ceiling = ceiling
       call find_largest_factor(rays, path, goal, springs, point)
       point%factor = point%factor/path%size
    end subroutine raise_live_load

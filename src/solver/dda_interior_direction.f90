@@ -1,0 +1,194 @@
+!> Directions of the interior-point method: springs, and corrections of what directions leave
+!>
+!> Corrections of the balance are added to the directions of x, v and the factor one by one, which
+!> keeps the balance when the springs spread over many decades. Free rays have springs of a
+!> stiffness that is large: what they open is led back to zero from turn to turn.
+module dda_interior_direction
+   use dda_interior_state, only : interior_point_t, load_path_t
+   use dda_joint_rays, only : add_ray_forces, joint_rays_t
+   use dda_kinds, only : wp
+   use dda_ray_matrix, only : ray_matrix_t, set_wide_springs, solve_springs
+   implicit none
+   private
+
+   public :: turn_t
+   public :: direct, direct_wide, refine_direction, balance_direction, respond_to_live_load
+
+   !> What one turn works on
+   type :: turn_t
+      !> What balance lacks, and right-hand sides: (3, 0:n_block)
+      real(wp), allocatable :: lack(:, :), rest(:, :)
+      !> Response to the live load, to the right-hand side: (3, 0:n_block)
+      real(wp), allocatable :: unit_response(:, :), response(:, :)
+      !> Rates less what velocities make of them: (n_side, n_joint)
+      real(wp), allocatable :: excess(:, :)
+      !> What the power of the live load lacks of one
+      real(wp) :: lack_of_power = 0.0_wp
+      !> Smallest factor whose gap is relative to itself
+      real(wp) :: least_factor = 0.0_wp
+      !> Mean of x*s
+      real(wp) :: barrier = 0.0_wp
+      !> Power of the live load on the response to it
+      real(wp) :: flexibility = 0.0_wp
+      !> Change of x at unchanged s: (n_side, n_joint)
+      real(wp), allocatable :: aim(:, :)
+      !> Rates of opening by them: (n_side, n_joint)
+      real(wp), allocatable :: unit_rate(:, :), rate(:, :)
+      !> Direction: (n_side, n_joint), the same, (3, 0:n_block), and of the factor
+      real(wp), allocatable :: dx(:, :), ds(:, :), dv(:, :)
+      real(wp) :: dfactor = 0.0_wp
+      !> Imbalance that the direction leaves, the largest that is accepted
+      real(wp) :: left = 0.0_wp, accepted = 0.0_wp
+   end type turn_t
+
+contains
+
+   !> Response of the springs to the live load
+   pure subroutine respond_to_live_load(rays, path, springs, turn)
+      !> The rays
+      type(joint_rays_t), intent(in) :: rays
+      !> The loads
+      type(load_path_t), intent(in) :: path
+      !> The matrix
+      type(ray_matrix_t), intent(inout) :: springs
+      !> Receives it
+      type(turn_t), intent(inout) :: turn
+
+      call solve_springs(rays, springs, path%live, turn%unit_response, turn%unit_rate)
+      turn%flexibility = sum(path%live*turn%unit_response)
+   end subroutine respond_to_live_load
+
+   !> Direction to balance, compatibility and the aim; where that leaves too much, by a factor with
+   !> more digits
+   pure subroutine direct(rays, path, point, springs, turn)
+      !> The rays
+      type(joint_rays_t), intent(in) :: rays
+      !> The loads
+      type(load_path_t), intent(in) :: path
+      !> The point
+      type(interior_point_t), intent(in) :: point
+      !> The matrix
+      type(ray_matrix_t), intent(inout) :: springs
+      !> Aim in, direction out
+      type(turn_t), intent(inout) :: turn
+
+      turn%left = huge(turn%left)
+      if (springs%usable) call find_direction(rays, path, point, turn%accepted, springs, turn)
+      if (turn%left > turn%accepted) call direct_wide(rays, path, point, springs, turn)
+   end subroutine direct
+
+   !> The same by a factor with more digits
+   pure subroutine direct_wide(rays, path, point, springs, turn)
+      !> The rays
+      type(joint_rays_t), intent(in) :: rays
+      !> The loads
+      type(load_path_t), intent(in) :: path
+      !> The point
+      type(interior_point_t), intent(in) :: point
+      !> The matrix
+      type(ray_matrix_t), intent(inout) :: springs
+      !> Aim in, direction out
+      type(turn_t), intent(inout) :: turn
+
+      call set_wide_springs(rays, springs)
+      if (.not. springs%usable) return
+      call respond_to_live_load(rays, path, springs, turn)
+      call find_direction(rays, path, point, turn%accepted, springs, turn)
+   end subroutine direct_wide
+
+   !> Direction to balance, compatibility and the aim
+   pure subroutine find_direction(rays, path, point, enough, springs, turn)
+      !> The rays
+      type(joint_rays_t), intent(in) :: rays
+      !> The loads
+      type(load_path_t), intent(in) :: path
+      !> The point
+      type(interior_point_t), intent(in) :: point
+      !> Imbalance that needs no correction
+      real(wp), intent(in) :: enough
+      !> The matrix with a usable factor
+      type(ray_matrix_t), intent(inout) :: springs
+      !> Aim in, direction out
+      type(turn_t), intent(inout) :: turn
+
+      turn%dv = 0.0_wp
+      turn%dfactor = 0.0_wp
+      turn%ds = -turn%excess
+      turn%dx = turn%aim - springs%stiffness*turn%ds
+      call balance_direction(rays, path, point, springs, turn)
+      call refine_direction(rays, path, point, enough, springs, turn)
+   end subroutine find_direction
+
+   !> Balance a direction again until the imbalance that is left no longer halves
+   pure subroutine refine_direction(rays, path, point, enough, springs, turn)
+      !> The rays
+      type(joint_rays_t), intent(in) :: rays
+      !> The loads
+      type(load_path_t), intent(in) :: path
+      !> The point
+      type(interior_point_t), intent(in) :: point
+      !> Imbalance that needs no correction
+      real(wp), intent(in) :: enough
+      !> The matrix with a usable factor
+      type(ray_matrix_t), intent(inout) :: springs
+      !> The direction
+      type(turn_t), intent(inout) :: turn
+      integer, parameter :: max_correction = 3
+      real(wp) :: before
+      integer :: correction
+
+      before = huge(before)
+      do correction = 0, max_correction
+         call see_rest(rays, path, turn)
+         turn%left = min(before, maxval(abs(turn%rest)))
+         if (turn%left < enough .or. .not. turn%left < 0.5_wp*before) exit
+         if (correction == max_correction) exit
+         before = turn%left
+         call balance_direction(rays, path, point, springs, turn)
+      end do
+   end subroutine refine_direction
+
+   !> What a direction leaves of the balance
+   pure subroutine see_rest(rays, path, turn)
+      !> The rays
+      type(joint_rays_t), intent(in) :: rays
+      !> The loads
+      type(load_path_t), intent(in) :: path
+      !> The direction; receives the rest
+      type(turn_t), intent(inout) :: turn
+
+      turn%rest = -turn%lack + turn%dfactor*path%live
+      call add_ray_forces(rays, turn%dx, turn%rest)
+   end subroutine see_rest
+
+   !> Correct a direction by the motion that balances what it leaves. The power of the rest on the
+   !> mechanism is the factor's alone: taken out first, it leads to no large motion that would have
+   !> to cancel
+   pure subroutine balance_direction(rays, path, point, springs, turn)
+      !> The rays
+      type(joint_rays_t), intent(in) :: rays
+      !> The loads
+      type(load_path_t), intent(in) :: path
+      !> The point
+      type(interior_point_t), intent(in) :: point
+      !> The matrix
+      type(ray_matrix_t), intent(inout) :: springs
+      !> The direction
+      type(turn_t), intent(inout) :: turn
+      real(wp) :: step, taken
+
+      call see_rest(rays, path, turn)
+      taken = 0.0_wp
+      if (turn%lack_of_power < 0.5_wp) taken = sum(turn%rest*point%v)/(1.0_wp - turn%lack_of_power)
+      turn%rest = turn%rest - taken*path%live
+      call solve_springs(rays, springs, turn%rest, turn%response, turn%rate)
+      step = (turn%lack_of_power - sum(path%live*turn%dv) - sum(path%live*turn%response)) &
+         & /turn%flexibility
+      turn%response = turn%response + step*turn%unit_response
+      turn%dfactor = turn%dfactor + step - taken
+      turn%dv = turn%dv + turn%response
+      turn%rate = turn%rate + step*turn%unit_rate
+      turn%ds = turn%ds + turn%rate
+      turn%dx = turn%dx - springs%stiffness*turn%rate
+   end subroutine balance_direction
+end module dda_interior_direction
