@@ -181,7 +181,7 @@ contains
       product = centring*turn%barrier
    end function aimed_product
 
-   !> Change the aim of a direction, and take as much of what that changes as makes the steps longest
+   !> Change the aim of a direction, and take as much of that as makes the steps longest
    !> (Colombo and Gondzio 2008)
    pure subroutine add_correction(rays, path, change, springs, point, turn, reach)
       !> The rays
