@@ -22,6 +22,8 @@ from voussoir.campaign_part import finished_by
 TABLES = (
     "joints.csv",
     "blocks.csv",
+    "proof_forces.csv",
+    "proof_motion.csv",
     "log.txt",
     "frames.csv",
     "frame_joints.csv",

@@ -6,6 +6,7 @@ module dda_result_tables
    use dda_disk_record, only : write_disk_record
    use dda_error, only : error_t
    use dda_kinds, only : wp
+   use dda_proof_rows, only : proof_forces_header, proof_motion_header
    use dda_read_deck, only : few_cases, many_case_tables
    use dda_table_file, only : append_line, close_table, length_of, open_table, remove_file, &
       & sync_table, table_file_t
@@ -43,6 +44,10 @@ module dda_result_tables
       integer :: blocks = 8
       !> A row a case: its bytes in all tables but this one and results.csv
       integer :: sizes = 9
+      !> A row a joint: forces of the proof
+      integer :: proof_forces = 10
+      !> A row a block: velocities of the proof
+      integer :: proof_motion = 11
    end type table_enum
 
    !> The places by name
@@ -65,7 +70,7 @@ module dda_result_tables
       !> Name of the folder
       character(len=:), allocatable :: folder
       !> The tables, by their places
-      type(result_table_t) :: at(9)
+      type(result_table_t) :: at(11)
       !> Bytes of all tables but results.csv and the sizes after the last case
       integer(int64) :: length = 0
       !> File that holds what was asked for
@@ -127,6 +132,9 @@ contains
       call name_table(tables%at(table%blocks), "/blocks.csv", blocks_header())
       tables%at(table%blocks)%wanted = flag_of(deck, "output", "blocks")
       tables%at(table%joints)%wanted = flag_of(deck, "output", "joints")
+      call name_table(tables%at(table%proof_forces), "/proof_forces.csv", proof_forces_header())
+      call name_table(tables%at(table%proof_motion), "/proof_motion.csv", proof_motion_header())
+      tables%at([table%proof_forces, table%proof_motion])%wanted = flag_of(deck, "output", "joints")
       tables%at([table%frames, table%frame_joints])%wanted = &
          & integer_of(deck, "output", "frames") > 0
 
@@ -302,8 +310,8 @@ contains
       end do
    end function common_length
 
-   !> Write the rows of one case, of which pictures and points are written already: how many bytes
-   !> they are, and last that of results.csv, so that a case with a row is whole
+   !> Write the rows of one case, of which pictures, points and proofs are written already: how many
+   !> bytes they are, and last that of results.csv, so that a case with a row is whole
    subroutine write_case(tables, row, joint_row, blocks, remark, error)
       !> The tables
       type(result_tables_t), intent(inout) :: tables

@@ -10,8 +10,10 @@ module dda_run_cases
    use dda_kinds, only : wp
    use dda_picture_files, only : write_album, write_energies, write_track
    use dda_progress, only : clear_progress, progress_t, report_progress
+   use dda_proof_rows, only : proof_forces_lines, proof_motion_lines
    use dda_restart, only : save_restart
    use dda_result_tables, only : result_tables_t, swept_fields, sync_when_due, table, write_case
+   use dda_table_file, only : append_line
    use dda_text, only : to_text
    use dda_write_blocks, only : told_blocks_t
    use dda_write_results, only : joint_row_t, result_row_t
@@ -201,6 +203,7 @@ contains
       row%swept = swept_fields(deck, number)
       joint_row%number = number
       call write_pictures(tables, number, this, error)
+      if (.not. allocated(error)) call write_proof(tables, number, this, error)
       if (.not. allocated(error)) call write_end(tables%folder, number, this, error)
       if (.not. allocated(error)) call write_case(tables, row, joint_row, blocks, remark, error)
       if (.not. allocated(error)) call sync_when_due(tables, error)
@@ -232,6 +235,29 @@ contains
       if (tables%at(table%energy)%wanted .and. .not. allocated(error)) call write_energies( &
          & number, this%album, tables%at(table%energy)%open, error)
    end subroutine write_pictures
+
+   !> Write what proves the verdict of a case
+   subroutine write_proof(tables, number, this, error)
+      !> Where the results go
+      type(result_tables_t), intent(inout) :: tables
+      !> Number of the case
+      integer, intent(in) :: number
+      !> The case, computed
+      type(case_t), intent(in) :: this
+      !> Allocated if it cannot be written
+      type(error_t), allocatable, intent(inout) :: error
+      character(len=:), allocatable :: lines, value
+
+      if (.not. tables%at(table%proof_forces)%wanted) return
+      value = ""
+      if (this%searches) value = to_text(this%proof%force_at)
+      lines = proof_forces_lines(number, value, this%proof)
+      call append_line(tables%at(table%proof_forces)%open, lines, error)
+      if (allocated(error)) return
+      if (this%searches) value = to_text(this%proof%motion_at)
+      lines = proof_motion_lines(number, value, this%proof)
+      call append_line(tables%at(table%proof_motion)%open, lines, error)
+   end subroutine write_proof
 
    !> Write the end of a dynamic case, to go on from there
    subroutine write_end(folder, number, this, error)

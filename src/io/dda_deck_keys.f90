@@ -315,6 +315,10 @@ module dda_deck_keys
       key_t(group="output", name="blocks", kind=key_kind%flag, varies=.false., &
             without="up to 100 cases", &
             meaning="Write corners and displacements of the blocks to blocks.csv."), &
+      key_t(group="output", name="thrust_joint", kind=key_kind%whole, varies=.false., &
+            without="the one nearest to the crown of an arch", &
+            at_least=1.0_wp, at_most=1.0e7_wp, &
+            meaning="Joint whose least and greatest thrust are told of what stands."), &
       key_t(group="output", name="condition", kind=key_kind%flag, default=".false.", &
             varies=.false., &
             meaning="Estimate the condition number of the last equations of each case."), &

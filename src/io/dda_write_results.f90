@@ -74,6 +74,17 @@ module dda_write_results
       type(number_t) :: exact_low
       !> Likewise, from above
       type(number_t) :: exact_high
+      !> Largest force or moment that the forces of the proof leave on a block, over the largest
+      !> load
+      type(number_t) :: imbalance
+      !> Largest violation of the law of a joint by forces or velocities of the proof, relative
+      type(number_t) :: law_violation
+      !> Power of the loads on the mechanism of the proof, over what they could do at most
+      type(number_t) :: mechanism_power
+      !> Thickness of an arch that stands over its critical thickness
+      type(number_t) :: safety_thickness
+      !> Least and greatest thrust of a joint of what stands [N/m]
+      type(number_t) :: thrust_min, thrust_max
       !> Whether the table has a column of condition numbers
       logical :: tells_condition = .false.
       !> Estimated condition number of the last equations
@@ -144,7 +155,8 @@ contains
          & //"geometry,verdict,critical,critical_low,critical_high,collapses_at,exact," &
          & //"relative_error,collapse_mode,sliding_share,intrados_hinge_deg,extrados_hinge_deg," &
          & //"springing_hinge,steps,open_close_iterations,factorisations,seconds,unknowns," &
-         & //"exact_low,exact_high"
+         & //"exact_low,exact_high,imbalance,law_violation,mechanism_power,safety_thickness," &
+         & //"thrust_min,thrust_max"
       if (tells_condition) line = line//",condition"
    end function results_header
 
@@ -167,7 +179,10 @@ contains
          & //trim(row%springing_hinge)//","//to_text(row%steps)//"," &
          & //to_text(row%open_close_iterations)//","//to_text(row%factorisations)//"," &
          & //to_text(row%seconds)//","//to_text(row%unknowns)//"," &
-         & //number_text(row%exact_low)//","//number_text(row%exact_high)
+         & //number_text(row%exact_low)//","//number_text(row%exact_high)//"," &
+         & //number_text(row%imbalance)//","//number_text(row%law_violation)//"," &
+         & //number_text(row%mechanism_power)//","//number_text(row%safety_thickness)//"," &
+         & //number_text(row%thrust_min)//","//number_text(row%thrust_max)
       if (row%tells_condition) line = line//","//number_text(row%condition)
    end function results_line
 

@@ -4,6 +4,7 @@ module dda_case
    use dda_arch_chain, only : arch_rays
    use dda_arch_scene, only : arch_resolution, chain_resolution, exact_thickness, search_start
    use dda_block_system, only : block_system_t
+   use dda_case_proof, only : proof_t, prove_decision, prove_search
    use dda_chain, only : chain_t
    use dda_chain_decision, only : decide_chain
    use dda_chain_unfold, only : unfold
@@ -67,6 +68,8 @@ module dda_case
       type(error_t), allocatable :: error
       !> Pictures of the collapse, or of the way to rest
       type(album_t) :: album
+      !> What proves the verdict, where tables are told
+      type(proof_t) :: proof
       !> Exact critical thickness ratio
       real(wp) :: exact = 0.0_wp
       !> Whether it is known
@@ -139,7 +142,25 @@ contains
          & call take_pictures(this)
       call system_clock(finish)
       this%seconds = real(finish - start, wp)/real(rate, wp)
+      if (this%tells_tables .and. .not. (this%limerick .or. allocated(this%error))) &
+         & call prove_case(this)
    end subroutine compute_case
+
+   !> Prove the verdict of a case by limit analysis
+   pure subroutine prove_case(this)
+      !> The case, decided
+      type(case_t), intent(inout) :: this
+      integer :: joint
+
+      if (this%searches) then
+         call prove_search(this%family, this%critical, this%proof)
+      else if (allocated(this%scene%contacts%joint)) then
+         joint = integer_of(this%deck, "output", "thrust_joint")
+         if (joint == 0 .and. size(this%scene%joint_angle_deg) > 0) &
+            & joint = minloc(abs(this%scene%joint_angle_deg), dim=1)
+         call prove_decision(this%scene, this%decision, joint, this%proof)
+      end if
+   end subroutine prove_case
 
    !> Decide the scene: as a chain if it needs no more, else from its beginning or from where an
    !> earlier run has ended

@@ -2,6 +2,7 @@
 module dda_case_rows
    use dda_block_scene, only : lacks_friction
    use dda_case, only : case_t, searched_name
+   use dda_case_proof, only : proof_t
    use dda_contact_detection, only : contacts_t
    use dda_contact_types, only : joint_t
    use dda_critical, only : critical_t
@@ -54,7 +55,27 @@ contains
       else
          call tell_decision(this, row, joint_row, blocks, remark)
       end if
+      call tell_proof(this%proof, row)
+      if (row%verdict == "stable" .and. row%exact%known .and. row%thickness_ratio%known) &
+         & row%safety_thickness = some_number(row%thickness_ratio%value/row%exact%value)
    end subroutine tell_case
+
+   !> Fill the columns of the proof
+   pure subroutine tell_proof(proof, row)
+      !> The proof
+      type(proof_t), intent(in) :: proof
+      !> The row
+      type(result_row_t), intent(inout) :: row
+
+      if (allocated(proof%force)) row%imbalance = some_number(proof%imbalance)
+      if (allocated(proof%force) .or. allocated(proof%velocity)) &
+         & row%law_violation = some_number(proof%law_violation)
+      if (allocated(proof%velocity)) row%mechanism_power = some_number(proof%power)
+      if (proof%has_limit) row%exact_low = some_number(proof%limit(1))
+      if (proof%has_limit) row%exact_high = some_number(proof%limit(2))
+      if (proof%has_thrust(1)) row%thrust_min = some_number(proof%thrust(1))
+      if (proof%has_thrust(2)) row%thrust_max = some_number(proof%thrust(2))
+   end subroutine tell_proof
 
    !> Fill the columns that are known before anything is computed
    pure subroutine describe(this, row)

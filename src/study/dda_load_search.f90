@@ -35,6 +35,12 @@ module dda_load_search
       real(wp) :: limit(2) = 0.0_wp
       !> Whether it is known
       logical :: has_limit = .false.
+      !> Forces that carry it from below: (3, n_joint) [N/m]
+      real(wp), allocatable :: force(:, :)
+      !> Velocities that stop it from above: (3, n_block)
+      real(wp), allocatable :: velocity(:, :)
+      !> What grows: (3, n_block) [N/m, N/m, N]
+      real(wp), allocatable :: live(:, :)
       !> Whether the path leads further than its dead loads
       logical :: stands_upright = .true.
       !> How it falls, or stands at the end of the range
@@ -179,7 +185,13 @@ contains
       side%has_limit = limit%state == limit_state%found
       if (.not. side%has_limit) return
       side%limit = sign(1.0_wp, last)*[limit%lower, limit%upper]
-      if (load == searched_load%tilt) side%limit = atan(side%limit)
+      allocate (side%force, source=limit%force)
+      allocate (side%velocity, source=limit%velocity)
+      allocate (side%live, source=live)
+      if (load /= searched_load%tilt) return
+      ! gravity that tilts is as large as before
+      side%limit = atan(side%limit)
+      side%force = cos(side%limit(1))*side%force
    end subroutine find_associated
 
    !> Take the associated limit as the answer
@@ -301,6 +313,11 @@ contains
       call record_rest(scene%settings, scene%system, scene%contacts, side%proof, critical%standing)
       critical%has_limit = side%has_limit
       critical%limit = search%low + (side%limit - low)*scale
+      if (side%has_limit) then
+         critical%limit_force = side%force
+         critical%limit_velocity = side%velocity
+         critical%limit_live = side%live
+      end if
       critical%jumps = side%proof%n_jump
       critical%largest_jump = side%proof%largest_jump
    end subroutine close_bracket

@@ -57,6 +57,12 @@ module dda_search
       real(wp) :: limit(2) = 0.0_wp
       !> Whether it is known
       logical :: has_limit = .false.
+      !> Forces that carry the load at the first of these: (3, n_joint) [N/m]
+      real(wp), allocatable :: limit_force(:, :)
+      !> Velocities of the mechanism that does not let pass the second: (3, n_block)
+      real(wp), allocatable :: limit_velocity(:, :)
+      !> What the coefficient's growth by one adds to the load: (3, n_block) [N/m, N/m, N]
+      real(wp), allocatable :: limit_live(:, :)
       !> Jumps on the loading path, at fixed load
       integer :: jumps = 0
       !> The largest of them [m]

@@ -16,7 +16,8 @@ from dda_command import run_dda
 STABLE = "&arch thickness_ratio = 0.12 /\n"
 UNDECIDED = "&arch thickness_ratio = 0.12 /\n&analysis geometry = 'current', steps = 1 /\n"
 BAD = "&arch\n thickness_ratio = 2 /\n"
-TABLES = ["blocks.csv", "joints.csv", "log.txt", "results.csv"]
+PROOFS = ["proof_forces.csv", "proof_motion.csv"]
+TABLES = ["blocks.csv", "joints.csv", "log.txt", *PROOFS, "results.csv"]
 FILES = sorted(["deck.record", "disk.record", "run.lock", "sizes.record", *TABLES])
 
 
@@ -359,7 +360,7 @@ def test_set_may_switch_joints_off(tmp_path: Path) -> None:
     write_decks(tmp_path, deck=STABLE)
     setting = "output%joints=.false."
     assert run_dda("run", "deck.nml", "--set", setting, cwd=tmp_path).returncode == 0
-    assert names_in(tmp_path / "deck") == [name for name in FILES if name != "joints.csv"]
+    assert names_in(tmp_path / "deck") == [name for name in FILES if name not in ("joints.csv", *PROOFS)]
 
 
 def test_set_of_a_search_key_starts_a_search(tmp_path: Path) -> None:

@@ -1,0 +1,93 @@
+!> The least and the greatest thrust that a joint can carry while an assembly carries its load
+!>
+!> The thrust is the horizontal force in the joint, positive where it presses. A block without
+!> weight is put between the joint and one of its blocks, tied to that block upright and against
+!> turning alone: what goes through horizontally is a pair of forces on the two, a load factor, and
+!> limit analysis finds its ends.
+module dda_thrust_range
+   use dda_joint_graph, only : joint_graph_t, joint_kind
+   use dda_kinds, only : wp
+   use dda_limit_load, only : find_limit, limit_load_t, limit_state
+   implicit none
+   private
+
+   public :: find_thrust_range
+
+   !> Relative gap of the proofs of either end
+   real(wp), parameter :: tolerance = 1.0e-10_wp
+   !> A joint whose normal is nearer to upright than this has no thrust
+   real(wp), parameter :: least_normal = 1.0e-6_wp
+
+contains
+
+   !> The range of thrust of a joint
+   pure subroutine find_thrust_range(graph, load, force, joint, thrust, known)
+      !> The joints
+      type(joint_graph_t), intent(in) :: graph
+      !> Loads: (3, n_block) [N/m, N/m, N]
+      real(wp), intent(in) :: load(:, :)
+      !> N1, N2, T of each joint that carry it: (3, n_joint) [N/m]
+      real(wp), intent(in) :: force(:, :)
+      !> Number of the joint
+      integer, intent(in) :: joint
+      !> Least and greatest thrust: (2) [N/m]
+      real(wp), intent(out) :: thrust(2)
+      !> Which of the two there are: one may have no bound
+      logical, intent(out) :: known(2)
+      type(joint_graph_t) :: split
+      type(limit_load_t) :: limit
+      real(wp) :: dead(3, graph%n_block + 1), live(3, graph%n_block + 1), share(3), way, middle
+      integer :: k, side
+
+      known = .false.
+      thrust = 0.0_wp
+      side = merge(1, 2, graph%block(1, joint) > 0)
+      share = graph%row(1, :, side, joint)
+      if (.not. abs(share(1)) > least_normal) return
+      way = sign(1.0_wp, share(1))
+      middle = way*dot_product(share, force(:, joint))
+      call split_graph(graph, joint, side, split)
+      dead = 0.0_wp
+      dead(:, :graph%n_block) = load(1:3, :)
+      live = 0.0_wp
+      live(1, graph%n_block + 1) = -way
+      live(1, graph%block(side, joint)) = way
+      dead = dead + middle*live
+      do k = 1, 2
+         call find_limit(split, dead, merge(-1.0_wp, 1.0_wp, k == 1)*live, tolerance, limit)
+         known(k) = limit%state == limit_state%found
+         if (known(k)) thrust(k) = middle &
+            & + merge(-0.5_wp, 0.5_wp, k == 1)*(limit%lower + limit%upper)
+      end do
+   end subroutine find_thrust_range
+
+   !> The same joints, with a block without weight between one of them and one of its blocks
+   pure subroutine split_graph(graph, joint, side, split)
+      !> The joints
+      type(joint_graph_t), intent(in) :: graph
+      !> Number of the joint
+      integer, intent(in) :: joint
+      !> Its block, 1 or 2, from which it is parted
+      integer, intent(in) :: side
+      !> The joints with the tie as the last
+      type(joint_graph_t), intent(out) :: split
+      integer :: n
+
+      n = size(graph%kind)
+      split%n_block = graph%n_block + 1
+      split%n_dof = 3
+      allocate (split%block(2, n + 1), split%kind(n + 1))
+      allocate (split%row(3, 3, 2, n + 1), split%friction(n + 1), split%length(n + 1), &
+         & source=0.0_wp)
+      split%block(:, :n) = graph%block
+      split%kind(:n) = graph%kind
+      split%row(:, :, :, :n) = graph%row(1:3, :, :, :)
+      split%friction(:n) = graph%friction
+      split%length(:n) = graph%length
+      split%block(side, joint) = split%n_block
+      split%kind(n + 1) = joint_kind%pin
+      split%block(:, n + 1) = [graph%block(side, joint), split%n_block]
+      split%row(2, 1, :, n + 1) = [-1.0_wp, 1.0_wp]
+      split%row(3, 3, :, n + 1) = [-1.0_wp, 1.0_wp]
+   end subroutine split_graph
+end module dda_thrust_range

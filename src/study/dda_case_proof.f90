@@ -1,0 +1,202 @@
+!> What proves the verdict of a case: forces that carry its load, a mechanism on which it has power
+!>
+!> Both are of limit analysis: forces prove that a load can be carried, a mechanism that it cannot
+!> be under any law of friction. A collapse on the loading path below the associated limit has no
+!> proof of this kind, and none is told.
+module dda_case_proof
+   use dda_contact_detection, only : contacts_t
+   use dda_critical, only : critical_t
+   use dda_decision, only : decision_t
+   use dda_error, only : error_t
+   use dda_graph_decision, only : decides_as_graph
+   use dda_joint_graph, only : joint_graph_t, joint_kind
+   use dda_kinds, only : wp
+   use dda_limit_certificate, only : check_forces, check_velocities
+   use dda_limit_decision, only : decide_load, load_decision_t, load_state
+   use dda_limit_load, only : find_limit, limit_load_t, limit_state
+   use dda_load_coefficient, only : full_loads, with_coefficient
+   use dda_load_stations, only : bears_live_load
+   use dda_scene, only : family_t, scene_t, searched_load
+   use dda_scene_graph, only : scene_graph
+   use dda_thrust_range, only : find_thrust_range
+   use dda_verdict, only : verdict
+   implicit none
+   private
+
+   public :: proof_t, prove_decision, prove_search
+
+   !> Proofs of a case and their figures
+   type :: proof_t
+      !> N1, N2, T of each joint, then the forces of held points; unallocated without: (3, n) [N/m]
+      real(wp), allocatable :: force(:, :)
+      !> Value of what is searched at which they carry the load
+      real(wp) :: force_at = 0.0_wp
+      !> Velocities of the blocks' centres and spins; unallocated without: (3, n_block)
+      real(wp), allocatable :: velocity(:, :)
+      !> Value of what is searched at which the loads begin to drive them
+      real(wp) :: motion_at = 0.0_wp
+      !> Whether the blocks have the same shape there
+      logical :: same_shape = .true.
+      !> Scene of the forces, and of the velocities where only loads are searched
+      type(scene_t) :: scene
+      !> Largest force or moment left on a block, over the largest load
+      real(wp) :: imbalance = 0.0_wp
+      !> Largest violation of the law of a joint by forces or velocities, relative
+      real(wp) :: law_violation = 0.0_wp
+      !> Power of the loads on the mechanism, or of the live load where that is searched, over what
+      !> they could do at most
+      real(wp) :: power = 0.0_wp
+      !> Associated limit of the load factor of a single decision, from below and from above
+      real(wp) :: limit(2) = 0.0_wp
+      !> Whether there is one
+      logical :: has_limit = .false.
+      !> Least and greatest thrust of a joint: (2) [N/m]
+      real(wp) :: thrust(2) = 0.0_wp
+      !> Which of them there are
+      logical :: has_thrust(2) = .false.
+   end type proof_t
+
+   !> Relative gap of the limit of a load factor beside a decision
+   real(wp), parameter :: limit_gap = 1.0e-10_wp
+
+contains
+
+   !> Prove a decision
+   pure subroutine prove_decision(scene, decision, thrust_joint, proof)
+      !> Its scene at the beginning
+      type(scene_t), intent(in) :: scene
+      !> The decision
+      type(decision_t), intent(in) :: decision
+      !> Joint whose range of thrust is wanted, 0 for none
+      integer, intent(in) :: thrust_joint
+      !> The proof
+      type(proof_t), intent(out) :: proof
+      type(joint_graph_t) :: graph
+      type(limit_load_t) :: limit
+      real(wp), allocatable :: dead(:, :)
+
+      if (.not. decides_as_graph(scene%settings, scene%contacts)) return
+      call scene_graph(scene%settings, scene%system, scene%contacts, graph)
+      call prove_state(scene, graph, decision%outcome%verdict, proof)
+      if (decision%outcome%verdict /= verdict%stable) return
+      if (thrust_joint > 0 .and. thrust_joint <= size(scene%contacts%joint) &
+         & .and. allocated(proof%force)) call find_thrust_range(graph, &
+         & full_loads(scene%settings, scene, graph), proof%force, thrust_joint, proof%thrust, &
+         & proof%has_thrust)
+      if (.not. bears_live_load(with_coefficient(scene%settings, searched_load%factor, 1.0_wp))) &
+         & return
+      allocate (dead, source=full_loads(with_coefficient(scene%settings, searched_load%factor, &
+         & 0.0_wp), scene, graph))
+      call find_limit(graph, dead, full_loads(with_coefficient(scene%settings, &
+         & searched_load%factor, 1.0_wp), scene, graph) - dead, limit_gap, limit)
+      proof%has_limit = limit%state == limit_state%found
+      proof%limit = [limit%lower, limit%upper]
+   end subroutine prove_decision
+
+   !> Prove both sides of what a search has found
+   pure subroutine prove_search(family, critical, proof)
+      !> The scenes
+      class(family_t), intent(in) :: family
+      !> What was found
+      type(critical_t), intent(in) :: critical
+      !> The proof
+      type(proof_t), intent(out) :: proof
+      type(joint_graph_t) :: graph
+      type(proof_t) :: other
+      type(scene_t) :: scene
+      type(error_t), allocatable :: error
+
+      if (allocated(critical%limit_force)) then
+         call prove_limit(family, critical, proof)
+         return
+      end if
+      if (allocated(critical%standing)) then
+         call family%build(critical%stands, scene, error)
+         if (allocated(error)) return
+         if (.not. decides_as_graph(scene%settings, scene%contacts)) return
+         call scene_graph(scene%settings, scene%system, scene%contacts, graph)
+         call prove_state(scene, graph, verdict%stable, proof)
+         proof%force_at = critical%stands
+      end if
+      if (.not. allocated(critical%fallen)) return
+      call family%build(critical%falls, scene, error)
+      if (allocated(error)) return
+      if (.not. decides_as_graph(scene%settings, scene%contacts)) return
+      call scene_graph(scene%settings, scene%system, scene%contacts, graph)
+      call prove_state(scene, graph, verdict%collapsed, other)
+      if (.not. allocated(other%velocity)) return
+      proof%law_violation = max(proof%law_violation, other%law_violation)
+      proof%power = other%power
+      proof%motion_at = critical%falls
+      call move_alloc(other%velocity, proof%velocity)
+      if (.not. allocated(proof%force)) proof%scene = scene
+      proof%same_shape = .not. any(abs(proof%scene%system%vertex - scene%system%vertex) > 0.0_wp)
+   end subroutine prove_search
+
+   !> Forces that carry the load of a scene, or a mechanism that it drives
+   pure subroutine prove_state(scene, graph, wanted, proof)
+      !> The scene
+      type(scene_t), intent(in) :: scene
+      !> Its joints
+      type(joint_graph_t), intent(in) :: graph
+      !> The verdict that is to be proven: stable or collapsed
+      integer, intent(in) :: wanted
+      !> Receives them
+      type(proof_t), intent(inout) :: proof
+      type(load_decision_t) :: decision
+      real(wp) :: load(3, graph%n_block)
+
+      load = full_loads(scene%settings, scene, graph)
+      call decide_load(graph, load, decision)
+      proof%scene = scene
+      if (decision%state == load_state%stands .and. wanted == verdict%stable) then
+         proof%imbalance = decision%imbalance
+         proof%law_violation = decision%violation
+         call move_alloc(decision%force, proof%force)
+      else if (decision%state == load_state%falls .and. wanted == verdict%collapsed) then
+         proof%law_violation = decision%violation
+         proof%power = decision%power/most_power(load, decision%velocity)
+         call move_alloc(decision%velocity, proof%velocity)
+      end if
+   end subroutine prove_state
+
+   !> The two proofs of the limit of a load coefficient
+   pure subroutine prove_limit(family, critical, proof)
+      !> The scenes
+      class(family_t), intent(in) :: family
+      !> What was found
+      type(critical_t), intent(in) :: critical
+      !> The proof
+      type(proof_t), intent(inout) :: proof
+      type(joint_graph_t) :: graph
+      type(error_t), allocatable :: error
+      real(wp), allocatable :: live(:, :), load(:, :)
+      real(wp) :: violation, power
+
+      call family%build(critical%limit(1), proof%scene, error)
+      if (allocated(error)) return
+      call scene_graph(proof%scene%settings, proof%scene%system, proof%scene%contacts, graph)
+      allocate (load, source=full_loads(proof%scene%settings, proof%scene, graph))
+      allocate (proof%force, source=critical%limit_force)
+      allocate (proof%velocity, source=critical%limit_velocity)
+      proof%force_at = critical%limit(1)
+      proof%motion_at = critical%limit(2)
+      call check_forces(graph, load, proof%force, proof%imbalance, proof%law_violation)
+      allocate (live, source=critical%limit_live)
+      call check_velocities(graph, live, proof%velocity, violation, power)
+      proof%law_violation = max(proof%law_violation, violation)
+      proof%power = power/most_power(live, proof%velocity)
+   end subroutine prove_limit
+
+   !> Power of loads if each went along with the motion of its block
+   pure real(wp) function most_power(load, velocity)
+      !> Loads: (3, n_block) [N/m, N/m, N]
+      real(wp), intent(in) :: load(:, :)
+      !> Velocities: (3, n_block) [m/s, m/s, 1/s]
+      real(wp), intent(in) :: velocity(:, :)
+
+      most_power = sum(norm2(load(1:2, :), dim=1)*norm2(velocity(1:2, :), dim=1) &
+         & + abs(load(3, :)*velocity(3, :)))
+      most_power = max(most_power, tiny(most_power))
+   end function most_power
+end module dda_case_proof

@@ -1,0 +1,117 @@
+!> Proofs of a case as rows of proof_forces.csv and proof_motion.csv
+module dda_proof_rows
+   use dda_case_proof, only : proof_t
+   use dda_growing_text, only : add_line, growing_text_t, lines_of
+   use dda_kinds, only : wp
+   use dda_text, only : to_text
+   implicit none
+   private
+
+   public :: proof_forces_header, proof_forces_lines, proof_motion_header, proof_motion_lines
+
+contains
+
+   !> Names of the columns of proof_forces.csv
+   pure function proof_forces_header() result(line)
+      !> The line
+      character(len=:), allocatable :: line
+
+      line = "case,value,kind,block_1,block_2,x_1,y_1,x_2,y_2,normal_1,normal_2,shear"
+   end function proof_forces_header
+
+   !> Names of the columns of proof_motion.csv
+   pure function proof_motion_header() result(line)
+      !> The line
+      character(len=:), allocatable :: line
+
+      line = "case,value,block,x,y,u,v,spin"
+   end function proof_motion_header
+
+   !> Forces that carry the load: of joints, at their two corners and along them on the second
+   !> block; of held points, along x and y
+   pure function proof_forces_lines(number, value, proof) result(lines)
+      !> Number of the case
+      integer, intent(in) :: number
+      !> Value of what is searched as text; empty if nothing is
+      character(len=*), intent(in) :: value
+      !> The proof
+      type(proof_t), intent(in) :: proof
+      !> Rows, parted by line ends
+      character(len=:), allocatable :: lines
+      type(growing_text_t) :: rows
+      character(len=:), allocatable :: start
+      real(wp) :: force(3)
+      integer :: i, j, n
+
+      lines = ""
+      if (.not. allocated(proof%force)) return
+      start = to_text(number)//","//value//","
+      n = size(proof%scene%contacts%joint)
+      do j = 1, n
+         associate (joint => proof%scene%contacts%joint(j))
+            call add_line(rows, start//"contact,"//to_text(joint%block(1))//"," &
+               & //to_text(joint%block(2))//","//numbers([joint%contact(1)%point &
+               & + proof%scene%origin, joint%contact(joint%n_contact)%point &
+               & + proof%scene%origin, proof%force(:, j)]))
+         end associate
+      end do
+      if (.not. allocated(proof%scene%settings%boundary%held)) then
+         lines = lines_of(rows)
+         return
+      end if
+      j = n
+      do i = 1, size(proof%scene%settings%boundary%held)
+         associate (held => proof%scene%settings%boundary%held(i))
+            if (proof%scene%system%equation(held%block) == 0) cycle
+            j = j + 1
+            force = [proof%force(1, j), proof%force(3, j), 0.0_wp]
+            ! one that holds along one axis does so by both of its forces
+            if (.not. held%along(1)) force = [0.0_wp, sum(force), 0.0_wp]
+            if (.not. held%along(2)) force = [sum(force), 0.0_wp, 0.0_wp]
+            call add_line(rows, start//"held,0,"//to_text(held%block)//"," &
+               & //numbers([held%point + proof%scene%origin, held%point + proof%scene%origin, &
+               & force]))
+         end associate
+      end do
+      lines = lines_of(rows)
+   end function proof_forces_lines
+
+   !> Velocities of the mechanism: of the centres of blocks that move, and their spins
+   pure function proof_motion_lines(number, value, proof) result(lines)
+      !> Number of the case
+      integer, intent(in) :: number
+      !> Value of what is searched as text; empty if nothing is
+      character(len=*), intent(in) :: value
+      !> The proof
+      type(proof_t), intent(in) :: proof
+      !> Rows, parted by line ends
+      character(len=:), allocatable :: lines
+      type(growing_text_t) :: rows
+      integer :: b, e
+
+      lines = ""
+      if (.not. (allocated(proof%velocity) .and. proof%same_shape)) return
+      do b = 1, size(proof%scene%system%equation)
+         e = proof%scene%system%equation(b)
+         if (e == 0) cycle
+         call add_line(rows, to_text(number)//","//value//","//to_text(b)//"," &
+            & //numbers([proof%scene%system%centroid(:, b) + proof%scene%origin, &
+            & proof%velocity(1:3, e)]))
+      end do
+      lines = lines_of(rows)
+   end function proof_motion_lines
+
+   !> Fields of numbers, parted by commas
+   pure function numbers(value) result(text)
+      !> The numbers: (n)
+      real(wp), intent(in) :: value(:)
+      !> The fields
+      character(len=:), allocatable :: text
+      integer :: i
+
+      text = to_text(value(1))
+      do i = 2, size(value)
+         text = text//","//to_text(value(i))
+      end do
+   end function numbers
+end module dda_proof_rows
