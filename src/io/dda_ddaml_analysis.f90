@@ -1,17 +1,17 @@
 !> Analysis files in DDAML, the XML form
 module dda_ddaml_analysis
-   use dda_ddaml_geometry, only : attribute_words, find_part
+   use dda_ddaml_form, only : analysis_form, check_form, find_part
+   use dda_ddaml_geometry, only : attribute_words
    use dda_ddaml_material, only : read_history, read_joint, read_material
    use dda_error, only : error_t, fatal_error
    use dda_kinds, only : wp
-   use dda_limerick_analysis, only : limerick_analysis_t, limerick_joint_t, limerick_material_t, &
-      & load_history_t
+   use dda_limerick_analysis, only : limerick_analysis_t
    use dda_plain_analysis, only : check_steps, largest_value
    use dda_text, only : to_text
    use dda_warnings, only : add_warning, warnings_t
    use dda_word_list, only : quoted, take_numbers, take_whole, word_list_t
-   use dda_xml_tree, only : attribute_of, find_child, first_child, has_attribute, next_sibling, &
-      & xml_tree_t
+   use dda_xml_tree, only : attribute_of, attribute_place, count_children, find_child, &
+      & first_child, next_sibling, xml_tree_t
    implicit none
    private
 
@@ -24,8 +24,8 @@ contains
 
    !> Read the analysis of a tree
    pure subroutine read_ddaml_analysis(tree, analysis, warnings, error)
-      !> The file's elements
-      type(xml_tree_t), intent(in) :: tree
+      !> The file's elements; those that are not read are marked
+      type(xml_tree_t), intent(inout) :: tree
       !> The analysis
       type(limerick_analysis_t), intent(out) :: analysis
       !> Receives what the reader ignores
@@ -38,12 +38,14 @@ contains
       ! what an absent element means to the original
       analysis%auto_time_step = .false.
       analysis%auto_penalty = .false.
-      allocate (analysis%material(0), analysis%joint(0), analysis%load(0))
       call find_part(tree, "Analysis", part, error)
+      if (.not. allocated(error)) call check_form(tree, part, analysis_form, warnings, error)
       if (allocated(error)) return
       ! weights that are not given need the gravity
       at = find_child(tree, part, "Gravaccel")
       if (at > 0) call read_number(tree, at, "value", 0.0_wp, analysis%gravity, error)
+      if (.not. allocated(error)) call read_properties(tree, part, analysis, warnings, error)
+      if (.not. allocated(error)) call read_loads(tree, part, analysis, error)
       at = first_child(tree, part)
       do while (at > 0 .and. .not. allocated(error))
          call read_element(tree, at, analysis, warnings, error)
@@ -69,10 +71,8 @@ contains
          select case (element%name)
          case ("Analysistype", "Rotation", "Gravity", "Autotimestep", "Autopenalty", "Planestrain")
             call read_switch(tree, at, analysis, warnings, error)
-         case ("Blockmaterial", "Jointproperties", "Loadpointlist")
-            call read_properties(tree, at, analysis, warnings, error)
          case ("AConstants")
-            call read_constants(tree, at, analysis, warnings, error)
+            call read_constants(tree, at, analysis, error)
          case ("Numtimesteps")
             call read_whole(tree, at, "timesteps", 1, analysis%steps, error)
          case ("Maxtimestep")
@@ -86,18 +86,12 @@ contains
             call read_whole(tree, at, "maxopenclose", 1, analysis%open_close_limit, error)
          case ("Saveinterval")
             analysis%save_interval = 10
-            if (has_attribute(tree, at, "step")) &
+            if (attribute_place(tree, at, "step") > 0) &
                & call read_whole(tree, at, "step", 0, analysis%save_interval, error)
             if (analysis%save_interval == 0) analysis%save_interval = 10
          case ("Contactdamping", "ContactDamping")
             call read_number(tree, at, "value", 0.0_wp, analysis%contact_damping, error)
          case ("Gravaccel", "Writevertices")
-         case ("Boltproperties", "Timehistory")
-            call add_warning(warnings, "the element "//element%name//" has no effect", &
-               & tree%file, element%row)
-         case default
-            call add_warning(warnings, "the element "//quoted(element%name) &
-               & //" is not known and not read", tree%file, element%row)
          end select
       end associate
    end subroutine read_element
@@ -134,7 +128,7 @@ contains
       case ("Autopenalty")
          call choose(tree, at, "flag", "yes", "no", analysis%auto_penalty, error)
          if (allocated(error)) return
-         if (has_attribute(tree, at, "pfactor")) then
+         if (attribute_place(tree, at, "pfactor") > 0) then
             call read_number(tree, at, "pfactor", 0.0_wp, analysis%penalty_factor, error)
          else
             call add_warning(warnings, "Autopenalty wants the attribute pfactor, 50 is taken", &
@@ -143,59 +137,98 @@ contains
       end select
    end subroutine read_switch
 
-   !> Read an element that holds materials or loads
-   pure subroutine read_properties(tree, at, analysis, warnings, error)
+   !> Read the materials of blocks and joints
+   pure subroutine read_properties(tree, part, analysis, warnings, error)
       !> The file's elements
       type(xml_tree_t), intent(in) :: tree
-      !> Place of the element
-      integer, intent(in) :: at
+      !> Place of Analysis
+      integer, intent(in) :: part
       !> Receives them
       type(limerick_analysis_t), intent(inout) :: analysis
       !> Receives what the reader ignores
       type(warnings_t), intent(inout) :: warnings
       !> What is wrong
       type(error_t), allocatable, intent(out) :: error
-      type(limerick_material_t) :: material
-      type(limerick_joint_t) :: joint
-      type(load_history_t), allocatable :: longer(:)
-      integer :: child, n
+      integer :: at, n_blocks, n_joints
 
-      select case (tree%element(at)%name)
-      case ("Blockmaterial")
-         call read_material(tree, at, analysis%gravity, material, warnings, error)
-         analysis%material = [analysis%material, material]
-      case ("Jointproperties")
-         call read_joint(tree, at, joint, warnings, error)
-         analysis%joint = [analysis%joint, joint]
-      case ("Loadpointlist")
-         child = first_child(tree, at)
-         do while (child > 0 .and. .not. allocated(error))
-            if (tree%element(child)%name == "Loadpoint") then
-               n = size(analysis%load)
-               allocate (longer(n + 1))
-               longer(:n) = analysis%load
-               call read_history(tree, child, longer(n + 1), error)
-               call move_alloc(longer, analysis%load)
-            else
-               call add_warning(warnings, "the element "//quoted(tree%element(child)%name) &
-                  & //" has no meaning in Loadpointlist and is not read", tree%file, &
-                  & tree%element(child)%row)
-            end if
-            child = next_sibling(tree, child)
-         end do
-      end select
+      allocate (analysis%material(count_children(tree, part, "Blockmaterial")))
+      allocate (analysis%joint(count_children(tree, part, "Jointproperties")))
+      n_blocks = 0
+      n_joints = 0
+      at = first_child(tree, part)
+      do while (at > 0 .and. .not. allocated(error))
+         if (tree%element(at)%name == "Blockmaterial") then
+            n_blocks = n_blocks + 1
+            call check_type(tree, at, n_blocks, warnings)
+            call read_material(tree, at, analysis%gravity, analysis%material(n_blocks), warnings, &
+               & error)
+         else if (tree%element(at)%name == "Jointproperties") then
+            n_joints = n_joints + 1
+            call check_type(tree, at, n_joints, warnings)
+            call read_joint(tree, at, analysis%joint(n_joints), warnings, error)
+         end if
+         at = next_sibling(tree, at)
+      end do
    end subroutine read_properties
 
+   !> Materials are counted in the order of the file, whatever their type says
+   pure subroutine check_type(tree, at, number, warnings)
+      !> The file's elements
+      type(xml_tree_t), intent(in) :: tree
+      !> Place of the material
+      integer, intent(in) :: at
+      !> Its number
+      integer, intent(in) :: number
+      !> Receives another type
+      type(warnings_t), intent(inout) :: warnings
+      character(len=:), allocatable :: given
+
+      given = attribute_of(tree, at, "type")
+      if (given == "" .or. given == to_text(number)) return
+      call add_warning(warnings, "expected type "//to_text(number)//" of "//tree%element(at)%name &
+         & //", its place in the file, got "//quoted(given)//": the place is taken", tree%file, &
+         & tree%element(at)%row)
+   end subroutine check_type
+
+   !> Read the forces on load points
+   pure subroutine read_loads(tree, part, analysis, error)
+      !> The file's elements
+      type(xml_tree_t), intent(in) :: tree
+      !> Place of Analysis
+      integer, intent(in) :: part
+      !> Receives them
+      type(limerick_analysis_t), intent(inout) :: analysis
+      !> What is wrong
+      type(error_t), allocatable, intent(out) :: error
+      integer :: list, at, n, pass
+
+      do pass = 1, 2
+         n = 0
+         list = first_child(tree, part)
+         do while (list > 0)
+            if (tree%element(list)%name == "Loadpointlist") then
+               at = first_child(tree, list)
+               do while (at > 0)
+                  n = n + 1
+                  if (pass == 2) call read_history(tree, at, analysis%load(n), error)
+                  if (allocated(error)) return
+                  at = next_sibling(tree, at)
+               end do
+            end if
+            list = next_sibling(tree, list)
+         end do
+         if (pass == 1) allocate (analysis%load(n))
+      end do
+   end subroutine read_loads
+
    !> Read the constants of the scheme
-   pure subroutine read_constants(tree, at, analysis, warnings, error)
+   pure subroutine read_constants(tree, at, analysis, error)
       !> The file's elements
       type(xml_tree_t), intent(in) :: tree
       !> Place of AConstants
       integer, intent(in) :: at
       !> Receives them
       type(limerick_analysis_t), intent(inout) :: analysis
-      !> Receives what the reader ignores
-      type(warnings_t), intent(inout) :: warnings
       !> What is wrong
       type(error_t), allocatable, intent(out) :: error
       integer :: child
@@ -215,10 +248,6 @@ contains
                call read_number(tree, child, "value", 0.0_wp, analysis%overlap_deg, error)
             case ("ShearNormRatio")
                call read_number(tree, child, "value", 1.0e-30_wp, analysis%shear_ratio, error)
-            case ("MinReflineFactor")
-            case default
-               call add_warning(warnings, "the element "//quoted(element%name) &
-                  & //" is not known and not read", tree%file, element%row)
             end select
          end associate
          child = next_sibling(tree, child)

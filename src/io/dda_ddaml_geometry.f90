@@ -1,5 +1,6 @@
 !> Geometry files in DDAML, the XML form
 module dda_ddaml_geometry
+   use dda_ddaml_form, only : check_form, find_part, geometry_form
    use dda_error, only : error_t, fatal_error
    use dda_kinds, only : wp
    use dda_line_model, only : add_entity, entities_t, line_model_t, new_entities
@@ -7,29 +8,31 @@ module dda_ddaml_geometry
    use dda_warnings, only : add_warning, warnings_t
    use dda_word_list, only : quoted, largest_coordinate, split_words, take_material, take_number, &
       & take_numbers, this_row, this_word, word_list_t, words_left
-   use dda_xml_tree, only : attribute_of, find_child, first_child, has_attribute, next_sibling, &
-      & xml_tree_t
+   use dda_xml_tree, only : attribute_of, attribute_place, first_child, next_sibling, xml_tree_t
    implicit none
    private
 
-   public :: read_ddaml_geometry, find_part, attribute_words
+   public :: read_ddaml_geometry, attribute_words
 
-   !> What an entity of a list is made of
-   type :: form_t
-      !> Names of its element, with blanks around each
-      character(len=16) :: names = ""
-      !> Whether its type is the number of a material
-      logical :: has_material = .false.
-      !> Whether the type may be left out: the first material
-      logical :: may_lack_type = .false.
-   end type form_t
+   !> What the type of an entity of a list says
+   type :: type_enum
+      !> There is none
+      integer :: none = 0
+      !> Number of a material
+      integer :: material = 1
+      !> Likewise; the first material where it is left out
+      integer :: material_or_first = 2
+   end type type_enum
+
+   !> Names of them
+   type(type_enum), parameter :: type_is = type_enum()
 
 contains
 
    !> Read the geometry of a tree
    pure subroutine read_ddaml_geometry(tree, model, warnings, error)
-      !> The file's elements
-      type(xml_tree_t), intent(in) :: tree
+      !> The file's elements; those that are not read are marked
+      type(xml_tree_t), intent(inout) :: tree
       !> Lines and points
       type(line_model_t), intent(out) :: model
       !> Receives what the reader ignores
@@ -41,6 +44,7 @@ contains
 
       model%file = tree%file
       call find_part(tree, "Geometry", part, error)
+      if (.not. allocated(error)) call check_form(tree, part, geometry_form, warnings, error)
       if (allocated(error)) return
       call new_entities(model%line, 64)
       call new_entities(boundary, 0)
@@ -65,24 +69,6 @@ contains
       model%line = boundary
    end subroutine read_ddaml_geometry
 
-   !> Find the part of a file that is wanted: inside the root, or the root itself
-   pure subroutine find_part(tree, name, part, error)
-      !> The file's elements
-      type(xml_tree_t), intent(in) :: tree
-      !> Name of the part
-      character(len=*), intent(in) :: name
-      !> Its place
-      integer, intent(out) :: part
-      !> There is none
-      type(error_t), allocatable, intent(out) :: error
-
-      part = 1
-      if (tree%element(1)%name == name) return
-      part = find_child(tree, 1, name)
-      if (part == 0) call fatal_error(error, "an element "//name//" inside the root is wanted, " &
-         & //"none was found; add it", tree%file, tree%element(1)%row)
-   end subroutine find_part
-
    !> Read one child of Geometry
    pure subroutine read_list(tree, at, model, boundary, warnings, error)
       !> The file's elements
@@ -97,39 +83,35 @@ contains
       type(warnings_t), intent(inout) :: warnings
       !> What is wrong
       type(error_t), allocatable, intent(out) :: error
-      type(form_t), parameter :: point = form_t(" Point ")
 
       associate (element => tree%element(at))
          select case (element%name)
          case ("Edgenodedist")
             call read_ratio(tree, at, model%edge_node_ratio, error)
          case ("Jointlist")
-            call read_entities(tree, at, form_t(" Joint ", .true.), model%line, warnings, error)
+            call read_entities(tree, at, type_is%material, model%line, warnings, error)
          case ("Boundlist")
-            call read_entities(tree, at, form_t(" Line Joint ", .true., .true.), boundary, &
+            call read_entities(tree, at, type_is%material_or_first, boundary, &
                & warnings, error)
          case ("Matlinelist")
-            call read_entities(tree, at, form_t(" Line ", .true.), model%material_line, &
+            call read_entities(tree, at, type_is%material, model%material_line, &
                & warnings, error)
          case ("Fixedpointlist")
-            call read_entities(tree, at, form_t(" Point Line "), model%fixed, warnings, error)
+            call read_entities(tree, at, type_is%none, model%fixed, warnings, error)
          case ("Loadpointlist")
-            call read_entities(tree, at, point, model%load, warnings, error)
+            call read_entities(tree, at, type_is%none, model%load, warnings, error)
          case ("Measuredpointlist")
-            call read_entities(tree, at, point, model%measured, warnings, error)
+            call read_entities(tree, at, type_is%none, model%measured, warnings, error)
          case ("Holepointlist")
-            call read_entities(tree, at, point, model%hole, warnings, error)
+            call read_entities(tree, at, type_is%none, model%hole, warnings, error)
          case ("Seismicpointlist")
-            call read_entities(tree, at, point, model%seismic, warnings, error)
+            call read_entities(tree, at, type_is%none, model%seismic, warnings, error)
             if (.not. allocated(error) .and. model%seismic%n > 0) call add_warning(warnings, &
                & "seismic points have no effect", tree%file, element%row)
          case ("Boltlist")
-            if (first_child(tree, at) > 0) call fatal_error(error, "a model without bolts is " &
-               & //"wanted, found some: this program has no bolts; remove them", tree%file, &
-               & tree%element(first_child(tree, at))%row)
-         case default
-            call add_warning(warnings, "the element "//quoted(element%name) &
-               & //" is not known and not read", tree%file, element%row)
+            if (element%last > at) call fatal_error(error, "a model without bolts is wanted, " &
+               & //"found some: this program has no bolts; remove them", tree%file, &
+               & tree%element(at + 1)%row)
          end select
       end associate
    end subroutine read_list
@@ -178,13 +160,13 @@ contains
    end subroutine attribute_words
 
    !> Read the elements of a list
-   pure subroutine read_entities(tree, list, form, entities, warnings, error)
+   pure subroutine read_entities(tree, list, type, entities, warnings, error)
       !> The file's elements
       type(xml_tree_t), intent(in) :: tree
       !> Place of the list
       integer, intent(in) :: list
-      !> What its elements are made of
-      type(form_t), intent(in) :: form
+      !> What the type of its elements says
+      integer, intent(in) :: type
       !> Receives them
       type(entities_t), intent(inout) :: entities
       !> Receives what the reader ignores
@@ -195,27 +177,19 @@ contains
 
       at = first_child(tree, list)
       do while (at > 0 .and. .not. allocated(error))
-         associate (element => tree%element(at))
-            if (index(form%names, " "//element%name//" ") > 0) then
-               call read_entity(tree, at, form, entities, warnings, error)
-            else
-               call add_warning(warnings, "the element "//quoted(element%name) &
-                  & //" has no meaning in " &
-                  & //quoted(tree%element(list)%name)//" and is not read", tree%file, element%row)
-            end if
-         end associate
+         call read_entity(tree, at, type, entities, warnings, error)
          at = next_sibling(tree, at)
       end do
    end subroutine read_entities
 
    !> Read one element of a list
-   pure subroutine read_entity(tree, at, form, entities, warnings, error)
+   pure subroutine read_entity(tree, at, type, entities, warnings, error)
       !> The file's elements
       type(xml_tree_t), intent(in) :: tree
       !> Place of the element
       integer, intent(in) :: at
-      !> What it is made of
-      type(form_t), intent(in) :: form
+      !> What its type says
+      integer, intent(in) :: type
       !> Receives it
       type(entities_t), intent(inout) :: entities
       !> Receives what the reader ignores
@@ -227,15 +201,15 @@ contains
       integer :: material
 
       associate (element => tree%element(at))
-         material = merge(1, 0, form%has_material)
-         if (form%has_material .and. .not. (form%may_lack_type .and. &
-            & .not. has_attribute(tree, at, "type"))) then
+         material = merge(0, 1, type == type_is%none)
+         if (type == type_is%material .or. type == type_is%material_or_first &
+            & .and. attribute_place(tree, at, "type") > 0) then
             call attribute_words(tree, at, "type", words, error)
             if (.not. allocated(error)) &
                & call take_material(words, "the type of "//element%name, material, error)
             if (allocated(error)) return
          end if
-         call split_words(element%text, tree%file, element%row, words)
+         call split_words(element%text, tree%file, element%text_row, words)
          if (element%name == "Point") then
             call take_numbers(words, "a coordinate of "//element%name, largest_coordinate, &
                & place(:2), error)

@@ -9,7 +9,7 @@ module dda_ddaml_material
    use dda_warnings, only : add_warning, warnings_t
    use dda_word_list, only : quoted, split_words, take_numbers, take_whole, this_row, this_word, &
       & word_list_t, words_left
-   use dda_xml_tree, only : find_child, first_child, next_sibling, xml_tree_t
+   use dda_xml_tree, only : find_child, xml_tree_t
    implicit none
    private
 
@@ -36,8 +36,6 @@ contains
       type(error_t), allocatable, intent(out) :: error
       real(wp) :: one(1), unused(1)
 
-      call tell_unknown(tree, at, " Unitmass Unitweight Youngsmod Poissonratio Damping Istress " &
-         & //"Ivelocity Istrain ", warnings)
       call read_child(tree, at, "Unitmass", .true., one, warnings, error)
       material%density = one(1)
       if (.not. allocated(error)) call read_child(tree, at, "Youngsmod", .true., one, warnings, &
@@ -100,7 +98,6 @@ contains
       type(error_t), allocatable, intent(out) :: error
       real(wp) :: one(1)
 
-      call tell_unknown(tree, at, " Friction Cohesion Tensile ", warnings)
       call read_child(tree, at, "Friction", .true., one, warnings, error)
       joint%friction_deg = one(1)
       one = 0.0_wp
@@ -141,36 +138,13 @@ contains
          if (needed) value = 0.0_wp
          return
       end if
-      call split_words(tree%element(child)%text, tree%file, tree%element(child)%row, words)
+      call split_words(tree%element(child)%text, tree%file, tree%element(child)%text_row, words)
       call take_numbers(words, "a number of "//name, largest_value, number, error)
       value = number
       if (.not. allocated(error) .and. words_left(words) > 0) call add_warning(warnings, &
          & "nothing is wanted behind the numbers of "//name//", what follows is not read: " &
          & //quoted(this_word(words)), tree%file, this_row(words))
    end subroutine read_child
-
-   !> Warn of elements without meaning
-   pure subroutine tell_unknown(tree, at, known, warnings)
-      !> The file's elements
-      type(xml_tree_t), intent(in) :: tree
-      !> Place of the outer element
-      integer, intent(in) :: at
-      !> Names that have a meaning, each between blanks
-      character(len=*), intent(in) :: known
-      !> Receives the warnings
-      type(warnings_t), intent(inout) :: warnings
-      integer :: child
-
-      child = first_child(tree, at)
-      do while (child > 0)
-         associate (element => tree%element(child))
-            if (index(known, " "//element%name//" ") == 0) call add_warning(warnings, &
-               & "the element "//quoted(element%name)//" has no meaning in " &
-               & //tree%element(at)%name//" and is not read", tree%file, element%row)
-         end associate
-         child = next_sibling(tree, child)
-      end do
-   end subroutine tell_unknown
 
    !> Read a Loadpoint: records of time and force, parted by semicolons
    pure subroutine read_history(tree, at, history, error)
@@ -190,7 +164,7 @@ contains
       if (.not. allocated(error)) &
          & call take_whole(words, "the attribute numpoints", 1, most_records, n, error)
       if (allocated(error)) return
-      call split_words(tree%element(at)%text, tree%file, tree%element(at)%row, words, &
+      call split_words(tree%element(at)%text, tree%file, tree%element(at)%text_row, words, &
          & also_blank=";")
       if (words%n /= 3*n) then
          call fatal_error(error, to_text(n)//" records of 3 numbers are wanted in Loadpoint, " &

@@ -3,8 +3,8 @@ module dda_xml_tree
    implicit none
    private
 
-   public :: xml_tree_t, xml_element_t, xml_attribute_t, new_xml_tree, open_element, first_child
-   public :: next_sibling, find_child, has_attribute, attribute_of
+   public :: xml_tree_t, xml_element_t, xml_attribute_t, first_child, next_sibling, find_child
+   public :: count_children, attribute_place, attribute_of
 
    !> An attribute of an element
    type :: xml_attribute_t
@@ -18,14 +18,19 @@ module dda_xml_tree
    type :: xml_element_t
       !> Its name without prefix
       character(len=:), allocatable :: name
-      !> The text directly inside it; of comments only the line ends, so that lines can be counted
+      !> The text inside it; of comments only the line ends, so that lines can be counted. Of an
+      !> element that holds others the first piece that is not blank
       character(len=:), allocatable :: text
-      !> Line of the file where its text begins
+      !> Line of the file where its start tag begins
       integer :: row = 0
+      !> Line of the file where its text begins
+      integer :: text_row = 0
       !> Place of the element that holds it; 0 for the root
       integer :: parent = 0
       !> Place of the last element inside it, itself if there is none
       integer :: last = 0
+      !> Whether it has a meaning where it stands
+      logical :: is_read = .true.
       !> Its attributes: (n)
       type(xml_attribute_t), allocatable :: attribute(:)
    end type xml_element_t
@@ -42,80 +47,17 @@ module dda_xml_tree
 
 contains
 
-   !> A tree without elements
-   pure subroutine new_xml_tree(file, tree)
-      !> Name of the file
-      character(len=*), intent(in) :: file
-      !> The tree
-      type(xml_tree_t), intent(out) :: tree
-
-      tree%file = file
-      allocate (tree%element(16))
-   end subroutine new_xml_tree
-
-   !> Add an element inside another
-   pure subroutine open_element(tree, name, row, parent)
-      !> The tree
-      type(xml_tree_t), intent(inout) :: tree
-      !> Name of the element
-      character(len=*), intent(in) :: name
-      !> Line of the file
-      integer, intent(in) :: row
-      !> Place of the element that holds it; 0 for the root
-      integer, intent(in) :: parent
-      type(xml_element_t), allocatable :: longer(:)
-      integer :: i
-
-      if (tree%n == size(tree%element)) then
-         allocate (longer(2*tree%n))
-         do i = 1, tree%n
-            call move_element(tree%element(i), longer(i))
-         end do
-         call move_alloc(longer, tree%element)
-      end if
-      tree%n = tree%n + 1
-      associate (new => tree%element(tree%n))
-         new%name = name
-         new%text = ""
-         new%row = row
-         new%parent = parent
-         new%last = tree%n
-         allocate (new%attribute(0))
-      end associate
-      i = parent
-      do while (i > 0)
-         tree%element(i)%last = tree%n
-         i = tree%element(i)%parent
-      end do
-   end subroutine open_element
-
-   !> Move an element without copying its texts
-   pure subroutine move_element(from, to)
-      !> The element; its parts go
-      type(xml_element_t), intent(inout) :: from
-      !> Receives them
-      type(xml_element_t), intent(inout) :: to
-
-      call move_alloc(from%name, to%name)
-      call move_alloc(from%text, to%text)
-      call move_alloc(from%attribute, to%attribute)
-      to%row = from%row
-      to%parent = from%parent
-      to%last = from%last
-   end subroutine move_element
-
-   !> The first element inside another
+   !> The first element inside another that is read; 0 if there is none
    pure integer function first_child(tree, at)
       !> The tree
       type(xml_tree_t), intent(in) :: tree
       !> Place of the outer element
       integer, intent(in) :: at
 
-      first_child = 0
-      if (tree%element(at)%last > at) first_child = at + 1
+      first_child = first_read(tree, at + 1, tree%element(at)%last)
    end function first_child
 
-   !> The element that follows another inside the same one
+   !> The element that follows another inside the same one and is read; 0 if there is none
    pure integer function next_sibling(tree, at)
       !> The tree
       type(xml_tree_t), intent(in) :: tree
@@ -123,10 +65,28 @@ contains
       integer, intent(in) :: at
 
       next_sibling = 0
-      if (tree%element(at)%parent == 0) return
-      if (tree%element(tree%element(at)%parent)%last > tree%element(at)%last) &
-         & next_sibling = tree%element(at)%last + 1
+      associate (element => tree%element(at))
+         if (element%parent > 0) &
+            & next_sibling = first_read(tree, element%last + 1, tree%element(element%parent)%last)
+      end associate
    end function next_sibling
+
+   !> The first of some neighbours that is read; 0 if there is none
+   pure integer function first_read(tree, first, last)
+      !> The tree
+      type(xml_tree_t), intent(in) :: tree
+      !> Place of the first neighbour
+      integer, intent(in) :: first
+      !> Place where the last one ends
+      integer, intent(in) :: last
+
+      first_read = first
+      do while (first_read <= last)
+         if (tree%element(first_read)%is_read) return
+         first_read = tree%element(first_read)%last + 1
+      end do
+      first_read = 0
+   end function first_read
 
    !> The first element of a name inside another
    pure integer function find_child(tree, at, name)
@@ -144,8 +104,26 @@ contains
       end do
    end function find_child
 
-   !> Whether an element has an attribute
-   pure logical function has_attribute(tree, at, name)
+   !> How many elements of a name are inside another
+   pure integer function count_children(tree, at, name)
+      !> The tree
+      type(xml_tree_t), intent(in) :: tree
+      !> Place of the outer element
+      integer, intent(in) :: at
+      !> The name
+      character(len=*), intent(in) :: name
+      integer :: child
+
+      count_children = 0
+      child = first_child(tree, at)
+      do while (child > 0)
+         if (tree%element(child)%name == name) count_children = count_children + 1
+         child = next_sibling(tree, child)
+      end do
+   end function count_children
+
+   !> Where an element has an attribute: the first of this name; 0 if there is none
+   pure integer function attribute_place(tree, at, name)
       !> The tree
       type(xml_tree_t), intent(in) :: tree
       !> Place of the element
@@ -154,13 +132,13 @@ contains
       character(len=*), intent(in) :: name
       integer :: i
 
-      has_attribute = .false.
+      attribute_place = 0
       associate (attribute => tree%element(at)%attribute)
-         do i = 1, size(attribute)
-            if (attribute(i)%name == name) has_attribute = .true.
+         do i = size(attribute), 1, -1
+            if (attribute(i)%name == name) attribute_place = i
          end do
       end associate
-   end function has_attribute
+   end function attribute_place
 
    !> Value of an attribute
    pure function attribute_of(tree, at, name) result(value)
@@ -175,10 +153,7 @@ contains
       integer :: i
 
       value = ""
-      associate (attribute => tree%element(at)%attribute)
-         do i = size(attribute), 1, -1
-            if (attribute(i)%name == name) value = trim(adjustl(attribute(i)%value))
-         end do
-      end associate
+      i = attribute_place(tree, at, name)
+      if (i > 0) value = trim(adjustl(tree%element(at)%attribute(i)%value))
    end function attribute_of
 end module dda_xml_tree

@@ -1,11 +1,13 @@
-!> XML by libxml2's reader (https://gnome.pages.gitlab.gnome.org/libxml2/): no network, no DTD, no
+!> XML by libxml2 (https://gnome.pages.gitlab.gnome.org/libxml2/): no network, no DTD, no
 !> entities of the file's own
 module dda_xml_parser
-   use, intrinsic :: iso_c_binding, only : c_associated, c_int, c_loc, c_long, &
+   use, intrinsic :: iso_c_binding, only : c_associated, c_int, c_loc, &
       & c_null_char, c_null_ptr, c_ptr, c_size_t, c_sizeof
    use dda_error, only : error_t, fatal_error
    use dda_word_list, only : quoted
-   use dda_xml_tree, only : new_xml_tree, open_element, xml_attribute_t, xml_tree_t
+   use dda_xml_builder, only : add_text, close_element, new_xml_builder, open_element, xml_builder_t
+   use dda_xml_tags, only : count_of
+   use dda_xml_tree, only : xml_attribute_t, xml_tree_t
    implicit none
    private
 
@@ -15,8 +17,9 @@ module dda_xml_parser
    logical, parameter :: has_xml = .true.
    !> Deepest element that is read
    integer, parameter :: max_depth = 100
-   !> libxml2: print neither errors nor warnings, never use the network, count lines beyond 65535
-   integer(c_int), parameter :: options = int(ior(ior(32, 64), ior(2048, 4194304)), c_int)
+   !> libxml2: print neither errors nor warnings, never use the network, no limits of its own to
+   !> the length of a text
+   integer(c_int), parameter :: options = int(ior(ior(32, 64), ior(2048, 524288)), c_int)
 
    !> libxml2's kinds of nodes
    type :: node_enum
@@ -26,8 +29,6 @@ module dda_xml_parser
       integer :: text = 3
       !> Text that may hold marks
       integer :: cdata = 4
-      !> An entity that was not replaced
-      integer :: entity = 5
       !> An instruction to a program
       integer :: instruction = 7
       !> A comment
@@ -60,9 +61,10 @@ module dda_xml_parser
    end type xml_error_t
 
    interface
-      !> libxml2: a reader of a text in memory
-      function reader_for_memory(text, size, url, encoding, options) &
-         & bind(c, name="xmlReaderForMemory") result(reader)
+      !> libxml2: parse a text in memory. Its reader would parse in pieces of 512 bytes, and begin
+      !> long texts and names anew at each piece
+      function read_memory(text, size, url, encoding, options) &
+         & bind(c, name="xmlReadMemory") result(document)
          import :: c_int, c_ptr
          !> The text
          type(c_ptr), intent(in), value :: text
@@ -74,9 +76,25 @@ module dda_xml_parser
          type(c_ptr), intent(in), value :: encoding
          !> Sum of options
          integer(c_int), intent(in), value :: options
+         !> The document; null after a failure
+         type(c_ptr) :: document
+      end function read_memory
+
+      !> libxml2: free a document
+      subroutine free_document(document) bind(c, name="xmlFreeDoc")
+         import :: c_ptr
+         !> The document
+         type(c_ptr), intent(in), value :: document
+      end subroutine free_document
+
+      !> libxml2: a reader of a document
+      function reader_of(document) bind(c, name="xmlReaderWalker") result(reader)
+         import :: c_ptr
+         !> The document
+         type(c_ptr), intent(in), value :: document
          !> The reader; null after a failure
          type(c_ptr) :: reader
-      end function reader_for_memory
+      end function reader_of
 
       !> libxml2: free a reader
       subroutine free_reader(reader) bind(c, name="xmlFreeTextReader")
@@ -103,7 +121,7 @@ module dda_xml_parser
          integer(c_int) :: kind
       end function node_type
 
-      !> libxml2: whether this element ends where it begins
+      !> libxml2: whether this element holds nothing, so that no node tells its end
       function is_empty(reader) bind(c, name="xmlTextReaderIsEmptyElement") result(yes)
          import :: c_int, c_ptr
          !> The reader
@@ -111,6 +129,24 @@ module dda_xml_parser
          !> 1 if it does
          integer(c_int) :: yes
       end function is_empty
+
+      !> libxml2: number of attributes and namespaces of this element
+      function count_attributes(reader) bind(c, name="xmlTextReaderAttributeCount") result(n)
+         import :: c_int, c_ptr
+         !> The reader
+         type(c_ptr), intent(in), value :: reader
+         !> How many
+         integer(c_int) :: n
+      end function count_attributes
+
+      !> libxml2: whether this attribute declares a namespace
+      function is_namespace(reader) bind(c, name="xmlTextReaderIsNamespaceDecl") result(yes)
+         import :: c_int, c_ptr
+         !> The reader
+         type(c_ptr), intent(in), value :: reader
+         !> 1 if it does
+         integer(c_int) :: yes
+      end function is_namespace
 
       !> libxml2: go to the next attribute
       function next_attribute(reader) bind(c, name="xmlTextReaderMoveToNextAttribute") &
@@ -139,24 +175,6 @@ module dda_xml_parser
          !> C's text
          type(c_ptr) :: value
       end function node_value
-
-      !> libxml2: this node of the tree
-      function current_node(reader) bind(c, name="xmlTextReaderCurrentNode") result(at)
-         import :: c_ptr
-         !> The reader
-         type(c_ptr), intent(in), value :: reader
-         !> The node
-         type(c_ptr) :: at
-      end function current_node
-
-      !> libxml2: line of a node
-      function line_of_node(at) bind(c, name="xmlGetLineNo") result(line)
-         import :: c_long, c_ptr
-         !> The node
-         type(c_ptr), intent(in), value :: at
-         !> Its line
-         integer(c_long) :: line
-      end function line_of_node
 
       !> libxml2: what went wrong last
       function last_error() bind(c, name="xmlGetLastError") result(error)
@@ -203,106 +221,98 @@ contains
       !> What is not XML, with its line
       type(error_t), allocatable, intent(out) :: error
       character(len=:), allocatable, target :: kept
-      type(c_ptr) :: reader
-      integer(c_int) :: status
-      integer :: at, depth, first, skipped
+      type(xml_builder_t) :: builder
+      type(c_ptr) :: document, reader
+      integer :: first
 
-      call new_xml_tree(file, tree)
+      call new_xml_builder(text, file, builder, error)
+      if (allocated(error)) return
       call reset_error()
       ! XML allows no blank lines before it, people do
       first = max(1, verify(text, " "//achar(9)//achar(10)))
-      skipped = len(line_ends(text(:first - 1))) - 1
-      ! libxml2 reads the text where it is, as long as the reader lives
       kept = text(first:)//c_null_char
-      reader = reader_for_memory(c_loc(kept(1:1)), len(kept, c_int) - 1, c_null_ptr, c_null_ptr, &
+      document = read_memory(c_loc(kept(1:1)), len(kept, c_int) - 1, c_null_ptr, c_null_ptr, &
          & options)
-      status = -1
-      at = 0
-      depth = 0
-      do while (c_associated(reader))
-         status = read_node(reader)
-         if (status /= 1) exit
-         call take_node(reader, tree, at, depth, error)
-         if (allocated(error)) exit
+      if (.not. c_associated(document)) then
+         call report_error(file, count_of(achar(10), text(:first - 1)), error)
+         return
+      end if
+      reader = reader_of(document)
+      do while (read_node(reader) == 1)
+         call take_node(reader, builder)
+         if (builder%depth > max_depth) exit
       end do
-      if (.not. allocated(error) .and. status /= 0) call tell_error(file, error)
-      if (c_associated(reader)) call free_reader(reader)
-      if (allocated(error)) error%line = error%line + skipped
-      tree%element(:tree%n)%row = tree%element(:tree%n)%row + skipped
-      if (.not. allocated(error) .and. tree%n == 0) &
-         & call fatal_error(error, "an XML element is wanted, none was found; write one", file, 1)
+      if (builder%depth > max_depth) then
+         call fatal_error(error, "elements at most 100 deep are wanted, found deeper ones; " &
+            & //"remove some", file, builder%tree%element(builder%open)%row)
+      else if (builder%tree%n == 0) then
+         call fatal_error(error, "an XML element is wanted, none was found; write one", file, 1)
+      end if
+      call free_reader(reader)
+      call free_document(document)
+      call move_alloc(builder%tree%file, tree%file)
+      call move_alloc(builder%tree%element, tree%element)
+      tree%n = builder%tree%n
    end subroutine parse_xml
 
    !> Take what the reader stands on
-   subroutine take_node(reader, tree, at, depth, error)
+   subroutine take_node(reader, builder)
       !> The reader
       type(c_ptr), intent(in) :: reader
       !> Receives elements and texts
-      type(xml_tree_t), intent(inout) :: tree
-      !> Place of the element that is open; 0 outside the root
-      integer, intent(inout) :: at
-      !> How many elements are open
-      integer, intent(inout) :: depth
-      !> What the tree has no place for
-      type(error_t), allocatable, intent(out) :: error
-      integer :: kind, row
+      type(xml_builder_t), intent(inout) :: builder
+      type(xml_attribute_t), allocatable :: attribute(:)
+      character(len=:), allocatable :: name
+      integer :: kind
+      logical :: ends
 
       kind = int(node_type(reader))
       if (kind == node%element) then
-         row = int(line_of_node(current_node(reader)))
-         call open_element(tree, fortran_text(local_name(reader)), row, at)
-         depth = depth + 1
-         if (depth > max_depth) call fatal_error(error, "elements at most "// &
-            & "100 deep are wanted, found deeper ones; remove some", tree%file, row)
-         at = tree%n
-         if (is_empty(reader) == 1) then
-            at = tree%element(at)%parent
-            depth = depth - 1
-         end if
-         call take_attributes(reader, tree)
+         name = fortran_text(local_name(reader))
+         ends = is_empty(reader) == 1
+         call take_attributes(reader, attribute)
+         call open_element(builder, name, attribute)
+         if (ends) call close_element(builder)
       else if (kind == node%element_end) then
-         at = tree%element(at)%parent
-         depth = depth - 1
-      else if (at == 0) then
-         return
-      else if (kind == node%entity) then
-         call fatal_error(error, "text without entities is wanted, found &" &
-            & //fortran_text(local_name(reader))//"; write what it stands for", tree%file, &
-            & tree%element(at)%row)
+         call close_element(builder)
       else if (kind == node%comment .or. kind == node%instruction) then
-         tree%element(at)%text = tree%element(at)%text &
-            & //line_ends(fortran_text(node_value(reader)))
+         call add_text(builder, " "//repeat(achar(10), &
+            & count_of(achar(10), fortran_text(node_value(reader)))))
       else if (any(kind == [node%text, node%cdata, node%blank, node%significant_blank])) then
-         tree%element(at)%text = tree%element(at)%text//fortran_text(node_value(reader))
+         call add_text(builder, fortran_text(node_value(reader)))
       end if
    end subroutine take_node
 
-   !> Take the attributes of the element that began last
-   subroutine take_attributes(reader, tree)
+   !> Take the attributes of the element that begins here
+   subroutine take_attributes(reader, attribute)
       !> The reader, on the element
       type(c_ptr), intent(in) :: reader
-      !> Receives the attributes
-      type(xml_tree_t), intent(inout) :: tree
-      type(xml_attribute_t), allocatable :: list(:), longer(:)
+      !> Receives them, namespaces left out: (n)
+      type(xml_attribute_t), allocatable, intent(out) :: attribute(:)
+      type(xml_attribute_t), allocatable :: all(:)
       integer :: n
 
+      allocate (all(max(0, int(count_attributes(reader)))))
       n = 0
-      allocate (list(0))
       do while (next_attribute(reader) == 1)
-         allocate (longer(n + 1))
-         longer(:n) = list
+         if (is_namespace(reader) == 1) cycle
          n = n + 1
-         longer(n)%name = fortran_text(local_name(reader))
-         longer(n)%value = fortran_text(node_value(reader))
-         call move_alloc(longer, list)
+         all(n)%name = fortran_text(local_name(reader))
+         all(n)%value = fortran_text(node_value(reader))
       end do
-      call move_alloc(list, tree%element(tree%n)%attribute)
+      if (n == size(all)) then
+         call move_alloc(all, attribute)
+      else
+         allocate (attribute(n), source=all(:n))
+      end if
    end subroutine take_attributes
 
    !> Make an error of what libxml2 says
-   subroutine tell_error(file, error)
+   subroutine report_error(file, skipped, error)
       !> Name of the file
       character(len=*), intent(in) :: file
+      !> Lines of the file before what libxml2 was given
+      integer, intent(in) :: skipped
       !> The error
       type(error_t), allocatable, intent(out) :: error
       type(xml_error_t), target :: said
@@ -320,8 +330,8 @@ contains
       end if
       if (index(message, achar(10)) > 0) message = message(:index(message, achar(10)) - 1)
       call fatal_error(error, "well-formed XML is wanted, libxml2 found "//quoted(message) &
-         & //"; correct it", file, line)
-   end subroutine tell_error
+         & //"; correct it", file, line + skipped)
+   end subroutine report_error
 
    !> A C text as Fortran's
    function fortran_text(address) result(text)
@@ -336,18 +346,4 @@ contains
       text = repeat(" ", int(n))
       if (n > 0) call c_memcpy(c_loc(text(1:1)), address, n)
    end function fortran_text
-
-   !> The line ends of a text
-   pure function line_ends(text) result(ends)
-      !> The text
-      character(len=*), intent(in) :: text
-      !> A blank, then its line feeds
-      character(len=:), allocatable :: ends
-      integer :: i
-
-      ends = " "
-      do i = 1, len(text)
-         if (text(i:i) == achar(10)) ends = ends//achar(10)
-      end do
-   end function line_ends
 end module dda_xml_parser

@@ -1,0 +1,272 @@
+!> Which elements a DDAML file has, where they stand and what they hold: nothing else is lost
+!> without a word
+module dda_ddaml_form
+   use dda_error, only : error_t, fatal_error
+   use dda_warnings, only : add_warning, warnings_t
+   use dda_word_list, only : quoted, split_words, this_row, this_word, word_list_t
+   use dda_xml_tree, only : attribute_place, find_child, xml_tree_t
+   implicit none
+   private
+
+   public :: form_t, geometry_form, analysis_form, find_part, check_form
+
+   !> Elements of one meaning inside another element
+   type :: form_t
+      !> Name of the outer element
+      character(len=18) :: outer = ""
+      !> Their names, a blank before and behind each
+      character(len=34) :: names = ""
+      !> Names of their attributes, likewise
+      character(len=18) :: attributes = ""
+      !> Whether they hold numbers
+      logical :: has_numbers = .false.
+      !> Whether there may be more than one
+      logical :: repeats = .false.
+   end type form_t
+
+   logical, parameter :: yes = .true., no = .false.
+
+   !> Elements of a geometry file
+   type(form_t), parameter :: geometry_form(*) = [ &
+      & form_t("Geometry", " Edgenodedist ", " distance ", no, no), &
+      & form_t("Geometry", " Boundlist Jointlist Matlinelist ", "", no, yes), &
+      & form_t("Geometry", " Fixedpointlist Loadpointlist ", "", no, yes), &
+      & form_t("Geometry", " Measuredpointlist ", "", no, yes), &
+      & form_t("Geometry", " Holepointlist Seismicpointlist ", "", no, yes), &
+      & form_t("Geometry", " Boltlist ", "", no, yes), &
+      & form_t("Boltlist", " Bolt ", " type ", yes, yes), &
+      & form_t("Boundlist", " Line Joint ", " type ", yes, yes), &
+      & form_t("Jointlist", " Joint ", " type ", yes, yes), &
+      & form_t("Matlinelist", " Line ", " type ", yes, yes), &
+      & form_t("Fixedpointlist", " Point Line ", "", yes, yes), &
+      & form_t("Loadpointlist", " Point ", "", yes, yes), &
+      & form_t("Measuredpointlist", " Point ", "", yes, yes), &
+      & form_t("Holepointlist", " Point ", "", yes, yes), &
+      & form_t("Seismicpointlist", " Point ", "", yes, yes)]
+
+   !> Elements of an analysis file
+   type(form_t), parameter :: analysis_form(*) = [ &
+      & form_t("Analysis", " Analysistype ", " type ", no, no), &
+      & form_t("Analysis", " Rotation ", " type ", no, no), &
+      & form_t("Analysis", " Gravity ", " flag ", no, no), &
+      & form_t("Analysis", " Gravaccel ", " value ", no, no), &
+      & form_t("Analysis", " Autotimestep ", " flag ", no, no), &
+      & form_t("Analysis", " Autopenalty ", " flag pfactor ", no, no), &
+      & form_t("Analysis", " Planestrain ", " flag ", no, no), &
+      & form_t("Analysis", " Numtimesteps ", " timesteps ", no, no), &
+      & form_t("Analysis", " Maxtimestep ", " maxtimestep ", no, no), &
+      & form_t("Analysis", " Mintimestep ", " mintimestep ", no, no), &
+      & form_t("Analysis", " Maxdisplacement ", " maxdisplacement ", no, no), &
+      & form_t("Analysis", " Opencloselimit OCLimit ", " maxopenclose ", no, no), &
+      & form_t("Analysis", " Saveinterval ", " step ", no, no), &
+      & form_t("Analysis", " Contactdamping ContactDamping ", " value ", no, no), &
+      & form_t("Analysis", " Writevertices ", " flag ", no, no), &
+      & form_t("Analysis", " AConstants ", "", no, no), &
+      & form_t("Analysis", " Blockmaterial Jointproperties ", " type ", no, yes), &
+      & form_t("Analysis", " Loadpointlist ", "", no, yes), &
+      & form_t("AConstants", " Openclose ", " value ", no, no), &
+      & form_t("AConstants", " Opencriteria ", " value ", no, no), &
+      & form_t("AConstants", " NormSpringPen ", " value ", no, no), &
+      & form_t("AConstants", " AngleOverlap ", " value ", no, no), &
+      & form_t("AConstants", " ShearNormRatio ", " value ", no, no), &
+      & form_t("AConstants", " MinReflineFactor ", " value ", no, no), &
+      & form_t("Blockmaterial", " Unitmass ", "", yes, no), &
+      & form_t("Blockmaterial", " Unitweight ", "", yes, no), &
+      & form_t("Blockmaterial", " Youngsmod ", "", yes, no), &
+      & form_t("Blockmaterial", " Poissonratio ", "", yes, no), &
+      & form_t("Blockmaterial", " Damping ", "", yes, no), &
+      & form_t("Blockmaterial", " Istress ", "", yes, no), &
+      & form_t("Blockmaterial", " Ivelocity ", "", yes, no), &
+      & form_t("Blockmaterial", " Istrain ", "", yes, no), &
+      & form_t("Jointproperties", " Friction ", "", yes, no), &
+      & form_t("Jointproperties", " Cohesion ", "", yes, no), &
+      & form_t("Jointproperties", " Tensile ", "", yes, no), &
+      & form_t("Loadpointlist", " Loadpoint ", " numpoints ", yes, yes)]
+
+contains
+
+   !> Find the part of a file that is wanted: inside the root, or the root itself
+   pure subroutine find_part(tree, name, part, error)
+      !> The file's elements
+      type(xml_tree_t), intent(in) :: tree
+      !> Name of the part
+      character(len=*), intent(in) :: name
+      !> Its place
+      integer, intent(out) :: part
+      !> There is none
+      type(error_t), allocatable, intent(out) :: error
+
+      part = 1
+      if (tree%element(1)%name == name) return
+      part = find_child(tree, 1, name)
+      if (part == 0) call fatal_error(error, "an element "//name//" inside the root is wanted, " &
+         & //"none was found; add it", tree%file, tree%element(1)%row)
+   end subroutine find_part
+
+   !> Check every element of a file and mark those that are not read
+   pure subroutine check_form(tree, part, form, warnings, error)
+      !> The file's elements
+      type(xml_tree_t), intent(inout) :: tree
+      !> Place of the part that is read
+      integer, intent(in) :: part
+      !> What may be in it
+      type(form_t), intent(in) :: form(:)
+      !> Receives what is not read
+      type(warnings_t), intent(inout) :: warnings
+      !> What has two meanings
+      type(error_t), allocatable, intent(out) :: error
+      !> Entry of each element in the form: 0 for the root and the part, below 0 if it is not read
+      integer, allocatable :: entry(:)
+      !> Where each entry of the form was met last: (size of form)
+      integer :: met_in(size(form))
+      integer :: i, outer
+
+      allocate (entry(tree%n))
+      entry(1) = 0
+      met_in = 0
+      call check_text(tree, 1, warnings)
+      do i = 2, tree%n
+         outer = tree%element(i)%parent
+         entry(i) = -1
+         if (entry(outer) < 0) cycle
+         entry(i) = entry_of(tree, i, part, form)
+         if (entry(i) < 0) then
+            tree%element(i)%is_read = .false.
+            call refuse_element(tree, i, entry(outer), form, warnings, error)
+         else if (entry(i) == 0) then
+            if (i /= part) call refuse_second(tree, i, error)
+            call check_text(tree, i, warnings)
+         else
+            associate (this => form(entry(i)))
+               if (met_in(entry(i)) == outer .and. .not. this%repeats) &
+                  & call refuse_second(tree, i, error)
+               if (.not. allocated(error)) call check_attributes(tree, i, this, warnings, error)
+               if (.not. this%has_numbers) call check_text(tree, i, warnings)
+               met_in(entry(i)) = outer
+            end associate
+         end if
+         if (allocated(error)) return
+      end do
+   end subroutine check_form
+
+   !> Entry of an element in a form: 0 for the part itself, -1 if it has none
+   pure integer function entry_of(tree, at, part, form)
+      !> The file's elements
+      type(xml_tree_t), intent(in) :: tree
+      !> Place of the element
+      integer, intent(in) :: at
+      !> Place of the part that is read
+      integer, intent(in) :: part
+      !> What may be in it
+      type(form_t), intent(in) :: form(:)
+      integer :: i
+
+      associate (element => tree%element(at))
+         if (element%parent == 1 .and. part /= 1) then
+            entry_of = merge(0, -1, element%name == tree%element(part)%name)
+            return
+         end if
+         do i = 1, size(form)
+            if (form(i)%outer /= tree%element(element%parent)%name) cycle
+            if (index(form(i)%names, " "//element%name//" ") == 0) cycle
+            entry_of = i
+            return
+         end do
+      end associate
+      entry_of = -1
+   end function entry_of
+
+   !> Refuse an element among numbers, warn of one elsewhere
+   pure subroutine refuse_element(tree, at, outer, form, warnings, error)
+      !> The file's elements
+      type(xml_tree_t), intent(in) :: tree
+      !> Place of the element
+      integer, intent(in) :: at
+      !> Entry of the outer element in the form
+      integer, intent(in) :: outer
+      !> What may be in the part
+      type(form_t), intent(in) :: form(:)
+      !> Receives the warning
+      type(warnings_t), intent(inout) :: warnings
+      !> Numbers before and behind it are no record
+      type(error_t), allocatable, intent(inout) :: error
+      logical :: among_numbers
+
+      associate (element => tree%element(at), around => tree%element(tree%element(at)%parent))
+         among_numbers = .false.
+         if (outer > 0) among_numbers = form(outer)%has_numbers
+         if (among_numbers) then
+            call fatal_error(error, "expected numbers alone in "//quoted(around%name) &
+               & //", got the element "//quoted(element%name)//" among them; move it out", &
+               & tree%file, element%row)
+         else
+            call add_warning(warnings, "the element "//quoted(element%name)//" has no meaning in " &
+               & //quoted(around%name)//" and is not read", tree%file, element%row)
+         end if
+      end associate
+   end subroutine refuse_element
+
+   !> Refuse the second of what may be there once
+   pure subroutine refuse_second(tree, at, error)
+      !> The file's elements
+      type(xml_tree_t), intent(in) :: tree
+      !> Place of the element
+      integer, intent(in) :: at
+      !> The failure
+      type(error_t), allocatable, intent(inout) :: error
+
+      associate (element => tree%element(at), around => tree%element(tree%element(at)%parent))
+         call fatal_error(error, "expected one element "//quoted(element%name)//" in " &
+            & //quoted(around%name)//", got a second one; remove one of them", tree%file, &
+            & element%row)
+      end associate
+   end subroutine refuse_second
+
+   !> Warn of attributes without a meaning, refuse one that is given twice
+   pure subroutine check_attributes(tree, at, form, warnings, error)
+      !> The file's elements
+      type(xml_tree_t), intent(in) :: tree
+      !> Place of the element
+      integer, intent(in) :: at
+      !> Its entry in the form
+      type(form_t), intent(in) :: form
+      !> Receives the warnings
+      type(warnings_t), intent(inout) :: warnings
+      !> Two attributes whose names differ in their prefix
+      type(error_t), allocatable, intent(inout) :: error
+      integer :: i
+
+      associate (element => tree%element(at))
+         do i = 1, size(element%attribute)
+            associate (name => element%attribute(i)%name)
+               if (index(form%attributes, " "//name//" ") == 0) then
+                  call add_warning(warnings, "the attribute "//quoted(name) &
+                     & //" has no meaning in "//quoted(element%name)//" and is not read", &
+                     & tree%file, element%row)
+               else if (attribute_place(tree, at, name) /= i) then
+                  call fatal_error(error, "expected one attribute "//quoted(name)//" of " &
+                     & //quoted(element%name)//", got two; remove one of them", tree%file, &
+                     & element%row)
+                  return
+               end if
+            end associate
+         end do
+      end associate
+   end subroutine check_attributes
+
+   !> Warn of text in an element that holds none
+   pure subroutine check_text(tree, at, warnings)
+      !> The file's elements
+      type(xml_tree_t), intent(in) :: tree
+      !> Place of the element
+      integer, intent(in) :: at
+      !> Receives the warning
+      type(warnings_t), intent(inout) :: warnings
+      type(word_list_t) :: words
+
+      call split_words(tree%element(at)%text, tree%file, tree%element(at)%text_row, words)
+      if (words%n > 0) call add_warning(warnings, "text has no meaning in " &
+         & //quoted(tree%element(at)%name)//" and is not read: "//quoted(this_word(words)), &
+         & tree%file, this_row(words))
+   end subroutine check_text
+end module dda_ddaml_form

@@ -1,0 +1,268 @@
+!> Lines of the tags of an XML text, which libxml2 does not count beyond 65535, and what is refused
+!> before it is parsed
+module dda_xml_tags
+   use, intrinsic :: iso_fortran_env, only : int64
+   use dda_error, only : error_t, fatal_error
+   use dda_key_set, only : add_key, has_key, key_set_t, new_key_set
+   use dda_text, only : to_text
+   use dda_word_list, only : quoted
+   implicit none
+   private
+
+   public :: xml_tags_t, find_tags, count_of
+
+   !> Tags in the order of the text
+   type :: xml_tags_t
+      !> Number of start tags and end tags
+      integer :: n = 0
+      !> Line where each begins, line where it ends: (2, n or more)
+      integer, allocatable :: row(:, :)
+      !> Whether it is an element's start and end in one: (n or more)
+      logical, allocatable :: is_whole(:)
+   end type xml_tags_t
+
+   !> Where the scan is
+   type :: scan_t
+      !> Name of the file, for messages
+      character(len=:), allocatable :: file
+      !> Next character of the text
+      integer :: next = 1
+      !> Its line
+      integer :: row = 1
+      !> Pairs of attributes of one element, over all elements
+      real :: pairs = 0.0
+      !> Names of elements and attributes at most
+      integer :: n_names = 0
+      !> Tags whose names have been counted
+      type(key_set_t) :: seen
+   end type scan_t
+
+   !> What a tag says besides values
+   type :: tag_t
+      !> Where it ends
+      integer :: last = 0
+      !> Number of its values
+      integer :: n_values = 0
+      !> A number that is the same for tags of the same names
+      integer(int64) :: key = 0
+   end type tag_t
+
+   !> libxml2 compares each pair of attributes of an element: so many take a second
+   real, parameter :: most_pairs = 9.0e8
+   !> libxml2 keeps names in so few lists that more of them take time with their square
+   integer, parameter :: most_names = 100000
+   !> Two prime numbers that spread the keys of names; their product is no overflow
+   integer(int64), parameter :: prime = 2147483647_int64, factor = 1000003_int64
+   !> References that need no DTD, apart from characters by number
+   character(len=*), parameter :: predefined = " lt gt amp quot apos "
+   character(len=1), parameter :: lf = achar(10)
+
+contains
+
+   !> Find the tags of an XML text; what is malformed is left to the parser
+   pure subroutine find_tags(text, file, tags, error)
+      !> The text; its lines end in line feeds
+      character(len=*), intent(in) :: text
+      !> Name of its file, for messages
+      character(len=*), intent(in) :: file
+      !> Its tags
+      type(xml_tags_t), intent(out) :: tags
+      !> Entities, declarations, too many attributes
+      type(error_t), allocatable, intent(out) :: error
+      type(scan_t) :: scan
+
+      scan%file = file
+      call new_key_set(scan%seen, min(most_names, count_of("<", text)))
+      allocate (tags%row(2, count_of("<", text)), tags%is_whole(count_of("<", text)))
+      do while (scan%next <= len(text) .and. .not. allocated(error))
+         if (stands(text, scan%next, "<!--")) then
+            call skip(text, mark_end(text, scan%next + 4, "-->"), scan)
+         else if (stands(text, scan%next, "<![CDATA[")) then
+            call skip(text, mark_end(text, scan%next + 9, "]]>"), scan)
+         else if (stands(text, scan%next, "<?")) then
+            call skip(text, mark_end(text, scan%next + 2, "?>"), scan)
+         else if (stands(text, scan%next, "<!")) then
+            call skip_doctype(text, scan, error)
+         else if (stands(text, scan%next, "<")) then
+            tags%n = tags%n + 1
+            tags%row(1, tags%n) = scan%row
+            call skip_tag(text, scan, error)
+            tags%row(2, tags%n) = scan%row
+            tags%is_whole(tags%n) = stands(text, scan%next - 2, "/>")
+         else
+            call skip_text(text, mark_end(text, scan%next, "<") - 1, scan, error)
+         end if
+      end do
+   end subroutine find_tags
+
+   !> Go past the declaration of a document's type
+   pure subroutine skip_doctype(text, scan, error)
+      !> The text
+      character(len=*), intent(in) :: text
+      !> Where the scan is
+      type(scan_t), intent(inout) :: scan
+      !> Declarations inside it
+      type(error_t), allocatable, intent(out) :: error
+      type(tag_t) :: tag
+
+      call find_outside_quotes(text, scan%next, "[>", tag)
+      if (stands(text, tag%last, "[")) then
+         call fatal_error(error, "expected a DOCTYPE without declarations, got '[': entities and " &
+            & //"default values are not read; remove what is between [ and ]", scan%file, scan%row)
+      else
+         call skip(text, tag%last, scan)
+      end if
+   end subroutine skip_doctype
+
+   !> Go past a tag
+   pure subroutine skip_tag(text, scan, error)
+      !> The text
+      character(len=*), intent(in) :: text
+      !> Where the scan is
+      type(scan_t), intent(inout) :: scan
+      !> Entities, too many attributes or names
+      type(error_t), allocatable, intent(out) :: error
+      type(tag_t) :: tag
+
+      call find_outside_quotes(text, scan%next, ">", tag)
+      scan%pairs = scan%pairs + real(tag%n_values)**2
+      if (.not. has_key(scan%seen, tag%key)) then
+         call add_key(scan%seen, tag%key)
+         scan%n_names = scan%n_names + 1 + tag%n_values
+      end if
+      if (scan%pairs > most_pairs) then
+         call fatal_error(error, "expected elements of fewer attributes, got one of " &
+            & //to_text(tag%n_values)//"; remove some", scan%file, scan%row)
+      else if (scan%n_names > most_names) then
+         call fatal_error(error, "expected at most "//to_text(most_names)//" different names, " &
+            & //"got more; remove elements that mean nothing", scan%file, scan%row)
+      else
+         call skip_text(text, tag%last, scan, error)
+      end if
+   end subroutine skip_tag
+
+   !> Go past text whose references must be of single characters
+   pure subroutine skip_text(text, last, scan, error)
+      !> The text
+      character(len=*), intent(in) :: text
+      !> Place of its last character
+      integer, intent(in) :: last
+      !> Where the scan is
+      type(scan_t), intent(inout) :: scan
+      !> An entity
+      type(error_t), allocatable, intent(out) :: error
+      integer :: first, length
+
+      do
+         first = index(text(scan%next:last), "&")
+         if (first == 0) exit
+         first = scan%next + first - 1
+         call skip(text, first, scan)
+         length = name_length(text(first + 1:min(last, first + 60)))
+         associate (name => text(first + 1:first + length))
+            if (stands(name, 1, "#") .or. index(predefined, " "//name//" ") > 0) cycle
+            call fatal_error(error, "expected text without entities, got "//quoted("&"//name) &
+               & //"; write what it stands for", scan%file, scan%row)
+            return
+         end associate
+      end do
+      call skip(text, last, scan)
+   end subroutine skip_text
+
+   !> Length of the name that begins a text
+   pure integer function name_length(text)
+      !> The text
+      character(len=*), intent(in) :: text
+
+      name_length = scan(text, " ;<>""'&="//achar(9)//lf) - 1
+      if (name_length < 0) name_length = len(text)
+   end function name_length
+
+   !> Go past a character, or to the end of the text, and count lines
+   pure subroutine skip(text, last, scan)
+      !> The text
+      character(len=*), intent(in) :: text
+      !> Place of the character
+      integer, intent(in) :: last
+      !> Where the scan is
+      type(scan_t), intent(inout) :: scan
+
+      scan%row = scan%row + count_of(lf, text(scan%next:min(last, len(text))))
+      scan%next = last + 1
+   end subroutine skip
+
+   !> Whether a piece stands at a place of a text
+   pure logical function stands(text, first, piece)
+      !> The text
+      character(len=*), intent(in) :: text
+      !> The place
+      integer, intent(in) :: first
+      !> The piece
+      character(len=*), intent(in) :: piece
+
+      stands = .false.
+      if (first + len(piece) - 1 <= len(text)) stands = text(first:first + len(piece) - 1) == piece
+   end function stands
+
+   !> Where the next mark ends; behind the text by one if there is none
+   pure integer function mark_end(text, first, mark)
+      !> The text
+      character(len=*), intent(in) :: text
+      !> Where to begin
+      integer, intent(in) :: first
+      !> The mark
+      character(len=*), intent(in) :: mark
+
+      mark_end = index(text(first:), mark)
+      if (mark_end > 0) then
+         mark_end = first + mark_end + len(mark) - 2
+      else
+         mark_end = len(text) + 1
+      end if
+   end function mark_end
+
+   !> Find one of some characters outside quotes
+   pure subroutine find_outside_quotes(text, first, wanted, tag)
+      !> The text
+      character(len=*), intent(in) :: text
+      !> Where to begin
+      integer, intent(in) :: first
+      !> The characters
+      character(len=*), intent(in) :: wanted
+      !> What was passed; it ends with one of the characters, or with the text
+      type(tag_t), intent(out) :: tag
+      character(len=1) :: quote
+      integer :: i
+
+      quote = " "
+      tag%key = 1
+      do i = first, len(text)
+         tag%last = i
+         associate (letter => text(i:i))
+            if (quote /= " ") then
+               if (letter /= quote) cycle
+               quote = " "
+               tag%n_values = tag%n_values + 1
+            else
+               tag%key = 1 + mod(factor*tag%key + ichar(letter), prime)
+               if (letter == """" .or. letter == "'") quote = letter
+               if (index(wanted, letter) > 0) return
+            end if
+         end associate
+      end do
+   end subroutine find_outside_quotes
+
+   !> How often a character occurs in a text
+   pure integer function count_of(letter, text)
+      !> The character
+      character(len=1), intent(in) :: letter
+      !> The text
+      character(len=*), intent(in) :: text
+      integer :: i
+
+      count_of = 0
+      do i = 1, len(text)
+         if (text(i:i) == letter) count_of = count_of + 1
+      end do
+   end function count_of
+end module dda_xml_tags
