@@ -21,6 +21,7 @@ COMMANDS = {
     "plot": ("voussoir.plot_command", "pictures and charts of a folder of results"),
     "theory": ("voussoir.theory_command", "the three analytic solutions at given half angles"),
     "work-precision": ("voussoir.work_precision", "error against run time"),
+    "verify": ("voussoir.verify_command", "the proofs of a folder of results, recomputed"),
     "stability": ("voussoir.stability", "stiff and extreme scenes, judged by exact answers"),
     "validation": (
         "voussoir.validation_command",

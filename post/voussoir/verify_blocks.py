@@ -1,0 +1,154 @@
+"""A file of blocks as its lines have it: corners, materials, laws of joints, held points and forces."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field
+from pathlib import Path
+
+import numpy as np
+
+from voussoir.verify_deck import Deck, VerifyError
+
+Point = tuple[float, float]
+
+
+@dataclass
+class PointForce:
+    """A force on a point; block 0 if the file leaves it to the place."""
+
+    block: int
+    point: Point
+    force: Point
+    live: bool
+
+
+@dataclass
+class Held:
+    """Points that are held: two ends, the same twice for a single point."""
+
+    block: int
+    ends: tuple[Point, Point]
+    along: tuple[bool, bool]
+
+
+@dataclass
+class Source:
+    """What is on a file of blocks, or what an arch has instead."""
+
+    corners: list[np.ndarray] = field(default_factory=list)
+    material: list[int] = field(default_factory=list)
+    weights: dict[int, float] = field(default_factory=dict)
+    densities: dict[int, float] = field(default_factory=dict)
+    friction_deg: dict[tuple[int, int], float] = field(default_factory=dict)
+    forces: list[PointForce] = field(default_factory=list)
+    held: list[Held] = field(default_factory=list)
+    shaking: Point = (0.0, 0.0)
+
+
+def read_blocks(path: Path, deck: Deck) -> Source:
+    """Read a file of blocks.
+
+    Parameters
+    ----------
+    path : Path
+        The file.
+    deck : Deck
+        Its deck, for what materials leave out.
+
+    Returns
+    -------
+    Source
+        What it says.
+    """
+    try:
+        text = path.read_text(encoding="utf-8")
+    except OSError as error:
+        raise VerifyError(f"cannot read {path}: name its folder by --decks") from error
+    source = Source()
+    entry: list[str] = []
+    rows: list[list[float]] = []
+    for line in [*text.splitlines(), "end"]:
+        words = line.split("!")[0].lower().split()
+        if not words:
+            continue
+        if words[0][0] in "0123456789+-.":
+            rows.append([float(word.replace("d", "e")) for word in words])
+            continue
+        if entry:
+            _take(entry, rows, source, deck)
+        entry, rows = words, []
+    return source
+
+
+def _take(entry: list[str], rows: list[list[float]], source: Source, deck: Deck) -> None:
+    """Take in one entry with its rows."""
+    keys = dict(zip(entry, entry[1:]))
+    if entry[0] == "block":
+        source.corners.append(np.array(rows, dtype=float))
+        source.material.append(int(keys.get("material", "1")))
+    elif entry[0] == "material":
+        number = int(entry[1])
+        if "density" in keys:
+            source.densities[number] = float(keys["density"])
+            source.weights[number] = float(keys["density"]) * deck.number("load%gravity")
+        if "unit_weight" in keys:
+            source.weights[number] = float(keys["unit_weight"])
+    elif entry[0] == "joint":
+        if any(float(keys.get(name, "0")) > 0.0 for name in ("cohesion", "tension")):
+            raise VerifyError("joints with cohesion or tension have no proof")
+        if "friction_deg" in keys:
+            pair = sorted((int(entry[1]), int(entry[2])))
+            source.friction_deg[pair[0], pair[1]] = float(keys["friction_deg"])
+    elif entry[0] == "base_acceleration":
+        ax, ay = (rows[-1][1:] if rows else [float(word) for word in entry[1:3]])
+        source.shaking = (-ax, -ay)
+    elif entry[0] in ("base_velocity", "base_displacement"):
+        raise VerifyError(f"{entry[0]} is not verified: only base_acceleration is")
+    elif entry[0] in ("load", "live", "fix", "displacement", "fix_line"):
+        _take_point(entry, rows, source)
+
+
+def _take_point(entry: list[str], rows: list[list[float]], source: Source) -> None:
+    """Take in a point that is loaded or held."""
+    block, at = (int(entry[2]), 3) if entry[1] == "block" else (0, 1)
+    numbers = [float(word.replace("d", "e")) for word in entry[at:] if word not in ("x", "y")]
+    point = (numbers[0], numbers[1])
+    if entry[0] in ("load", "live"):
+        force = rows[-1][1:] if rows else numbers[2:4]
+        source.forces.append(PointForce(block, point, (force[0], force[1]), entry[0] == "live"))
+        return
+    other = (numbers[2], numbers[3]) if entry[0] == "fix_line" else point
+    along = (entry[-1] != "y", entry[-1] != "x")
+    source.held.append(Held(block, (point, other), along))
+
+
+def arch_corners(deck: Deck) -> list[np.ndarray]:
+    """Corners of the voussoirs of an arch, from the left springing on.
+
+    Parameters
+    ----------
+    deck : Deck
+        The deck of a case.
+
+    Returns
+    -------
+    list of ndarray
+        Corners of each block that moves, in either sense.
+    """
+    half = [math.radians(angle) for angle in deck.numbers("arch%joints_deg")]
+    if half:
+        angles = [-angle for angle in half[:0:-1]] + half
+    else:
+        count, end = round(deck.number("arch%voussoirs")), math.radians(deck.number("arch%half_angle_deg"))
+        angles = [-end + 2.0 * end * k / count for k in range(count + 1)]
+    radius, ratio = deck.number("arch%radius"), deck.number("arch%thickness_ratio")
+    facet = math.radians(deck.number("arch%facet_deg"))
+    blocks = []
+    for left, right in zip(angles, angles[1:]):
+        chords = math.ceil((right - left) / facet - 1e-9) if facet > 0.0 else 1
+        fan = [left + (right - left) * k / chords for k in range(chords + 1)]
+        rings = (radius * (1.0 - ratio / 2.0), radius * (1.0 + ratio / 2.0))
+        inner, outer = ([(r * math.sin(a), r * math.cos(a)) for a in fan] for r in rings)
+        blocks.append(np.array([*inner, *outer[::-1]]))
+    return blocks

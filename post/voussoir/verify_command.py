@@ -1,0 +1,226 @@
+"""`voussoir verify`: recompute the proofs of a folder of results, with nothing of the program that made them."""
+
+from __future__ import annotations
+
+import argparse
+import csv
+import sys
+from pathlib import Path
+
+import numpy as np
+
+from voussoir.verify_blocks import Source, arch_corners, read_blocks
+from voussoir.verify_contacts import find_joints, make_block
+from voussoir.verify_deck import Deck, VerifyError, read_record
+from voussoir.verify_proofs import TOLERANCE, Finding, Row, Scene, check_forces, check_motion
+from voussoir.verify_tables import check_joints, check_rigid
+
+TABLES = ("results", "joints", "blocks", "proof_forces", "proof_motion")
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Add the options of the subcommand.
+
+    Parameters
+    ----------
+    parser : argparse.ArgumentParser
+        Parser of the subcommand.
+    """
+    parser.description = (
+        "Check the proofs of static verdicts that dda run has left in a folder: forces must balance the loads and keep "
+        "the law of every joint, mechanisms must open or leave every joint and be driven by the loads. Joints, weights "
+        "and loads are found anew from blocks.csv, deck.record and the file of blocks."
+    )
+    parser.add_argument("folder", metavar="DIR", type=Path, help="folder of the results")
+    parser.add_argument(
+        "--decks",
+        metavar="DIR",
+        type=Path,
+        help="folder of the deck, which names a file of blocks (default: the folder that holds DIR, then this one)",
+    )
+    parser.add_argument("--quiet", action="store_true", help="tell the worst case alone")
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Check a folder.
+
+    Parameters
+    ----------
+    arguments : argparse.Namespace
+        Parsed options.
+
+    Returns
+    -------
+    int
+        Exit status: 0 if all proofs hold, 1 if one does not, 2 if nothing can be checked.
+    """
+    try:
+        deck = read_record(arguments.folder)
+        tables = {name: read_table(arguments.folder / f"{name}.csv") for name in TABLES}
+        places = [arguments.decks] if arguments.decks else [arguments.folder.parent, Path()]
+        found = {number: _check_case(deck, number, tables, places) for number in sorted(tables["results"])}
+    except (VerifyError, KeyError, IndexError, ValueError) as error:
+        sys.stderr.write(f"{arguments.folder}: error: {error}\n")
+        return 1 if isinstance(error, (KeyError, IndexError)) else 2
+    return _report(found, arguments.quiet)
+
+
+def _report(found: dict[int, Finding], quiet: bool) -> int:
+    """Print what was found, and give the exit status."""
+    for number, finding in found.items():
+        if finding.faults:
+            sys.stdout.write(f"case {number}: FAILS: {'; '.join(finding.faults[:3])}\n")
+        elif not quiet:
+            figures = ", ".join(f"{name} {value:.1e}" for name, value in finding.figures.items())
+            sys.stdout.write(f"case {number}: {figures or 'no proof'}\n")
+    proven = {number: finding for number, finding in found.items() if finding.figures}
+    failed = sum(1 for finding in found.values() if finding.faults)
+    text = f"{len(proven)} of {len(found)} cases have proofs, {failed} fail"
+    if proven:
+        worst = max(proven, key=lambda number: max(proven[number].figures.values()))
+        figure = max(proven[worst].figures.values())
+        text += f"; the worst is case {worst}: {figure:.1e}, at most {TOLERANCE:.0e} is allowed"
+    sys.stdout.write(text + "\n")
+    return 1 if failed else 0
+
+
+def read_table(path: Path) -> dict[int, list[Row]]:
+    """Rows of a table by their case.
+
+    Parameters
+    ----------
+    path : Path
+        The table.
+
+    Returns
+    -------
+    dict
+        The rows of each case.
+    """
+    if not path.exists():
+        raise VerifyError(f"no {path.name}: run the deck with output%joints = .true. and output%blocks = .true.")
+    rows: dict[int, list[Row]] = {}
+    with path.open(newline="", encoding="utf-8") as lines:
+        for row in csv.DictReader(lines):
+            rows.setdefault(int(row["case"]), []).append(row)
+    return rows
+
+
+def _check_case(deck: Deck, number: int, tables: dict[str, dict[int, list[Row]]], places: list[Path]) -> Finding:
+    """Check the proofs of one case."""
+    finding = Finding()
+    forces, motion = (tables[name].get(number, []) for name in ("proof_forces", "proof_motion"))
+    result = tables["results"][number][0]
+    if not forces and not motion:
+        if result["imbalance"] or result["mechanism_power"]:
+            finding.faults.append("figures of a proof without its rows")
+        return finding
+    of_case = deck.case(number)
+    for rows, name in ((forces, "forces"), (motion, "motion")):
+        if not rows:
+            continue
+        if len({row["value"] for row in rows}) > 1:
+            finding.faults.append(f"rows of the {name} are of several values")
+        at_value = of_case
+        if deck.searched is not None:
+            at_value = of_case.with_value(deck.searched, rows[0]["value"])
+        scene = scene_of(at_value, tables["blocks"].get(number, []), places, finding)
+        if name == "forces":
+            check_forces(scene, rows, finding)
+            _check_bound(result, "exact_low", rows[0]["value"], finding)
+        else:
+            power = check_motion(scene, rows, finding)
+            if power < -TOLERANCE or deck.searched is None and not power > 0.0:
+                finding.faults.append(f"the loads do not drive the mechanism: power {power:.3e}")
+            if deck.searched is None:
+                finding.keep("power told", abs(power - float(result["mechanism_power"])))
+            _check_bound(result, "exact_high", rows[0]["value"], finding)
+            if deck.searched is not None and result["exact_high"]:
+                finding.keep("power at the limit", abs(power))
+    _check_told(deck, of_case, result, {name: tables[name].get(number, []) for name in TABLES}, places, finding)
+    return finding
+
+
+def _check_told(
+    deck: Deck, of_case: Deck, result: Row, rows: dict[str, list[Row]], places: list[Path], finding: Finding
+) -> None:
+    """Check what joints.csv and blocks.csv tell: forces of what stands, the mechanism of what falls."""
+    at_value = of_case
+    if deck.searched is not None and result["verdict"] == "found":
+        stands = "critical_high" if result["collapses_at"] == "low" else "critical_low"
+        at_value = of_case.with_value(deck.searched, result[stands])
+    elif deck.searched is not None and rows["proof_forces"]:
+        at_value = of_case.with_value(deck.searched, rows["proof_forces"][0]["value"])
+    elif deck.searched is not None:
+        return
+    scene = scene_of(at_value, rows["blocks"], places, Finding())
+    if result["verdict"] in ("stable", "found"):
+        check_joints(scene, rows["joints"], finding)
+    if result["verdict"] in ("collapsed", "found"):
+        check_rigid(scene, rows["blocks"], finding)
+
+
+def _check_bound(result: Row, column: str, value: str, finding: Finding) -> None:
+    """A proven bound is the value of its proof."""
+    if value and result[column] and float(result[column]) != float(value):
+        finding.faults.append(f"{column} is {result[column]}, but its proof is of {value}")
+
+
+def scene_of(deck: Deck, rows: list[Row], places: list[Path], finding: Finding) -> Scene:
+    """Blocks and joints of a case.
+
+    Parameters
+    ----------
+    deck : Deck
+        The deck of the case.
+    rows : list of dict
+        Its rows of blocks.csv.
+    places : list of Path
+        Folders to look for a file of blocks in.
+    finding : Finding
+        Receives how far corners are from those of the deck.
+
+    Returns
+    -------
+    Scene
+        The blocks with their joints.
+    """
+    if not rows:
+        raise VerifyError("no blocks of a case in blocks.csv: run the deck with output%blocks = .true.")
+    if deck.gives("scene%analysis"):
+        raise VerifyError("decks with an analysis file are not verified")
+    corners: dict[int, list[list[float]]] = {}
+    fixed: dict[int, bool] = {}
+    for row in rows:
+        corners.setdefault(int(row["block"]), []).append([float(row["x"]), float(row["y"])])
+        fixed[int(row["block"])] = row["state"] == "fixed"
+    blocks = [make_block(number, np.array(corners[number]), fixed[number]) for number in sorted(corners)]
+    source = Source()
+    if deck.text("scene%kind") == "blocks":
+        source = read_blocks(_find(deck.text("scene%geometry"), places), deck)
+        _compare([np.array(corners[n]) for n in sorted(corners)], source.corners, finding)
+    elif deck.text("scene%kind") == "arch":
+        _compare([np.array(corners[n]) for n in sorted(corners) if not fixed[n]], arch_corners(deck), finding)
+    return Scene(blocks, find_joints(blocks), source, deck)
+
+
+def _find(name: str, places: list[Path]) -> Path:
+    """A file that a deck names."""
+    for place in places:
+        if (place / name).exists():
+            return place / name
+    raise VerifyError(f"cannot find {name}: name the folder of the deck by --decks")
+
+
+def _compare(told: list[np.ndarray], given: list[np.ndarray], finding: Finding) -> None:
+    """Corners that were told are those that the deck gives, in any order."""
+    if len(told) != len(given):
+        finding.faults.append(f"expected {len(given)} blocks, got {len(told)}")
+        return
+    for number, (mine, its) in enumerate(zip(told, given), 1):
+        size = float(np.linalg.norm(np.ptp(its, axis=0)))
+        apart = np.linalg.norm(mine[:, None, :] - its[None, :, :], axis=2)
+        off = max(float(apart.min(axis=1).max()), float(apart.min(axis=0).max())) / size
+        finding.keep("corners", off)
+        if off > TOLERANCE:
+            finding.faults.append(f"corners of block {number} are not those of the deck")

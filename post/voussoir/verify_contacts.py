@@ -1,0 +1,166 @@
+"""Joints of polygons, found from their corners alone."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+#: Blocks touch within this share of the smaller one's size
+TOUCH = 1e-4
+
+
+@dataclass
+class Block:
+    """A polygon, counter-clockwise, with what follows from it."""
+
+    number: int
+    corners: np.ndarray
+    fixed: bool
+    area: float
+    centre: np.ndarray
+    size: float
+
+
+@dataclass
+class Joint:
+    """Where two blocks touch: its ends, the normal from the first to the second, one corner or two."""
+
+    first: int
+    second: int
+    ends: np.ndarray
+    normal: np.ndarray
+    single: bool
+
+    @property
+    def tangent(self) -> np.ndarray:
+        """Unit vector to the left of the normal."""
+        return np.array([-self.normal[1], self.normal[0]])
+
+
+def make_block(number: int, corners: np.ndarray, fixed: bool) -> Block:
+    """A block from its corners in either sense.
+
+    Parameters
+    ----------
+    number : int
+        Its number.
+    corners : ndarray
+        The corners in order, (n, 2).
+    fixed : bool
+        Whether it cannot move.
+
+    Returns
+    -------
+    Block
+        With area and centre of gravity.
+    """
+    shift = corners.mean(axis=0)
+    x, y = (corners - shift).T
+    cross = x * np.roll(y, -1) - np.roll(x, -1) * y
+    area = cross.sum() / 2.0
+    centre = np.array([((x + np.roll(x, -1)) * cross).sum(), ((y + np.roll(y, -1)) * cross).sum()]) / (6.0 * area)
+    ordered = corners if area > 0.0 else corners[::-1]
+    return Block(number, ordered, fixed, abs(area), centre + shift, float(np.linalg.norm(np.ptp(corners, axis=0))))
+
+
+def find_joints(blocks: list[Block]) -> list[Joint]:
+    """All joints of blocks of which one can move.
+
+    Parameters
+    ----------
+    blocks : list of Block
+        The blocks.
+
+    Returns
+    -------
+    list of Joint
+        Edges that lie together, and corners before edges.
+    """
+    low = np.array([block.corners.min(axis=0) for block in blocks])
+    high = np.array([block.corners.max(axis=0) for block in blocks])
+    size = np.array([block.size for block in blocks])
+    joints = []
+    for i, first in enumerate(blocks):
+        reach = TOUCH * np.minimum(size[i], size[i + 1:])[:, None]
+        near = np.all((low[i + 1:] <= high[i] + reach) & (high[i + 1:] >= low[i] - reach), axis=1)
+        for k in np.flatnonzero(near):
+            second = blocks[i + 1 + int(k)]
+            if not (first.fixed and second.fixed):
+                joints += _joints_of(first, second)
+    return joints
+
+
+def _joints_of(first: Block, second: Block) -> list[Joint]:
+    """Joints between two blocks."""
+    reach = TOUCH * min(first.size, second.size)
+    joints = []
+    for a in range(len(first.corners)):
+        for b in range(len(second.corners)):
+            joint = _edges_together(first, a, second, b, reach)
+            if joint is not None:
+                joints.append(joint)
+    touched = [end for joint in joints for end in joint.ends]
+    for owner, other in ((first, second), (second, first)):
+        for a in range(len(owner.corners)):
+            start, direction, length = _edge(owner, a)
+            normal = np.array([direction[1], -direction[0]])
+            for corner in other.corners:
+                along, off = (corner - start) @ direction, (corner - start) @ normal
+                if not (reach < along < length - reach and abs(off) <= reach):
+                    continue
+                if any(np.linalg.norm(corner - end) <= reach for end in touched):
+                    continue
+                joints.append(Joint(owner.number, other.number, np.array([corner, corner]), normal, True))
+    return joints
+
+
+def _edge(block: Block, number: int) -> tuple[np.ndarray, np.ndarray, float]:
+    """Start, direction and length of an edge."""
+    start, end = block.corners[number], block.corners[(number + 1) % len(block.corners)]
+    length = float(np.linalg.norm(end - start))
+    return start, (end - start) / length, length
+
+
+def _edges_together(first: Block, a: int, second: Block, b: int, reach: float) -> Joint | None:
+    """The joint of two edges that lie together, if they do."""
+    start, direction, length = _edge(first, a)
+    other, opposite, other_length = _edge(second, b)
+    if direction @ opposite > -0.9:
+        return None
+    normal = np.array([direction[1], -direction[0]])
+    tail = other + other_length * opposite
+    low = max(0.0, min((other - start) @ direction, (tail - start) @ direction))
+    high = min(length, max((other - start) @ direction, (tail - start) @ direction))
+    if high - low <= 2.0 * reach:
+        return None
+    ends = []
+    for place in (low, high):
+        on_first = start + place * direction
+        share = (on_first - other) @ opposite
+        on_second = other + min(max(share, 0.0), other_length) * opposite
+        if abs((on_second - on_first) @ normal) > reach:
+            return None
+        # the corner that makes the end, of whichever block
+        corners = [*first.corners, *second.corners]
+        ends.append(min(corners, key=lambda corner: float(np.linalg.norm(corner - on_first))))
+    return Joint(first.number, second.number, np.array(ends), normal, False)
+
+
+def numbers_of(joints: list[Joint]) -> dict[tuple[int, int], list[Joint]]:
+    """Joints by their two blocks, the smaller number first.
+
+    Parameters
+    ----------
+    joints : list of Joint
+        The joints.
+
+    Returns
+    -------
+    dict
+        The joints of each pair.
+    """
+    pairs: dict[tuple[int, int], list[Joint]] = {}
+    for joint in joints:
+        pairs.setdefault((min(joint.first, joint.second), max(joint.first, joint.second)), []).append(joint)
+    return pairs

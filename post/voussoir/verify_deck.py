@@ -1,0 +1,166 @@
+"""What a deck says of loads, joints and shape, from the record that a run leaves, without the program's own reader."""
+
+from __future__ import annotations
+
+import math
+import re
+from dataclasses import dataclass, field
+from pathlib import Path
+
+#: Groups of the keys that matter here, and their defaults
+DEFAULTS: dict[str, str] = {
+    "scene%kind": "arch",
+    "scene%geometry": "",
+    "arch%radius": "10",
+    "arch%thickness_ratio": "0.15",
+    "arch%half_angle_deg": "90",
+    "arch%voussoirs": "36",
+    "arch%facet_deg": "0",
+    "arch%springing": "frictional",
+    "material%density": "2240",
+    "joint%friction_deg": "50",
+    "joint%cohesion": "0",
+    "joint%tension": "0",
+    "load%gravity": "9.81",
+    "load%gravity_direction_deg": "-90",
+    "load%horizontal_coefficient": "0",
+    "load%load_factor": "1",
+    "load%live_horizontal": ".false.",
+}
+#: Keys without a default
+OTHERS = (
+    "arch%joints_deg",
+    "material%unit_weight",
+    "scene%analysis",
+    "live%x",
+    "live%y",
+    "live%fx",
+    "live%fy",
+    "search%parameter",
+)
+
+
+class VerifyError(ValueError):
+    """Something that cannot be verified, with the reason."""
+
+
+@dataclass
+class Sweep:
+    """A parameter and the values that it takes."""
+
+    name: str
+    linked: bool
+    values: list[str] = field(default_factory=list)
+
+
+@dataclass
+class Deck:
+    """Values by group%key, as texts, and the sweeps."""
+
+    values: dict[str, list[str]]
+    sweeps: list[Sweep]
+
+    def text(self, key: str) -> str:
+        """A single value as text."""
+        return self.values.get(key, [DEFAULTS.get(key, "")])[0]
+
+    def number(self, key: str) -> float:
+        """A single number."""
+        return float(self.text(key))
+
+    def numbers(self, key: str) -> list[float]:
+        """A list of numbers, empty if it is not given."""
+        return [float(value) for value in self.values.get(key, [])]
+
+    def gives(self, key: str) -> bool:
+        """Whether a key is given."""
+        return key in self.values
+
+    def with_value(self, name: str, value: str) -> Deck:
+        """A deck with another value of a parameter, such as friction_deg, arch%radius or x(2)."""
+        match = re.fullmatch(r"(?:(\w+)%)?(\w+)(?:\((\d+)\))?", name.strip())
+        if match is None:
+            raise VerifyError(f"expected the name of a parameter, got {name!r}")
+        group, key, item = match.groups()
+        names = [full.split("%") for full in (*DEFAULTS, *OTHERS)]
+        known = ["%".join(name) for name in names if name[1] == key and group in (None, name[0])]
+        values = dict(self.values)
+        if known:
+            full = known[0]
+            new = list(values.get(full, [""]))
+            new[int(item) - 1 if item else 0] = value
+            values[full] = new
+        return Deck(values, self.sweeps)
+
+    def case(self, number: int) -> Deck:
+        """The deck of one case; the last sweep runs fastest, a linked one goes with the one before."""
+        deck, rest, positions = self, number - 1, [0] * len(self.sweeps)
+        for s in range(len(self.sweeps) - 1, -1, -1):
+            if not self.sweeps[s].linked:
+                rest, positions[s] = divmod(rest, len(self.sweeps[s].values))
+        for s, sweep in enumerate(self.sweeps):
+            if sweep.linked:
+                positions[s] = positions[s - 1]
+            deck = deck.with_value(sweep.name, sweep.values[positions[s]])
+        return deck
+
+    @property
+    def searched(self) -> str | None:
+        """Name of the searched parameter."""
+        if "&search" not in self.values:
+            return None
+        return self.values.get("search%parameter", ["thickness_ratio"])[0]
+
+    def direction(self) -> tuple[float, float]:
+        """Direction of gravity."""
+        angle = self.number("load%gravity_direction_deg")
+        if angle == -90.0:
+            return 0.0, -1.0
+        return math.cos(math.radians(angle)), math.sin(math.radians(angle))
+
+    def push(self) -> float:
+        """Horizontal force over the weight."""
+        push = self.number("load%horizontal_coefficient")
+        if self.text("load%live_horizontal").lower().startswith((".t", "t")):
+            push *= self.number("load%load_factor")
+        return push
+
+    def unit_weight(self) -> float:
+        """Weight per volume where a material has none of its own."""
+        if self.gives("material%unit_weight"):
+            return self.number("material%unit_weight")
+        return self.number("material%density") * self.number("load%gravity")
+
+
+def read_record(folder: Path) -> Deck:
+    """The deck of a folder of results.
+
+    Parameters
+    ----------
+    folder : Path
+        Folder that dda run has written.
+
+    Returns
+    -------
+    Deck
+        Its given keys and sweeps.
+    """
+    try:
+        lines = (folder / "deck.record").read_text(encoding="utf-8").splitlines()
+    except OSError as error:
+        raise VerifyError(f"no deck.record in {folder}: expected a folder that dda run has written") from error
+    values: dict[str, list[str]] = {}
+    sweeps: list[Sweep] = []
+    target: list[str] | None = None
+    for line in lines[1:]:
+        if line.startswith("&sweep "):
+            words = line.split()
+            sweeps.append(Sweep(words[1], words[-1] == "linked"))
+            target = sweeps[-1].values
+        elif line.startswith("&"):
+            values[line.strip()] = target = []
+        elif line.startswith("  ") and target is not None:
+            target.append(line.strip())
+        elif "%" in line and not line.startswith("files"):
+            target = values[line.strip()] = []
+    return Deck(values, sweeps)

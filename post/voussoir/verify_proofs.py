@@ -1,0 +1,229 @@
+"""Forces and velocities of a case, checked on joints found from the corners of its blocks."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from voussoir.verify_blocks import Source
+from voussoir.verify_contacts import TOUCH, Block, Joint, numbers_of
+from voussoir.verify_deck import Deck
+from voussoir.verify_loads import depth, friction_of, loads_on, may_hold
+
+Row = dict[str, str]
+#: Largest figure of a proof that holds
+TOLERANCE = 1e-8
+
+
+@dataclass
+class Finding:
+    """What was found of a case: figures that must be small, and sentences about what is wrong."""
+
+    figures: dict[str, float] = field(default_factory=dict)
+    faults: list[str] = field(default_factory=list)
+
+    def keep(self, name: str, value: float, most: float = TOLERANCE) -> None:
+        """Keep the largest value of a figure, and say where it is too large."""
+        self.figures[name] = max(self.figures.get(name, 0.0), value)
+        if not value <= most:
+            self.faults.append(f"{name} expected at most {most:.0e}, got {value:.3e}")
+
+
+@dataclass
+class Scene:
+    """Blocks, joints and source of a case."""
+
+    blocks: list[Block]
+    joints: list[Joint]
+    source: Source
+    deck: Deck
+
+    @property
+    def length(self) -> float:
+        """Half the mean length of a joint."""
+        lengths = [np.linalg.norm(joint.ends[1] - joint.ends[0]) for joint in self.joints if not joint.single]
+        return float(np.mean(lengths)) / 2.0 if lengths else 1.0
+
+    def friction(self, joint: Joint) -> float:
+        """Coefficient of friction of a joint."""
+        springing = self.blocks[joint.first - 1].fixed or self.blocks[joint.second - 1].fixed
+        return friction_of(self.deck, self.source, joint, springing)
+
+
+def check_forces(scene: Scene, rows: list[Row], finding: Finding) -> None:
+    """Check that forces at joints and held points carry the load.
+
+    Parameters
+    ----------
+    scene : Scene
+        The case, at the value of the proof.
+    rows : list of dict
+        Rows of proof_forces.csv.
+    finding : Finding
+        Receives the figures.
+    """
+    left = loads_on(scene.deck, scene.source, scene.blocks)
+    free = np.array([not block.fixed for block in scene.blocks])
+    largest = largest_of(left[free], scene.length)
+    pairs = numbers_of(scene.joints)
+    used: set[int] = set()
+    for row in rows:
+        force = np.array([float(row[name]) for name in ("normal_1", "normal_2", "shear")])
+        points = np.array([[float(row["x_1"]), float(row["y_1"])], [float(row["x_2"]), float(row["y_2"])]])
+        if row["kind"] == "held":
+            block = scene.blocks[int(row["block_2"]) - 1]
+            if not may_hold(scene.source, block, points[0], force[:2]):
+                finding.faults.append(f"nothing holds block {block.number} at {tuple(points[0])}")
+            push(left, block, points[0], force[:2])
+            continue
+        pair = int(row["block_1"]), int(row["block_2"])
+        joint, ends = _match(pairs.get((min(pair), max(pair)), []), points, scene.blocks[pair[0] - 1])
+        if joint is None or id(joint) in used:
+            if np.abs(force).max() > 0.0:
+                finding.faults.append(f"blocks {pair[0]} and {pair[1]} have no joint at {tuple(points[0])}")
+            continue
+        used.add(id(joint))
+        way = 1.0 if joint.first == pair[0] else -1.0
+        _law(force, joint, scene.friction(joint), largest, finding)
+        for vector, at in ((force[0] * way * joint.normal, ends[0]), (force[1] * way * joint.normal, ends[1]),
+                           (force[2] * way * joint.tangent, ends.mean(axis=0))):
+            push(left, scene.blocks[pair[1] - 1], at, vector)
+            push(left, scene.blocks[pair[0] - 1], at, -vector)
+    finding.keep("imbalance", largest_of(left[free], scene.length) / largest)
+
+
+def _law(force: np.ndarray, joint: Joint, friction: float, largest: float, finding: Finding) -> None:
+    """Check the law of a joint."""
+    beyond = max(0.0, -force[0], -force[1])
+    if joint.single:
+        beyond = max(beyond, abs(force[1]))
+    if math.isfinite(friction):
+        beyond = max(beyond, (abs(force[2]) - friction * (force[0] + force[1])) / max(1.0, friction))
+    finding.keep("law of forces", beyond / largest)
+
+
+def _match(joints: list[Joint], points: np.ndarray, block: Block) -> tuple[Joint | None, np.ndarray]:
+    """The joint with two ends, and its own ends in their order."""
+    for joint in joints:
+        for ends in (joint.ends, joint.ends[::-1]):
+            if np.abs(ends - points).max() <= TOUCH * block.size:
+                return joint, ends
+    return None, points
+
+
+def push(left: np.ndarray, block: Block, at: np.ndarray, vector: np.ndarray) -> None:
+    """Add a force to what is left on a block.
+
+    Parameters
+    ----------
+    left : ndarray
+        Force and moment of each block, (n, 3).
+    block : Block
+        The block.
+    at : ndarray
+        Where the force acts.
+    vector : ndarray
+        The force.
+    """
+    arm = at - block.centre
+    left[block.number - 1] += [*vector, arm[0] * vector[1] - arm[1] * vector[0]]
+
+
+def largest_of(load: np.ndarray, length: float) -> float:
+    """Largest force or moment over a length.
+
+    Parameters
+    ----------
+    load : ndarray
+        Force and moment of each block, (n, 3).
+    length : float
+        What moments are divided by.
+
+    Returns
+    -------
+    float
+        The largest, above 0.
+    """
+    if len(load) == 0:
+        return 1e-300
+    return max(float(np.abs(load[:, :2]).max()), float(np.abs(load[:, 2]).max()) / length, 1e-300)
+
+
+def check_motion(scene: Scene, rows: list[Row], finding: Finding) -> float:
+    """Check that velocities open or leave every joint and that the load drives them.
+
+    Parameters
+    ----------
+    scene : Scene
+        The case, at the value of the proof.
+    rows : list of dict
+        Rows of proof_motion.csv.
+    finding : Finding
+        Receives the figures.
+
+    Returns
+    -------
+    float
+        Power of the loads over what they could do at most.
+    """
+    velocity = np.zeros((len(scene.blocks), 3))
+    for row in rows:
+        block = scene.blocks[int(row["block"]) - 1]
+        if block.fixed:
+            finding.faults.append(f"block {block.number} is fixed and moves")
+        at = np.array([float(row["x"]), float(row["y"])])
+        u, v, spin = (float(row[name]) for name in ("u", "v", "spin"))
+        off = block.centre - at
+        finding.keep("place of centres", float(np.linalg.norm(off)) / block.size)
+        velocity[block.number - 1] = [u - spin * off[1], v + spin * off[0], spin]
+    fastest = max(float(np.abs(velocity[:, :2]).max()), scene.length * float(np.abs(velocity[:, 2]).max()), 1e-300)
+    for joint in scene.joints:
+        apart = [velocity_at(scene, velocity, joint.second, end) - velocity_at(scene, velocity, joint.first, end)
+                 for end in joint.ends]
+        friction, slip = scene.friction(joint), abs(float((apart[0] + apart[1]) @ joint.tangent)) / 2.0
+        opening = min(float(rate @ joint.normal) for rate in apart)
+        beyond = max(-opening, slip)
+        if math.isfinite(friction):
+            beyond = (friction * slip - opening) / max(1.0, friction)
+        finding.keep("law of velocities", max(0.0, beyond) / fastest)
+    for block in scene.blocks:
+        for point, along in [] if block.fixed else _held_points(scene, block):
+            rate = velocity_at(scene, velocity, block.number, point)
+            moved = max((abs(float(rate[k])) for k in range(2) if along[k]), default=0.0)
+            finding.keep("law of velocities", moved / fastest)
+    load = loads_on(scene.deck, scene.source, scene.blocks)
+    most = float((np.linalg.norm(load[:, :2], axis=1) * np.linalg.norm(velocity[:, :2], axis=1)
+                  + np.abs(load[:, 2] * velocity[:, 2])).sum())
+    return float((load * velocity).sum()) / max(most, 1e-300)
+
+
+def _held_points(scene: Scene, block: Block) -> list[tuple[np.ndarray, tuple[bool, bool]]]:
+    """Held points of a block, and along what."""
+    return [(np.array(end), held.along) for held in scene.source.held for end in held.ends
+            if held.block in (0, block.number) and depth(block, np.array(end)) >= -TOUCH * block.size]
+
+
+def velocity_at(scene: Scene, velocity: np.ndarray, number: int, point: np.ndarray) -> np.ndarray:
+    """Velocity of a point of a block.
+
+    Parameters
+    ----------
+    scene : Scene
+        The case.
+    velocity : ndarray
+        Velocities of the centres and spins, (n, 3).
+    number : int
+        Number of the block.
+    point : ndarray
+        The point.
+
+    Returns
+    -------
+    ndarray
+        Its velocity, (2).
+    """
+    u, v, spin = velocity[number - 1]
+    arm = point - scene.blocks[number - 1].centre
+    return np.array([u - spin * arm[1], v + spin * arm[0]])

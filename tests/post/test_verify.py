@@ -1,0 +1,146 @@
+"""`voussoir verify`: proofs that hold are accepted, and a number that is changed anywhere is found."""
+
+from __future__ import annotations
+
+import csv
+import os
+import random
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+pytest.importorskip("voussoir.verify_command", reason="PYTHONPATH wants python/")
+
+from voussoir import verify_command  # noqa: E402
+from voussoir.command_line import main  # noqa: E402
+from voussoir.verify_deck import read_record  # noqa: E402
+
+sys.path.insert(0, str(Path(__file__).parents[1] / "cli"))
+
+from random_assemblies import programme, random_assembly  # noqa: E402
+
+HEAD = "&scene kind = 'blocks', geometry = 'x.blocks' /\n"
+SEARCH = "&search parameter = 'load_factor' /\n"
+#: Numbers that are changed: a table and its columns
+CHANGED = [
+    ("proof_forces", ("normal_1", "normal_2", "shear")),
+    ("proof_motion", ("u", "v", "spin")),
+    ("joints", ("normal_force", "shear_force", "force_x", "force_y")),
+    ("blocks", ("x", "y")),
+    ("blocks", ("u", "v")),
+]
+BLOCKS = "block fixed\n-5 -1\n5 -1\n5 0\n-5 0\nblock\n0 0\n1 0\n1 2\n0 2\n"
+#: Decks that leave proofs of every kind
+DECKS = {
+    "arch": "&arch thickness_ratio = 0.12 /\n",
+    "thickness": "&search /\n&arch voussoirs = 12 /\n",
+    "listed joints": "&arch joints_deg = 0, 30, 54.5, 90, facet_deg = 5, thickness_ratio = 0.2 /\n",
+    "tilt": "&search parameter = 'gravity_direction_deg', low = -90, high = -45 /\n&arch half_angle_deg = 75 /\n",
+    "sweeps": "&sweep parameter = 'friction_deg', values = 20, 40 /\n&search parameter = 'horizontal_coefficient' /\n"
+              "&sweep parameter = 'half_angle_deg', values = 60, 70 /\n"
+              "&sweep parameter = 'voussoirs', values = 11, 12, linked = .true. /\n",
+    "no slip at springings": "&arch half_angle_deg = 70, springing = 'no-slip' /\n&joint friction_deg = 30 /\n"
+                             "&load horizontal_coefficient = 0.1 /\n",
+    "live": HEAD + "&load load_factor = 3.0 /\n",
+    "falls": HEAD + "&load load_factor = 30.0, horizontal_coefficient = 0.05 /\n",
+    "friction": HEAD + "&load load_factor = 5.0 /\n&search parameter = 'friction_deg' /\n",
+}
+#: What the file of blocks has beside its blocks
+ACTING = (
+    "live block 2 0 2 1000 0\nload block 2 0.5 2 0 -5000\nmaterial 2 density 1800\njoint 1 1 friction_deg 35\n"
+    "block material 2\n2 0\n3 0\n3 1\n2 1\nfix 2.5 1 x\n"
+)
+
+
+def run_deck(folder: Path, deck: str, blocks: str = BLOCKS + ACTING) -> Path:
+    """Folder of the results of a deck."""
+    folder.mkdir(parents=True, exist_ok=True)
+    (folder / "x.blocks").write_text(blocks)
+    (folder / "x.nml").write_text(deck)
+    done = subprocess.run([os.environ["DDA"], "run", "x.nml", "--quiet"], cwd=folder, capture_output=True, text=True)
+    assert done.returncode == 0, done.stderr
+    return folder / "x"
+
+
+def rows_of(path: Path) -> list[dict[str, str]]:
+    """Rows of a table."""
+    with path.open(newline="") as lines:
+        return list(csv.DictReader(lines))
+
+
+@pytest.mark.parametrize("deck", DECKS.values(), ids=DECKS)
+def test_proofs_of_the_program_hold(tmp_path: Path, deck: str, capsys: pytest.CaptureFixture[str]) -> None:
+    folder = run_deck(tmp_path, deck)
+    assert main(["verify", str(folder)]) == 0, capsys.readouterr().out
+    cases = len(rows_of(folder / "results.csv"))
+    assert f"{cases} of {cases} cases have proofs, 0 fail" in capsys.readouterr().out
+
+
+@pytest.mark.parametrize("seed", range(12))
+def test_random_assemblies_are_proven_on_both_sides_of_their_programme(tmp_path: Path, seed: int) -> None:
+    pytest.importorskip("scipy", reason="the linear programme wants scipy")
+    blocks, friction = random_assembly(seed)
+    head = HEAD + f"&material unit_weight = 1 /\n&joint friction_deg = {friction!r} /\n"
+    folder = run_deck(tmp_path, head + SEARCH, blocks)
+    assert main(["verify", str(folder), "--quiet"]) == 0
+    (row,) = rows_of(folder / "results.csv")
+    tables = {name: verify_command.read_table(folder / f"{name}.csv") for name in verify_command.TABLES}
+    deck = read_record(folder).with_value("load_factor", "1")
+    scene = verify_command.scene_of(deck, tables["blocks"][1], [tmp_path], verify_command.Finding())
+    factor = programme(scene)
+    assert factor is not None and row["verdict"] == "found"
+    low, high = float(row["exact_low"]), float(row["exact_high"])
+    assert low <= factor * (1 + 1e-10) and factor * (1 - 1e-10) <= high
+    assert high - low <= 1e-8 * factor
+
+
+@pytest.mark.parametrize("seed", range(40))
+def test_a_changed_number_is_found(tmp_path: Path, seed: int, capsys: pytest.CaptureFixture[str]) -> None:
+    source = random.Random(seed)
+    blocks, friction = random_assembly(seed % 5)
+    head = HEAD + f"&material unit_weight = 1 /\n&joint friction_deg = {friction!r} /\n"
+    folder = run_deck(tmp_path, head + SEARCH, blocks)
+    table, columns = source.choice(CHANGED)
+    rows = rows_of(folder / f"{table}.csv")
+    scale = max(abs(float(row[name])) for row in rows for name in columns)
+    row, column = source.choice(rows), source.choice(columns)
+    row[column] = repr(float(row[column]) + source.choice([-1, 1]) * scale * 10 ** source.uniform(-5.9, -1.0))
+    with (folder / f"{table}.csv").open("w", newline="") as lines:
+        writer = csv.DictWriter(lines, list(row))
+        writer.writeheader()
+        writer.writerows(rows)
+    assert main(["verify", str(folder)]) == 1
+    assert "FAILS" in capsys.readouterr().out
+
+
+@pytest.mark.parametrize(
+    ("name", "old", "new"),
+    [("x/deck.record", "  30", "  31"), ("x.blocks", "0 -5000", "0 -5001"),
+     ("x.blocks", "density 1800", "density 1801"), ("x.blocks", "3 1\n", "3 1.001\n"),
+     ("x.blocks", "block 2 0 2 1000 0", "block 2 0 1.9 1000 0")],
+)
+def test_another_deck_is_found(tmp_path: Path, name: str, old: str, new: str) -> None:
+    deck = DECKS["live"].replace("3.0", "30.0") if "record" in name else DECKS["live"]
+    run_deck(tmp_path, deck)
+    assert main(["verify", str(tmp_path / "x"), "--quiet"]) == 0
+    text = (tmp_path / name).read_text()
+    assert old in text
+    (tmp_path / name).write_text(text.replace(old, new))
+    assert main(["verify", str(tmp_path / "x"), "--quiet"]) == 1
+
+
+def test_what_cannot_be_checked_is_said(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["verify", str(tmp_path)]) == 2
+    assert "deck.record" in capsys.readouterr().err
+    folder = run_deck(tmp_path, "&output joints = .false. /\n")
+    assert main(["verify", str(folder)]) == 2
+    assert "output%joints" in capsys.readouterr().err
+    folder = run_deck(tmp_path, HEAD)
+    (tmp_path / "x.blocks").rename(tmp_path / "away.blocks")
+    assert main(["verify", str(folder)]) == 2
+    assert "--decks" in capsys.readouterr().err
+    (tmp_path / "other").mkdir()
+    (tmp_path / "away.blocks").rename(tmp_path / "other" / "x.blocks")
+    assert main(["verify", str(folder), "--decks", str(tmp_path / "other")]) == 0
