@@ -126,7 +126,9 @@ contains
       integer, intent(in) :: idle
       !> Receives its state
       type(interior_point_t), intent(inout) :: point
+      real(wp) :: live
 
+      live = max(path%largest_live, tiny(1.0_wp))
       point%state = interior_state%running
       if (point%imbalance < certain .and. point%factor >= goal%target) then
          point%state = interior_state%reached
@@ -135,8 +137,7 @@ contains
          point%state = interior_state%blocked
       else if (worst(point) < goal%tolerance) then
          point%state = interior_state%optimal
-      else if (point%factor > goal%ceiling*max(1.0_wp, path%largest_dead &
-         & /max(path%largest_live, tiny(1.0_wp)))) then
+      else if (point%factor*live > goal%ceiling*max(live, path%largest_dead)) then
          point%state = interior_state%unbounded
       else if (idle >= patience .or. point%n_turn == goal%max_turn &
          & .or. .not. abs(turn%barrier) <= huge(turn%barrier)) then
