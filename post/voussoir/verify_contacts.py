@@ -95,24 +95,43 @@ def _joints_of(first: Block, second: Block) -> list[Joint]:
     """Joints between two blocks."""
     reach = TOUCH * min(first.size, second.size)
     joints = []
-    for a in range(len(first.corners)):
-        for b in range(len(second.corners)):
-            joint = _edges_together(first, a, second, b, reach)
-            if joint is not None:
-                joints.append(joint)
+    for a, b in _near_edges(first, second, reach):
+        joint = _edges_together(first, a, second, b, reach)
+        if joint is not None:
+            joints.append(joint)
     touched = [end for joint in joints for end in joint.ends]
     for owner, other in ((first, second), (second, first)):
-        for a in range(len(owner.corners)):
-            start, direction, length = _edge(owner, a)
+        for a, k in _near_corners(owner, other, reach):
+            corner = other.corners[k]
+            if any(np.linalg.norm(corner - end) <= reach for end in touched):
+                continue
+            _, direction, _ = _edge(owner, a)
             normal = np.array([direction[1], -direction[0]])
-            for corner in other.corners:
-                along, off = (corner - start) @ direction, (corner - start) @ normal
-                if not (reach < along < length - reach and abs(off) <= reach):
-                    continue
-                if any(np.linalg.norm(corner - end) <= reach for end in touched):
-                    continue
-                joints.append(Joint(owner.number, other.number, np.array([corner, corner]), normal, True))
+            joints.append(Joint(owner.number, other.number, np.array([corner, corner]), normal, True))
     return joints
+
+
+def _near_edges(first: Block, second: Block, reach: float) -> np.ndarray:
+    """Pairs of edges whose boxes meet."""
+    boxes = []
+    for block in (first, second):
+        ends = np.array([block.corners, np.roll(block.corners, -1, axis=0)])
+        boxes.append((ends.min(axis=0) - reach, ends.max(axis=0) + reach))
+    (low, high), (other_low, other_high) = boxes
+    meets = (low[:, None] <= other_high[None]) & (high[:, None] >= other_low[None])
+    return np.argwhere(meets.all(axis=2))
+
+
+def _near_corners(owner: Block, other: Block, reach: float) -> np.ndarray:
+    """Edges of one block with corners of another that lie on them, off their ends."""
+    start = owner.corners
+    along = np.roll(start, -1, axis=0) - start
+    length = np.linalg.norm(along, axis=1)
+    unit = along / length[:, None]
+    away = other.corners[None] - start[:, None]
+    place = (away * unit[:, None]).sum(axis=2)
+    off = away[:, :, 0] * unit[:, None, 1] - away[:, :, 1] * unit[:, None, 0]
+    return np.argwhere((place > reach) & (place < length[:, None] - reach) & (np.abs(off) <= reach))
 
 
 def _edge(block: Block, number: int) -> tuple[np.ndarray, np.ndarray, float]:

@@ -29,6 +29,8 @@ DEFAULTS: dict[str, str] = {
 }
 #: Keys without a default
 OTHERS = (
+    "analysis%mode",
+    "analysis%geometry",
     "arch%joints_deg",
     "material%unit_weight",
     "scene%analysis",
@@ -82,7 +84,8 @@ class Deck:
         if match is None:
             raise VerifyError(f"expected the name of a parameter, got {name!r}")
         group, key, item = match.groups()
-        names = [full.split("%") for full in (*DEFAULTS, *OTHERS)]
+        # keys of &scene do not vary
+        names = [full.split("%") for full in (*DEFAULTS, *OTHERS) if not full.startswith("scene%")]
         known = ["%".join(name) for name in names if name[1] == key and group in (None, name[0])]
         values = dict(self.values)
         if known:

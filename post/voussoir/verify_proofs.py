@@ -22,13 +22,20 @@ class Finding:
     """What was found of a case: figures that must be small, and sentences about what is wrong."""
 
     figures: dict[str, float] = field(default_factory=dict)
+    allowed: dict[str, float] = field(default_factory=dict)
     faults: list[str] = field(default_factory=list)
 
     def keep(self, name: str, value: float, most: float = TOLERANCE) -> None:
         """Keep the largest value of a figure, and say where it is too large."""
         self.figures[name] = max(self.figures.get(name, 0.0), value)
+        self.allowed[name] = most
         if not value <= most:
             self.faults.append(f"{name} expected at most {most:.0e}, got {value:.3e}")
+
+    def worst(self) -> tuple[float, str, float, float]:
+        """Share of what is allowed, name, value and what is allowed of the worst figure."""
+        name = max(self.figures, key=lambda name: self.figures[name] / self.allowed[name])
+        return self.figures[name] / self.allowed[name], name, self.figures[name], self.allowed[name]
 
 
 @dataclass

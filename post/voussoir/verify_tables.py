@@ -16,7 +16,7 @@ TOLD = 1e-7
 SAME = 1e-9
 
 
-def check_joints(scene: Scene, rows: list[Row], finding: Finding) -> None:
+def check_joints(scene: Scene, rows: list[Row], finding: Finding, allowed: float = 0.0) -> None:
     """Check that told joint forces balance the loads and keep the law of every joint.
 
     Parameters
@@ -27,6 +27,8 @@ def check_joints(scene: Scene, rows: list[Row], finding: Finding) -> None:
         Rows of joints.csv.
     finding : Finding
         Receives the figures.
+    allowed : float
+        What the forces may leave besides, as the bracket of a search is as wide.
     """
     left = loads_on(scene.deck, scene.source, scene.blocks)
     free = np.array([not block.fixed and not _is_held(scene, block.number) for block in scene.blocks])
@@ -55,7 +57,7 @@ def check_joints(scene: Scene, rows: list[Row], finding: Finding) -> None:
         push(left, scene.blocks[second - 1], at, vector)
         push(left, scene.blocks[first - 1], at, -vector)
     if free.any():
-        finding.keep("balance of told forces", largest_of(left[free], scene.length) / largest, TOLD)
+        finding.keep("balance of told forces", largest_of(left[free], scene.length) / largest, TOLD + allowed)
 
 
 def _is_held(scene: Scene, number: int) -> bool:
@@ -85,8 +87,8 @@ def _check_place(row: Row, joint: Joint, at: np.ndarray, normal: float, finding:
         finding.keep("eccentricity", abs(2.0 * float(np.linalg.norm(at - middle)) / length - told), SAME)
 
 
-def check_rigid(scene: Scene, rows: list[Row], finding: Finding) -> None:
-    """Check that told velocities of a mechanism are those of rigid blocks.
+def check_rigid(scene: Scene, rows: list[Row], finding: Finding, strain: float = 0.0) -> None:
+    """Check that told velocities of a mechanism are those of rigid blocks, or of blocks that strain alike throughout.
 
     Parameters
     ----------
@@ -96,6 +98,8 @@ def check_rigid(scene: Scene, rows: list[Row], finding: Finding) -> None:
         Rows of blocks.csv.
     finding : Finding
         Receives the figures.
+    strain : float
+        How far blocks may be from rigid, over the largest velocity.
     """
     told: dict[int, list[list[float]]] = {}
     for row in rows:
@@ -110,4 +114,7 @@ def check_rigid(scene: Scene, rows: list[Row], finding: Finding) -> None:
         arm_x, arm_y = x - x.mean(), y - y.mean()
         spin = float((arm_x * v - arm_y * u).sum() / (arm_x**2 + arm_y**2).sum())
         off = max(np.abs(u - u.mean() + spin * arm_y).max(), np.abs(v - v.mean() - spin * arm_x).max())
-        finding.keep("rigid motion", float(off) / max(largest, 1e-300), SAME)
+        finding.keep("rigid motion", float(off) / max(largest, 1e-300), SAME + strain)
+        linear = np.array([np.ones_like(x), arm_x, arm_y]).T
+        left = np.array([u, v]).T - linear @ np.linalg.lstsq(linear, np.array([u, v]).T, rcond=None)[0]
+        finding.keep("linear motion", float(np.abs(left).max()) / max(largest, 1e-300), SAME)

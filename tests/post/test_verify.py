@@ -78,6 +78,14 @@ def test_proofs_of_the_program_hold(tmp_path: Path, deck: str, capsys: pytest.Ca
     assert f"{cases} of {cases} cases have proofs, 0 fail" in capsys.readouterr().out
 
 
+@pytest.mark.parametrize("name", ["dry_wall_2x4", "four_corners", "jammed", "goodman_bray", "wedge_in_notch"])
+def test_proofs_of_benchmarks_hold(tmp_path: Path, name: str) -> None:
+    decks = Path(__file__).parents[2] / "input" / "benchmarks"
+    done = subprocess.run([os.environ["DDA"], "run", decks / f"{name}.nml", "--quiet"], cwd=tmp_path)
+    assert done.returncode == 0
+    assert main(["verify", str(tmp_path / name), "--decks", str(decks)]) == 0
+
+
 @pytest.mark.parametrize("seed", range(12))
 def test_random_assemblies_are_proven_on_both_sides_of_their_programme(tmp_path: Path, seed: int) -> None:
     pytest.importorskip("scipy", reason="the linear programme wants scipy")
