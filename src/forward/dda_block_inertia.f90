@@ -18,7 +18,7 @@ module dda_block_inertia
 contains
 
    !> Block part of matrix and load of one step of length dt. Forces that change with time are their
-   !> mean over a dynamic step, those of the end of a static one
+   !> mean over a dynamic step, those of the time of a static one
    pure subroutine assemble_blocks(system, settings, dt, equations, time)
       !> The blocks
       type(block_system_t), intent(in) :: system
@@ -28,9 +28,10 @@ contains
       real(wp), intent(in) :: dt
       !> Receives base and load
       type(equations_t), intent(inout) :: equations
-      !> Time at the beginning of the step, zero if it is left out [s]
+      !> Time at the beginning of a dynamic step, or of the loads in a static one; zero if it is
+      !> left out [s]
       real(wp), intent(in), optional :: time
-      real(wp) :: stress(6), impetus(6), start, damping
+      real(wp) :: stress(6), impetus(6), finish, start, damping
       integer :: b, e, nd
 
       nd = settings%n_dof
@@ -53,7 +54,9 @@ contains
          equations%load(:, e) = equations%load(:, e) + impetus(:nd)
          equations%force_scale = equations%force_scale + sum(abs(impetus(1:2)))
       end do
-      call follow_fixed_points(system, settings, start, dt, equations%fixed)
+      finish = start
+      if (settings%dynamic) finish = start + dt
+      call follow_fixed_points(system, settings, finish, dt, equations%fixed)
       call add_fixed_springs(equations%fixed, equations%fixed%target, equations%base, &
          & equations%load)
    end subroutine assemble_blocks

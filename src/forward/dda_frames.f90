@@ -19,7 +19,7 @@ module dda_frames
    type :: frame_t
       !> Accepted steps before it
       integer :: step = 0
-      !> Sum of the lengths of these steps [s]
+      !> Sum of the lengths of these steps, or time on the path of a static run [s]
       real(wp) :: time = 0.0_wp
       !> Farthest that a corner has moved [m]
       real(wp) :: displacement = 0.0_wp
@@ -52,6 +52,8 @@ module dda_frames
       integer :: every = 0
       !> Time from one picture to the next; 0 to go by steps or displacement [s]
       real(wp) :: interval = 0.0_wp
+      !> Time from which that is counted [s]
+      real(wp) :: begin = 0.0_wp
       !> Displacement or time at which the next one is due [m or s]
       real(wp) :: due = 0.0_wp
       !> Pictures kept
@@ -86,6 +88,7 @@ contains
       blank%follow = album%follow
       blank%every = album%every
       blank%interval = album%interval
+      blank%begin = album%begin
       blank%audit%wanted = album%audit%wanted
       if (allocated(album%point)) blank%point = album%point
    end function blank_album
@@ -137,12 +140,15 @@ contains
       way = displacement
       spacing = album%spacing
       if (album%interval > 0.0_wp) then
-         way = time
+         way = time - album%begin
          spacing = album%interval
       end if
       if (.not. (spacing > 0.0_wp .or. album%every > 0)) return
       is_due = way >= album%due*almost
       if (album%every > 0) is_due = modulo(step, album%every) == 0
+      ! on the path of a static run blocks fall while its clock stands still
+      if (album%interval > 0.0_wp .and. album%spacing > 0.0_wp .and. album%n > 0) is_due = is_due &
+         & .or. displacement >= album%frame(album%n)%displacement + album%spacing
       if (last .and. album%n > 0) is_due = album%frame(album%n)%step < step
       if (.not. (is_due .or. last .and. album%n == 0)) return
       if (.not. allocated(album%frame)) allocate (album%frame(8))

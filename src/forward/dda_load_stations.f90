@@ -16,6 +16,7 @@ module dda_load_stations
    private
 
    public :: load_stations_t, bears_live_load, load_stations, loads_at, last_history_time
+   public :: history_times, leads_at_once
 
    !> Stations of the path; station 0 has the dead loads alone
    type :: load_stations_t

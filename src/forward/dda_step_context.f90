@@ -1,6 +1,7 @@
 !> What one step finds out; made new for each step
 module dda_step_context
    use dda_kinds, only : wp
+   use dda_load_clock, only : load_clock_t
    use dda_step_state, only : step_state_t
    implicit none
    private
@@ -74,8 +75,24 @@ module dda_step_context
    type :: march_t
       !> Steps accepted so far
       integer :: steps = 0
-      !> Sum of their lengths [s]
+      !> Sum of their lengths, or in a static run with a path its clock [s]
       real(wp) :: time = 0.0_wp
+      !> Clock of what is live in a static run
+      type(load_clock_t) :: clock
+      !> Steps accepted when the clock went on last
+      integer :: begun = 0
+      !> Largest motion of a corner since then, where blocks move or a displacement means collapse
+      !> [m]
+      real(wp) :: moved = 0.0_wp
+      !> That motion over the time that the clock went on, at the last rest [m/s]
+      real(wp) :: rate = 0.0_wp
+      !> How often the blocks have leapt to another rest
+      integer :: jumps = 0
+      !> The largest of these jumps [m]
+      real(wp) :: largest_jump = 0.0_wp
+      !> Largest motion of a point in the first step after the clock went on; 0 before the path
+      !> begins [m]
+      real(wp) :: first_motion = 0.0_wp
       !> Length of the next step [s]
       real(wp) :: dt = 0.0_wp
       !> Most that a corner may move in a step, where blocks move [m]

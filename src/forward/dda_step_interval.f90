@@ -2,12 +2,14 @@
 module dda_step_interval
    use dda_assembly, only : equations_t, solve_faces
    use dda_balance, only : free_acceleration
+   use dda_boundary, only : history_t
    use dda_block_inertia, only : assemble_blocks, packed_velocity
    use dda_block_system, only : block_system_t
    use dda_error, only : error_t, fatal_error
    use dda_friction_cone, only : cone_t, joint_face_t
    use dda_joint_springs, only : joint_springs_t
    use dda_kinds, only : wp
+   use dda_load_clock, only : has_path, new_load_clock
    use dda_open_close, only : change_faces
    use dda_settings, only : settings_t
    use dda_step_context, only : march_t, step_context_t
@@ -16,7 +18,7 @@ module dda_step_interval
    private
 
    public :: first_interval, judge_step, next_interval, largest_motion, measure_scales
-   public :: longest_static_step
+   public :: longest_motion, longest_static_step
 
    !> Free fall in the first static step over the elastic motion
    real(wp), parameter :: first_fall = 1.0e2_wp
@@ -37,6 +39,9 @@ module dda_step_interval
    real(wp), parameter :: cut = 0.3_wp
    !> A step that moves farther than this multiple of what is allowed is rejected
    real(wp), parameter :: too_far = 2.0_wp
+   !> On a path of loads a step moves no farther than this multiple: the corners of a hinge must not
+   !> part by the error of a straight motion, which grows with its square
+   real(wp), parameter :: on_path = 0.5_wp
    !> Most that free fall from rest may go in a step, over the size of the smallest block
    real(wp), parameter :: longest_fall = 0.25_wp
    !> The elastic motion is this share of what strain makes of a block at the least: one that is
@@ -69,6 +74,8 @@ contains
       type(joint_face_t) :: closed(size(springs%stiffness))
       real(wp) :: mean_mass, stiffest
 
+      if (.not. settings%dynamic) march%clock = new_load_clock(settings)
+      if (has_path(march%clock)) march%time = march%clock%now
       call measure_scales(system, settings, equations, march)
       if (settings%dynamic) then
          march%dt = march%longest
@@ -81,7 +88,7 @@ contains
       if (size(springs%stiffness) > 0) stiffest = maxval(springs%stiffness)
       march%longest = longest_static_step(mean_mass, stiffest)
       march%dt = march%longest
-      call assemble_blocks(system, settings, march%dt, equations)
+      call assemble_first_loads(system, settings, march, equations)
       call solve_faces(equations, springs, glued, closed, state%start, state%motion)
       if (.not. equations%factor%usable) then
          call fatal_error(error, "the blocks with all joints closed make no stable system")
@@ -99,6 +106,30 @@ contains
          & sqrt(2.0_wp*first_fall*march%elastic_motion/march%free_acceleration))
       if (settings%time_step > 0.0_wp) march%dt = min(march%longest, settings%time_step)
    end subroutine first_interval
+
+   !> The blocks with the loads that scales are measured by: those of the beginning, or the first
+   !> that come where there are none. Points that are led do not move
+   pure subroutine assemble_first_loads(system, settings, march, equations)
+      !> The blocks
+      type(block_system_t), intent(in) :: system
+      !> Settings of the run
+      type(settings_t), intent(in) :: settings
+      !> The march, for the length of the step and its clock
+      type(march_t), intent(in) :: march
+      !> The equations
+      type(equations_t), intent(inout) :: equations
+      type(settings_t) :: unled
+      integer :: i
+
+      call assemble_blocks(system, settings, march%dt, equations, march%clock%now)
+      if (any(abs(equations%outer) > 0.0_wp)) return
+      unled = settings
+      if (allocated(unled%boundary%held)) unled%boundary%held%path = history_t()
+      do i = 2, size(march%clock%bend)
+         call assemble_blocks(system, unled, march%dt, equations, march%clock%bend(i))
+         if (any(abs(equations%outer) > 0.0_wp)) return
+      end do
+   end subroutine assemble_first_loads
 
    !> Scales of the problem; they do not change as it goes on
    pure subroutine measure_scales(system, settings, equations, march)
@@ -242,7 +273,7 @@ contains
       type(march_t), intent(inout) :: march
       !> The step; whether it is accepted is set
       type(step_context_t), intent(inout) :: step
-      real(wp) :: before, factor
+      real(wp) :: before, factor, limit
 
       step%accepted = step%state%settled
       if (.not. step%accepted) then
@@ -253,13 +284,22 @@ contains
       before = step%farthest
       step%farthest = largest_motion(system, step%state%motion)
       if (.not. settings%current) return
-      step%accepted = step%farthest <= too_far*march%allowed_motion
+      limit = longest_motion(march)
+      step%accepted = step%farthest <= limit
       if (step%accepted) return
-      factor = 0.8_wp*sqrt(too_far*march%allowed_motion/step%farthest)
+      factor = 0.8_wp*sqrt(limit/step%farthest)
       ! what strain alone holds goes as far in a step a little shorter
-      if (before > too_far*march%allowed_motion) factor = min(cut, factor)
+      if (before > limit) factor = min(cut, factor)
       march%dt = factor*march%dt
    end subroutine judge_step
+
+   !> Most that a step may move where blocks move
+   pure real(wp) function longest_motion(march)
+      !> The march
+      type(march_t), intent(in) :: march
+
+      longest_motion = merge(on_path, too_far, march%begun > 0)*march%allowed_motion
+   end function longest_motion
 
    !> Length of the step that follows an accepted one. Where blocks move it aims at the motion that
    !> a step may make, and shrinks where blocks rattle to and fro
@@ -287,7 +327,7 @@ contains
       if (step%was_cut) factor = min(factor, calm_growth)
       if (settings%current) then
          if (step%farthest > 0.0_wp) factor = min(growth, &
-            & 0.8_wp*sqrt(too_far*march%allowed_motion/step%farthest))
+            & 0.8_wp*sqrt(longest_motion(march)/step%farthest))
          if (allocated(march%last_motion)) then
             alike = sum(march%last_motion*step%state%motion) &
                & /max(tiny(1.0_wp), norm2(march%last_motion)*norm2(step%state%motion))

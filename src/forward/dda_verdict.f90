@@ -117,10 +117,18 @@ contains
       integer :: answer
       logical :: at_rest, far_beyond_elastic, all_work_is_speed, steady, most_work_is_speed
       logical :: goes_on, is_certain, stores_nothing
-      real(wp) :: far, fall
+      real(wp) :: far, fall, moved
+      integer :: steps
 
       far = settings%collapse_displacement
-      if (settings%current .and. .not. far > 0.0_wp) far = collapse_multiple*march%elastic_motion
+      moved = march%displacement
+      if (settings%current .and. .not. far > 0.0_wp) then
+         far = collapse_multiple*march%elastic_motion
+         moved = march%moved
+         ! on a path blocks may leap to another rest
+         if (march%begun > 0) far = max(far, march%allowed_motion/settings%max_displacement_ratio)
+      end if
+      steps = march%steps - march%begun
       at_rest = step%residue <= settings%rest_tolerance .and. step%strain_residue <= unstrained
       fall = march%free_acceleration*step%dt**2/2.0_wp
       ! what slides must itself have moved that far, for joints settle in their slips for a while
@@ -140,7 +148,7 @@ contains
       goes_on = settings%collapse_displacement > 0.0_wp &
          & .or. step%acceleration > slowing*march%last_acceleration
       ! where blocks move, a step that comes to rest has only proven the shape it started from
-      if (settings%current) at_rest = at_rest .and. march%steps >= 2 &
+      if (settings%current) at_rest = at_rest .and. steps >= 2 &
          & .and. step%farthest <= max(still*march%displacement, march%resolution, &
          & min(march%rounding, barely*march%displacement))
       answer = verdict%undecided
@@ -149,9 +157,9 @@ contains
       else if (at_rest) then
          answer = verdict%stable
       else if (far > 0.0_wp) then
-         if (march%displacement > far .and. march%steps >= 2 .and. goes_on) &
+         if (moved > far .and. steps >= 2 .and. goes_on) &
             & answer = verdict%collapsed
-      else if (march%steps >= 2 .and. far_beyond_elastic) then
+      else if (steps >= 2 .and. far_beyond_elastic) then
          if (is_certain .and. (all_work_is_speed .or. steady .and. (most_work_is_speed &
             & .or. stores_nothing))) answer = verdict%collapsed
       end if
@@ -167,11 +175,13 @@ contains
    end function slides
 
    !> Farthest that a corner has moved since the beginning
-   pure function largest_displacement(system, current) result(largest)
+   pure function largest_displacement(system, current, since) result(largest)
       !> The blocks
       type(block_system_t), intent(in) :: system
       !> Whether they move
       logical, intent(in) :: current
+      !> The blocks at another time to measure from, where they move
+      type(block_system_t), intent(in), optional :: since
       !> The displacement [m]
       real(wp) :: largest
       real(wp) :: t(2, 6), displacement(2)
@@ -183,6 +193,7 @@ contains
          do v = system%first_vertex(b), system%first_vertex(b + 1) - 1
             if (current) then
                displacement = system%moved(:, v) - system%vertex(:, v)
+               if (present(since)) displacement = system%moved(:, v) - since%moved(:, v)
             else
                t = displacement_matrix(system%vertex(:, v), system%centroid(:, b))
                displacement = matmul(t, system%motion(:, b))

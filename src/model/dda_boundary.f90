@@ -5,7 +5,7 @@ module dda_boundary
    private
 
    public :: boundary_t, held_point_t, history_t, loaded_point_t, measured_point_t
-   public :: constant_history, mean_over, rate_at, records_before, value_at
+   public :: constant_history, led_displacement, mean_over, rate_at, records_before, value_at
 
    !> A vector given at some times, linear between them, constant before the first and after the
    !> last of them; zero if nothing is given
@@ -100,6 +100,18 @@ contains
          value = (1.0_wp - share)*history%value(:, i) + share*history%value(:, i + 1)
       end if
    end function value_at
+
+   !> Displacement of a led point: where its path begins is reached in the second before time zero
+   pure function led_displacement(path, time) result(displacement)
+      !> Its path
+      type(history_t), intent(in) :: path
+      !> The time, not before that second [s]
+      real(wp), intent(in) :: time
+      !> Components along x and y: (2) [m]
+      real(wp) :: displacement(2)
+
+      displacement = min(1.0_wp, 1.0_wp + time)*value_at(path, max(0.0_wp, time))
+   end function led_displacement
 
    !> Mean of a history over a time, so that short pulses bring in their whole impulse
    pure function mean_over(history, start, finish) result(mean)

@@ -23,6 +23,7 @@ module dda_case
    use dda_restart, only : load_restart
    use dda_step_context, only : march_t
    use dda_kinds, only : wp
+   use dda_load_clock, only : has_path, load_clock_t, new_load_clock
    use dda_limerick_decision, only : decide_limerick
    use dda_limerick_search, only : find_limerick_critical
    use dda_mechanism, only : follow_collapse
@@ -254,10 +255,11 @@ contains
    end subroutine share_told_forces
 
    !> Let the pictures of a static run lie evenly on the way of a collapse, until a corner has moved
-   !> a tenth of the radius, or of the size of the blocks
+   !> a tenth of the radius, or of the size of the blocks; or on the path of its histories
    pure subroutine plan_fall(this)
       !> The case, with its scene
       type(case_t), intent(inout) :: this
+      type(load_clock_t) :: clock
       integer :: frames
 
       frames = integer_of(this%deck, "output", "frames")
@@ -265,6 +267,11 @@ contains
       this%album%follow = this%scene%settings%collapse_displacement
       if (.not. this%album%follow > 0.0_wp) this%album%follow = 0.1_wp*scene_size(this)
       this%album%spacing = this%album%follow/real(frames, wp)
+      clock = new_load_clock(this%scene%settings)
+      if (.not. has_path(clock)) return
+      this%album%spacing = scene_size(this)/real(frames, wp)
+      this%album%begin = clock%bend(1)
+      this%album%interval = (clock%bend(size(clock%bend)) - clock%bend(1))/real(frames, wp)
    end subroutine plan_fall
 
    !> Repeat the run nearest to critical that a search has found to fall, else to stand, for its

@@ -3,6 +3,7 @@ module dda_case_rows
    use dda_block_scene, only : lacks_friction
    use dda_case, only : case_t, searched_name
    use dda_case_proof, only : proof_t
+   use dda_case_remarks, only : jump_remark, path_remark
    use dda_contact_detection, only : contacts_t
    use dda_contact_types, only : joint_t
    use dda_critical, only : critical_t
@@ -149,6 +150,10 @@ contains
       associate (outcome => this%decision%outcome)
          row%verdict = verdict_name(outcome%verdict)
          if (allocated(outcome%reason)) remark = outcome%reason
+         if (outcome%has_path) then
+            row%path_time = some_number(outcome%path_time)
+            remark = path_remark(outcome, remark)
+         end if
          if (allocated(this%decision%contacts%joint)) joint_row = &
             & joint_rows(this%decision%contacts, this%scene%joint_angle_deg, this%scene%origin)
          if (outcome%verdict == verdict%collapsed) then
@@ -222,21 +227,6 @@ contains
          end if
       end associate
    end subroutine tell_search
-
-   !> What the user should know of jumps on the loading path
-   pure function jump_remark(critical, before) result(remark)
-      !> What was found
-      type(critical_t), intent(in) :: critical
-      !> What else there is to know
-      character(len=*), intent(in) :: before
-      !> All of it
-      character(len=:), allocatable :: remark
-
-      remark = before
-      if (len(remark) > 0) remark = remark//"; "
-      remark = remark//"jumps on the loading path: "//to_text(critical%jumps)//", the largest " &
-         & //to_text(critical%largest_jump)//" m"
-   end function jump_remark
 
    !> Joints and blocks of the decision nearest to critical that stands, else of that which falls
    pure subroutine tell_nearest(this, joint_row, blocks)

@@ -4,7 +4,7 @@
 !> had before; what it lacks is added until nothing changes, so that its stiffness leaves no trace.
 module dda_fixed_points
    use dda_block_system, only : block_system_t
-   use dda_boundary, only : held_point_t, rate_at, value_at
+   use dda_boundary, only : held_point_t, led_displacement, rate_at
    use dda_deformation, only : displacement_matrix, moved_point, tangent_matrix
    use dda_kinds, only : wp
    use dda_least_squares, only : least_squares
@@ -20,6 +20,9 @@ module dda_fixed_points
 
    !> Columns of which less than this share of the largest is left say nothing new
    real(wp), parameter :: negligible = 1.0e-10_wp
+
+   !> Relative error of a motion's sums
+   real(wp), parameter :: rounded = 16.0_wp*epsilon(1.0_wp)
 
    !> One spring for each direction in which a point of a movable block is held
    type :: fixed_points_t
@@ -79,7 +82,7 @@ contains
       type(block_system_t), intent(in) :: system
       !> Settings of the run
       type(settings_t), intent(in) :: settings
-      !> Time at the beginning of the step [s]
+      !> Time of the paths at the end of the step [s]
       real(wp), intent(in) :: time
       !> Length of the step [s]
       real(wp), intent(in) :: dt
@@ -98,8 +101,8 @@ contains
                place = moved_point(held%point, system%centroid(:, b), system%motion(:, b))
                t = tangent_matrix(place, centre, system%motion(:, b))
             end if
-            path = value_at(held%path, time + dt)
-            rate = rate_at(held%path, time + dt)
+            path = led_displacement(held%path, time)
+            rate = rate_at(held%path, time)
             fixed%row(:, i) = t(axis, :size(fixed%row, 1))
             fixed%target(i) = held%point(axis) + path(axis) - place(axis)
             fixed%rate(i) = rate(axis)
@@ -189,9 +192,9 @@ contains
       type(fixed_points_t), intent(inout) :: fixed
       !> The load of the blocks: (n_dof, n_equation)
       real(wp), intent(inout) :: load(:, :)
-      !> Largest correction [N/m]
+      !> Largest correction, beyond what the rounding of a motion makes of a stiff spring [N/m]
       real(wp), intent(out) :: change
-      real(wp) :: more
+      real(wp) :: more, rounding
       integer :: i
 
       change = 0.0_wp
@@ -200,7 +203,9 @@ contains
             more = fixed%stiffness(i)*(target(i) - dot_product(row, motion(:, e)))
             fixed%force(i) = fixed%force(i) + more
             load(:, e) = load(:, e) + more*row
-            change = max(change, abs(more))
+            rounding = rounded*fixed%stiffness(i) &
+               & *(abs(target(i)) + dot_product(abs(row), abs(motion(:, e))))
+            change = max(change, abs(more) - rounding)
          end associate
       end do
    end subroutine correct_fixed_forces

@@ -15,13 +15,13 @@ module dda_outer_loads
 contains
 
    !> Loads that change with time added to those that do not: their mean over a dynamic step, what
-   !> they are at the end of a static one
+   !> they are at the time of a static one
    pure subroutine outer_loads(system, settings, time, dt, weight, load, felt)
       !> The blocks
       type(block_system_t), intent(in) :: system
       !> Settings of the run
       type(settings_t), intent(in) :: settings
-      !> Time at the beginning of the step [s]
+      !> Time at the beginning of a dynamic step, or of the loads in a static one [s]
       real(wp), intent(in) :: time
       !> Length of the step [s]
       real(wp), intent(in) :: dt
@@ -90,7 +90,7 @@ contains
          if (settings%dynamic) then
             value = mean_over(history, time, time + dt)
          else
-            value = value_at(history, time + dt)
+            value = value_at(history, max(0.0_wp, time))
          end if
       end function now
    end subroutine outer_loads

@@ -1,0 +1,246 @@
+!> One step as a transaction: blocks and contacts change only when it is accepted
+module dda_step
+   use dda_assembly, only : equations_t, renew_springs, take_springs
+   use dda_block_inertia, only : assemble_blocks, turn_masses
+   use dda_block_system, only : block_system_t
+   use dda_block_update, only : update_blocks, update_contacts
+   use dda_contact_detection, only : contacts_t, follow_contacts
+   use dda_contact_transfer, only : renew_contacts
+   use dda_curved_motion, only : follow_curves
+   use dda_energy, only : audit_step
+   use dda_entry, only : refuse_entry
+   use dda_error, only : error_t, fatal_error
+   use dda_impact_time, only : meet_impact
+   use dda_kinds, only : wp
+   use dda_load_clock, only : has_path
+   use dda_multipliers, only : settle_joints
+   use dda_parting, only : judge_parting
+   use dda_settings, only : settings_t
+   use dda_step_context, only : march_t, step_context_t
+   use dda_step_interval, only : judge_step
+   use dda_step_reach, only : first_reach, judge_reach, next_reach, travel_by, travel_of
+   use dda_step_state, only : step_state_t
+   use dda_velocity, only : settle_velocities, stiffen_contacts
+   use dda_verdict, only : measure_step
+   implicit none
+   private
+
+   public :: advance, begin_step
+
+   !> Most cuts of one step's length
+   integer, parameter :: max_retries = 40
+
+contains
+
+   !> One step: blocks and contacts change only when it is accepted
+   pure subroutine advance(settings, system, contacts, equations, march, step, error)
+      !> Settings of the run
+      type(settings_t), intent(in) :: settings
+      !> The blocks
+      type(block_system_t), intent(inout) :: system
+      !> The contacts
+      type(contacts_t), intent(inout) :: contacts
+      !> The equations
+      type(equations_t), intent(inout) :: equations
+      !> What is carried from step to step
+      type(march_t), intent(inout) :: march
+      !> The step
+      type(step_context_t), intent(inout) :: step
+      !> Allocated if no step, however short, settles
+      type(error_t), allocatable, intent(inout) :: error
+      type(contacts_t), allocatable :: kept
+      real(wp) :: travel(2, size(system%vertex, 2))
+      integer :: choices, retry
+      logical :: again, in_time, widened
+
+      in_time = settings%dynamic .and. settings%current
+      widened = settings%current
+      contacts%remember = .not. in_time
+      if (settings%current) call turn_masses(system, equations)
+      step%was_cut = .false.
+      step%accepted = .false.
+      choices = 0
+      travel = 0.0_wp
+      if (contacts%searched .and. settings%current) travel = travel_of(system, settings, march)
+      if (contacts%searched .and. widened .and. .not. in_time) kept = contacts
+      do retry = 0, max_retries
+         if (widened) call place_contacts(settings, system, travel, kept, march, contacts, &
+            & equations)
+         widened = .false.
+         again = .false.
+         call find_motion(settings, system, in_time, contacts, equations, march, step)
+         if (contacts%searched .and. settings%current) &
+            & call judge_reach(system, contacts, march, step, widened)
+         if (march%clock%tries .and. .not. (step%accepted .or. widened)) return
+         if (step%accepted .and. in_time) &
+            & call settle_impacts(settings, system, contacts, equations, choices, march, step, &
+            & again)
+         if (step%accepted) exit
+         widened = widened .or. again
+         if (again) travel = travel_by(system, step%state%motion)
+      end do
+      if (.not. step%accepted) then
+         call fatal_error(error, "the open-close loop settles at no length of the step")
+         return
+      end if
+      call commit(settings, system, contacts, equations, march, step)
+   end subroutine advance
+
+   !> Carry an accepted step over
+   pure subroutine commit(settings, system, contacts, equations, march, step)
+      !> Settings of the run
+      type(settings_t), intent(in) :: settings
+      !> The blocks
+      type(block_system_t), intent(inout) :: system
+      !> The contacts
+      type(contacts_t), intent(inout) :: contacts
+      !> The equations
+      type(equations_t), intent(in) :: equations
+      !> What is carried from step to step
+      type(march_t), intent(inout) :: march
+      !> The step, measured
+      type(step_context_t), intent(inout) :: step
+      logical :: breaks
+
+      if (contacts%searched) call next_reach(system, step, march)
+      call measure_step(system, contacts%springs, equations, contacts%force, step)
+      call update_contacts(step, settings, contacts, breaks)
+      call update_blocks(step, settings, system)
+      step%whole = .not. breaks
+      march%steps = march%steps + 1
+      march%clock%tries = .false.
+      if (.not. has_path(march%clock)) march%time = march%time + step%dt
+      if (settings%dynamic) call audit_step(settings, system, equations, contacts, step, &
+         & march%time, march%energy)
+   end subroutine commit
+
+   !> The motion of one try, and whether it is short enough
+   pure subroutine find_motion(settings, system, in_time, contacts, equations, march, step)
+      !> Settings of the run
+      type(settings_t), intent(in) :: settings
+      !> The blocks
+      type(block_system_t), intent(in) :: system
+      !> Whether blocks move in time
+      logical, intent(in) :: in_time
+      !> The contacts
+      type(contacts_t), intent(inout) :: contacts
+      !> The equations
+      type(equations_t), intent(inout) :: equations
+      !> The march; the length of the next try is set
+      type(march_t), intent(inout) :: march
+      !> The step
+      type(step_context_t), intent(inout) :: step
+
+      step%dt = march%dt
+      if (in_time) call stiffen_contacts(system, step%dt, contacts)
+      if (in_time) call take_springs(contacts%springs, equations)
+      call begin_step(contacts, size(equations%weight, 1), size(equations%weight, 2), step%state)
+      call assemble_blocks(system, settings, step%dt, equations, &
+         & merge(march%time, march%clock%now, settings%dynamic))
+      call settle_joints(settings, equations, contacts%springs, step%state)
+      if (in_time .and. step%state%settled) &
+         & call follow_curves(settings, system, contacts, equations, step)
+      march%passes = march%passes + step%state%passes
+      call judge_step(settings, system, march, step)
+   end subroutine find_motion
+
+   !> Velocities after a settled step: cut it if blocks meet in it that rebound, or if the impulses
+   !> do not settle
+   pure subroutine settle_impacts(settings, system, contacts, equations, choices, march, step, &
+      & again)
+      !> Settings of the run
+      type(settings_t), intent(in) :: settings
+      !> The blocks before the step
+      type(block_system_t), intent(in) :: system
+      !> The contacts before the step
+      type(contacts_t), intent(in) :: contacts
+      !> The equations
+      type(equations_t), intent(inout) :: equations
+      !> How often the lines that part blocks were chosen by the motion of the step
+      integer, intent(inout) :: choices
+      !> The march; the length of the next try is set
+      type(march_t), intent(inout) :: march
+      !> The settled step; its velocities are set, and whether it counts
+      type(step_context_t), intent(inout) :: step
+      !> Whether they must be chosen again
+      logical, intent(out) :: again
+
+      again = .false.
+      step%longest = march%longest
+      step%slowest_impact = 2.0_wp*march%free_acceleration*march%longest
+      call meet_impact(settings, system, contacts, equations, march, step)
+      if (step%accepted .and. contacts%searched) &
+         & call judge_parting(settings, system, contacts, choices, march, step, again)
+      if (.not. step%accepted) return
+      call settle_velocities(settings, system, contacts, equations, step)
+      if (step%accepted) then
+         if (contacts%searched) call refuse_entry(settings, system, contacts, march, step)
+      else
+         step%was_cut = .true.
+         march%dt = march%dt/2.0_wp
+      end if
+   end subroutine settle_impacts
+
+   !> Contacts where the blocks are now: those that were given, or those that a search finds
+   pure subroutine place_contacts(settings, system, travel, kept, march, contacts, equations)
+      !> Settings of the run
+      type(settings_t), intent(in) :: settings
+      !> The blocks
+      type(block_system_t), intent(in) :: system
+      !> How the corners are about to move: (2, n_vertex) [m]
+      real(wp), intent(in) :: travel(:, :)
+      !> The contacts at the end of the step before, where a search must not go by an earlier one
+      type(contacts_t), allocatable, intent(in) :: kept
+      !> The march; its reach is set where it was not
+      type(march_t), intent(inout) :: march
+      !> The contacts
+      type(contacts_t), intent(inout) :: contacts
+      !> The equations
+      type(equations_t), intent(inout) :: equations
+      integer, allocatable :: before(:, :)
+
+      if (contacts%searched) then
+         allocate (before, source=contacts%springs%equation)
+         if (allocated(kept)) contacts = kept
+         if (.not. allocated(march%reach)) march%reach = first_reach(system, settings, march)
+         call renew_contacts(system, travel, march%reach, settings%penalty_ratio, &
+            & settings%n_dof, contacts)
+         call renew_springs(before, contacts%springs, equations)
+      else
+         call follow_contacts(system, settings%penalty_ratio, settings%n_dof, contacts)
+         call take_springs(contacts%springs, equations)
+      end if
+   end subroutine place_contacts
+
+   !> The state that a step starts from: the joints as they are, no motion
+   pure subroutine begin_step(contacts, n_dof, n_equation, state)
+      !> The contacts
+      type(contacts_t), intent(in) :: contacts
+      !> Unknowns of one block
+      integer, intent(in) :: n_dof
+      !> Number of movable blocks
+      integer, intent(in) :: n_equation
+      !> The state
+      type(step_state_t), intent(inout) :: state
+      integer :: n
+
+      n = size(contacts%joint)
+      if (.not. allocated(state%motion)) allocate (state%motion(n_dof, n_equation))
+      if (allocated(state%face)) then
+         if (size(state%face) /= n) deallocate (state%increment, state%start, state%trial, &
+            & state%force, state%face, state%cone, state%multiplier)
+      end if
+      if (.not. allocated(state%face)) then
+         allocate (state%increment(3, n), state%start(3, n))
+         allocate (state%trial(3, n), state%force(3, n), state%face(n), state%cone(n))
+         allocate (state%multiplier(3, n))
+      end if
+      state%motion = 0.0_wp
+      state%multiplier = contacts%force
+      state%start = contacts%trial
+      state%face = contacts%face
+      state%cone = contacts%springs%cone
+      state%unsettled_work = 0.0_wp
+      state%passes = 0
+   end subroutine begin_step
+end module dda_step
