@@ -90,10 +90,23 @@ contains
                & felt_share*own(e)))) cycle
          end if
          step%acceleration = max(step%acceleration, acceleration)
-         step%residue = max(step%residue, residue/max(own(e), tiny(residue)))
+         step%residue = max(step%residue, share_of(residue, own(e)))
       end do
       call measure_strain(system, equations, around, step)
    end subroutine measure_balance
+
+   !> Share of a whole that may be nothing
+   elemental real(wp) function share_of(part, whole)
+      !> Its part
+      real(wp), intent(in) :: part
+      !> The whole
+      real(wp), intent(in) :: whole
+
+      share_of = 0.0_wp
+      if (.not. part > 0.0_wp) return
+      share_of = huge(part)
+      if (whole > part*tiny(part)) share_of = part/whole
+   end function share_of
 
    !> How far the strains are from balance: the largest share that their inertia has of all that
    !> strains a block
@@ -117,8 +130,7 @@ contains
          residue = maxval(abs(matmul(equations%mass(4:6, 4:6, e), step%state%motion(4:6, e)))) &
             & *2.0_wp/step%dt**2
          own = maxval(around(4:6, e) + abs(system%stress(:, b))*system%area(b))
-         if (residue > 0.0_wp) step%strain_residue = max(step%strain_residue, &
-            & residue/max(own, tiny(residue)))
+         step%strain_residue = max(step%strain_residue, share_of(residue, own))
       end do
    end subroutine measure_strain
 
