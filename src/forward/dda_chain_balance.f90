@@ -1,13 +1,30 @@
 !> Balance of the forces of a chain: those of all joints follow from three numbers at one of them
 module dda_chain_balance
    use dda_chain, only : chain_t
+   use dda_friction_cone, only : cone_t
    use dda_kinds, only : wp
    implicit none
    private
 
-   public :: sum_loads, joint_force, influence, holds, carry_forces, hold_upright, solve_3
+   public :: cone_of, sum_loads, joint_force, influence, holds, carry_forces, rounding_of_forces
+
+   !> Relative error of a force that is carried from joint to joint
+   real(wp), parameter :: rounding = 4.0_wp*epsilon(1.0_wp)
 
 contains
+
+   !> Bounds of the force of one joint
+   pure function cone_of(chain, j) result(cone)
+      !> The chain
+      type(chain_t), intent(in) :: chain
+      !> Number of the joint
+      integer, intent(in) :: j
+      !> The bounds
+      type(cone_t) :: cone
+
+      cone = cone_t(friction=chain%friction(j), limit=chain%limit(j), &
+         & mirror=chain%keystone .and. j == size(chain%half))
+   end function cone_of
 
    !> Sums of the loads before each joint, or of half a chain, less the sums of those behind it
    pure subroutine sum_loads(chain, load)
@@ -136,50 +153,20 @@ contains
       end do
    end subroutine carry_forces
 
-   !> Take the second of three unknowns out: a smooth plane bears no weight, and stops none
-   pure subroutine hold_upright(slope, curvature)
-      !> First derivatives
-      real(wp), intent(inout) :: slope(3)
-      !> Second derivatives
-      real(wp), intent(inout) :: curvature(3, 3)
+   !> Rounding of forces that are carried from joint to joint
+   pure real(wp) function rounding_of_forces(chain, force) result(noise)
+      !> The chain
+      type(chain_t), intent(in) :: chain
+      !> The forces: (3, n + 1) [N/m]
+      real(wp), intent(in) :: force(:, :)
+      integer :: j
 
-      slope(2) = 0.0_wp
-      curvature(:, 2) = 0.0_wp
-      curvature(2, :) = 0.0_wp
-      curvature(2, 2) = 1.0_wp
-   end subroutine hold_upright
+      noise = 0.0_wp
+      do j = 1, size(force, 2)
+         noise = noise + max(abs(chain%arm(2, 1, j)), abs(chain%arm(2, 2, j))) &
+            & *(abs(force(1, j)) + abs(force(2, j)) + abs(force(3, j)))
+      end do
+      noise = rounding*noise/minval(chain%half)
+   end function rounding_of_forces
 
-   !> Solve three equations with a symmetric matrix that is positive definite, but for directions
-   !> without stiffness, in which nothing moves
-   pure subroutine solve_3(a, b, x)
-      !> The matrix
-      real(wp), intent(in) :: a(3, 3)
-      !> Right-hand side
-      real(wp), intent(in) :: b(3)
-      !> The solution
-      real(wp), intent(out) :: x(3)
-      real(wp) :: r(3), l21, l31, l32
-
-      r(1) = inverse(a(1, 1))
-      l21 = a(2, 1)*r(1)
-      l31 = a(3, 1)*r(1)
-      r(2) = inverse(a(2, 2) - l21*a(2, 1))
-      l32 = (a(3, 2) - l31*a(2, 1))*r(2)
-      r(3) = inverse(a(3, 3) - l31*a(3, 1) - l32*(a(3, 2) - l31*a(2, 1)))
-      x(1) = b(1)
-      x(2) = b(2) - l21*x(1)
-      x(3) = b(3) - l31*x(1) - l32*x(2)
-      x = x*r
-      x(2) = x(2) - l32*x(3)
-      x(1) = x(1) - l21*x(2) - l31*x(3)
-   end subroutine solve_3
-
-   !> One over a number, or 0
-   pure real(wp) function inverse(number)
-      !> The number
-      real(wp), intent(in) :: number
-
-      inverse = 0.0_wp
-      if (abs(number) > tiny(number)) inverse = 1.0_wp/number
-   end function inverse
 end module dda_chain_balance

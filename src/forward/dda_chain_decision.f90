@@ -1,38 +1,28 @@
-!> Does a chain stand: the same march of static steps to the same verdict as for any blocks
+!> Does a chain stand: forces of its joints that balance the loads within their cones prove that it
+!> does, a mechanism on which the loads do work that it does not
 module dda_chain_decision
-   use dda_balance, only : is_felt
    use dda_chain, only : chain_t
-   use dda_chain_state, only : chain_step_t, new_chain_step
-   use dda_chain_step, only : find_opening, go_on, lengthen_step, settle_chain
-   use dda_chain_thrust, only : find_thrust, thrust_faces, thrust_t
+   use dda_chain_balance, only : carry_forces, cone_of, holds, rounding_of_forces
+   use dda_chain_power, only : chain_mechanism_t, chain_power, freeze_mechanism
+   use dda_chain_thrust, only : approach_cones, find_thrust, refine_thrust, thrust_t
    use dda_decision, only : decision_t
+   use dda_friction_cone, only : joint_face_t, project
    use dda_kinds, only : wp
    use dda_settings, only : flow_rule, settings_t
-   use dda_step_context, only : march_t, step_context_t
-   use dda_step_interval, only : longest_static_step
    use dda_verdict, only : verdict
    implicit none
    private
 
    public :: decide_chain
 
-   !> Free fall over elastic motion in a step, where nothing but rest keeps a chain slow
-   real(wp), parameter :: long_fall = 1.0e10_wp
-   !> The same once enough joints open for a mechanism, which rounding resists in long steps of a
-   !> shallow arch
-   real(wp), parameter :: short_fall = 1.0e5_wp
-   !> Most steps; the second is free of what the springs took in the first, and a shallow arch of
-   !> many voussoirs with three hinges comes to rest in some tens
-   integer, parameter :: most_steps = 60
-   !> Chains of as many blocks that are undecided are not asked once more as any blocks: in longer
-   !> steps rounding of a shallow arch would pass for rest or collapse
-   integer, parameter :: many = 100
-   !> Share of the work that is speed where springs take none
-   real(wp), parameter :: all_speed = 0.999_wp
+   !> Forces beyond the cones by less than so many times their rounding prove nothing
+   real(wp), parameter :: doubtful = 4.0_wp
+   !> Joints that fail as much as their neighbours but for this share do so by rounding
+   real(wp), parameter :: tie = 1.0e-6_wp
 
 contains
 
-   !> Decide a chain under the associated flow rule, from rest
+   !> Decide a chain
    pure subroutine decide_chain(settings, chain, decision, decided)
       !> Settings of the run
       type(settings_t), intent(in) :: settings
@@ -40,218 +30,184 @@ contains
       type(chain_t), intent(in) :: chain
       !> The decision, without blocks and springs; of the left half alone if the chain is halved
       type(decision_t), intent(out) :: decision
-      !> Whether it counts: not where a step did not settle, nor where a structure with sliding
-      !> joints stands and Coulomb's law has the last word; undecided if the chain is long
+      !> Whether it counts: not where joints of what stands slide, and Coulomb's law has the last
+      !> word
       logical, intent(out) :: decided
-      type(chain_step_t) :: step
-      type(march_t) :: march
-      type(step_context_t) :: measured
-      real(wp) :: dt
-      integer :: answer
+      type(thrust_t) :: thrust
+      real(wp) :: beyond(3, size(chain%half)), force(3, size(chain%half)), noise, worst
+      real(wp) :: load(3, size(chain%half))
+      integer :: j, passes
 
-      decided = .false.
-      call begin_march(chain, march, step)
-      answer = verdict%undecided
-      do while (march%steps < min(most_steps, settings%max_steps))
-         march%steps = march%steps + 1
-         call settle_chain(chain, step)
-         if (.not. step%settled) return
-         call measure(chain, step, measured)
-         answer = judge(march, measured, can_move(step), settings)
-         if (answer /= verdict%undecided) exit
-         call go_on(chain, step)
-         dt = step_length(chain, march, merge(short_fall, long_fall, can_move(step)))
-         if (abs(dt - step%dt) > 0.0_wp) call lengthen_step(chain, dt, step)
-      end do
-      decided = answer == verdict%collapsed &
-         & .or. answer == verdict%stable .and. (.not. slides(chain, step) &
-         & .or. settings%verdict_flow == flow_rule%associated) &
-         & .or. answer == verdict%undecided .and. size(chain%mass) >= many
-      if (decided) call tell(settings, chain, answer, march, measured, step, decision)
+      call find_thrust(chain, thrust, load)
+      call carry_forces(chain, load, thrust%reaction, force)
+      noise = rounding_of_forces(chain, force)
+      call approach_cones(chain, thrust, noise, force, beyond, passes)
+      worst = maxval(abs(beyond))
+      decided = .true.
+      associate (outcome => decision%outcome, contacts => decision%contacts)
+         allocate (contacts%face(size(chain%half)), contacts%gap(3, size(chain%half)))
+         allocate (contacts%force(3, size(chain%half)))
+         do j = 1, size(chain%half)
+            contacts%force(:, j) = force(:, j) - beyond(:, j)
+            contacts%gap(:, j) = -force(:, j)*(1.0_wp/chain%stiffness(j))
+         end do
+         if (worst > doubtful*noise) then
+            outcome%verdict = verdict%collapsed
+            call show_mechanism(chain, force, beyond, decision)
+            ! slower motions drown in rounding
+            outcome%rest_tolerance = outcome%acceleration_ratio*doubtful*noise/worst
+         else if (worst > noise) then
+            outcome%verdict = verdict%undecided
+            outcome%reason = "the forces lie beyond the joints' limits by no more than rounding"
+         else
+            outcome%verdict = verdict%stable
+            if (settings%verdict_flow == flow_rule%coulomb) &
+               & call see_sliding(chain, load, thrust, noise, contacts%face)
+            decided = all(contacts%face(:size(chain%half) - merge(1, 0, chain%halved))%slip == 0)
+         end if
+         if (chain%free_acceleration > 0.0_wp) outcome%elastic_time &
+            & = sqrt(2.0_wp*thrust%elastic_motion/chain%free_acceleration)
+         outcome%steps = 1
+         outcome%passes = thrust%passes + passes
+      end associate
+      decision%flow = flow_rule%associated
+      decision%halved = chain%halved
+      decision%keystone = chain%keystone
    end subroutine decide_chain
 
-   !> Judge a step. It began in balance but for what falls, so that it has no elastic motion to
-   !> tell from that, as the first steps of any blocks have: what moves so far without a spring that
-   !> takes its work, or as a mechanism, will not be stopped
-   pure integer function judge(march, step, moves, settings)
-      !> The march
-      type(march_t), intent(in) :: march
-      !> The step, measured
-      type(step_context_t), intent(in) :: step
-      !> Whether enough joints open or slide for a mechanism
-      logical, intent(in) :: moves
-      !> Settings of the run
-      type(settings_t), intent(in) :: settings
-      real(wp) :: rest
-      logical :: short
-
-      short = march%free_acceleration*step%dt**2 < 4.0_wp*short_fall*march%elastic_motion
-      judge = verdict%undecided
-      rest = settings%rest_tolerance*march%free_acceleration
-      ! what resists a mechanism is rounding, which must not pass for rest
-      if (moves) rest = rest*min(1.0_wp, step%kinetic/max(step%work, tiny(rest)))
-      if (step%acceleration <= rest) then
-         judge = verdict%stable
-      else if (step%kinetic > all_speed*step%work .and. (moves .or. .not. short)) then
-         judge = verdict%collapsed
-      end if
-   end function judge
-
-   !> Whether more corners open and joints slide than the three motions that close the row again
-   pure logical function can_move(step)
-      !> The step; what slides along a plane of symmetry counts
-      type(chain_step_t), intent(in) :: step
-      integer :: free, j
-
-      free = 0
-      do j = 1, size(step%face)
-         if (step%stuck(j)) cycle
-         free = free + count(step%face(j)%open) + abs(step%face(j)%slip)
-      end do
-      can_move = free > 3
-   end function can_move
-
-   !> Whether a joint slides, not counting a plane of symmetry
-   pure logical function slides(chain, step)
+   !> Faces of the joints of a chain that stands
+   pure subroutine see_sliding(chain, load, thrust, noise, face)
       !> The chain
       type(chain_t), intent(in) :: chain
-      !> The step
-      type(chain_step_t), intent(in) :: step
-
-      slides = any(step%face(:size(step%face) - merge(1, 0, chain%halved))%slip /= 0)
-   end function slides
-
-   !> Scales, first forces, faces and length
-   pure subroutine begin_march(chain, march, step)
-      !> The chain
-      type(chain_t), intent(in) :: chain
-      !> The march
-      type(march_t), intent(out) :: march
-      !> The step
-      type(chain_step_t), intent(out) :: step
-      type(thrust_t) :: thrust
-      real(wp) :: load(3, size(chain%half))
-
-      call new_chain_step(chain, step)
-      call find_thrust(chain, thrust, load)
-      call thrust_faces(chain, load, thrust, step%face, step%start)
-      march%free_acceleration = chain%free_acceleration
-      march%elastic_motion = thrust%elastic_motion
-      call lengthen_step(chain, step_length(chain, march, long_fall), step)
-   end subroutine begin_march
-
-   !> Length of a step [s]
-   pure real(wp) function step_length(chain, march, fall)
-      !> The chain
-      type(chain_t), intent(in) :: chain
-      !> The march
-      type(march_t), intent(in) :: march
-      !> Free fall in the step over elastic motion
-      real(wp), intent(in) :: fall
-
-      step_length = longest_static_step(chain%mean_mass, chain%stiffest)
-      if (march%free_acceleration > 0.0_wp) step_length = min(step_length, &
-         & sqrt(2.0_wp*fall*march%elastic_motion/march%free_acceleration))
-   end function step_length
-
-   !> Acceleration of a settled step, and energies beyond those of the forces at its beginning: of
-   !> a shallow arch these would drown them
-   pure subroutine measure(chain, step, measured)
-      !> The chain
-      type(chain_t), intent(in) :: chain
-      !> The settled step
-      type(chain_step_t), intent(in) :: step
-      !> The measures
-      type(step_context_t), intent(out) :: measured
-      real(wp) :: kinetic, largest, moving, spinning, square, rate
-      integer :: b
-
-      measured%dt = step%dt
-      rate = 2.0_wp/step%dt**2
-      largest = 0.0_wp
-      kinetic = 0.0_wp
-      associate (d => step%motion, mass => chain%mass)
-         do b = 1, size(mass)
-            moving = d(1, b)**2 + d(2, b)**2
-            spinning = chain%inertia(b)*d(3, b)**2/mass(b)
-            kinetic = kinetic + mass(b)*(moving + spinning)
-            ! the sum of both motions, squared
-            square = moving + spinning + 2.0_wp*sqrt(moving*spinning)
-            if (square <= largest) cycle
-            if (is_felt(mass(b), chain%mean_mass, chain%whole_load, rate*sqrt(square))) &
-               & largest = square
-         end do
-      end associate
-      measured%acceleration = rate*sqrt(largest)
-      measured%kinetic = rate*kinetic
-      measured%work = step%work
-      measured%stored = step%work - measured%kinetic
-   end subroutine measure
-
-   !> Tell the end of a march as that of any blocks, without the trial forces, and the openings in
-   !> the last step of a collapse alone
-   pure subroutine tell(settings, chain, answer, march, measured, step, decision)
-      !> Settings of the run
-      type(settings_t), intent(in) :: settings
-      !> The chain
-      type(chain_t), intent(in) :: chain
-      !> One of verdict
-      integer, intent(in) :: answer
-      !> The march
-      type(march_t), intent(in) :: march
-      !> Measures of the last step
-      type(step_context_t), intent(in) :: measured
-      !> The last step; its motion moves on
-      type(chain_step_t), intent(inout) :: step
-      !> The decision
-      type(decision_t), intent(inout) :: decision
+      !> Sums of the loads: (3, n + 1)
+      real(wp), intent(in) :: load(:, :)
+      !> The forces
+      type(thrust_t), intent(inout) :: thrust
+      !> Their rounding [N/m]
+      real(wp), intent(in) :: noise
+      !> The faces: (n + 1)
+      type(joint_face_t), intent(out) :: face(:)
+      type(joint_face_t) :: failing
+      real(wp) :: admissible(3), force(3, size(face))
       integer :: j
 
-      decision%flow = flow_rule%associated
-      associate (outcome => decision%outcome, contacts => decision%contacts)
-         outcome%verdict = answer
-         if (answer == verdict%undecided) outcome%reason = &
-            & "all steps are spent and neither rest nor collapse is proven"
-         outcome%rest_tolerance = settings%rest_tolerance
-         outcome%acceleration_ratio = measured%acceleration/march%free_acceleration
-         outcome%elastic_time = sqrt(2.0_wp*march%elastic_motion/march%free_acceleration)
-         outcome%steps = march%steps
-         outcome%passes = step%passes
-         outcome%factorisations = step%factorisations
-         decision%halved = chain%halved
-         decision%keystone = chain%keystone
-         call move_alloc(step%face, contacts%face)
-         call move_alloc(step%force, contacts%force)
-         allocate (contacts%gap(3, size(chain%half)))
-         do j = 1, size(chain%half)
-            contacts%gap(:, j) = -step%trial(:, j)/chain%stiffness(j)
-         end do
-         if (answer == verdict%collapsed) call tell_openings(chain, step%motion, contacts%increment)
-         call move_alloc(step%motion, outcome%motion)
-      end associate
-   end subroutine tell
+      if (all(chain%limit > 0.0_wp)) return
+      call refine_thrust(chain, load, thrust)
+      call carry_forces(chain, load, thrust%reaction, force)
+      do j = 1, size(face)
+         if (holds(chain, force(:, j), j)) cycle
+         call project(cone_of(chain, j), force(:, j), admissible, failing)
+         if (maxval(abs(force(:, j) - admissible)) > noise) face(j) = failing
+      end do
+   end subroutine see_sliding
 
-   !> Openings and slips of all joints in a step
-   pure subroutine tell_openings(chain, motion, opening)
+   !> Faces, openings and motion of a collapse, and its largest acceleration over that of free fall
+   pure subroutine show_mechanism(chain, force, beyond, decision)
       !> The chain
       type(chain_t), intent(in) :: chain
-      !> Motion of the blocks: (3, n) [m, m, 1]
-      real(wp), intent(in) :: motion(:, :)
-      !> The openings: (3, n + 1) [m]
-      real(wp), allocatable, intent(out) :: opening(:, :)
-      real(wp) :: before(3), behind(3), normal, turn
-      integer :: j, n
+      !> Forces in balance with the loads: (3, n + 1) [N/m]
+      real(wp), intent(in) :: force(:, :)
+      !> The part of each that its cone does not let pass: (3, n + 1) [N/m]
+      real(wp), intent(in) :: beyond(:, :)
+      !> Receives them
+      type(decision_t), intent(inout) :: decision
+      real(wp) :: admissible(3), fastest, inertia, power, spinning, speed
+      integer :: b, j, n
 
-      n = size(motion, 2)
-      allocate (opening(3, n + 1))
-      before = 0.0_wp
+      n = size(chain%mass)
+      allocate (decision%contacts%increment(3, n + 1))
       do j = 1, n + 1
-         behind = 0.0_wp
-         if (j <= n) behind = motion(:, j)
-         call find_opening(chain, j, before, behind, normal, turn, opening(3, j))
-         opening(1, j) = normal + turn
-         opening(2, j) = normal - turn
-         before = behind
+         if (.not. holds(chain, force(:, j), j)) &
+            & call project(cone_of(chain, j), force(:, j), admissible, decision%contacts%face(j))
+         decision%contacts%increment(:, j) = -beyond(:, j)/chain%stiffness(j)
       end do
-   end subroutine tell_openings
+      power = -sum(force*decision%contacts%increment)
+      call concentrate(chain, beyond, decision%contacts%face, decision%contacts%increment, power)
+      call move_blocks(chain, decision%contacts%increment, decision%outcome%motion)
+      inertia = 0.0_wp
+      fastest = 0.0_wp
+      associate (d => decision%outcome%motion)
+         do b = 1, n
+            speed = norm2(d(1:2, b))
+            spinning = sqrt(chain%inertia(b)/chain%mass(b))*abs(d(3, b))
+            inertia = inertia + chain%mass(b)*(speed**2 + spinning**2)
+            fastest = max(fastest, speed + spinning)
+         end do
+      end associate
+      decision%outcome%acceleration_ratio = power*fastest/(inertia*chain%free_acceleration)
+   end subroutine show_mechanism
+
+   !> Let only those joints open that fail more than their neighbours, where that is a mechanism: a
+   !> structure opens joint by joint
+   pure subroutine concentrate(chain, beyond, face, opening, power)
+      !> The chain
+      type(chain_t), intent(in) :: chain
+      !> The part of the forces that the cones do not let pass: (3, n + 1) [N/m]
+      real(wp), intent(in) :: beyond(:, :)
+      !> The faces: (n + 1)
+      type(joint_face_t), intent(inout) :: face(:)
+      !> Opening 1, opening 2 and slip of each joint: (3, n + 1) [m]
+      real(wp), intent(inout) :: opening(:, :)
+      !> Power of the loads on them
+      real(wp), intent(inout) :: power
+      type(chain_mechanism_t) :: mechanism
+      type(joint_face_t) :: admissible_face, few(size(face))
+      real(wp) :: admissible(3), gap(0:size(face) + 1), all_power, noise
+      integer :: i, j
+      logical :: usable
+
+      gap = 0.0_wp
+      do j = 1, size(face)
+         gap(j) = sum(beyond(:, j)**2)
+      end do
+      do j = 1, size(face)
+         if (gap(j) > 0.0_wp .and. gap(j) >= (1.0_wp - tie)*max(gap(j - 1), gap(j + 1))) &
+            & few(j) = face(j)
+      end do
+      call freeze_mechanism(chain, few, mechanism)
+      call chain_power(mechanism, chain, all_power, noise, usable)
+      if (.not. (usable .and. all_power > noise)) return
+      do i = 1, size(mechanism%joint)
+         j = mechanism%joint(i)
+         call project(cone_of(chain, j), -mechanism%opening(:, i), admissible, admissible_face)
+         if (maxval(abs(admissible)) > tie) return
+      end do
+      face = few
+      opening = 0.0_wp
+      opening(:, mechanism%joint) = mechanism%opening
+      power = all_power*chain%mean_mass*real(size(chain%mass), wp)
+   end subroutine concentrate
+
+   !> Motion of the blocks from the left springing on, one joint after the other; the last joint
+   !> gets the openings that close the row
+   pure subroutine move_blocks(chain, opening, motion)
+      !> The chain
+      type(chain_t), intent(in) :: chain
+      !> Opening 1, opening 2 and slip of each joint; those of the last are set: (3, n + 1) [m]
+      real(wp), intent(inout) :: opening(:, :)
+      !> The motion: (3, n) [m, m, 1]
+      real(wp), allocatable, intent(out) :: motion(:, :)
+      real(wp) :: before(3), change(2), t(2), turn
+      integer :: b, n
+
+      n = size(chain%mass)
+      allocate (motion(3, n))
+      before = 0.0_wp
+      do b = 1, n
+         t = chain%tangent(:, b)
+         turn = before(3) + (opening(1, b) - opening(2, b))/(2.0_wp*chain%half(b))
+         ! along the normal (t2, -t1) and along the tangent
+         change = [(opening(1, b) + opening(2, b))/2.0_wp, opening(3, b)] &
+            & - chain%arm(:, 2, b)*turn + chain%arm(:, 1, b)*before(3)
+         motion(1, b) = before(1) + t(2)*change(1) + t(1)*change(2)
+         motion(2, b) = before(2) - t(1)*change(1) + t(2)*change(2)
+         motion(3, b) = turn
+         before = motion(:, b)
+      end do
+      t = chain%tangent(:, n + 1)
+      change(1) = t(1)*before(2) - t(2)*before(1) - chain%arm(1, 1, n + 1)*before(3)
+      change(2) = -dot_product(t, before(1:2)) - chain%arm(2, 1, n + 1)*before(3)
+      turn = -chain%half(n + 1)*before(3)
+      opening(:, n + 1) = [change(1) + turn, change(1) - turn, change(2)]
+   end subroutine move_blocks
 end module dda_chain_decision

@@ -5,10 +5,10 @@
 !> work on its openings as the loads do on the blocks between.
 module dda_chain_power
    use dda_chain, only : chain_t
-   use dda_chain_balance, only : carry_forces, hold_upright, influence, joint_force, solve_3, &
-      & sum_loads
+   use dda_chain_balance, only : carry_forces, influence, joint_force, rounding_of_forces, sum_loads
    use dda_friction_cone, only : apply_face, cone_t, is_stuck, joint_face_t
    use dda_kinds, only : wp
+   use dda_three_unknowns, only : hold_upright, solve_3
    implicit none
    private
 
@@ -24,23 +24,18 @@ module dda_chain_power
       real(wp), allocatable :: opening(:, :)
    end type chain_mechanism_t
 
-   !> Relative error of a force that is carried from joint to joint
-   real(wp), parameter :: rounding = 4.0_wp*epsilon(1.0_wp)
-
 contains
 
-   !> Freeze the joints of a collapse
-   pure subroutine freeze_mechanism(chain, face, increment, mechanism)
+   !> Freeze the joints of a collapse. Their openings are what the forces that least hinder it leave
+   pure subroutine freeze_mechanism(chain, face, mechanism)
       !> The chain that falls
       type(chain_t), intent(in) :: chain
       !> Faces of its joints: (n + 1)
       type(joint_face_t), intent(in) :: face(:)
-      !> Opening at the two corners and slip in the last step: (3, n + 1) [m]
-      real(wp), intent(in) :: increment(:, :)
       !> The mechanism
       type(chain_mechanism_t), intent(out) :: mechanism
       type(joint_face_t) :: held(size(face))
-      real(wp) :: tangent(3, 3), constant(3)
+      real(wp) :: tangent(3, 3), constant(3), force(3, size(face)), carried
       integer :: i, j, k, m
 
       held = face
@@ -58,9 +53,13 @@ contains
          do k = 1, 3
             mechanism%free(k, k, i) = 1.0_wp - tangent(k, k)
          end do
-         mechanism%opening(:, i) = matmul(mechanism%free(:, :, i), increment(:, j))
       end do
-      if (m > 0) mechanism%opening = mechanism%opening/maxval(abs(mechanism%opening))
+      if (m == 0) return
+      call find_forces(mechanism, chain, force, carried)
+      do i = 1, m
+         mechanism%opening(:, i) = -matmul(mechanism%free(:, :, i), force(:, mechanism%joint(i)))
+      end do
+      mechanism%opening = mechanism%opening/max(maxval(abs(mechanism%opening)), tiny(1.0_wp))
    end subroutine freeze_mechanism
 
    !> Power of the loads on a frozen mechanism: that of any forces in balance with them, on its
@@ -78,14 +77,37 @@ contains
       real(wp), intent(out) :: noise
       !> Whether there is a mechanism
       logical, intent(out) :: usable
-      real(wp) :: load(3, size(chain%half)), force(3, size(chain%half)), reaction(3), change(3)
-      real(wp) :: carried, mass
+      real(wp) :: carried, force(3, size(chain%half)), mass
       integer :: i, j
 
       power = 0.0_wp
       noise = 0.0_wp
       usable = size(mechanism%joint) > 0
       if (.not. usable) return
+      call find_forces(mechanism, chain, force, carried)
+      do i = 1, size(mechanism%joint)
+         j = mechanism%joint(i)
+         power = power - dot_product(mechanism%opening(:, i), force(:, j))
+         noise = noise + sum(abs(mechanism%opening(:, i)))*carried
+      end do
+      mass = chain%mean_mass*real(size(chain%mass), wp)
+      power = power/mass
+      noise = noise/mass
+   end subroutine chain_power
+
+   !> Forces in balance with the loads that least hinder a mechanism
+   pure subroutine find_forces(mechanism, chain, force, noise)
+      !> The mechanism
+      type(chain_mechanism_t), intent(in) :: mechanism
+      !> The chain
+      type(chain_t), intent(in) :: chain
+      !> Forces of its joints; of the others not to the last digit: (3, n + 1) [N/m]
+      real(wp), intent(out) :: force(:, :)
+      !> What rounding makes of one [N/m]
+      real(wp), intent(out) :: noise
+      real(wp) :: load(3, size(force, 2)), reaction(3), change(3)
+      integer :: i, j
+
       call sum_loads(chain, load)
       reaction = 0.0_wp
       do i = 1, size(mechanism%joint)
@@ -94,21 +116,13 @@ contains
       end do
       call find_reaction(mechanism, chain, force, reaction)
       call carry_forces(chain, load, reaction, force)
+      noise = rounding_of_forces(chain, force)
       call find_reaction(mechanism, chain, force, change)
-      carried = 0.0_wp
-      do j = 1, size(chain%half)
-         carried = carried + maxval(abs(chain%arm(2, :, j)))*sum(abs(force(:, j)))
-      end do
       do i = 1, size(mechanism%joint)
          j = mechanism%joint(i)
          force(:, j) = force(:, j) + matmul(influence(chain, j), change)
-         power = power - dot_product(mechanism%opening(:, i), force(:, j))
-         noise = noise + sum(abs(mechanism%opening(:, i)))*carried/chain%half(j)
       end do
-      mass = chain%mean_mass*real(size(chain%mass), wp)
-      power = power/mass
-      noise = rounding*noise/mass
-   end subroutine chain_power
+   end subroutine find_forces
 
    !> Change of the unknowns that brings the forces nearest to what the open joints let pass
    pure subroutine find_reaction(mechanism, chain, force, change)

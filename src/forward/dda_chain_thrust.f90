@@ -1,25 +1,22 @@
-!> Where to begin with the forces and faces of a chain: the forces of all joints follow from three
-!> unknowns by equilibrium alone
+!> The forces of a chain: those of all joints follow from three unknowns by equilibrium alone
 !>
 !> Sought are the forces in balance with the loads that lie nearest to the friction cones,
 !>
 !>    sum over the joints of (share |y|**2 + |z - y|**2)/(2p) = least,   y = Proj_C(z)
 !>
-!> by Newton's method. Where forces inside the cones exist, these are nearly the springs' own, and
-!> z - y is what opens; where none exist, z - y is a mechanism (Farkas). Only joints that fail more
-!> than their neighbours open in the end: a structure opens joint by joint. Newton's method decides
-!> nothing: it says where the steps begin.
+!> by Newton's method: an open-close loop in three unknowns. Where forces inside the cones exist,
+!> these are the springs' own; where none exist, z - y is a mechanism (the lemma of Farkas). The
+!> last passes do without the share, and tell the one from the other to the last digits.
 module dda_chain_thrust
    use dda_chain, only : chain_t
-   use dda_chain_balance, only : carry_forces, hold_upright, holds, influence, joint_force, &
-      & solve_3, sum_loads
-   use dda_chain_stiffness, only : cone_of
+   use dda_chain_balance, only : cone_of, holds, influence, joint_force, sum_loads
    use dda_friction_cone, only : apply_face, cone_t, joint_face_t, project
    use dda_kinds, only : wp
+   use dda_three_unknowns, only : energy_t, hold_upright, is_better, solve_3, try_between
    implicit none
    private
 
-   public :: thrust_t, find_thrust, thrust_faces
+   public :: thrust_t, find_thrust, refine_thrust, approach_cones
 
    !> The forces, and what they show
    type :: thrust_t
@@ -28,19 +25,11 @@ module dda_chain_thrust
       real(wp) :: reaction(3) = 0.0_wp
       !> Mean motion along the loads if no joint could open: the scale of elastic motion [m]
       real(wp) :: elastic_motion = 0.0_wp
+      !> Second derivatives of the springs' energy if no joint could open
+      real(wp) :: curvature(3, 3) = 0.0_wp
       !> Passes of Newton's method
       integer :: passes = 0
    end type thrust_t
-
-   !> A function of the three unknowns: its value with its first and second derivatives
-   type :: energy_t
-      !> Value
-      real(wp) :: value = 0.0_wp
-      !> First derivatives
-      real(wp) :: slope(3) = 0.0_wp
-      !> Second derivatives
-      real(wp) :: curvature(3, 3) = 0.0_wp
-   end type energy_t
 
    !> Share of the forces inside the cones; the smaller, the sharper is the answer
    real(wp), parameter :: share = 1.0e-8_wp
@@ -48,14 +37,14 @@ module dda_chain_thrust
    integer, parameter :: max_passes = 40
    !> Share of the function below which it does not fall noticeably
    real(wp), parameter :: little = 1.0e-9_wp
-   !> Share of the fall that a straight line promises which counts as a fall
-   real(wp), parameter :: barely = 1.0e-4_wp
-   !> Relative error that rounding makes of the function
-   real(wp), parameter :: rounding = 1.0e-11_wp
+   !> The same where the last digit counts
+   real(wp), parameter :: exactly = 1.0e-20_wp
+   !> Share of the springs' stiffness that keeps what nothing resists from moving far
+   real(wp), parameter :: weak = 1.0e-12_wp
    !> Chains of more joints are first looked at with about as many
    integer, parameter :: coarse = 60
    !> Most places tried along a direction
-   integer, parameter :: max_tries = 10
+   integer, parameter :: max_tries = 20
 
 contains
 
@@ -76,19 +65,37 @@ contains
       allocate (watched, source=[(j, j=1, m - 1, stride), m])
       call sum_loads(chain, load)
       glued = glued_energy(chain, load, watched)
+      thrust%curvature = glued%curvature
       call solve_3(glued%curvature, -glued%slope, thrust%reaction)
       do j = 1, size(watched)
          thrust%elastic_motion = thrust%elastic_motion + sum(joint_force(chain, load, &
             & thrust%reaction, watched(j))**2)/chain%stiffness(watched(j))
       end do
-      thrust%elastic_motion = thrust%elastic_motion*real(m, wp)/real(size(watched), wp) &
-         & /chain%whole_load
+      if (chain%whole_load > 0.0_wp) thrust%elastic_motion = thrust%elastic_motion &
+         & *real(m, wp)/real(size(watched), wp)/chain%whole_load
       glued = energy_t(share*glued%value, share*glued%slope, share*glued%curvature)
       call descend(chain, load, glued, watched, thrust)
       if (stride == 1) return
       watched = around_weak(chain, load, thrust%reaction, stride, watched)
       call descend(chain, load, glued, watched, thrust)
    end subroutine find_thrust
+
+   !> Find the forces by all joints
+   pure subroutine refine_thrust(chain, load, thrust)
+      !> The chain
+      type(chain_t), intent(in) :: chain
+      !> Sums of the loads: (3, n + 1)
+      real(wp), intent(in) :: load(:, :)
+      !> The forces, by some joints
+      type(thrust_t), intent(inout) :: thrust
+      type(energy_t) :: glued
+      integer :: j
+
+      if (size(chain%half) < coarse) return
+      glued = glued_energy(chain, load, [(j, j=1, size(chain%half))])
+      glued = energy_t(share*glued%value, share*glued%slope, share*glued%curvature)
+      call descend(chain, load, glued, [(j, j=1, size(chain%half))], thrust)
+   end subroutine refine_thrust
 
    !> Joints around those that fail, or are nearer to it than their neighbours
    pure function around_weak(chain, load, reaction, stride, coarse) result(around)
@@ -135,7 +142,7 @@ contains
       !> The forces
       type(thrust_t), intent(inout) :: thrust
       type(energy_t) :: here, there
-      real(wp) :: direction(3), way, fall
+      real(wp) :: bracket(2), direction(3), fall, steepness(2), way
       integer :: pass, try
 
       call find_energy(chain, load, glued, watched, thrust%reaction, here)
@@ -145,29 +152,17 @@ contains
          fall = -dot_product(here%slope, direction)
          if (.not. fall > little*here%value) exit
          way = 1.0_wp
+         bracket = [0.0_wp, 1.0_wp]
+         steepness = [-fall, huge(fall)]
          do try = 1, max_tries
             call find_energy(chain, load, glued, watched, thrust%reaction + way*direction, there)
-            if (there%value <= here%value*(1.0_wp + rounding) - barely*way*fall) exit
-            way = shorter(way, dot_product(there%slope, direction), &
-               & dot_product(direction, matmul(there%curvature, direction)))
+            if (is_better(here, there, direction, fall, way)) exit
+            call try_between(there, direction, bracket, steepness, try, way)
          end do
          thrust%reaction = thrust%reaction + way*direction
          here = there
       end do
    end subroutine descend
-
-   !> Where along a direction to try next: Newton's method on the slope, which rises
-   pure real(wp) function shorter(way, slope, curvature)
-      !> How far was too far
-      real(wp), intent(in) :: way
-      !> Slope there
-      real(wp), intent(in) :: slope
-      !> Its change
-      real(wp), intent(in) :: curvature
-
-      shorter = way/2.0_wp
-      if (slope > 0.0_wp .and. slope < way*curvature) shorter = way - slope/curvature
-   end function shorter
 
    !> The function that is made least, at one place
    pure subroutine find_energy(chain, load, glued, watched, reaction, energy)
@@ -183,9 +178,14 @@ contains
       real(wp), intent(in) :: reaction(3)
       !> The function with its derivatives
       type(energy_t), intent(out) :: energy
-      real(wp) :: slope(3)
+      real(wp) :: beyond(3), force(3), slope(3)
+      integer :: i
 
-      call add_failing(chain, load, watched, reaction, energy)
+      do i = 1, size(watched)
+         force = joint_force(chain, load, reaction, watched(i))
+         if (.not. holds(chain, force, watched(i))) &
+            & call add_failing(chain, force, watched(i), energy, beyond)
+      end do
       slope = matmul(glued%curvature, reaction)
       energy%value = energy%value + glued%value &
          & + dot_product(reaction, glued%slope + slope/2.0_wp)
@@ -232,66 +232,123 @@ contains
       if (chain%halved) call hold_upright(energy%slope, energy%curvature)
    end function glued_energy
 
-   !> Half the squared distance of the forces from the cones, over the stiffness
-   pure subroutine add_failing(chain, load, watched, reaction, energy)
+   !> Half the squared distance of a force from its cone, over the stiffness
+   pure subroutine add_failing(chain, force, j, energy, beyond)
       !> The chain
       type(chain_t), intent(in) :: chain
-      !> Sums of the loads: (3, n + 1)
-      real(wp), intent(in) :: load(:, :)
-      !> The joints that count
-      integer, intent(in) :: watched(:)
-      !> The place
-      real(wp), intent(in) :: reaction(3)
+      !> N1, N2, T [N/m]
+      real(wp), intent(in) :: force(3)
+      !> Number of the joint
+      integer, intent(in) :: j
       !> What it is added to
       type(energy_t), intent(inout) :: energy
+      !> The part of the force that the cone does not let pass [N/m]
+      real(wp), intent(out) :: beyond(3)
       type(cone_t) :: cone
       type(joint_face_t) :: face
-      real(wp) :: force(3), admissible(3), tangent(3, 3), constant(3), g(3, 3), rest(3)
-      integer :: i, j
+      real(wp) :: admissible(3), constant(3), free(3, 3), g(3, 3), give, tangent(3, 3)
+      integer :: c, i
 
-      do i = 1, size(watched)
-         j = watched(i)
-         force = joint_force(chain, load, reaction, j)
-         if (holds(chain, force, j)) cycle
-         cone = cone_of(chain, j)
-         call project(cone, force, admissible, face)
+      cone = cone_of(chain, j)
+      call project(cone, force, admissible, face)
+      g = influence(chain, j)
+      give = 1.0_wp/chain%stiffness(j)
+      beyond = force - admissible
+      energy%value = energy%value + dot_product(beyond, beyond)*(give/2.0_wp)
+      energy%slope = energy%slope + matmul(beyond, g)*give
+      if (face%slip == 0) then
+         do i = 1, 2
+            if (.not. face%open(i)) cycle
+            do c = 1, 3
+               energy%curvature(:, c) = energy%curvature(:, c) + g(i, :)*(g(i, c)*give)
+            end do
+         end do
+      else
          call apply_face(cone, face, tangent, constant)
-         g = influence(chain, j)
-         rest = force - admissible
-         energy%value = energy%value + dot_product(rest, rest)/(2.0_wp*chain%stiffness(j))
-         energy%slope = energy%slope + matmul(rest, g)/chain%stiffness(j)
-         energy%curvature = energy%curvature &
-            & + matmul(transpose(g), g - matmul(tangent, g))/chain%stiffness(j)
-      end do
+         free = g - matmul(tangent, g)
+         energy%curvature = energy%curvature + matmul(transpose(g), free)*give
+      end if
    end subroutine add_failing
 
-   !> Forces of all joints, and faces of those that fail more than their neighbours do
-   pure subroutine thrust_faces(chain, load, thrust, face, force)
+   !> Bring forces in balance as near to the cones as they go. What then lies beyond these is
+   !> rounding where admissible forces exist, and else a mechanism: openings that close the row
+   pure subroutine approach_cones(chain, thrust, noise, force, beyond, passes)
       !> The chain
       type(chain_t), intent(in) :: chain
-      !> Sums of the loads: (3, n + 1)
-      real(wp), intent(in) :: load(:, :)
-      !> The forces
+      !> Where the forces come from
       type(thrust_t), intent(in) :: thrust
-      !> The faces: (n + 1)
-      type(joint_face_t), intent(out) :: face(:)
-      !> The forces N1, N2, T: (3, n + 1) [N/m]
-      real(wp), intent(out) :: force(:, :)
-      type(joint_face_t) :: wanted(size(face))
-      real(wp) :: gap(0:size(face) + 1), admissible(3)
+      !> What counts as rounding [N/m]
+      real(wp), intent(in) :: noise
+      !> N1, N2, T of each joint: (3, n + 1) [N/m]
+      real(wp), intent(inout) :: force(:, :)
+      !> The part of each that its cone does not let pass: (3, n + 1) [N/m]
+      real(wp), intent(out) :: beyond(:, :)
+      !> Passes of Newton's method
+      integer, intent(out) :: passes
+      type(energy_t) :: here, there
+      real(wp) :: bracket(2), direction(3), fall, steepness(2), way
+      real(wp) :: rest(3, size(force, 2)), tried(3, size(force, 2))
+      integer :: try
+      logical :: is_last
+
+      call find_beyond(chain, force, beyond, here)
+      do passes = 0, max_passes
+         if (.not. maxval(abs(beyond)) > noise) exit
+         call solve_3(here%curvature + weak*thrust%curvature, -here%slope, direction)
+         fall = -dot_product(here%slope, direction)
+         if (.not. fall > exactly*here%value) exit
+         way = 1.0_wp
+         bracket = [0.0_wp, 1.0_wp]
+         steepness = [-fall, huge(fall)]
+         do try = 1, max_tries
+            call add_reaction(chain, way*direction, force, tried)
+            call find_beyond(chain, tried, rest, there)
+            if (is_better(here, there, direction, fall, way)) exit
+            call try_between(there, direction, bracket, steepness, try, way)
+         end do
+         is_last = .not. there%value < here%value
+         force = tried
+         beyond = rest
+         here = there
+         ! a step whose fall rounding hides is still nearer
+         if (is_last) exit
+      end do
+   end subroutine approach_cones
+
+   !> Forces of all joints after a change of the unknowns
+   pure subroutine add_reaction(chain, change, before, after)
+      !> The chain
+      type(chain_t), intent(in) :: chain
+      !> The change: (3)
+      real(wp), intent(in) :: change(3)
+      !> Forces: (3, n + 1) [N/m]
+      real(wp), intent(in) :: before(:, :)
+      !> Forces: (3, n + 1) [N/m]
+      real(wp), intent(out) :: after(:, :)
       integer :: j
 
-      gap = 0.0_wp
-      call carry_forces(chain, load, thrust%reaction, force)
-      do j = 1, size(face)
-         if (holds(chain, force(:, j), j)) cycle
-         call project(cone_of(chain, j), force(:, j), admissible, wanted(j))
-         gap(j) = norm2(force(:, j) - admissible)
+      do j = 1, size(before, 2)
+         after(:, j) = before(:, j) + matmul(influence(chain, j), change)
       end do
-      do j = 1, size(face)
-         if (gap(j) > 0.0_wp .and. gap(j) >= (1.0_wp - 1.0e-6_wp)*max(gap(j - 1), gap(j + 1))) &
-            & face(j) = wanted(j)
+   end subroutine add_reaction
+
+   !> What of the forces lies beyond the cones, and half its square over the stiffness
+   pure subroutine find_beyond(chain, force, beyond, energy)
+      !> The chain
+      type(chain_t), intent(in) :: chain
+      !> Forces: (3, n + 1) [N/m]
+      real(wp), intent(in) :: force(:, :)
+      !> The part that the cones do not let pass: (3, n + 1) [N/m]
+      real(wp), intent(out) :: beyond(:, :)
+      !> Its energy
+      type(energy_t), intent(out) :: energy
+      integer :: j
+
+      do j = 1, size(force, 2)
+         beyond(:, j) = 0.0_wp
+         if (.not. holds(chain, force(:, j), j)) &
+            & call add_failing(chain, force(:, j), j, energy, beyond(:, j))
       end do
-      if (chain%halved) face(size(face))%slip = 1
-   end subroutine thrust_faces
+      if (chain%halved) call hold_upright(energy%slope, energy%curvature)
+   end subroutine find_beyond
 end module dda_chain_thrust

@@ -51,28 +51,19 @@ contains
       end associate
    end subroutine unfold
 
-   !> Faces and openings of the left half of a collapse that was decided as a whole
-   pure subroutine fold(chain, decision, face, increment)
+   !> Faces of the left half of a collapse that was decided as a whole
+   pure subroutine fold(chain, decision, face)
       !> Half the chain
       type(chain_t), intent(in) :: chain
       !> The collapse
       type(decision_t), intent(in) :: decision
       !> Faces of its joints: (m)
       type(joint_face_t), allocatable, intent(out) :: face(:)
-      !> Openings and slips: (3, m) [m]
-      real(wp), allocatable, intent(out) :: increment(:, :)
       integer :: m
 
       m = size(chain%half)
-      allocate (face(m), increment(3, m))
-      face = decision%contacts%face(:m)
-      increment = decision%contacts%increment(:, :m)
-      if (chain%keystone) then
-         face(m) = joint_face_t()
-         increment(:, m) = 0.0_wp
-      else
-         increment(:, m) = increment(:, m)/2.0_wp
-      end if
+      allocate (face(m), source=decision%contacts%face(:m))
+      if (chain%keystone) face(m) = joint_face_t()
    end subroutine fold
 
    !> Number of joints that a decision is of, folded or not

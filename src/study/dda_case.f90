@@ -179,6 +179,8 @@ contains
       if (decided) call this%family%link(real_of(this%deck, "arch", "thickness_ratio"), settings, &
          & chain, decided)
       if (decided) call decide_chain(settings, chain, this%decision, decided)
+      ! a chain proves that it falls; how it does is told by all of its blocks
+      if (decided) decided = this%decision%outcome%verdict /= verdict%collapsed
       if (decided) return
       call deck_scene(this%deck, this%scene)
       call plan_fall(this)

@@ -160,15 +160,14 @@ contains
       type(chain_t) :: chain
       type(settings_t) :: settings
       type(joint_face_t), allocatable :: face(:)
-      real(wp), allocatable :: increment(:, :)
 
       associate (contacts => critical%fallen%contacts, outcome => critical%fallen%outcome)
          call family%link(critical%falls, settings, chain, mechanism%linked)
          if (mechanism%linked .and. chain%halved .and. .not. critical%fallen%halved) then
-            call fold(chain, critical%fallen, face, increment)
-            call freeze_mechanism(chain, face, increment, mechanism%chain)
+            call fold(chain, critical%fallen, face)
+            call freeze_mechanism(chain, face, mechanism%chain)
          else if (mechanism%linked) then
-            call freeze_mechanism(chain, contacts%face, contacts%increment, mechanism%chain)
+            call freeze_mechanism(chain, contacts%face, mechanism%chain)
          else
             mechanism%blocks%joint = contacts%joint
             mechanism%blocks%face = contacts%face

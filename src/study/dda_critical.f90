@@ -246,7 +246,8 @@ contains
 
       decision%system = block_system_t()
       decision%contacts%springs = joint_springs_t()
-      if (decision%outcome%verdict == verdict%stable) deallocate (decision%outcome%motion)
+      if (decision%outcome%verdict == verdict%stable .and. allocated(decision%outcome%motion)) &
+         & deallocate (decision%outcome%motion)
    end subroutine shed
 
    !> Where to decide next: just beyond the proposal, then just before it, then inside the bracket
