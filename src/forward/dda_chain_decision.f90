@@ -2,7 +2,8 @@
 !> does, a mechanism on which the loads do work that it does not
 module dda_chain_decision
    use dda_chain, only : chain_t
-   use dda_chain_balance, only : carry_forces, cone_of, holds, rounding_of_forces
+   use dda_chain_balance, only : carry_forces, cone_of, holds, influence, &
+      & rounding_of_forces
    use dda_chain_power, only : chain_mechanism_t, chain_power, freeze_mechanism
    use dda_chain_thrust, only : approach_cones, find_thrust, refine_thrust, thrust_t
    use dda_decision, only : decision_t
@@ -31,7 +32,7 @@ contains
       !> The decision, without blocks and springs; of the left half alone if the chain is halved
       type(decision_t), intent(out) :: decision
       !> Whether it counts: not where joints of what stands slide, and Coulomb's law has the last
-      !> word
+      !> word, nor where the forces have come neither into the cones nor to a mechanism
       logical, intent(out) :: decided
       type(thrust_t) :: thrust
       real(wp) :: beyond(3, size(chain%half)), force(3, size(chain%half)), noise, worst
@@ -51,7 +52,9 @@ contains
             contacts%force(:, j) = force(:, j) - beyond(:, j)
             contacts%gap(:, j) = -force(:, j)*(1.0_wp/chain%stiffness(j))
          end do
-         if (worst > doubtful*noise) then
+         if (worst > noise .and. .not. closes_row(chain, beyond)) then
+            decided = .false.
+         else if (worst > doubtful*noise) then
             outcome%verdict = verdict%collapsed
             call show_mechanism(chain, force, beyond, decision)
             ! slower motions drown in rounding
@@ -74,6 +77,27 @@ contains
       decision%halved = chain%halved
       decision%keystone = chain%keystone
    end subroutine decide_chain
+
+   !> Whether openings close the row again at its end: no forces in balance do work on them
+   pure logical function closes_row(chain, beyond)
+      !> The chain
+      type(chain_t), intent(in) :: chain
+      !> The part of the forces that the cones do not let pass: (3, n + 1) [N/m]
+      real(wp), intent(in) :: beyond(:, :)
+      real(wp) :: g(3, 3), left(3), whole(3)
+      integer :: j
+
+      left = 0.0_wp
+      whole = 0.0_wp
+      do j = 1, size(beyond, 2)
+         if (.not. any(abs(beyond(:, j)) > 0.0_wp)) cycle
+         g = influence(chain, j)/chain%stiffness(j)
+         left = left + matmul(beyond(:, j), g)
+         whole = whole + matmul(abs(beyond(:, j)), abs(g))
+      end do
+      if (chain%halved) left(2) = 0.0_wp
+      closes_row = all(abs(left) <= tie*whole)
+   end function closes_row
 
    !> Faces of the joints of a chain that stands
    pure subroutine see_sliding(chain, load, thrust, noise, face)
