@@ -201,7 +201,8 @@ contains
       character(len=*), intent(in) :: piece
 
       stands = .false.
-      if (first + len(piece) - 1 <= len(text)) stands = text(first:first + len(piece) - 1) == piece
+      if (first >= 1 .and. first + len(piece) - 1 <= len(text)) &
+         & stands = text(first:first + len(piece) - 1) == piece
    end function stands
 
    !> Where the next mark ends; behind the text by one if there is none

@@ -13,8 +13,10 @@ failed.
 import argparse
 import random
 import re
+import resource
 import shlex
 import shutil
+import signal
 import subprocess
 import sys
 import tempfile
@@ -123,13 +125,22 @@ def mutant(rng):
     return text
 
 
+def bounded(words, seconds):
+    """Run a program for so many seconds of the processor: what was done; None for a hang."""
+    limit = int(seconds) + 1
+    try:
+        done = subprocess.run(words, timeout=60 * limit, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
+                              stderr=subprocess.STDOUT, check=False,
+                              preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_CPU, (limit, limit)))
+    except subprocess.TimeoutExpired:
+        return None
+    return None if done.returncode in (-signal.SIGXCPU, -signal.SIGKILL) else done
+
+
 def run(command, decks, timeout):
     """Run the command on decks: exit status (None for a hang) and lines of output."""
-    try:
-        done = subprocess.run(command + [str(deck) for deck in decks], timeout=timeout,
-                              stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
-                              stderr=subprocess.STDOUT, check=False)
-    except subprocess.TimeoutExpired:
+    done = bounded(command + [str(deck) for deck in decks], timeout)
+    if done is None:
         return None, []
     return done.returncode, done.stdout.decode("utf-8", "replace").splitlines()
 
@@ -173,12 +184,11 @@ def run_first_case(program, deck, timeout):
     """What computing the first case of a good deck breaks; empty if all is well."""
     with tempfile.TemporaryDirectory() as folder:
         words = [program, "run", deck, "--cases", "1", "--out", folder, "--quiet"]
-        try:
-            done = subprocess.run(words, timeout=timeout, capture_output=True, check=False)
-        except subprocess.TimeoutExpired:
+        done = bounded(words, timeout)
+        if done is None:
             return "hang of its first case"
-        if done.returncode not in (0, 3) or done.stderr:
-            return f"status {done.returncode} of its first case: {done.stderr[-300:]}"
+        if done.returncode not in (0, 3) or done.stdout:
+            return f"status {done.returncode} of its first case: {done.stdout[-300:]}"
         rows = (Path(folder) / "results.csv").read_bytes().count(b"\n") - 1
         return "" if rows == 1 else f"{rows} rows of its first case"
 
@@ -191,7 +201,7 @@ def main():
     parser.add_argument("--mutants", type=int, default=20000)
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--batch", type=int, default=50, help="decks a call")
-    parser.add_argument("--timeout", type=float, default=10.0, help="seconds a call")
+    parser.add_argument("--timeout", type=float, default=10.0, help="seconds of the processor a call")
     parser.add_argument("--run", metavar="PROGRAM", help="dda, to compute good decks with")
     parser.add_argument("--keep", default="fuzz_failed", help="folder for decks that failed")
     options = parser.parse_args()

@@ -47,7 +47,8 @@ NUMBERS = b"""0 1 -1 2 3 17 0.5 1e-9 1e-300 1e300 1e308 1e309 -1e15 1e15 2e15 99
 inf -inf 1,5 1d3 0x10 1.2.3 1e 3.9999999 0.4999999 5.0000001 1e-16""".split()
 WORDS = b"""< > & / ; " ' <!-- --> <?x?> <![CDATA[ ]]> &amp; &e; &#48; type="1" type="0" type=""
 <Joint> </Joint> <Point/> <Line> </Line> <Geometry> </Geometry> <Analysis> </Analysis> <Boltlist>
-<Bolt> </Bolt> <Holepointlist> numpoints="2" flag="yes" flag="" value="nan" <!DOCTYPE]>
+<Bolt> </Bolt> <Foo/> <Foo> </Foo> <Edgenodedist/>
+distance="&e;" <Holepointlist> numpoints="2" flag="yes" flag="" value="nan" <!DOCTYPE]>
 <!DOCTYPE\x20a[<!ENTITY\x20e\x20"1">]> #!0xDDA-v1.5 \xc3\xa9 \xff \x00 \xef\xbb\xbf xmlns:q=""".split()
 WORDS += [b"\n", b"\r", b"\r\n", b"\t", b" ", b"\n\n"]
 
@@ -206,7 +207,7 @@ def main() -> int:
     parser.add_argument("--mutants", type=int, default=20000)
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--batch", type=int, default=25, help="files a call")
-    parser.add_argument("--timeout", type=float, default=10.0, help="seconds a call")
+    parser.add_argument("--timeout", type=float, default=10.0, help="seconds of the processor a call")
     parser.add_argument("--keep", default="fuzz_failed", help="folder for files that failed")
     options = parser.parse_args()
     rng = random.Random(options.seed)

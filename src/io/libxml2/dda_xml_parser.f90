@@ -3,6 +3,8 @@
 module dda_xml_parser
    use, intrinsic :: iso_c_binding, only : c_associated, c_int, c_loc, &
       & c_null_char, c_null_ptr, c_ptr, c_size_t, c_sizeof
+   use, intrinsic :: ieee_exceptions, only : ieee_all, ieee_get_status, ieee_set_halting_mode, &
+      & ieee_set_status, ieee_status_type
    use dda_error, only : error_t, fatal_error
    use dda_word_list, only : quoted
    use dda_xml_builder, only : add_text, close_element, new_xml_builder, open_element, xml_builder_t
@@ -61,6 +63,10 @@ module dda_xml_parser
    end type xml_error_t
 
    interface
+      !> libxml2: prepare whatever it may need
+      subroutine init_parser() bind(c, name="xmlInitParser")
+      end subroutine init_parser
+
       !> libxml2: parse a text in memory. Its reader would parse in pieces of 512 bytes, and begin
       !> long texts and names anew at each piece
       function read_memory(text, size, url, encoding, options) &
@@ -227,7 +233,7 @@ contains
 
       call new_xml_builder(text, file, builder, error)
       if (allocated(error)) return
-      call reset_error()
+      call begin_parser()
       ! XML allows no blank lines before it, people do
       first = max(1, verify(text, " "//achar(9)//achar(10)))
       kept = text(first:)//c_null_char
@@ -254,6 +260,17 @@ contains
       call move_alloc(builder%tree%element, tree%element)
       tree%n = builder%tree%n
    end subroutine parse_xml
+
+   !> Prepare libxml2, which divides by zero to have a NaN
+   subroutine begin_parser()
+      type(ieee_status_type) :: status
+
+      call ieee_get_status(status)
+      call ieee_set_halting_mode(ieee_all, .false.)
+      call init_parser()
+      call ieee_set_status(status)
+      call reset_error()
+   end subroutine begin_parser
 
    !> Take what the reader stands on
    subroutine take_node(reader, builder)
