@@ -42,7 +42,11 @@ contains
          second(3) = second(3) &
             & + twice*(2.0_wp*(a(1)*a(2) + b(1)*b(2)) + a(1)*b(2) + a(2)*b(1))/24.0_wp
       end do
-      first = first/moments%area
+      if (abs(moments%area) > tiny(1.0_wp)) then
+         first = first/moments%area
+      else  ! what has no area is where it begins
+         first = 0.0_wp
+      end if
       moments%centroid = vertex(:, 1) + first
       moments%second(1:2) = second(1:2) - moments%area*first*first
       moments%second(3) = second(3) - moments%area*first(1)*first(2)
