@@ -4,7 +4,6 @@
 !> forces, and the march; everything else follows from the deck. Each number is checked on reading,
 !> for a check sum does not say who has written it.
 module dda_restart
-   use, intrinsic :: ieee_arithmetic, only : ieee_is_finite
    use, intrinsic :: iso_fortran_env, only : int32, int64
    use dda_block_system, only : block_system_t
    use dda_block_update, only : displaced_blocks
@@ -136,7 +135,7 @@ contains
       if (allocated(error)) return
       fault = ""
       call check_counts(settings, system, contacts, whole, size(number), fault)
-      if (fault == "" .and. .not. all(ieee_is_finite(number))) fault = "numbers that are none"
+      if (fault == "" .and. .not. are_finite(number)) fault = "numbers that are none"
       if (fault == "") call pass_state(.true., whole, number, state)
       if (fault == "") call take_blocks(settings, state, system, fault)
       if (fault == "") call take_march(settings, contacts, state, march, fault)
@@ -149,6 +148,16 @@ contains
       if (fault /= "") call fatal_error(error, "expected the end of a run of these blocks, got "// &
          & trim(fault)//"; make the file anew", file, 1)
    end subroutine load_restart
+
+   !> Whether numbers are neither infinite nor none, told from their bits: a signalling NaN may not
+   !> be touched
+   pure logical function are_finite(number)
+      !> The numbers: (n)
+      real(wp), intent(in) :: number(:)
+      integer(int64), parameter :: all_ones = int(z"7FF0000000000000", int64)
+
+      are_finite = all(iand(transfer(number, [0_int64]), all_ones) /= all_ones)
+   end function are_finite
 
    !> Check that a file is whole and a restart file, whatever its blocks
    subroutine check_restart(file, error)

@@ -75,6 +75,10 @@ def file_of(whole: list[int], number: list[float]) -> bytes:
     return TITLE + body + struct.pack("<q", total)
 
 
+#: A NaN that a processor told to trap does not even compare
+SIGNALLING = struct.pack("<Q", 0x7FF0000000000001)
+
+
 def numbers_of(content: bytes) -> tuple[list[int], list[float]]:
     """Whole numbers and numbers of a file."""
     start = len(TITLE) + 8
@@ -97,7 +101,7 @@ def make_up(rng: random.Random, good: bytes) -> bytes:
         elif kind == 3:
             number[place] *= rng.choice([-1.0, 0.0, 1e3, 1e-3, 1e12, 1e30, 1e150])
         elif kind == 4:
-            number[place] = struct.unpack("<d", rng.randbytes(8))[0]
+            number[place] = struct.unpack("<d", rng.choice([rng.randbytes(8), SIGNALLING]))[0]
         else:  # what belongs elsewhere
             end = min(len(number), place + rng.choice([1, 6, JOINT[1]]))
             number[place:end] = rng.sample(number, end - place)
