@@ -29,6 +29,8 @@ module dda_step
 
    !> Most cuts of one step's length
    integer, parameter :: max_retries = 40
+   !> Shortest step in time: stiffness that grows with its inverse square overflows [s]
+   real(wp), parameter :: shortest_step = 1.0e-40_wp
 
 contains
 
@@ -63,7 +65,9 @@ contains
       travel = 0.0_wp
       if (contacts%searched .and. settings%current) travel = travel_of(system, settings, march)
       if (contacts%searched .and. widened .and. .not. in_time) kept = contacts
+      step%accepted = .false.
       do retry = 0, max_retries
+         if (in_time .and. march%dt < max(shortest_step, spacing(march%time))) exit
          if (widened) call place_contacts(settings, system, travel, kept, march, contacts, &
             & equations)
          widened = .false.

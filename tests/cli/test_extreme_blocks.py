@@ -136,3 +136,22 @@ def test_a_pendulum_keeps_its_period_and_gains_no_energy(
         errors.append(abs(found / exact - 1.0))
     assert errors[1] < 1e-4
     assert math.log2(errors[0] / errors[1]) > 1.8
+
+
+@pytest.mark.parametrize("far", ["1e11", "1e15", "-1e30"])
+def test_a_block_led_farther_than_any_step_goes_is_undecided(tmp_path: Path, far: str) -> None:
+    blocks = BASE + rectangle(0.0, 0.0, 1.0, 1.0) + f"displacement 0.5 0.5 0 {far}\n"
+    (tmp_path / "x.blocks").write_text(blocks)
+    (tmp_path / "x.nml").write_text("&scene kind = 'blocks', geometry = 'x.blocks' /\n"
+                                    "&analysis mode = 'dynamic', geometry = 'current', duration = 0.01 /\n")
+    done = run_dda("run", "x.nml", "--quiet", cwd=tmp_path)
+    assert done.returncode == 3, done.stderr
+    table = (tmp_path / "x" / "results.csv").read_text()
+    assert "undecided" in table and "inf" not in table.lower() and "nan" not in table.lower()
+
+
+def test_a_falling_triangle_with_a_point_led_away_ends(tmp_path: Path) -> None:
+    """Nothing but inertia acts on some of its strains."""
+    blocks = BASE + "block velocity 0 -1 0.5\n2.5 0.5\n3.5 0.5\n3 1.5\ndisplacement 2.499999999 0.5 0 0.001\n"
+    (row,) = run(tmp_path, blocks, "&analysis mode = 'dynamic', geometry = 'current', time_step = 0.001, steps = 6 /")
+    assert row["verdict"] == "completed"
