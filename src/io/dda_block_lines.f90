@@ -7,7 +7,7 @@ module dda_block_lines
    implicit none
    private
 
-   public :: entry_t, line_t, split_line, take_keys, take_numbers, word_size
+   public :: entry_t, line_t, split_line, take_keys, take_numbers, word_size, largest_number
    public :: keep_entry, take_entry, waiting_entry_t
 
    !> Longest word of a line [characters]
@@ -47,6 +47,9 @@ module dda_block_lines
       !> Rows of numbers below it: (3, n_row)
       real(wp), allocatable :: row(:, :)
    end type waiting_entry_t
+
+   !> Largest magnitude of a number, so that neither its square nor what is made of it overflows
+   real(wp), parameter :: largest_number = 1.0e30_wp
 
 contains
 
@@ -143,10 +146,15 @@ contains
       do k = 1, size(number)
          ok = i + k <= line%n
          if (ok) call read_number(trim(line%word(i + k)), number(k), ok)
-         if (ok) cycle
-         call fatal_error(error, "wanted "//to_text(size(number))//" numbers after '" &
-            & //shown(trim(line%word(i)))//"'", line=line%number)
-         return
+         if (.not. ok) then
+            call fatal_error(error, "wanted "//to_text(size(number))//" numbers after '" &
+               & //shown(trim(line%word(i)))//"'", line=line%number)
+         else if (abs(number(k)) > largest_number) then
+            call fatal_error(error, "expected numbers of at most 1e30 in magnitude after '" &
+               & //shown(trim(line%word(i)))//"', got "//to_text(number(k)) &
+               & //"; correct them or change the unit", line=line%number)
+         end if
+         if (allocated(error)) return
       end do
       i = i + size(number) + 1
    end subroutine take_numbers

@@ -1,8 +1,8 @@
 !> Read a file of blocks: polygons, materials, points and what acts on them, one thing a line
 module dda_read_blocks
    use dda_block_input, only : block_plan_t, law_plan_t, material_plan_t, most_materials, new_plan
-   use dda_block_lines, only : entry_t, keep_entry, line_t, split_line, take_keys, take_numbers, &
-      & waiting_entry_t, word_size
+   use dda_block_lines, only : entry_t, keep_entry, largest_number, line_t, split_line, take_keys, &
+      & take_numbers, waiting_entry_t, word_size
    use dda_block_points, only : add_points
    use dda_block_sites, only : site_t, survey
    use dda_check_plan, only : check_overlaps, check_plan
@@ -14,6 +14,7 @@ module dda_read_blocks
    use dda_text, only : read_integer, read_number, to_text
    use dda_warnings, only : warnings_t
    use dda_watch, only : watch_t
+   use dda_word_list, only : largest_coordinate
    implicit none
    private
 
@@ -25,6 +26,8 @@ module dda_read_blocks
    !> Keys that a joint may have
    character(len=word_size), parameter :: law_key(3) = [character(len=word_size) :: &
       & "friction_deg", "cohesion", "tension"]
+   !> Least density, unit weight and Young's modulus, as in decks
+   real(wp), parameter :: least_property = 1.0e-12_wp
    !> Words that begin an entry
    character(len=*), parameter :: entries = "block, material, joint, fix, fix_line, "// &
       & "measure, load, live, displacement, base_acceleration, base_velocity, base_displacement"
@@ -137,6 +140,12 @@ contains
             if (.not. ok) then
                call fatal_error(error, row_wanted(entry)//", found '" &
                   & //shown(trim(line%word(i)))//"'", line=line%number)
+               return
+            else if (abs(value) > merge(largest_coordinate, largest_number, &
+               & entry%n_column == 2)) then
+               call fatal_error(error, row_wanted(entry)//" of at most "//trim(merge("1e15", &
+                  & "1e30", entry%n_column == 2))//" in magnitude, found "//to_text(value) &
+                  & //"; correct it or change the unit", line=line%number)
                return
             end if
             entry%row(i, entry%n_row) = value
@@ -293,9 +302,10 @@ contains
       end if
       call take_keys(line, 3, material_key, material%value, material%given, error)
       if (allocated(error)) return
-      if (any(material%given(:3) .and. .not. material%value(:3) > 0.0_wp)) then
-         call fatal_error(error, "density, unit_weight and young want numbers above 0", &
-            & line=line%number)
+      if (any(material%given(:3) .and. .not. material%value(:3) >= least_property)) then
+         call fatal_error(error, "expected density, unit_weight and young above 0, from 1e-12 " &
+            & //"to 1e30, got "//to_text(minval(material%value(:3), material%given(:3))) &
+            & //"; correct it", line=line%number)
       else if (material%given(4) .and. .not. abs(material%value(4) + 0.25_wp) < 0.75_wp) then
          call fatal_error(error, "poisson wants a number between -1 and 0.5, found " &
             & //to_text(material%value(4)), line=line%number)
