@@ -134,7 +134,7 @@ contains
       tables%at(table%joints)%wanted = flag_of(deck, "output", "joints")
       call name_table(tables%at(table%proof_forces), "/proof_forces.csv", proof_forces_header())
       call name_table(tables%at(table%proof_motion), "/proof_motion.csv", proof_motion_header())
-      tables%at([table%proof_forces, table%proof_motion])%wanted = flag_of(deck, "output", "joints")
+      tables%at([table%proof_forces, table%proof_motion])%wanted = flag_of(deck, "output", "proof")
       tables%at([table%frames, table%frame_joints])%wanted = &
          & integer_of(deck, "output", "frames") > 0
 

@@ -135,6 +135,7 @@ contains
       call turn_to_case(deck, number, case_of_deck, problem)
       call prepare_case(case_of_deck, this)
       this%tells_tables = any(tables%at([table%joints, table%blocks])%wanted)
+      this%proves = tables%at(table%proof_forces)%wanted
    end subroutine prepare
 
    !> The first chosen case behind another one; 0 if there is none

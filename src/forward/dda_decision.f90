@@ -21,6 +21,7 @@ module dda_decision
    private
 
    public :: decision_t, decide, decide_by_steps, follow_coulomb, record_collapse, record_rest
+   public :: share_elastically
 
    !> A decided structure
    type :: decision_t
@@ -123,8 +124,31 @@ contains
       type(decision_t), intent(inout) :: decision
       !> Receives pictures of them
       type(album_t), intent(inout), optional :: album
-      type(settings_t) :: convex
       logical :: shared
+
+      call share_elastically(settings, system, contacts, decision, shared, album)
+      decision%outcome%verdict = verdict%stable
+      if (allocated(decision%outcome%reason)) deallocate (decision%outcome%reason)
+      if (shared) return
+      call record_rest(settings, system, contacts, proof, decision)
+      if (present(album)) call show_end(settings, decision, album)
+   end subroutine share_forces
+
+   !> Share out the forces of what stands as elastic blocks do
+   pure subroutine share_elastically(settings, system, contacts, decision, shared, album)
+      !> Settings of the run
+      type(settings_t), intent(in) :: settings
+      !> The blocks
+      type(block_system_t), intent(in) :: system
+      !> The contacts, with the faces to begin with
+      type(contacts_t), intent(in) :: contacts
+      !> Receives blocks and contacts
+      type(decision_t), intent(inout) :: decision
+      !> Whether that is how they are shared out: not where joints slide under Coulomb friction
+      logical, intent(out) :: shared
+      !> Receives pictures of them
+      type(album_t), intent(inout), optional :: album
+      type(settings_t) :: convex
 
       convex = settings
       convex%flow = flow_rule%associated
@@ -135,12 +159,7 @@ contains
       shared = decision%outcome%verdict == verdict%stable
       if (settings%verdict_flow == flow_rule%coulomb) &
          & shared = shared .and. .not. any(decision%contacts%face%slip /= 0)
-      decision%outcome%verdict = verdict%stable
-      if (allocated(decision%outcome%reason)) deallocate (decision%outcome%reason)
-      if (shared) return
-      call record_rest(settings, system, contacts, proof, decision)
-      if (present(album)) call show_end(convex, decision, album)
-   end subroutine share_forces
+   end subroutine share_elastically
 
    !> Blocks and contacts of what stands, as its proof has them
    pure subroutine record_rest(settings, system, contacts, proof, decision)

@@ -315,6 +315,9 @@ module dda_deck_keys
       key_t(group="output", name="blocks", kind=key_kind%flag, varies=.false., &
             without="up to 100 cases", &
             meaning="Write corners and displacements of the blocks to blocks.csv."), &
+      key_t(group="output", name="proof", kind=key_kind%flag, varies=.false., &
+            without="as joints, for up to 100 cases", &
+            meaning="Prove static verdicts in proof_forces.csv and proof_motion.csv."), &
       key_t(group="output", name="thrust_joint", kind=key_kind%whole, varies=.false., &
             without="the one nearest to the crown of an arch", &
             at_least=1.0_wp, at_most=1.0e7_wp, &

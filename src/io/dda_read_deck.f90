@@ -8,7 +8,7 @@ module dda_read_deck
    use dda_deck_token, only : deck_scan_t, token_kind, token_text, shown
    use dda_deck_scan, only : scan_deck, scan_values
    use dda_deck, only : add_file_mark, deck_t, deck_place_t, parameter_t, new_deck, deck_error, &
-      & file_beside, is_given, text_of, word_of
+      & file_beside, flag_of, is_given, text_of, word_of
    use dda_deck_parameter, only : split_name
    use dda_deck_set, only : put_text
    use dda_deck_entry, only : read_values
@@ -101,6 +101,10 @@ contains
             if (.not. wanted%given) wanted%flag = n_cases(deck) <= few_cases
          end associate
       end do
+      associate (proof => deck%value(key_index("output", "proof")))
+         if (.not. proof%given) proof%flag = n_cases(deck) <= few_cases &
+            & .and. flag_of(deck, "output", "joints")
+      end associate
    end subroutine parse_deck
 
    !> Read one group

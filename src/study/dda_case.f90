@@ -49,6 +49,8 @@ module dda_case
       logical :: searches = .false.
       !> Whether tables of joints or blocks are told, for which a scene is made
       logical :: tells_tables = .true.
+      !> Whether its verdict is proven
+      logical :: proves = .true.
       !> Whether the original's scheme decides
       logical :: limerick = .false.
       !> The scenes of the search
@@ -143,7 +145,7 @@ contains
          & call take_pictures(this)
       call system_clock(finish)
       this%seconds = real(finish - start, wp)/real(rate, wp)
-      if (this%tells_tables .and. .not. (this%limerick .or. allocated(this%error))) &
+      if (this%proves .and. .not. (this%limerick .or. allocated(this%error))) &
          & call prove_case(this)
    end subroutine compute_case
 

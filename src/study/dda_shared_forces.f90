@@ -1,7 +1,7 @@
 !> How elastic blocks share out the joint forces of a structure that was decided with rigid ones
 module dda_shared_forces
    use dda_block_system, only : n_unknown
-   use dda_decision, only : decide, decision_t
+   use dda_decision, only : decide, decision_t, share_elastically
    use dda_joint_springs, only : new_joint_springs
    use dda_kinds, only : wp
    use dda_scene, only : scene_t
@@ -25,6 +25,7 @@ contains
       type(decision_t), intent(inout) :: decision
       type(scene_t) :: elastic
       type(decision_t) :: other
+      logical :: shared
 
       elastic = scene
       elastic%settings%n_dof = n_unknown
@@ -34,7 +35,9 @@ contains
          elastic%contacts%face = decision%contacts%face
          elastic%settings%time_step = long*decision%outcome%elastic_time
       end if
-      call decide(elastic%settings, elastic%system, elastic%contacts, other)
+      call share_elastically(elastic%settings, elastic%system, elastic%contacts, other, &
+         & shared)
+      if (.not. shared) call decide(elastic%settings, elastic%system, elastic%contacts, other)
       if (other%outcome%verdict /= decision%outcome%verdict) return
       decision%contacts = other%contacts
       decision%system = other%system

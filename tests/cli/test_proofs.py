@@ -132,3 +132,19 @@ def test_searches_of_anything_else_are_proven_on_both_sides(tmp_path: Path) -> N
     assert forces and motion
     assert float(forces[0]["value"]) > float(row["critical"]) > float(motion[0]["value"])
     assert float(row["mechanism_power"]) > 0.0
+
+
+@pytest.mark.parametrize(("groups", "written"), [("", True), ("&output proof = .false. /\n", False)], ids=["on", "off"])
+def test_proofs_are_written_unless_the_deck_says_no(tmp_path: Path, groups: str, written: bool) -> None:
+    (row,) = rows(tmp_path, ARCH.format(75, 12, 0.2) + ROUGH + groups, head="")
+    assert (tmp_path / "x" / "proof_forces.csv").exists() is written
+    assert bool(row["imbalance"]) is written
+    assert bool(row["thrust_min"]) is written
+
+
+@pytest.mark.parametrize(("count", "written"), [(100, True), (101, False)])
+def test_proofs_are_written_unasked_for_at_most_100_cases(tmp_path: Path, count: int, written: bool) -> None:
+    sweep = f"&sweep parameter = 'friction_deg', first = 30, last = 60, count = {count} /\n&output joints = .true. /\n"
+    found = rows(tmp_path, ARCH.format(75, 4, 0.2) + sweep, head="")
+    assert len(found) == count
+    assert (tmp_path / "x" / "proof_forces.csv").exists() is written
