@@ -118,6 +118,8 @@ def _check_case(deck: Deck, number: int, tables: dict[str, dict[int, list[Row]]]
             finding.faults.append("figures of a proof without its rows")
         return finding
     of_case = deck.case(number)
+    if result["worst_position"]:
+        of_case.values["vehicle%position"] = [result["worst_position"]]
     for rows, name in ((forces, "forces"), (motion, "motion")):
         if not rows:
             continue

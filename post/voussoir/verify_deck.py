@@ -26,6 +26,7 @@ DEFAULTS: dict[str, str] = {
     "load%horizontal_coefficient": "0",
     "load%load_factor": "1",
     "load%live_horizontal": ".false.",
+    "vehicle%length": "0.3",
 }
 #: Keys without a default
 OTHERS = (
@@ -38,6 +39,9 @@ OTHERS = (
     "live%y",
     "live%fx",
     "live%fy",
+    "vehicle%axles",
+    "vehicle%spacings",
+    "vehicle%position",
     "search%parameter",
 )
 

@@ -44,7 +44,42 @@ def loads_on(deck: Deck, source: Source, blocks: list[Block]) -> np.ndarray:
         _add(force, factor if force.live else 1.0, blocks, load)
     for force in _live_of_deck(deck):
         _add(force, factor, [b for b in blocks if not b.fixed], load)
+    for force in _axles_of_deck(deck, blocks):
+        _add(force, factor, blocks, load)
     return load
+
+
+def _axles_of_deck(deck: Deck, blocks: list[Block]) -> list[PointForce]:
+    """Axles of a vehicle, in pieces between the corners below them."""
+    place = deck.number("vehicle%position") if deck.gives("vehicle%position") else 0.0
+    half = deck.number("vehicle%length") / 2.0
+    forces = []
+    for k, weight in enumerate(deck.numbers("vehicle%axles")):
+        middle = place + sum(deck.numbers("vehicle%spacings")[:k])
+        corners = [float(x) for block in blocks for x in block.corners[:, 0] if abs(x - middle) < half]
+        cuts = sorted([middle - half, *corners, middle + half])
+        for left, right in zip(cuts, cuts[1:]):
+            share = (right - left) / (2.0 * half) if half > 0.0 else 1.0
+            below = _upper(blocks, (left + right) / 2.0)
+            if share > 0.0 and below is not None and not below[0].fixed:
+                point = ((left + right) / 2.0, below[1])
+                forces.append(PointForce(below[0].number, point, (0.0, -share * weight), True))
+    return forces
+
+
+def _upper(blocks: list[Block], x: float) -> tuple[Block, float] | None:
+    """The highest block at a place, and its height there."""
+    found = None
+    for block in blocks:
+        for start, end in zip(block.corners, np.roll(block.corners, -1, axis=0)):
+            if (start[0] - x) * (end[0] - x) > 0.0:
+                continue
+            y = max(start[1], end[1])
+            if start[0] != end[0]:
+                y = start[1] + (x - start[0]) / (end[0] - start[0]) * (end[1] - start[1])
+            if found is None or y > found[1]:
+                found = (block, float(y))
+    return found
 
 
 def _live_of_deck(deck: Deck) -> list[PointForce]:

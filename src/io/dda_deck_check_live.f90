@@ -25,6 +25,8 @@ contains
       logical :: pushed
 
       if (has_group(deck, "live")) call check_lists(deck, searched, error)
+      if (.not. allocated(error) .and. has_group(deck, "vehicle")) &
+         & call check_vehicle(deck, searched, error)
       if (allocated(error)) return
       push = key_index("load", "horizontal_coefficient")
       pushed = searched%key == push .or. abs(deck%value(push)%number) > 0.0_wp
@@ -73,6 +75,52 @@ contains
       end if
       if (len(problem) > 0) call deck_error(error, problem, deck, place)
    end subroutine check_lists
+
+   !> Check the vehicle
+   pure subroutine check_vehicle(deck, searched, error)
+      !> The deck of the case
+      type(deck_t), intent(in) :: deck
+      !> What is searched; key 0 if nothing is
+      type(parameter_t), intent(in) :: searched
+      !> Axles without distances or place, or a mode that has no use for them
+      type(error_t), allocatable, intent(out) :: error
+      character(len=:), allocatable :: problem
+      type(deck_place_t) :: place
+      logical :: worst
+      integer :: n
+
+      place = deck%group(group_index("vehicle"))
+      worst = flag_of(deck, "vehicle", "worst")
+      n = size(list_of(deck, "vehicle", "axles"))
+      problem = ""
+      if (n == 0) then
+         problem = "&vehicle expects axles, got none; give their weights"
+      else if (size(list_of(deck, "vehicle", "spacings")) /= n - 1) then
+         problem = "vehicle%spacings expects one number fewer than there are axles, "// &
+            & to_text(n - 1)//", got "//to_text(size(list_of(deck, "vehicle", "spacings"))) &
+            & //"; give the distances between axles"
+      else if (.not. (is_given(deck, "vehicle", "position") .or. worst &
+         & .or. searched%key == key_index("vehicle", "position"))) then
+         problem = "&vehicle expects a position, got none; give it, or worst = .true."
+      else if (worst .and. is_given(deck, "vehicle", "position")) then
+         problem = "vehicle%worst expects no position, got one; remove one of the two"
+         place = place_of(deck, key_index("vehicle", "position"))
+      else if (word_of(deck, "analysis", "mode") == "limerick") then
+         problem = "&vehicle expects another mode than 'limerick', whose loads are those of "// &
+            & "its files; remove one of the two"
+      else if (worst .and. (searched%key /= key_index("load", "load_factor") &
+         & .or. word_of(deck, "analysis", "mode") /= "static" &
+         & .or. word_of(deck, "analysis", "geometry") /= "reference")) then
+         problem = "vehicle%worst expects a search for load_factor in static reference "// &
+            & "geometry, got none; add &search parameter = 'load_factor'"
+         place = place_of(deck, key_index("vehicle", "worst"))
+      else if (group_of(searched) == "arch") then
+         problem = "&vehicle expects an arch that keeps its shape, but the search changes it; "// &
+            & "sweep the shape"
+         place = place_of(deck, key_index("search", "parameter"))
+      end if
+      if (len(problem) > 0) call deck_error(error, problem, deck, place)
+   end subroutine check_vehicle
 
    !> Group of what is searched; empty if nothing is
    pure function group_of(searched) result(group)

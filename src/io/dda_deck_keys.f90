@@ -92,6 +92,7 @@ module dda_deck_keys
       group_t("joint", "the Mohr-Coulomb law of the joints"), &
       group_t("load", "what acts on the blocks"), &
       group_t("live", "forces on points that the load factor multiplies"), &
+      group_t("vehicle", "axles above the blocks, multiplied by the load factor, too"), &
       group_t("analysis", "how a single case is computed"), &
       group_t("limerick", "the original's scheme: with mode = 'limerick' only"), &
       group_t("search", "looks for the critical value of one parameter"), &
@@ -196,6 +197,22 @@ module dda_deck_keys
       key_t(group="live", name="fy", kind=key_kind%numbers, unit="N/m", &
             without="0 for each force", &
             at_least=-1.0e30_wp, at_most=1.0e30_wp, meaning="Their components upwards.")]
+
+   !> Keys of &vehicle
+   type(key_t), parameter :: vehicle_keys(*) = [ &
+      key_t(group="vehicle", name="axles", kind=key_kind%numbers, unit="N/m", &
+            without="no vehicle", above=0.0_wp, at_most=1.0e30_wp, &
+            meaning="Weight of each axle per metre of depth, a live load."), &
+      key_t(group="vehicle", name="spacings", kind=key_kind%numbers, unit="m", &
+            without="a single axle", above=0.0_wp, at_most=1.0e9_wp, &
+            meaning="Distances between the axles, from the first to the right."), &
+      key_t(group="vehicle", name="length", unit="m", default="0.3", &
+            at_least=0.0_wp, at_most=1.0e9_wp, &
+            meaning="Length over which an axle is spread; 0 for a point."), &
+      key_t(group="vehicle", name="position", unit="m", without="must be given, or worst", &
+            at_least=-1.0e15_wp, at_most=1.0e15_wp, meaning="Where the first axle is, along x."), &
+      key_t(group="vehicle", name="worst", kind=key_kind%flag, default=".false.", &
+            meaning="Whether the position of the least load factor is sought.")]
 
    !> Keys of &analysis
    type(key_t), parameter :: analysis_keys(*) = [ &
@@ -338,7 +355,8 @@ module dda_deck_keys
 
    !> All keys, group by group
    type(key_t), parameter :: deck_key(*) = [scene_keys, arch_keys, material_keys, joint_keys, &
-      load_keys, live_keys, analysis_keys, limerick_keys, search_keys, sweep_keys, output_keys]
+      load_keys, live_keys, vehicle_keys, analysis_keys, limerick_keys, search_keys, &
+      sweep_keys, output_keys]
 
 contains
 

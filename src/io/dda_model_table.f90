@@ -52,7 +52,7 @@ module dda_model_table
       model_t("limerick", "current", all_kinds)]
 
    !> All keys that have real values
-   type(search_t), parameter :: search(9) = [ &
+   type(search_t), parameter :: search(10) = [ &
       search_t("arch", "abutment_size abutment_overhang", "", "arch", &
          "abutments are blocks with mode = 'limerick' alone"), &
       search_t("arch", "", "arch", "arch", "there is no generated arch"), &
@@ -62,6 +62,7 @@ module dda_model_table
       search_t("joint", "", all_kinds, all_kinds), &
       search_t("load", "", all_kinds, all_kinds), &
       search_t("live", "", all_kinds, "", "the original's scheme has no &live"), &
+      search_t("vehicle", "", all_kinds, "", "the original's scheme has no &vehicle"), &
       search_t("analysis", "", "", "", of_the_method), &
       search_t("limerick", "", "", "", of_the_method)]
 

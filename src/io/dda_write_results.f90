@@ -87,6 +87,8 @@ module dda_write_results
       type(number_t) :: thrust_min, thrust_max
       !> Time to which the histories of a static run were followed [s]
       type(number_t) :: path_time
+      !> Where the first axle of a vehicle is worst [m]
+      type(number_t) :: worst_position
       !> Whether the table has a column of condition numbers
       logical :: tells_condition = .false.
       !> Estimated condition number of the last equations
@@ -158,7 +160,7 @@ contains
          & //"relative_error,collapse_mode,sliding_share,intrados_hinge_deg,extrados_hinge_deg," &
          & //"springing_hinge,steps,open_close_iterations,factorisations,seconds,unknowns," &
          & //"exact_low,exact_high,imbalance,law_violation,mechanism_power,safety_thickness," &
-         & //"thrust_min,thrust_max,path_time"
+         & //"thrust_min,thrust_max,path_time,worst_position"
       if (tells_condition) line = line//",condition"
    end function results_header
 
@@ -185,7 +187,7 @@ contains
          & //number_text(row%imbalance)//","//number_text(row%law_violation)//"," &
          & //number_text(row%mechanism_power)//","//number_text(row%safety_thickness)//"," &
          & //number_text(row%thrust_min)//","//number_text(row%thrust_max)//"," &
-         & //number_text(row%path_time)
+         & //number_text(row%path_time)//","//number_text(row%worst_position)
       if (row%tells_condition) line = line//","//number_text(row%condition)
    end function results_line
 

@@ -275,6 +275,7 @@ contains
       if (abs(real_of(deck, "load", "horizontal_coefficient")) > 0.0_wp) &
          & text = text//", load%horizontal_coefficient"
       if (has_group(deck, "live")) text = text//", &live"
+      if (has_group(deck, "vehicle")) text = text//", &vehicle"
       if (is_given(deck, "analysis", "collapse_displacement")) &
          & text = text//", analysis%collapse_displacement"
       if (len(text) > 0) text = text(3:)

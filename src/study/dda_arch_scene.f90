@@ -230,7 +230,7 @@ contains
       own_weight = unit_weight(deck) > 0.0_wp &
          & .and. .not. abs(real_of(deck, "load", "gravity_direction_deg") + 90.0_wp) > 0.0_wp &
          & .and. .not. abs(real_of(deck, "load", "horizontal_coefficient")) > 0.0_wp &
-         & .and. .not. has_group(deck, "live")
+         & .and. .not. (has_group(deck, "live") .or. has_group(deck, "vehicle"))
       no_strength = .not. (real_of(deck, "joint", "cohesion") > 0.0_wp &
          & .or. real_of(deck, "joint", "tension") > 0.0_wp)
       known = own_weight .and. no_strength

@@ -16,6 +16,7 @@ module dda_case
    use dda_deck_check, only : search_bracket
    use dda_deck_parameter, only : find_parameter, parameter_name
    use dda_deck_keys, only : key_index
+   use dda_deck_set, only : put_number
    use dda_deck_scene, only : deck_family_t, deck_scene, new_family
    use dda_error, only : error_t
    use dda_forward, only : outcome_t, run_to_verdict
@@ -32,6 +33,7 @@ module dda_case
    use dda_settings, only : settings_t
    use dda_shared_forces, only : share_forces
    use dda_verdict, only : verdict
+   use dda_worst_position, only : find_worst_position
    implicit none
    private
 
@@ -71,6 +73,8 @@ module dda_case
       type(error_t), allocatable :: error
       !> Pictures of the collapse, or of the way to rest
       type(album_t) :: album
+      !> Whether the vehicle was put where the least load factor is carried
+      logical :: has_worst = .false.
       !> What proves the verdict, where tables are told
       type(proof_t) :: proof
       !> Exact critical thickness ratio
@@ -126,6 +130,7 @@ contains
          if (allocated(this%critical%fallen)) &
             & call this%family%build(this%critical%falls, this%scene, error)
       else if (this%searches) then
+         if (flag_of(this%deck, "vehicle", "worst")) call place_vehicle(this)
          call find_critical(this%family, this%search, this%critical)
          if (allocated(this%critical%fallen)) &
             & call see_collapse(this, this%critical%falls, this%critical%fallen)
@@ -148,6 +153,23 @@ contains
       if (this%proves .and. .not. (this%limerick .or. allocated(this%error))) &
          & call prove_case(this)
    end subroutine compute_case
+
+   !> Put the vehicle where the least load factor is carried
+   pure subroutine place_vehicle(this)
+      !> The case, prepared
+      type(case_t), intent(inout) :: this
+      type(scene_t) :: scene
+      type(error_t), allocatable :: error
+      type(parameter_t) :: position
+      real(wp) :: value
+
+      position%key = key_index("vehicle", "position")
+      call deck_scene(this%deck, scene)
+      call find_worst_position(this%deck, scene, value, this%has_worst)
+      if (.not. this%has_worst) return
+      call put_number(this%deck, position, value, this%deck%value(position%key)%place, error)
+      this%family%deck = this%deck
+   end subroutine place_vehicle
 
    !> Prove the verdict of a case by limit analysis
    pure subroutine prove_case(this)

@@ -56,10 +56,26 @@ contains
       else
          call tell_decision(this, row, joint_row, blocks, remark)
       end if
+      if (this%has_worst) row%worst_position = &
+         & some_number(real_of(this%deck, "vehicle", "position"))
+      if (this%has_worst) remark = position_remark(row%worst_position%value, remark)
       call tell_proof(this%proof, row)
       if (row%verdict == "stable" .and. row%exact%known .and. row%thickness_ratio%known) &
          & row%safety_thickness = some_number(row%thickness_ratio%value/row%exact%value)
    end subroutine tell_case
+
+   !> Where the vehicle was put
+   pure function position_remark(position, before) result(remark)
+      !> The position [m]
+      real(wp), intent(in) :: position
+      !> What else there is to know
+      character(len=*), intent(in) :: before
+      !> All of it
+      character(len=:), allocatable :: remark
+
+      remark = "the least load factor is carried with the first axle at "//to_text(position)//" m"
+      if (len(before) > 0) remark = before//"; "//remark
+   end function position_remark
 
    !> Fill the columns of the proof
    pure subroutine tell_proof(proof, row)

@@ -10,6 +10,7 @@ module dda_live_loads
    use dda_polygon, only : depth_in
    use dda_scene, only : scene_t
    use dda_text, only : to_text
+   use dda_vehicle, only : axle_loads, vehicle_of
    implicit none
    private
 
@@ -20,23 +21,50 @@ module dda_live_loads
 
 contains
 
-   !> Put the forces of &live on the blocks of a scene
+   !> Put the forces of &live and the axles of &vehicle on the blocks of a scene
    pure subroutine add_live_loads(deck, scene)
       !> The deck of the case
       type(deck_t), intent(in) :: deck
       !> The scene; forces in none of its blocks are left out
       type(scene_t), intent(inout) :: scene
-      type(loaded_point_t), allocatable :: loaded(:)
-      real(wp), allocatable :: point(:, :), force(:, :)
-      integer :: b, before, i, n
 
-      if (.not. has_group(deck, "live")) return
-      call live_lists(deck, scene%origin, point, force)
+      if (has_group(deck, "live")) call add_loads(loads_of_live(deck, scene), scene)
+      if (has_group(deck, "vehicle")) &
+         & call add_loads(axle_loads(vehicle_of(deck), scene%system, scene%origin), scene)
+   end subroutine add_live_loads
+
+   !> Add loads to those of a scene
+   pure subroutine add_loads(more, scene)
+      !> The loads
+      type(loaded_point_t), intent(in) :: more(:)
+      !> The scene
+      type(scene_t), intent(inout) :: scene
+      type(loaded_point_t), allocatable :: loaded(:)
+      integer :: before
+
       before = 0
       if (allocated(scene%settings%boundary%loaded)) before = size(scene%settings%boundary%loaded)
-      allocate (loaded(before + size(point, 2)))
+      allocate (loaded(before + size(more)))
       if (before > 0) loaded(:before) = scene%settings%boundary%loaded
-      n = before
+      loaded(before + 1:) = more
+      call move_alloc(loaded, scene%settings%boundary%loaded)
+   end subroutine add_loads
+
+   !> The forces of &live on the blocks of a scene
+   pure function loads_of_live(deck, scene) result(of_live)
+      !> The deck of the case
+      type(deck_t), intent(in) :: deck
+      !> The scene
+      type(scene_t), intent(in) :: scene
+      !> The forces; those in no block are left out: (n)
+      type(loaded_point_t), allocatable :: of_live(:)
+      type(loaded_point_t), allocatable :: loaded(:)
+      real(wp), allocatable :: point(:, :), force(:, :)
+      integer :: b, i, n
+
+      call live_lists(deck, scene%origin, point, force)
+      allocate (loaded(size(point, 2)))
+      n = 0
       do i = 1, size(point, 2)
          b = block_at(scene%system, point(:, i))
          if (b == 0) cycle
@@ -46,9 +74,8 @@ contains
          loaded(n)%force = constant_history(force(:, i))
          loaded(n)%live = .true.
       end do
-      if (allocated(scene%settings%boundary%loaded)) deallocate (scene%settings%boundary%loaded)
-      allocate (scene%settings%boundary%loaded, source=loaded(:n))
-   end subroutine add_live_loads
+      allocate (of_live, source=loaded(:n))
+   end function loads_of_live
 
    !> Points and forces of &live
    pure subroutine live_lists(deck, origin, point, force)
@@ -124,6 +151,14 @@ contains
       real(wp), allocatable :: point(:, :), force(:, :)
       integer :: b, i
 
+      if (has_group(deck, "vehicle") .and. .not. flag_of(deck, "vehicle", "worst")) then
+         if (size(axle_loads(vehicle_of(deck), scene%system, scene%origin)) == 0) then
+            call deck_error(error, "&vehicle expects an axle above a block that moves, got "// &
+               & "none at position "//to_text(real_of(deck, "vehicle", "position"))//"; move it", &
+               & deck, place_of(deck, key_index("vehicle", "position")))
+            return
+         end if
+      end if
       if (.not. has_group(deck, "live")) return
       call live_lists(deck, scene%origin, point, force)
       do i = 1, size(point, 2)
@@ -147,7 +182,8 @@ contains
       !> The deck of the case
       type(deck_t), intent(in) :: deck
 
-      bears_live = has_group(deck, "live") .or. flag_of(deck, "load", "live_horizontal") &
+      bears_live = has_group(deck, "live") .or. has_group(deck, "vehicle") &
+         & .or. flag_of(deck, "load", "live_horizontal") &
          & .and. abs(real_of(deck, "load", "horizontal_coefficient")) > 0.0_wp
       if (allocated(deck%plan%boundary%loaded)) bears_live = bears_live &
          & .or. any(deck%plan%boundary%loaded%live)

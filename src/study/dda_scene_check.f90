@@ -59,11 +59,12 @@ contains
       type(deck_place_t) :: place
       type(deck_t) :: work
       type(scene_t) :: scene
-      logical :: reshaped
+      logical :: points, reshaped
       integer :: number
 
       place = load_factor_place(deck)
-      if (place%line == 0 .and. .not. has_group(deck, "live")) return
+      points = has_group(deck, "live") .or. has_group(deck, "vehicle")
+      if (place%line == 0 .and. .not. points) return
       reshaped = any(deck_key(deck%sweep%parameter%key)%group == "arch")
       do number = 1, n_cases(deck)
          call turn_to_case(deck, number, work, error)
@@ -71,7 +72,7 @@ contains
          if (place%line > 0 .and. .not. bears_live(work)) then
             call deck_error(error, "load%load_factor expects a live load, got none; add "// &
                & "&live, a live line of a file of blocks, or load%live_horizontal", deck, place)
-         else if (has_group(deck, "live")) then
+         else if (points) then
             if (number == 1 .or. reshaped) call deck_scene(work, scene)
             call check_live_points(work, scene, error)
          end if

@@ -115,7 +115,8 @@ contains
 
       plan%row = word_of(deck, "scene", "kind") == "arch" &
          & .and. word_of(deck, "analysis", "mode") == "static" &
-         & .and. .not. (plan%moving .or. plan%strength .or. has_group(deck, "live"))
+         & .and. .not. (plan%moving .or. plan%strength .or. has_group(deck, "live") &
+         & .or. has_group(deck, "vehicle"))
       if (plan%row) plan%row = real_of(deck, "arch", "half_angle_deg") >= shallow_deg
       plan%chain = plan%row .and. plan%unknowns == n_rigid &
          & .and. .not. (flag_of(deck, "output", "condition") &

@@ -162,7 +162,13 @@ def of_the_block(kind: str, mode: str) -> dict[str, Answer]:
         glued = "&joint friction_deg = 0, cohesion = 8e3 /\n"
         fifth = "&load gravity = 10, horizontal_coefficient = 0.2 /\n"
         live = dense + g + rough + "&live x = {}, y = {}, fx = {}, fy = {} /\n"
+        pushed = live.format(0, 2, 15e3, 0) + "&vehicle length = {}, position = {}, axles = {} /\n"
         answers |= {
+            "vehicle%axles(2)": Answer(pushed.format(0, 0.1, "1e-6, 1 spacings = 0.4"), 1e3, 5e4, 20e3),
+            "vehicle%spacings(2)": Answer(
+                pushed.format(0, 0.1, "2*1e-6, 20e3 spacings = 0.1, 0.1"), 0.05, 0.7, 0.3),
+            "vehicle%position": Answer(pushed.format(0.1, 0, "20e3"), 0.1, 0.9, 0.5),
+            "vehicle%length": Answer(pushed.format(0.1, 0.4, "25e3"), 0.1, 0.5, "stable"),
             # moments about the lower corner, with the 20 kNm of the weight
             "live%fx(2)": Answer(live.format("0, 0", "0, 2", "0, 1", "0, 0"), 0, 5e4, 10e3),
             "live%fy(2)": Answer(live.format("0, 0", "2, 2", "12e3, 0", "0, 0"), -1e4, 0, -4e3),
@@ -217,9 +223,16 @@ def of_the_arch(mode: str) -> dict[str, Answer]:
                 f"&joint friction_deg = {math.degrees(math.atan(0.6))!r} /\n"
                 f"&live x = 2*{x}, y = 2*{y}, fy = 0, {{}} /\n")
         factor = float(one["P_over_weight_of_one_arch"])
+        axles = span.split("&live")[0] + "&vehicle length = {}, position = {}, axles = {} /\n"
         answers |= {
             "load%load_factor": Answer(span.format(-weight), 0, 9, factor),
             "live%fy(2)": Answer(span.format(-weight), -9 * weight, 0, -factor * weight),
+            "vehicle%axles(2)": Answer(axles.format(0, float(x) - 0.1, "1e-12, 1 spacings = 0.1"),
+                                       0.5 * weight, 2 * weight, factor * weight),
+            "vehicle%spacings(2)": Answer(
+                axles.format(0, 0, "3*1e-9 spacings = 0.1, 0.1"), 0.05, 0.3, "stable"),
+            "vehicle%position": Answer(axles.format(0.1, 0, "1e-9"), -0.5, 0.5, "stable"),
+            "vehicle%length": Answer(axles.format(0.1, 0, "1e-9"), 0.1, 0.5, "stable"),
             "live%fx(2)": Answer(
                 span.format(-1e-9).replace("fy", "fx = 2*0, fy"), -1e-9, 1e-9, "stable"),
             "live%x(2)": Answer(span.format(-1e-9), float(x) - 0.02, float(x), "stable"),

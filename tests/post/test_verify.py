@@ -43,6 +43,9 @@ DECKS = {
               "&sweep parameter = 'voussoirs', values = 11, 12, linked = .true. /\n",
     "no slip at springings": "&arch half_angle_deg = 70, springing = 'no-slip' /\n&joint friction_deg = 30 /\n"
                              "&load horizontal_coefficient = 0.1 /\n",
+    "vehicle": "&arch half_angle_deg = 60, voussoirs = 15 /\n&search parameter = 'load_factor' /\n"
+               "&vehicle axles = 2e4, 1e4, spacings = 1.5, worst = .true. /\n",
+    "an axle": "&arch half_angle_deg = 60, voussoirs = 15 /\n&vehicle axles = 2e4, length = 0, position = 2.0 /\n",
     "live": HEAD + "&load load_factor = 3.0 /\n",
     "falls": HEAD + "&load load_factor = 30.0, horizontal_coefficient = 0.05 /\n",
     "friction": HEAD + "&load load_factor = 5.0 /\n&search parameter = 'friction_deg' /\n",

@@ -1,0 +1,191 @@
+!> The position of a vehicle at which the least load factor is carried
+!>
+!> While no axle passes from one block to another, the load goes with the position in proportion,
+!> and the inverse of its associated limit is convex in it: of axles that are points the least
+!> factor is at a corner, on one side of it. Axles that are spread are closed in around the least.
+module dda_worst_position
+   use dda_boundary, only : loaded_point_t
+   use dda_deck, only : deck_t
+   use dda_graph_decision, only : decides_as_graph
+   use dda_joint_graph, only : joint_graph_t
+   use dda_kinds, only : wp
+   use dda_limit_load, only : find_limit, limit_load_t, limit_state
+   use dda_load_coefficient, only : full_loads, with_coefficient
+   use dda_scene, only : scene_t, searched_load
+   use dda_scene_graph, only : scene_graph
+   use dda_sort, only : sorted_order
+   use dda_vehicle, only : axle_loads, upper_corners, vehicle_of, vehicle_t
+   implicit none
+   private
+
+   public :: find_worst_position
+
+   !> Relative gap of the limits that are compared
+   real(wp), parameter :: gap = 1.0e-9_wp
+   !> How far beside a corner an axle is on the next block, and how near the least is closed in,
+   !> over the size of all
+   real(wp), parameter :: beside = 1.0e-10_wp, near = 1.0e-6_wp
+
+   !> Positions whose inverse factor is this share of the largest are closed in
+   real(wp), parameter :: promising = 0.9_wp
+
+   !> What the positions have in common
+   type :: bridge_t
+      !> The scene without the vehicle
+      type(scene_t) :: scene
+      !> Its joints
+      type(joint_graph_t) :: graph
+      !> Loads at a factor of zero: (3, n_block) [N/m, N/m, N]
+      real(wp), allocatable :: dead(:, :)
+      !> The vehicle
+      type(vehicle_t) :: vehicle
+      !> All other loads on points: (n)
+      type(loaded_point_t), allocatable :: other(:)
+   end type bridge_t
+
+contains
+
+   !> Find the worst position
+   pure subroutine find_worst_position(deck, scene, position, found)
+      !> The deck of the case
+      type(deck_t), intent(in) :: deck
+      !> Its scene with a vehicle anywhere
+      type(scene_t), intent(in) :: scene
+      !> The position of the first axle [m]
+      real(wp), intent(out) :: position
+      !> Whether any position is bounded
+      logical, intent(out) :: found
+      type(bridge_t) :: bridge
+      real(wp), allocatable :: at(:), inverse(:)
+      real(wp) :: best, size_of_all
+      integer :: k
+
+      position = 0.0_wp
+      found = .false.
+      if (.not. decides_as_graph(scene%settings, scene%contacts)) return
+      bridge%scene = scene
+      bridge%vehicle = vehicle_of(deck)
+      ! those of the vehicle are the last
+      associate (loaded => scene%settings%boundary%loaded, vehicle => bridge%vehicle)
+         allocate (bridge%other, source=loaded(:size(loaded) &
+            & - size(axle_loads(vehicle, scene%system, scene%origin))))
+      end associate
+      call scene_graph(scene%settings, scene%system, scene%contacts, bridge%graph)
+      allocate (bridge%dead, source=full_loads(with_coefficient(scene%settings, &
+         & searched_load%factor, 0.0_wp), scene, bridge%graph))
+      bridge%scene%settings = with_coefficient(scene%settings, searched_load%factor, 1.0_wp)
+      size_of_all = norm2(maxval(scene%system%vertex, dim=2) - minval(scene%system%vertex, dim=2))
+      allocate (at, source=positions(bridge, size_of_all))
+      allocate (inverse(size(at)))
+      do k = 1, size(at)
+         inverse(k) = inverse_factor(bridge, at(k))
+      end do
+      k = maxloc(inverse, dim=1)
+      found = inverse(k) > 0.0_wp
+      if (.not. found) return
+      position = at(k)
+      best = inverse(k)
+      if (.not. bridge%vehicle%length > 0.0_wp) return
+      do k = 1, size(at)
+         if (inverse(k) < promising*maxval(inverse) &
+            & .or. inverse(k) < maxval(inverse(max(1, k - 1):min(size(at), k + 1)))) cycle
+         call close_in(bridge, at(max(1, k - 1)), at(min(size(at), k + 1)), near*size_of_all, &
+            & position, best)
+      end do
+   end subroutine find_worst_position
+
+   !> Positions at which an axle is at a corner, on either side of it; of axles that are spread, an
+   !> end or the middle
+   pure function positions(bridge, size_of_all) result(at)
+      !> The scene and the vehicle
+      type(bridge_t), intent(in) :: bridge
+      !> Size of the scene [m]
+      real(wp), intent(in) :: size_of_all
+      !> The positions, rising: (n) [m]
+      real(wp), allocatable :: at(:)
+      real(wp), allocatable :: corner(:)
+      real(wp) :: shift(3)
+      integer :: i, j, n
+
+      allocate (corner, source=upper_corners(bridge%scene%system) + bridge%scene%origin(1))
+      shift = beside*size_of_all*[-1.0_wp, 0.0_wp, 1.0_wp]
+      if (bridge%vehicle%length > 0.0_wp) &
+         & shift = 0.5_wp*bridge%vehicle%length*[-1.0_wp, 0.0_wp, 1.0_wp]
+      n = 0
+      allocate (at(3*size(corner)*size(bridge%vehicle%axle)))
+      do i = 1, size(bridge%vehicle%axle)
+         do j = 1, 3
+            at(n + 1:n + size(corner)) = corner - bridge%vehicle%offset(i) + shift(j)
+            n = n + size(corner)
+         end do
+      end do
+      at = at(sorted_order(spread(0, 1, n), at))
+   end function positions
+
+   !> Inverse of the associated limit at a position; 0 where there is none
+   pure real(wp) function inverse_factor(bridge, position) result(inverse)
+      !> The scene and the vehicle
+      type(bridge_t), intent(in) :: bridge
+      !> The position [m]
+      real(wp), intent(in) :: position
+      type(vehicle_t) :: vehicle
+      type(scene_t) :: scene
+      type(limit_load_t) :: limit
+      type(loaded_point_t), allocatable :: axles(:)
+      real(wp) :: live(3, bridge%graph%n_block)
+
+      inverse = 0.0_wp
+      vehicle = bridge%vehicle
+      vehicle%position = position
+      scene%system = bridge%scene%system
+      scene%settings = bridge%scene%settings
+      if (allocated(scene%settings%boundary%loaded)) deallocate (scene%settings%boundary%loaded)
+      allocate (axles, source=axle_loads(vehicle, scene%system, bridge%scene%origin))
+      if (size(axles) == 0) return
+      allocate (scene%settings%boundary%loaded(size(bridge%other) + size(axles)))
+      scene%settings%boundary%loaded(:size(bridge%other)) = bridge%other
+      scene%settings%boundary%loaded(size(bridge%other) + 1:) = axles
+      live = full_loads(scene%settings, scene, bridge%graph)
+      scene%settings%load_factor = 0.0_wp
+      live = live - full_loads(scene%settings, scene, bridge%graph)
+      if (.not. maxval(abs(live)) > 0.0_wp) return
+      call find_limit(bridge%graph, bridge%dead, live, gap, limit)
+      if (limit%state == limit_state%found) inverse = 2.0_wp/(limit%lower + limit%upper)
+   end function inverse_factor
+
+   !> Close in around the least factor by golden sections
+   pure subroutine close_in(bridge, left, right, least, position, best)
+      !> The scene and the vehicle
+      type(bridge_t), intent(in) :: bridge
+      !> A position before it [m]
+      real(wp), intent(in) :: left
+      !> A position behind it [m]
+      real(wp), intent(in) :: right
+      !> How near it is to be [m]
+      real(wp), intent(in) :: least
+      !> The position so far; a worse one takes its place [m]
+      real(wp), intent(inout) :: position
+      !> Inverse of its factor
+      real(wp), intent(inout) :: best
+      real(wp), parameter :: golden = 0.5_wp*(sqrt(5.0_wp) - 1.0_wp)
+      real(wp) :: a, b, value(2), x(2)
+      integer :: k
+
+      a = left
+      b = right
+      do while (b - a > least)
+         x = [b - golden*(b - a), a + golden*(b - a)]
+         do k = 1, 2
+            value(k) = inverse_factor(bridge, x(k))
+            if (.not. value(k) > best) cycle
+            best = value(k)
+            position = x(k)
+         end do
+         if (value(1) > value(2)) then
+            b = x(2)
+         else
+            a = x(1)
+         end if
+      end do
+   end subroutine close_in
+end module dda_worst_position

@@ -1,0 +1,104 @@
+"""Axles on arches: where they stand, and the position of the least load factor."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+from bridges import spans
+from dda_command import run_dda
+from test_live_loads import BLOCK, GROUND, SEARCH, WEIGHT, rows, table
+
+ARCH = "&arch radius = 1.0, half_angle_deg = 60.0, voussoirs = 20 /\n&material unit_weight = 1.0 /\n"
+
+
+def bridge(spans_wanted: int) -> str:
+    """A bridge of a table, without its load."""
+    row = next(row for row in table("practice_multi_span.csv") if row["spans"] == str(spans_wanted))
+    return "".join(line + "\n" for line in spans(row).splitlines() if not line.startswith("live"))
+
+
+def axles(text: str) -> str:
+    """A deck of a bridge with a vehicle."""
+    return f"&material unit_weight = 1.0 /\n&joint friction_deg = 35 /\n&vehicle {text} /\n" + SEARCH
+
+
+def test_an_axle_is_a_live_load_on_the_block_below(tmp_path: Path) -> None:
+    """Beside the middle of a block: no factor topples it; on a cantilever it does."""
+    cantilever = GROUND + BLOCK + "block\n0 2\n3 2\n3 2.5\n0 2.5\n"
+    (row,) = rows(tmp_path, "&vehicle axles = 1000, length = 0, position = 1.5 /\n" + SEARCH, cantilever)
+    # the upper block falls over the edge at 1 m: its weight half a metre beyond it already
+    assert row["verdict"] == "collapsed"
+    cantilever = GROUND + BLOCK + "block\n0 2\n1.5 2\n1.5 2.5\n0 2.5\n"
+    (row,) = rows(tmp_path, "&vehicle axles = 1000, length = 0, position = 1.5 /\n" + SEARCH, cantilever)
+    upper = 0.75 * 2240.0 * 9.81
+    both = upper * 0.25 + WEIGHT * 0.5
+    # about the edge of the lower block at 1 m: the upper one alone, or both about the foot
+    assert float(row["critical"]) == pytest.approx(min(upper * 0.25, both) / (1000.0 * 0.5), rel=1e-8)
+
+
+def test_a_spread_axle_is_its_middle_on_one_block(tmp_path: Path) -> None:
+    wide = GROUND + BLOCK + "block\n0 2\n1.5 2\n1.5 2.5\n0 2.5\n"
+    found = []
+    for length in (0.0, 0.2):
+        (row,) = rows(tmp_path, f"&vehicle axles = 1000, length = {length}, position = 1.3 /\n" + SEARCH, wide)
+        found.append(float(row["critical"]))
+    assert found[0] == pytest.approx(found[1], rel=1e-9)
+
+
+def test_what_hangs_over_an_end_is_not_carried(tmp_path: Path) -> None:
+    """Half of the axle is above the block, so it carries twice the factor of half an axle there."""
+    wide = GROUND + BLOCK + "block\n0 2\n1.5 2\n1.5 2.5\n0 2.5\n"
+    (half,) = rows(tmp_path, "&vehicle axles = 1000, length = 0.2, position = 1.5 /\n" + SEARCH, wide)
+    (whole,) = rows(tmp_path, "&vehicle axles = 500, length = 0.1, position = 1.45 /\n" + SEARCH, wide)
+    assert float(half["critical"]) == pytest.approx(float(whole["critical"]), rel=1e-9)
+
+
+@pytest.mark.parametrize(
+    "vehicle",
+    ["axles = 0.3, length = 0", "axles = 0.3, length = 0.05", "axles = 0.3, 0.15, spacings = 0.3, length = 0",
+     "axles = 0.2, 0.2, 0.1, spacings = 0.2, 0.15, length = 0.05"],
+)
+def test_no_swept_position_is_worse_than_the_worst(tmp_path: Path, vehicle: str) -> None:
+    associated = "&analysis flow = 'associated' /\n"
+    (worst,) = rows(tmp_path, axles(vehicle + ", worst = .true.") + associated, bridge(2))
+    sweep = associated + "&sweep parameter = 'position', first = -0.7, last = 2.6, count = 400 /\n"
+    swept = rows(tmp_path, axles(vehicle + ", position = 0") + sweep, bridge(2))
+    factors = {float(row["position"]): float(row["critical"]) for row in swept if row["critical"]}
+    least = min(factors, key=factors.__getitem__)
+    assert float(worst["critical"]) <= factors[least] * (1.0 + 1e-9)
+    assert float(worst["critical"]) == pytest.approx(factors[least], rel=2e-2)
+    assert "position" in (tmp_path / "x" / "log.txt").read_text() or worst["worst_position"]
+
+
+def test_the_worst_position_of_a_symmetric_arch_has_a_mirror_image(tmp_path: Path) -> None:
+    (worst,) = rows(tmp_path, ARCH + "&vehicle axles = 0.1, length = 0, worst = .true. /\n" + SEARCH, head="")
+    place = float(worst["worst_position"])
+    both = f"&sweep parameter = 'position', values = {place!r}, {-place!r} /\n"
+    mirrored = rows(tmp_path, ARCH + "&vehicle axles = 0.1, length = 0, position = 0 /\n" + SEARCH + both, head="")
+    for row in mirrored:
+        assert float(row["critical"]) == pytest.approx(float(worst["critical"]), rel=1e-6)
+    assert "the least load factor" not in (tmp_path / "x" / "log.txt").read_text()
+
+
+REFUSED = {
+    "no-axles": ("&vehicle position = 0 /\n", "axles"),
+    "no-position": ("&vehicle axles = 1 /\n", "position"),
+    "spacings": ("&vehicle axles = 1, 2, position = 0 /\n", "spacings"),
+    "worst-and-position": ("&vehicle axles = 1, position = 0, worst = T /\n" + SEARCH, "position"),
+    "worst-of-nothing": ("&vehicle axles = 1, worst = T /\n", "load_factor"),
+    "worst-of-what-moves": (
+        "&vehicle axles = 1, worst = T /\n&analysis geometry = 'current' /\n" + SEARCH, "reference"),
+    "beside-the-arch": ("&vehicle axles = 1, position = 100 /\n", "above a block"),
+    "the-original-scheme": ("&vehicle axles = 1, position = 0 /\n&analysis mode = 'limerick' /\n", "limerick"),
+    "a-shape-that-is-searched": ("&vehicle axles = 1, position = 0 /\n&search /\n", "shape"),
+}
+
+
+@pytest.mark.parametrize(("deck", "word"), REFUSED.values(), ids=REFUSED)
+def test_what_cannot_be_is_refused_with_its_line(tmp_path: Path, deck: str, word: str) -> None:
+    (tmp_path / "x.nml").write_text(deck)
+    done = run_dda("run", "x.nml", cwd=tmp_path)
+    assert done.returncode == 2
+    assert done.stderr.startswith("x.nml:") and ": error: " in done.stderr and word in done.stderr
+    assert len(done.stderr.splitlines()) == 1
