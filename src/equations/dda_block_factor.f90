@@ -2,29 +2,48 @@
 !>
 !>    matrix = L D L',  D diagonal,  the diagonal of L ones;   matrix = L U if it is not symmetric
 !>
-!> Rows of blocks are eliminated one after the other; only blocks that are not zero are stored. The
-!> chain of an arch is eliminated from both ends, so that its mirror images feel the same rounding
-!> and the processor has two rows to work on. A row whose numbers and whose predecessors have not
-!> changed keeps its factor. Rows change places, where a matrix is not symmetric, within a block
-!> alone.
+!> Only blocks that are not zero are stored, in panels of columns with the same rows, which are
+!> eliminated one after the other. The chain of an arch is eliminated from both ends, so that its
+!> mirror images feel the same rounding and the processor has two panels to work on. A panel whose
+!> numbers and whose predecessors have not changed keeps its factor. Rows change places, where a
+!> matrix is not symmetric, within three unknowns of a block alone.
 module dda_block_factor
    use dda_block_matrix, only : block_matrix_t
-   use dda_block_plan, only : block_factor_t, plan_factor
-   use dda_block_rows_3, only : eliminate_3 => eliminate, eliminate_pairs_3 => eliminate_pairs, &
-      & substitute_3 => substitute_rows
-   use dda_block_rows_6, only : eliminate_6 => eliminate, eliminate_pairs_6 => eliminate_pairs, &
-      & substitute_6 => substitute_rows
+   use dda_block_plan, only : block_plan_t, plan_panels
    use dda_kinds, only : wp
+   use dda_panels, only : eliminate, new_panels, panels_t, substitute_panels
    implicit none
    private
 
    public :: block_factor_t, plan_factor, factorise, substitute
 
+   !> Factor of a block matrix
+   type :: block_factor_t
+      !> Which numbers there are
+      type(block_plan_t) :: plan
+      !> The numbers
+      type(panels_t) :: panels
+      !> Whether the factor can be used: the matrix was positive definite, or if it is not
+      !> symmetric, no pivot was zero
+      logical :: usable = .false.
+   end type block_factor_t
+
 contains
+
+   !> Lay out the factor of a matrix
+   pure subroutine plan_factor(matrix, factor)
+      !> The matrix, of which the pattern counts; three or six unknowns a block
+      type(block_matrix_t), intent(in) :: matrix
+      !> The factor, without numbers
+      type(block_factor_t), intent(out) :: factor
+
+      call plan_panels(matrix, factor%plan)
+      call new_panels(factor%plan, matrix%symmetric, factor%panels)
+   end subroutine plan_factor
 
    !> Factor a matrix; one that is not positive definite, or not symmetric and singular, gives a
    !> factor that is not usable
-   pure subroutine factorise(matrix, factor, changed, lift)
+   pure subroutine factorise(matrix, factor, changed)
       !> The matrix
       type(block_matrix_t), intent(in) :: matrix
       !> Its factor, laid out for its pattern
@@ -32,38 +51,24 @@ contains
       !> Blocks whose diagonal block or couplings have changed since the factor was usable; all if
       !> it is not given: (n_block)
       logical, intent(in), optional :: changed(:)
-      !> Whether a diagonal block that has no factor is lifted by some of the matrix's diagonal
-      !> until it has one, from 1e-10 of it on; not if it is not given
-      logical, intent(in), optional :: lift
-      logical :: anew(size(factor%block)), may_lift
-      integer :: i
+      logical :: anew(size(factor%plan%first) - 1)
+      integer :: p
 
-      may_lift = .false.
-      if (present(lift)) may_lift = lift
       anew = .true.
       if (present(changed) .and. factor%usable) then
-         do i = 1, size(anew)
-            anew(i) = changed(factor%block(i)) &
-               & .or. any(anew(factor%column(factor%start(i):factor%start(i + 1) - 1)))
-         end do
+         associate (plan => factor%plan, n => factor%plan%n_triple)
+            do p = 1, size(anew)
+               associate ( &
+                  & block => plan%block((plan%first(p) + n - 1)/n:(plan%first(p + 1) - 1)/n), &
+                  & source => plan%source(1, plan%first_source(p):plan%first_source(p + 1) - 1))
+                  anew(p) = any(changed(block)) .or. any(anew(source))
+               end associate
+            end do
+         end associate
       end if
-      factor%lifted = factor%lifted .and. .not. anew
-      select case (factor%n_dof)
-      case (6)
-         if (factor%symmetric) then
-            call eliminate_6(matrix, anew, may_lift, factor)
-         else
-            call eliminate_pairs_6(matrix, anew, may_lift, factor)
-         end if
-      case (3)
-         if (factor%symmetric) then
-            call eliminate_3(matrix, anew, may_lift, factor)
-         else
-            call eliminate_pairs_3(matrix, anew, may_lift, factor)
-         end if
-      case default
-         factor%usable = .false.
-      end select
+      call eliminate(factor%plan, matrix%diagonal, matrix%coupling, matrix%upper, anew, &
+         & factor%panels)
+      factor%usable = factor%panels%usable
    end subroutine factorise
 
    !> Solve for one right-hand side
@@ -72,12 +77,21 @@ contains
       type(block_factor_t), intent(in) :: factor
       !> Right-hand side in, solution out: (n_dof, n_block)
       real(wp), intent(inout) :: x(:, :)
+      real(wp) :: y(3, size(factor%panels%pivot, 2))
+      integer :: b, k
 
-      select case (factor%n_dof)
-      case (6)
-         call substitute_6(factor, x)
-      case (3)
-         call substitute_3(factor, x)
-      end select
+      associate (n => factor%plan%n_triple, block => factor%plan%block)
+         do b = 1, size(block)
+            do k = 1, n
+               y(:, n*(b - 1) + k) = x(3*k - 2:3*k, block(b))
+            end do
+         end do
+         call substitute_panels(factor%plan, factor%panels, y)
+         do b = 1, size(block)
+            do k = 1, n
+               x(3*k - 2:3*k, block(b)) = y(:, n*(b - 1) + k)
+            end do
+         end do
+      end associate
    end subroutine substitute
 end module dda_block_factor

@@ -99,7 +99,8 @@ contains
       !> The matrix with its stiffness
       type(ray_matrix_t), intent(inout) :: springs
 
-      call factorise_wide(rays, springs%stiffness, springs%factor, springs%wide)
+      call factorise_wide(rays, springs%stiffness, springs%matrix, springs%entry, &
+         & springs%factor%plan, springs%wide)
       springs%is_wide = springs%wide%usable
       springs%usable = springs%usable .or. springs%is_wide
       springs%n_factorisation = springs%n_factorisation + 1
@@ -172,7 +173,7 @@ contains
       motion(:, 0) = 0.0_wp
       springs%n_substitution = springs%n_substitution + 1
       if (springs%is_wide) then
-         call substitute_wide(rays, springs%factor, springs%wide, motion(:, 1:), rate)
+         call substitute_wide(rays, springs%factor%plan, springs%wide, motion(:, 1:), rate)
       else
          call substitute(springs%factor, motion(:, 1:))
          call ray_rates(rays, motion, rate)

@@ -1,9 +1,11 @@
 !> Factor of the stiffness matrix in numbers of twice the digits, for springs whose stiffness
 !> spreads over more decades than working precision has
 module dda_wide_factor
-   use dda_block_factor, only : block_factor_t
+   use dda_block_matrix, only : block_matrix_t
+   use dda_block_plan, only : block_plan_t
    use dda_joint_rays, only : joint_rays_t
    use dda_kinds, only : wp
+   use dda_wide_panels, only : eliminate, new_panels, panels_t, substitute_panels
    implicit none
    private
 
@@ -12,16 +14,10 @@ module dda_wide_factor
    !> Kind of numbers with 30 digits or more
    integer, parameter :: qp = selected_real_kind(30)
 
-   !> L D L' by 3 by 3 blocks; the pattern is that of the factor in working precision
+   !> The factor; its plan is that of the factor in working precision
    type :: wide_factor_t
-      !> Entries of L below the diagonal: (3, 3, n_lower)
-      real(qp), allocatable :: lower(:, :, :)
-      !> Diagonal blocks, then the inverses of their triangular factors: (3, 3, n_block)
-      real(qp), allocatable :: diagonal(:, :, :)
-      !> Pivots: (3, n_block)
-      real(qp), allocatable :: pivot(:, :)
-      !> Work space: (3, n_block)
-      real(qp), allocatable :: x(:, :)
+      !> The numbers
+      type(panels_t) :: panels
       !> Whether it can be used
       logical :: usable = .false.
    end type wide_factor_t
@@ -29,168 +25,67 @@ module dda_wide_factor
 contains
 
    !> Assemble springs along all rays, and factor
-   pure subroutine factorise_wide(rays, stiffness, plan, wide)
+   pure subroutine factorise_wide(rays, stiffness, matrix, entry, plan, wide)
       !> The rays
       type(joint_rays_t), intent(in) :: rays
       !> Stiffness of each: (n_side, n_joint)
       real(wp), intent(in) :: stiffness(:, :)
-      !> Pattern
-      type(block_factor_t), intent(in) :: plan
+      !> The matrix, of which the pattern counts
+      type(block_matrix_t), intent(in) :: matrix
+      !> Entry of the matrix that each joint couples, 0 for none: (n_joint)
+      integer, intent(in) :: entry(:)
+      !> Plan of its factor
+      type(block_plan_t), intent(in) :: plan
       !> The factor
       type(wide_factor_t), intent(inout) :: wide
-      real(qp) :: unscaled(3, 3)
-      integer :: c, i, j, k, m, n, t
-
-      if (.not. allocated(wide%lower)) then
-         n = size(plan%block)
-         allocate (wide%lower(3, 3, size(plan%row)), wide%diagonal(3, 3, n))
-         allocate (wide%pivot(3, n), wide%x(3, n))
-      end if
-      call assemble(rays, stiffness, plan, wide)
-      do j = 1, size(plan%block)
-         call factor_diagonal(wide%diagonal(:, :, j), wide%pivot(:, j), wide%usable)
-         if (.not. wide%usable) return
-         do m = plan%first_below(j), plan%first_below(j + 1) - 1
-            k = plan%row(m)
-            unscaled = matmul(wide%lower(:, :, m), transpose(wide%diagonal(:, :, j)))
-            do c = 1, 3
-               wide%lower(:, c, m) = unscaled(:, c)/wide%pivot(c, j)
-            end do
-            wide%diagonal(:, :, k) = wide%diagonal(:, :, k) &
-               & - matmul(unscaled, transpose(wide%lower(:, :, m)))
-            ! rows above this one have their entries of L, and their columns have this row
-            do i = plan%first_below(j), m - 1
-               t = entry_of(plan, k, plan%row(i))
-               wide%lower(:, :, t) = wide%lower(:, :, t) &
-                  & - matmul(unscaled, transpose(wide%lower(:, :, i)))
-            end do
-         end do
-      end do
-   end subroutine factorise_wide
-
-   !> Entry of L in a row and a column that have one
-   pure integer function entry_of(plan, row, column) result(entry)
-      !> Pattern
-      type(block_factor_t), intent(in) :: plan
-      !> Row and column, as places
-      integer, intent(in) :: row, column
-      integer :: high, middle
-
-      entry = plan%first_below(column)
-      high = plan%first_below(column + 1) - 1
-      do while (entry < high)
-         middle = (entry + high)/2
-         if (plan%row(middle) < row) then
-            entry = middle + 1
-         else
-            high = middle
-         end if
-      end do
-   end function entry_of
-
-   !> Sum of all springs
-   pure subroutine assemble(rays, stiffness, plan, wide)
-      !> The rays
-      type(joint_rays_t), intent(in) :: rays
-      !> Stiffness of each: (n_side, n_joint)
-      real(wp), intent(in) :: stiffness(:, :)
-      !> Pattern
-      type(block_factor_t), intent(in) :: plan
-      !> Receives the matrix
-      type(wide_factor_t), intent(inout) :: wide
+      real(qp), allocatable :: diagonal(:, :, :), coupling(:, :, :)
       real(qp) :: arm(3, 2), pushed(3)
-      integer :: at(2), c, e, i, j, place(0:size(plan%block)), side
+      integer :: c, i, j, row, side
 
-      place(0) = 0
-      place(plan%block) = [(i, i=1, size(plan%block))]
-      wide%lower = 0.0_qp
-      wide%diagonal = 0.0_qp
+      allocate (diagonal(3, 3, rays%n_block), coupling(3, 3, size(matrix%pair, 2)), source=0.0_qp)
       do j = 1, size(rays%block, 2)
-         at = place(rays%block(:, j))
-         e = 0
-         if (all(at > 0)) e = entry_of(plan, maxval(at), minval(at))
+         row = 0
+         if (entry(j) > 0) row = merge(1, 2, matrix%pair(1, entry(j)) == rays%block(1, j))
          do i = 1, size(stiffness, 1)
             arm = reshape(real(rays%arm(i, :, j), qp), [3, 2])
-            do side = 1, 2
-               if (at(side) == 0) cycle
-               do c = 1, 3
-                  pushed = stiffness(i, j)*arm(:, side)*arm(c, side)
-                  wide%diagonal(:, c, at(side)) = wide%diagonal(:, c, at(side)) + pushed
-               end do
-            end do
-            if (e == 0) cycle
-            side = maxloc(at, 1)
             do c = 1, 3
-               wide%lower(:, c, e) = wide%lower(:, c, e) &
-                  & + stiffness(i, j)*arm(:, side)*arm(c, 3 - side)
+               do side = 1, 2
+                  if (rays%block(side, j) == 0) cycle
+                  pushed = stiffness(i, j)*arm(:, side)*arm(c, side)
+                  diagonal(:, c, rays%block(side, j)) = diagonal(:, c, rays%block(side, j)) + pushed
+               end do
+               if (row == 0) cycle
+               pushed = stiffness(i, j)*arm(:, row)*arm(c, 3 - row)
+               coupling(:, c, entry(j)) = coupling(:, c, entry(j)) + pushed
             end do
          end do
       end do
-   end subroutine assemble
-
-   !> Factor a diagonal block into T D T'; the inverse of T is kept
-   pure subroutine factor_diagonal(block, pivot, definite)
-      !> The block in, the inverse of T out: (3, 3)
-      real(qp), intent(inout) :: block(:, :)
-      !> D: (3)
-      real(qp), intent(out) :: pivot(:)
-      !> Whether the block was positive definite
-      logical, intent(out) :: definite
-      real(qp) :: t21, t31, t32, left(3, 3)
-
-      left = block
-      pivot(1) = left(1, 1)
-      pivot(2:) = 0.0_qp
-      definite = pivot(1) > 0.0_qp
-      if (.not. definite) return
-      t21 = left(2, 1)/pivot(1)
-      t31 = left(3, 1)/pivot(1)
-      pivot(2) = left(2, 2) - t21*left(2, 1)
-      definite = pivot(2) > 0.0_qp
-      if (.not. definite) return
-      t32 = (left(3, 2) - t31*left(2, 1))/pivot(2)
-      pivot(3) = left(3, 3) - t31*left(3, 1) - t32*t32*pivot(2)
-      definite = pivot(3) > 0.0_qp
-      block(:, 1) = [1.0_qp, -t21, t32*t21 - t31]
-      block(:, 2) = [0.0_qp, 1.0_qp, -t32]
-      block(:, 3) = [0.0_qp, 0.0_qp, 1.0_qp]
-   end subroutine factor_diagonal
+      if (.not. allocated(wide%panels%lower)) call new_panels(plan, .true., wide%panels)
+      call eliminate(plan, diagonal, coupling, coupling, [(.true., i=1, size(plan%first) - 1)], &
+         & wide%panels)
+      wide%usable = wide%panels%usable
+   end subroutine factorise_wide
 
    !> Solve for one right-hand side, and find the rates at which the solution opens the rays: they
    !> may be small differences of large motions
    pure subroutine substitute_wide(rays, plan, wide, x, rate)
       !> The rays
       type(joint_rays_t), intent(in) :: rays
-      !> Pattern
-      type(block_factor_t), intent(in) :: plan
+      !> Plan of the factor
+      type(block_plan_t), intent(in) :: plan
       !> The factor
-      type(wide_factor_t), intent(inout) :: wide
+      type(wide_factor_t), intent(in) :: wide
       !> Right-hand side in, solution out: (3, n_block)
       real(wp), intent(inout) :: x(:, :)
       !> Rates of opening: (n_side, n_joint)
       real(wp), intent(out) :: rate(:, :)
-      real(qp) :: motion(3, 0:size(plan%block))
-      integer :: j, k, n
+      real(qp) :: motion(3, 0:size(plan%block)), y(3, size(plan%block))
+      integer :: j
 
-      n = size(plan%block)
-      wide%x = x(:, plan%block)
-      do j = 1, n
-         wide%x(:, j) = matmul(wide%diagonal(:, :, j), wide%x(:, j))
-         do k = plan%first_below(j), plan%first_below(j + 1) - 1
-            associate (y => wide%x(:, plan%row(k)))
-               y = y - matmul(wide%lower(:, :, k), wide%x(:, j))
-            end associate
-         end do
-      end do
-      wide%x = wide%x/wide%pivot
-      do j = n, 1, -1
-         do k = plan%first_below(j), plan%first_below(j + 1) - 1
-            wide%x(:, j) = wide%x(:, j) - matmul(wide%x(:, plan%row(k)), wide%lower(:, :, k))
-         end do
-         wide%x(:, j) = matmul(wide%x(:, j), wide%diagonal(:, :, j))
-         motion(:, plan%block(j)) = wide%x(:, j)
-      end do
+      y = x(:, plan%block)
+      call substitute_panels(plan, wide%panels, y)
       motion(:, 0) = 0.0_qp
+      motion(:, plan%block) = y
       x = real(motion(:, 1:), wp)
       do j = 1, size(rate, 2)
          rate(:, j) = real(matmul(real(rays%arm(:, 1:3, j), qp), motion(:, rays%block(1, j))) &

@@ -7,7 +7,8 @@ program factor_bench
    use, intrinsic :: iso_fortran_env, only : output_unit
    use dda_block_factor, only : block_factor_t, factorise, plan_factor, substitute
    use dda_block_matrix, only : block_matrix_t, set_pattern
-   use dda_block_plan, only : products
+   use dda_block_plan, only : choose_order
+   use dda_elimination_tree, only : elimination_t, products
    use dda_joint_graph, only : joint_graph_t
    use dda_kinds, only : wp
    use graph_wall, only : new_wall
@@ -51,6 +52,7 @@ contains
       type(block_factor_t) :: factor(2)
       real(wp), allocatable :: weight(:, :), push(:, :), x(:, :), load(:, :)
       real(wp) :: plan, make(2), solve(2), residual(2)
+      type(elimination_t) :: elimination
       integer :: cross, units, courses, k
 
       cross = index(wall, "x")
@@ -67,9 +69,11 @@ contains
          if (.not. factor(k)%usable) error stop "the factor is not usable"
          residual(k) = maxval(abs(load - product_of(matrix(k), x)))/maxval(abs(load))
       end do
+      call choose_order(matrix(1), elimination)
       write (output_unit, "(a8,i7,f9.1,f15.0,f9.0,f12.1,f9.1,f16.1,f9.1,2es10.1)") wall, &
-         & graph%n_block, real(size(factor(1)%row), wp)/graph%n_block, &
-         & products(factor(1))/graph%n_block, 1.0e6_wp*plan, 1.0e6_wp*make, 1.0e6_wp*solve, residual
+         & graph%n_block, real(size(factor(1)%panels%lower), wp)/(n_dof**2*graph%n_block), &
+         & products(elimination)/graph%n_block, 1.0e6_wp*plan, 1.0e6_wp*make, 1.0e6_wp*solve, &
+         & residual
       flush (output_unit)
    end subroutine measure
 

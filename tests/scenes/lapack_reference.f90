@@ -1,6 +1,5 @@
-!> LAPACK's banded Cholesky: the condition of a matrix, and what the solver of the steps is measured
-!> against
-module dda_block_solve
+!> LAPACK's banded Cholesky: solutions and condition numbers from a source other than the program
+module lapack_reference
    use dda_block_matrix, only : block_matrix_t
    use dda_kinds, only : wp
    implicit none
@@ -225,4 +224,4 @@ contains
 
       product = spread(a, 2, size(b))*spread(b, 1, size(a))
    end function outer
-end module dda_block_solve
+end module lapack_reference
