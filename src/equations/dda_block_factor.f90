@@ -77,7 +77,7 @@ contains
       type(block_factor_t), intent(in) :: factor
       !> Right-hand side in, solution out: (n_dof, n_block)
       real(wp), intent(inout) :: x(:, :)
-      real(wp) :: y(3, size(factor%panels%pivot, 2))
+      real(wp) :: y(3, size(factor%panels%pivot, 2) + factor%plan%highest)
       integer :: b, k
 
       associate (n => factor%plan%n_triple, block => factor%plan%block)

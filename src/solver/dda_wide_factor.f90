@@ -79,13 +79,13 @@ contains
       real(wp), intent(inout) :: x(:, :)
       !> Rates of opening: (n_side, n_joint)
       real(wp), intent(out) :: rate(:, :)
-      real(qp) :: motion(3, 0:size(plan%block)), y(3, size(plan%block))
+      real(qp) :: motion(3, 0:size(plan%block)), y(3, size(plan%block) + plan%highest)
       integer :: j
 
-      y = x(:, plan%block)
+      y(:, :size(plan%block)) = x(:, plan%block)
       call substitute_panels(plan, wide%panels, y)
       motion(:, 0) = 0.0_qp
-      motion(:, plan%block) = y
+      motion(:, plan%block) = y(:, :size(plan%block))
       x = real(motion(:, 1:), wp)
       do j = 1, size(rate, 2)
          rate(:, j) = real(matmul(real(rays%arm(:, 1:3, j), qp), motion(:, rays%block(1, j))) &
