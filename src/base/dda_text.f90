@@ -19,6 +19,10 @@ module dda_text
    character(len=11), parameter :: scientific_form(15:17) = &
       & ["(es24.14e3)", "(es24.15e3)", "(es24.16e3)"]
 
+   !> Rounding of what is left of a product of a number and a power of ten, as a share of the 17th
+   !> digit
+   real(wp), parameter :: rounding = 1.0e-6_wp
+
 contains
 
    !> Shortest decimal text that reads back as the same double
@@ -30,6 +34,7 @@ contains
       character(len=24) :: buffer
       integer(int64) :: digits
       integer :: exponent
+      real(wp) :: beyond, doubt
       logical :: known
 
       if (.not. ieee_is_finite(value)) then
@@ -43,46 +48,62 @@ contains
          digits = int(abs(value), int64)
          exponent = count_digits(digits) - 1
       else
-         call scale(abs(value), digits, exponent, known)
+         call scale(abs(value), digits, exponent, beyond, known)
+         doubt = rounding
          if (.not. known) then
             write (buffer, scientific_form(17)) value
             call take_digits(buffer, digits, exponent)
+            beyond = 0.0_wp
+            doubt = 0.5_wp
          end if
-         call shorten(value, digits, exponent, known)
+         call shorten(value, beyond, doubt, digits, exponent, known)
          if (.not. known) call try_forms(value, digits, exponent)
       end if
       text = plain_form(digits, exponent)
       if (sign(1.0_wp, value) < 0.0_wp) text = "-"//text
    end function real_to_text
 
-   !> The 17 digits of a number of usual size: a power of ten up to the 22nd is a double, and its
-   !> product with another double the sum of two
-   pure subroutine scale(value, digits, exponent, known)
+   !> The 17 digits of a number of usual size: a power of ten up to the 22nd is a double, up to the
+   !> 44th the sum of two, and so is the product of two doubles
+   pure subroutine scale(value, digits, exponent, beyond, known)
       !> The number, positive
       real(wp), intent(in) :: value
       !> Its digits, rounded, as one whole number
       integer(int64), intent(out) :: digits
       !> Power of ten of the first digit
       integer, intent(out) :: exponent
+      !> What rounding has taken from the digits
+      real(wp), intent(out) :: beyond
       !> Whether they could be found so
       logical, intent(out) :: known
-      real(wp) :: product, rest
+      real(wp) :: high, low, product, rest
 
       digits = 0
+      beyond = 0.0_wp
       exponent = floor(log10(max(value, tiny(value))))
-      known = exponent <= 16 .and. exponent >= 16 - 22
+      known = exponent <= 16 .and. exponent >= 16 - 44
       if (.not. known) return
-      call exact_product(value, 10.0_wp**(16 - exponent), product, rest)
+      high = 10.0_wp**min(16 - exponent, 22)
+      low = 0.0_wp
+      if (16 - exponent > 22) call exact_product(1.0e22_wp, 10.0_wp**(-6 - exponent), high, low)
+      call exact_product(value, high, product, rest)
+      rest = rest + value*low
       ! beyond 2**53 the product is whole; what is left of it rounds, but for a tie
       known = product > 1.0e16_wp .and. product < 0.9999e17_wp &
-         & .and. abs(rest - anint(rest)) < 0.5_wp
-      if (known) digits = int(product, int64) + nint(rest, int64)
+         & .and. abs(rest - anint(rest)) < 0.5_wp - rounding
+      if (.not. known) return
+      digits = int(product, int64) + nint(rest, int64)
+      beyond = rest - anint(rest)
    end subroutine scale
 
    !> Leave out of 17 digits those that the number does not need to be read back
-   pure subroutine shorten(value, digits, exponent, known)
+   pure subroutine shorten(value, beyond, doubt, digits, exponent, known)
       !> The number
       real(wp), intent(in) :: value
+      !> What rounding has taken from its 17 digits
+      real(wp), intent(in) :: beyond
+      !> How far that may be wrong
+      real(wp), intent(in) :: doubt
       !> Its 17 digits in, the shorter ones out
       integer(int64), intent(inout) :: digits
       !> Power of ten of the first digit
@@ -100,11 +121,11 @@ contains
       do places = 15, 16
          unit = 10_int64**(17 - places)
          short = (digits + unit/2)/unit
-         off = real(abs(digits - short*unit), wp)
-         ! the 17 digits are themselves rounded, by half a unit
-         if (off - 0.5_wp > 1.000001_wp*half_step) cycle
+         if (beyond < 0.0_wp .and. mod(digits, unit) == unit/2) short = short - 1
+         off = abs(real(digits - short*unit, wp) + beyond)
+         if (off - doubt > 1.000001_wp*half_step) cycle
          ! below a power of two the next double is only half as far; a tie may round either way
-         known = off + 0.5_wp < 0.499999_wp*half_step .or. off + 0.5_wp < 0.999999_wp*half_step &
+         known = off + doubt < 0.499999_wp*half_step .or. off + doubt < 0.999999_wp*half_step &
             & .and. abs(fraction(value)) > 0.5_wp
          known = known .and. 2.0_wp*off < real(unit, wp) .and. short < 10_int64**places
          if (known) digits = short
