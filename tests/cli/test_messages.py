@@ -160,6 +160,7 @@ GEOMETRIES_XML = {
     "ratio": SQUARE_XML.replace("<Jointlist>", "<Edgenodedist distance='1'/><Jointlist>"),
     "bolts": SQUARE_XML.replace("<Jointlist>", "<Boltlist><Bolt/></Boltlist><Jointlist>"),
     "entity": "<!DOCTYPE a [<!ENTITY e '0'>]>" + SQUARE_XML.replace("0 0 1 0", "0 &e; 1 0"),
+    "encoding": '<?xml version="1.0" encoding="EBCDIC-US"?>' + SQUARE_XML,
     "too deep": "<a>" * 110 + "</a>" * 110,
 }
 STONE = "1 1 1 0.2 0 0 0 0 0 0 0 0 0\n"

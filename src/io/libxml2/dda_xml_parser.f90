@@ -1,7 +1,7 @@
 !> XML by libxml2 (https://gnome.pages.gitlab.gnome.org/libxml2/): no network, no DTD, no
 !> entities of the file's own
 module dda_xml_parser
-   use, intrinsic :: iso_c_binding, only : c_associated, c_int, c_loc, &
+   use, intrinsic :: iso_c_binding, only : c_associated, c_funloc, c_funptr, c_int, c_loc, &
       & c_null_char, c_null_ptr, c_ptr, c_size_t, c_sizeof
    use, intrinsic :: ieee_exceptions, only : ieee_all, ieee_get_status, ieee_set_halting_mode, &
       & ieee_set_status, ieee_status_type
@@ -182,6 +182,15 @@ module dda_xml_parser
          type(c_ptr) :: value
       end function node_value
 
+      !> libxml2: say who is told of errors, warnings and encodings that fail
+      subroutine set_error_listener(context, listener) bind(c, name="xmlSetStructuredErrorFunc")
+         import :: c_funptr, c_ptr
+         !> Passed to the listener
+         type(c_ptr), intent(in), value :: context
+         !> Who is told
+         type(c_funptr), intent(in), value :: listener
+      end subroutine set_error_listener
+
       !> libxml2: what went wrong last
       function last_error() bind(c, name="xmlGetLastError") result(error)
          import :: c_ptr
@@ -270,7 +279,18 @@ contains
       call init_parser()
       call ieee_set_status(status)
       call reset_error()
+      call set_error_listener(c_null_ptr, c_funloc(print_nothing))
    end subroutine begin_parser
+
+   !> Hear of an error and print nothing: the last one is asked for
+   subroutine print_nothing(context, address) bind(c)
+      !> What was passed with the listener
+      type(c_ptr), intent(in), value :: context
+      !> An xmlError
+      type(c_ptr), intent(in), value :: address
+
+      if (c_associated(context) .or. c_associated(address)) return
+   end subroutine print_nothing
 
    !> Take what the reader stands on
    subroutine take_node(reader, builder)
