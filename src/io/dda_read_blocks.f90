@@ -123,8 +123,9 @@ contains
       logical :: ok
 
       if (scan(line%word(1)(1:1), "0123456789+-.") == 0) then
-         call close_entry(reading, warnings, error)
-         if (.not. allocated(error)) call open_entry(line, reading%entry, error)
+         call check_entry(line, error)
+         if (.not. allocated(error)) call close_entry(reading, warnings, error)
+         if (.not. allocated(error)) call open_entry(line, reading%entry)
          return
       end if
       associate (entry => reading%entry)
@@ -170,14 +171,24 @@ contains
       end select
    end function row_wanted
 
+   !> Whether a line begins an entry
+   pure subroutine check_entry(line, error)
+      !> The line
+      type(line_t), intent(in) :: line
+      !> No such entry
+      type(error_t), allocatable, intent(out) :: error
+
+      if (index(", "//entries//",", ", "//trim(line%word(1))//",") == 0) &
+         & call fatal_error(error, "wanted one of "//entries//" or a number, found '" &
+         & //shown(trim(line%word(1)))//"'", line=line%number)
+   end subroutine check_entry
+
    !> Begin an entry
-   pure subroutine open_entry(line, entry, error)
+   pure subroutine open_entry(line, entry)
       !> Its first line
       type(line_t), intent(in) :: line
       !> The entry
       type(entry_t), intent(inout) :: entry
-      !> No such entry
-      type(error_t), allocatable, intent(out) :: error
 
       entry%head = line
       select case (line%word(1))
@@ -186,12 +197,8 @@ contains
       case ("load", "live", "displacement", &
          & "base_acceleration", "base_velocity", "base_displacement")
          entry%n_column = 3
-      case ("material", "joint", "fix", "fix_line", "measure")
-         entry%n_column = 0
       case default
-         call fatal_error(error, "wanted one of "//entries//", found '" &
-            & //shown(trim(line%word(1)))//"'", &
-            & line=line%number)
+         entry%n_column = 0
       end select
    end subroutine open_entry
 
