@@ -10,7 +10,7 @@ module dda_deck_lines
    implicit none
    private
 
-   public :: read_lines
+   public :: read_lines, name_key
 
 contains
 

@@ -14,7 +14,7 @@ module dda_read_deck
    use dda_deck_entry, only : read_values
    use dda_deck_sweep, only : add_sweep, n_cases
    use dda_deck_check, only : check_deck
-   use dda_deck_lines, only : read_lines
+   use dda_deck_lines, only : name_key, read_lines
    use dda_file_mark, only : file_mark, text_mark
    use dda_read_blocks, only : parse_blocks
    use dda_watch, only : watch_t
@@ -53,7 +53,10 @@ contains
       if (word_of(deck, "scene", "kind") /= "blocks") return
       geometry = geometry_file(deck)
       call read_text_file(geometry, text, error)
-      if (allocated(error)) return
+      if (allocated(error)) then
+         call name_key(deck, "geometry", error)
+         return
+      end if
       call parse_blocks(text, geometry, deck%plan, deck%warnings, error, watch)
       call add_file_mark(text_mark(text), deck)
    end subroutine read_deck

@@ -216,3 +216,12 @@ def test_resume_notices_that_the_blocks_have_changed(tmp_path: Path) -> None:
     changed = run_dda("run", deck, "--out", tmp_path / "out", "--resume")
     assert "x.nml: nothing to resume" in changed.stdout
     assert {row["y"] for row in table(tmp_path / "out/blocks.csv")} >= {"3"}
+
+
+@pytest.mark.parametrize("name", ["", "nowhere.blocks", ".", "empty.blocks"])
+def test_a_file_that_cannot_be_read_is_told_with_the_line_of_the_deck(tmp_path: Path, name: str) -> None:
+    (tmp_path / "empty.blocks").write_text("")
+    (tmp_path / "deck.nml").write_text(f"&scene kind = 'blocks',\n  geometry = '{name}' /\n")
+    done = run_dda("check", "deck.nml", cwd=tmp_path)
+    assert done.returncode == 2
+    assert done.stderr.startswith(f"deck.nml:2: error: scene%geometry = '{name}': ")
