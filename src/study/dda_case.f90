@@ -85,6 +85,9 @@ module dda_case
       real(wp) :: seconds = 0.0_wp
    end type case_t
 
+   !> The thrust of an arch of more joints than this is told only where it is asked for
+   integer, parameter :: most_thrust_joints = 2001
+
 contains
 
    !> Make a case ready to be computed
@@ -181,7 +184,8 @@ contains
          call prove_search(this%family, this%critical, this%proof)
       else if (allocated(this%scene%contacts%joint)) then
          joint = integer_of(this%deck, "output", "thrust_joint")
-         if (joint == 0 .and. size(this%scene%joint_angle_deg) > 0) &
+         if (joint == 0 .and. size(this%scene%joint_angle_deg) > 0 &
+            & .and. size(this%scene%joint_angle_deg) <= most_thrust_joints) &
             & joint = minloc(abs(this%scene%joint_angle_deg), dim=1)
          call prove_decision(this%scene, this%decision, joint, this%proof)
       end if
