@@ -33,6 +33,8 @@ module dda_decision
       type(contacts_t) :: contacts
       !> Flow rule of the run that gave them, one of flow_rule
       integer :: flow = 1
+      !> Whether the joint graph has told how it falls
+      logical :: by_graph = .false.
       !> Whether outcome and contacts are those of the left half of a row, up to its plane of
       !> symmetry
       logical :: halved = .false.
@@ -182,7 +184,7 @@ contains
    end subroutine record_rest
 
    !> Blocks and contacts of what falls. Limit analysis proves that it does by any mechanism that
-   !> will do; how it falls is what a run tells
+   !> will do; where it does not know the first one a run tells it
    pure subroutine record_collapse(settings, system, contacts, proof, decision, album)
       !> Settings of the run
       type(settings_t), intent(in) :: settings
@@ -201,7 +203,7 @@ contains
       decision%flow = proof%flow
       decision%system = system
       decision%contacts = contacts
-      if (proof%flow == flow_rule%associated .and. .not. proof%is_first) then
+      if (proof%flow == flow_rule%associated .and. .not. proof%is_told) then
          convex = settings
          convex%flow = flow_rule%associated
          call run_to_verdict(convex, decision%system, decision%contacts, decision%outcome, album)
@@ -210,6 +212,7 @@ contains
          decision%contacts = contacts
          if (allocated(decision%outcome%reason)) deallocate (decision%outcome%reason)
       end if
+      decision%by_graph = .true.
       decision%outcome%verdict = verdict%collapsed
       if (allocated(decision%outcome%motion)) deallocate (decision%outcome%motion)
       allocate (decision%outcome%motion(settings%n_dof, maxval(system%equation)), source=0.0_wp)

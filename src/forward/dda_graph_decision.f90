@@ -10,6 +10,8 @@ module dda_graph_decision
    use dda_boundary, only : value_at
    use dda_contact_detection, only : contacts_t
    use dda_contact_types, only : joint_t
+   use dda_coulomb_fall, only : find_coulomb_fall
+   use dda_first_motion, only : find_first_motion
    use dda_friction_cone, only : joint_face_t
    use dda_joint_graph, only : joint_graph_t, joint_motion, rubs
    use dda_kinds, only : wp
@@ -24,6 +26,7 @@ module dda_graph_decision
    private
 
    public :: graph_verdict_t, decide_graph, decides_as_graph, follow_stations, has_friction
+   public :: see_fall, slide_along
    public :: show_mechanism, show_state
 
    !> A verdict and its proof
@@ -32,8 +35,6 @@ module dda_graph_decision
       integer :: end = 0
       !> Why it is undecided; unallocated otherwise
       character(len=:), allocatable :: reason
-      !> Whether a joint with friction slides in the mechanism of limit analysis
-      logical :: mixed = .false.
       !> Flow rule that it was found under, one of flow_rule
       integer :: flow = flow_rule%associated
       !> Velocities of the collapse: (3, n_block)
@@ -42,8 +43,8 @@ module dda_graph_decision
       type(coulomb_state_t), allocatable :: state
       !> Forces of what stands under the associated rule: (3, n_joint) [N/m]
       real(wp), allocatable :: force(:, :)
-      !> Whether the mechanism is that in which the blocks first fall as the load grows
-      logical :: is_first = .false.
+      !> Whether the mechanism is the one in which the blocks fall; otherwise a run tells it
+      logical :: is_told = .false.
       !> Whether something live was followed to the state
       logical :: on_path = .false.
       !> Whether steps may prove what limit analysis did not, as no path leads to the load
@@ -63,7 +64,7 @@ module dda_graph_decision
    end type graph_verdict_t
 
    !> Relative gap of the two proofs of a limit whose mechanism is asked for
-   real(wp), parameter :: limit_gap = 1.0e-9_wp
+   real(wp), parameter :: limit_gap = 1.0e-7_wp
    !> Motions below this share of the largest are rounding
    real(wp), parameter :: still = 1.0e-6_wp
 
@@ -89,7 +90,7 @@ contains
       type(block_system_t), intent(in) :: system
       !> Their contacts
       type(contacts_t), intent(in) :: contacts
-      !> Whether no one asks how it falls
+      !> Whether a run of steps tells how it falls
       logical, intent(in) :: bare
       !> The verdict
       type(graph_verdict_t), intent(out) :: verdict
@@ -119,7 +120,8 @@ contains
       if (decision%state == load_state%falls) then
          verdict%end = path_end%collapsed
          call move_alloc(decision%velocity, verdict%mechanism)
-         if (.not. bare) call find_first(settings, system, graph, stations, verdict)
+         if (.not. bare) call find_first(settings, system, graph, stations, load, verdict)
+         return
       else if (decision%state == load_state%stands) then
          verdict%end = path_end%reached
          call move_alloc(decision%force, verdict%force)
@@ -127,20 +129,15 @@ contains
          verdict%reason = "limit analysis proves neither forces nor a mechanism beyond rounding"
          verdict%unproven = .true.
       end if
-      if (settings%verdict_flow == flow_rule%associated .or. .not. has_friction(graph)) return
       dead_alone = ubound(stations%tilt, 1) == 0
+      verdict%on_path = verdict%end == path_end%reached .and. .not. dead_alone
+      if (settings%verdict_flow == flow_rule%associated .or. .not. has_friction(graph)) return
       if (verdict%end /= path_end%reached .and. dead_alone) return
-      if (verdict%end == path_end%collapsed .and. .not. verdict%mixed) return
       call follow_stations(settings, system, graph, stations, huge(1.0_wp), path)
       path%n_factorisation = path%n_factorisation + verdict%n_factorisation
       path%unproven = verdict%unproven .or. dead_alone
       if (dead_alone .and. path%end == path_end%collapsed) path%end = path_end%undecided
-      ! beyond what any forces can balance the path only tells how it falls
-      if (verdict%end == path_end%collapsed .and. path%end /= path_end%collapsed) then
-         verdict%n_factorisation = path%n_factorisation
-      else
-         verdict = path
-      end if
+      verdict = path
    end subroutine decide_graph
 
    !> What all weights and forces could do if each went along with the motion: beside it, power that
@@ -174,8 +171,9 @@ contains
       end do
    end function power_of_all
 
-   !> The mechanism in which what has fallen fell first, as what is live grew to its value
-   pure subroutine find_first(settings, system, graph, stations, verdict)
+   !> How what has fallen begins to fall: in the mechanism in which it fell first, as what is live
+   !> grew to its value, or by what is dead
+   pure subroutine find_first(settings, system, graph, stations, load, verdict)
       !> Settings of the run
       type(settings_t), intent(in) :: settings
       !> The blocks
@@ -184,23 +182,71 @@ contains
       type(joint_graph_t), intent(in) :: graph
       !> Stations of the loading path
       type(load_stations_t), intent(in) :: stations
-      !> A collapse; its mechanism is set where there is a first one
+      !> The full load: (3, n_block)
+      real(wp), intent(in) :: load(:, :)
+      !> A collapse; its mechanism is set
       type(graph_verdict_t), intent(inout) :: verdict
       type(limit_load_t) :: limit
-      real(wp) :: dead(3, graph%n_block), live(3, graph%n_block), opening(3, size(graph%kind))
+      real(wp) :: dead(3, graph%n_block), opening(3, size(graph%kind))
+
+      if (ubound(stations%tilt, 1) > 0) then
+         call loads_at(stations, 0, settings, system, graph, dead, opening)
+         call find_limit(graph, dead, load - dead, limit_gap, limit, stands=.true.)
+         verdict%n_factorisation = verdict%n_factorisation + limit%n_factorisation
+         if (limit%state == limit_state%found) then
+            verdict%mechanism = limit%velocity
+            verdict%force = limit%force
+            verdict%is_told = .true.
+            call slide_along(settings, graph, load, limit%force, verdict)
+            return
+         end if
+      end if
+      call see_fall(settings, graph, load, verdict)
+   end subroutine find_first
+
+   !> How blocks begin to fall by a load from rest
+   pure subroutine see_fall(settings, graph, load, verdict)
+      !> Settings of the run
+      type(settings_t), intent(in) :: settings
+      !> The joints
+      type(joint_graph_t), intent(in) :: graph
+      !> The load: (3, n_block)
+      real(wp), intent(in) :: load(:, :)
+      !> A collapse; its mechanism is set
+      type(graph_verdict_t), intent(inout) :: verdict
+      real(wp) :: force(3, size(graph%kind)), motion(3, graph%n_block)
       integer :: n
 
-      n = ubound(stations%tilt, 1)
-      if (n > 0) then
-         call loads_at(stations, 0, settings, system, graph, dead, opening)
-         call loads_at(stations, n, settings, system, graph, live, opening)
-         call find_limit(graph, dead, live - dead, limit_gap, limit)
-         verdict%n_factorisation = verdict%n_factorisation + limit%n_factorisation
-         verdict%is_first = limit%state == limit_state%found
-         if (verdict%is_first) verdict%mechanism = limit%velocity
-      end if
-      verdict%mixed = slides(graph, verdict%mechanism)
-   end subroutine find_first
+      call find_first_motion(graph, load, motion, force, verdict%is_told, n)
+      verdict%n_factorisation = verdict%n_factorisation + n
+      if (.not. verdict%is_told) return
+      verdict%mechanism = motion
+      verdict%force = force
+      call slide_along(settings, graph, load, force, verdict)
+   end subroutine see_fall
+
+   !> Under Coulomb friction joints slide along themselves. Where that takes more than a few
+   !> factorisations it falls as limit analysis has it
+   pure subroutine slide_along(settings, graph, load, force, verdict)
+      !> Settings of the run
+      type(settings_t), intent(in) :: settings
+      !> The joints
+      type(joint_graph_t), intent(in) :: graph
+      !> The load: (3, n_block)
+      real(wp), intent(in) :: load(:, :)
+      !> Forces of limit analysis: (3, n_joint)
+      real(wp), intent(in) :: force(:, :)
+      !> A collapse; its mechanism is set where one is found
+      type(graph_verdict_t), intent(inout) :: verdict
+      integer, parameter :: few = 5
+      integer :: n
+      logical :: found
+
+      if (settings%verdict_flow == flow_rule%associated .or. .not. has_friction(graph)) return
+      call find_coulomb_fall(graph, load, force, few, verdict%mechanism, found, n)
+      verdict%n_factorisation = verdict%n_factorisation + n
+      if (found) verdict%flow = flow_rule%coulomb
+   end subroutine slide_along
 
    !> Follow the loading path from its dead loads to its end or its collapse
    pure subroutine follow_stations(settings, system, graph, stations, cap, verdict)
@@ -276,36 +322,6 @@ contains
       has_friction = any(rubs(graph%kind, graph%friction))
    end function has_friction
 
-   !> Whether a joint with friction slides in a mechanism
-   pure logical function slides(graph, mechanism)
-      !> The joints
-      type(joint_graph_t), intent(in) :: graph
-      !> Velocities of the blocks: (3, n_block)
-      real(wp), intent(in) :: mechanism(:, :)
-      real(wp) :: rate(3, size(graph%kind))
-      integer :: j
-
-      call joint_motion(graph, mechanism, rate)
-      slides = .false.
-      do j = 1, size(graph%kind)
-         if (.not. rubs(graph%kind(j), graph%friction(j))) cycle
-         slides = slides .or. is_sliding(rate(:, j), graph%friction(j), still*maxval(abs(rate)))
-      end do
-   end function slides
-
-   !> Whether a joint slides along the edge of its friction cone rather than open while it slips
-   pure logical function is_sliding(rate, friction, least)
-      !> Opening 1, opening 2, slip: (3)
-      real(wp), intent(in) :: rate(3)
-      !> Coefficient of friction
-      real(wp), intent(in) :: friction
-      !> What counts as a motion
-      real(wp), intent(in) :: least
-
-      is_sliding = abs(rate(3)) > least &
-         & .and. minval(rate(1:2)) - friction*abs(rate(3)) <= least
-   end function is_sliding
-
    !> Openings, slips and faces of the joints in a mechanism. Under the associated rule a joint that
    !> slides opens by its friction; what it opens beyond that is a hinge. A corner that has opened
    !> on the loading path is open whatever it does in the end
@@ -327,6 +343,7 @@ contains
       allocate (rate(3, size(graph%kind)))
       call joint_motion(graph, verdict%mechanism, rate)
       contacts%increment = rate(:, :size(contacts%joint))
+      if (allocated(verdict%force)) contacts%force = verdict%force(:, :size(contacts%joint))
       least = still*maxval(abs(rate))
       do j = 1, size(contacts%joint)
          dilatancy = 0.0_wp
@@ -338,6 +355,8 @@ contains
          contacts%face(j)%slip = 0
          if (abs(rate(3, j)) > least .and. .not. all(contacts%face(j)%open)) &
             & contacts%face(j)%slip = merge(-1, 1, rate(3, j) > 0.0_wp)
+         contacts%gap(:, j) = merge(rate(:, j), 0.0_wp, [contacts%face(j)%open, &
+            & contacts%face(j)%slip /= 0])
       end do
    end subroutine show_mechanism
 

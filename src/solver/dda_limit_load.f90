@@ -67,7 +67,7 @@ module dda_limit_load
 contains
 
    !> The limit load
-   pure subroutine find_limit(graph, dead, live, tolerance, limit)
+   pure subroutine find_limit(graph, dead, live, tolerance, limit, stands)
       !> The joints
       type(joint_graph_t), intent(in) :: graph
       !> Loads at factor zero: (n_dof, n_block) [N/m, N/m, N ...]
@@ -78,15 +78,20 @@ contains
       real(wp), intent(in) :: tolerance
       !> The limit
       type(limit_load_t), intent(out) :: limit
+      !> Whether the dead load is taken to stand
+      logical, intent(in), optional :: stands
       type(joint_rays_t) :: rays
       type(ray_matrix_t) :: springs
       type(interior_point_t) :: point
       real(wp) :: unit
+      logical :: decided
 
       call set_rays(graph, rays)
       call plan_matrix(rays, springs)
       unit = unit_of_force(dead)
-      call go_to_load(rays, dead, resolution, .true., springs, point)
+      decided = .false.
+      if (present(stands)) decided = stands
+      if (.not. decided) call go_to_load(rays, dead, resolution, .true., springs, point)
       if (state_at_end(point) == load_state%falls) then
          limit%state = limit_state%no_dead_equilibrium
       else

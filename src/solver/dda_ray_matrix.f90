@@ -68,17 +68,26 @@ contains
       allocate (springs%stiffness(n_side, size(rays%block, 2)))
    end subroutine plan_matrix
 
-   !> Assemble the springs and factor their matrix
-   pure subroutine set_springs(rays, lift, springs)
+   !> Assemble the springs, and masses where blocks have them, and factor their matrix
+   pure subroutine set_springs(rays, lift, springs, mass)
       !> The rays
       type(joint_rays_t), intent(in) :: rays
       !> Share of itself that each diagonal entry is raised by; what no spring holds gets one
       real(wp), intent(in) :: lift
       !> The matrix with its stiffness; its factor may be unusable
       type(ray_matrix_t), intent(inout) :: springs
+      !> Masses: (3, 0:n_block)
+      real(wp), intent(in), optional :: mass(:, 0:)
       integer :: b, k
 
       call assemble(rays, springs)
+      if (present(mass)) then
+         do b = 1, rays%n_block
+            do k = 1, 3
+               springs%matrix%diagonal(k, k, b) = springs%matrix%diagonal(k, k, b) + mass(k, b)
+            end do
+         end do
+      end if
       do b = 1, rays%n_block
          do k = 1, 3
             associate (d => springs%matrix%diagonal(k, k, b))

@@ -5,7 +5,8 @@
 module dda_load_search
    use dda_decision, only : record_collapse, record_rest
    use dda_error, only : error_t
-   use dda_graph_decision, only : follow_stations, graph_verdict_t, has_friction
+   use dda_graph_decision, only : decides_as_graph, follow_stations, graph_verdict_t, &
+      & has_friction, see_fall, slide_along
    use dda_joint_graph, only : joint_graph_t
    use dda_kinds, only : wp
    use dda_limit_load, only : find_limit, limit_load_t, limit_state
@@ -41,12 +42,16 @@ module dda_load_search
       real(wp), allocatable :: velocity(:, :)
       !> What grows: (3, n_block) [N/m, N/m, N]
       real(wp), allocatable :: live(:, :)
+      !> A load somewhat beyond the limit, or the dead load if that falls: (3, n_block)
+      real(wp), allocatable :: beyond(:, :)
       !> Whether the path leads further than its dead loads
       logical :: stands_upright = .true.
       !> How it falls, or stands at the end of the range
       type(graph_verdict_t) :: proof
    end type side_t
 
+   !> Share by which a limit is surpassed to see how the blocks move
+   real(wp), parameter :: nudge = 1.0e-2_wp
    !> Relative accuracy of a loading path
    real(wp), parameter :: path_resolution = 1.0e-9_wp
    !> Least relative gap of the two proofs of a limit
@@ -84,12 +89,32 @@ contains
       ! from an unloaded state outside the range, the path leads through it
       if (high > 0.0_wp) call follow_side(family%load, scene, graph, high, search, right)
       if (low < 0.0_wp) call follow_side(family%load, scene, graph, low, search, left)
+      call tell_fall(scene%settings, graph, right)
+      call tell_fall(scene%settings, graph, left)
       critical%factorisations = right%proof%n_factorisation + left%proof%n_factorisation
       critical%steps = right%proof%n_event + left%proof%n_event
       ! what does not stand upright may do so under gravity that acts another way from the beginning
       done = family%load /= searched_load%tilt .or. right%stands_upright .and. left%stands_upright
       if (done) call conclude(search, low, high, scene, right, left, critical)
    end subroutine find_critical_load
+
+   !> How a side falls that limit analysis brings down
+   pure subroutine tell_fall(settings, graph, side)
+      !> Settings of the run
+      type(settings_t), intent(in) :: settings
+      !> The joints
+      type(joint_graph_t), intent(in) :: graph
+      !> The side
+      type(side_t), intent(inout) :: side
+
+      if (side%end /= path_end%collapsed .or. side%proof%flow /= flow_rule%associated) return
+      if (.not. allocated(side%beyond)) return
+      if (side%proof%is_told) then
+         call slide_along(settings, graph, side%beyond, side%force, side%proof)
+      else
+         call see_fall(settings, graph, side%beyond, side%proof)
+      end if
+   end subroutine tell_fall
 
    !> Follow the path to one side: limit analysis says how far it can lead at most
    pure subroutine follow_side(load, scene, graph, last, search, side)
@@ -138,8 +163,8 @@ contains
             side%end = path_end%collapsed
             side%value = far
             proof%mechanism = limit%velocity
+            proof%is_told = .true.
             proof%flow = flow_rule%associated
-            proof%is_first = .true.
          end if
          side%half = max(0.5_wp*search%tolerance, path_resolution)*abs(side%value)
          ! where nothing slides in the collapse both rules agree, and limit analysis has more digits
@@ -183,7 +208,9 @@ contains
       tolerance = min(path_resolution, max(least_gap, 1.0e-2_wp*search%tolerance))
       call find_limit(graph, dead, live, tolerance, limit)
       side%has_limit = limit%state == limit_state%found
+      if (limit%state == limit_state%no_dead_equilibrium) side%beyond = dead
       if (.not. side%has_limit) return
+      side%beyond = dead + (1.0_wp + nudge)*limit%upper*live
       side%limit = sign(1.0_wp, last)*[limit%lower, limit%upper]
       allocate (side%force, source=limit%force)
       allocate (side%velocity, source=limit%velocity)
@@ -192,6 +219,7 @@ contains
       ! gravity that tilts is as large as before
       side%limit = atan(side%limit)
       side%force = cos(side%limit(1))*side%force
+      side%beyond = cos(side%limit(1))*side%beyond
    end subroutine find_associated
 
    !> Take the associated limit as the answer
@@ -215,7 +243,7 @@ contains
          select case (limit%state)
          case (limit_state%found, limit_state%no_dead_equilibrium)
             proof%mechanism = limit%velocity
-            proof%is_first = limit%state == limit_state%found
+            proof%is_told = limit%state == limit_state%found
          case (limit_state%unbounded)
             side%end = path_end%reached
          case default

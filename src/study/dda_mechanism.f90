@@ -66,7 +66,7 @@ contains
       type(decision_t) :: other
       type(album_t) :: pictures
 
-      if (decision%flow == flow_rule%coulomb) return
+      if (decision%by_graph .or. decision%flow == flow_rule%coulomb) return
       if (scene%settings%verdict_flow == flow_rule%associated) return
       if (.not. any(decision%contacts%face%slip /= 0)) return
       pictures = blank_album(album)

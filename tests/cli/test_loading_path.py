@@ -114,3 +114,49 @@ def test_a_load_that_no_forces_balance_is_proven_so_in_a_few_factorisations(
     )
     rows = run_wall(tmp_path, 4, 8, 0.65, more)
     assert [row["verdict"] for row in rows] == ["stable"] * 2 + ["collapsed"] * 3
+
+
+@pytest.mark.parametrize("flow", ["coulomb", "associated"])
+@pytest.mark.parametrize(
+    ("units", "courses", "friction", "limit"),
+    [(4, 8, 0.65, 0.5663682243), (10, 10, 0.65, 0.5383777695), (4, 8, 0.3, 0.3)],
+    ids=["turns", "turns and slides", "slides as a whole"],
+)
+def test_falls_beyond_the_associated_limit_are_told_by_a_few_factorisations(
+    tmp_path: Path, units: int, courses: int, friction: float, limit: float, flow: str
+) -> None:
+    values = ", ".join(repr(limit * share) for share in (1.01, 1.1, 1.5, 5.0))
+    more = (
+        f"&analysis flow = '{flow}' /\n"
+        f"&sweep parameter = 'horizontal_coefficient', values = {values} /\n"
+    )
+    rows = run_wall(tmp_path, units, courses, friction, more)
+    assert [row["verdict"] for row in rows] == ["collapsed"] * 4
+    assert all(row["collapse_mode"] != "none" for row in rows)
+    assert max(int(row["factorisations"]) for row in rows) <= 30
+
+
+def test_what_limit_analysis_lets_stand_is_told_by_a_few_factorisations(tmp_path: Path) -> None:
+    values = ", ".join(repr(0.5383777695 * share) for share in (0.5, 0.9, 0.99))
+    more = (
+        "&analysis flow = 'associated' /\n"
+        f"&sweep parameter = 'horizontal_coefficient', values = {values} /\n"
+    )
+    rows = run_wall(tmp_path, 10, 10, 0.65, more)
+    assert [row["verdict"] for row in rows] == ["stable"] * 3
+    assert max(int(row["factorisations"]) for row in rows) <= 15
+
+
+def test_a_wall_without_ground_under_a_course_falls_by_a_few_factorisations(tmp_path: Path) -> None:
+    """Half the wall stands beside the ground: its bricks fall, by friction of 30 degrees or none."""
+    text = wall(4, 8).replace("9.0 -1\n9.0 0", "3.0 -1\n3.0 0")
+    (tmp_path / "half.blocks").write_text(text)
+    (tmp_path / "half.nml").write_text(
+        "&scene kind = 'blocks', geometry = 'half.blocks' /\n&joint friction_deg = 30 /\n"
+    )
+    done = run_dda("run", "half.nml", "--quiet", cwd=tmp_path)
+    assert done.returncode == 0, done.stderr
+    with (tmp_path / "half" / "results.csv").open() as table:
+        (row,) = csv.DictReader(table)
+    assert row["verdict"] == "collapsed"
+    assert int(row["factorisations"]) <= 40
