@@ -279,7 +279,7 @@ contains
          end associate
          do g = plan%first_given(p), plan%first_given(p + 1) - 1
             associate (ends => place(pair(:, abs(plan%given(1, g)))))
-               plan%given(2, g) = plan%start(p) + 3*at(maxval(ends)) + 9*height*at(minval(ends))
+               plan%given(2, g) = plan%start(p) + 9*(at(maxval(ends)) + height*at(minval(ends)))
             end associate
          end do
       end do
