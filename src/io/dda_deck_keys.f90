@@ -181,7 +181,10 @@ module dda_deck_keys
             at_least=-1.0e12_wp, at_most=1.0e12_wp, search_low=0.0_wp, search_high=1.0e9_wp, &
             meaning="What live loads are multiplied by; dead loads stay."), &
       key_t(group="load", name="live_horizontal", kind=key_kind%flag, default=".false.", &
-            meaning="Whether the forces of horizontal_coefficient are live.")]
+            meaning="Whether the forces of horizontal_coefficient are live."), &
+      key_t(group="load", name="displacement_factor", default="1.0", &
+            at_least=-1.0e12_wp, at_most=1.0e12_wp, &
+            meaning="What the displacements of led points are multiplied by.")]
 
    !> Keys of &live
    type(key_t), parameter :: live_keys(*) = [ &

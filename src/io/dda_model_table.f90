@@ -52,7 +52,7 @@ module dda_model_table
       model_t("limerick", "current", all_kinds)]
 
    !> All keys that have real values
-   type(search_t), parameter :: search(10) = [ &
+   type(search_t), parameter :: search(11) = [ &
       search_t("arch", "abutment_size abutment_overhang", "", "arch", &
          "abutments are blocks with mode = 'limerick' alone"), &
       search_t("arch", "", "arch", "arch", "there is no generated arch"), &
@@ -60,6 +60,8 @@ module dda_model_table
       search_t("joint", "cohesion tension", all_kinds, "", &
          "joints of the original begin open: what is bonded lets go"), &
       search_t("joint", "", all_kinds, all_kinds), &
+      search_t("load", "displacement_factor", "blocks", "", &
+         "points are led in files of blocks, and not by the original"), &
       search_t("load", "", all_kinds, all_kinds), &
       search_t("live", "", all_kinds, "", "the original's scheme has no &live"), &
       search_t("vehicle", "", all_kinds, "", "the original's scheme has no &vehicle"), &

@@ -6,7 +6,7 @@ module dda_deck_scene
    use dda_block_scene, only : base_t, block_scene
    use dda_chain, only : chain_t
    use dda_constants, only : degree, pi
-   use dda_deck, only : deck_t, parameter_t, real_of, word_of
+   use dda_deck, only : deck_t, is_given, parameter_t, real_of, word_of
    use dda_deck_keys, only : key_index
    use dda_deck_set, only : number_fits, put_number
    use dda_error, only : error_t, fatal_error
@@ -157,6 +157,7 @@ contains
       !> The scene
       type(scene_t), intent(out) :: scene
       type(base_t) :: base
+      integer :: i
 
       base%material = material_of(deck)
       base%unit_weight = unit_weight(deck)
@@ -165,5 +166,13 @@ contains
          & real_of(deck, "joint", "tension")]
       scene%settings = settings_of(deck, pi/2.0_wp, size(deck%plan%fixed))
       call block_scene(deck%plan, base, scene)
+      if (.not. is_given(deck, "load", "displacement_factor")) return
+      if (.not. allocated(scene%settings%boundary%held)) return
+      do i = 1, size(scene%settings%boundary%held)
+         associate (path => scene%settings%boundary%held(i)%path)
+            if (allocated(path%value)) &
+               & path%value = real_of(deck, "load", "displacement_factor")*path%value
+         end associate
+      end do
    end subroutine file_scene
 end module dda_deck_scene

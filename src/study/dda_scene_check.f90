@@ -62,7 +62,13 @@ contains
       logical :: points, reshaped
       integer :: number
 
-      place = load_factor_place(deck)
+      place = factor_place(deck, "displacement_factor")
+      if (place%line > 0 .and. .not. leads_points(deck)) then
+         call deck_error(error, "load%displacement_factor expects a point that is led, got "// &
+            & "none; add a displacement line to a file of blocks", deck, place)
+         return
+      end if
+      place = factor_place(deck, "load_factor")
       points = has_group(deck, "live") .or. has_group(deck, "vehicle")
       if (place%line == 0 .and. .not. points) return
       reshaped = any(deck_key(deck%sweep%parameter%key)%group == "arch")
@@ -80,25 +86,43 @@ contains
       end do
    end subroutine check_live_cases
 
-   !> Where the load factor is given, swept or searched
-   pure function load_factor_place(deck) result(place)
+   !> Whether a file of blocks leads a point
+   pure logical function leads_points(deck)
       !> The deck
       type(deck_t), intent(in) :: deck
+      integer :: i
+
+      leads_points = .false.
+      if (.not. allocated(deck%plan%boundary%held)) return
+      do i = 1, size(deck%plan%boundary%held)
+         associate (path => deck%plan%boundary%held(i)%path)
+            if (allocated(path%value)) leads_points = leads_points &
+               & .or. any(abs(path%value) > 0.0_wp)
+         end associate
+      end do
+   end function leads_points
+
+   !> Where a factor is given, swept or searched
+   pure function factor_place(deck, name) result(place)
+      !> The deck
+      type(deck_t), intent(in) :: deck
+      !> Its key in &load
+      character(len=*), intent(in) :: name
       !> The place; line 0 if it is not
       type(deck_place_t) :: place
       type(parameter_t) :: searched
       character(len=:), allocatable :: problem
       integer :: key, s
 
-      key = key_index("load", "load_factor")
-      if (is_given(deck, "load", "load_factor")) place = deck%value(key)%place
+      key = key_index("load", name)
+      if (is_given(deck, "load", name)) place = deck%value(key)%place
       do s = 1, size(deck%sweep)
          if (deck%sweep(s)%parameter%key == key) place = deck%sweep(s)%place
       end do
       if (.not. has_group(deck, "search")) return
       call find_parameter(text_of(deck, "search", "parameter"), searched, problem)
       if (searched%key == key) place = place_of(deck, key_index("search", "parameter"))
-   end function load_factor_place
+   end function factor_place
 
    !> Check that the modes of a deck can run the blocks that were cut from its lines
    pure subroutine check_lines(deck, error)

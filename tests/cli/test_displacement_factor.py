@@ -1,0 +1,43 @@
+"""Supports that spread: the factor of what led points go, searched where blocks move."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+from bridges import polygon, voussoirs
+from dda_command import run_dda
+from test_live_loads import BLOCK, GROUND, rows
+
+#: Semicircle of 16 voussoirs, t/R 0.15 and R 10 m, on a support that is fixed and one that is led
+SPREADS = (
+    "".join(polygon(block) for block in voussoirs([9.25, 10.75], 180.0, 16))
+    + polygon([(-11, -1), (-9, -1), (-9, 0), (-11, 0)], "block fixed")
+    + polygon([(9, -1), (11, -1), (11, 0), (9, 0)])
+    + "displacement block 18 9.1 -0.9 1 0\ndisplacement block 18 10.9 -0.9 1 0\n"
+)
+STIFF = "&joint friction_deg = 89 /\n&material young = 1e12 /\n"
+MOVING = STIFF + "&analysis geometry = 'current', steps = 4000 /\n"
+
+
+def test_a_semicircle_falls_where_its_supports_have_spread_by_its_kinematics(tmp_path: Path) -> None:
+    """0.0588 of the span of 20 m, from the kinematics of three hinges, in metres."""
+    search = "&search parameter = 'displacement_factor', low = 1.0, high = 1.3, tolerance = 1e-4 /\n"
+    (row,) = rows(tmp_path, MOVING + search, SPREADS)
+    assert row["verdict"] == "found" and row["collapses_at"] == "high"
+    assert float(row["critical"]) / 20.0 == pytest.approx(0.0588, abs=3e-4)
+
+
+def test_decisions_agree_with_it(tmp_path: Path) -> None:
+    sweep = "&sweep parameter = 'displacement_factor', values = 0, 0.4, 1.16, 1.19, 1.3 /\n"
+    verdicts = [row["verdict"] for row in rows(tmp_path, MOVING + sweep, SPREADS)]
+    assert verdicts == ["stable", "stable", "stable", "collapsed", "collapsed"]
+
+
+def test_a_factor_of_nothing_is_refused(tmp_path: Path) -> None:
+    (tmp_path / "x.blocks").write_text(GROUND + BLOCK + "fix 0.5 1\n")
+    for head in ("", "&scene kind = 'blocks', geometry = 'x.blocks' /\n"):
+        (tmp_path / "x.nml").write_text(head + "&load displacement_factor = 2 /\n")
+        done = run_dda("check", "x.nml", cwd=tmp_path)
+        assert done.returncode == 2
+        assert "displacement_factor expects a point that is led" in done.stderr
