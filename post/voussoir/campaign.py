@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 import hashlib
-import json
-import re
 import shutil
 import sys
 import time
@@ -12,16 +10,19 @@ from collections.abc import Callable, Iterator
 from concurrent.futures import ThreadPoolExecutor, as_completed
 from dataclasses import dataclass
 from pathlib import Path
+from typing import BinaryIO
 
 from voussoir.campaign_merge import replace
-from voussoir.campaign_part import Part, finished_in, run_part
-from voussoir.dda_program import DdaError, count_cases, version_of
+from voussoir.campaign_part import Part, content_of, finished_by, finished_in, run_part
+from voussoir.dda_program import Asked, DdaError, ask
 
 #: Most cases of a part: its command line stays short, and little is done twice after a kill
 LARGEST_PART = 2000
 #: Parts a worker, so that all end at about the same time
 PARTS_A_WORKER = 8
 
+#: Folders that this process has, with their open lock files
+_LOCKS: dict[Path, BinaryIO] = {}
 #: Status and message of a part
 Outcome = tuple[int, str]
 #: Computes parts and yields the outcome of each as it ends
@@ -42,6 +43,8 @@ class Campaign:
     out: Path
     #: Number of cases of the deck
     total: int
+    #: What the deck asks for, as the program says it
+    asked: Asked
 
     @property
     def parts(self) -> Path:
@@ -49,7 +52,9 @@ class Campaign:
         return self.out / "parts"
 
 
-def open_campaign(dda: Path, deck: Path, settings: list[str], out: Path, anew: bool) -> Campaign:
+def open_campaign(
+    dda: Path, deck: Path, settings: list[str], out: Path, anew: bool, shared: bool = False
+) -> Campaign:
     """Begin a campaign, or go on with one.
 
     Parameters
@@ -64,6 +69,8 @@ def open_campaign(dda: Path, deck: Path, settings: list[str], out: Path, anew: b
         Folder of the results.
     anew : bool
         Whether what an earlier campaign has left in that folder is discarded.
+    shared : bool, optional
+        Whether others may work in the folder at the same time: shares of a job array.
 
     Returns
     -------
@@ -75,58 +82,141 @@ def open_campaign(dda: Path, deck: Path, settings: list[str], out: Path, anew: b
     DdaError
         If the deck is bad input, or the folder holds another campaign.
     """
-    total = count_cases(dda, deck, settings)
-    campaign = Campaign(dda, deck.resolve(), tuple(settings), out, total)
-    identity = {
-        "program": version_of(dda),
-        "deck": deck.name,
-        "settings": list(settings),
-        "sha256": fingerprint(deck),
-        "cases": total,
-    }
-    file = out / "campaign.json"
+    asked = ask(dda, deck, settings)
+    campaign = Campaign(dda, deck.resolve(), tuple(settings), out, asked.cases, asked)
+    out.mkdir(parents=True, exist_ok=True)
+    lock(out, shared)
+    file = out / "campaign.record"
+    digest = hashlib.sha256(asked.record.encode()).hexdigest()
+    text = f"{digest}\n{asked.record}"
     if anew:
         shutil.rmtree(campaign.parts, ignore_errors=True)
-        file.unlink(missing_ok=True)
-    campaign.parts.mkdir(parents=True, exist_ok=True)
-    if not file.exists():
-        for name in ("results.csv", "disk.record"):  # of whatever was there before
+        for name in ("campaign.record", "deck.record", "results.csv", "disk.record"):
             (out / name).unlink(missing_ok=True)
-        text = json.dumps(identity, indent=1) + "\n"
-        replace(file, lambda opened: opened.write(text.encode()))
-        return campaign
-    known = json.loads(file.read_text(encoding="utf-8"))
-    if known != identity:
-        changed = ", ".join(key for key in identity if known.get(key) != identity[key])
+    campaign.parts.mkdir(parents=True, exist_ok=True)
+    known = content_of(file).decode(errors="replace")
+    first, _, record = known.partition("\n")
+    true = first == hashlib.sha256(record.encode(errors="replace")).hexdigest()
+    if true and record != asked.record:
         raise DdaError(
-            f"{deck}:1: error: wanted the campaign that {out} was begun for, found another one "
-            f"(other {changed}); choose another --out, or begin --anew"
+            f"{deck}:1: error: expected the campaign that {out} was begun for, got another one "
+            f"(other {changed_keys(record, asked.record)}); choose another --out, or discard what "
+            "is there with --anew"
         )
+    if known != text:
+        if content_of(out / "deck.record") != asked.record.encode():
+            for name in ("results.csv", "disk.record"):  # of whatever was there before
+                (out / name).unlink(missing_ok=True)
+        replace(file, lambda opened: opened.write(text.encode()))
     return campaign
 
 
-def fingerprint(deck: Path) -> str:
-    """Digest of a deck and of the files that it names.
+def changed_keys(old: str, new: str) -> str:
+    """What differs between two records, in words.
 
     Parameters
     ----------
-    deck : Path
-        The deck.
+    old, new : str
+        Texts of deck.record.
 
     Returns
     -------
     str
-        SHA-256 in hexadecimal digits.
+        Names of keys, "program" for another build, "files" for files that the deck names.
     """
-    digest = hashlib.sha256(deck.read_bytes())
-    text = deck.read_text(encoding="utf-8", errors="replace")
-    for name in re.findall(r"\b(?:geometry|analysis)\s*=\s*['\"]([^'\"\n]+)", text, re.IGNORECASE):
-        if (deck.parent / name).is_file():
-            digest.update((deck.parent / name).read_bytes())
-    return digest.hexdigest()
+
+    def values(record: str) -> dict[str, list[str]]:
+        lines = record.splitlines() or [""]
+        found: dict[str, list[str]] = {"program": lines[:1]}
+        name = ""
+        for line in lines[1:]:
+            if line.startswith("files"):
+                found["files"] = [line]
+            elif line.startswith("  "):
+                found[name].append(line)
+            else:
+                name = line
+                found.setdefault(name, [])
+        return found
+
+    one, other = values(old), values(new)
+    return ", ".join(sorted(key for key in {*one, *other} if one.get(key) != other.get(key)))
 
 
-def split(campaign: Campaign, cases: range, workers: int, jobs: int = 1) -> list[Part]:
+def lock(out: Path, shared: bool) -> None:
+    """Take a folder until this process ends, however it ends.
+
+    Parameters
+    ----------
+    out : Path
+        Folder of the results.
+    shared : bool
+        Whether others that share it may work there too: shares of a job array.
+
+    Raises
+    ------
+    DdaError
+        If another campaign or run has it: status 4.
+    """
+    import fcntl
+
+    file = (out / "run.lock").open("ab")
+    try:
+        fcntl.flock(file, (fcntl.LOCK_SH if shared else fcntl.LOCK_EX) | fcntl.LOCK_NB)
+    except BlockingIOError as error:
+        file.close()
+        raise DdaError(
+            f"{out / 'run.lock'}:1: error: expected a folder that no other run or campaign writes "
+            "to, got one in use; choose another folder with --out, or wait for that one to end",
+            4,
+        ) from error
+    except OSError as error:
+        sys.stderr.write(f"{out / 'run.lock'}:1: warning: this file system knows no locks "
+                         f"({error.strerror}): nothing keeps another campaign from {out}\n")
+    _LOCKS[out] = file
+
+
+def unlock(out: Path) -> None:
+    """Give a folder back.
+
+    Parameters
+    ----------
+    out : Path
+        Folder of the results.
+    """
+    if out in _LOCKS:
+        _LOCKS.pop(out).close()
+
+
+def finished(campaign: Campaign, cases: range, problems: list[str] | None = None) -> set[int]:
+    """Cases that need not be computed again.
+
+    Parameters
+    ----------
+    campaign : Campaign
+        The campaign.
+    cases : range
+        Cases that are wanted.
+    problems : list of str, optional
+        Receives a line for each thing that is damaged.
+
+    Returns
+    -------
+    set of int
+        Those of them whose rows are whole, in the folder of the campaign or in a part.
+    """
+    told = campaign.asked.record, campaign.asked.headers, problems
+    there = finished_by(campaign.out, *told) & set(cases)
+    return there | finished_in(campaign.parts, set(cases) - there, *told)
+
+
+def split(
+    campaign: Campaign,
+    cases: range,
+    workers: int,
+    jobs: int = 1,
+    problems: list[str] | None = None,
+) -> list[Part]:
     """Cut cases that are not finished into parts of equal size.
 
     Parameters
@@ -139,13 +229,15 @@ def split(campaign: Campaign, cases: range, workers: int, jobs: int = 1) -> list
         How many will work.
     jobs : int
         Cases that each computes at the same time.
+    problems : list of str, optional
+        Receives a line for each thing that is damaged.
 
     Returns
     -------
     list of Part
         The parts, in the order of their cases.
     """
-    done = finished_in(campaign.parts, cases)
+    done = finished(campaign, cases, problems)
     rest = [case for case in cases if case not in done]
     size = max(1, min(LARGEST_PART, -(-len(rest) // (PARTS_A_WORKER * workers))))
     return [
@@ -156,6 +248,8 @@ def split(campaign: Campaign, cases: range, workers: int, jobs: int = 1) -> list
             campaign.parts,
             tuple(rest[start : start + size]),
             jobs,
+            campaign.asked.record,
+            campaign.asked.headers,
         )
         for start in range(0, len(rest), size)
     ]

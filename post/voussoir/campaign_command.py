@@ -8,10 +8,19 @@ import shutil
 import sys
 from pathlib import Path
 
-from voussoir.campaign import Campaign, local_engine, open_campaign, run_parts, share, split
+from voussoir.campaign import (
+    Campaign,
+    finished,
+    local_engine,
+    open_campaign,
+    run_parts,
+    share,
+    split,
+    unlock,
+)
 from voussoir.campaign_dask import dask_engine
 from voussoir.campaign_merge import Summary, merge, merged
-from voussoir.campaign_part import finished_by, finished_in
+from voussoir.campaign_part import finished_by
 from voussoir.dda_program import DdaError, find_dda
 
 #: Of several exit statuses the first one counts
@@ -107,45 +116,73 @@ def _run(arguments: argparse.Namespace) -> int:
     """The campaign; failures are exceptions."""
     index, of = _share_of(arguments)
     out = (arguments.out or Path(arguments.deck.stem)).resolve()
-    campaign = open_campaign(find_dda(), arguments.deck, arguments.set, out, arguments.anew)
-    if len(finished_by(out)) == campaign.total:
-        return _report(campaign, arguments, merged(out))
-    status, message = 0, ""
+    shared = arguments.index is not None
+    try:
+        campaign = open_campaign(
+            find_dda(), arguments.deck, arguments.set, out, arguments.anew, shared
+        )
+        return _compute(campaign, arguments, share(campaign.total, index, of))
+    finally:
+        unlock(out)
+
+
+def _compute(campaign: Campaign, arguments: argparse.Namespace, cases: range) -> int:
+    """Compute what is not finished, and merge."""
+    asked = campaign.asked
+    status, message, problems = 0, "", []
+    if len(finished_by(campaign.out, asked.record, asked.headers, problems)) == campaign.total:
+        shutil.rmtree(campaign.parts, ignore_errors=True)
+        return _report(campaign, arguments)
     if not arguments.merge:
-        cases = share(campaign.total, index, of)
         workers, engine = arguments.workers, local_engine(arguments.workers)
         if arguments.scheduler:
             engine, workers = dask_engine(arguments.scheduler)
-        parts = split(campaign, cases, workers)
+        parts = split(campaign, cases, workers, problems=problems)
+        _warn(problems, arguments)
         found = len(cases) - sum(len(part.cases) for part in parts)
         if found and not arguments.quiet:
             print(f"{arguments.deck}: {found} of {len(cases)} cases were finished before")
         shown = sys.stderr.isatty() and not arguments.quiet
         status, message = run_parts(parts, engine, shown)
+    else:
+        finished(campaign, cases, problems)
+        _warn(problems, arguments)
     if message:
         sys.stderr.write(message + "\n")
     return min((status, _finish(campaign, arguments)), key=_WORST_FIRST.index)
 
 
+def _warn(problems: list[str], arguments: argparse.Namespace) -> None:
+    """Say what is damaged, each thing once."""
+    if not arguments.quiet:
+        sys.stderr.writelines(f"{problem}\n" for problem in dict.fromkeys(problems))
+
+
 def _finish(campaign: Campaign, arguments: argparse.Namespace) -> int:
     """Merge, unless other shares are still to come."""
     if arguments.index is not None:
-        done = finished_in(campaign.parts, range(1, campaign.total + 1))
+        done = finished(campaign, range(1, campaign.total + 1))
         if len(done) < campaign.total:
             if not arguments.quiet:
                 left = campaign.total - len(done)
                 print(f"{arguments.deck}: this share has ended, {left} cases of others are left")
             cases = share(campaign.total, arguments.index, arguments.of)
             return 0 if done.issuperset(cases) else 3
-    merge(campaign.parts, campaign.out)
-    summary = merged(campaign.out)
-    if summary.cases == campaign.total and arguments.index is None:
-        shutil.rmtree(campaign.parts)
-    return _report(campaign, arguments, summary)
+    merge(campaign.parts, campaign.out, campaign.asked.record, campaign.asked.headers)
+    if _summary(campaign).cases == campaign.total and arguments.index is None:
+        shutil.rmtree(campaign.parts, ignore_errors=True)
+    return _report(campaign, arguments)
 
 
-def _report(campaign: Campaign, arguments: argparse.Namespace, summary: Summary) -> int:
+def _summary(campaign: Campaign) -> Summary:
+    """What the merged table holds."""
+    asked = campaign.asked
+    return merged(campaign.out, finished_by(campaign.out, asked.record, asked.headers))
+
+
+def _report(campaign: Campaign, arguments: argparse.Namespace) -> int:
     """Say what there is: 0 if each case has a verdict, else 3."""
+    summary = _summary(campaign)
     missing = campaign.total - summary.cases
     if not arguments.quiet:
         print(

@@ -11,12 +11,12 @@ import os
 import re
 import shutil
 import uuid
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 from typing import BinaryIO
 
-from voussoir.campaign_part import finished_by
+from voussoir.campaign_part import SEAL, finished_by, slices_of, write_seal
 
 #: Tables with a case in each row
 TABLES = (
@@ -44,8 +44,12 @@ class Summary:
     undecided: int
 
 
-def merge(parts: Path, out: Path) -> None:
+def merge(
+    parts: Path, out: Path, record: str | None = None, headers: dict[str, str] | None = None
+) -> None:
     """Merge all parts into the folder of the campaign; each table is replaced at once.
+
+    What that folder has of the same campaign is a part like the others.
 
     Parameters
     ----------
@@ -53,22 +57,37 @@ def merge(parts: Path, out: Path) -> None:
         Folder of the parts.
     out : Path
         Folder of the campaign.
+    record, headers : optional
+        As of `finished_by`.
     """
-    attempts = sorted(path for path in parts.iterdir() if (path / "results.csv").exists())
     owner: dict[int, Path] = {}
-    for attempt in attempts:
-        for case in finished_by(attempt):
+    candidates = [*([out] if record else []), *(sorted(parts.iterdir()) if parts.is_dir() else ())]
+    for attempt in candidates:
+        for case in finished_by(attempt, record, headers):
             owner.setdefault(case, attempt)
+    attempts = [path for path in candidates if path in set(owner.values())]
+    if not attempts:
+        attempts = [path for path in candidates if (path / "results.csv").exists()][:1]
+    (out / SEAL).unlink(missing_ok=True)
     (out / "disk.record").unlink(missing_ok=True)  # of another run: these tables are written whole
     for name in TABLES:
-        merge_table(name, attempts, owner, out)
+        if headers is not None and name not in headers:
+            (out / name).unlink(missing_ok=True)  # of another deck
+        else:
+            merge_table(name, attempts, owner, out, headers)
     copy_pictures(attempts, owner, out)
-    records = [attempt / "deck.record" for attempt in attempts]
-    for record in [path for path in records if path.exists()][:1]:
-        replace(out / "deck.record", lambda file: file.write(record.read_bytes()))
+    if record is not None:
+        replace(out / "deck.record", lambda file: file.write(record.encode()))
+    write_seal(out)
 
 
-def merge_table(name: str, attempts: list[Path], owner: dict[int, Path], out: Path) -> None:
+def merge_table(
+    name: str,
+    attempts: list[Path],
+    owner: dict[int, Path],
+    out: Path,
+    headers: dict[str, str] | None = None,
+) -> None:
     """Merge one table, sorted by case.
 
     Parameters
@@ -81,12 +100,16 @@ def merge_table(name: str, attempts: list[Path], owner: dict[int, Path], out: Pa
         For each case the attempt that it is taken from.
     out : Path
         Folder of the campaign; the table is left out where no attempt has one.
+    headers : dict of str to str, optional
+        First lines of the tables.
     """
     sources = [attempt / name for attempt in attempts if (attempt / name).exists()]
     if not sources:
         return
     with sources[0].open("rb") as first:
         header = first.readline()
+    if headers is not None:
+        header = headers[name].encode() + b"\n"
     places = [
         (case, number, start, stop)
         for number, source in enumerate(sources)
@@ -113,57 +136,6 @@ def merge_table(name: str, attempts: list[Path], owner: dict[int, Path], out: Pa
     replace(out / name, write)
 
 
-def slices_of(table: Path) -> Iterator[tuple[int, int, int]]:
-    """Where the rows of each case are; rows of one case that follow one another are one slice.
-
-    Parameters
-    ----------
-    table : Path
-        One of TABLES.
-
-    Yields
-    ------
-    tuple of int
-        Case, first byte, byte behind the last one. A row that was cut off is left out.
-    """
-    with table.open("rb") as file:
-        header = fields_of(file.readline(), table.suffix)
-        column = header.index("case")
-        case, start, stop = 0, 0, file.tell()
-        for line in file:
-            fields = fields_of(line, table.suffix)
-            whole = line.endswith(b"\n") and (len(fields) == len(header) or table.suffix == ".txt")
-            this = int(fields[column]) if whole and fields[column].isdigit() else 0
-            if this != case:
-                if case:
-                    yield case, start, stop
-                case, start = this, stop
-            stop += len(line)
-        if case:
-            yield case, start, stop
-
-
-def fields_of(line: bytes, suffix: str) -> list[str]:
-    """Fields of a row: parted by commas, in the log by blanks.
-
-    Parameters
-    ----------
-    line : bytes
-        The row.
-    suffix : str
-        Ending of the file.
-
-    Returns
-    -------
-    list of str
-        The fields.
-    """
-    text = line.decode("utf-8", errors="replace").rstrip("\n")
-    if suffix == ".txt":
-        return text.split(" ")
-    return next(csv.reader([text]), [""]) if '"' in text else text.split(",")
-
-
 def copy_pictures(attempts: list[Path], owner: dict[int, Path], out: Path) -> None:
     """Move the files of single cases into the folder of the campaign.
 
@@ -179,29 +151,31 @@ def copy_pictures(attempts: list[Path], owner: dict[int, Path], out: Path) -> No
     for attempt in attempts:
         for path in attempt.glob("*/case_*"):
             case = re.match(r"case_(\d+)", path.name)
-            if case and owner.get(int(case[1])) == attempt:
+            if case and attempt != out and owner.get(int(case[1])) == attempt:
                 (out / path.parent.name).mkdir(exist_ok=True)
                 shutil.copy2(path, out / path.parent.name / path.name)
 
 
-def merged(out: Path) -> Summary:
+def merged(out: Path, cases: set[int]) -> Summary:
     """Count what a merged table holds.
 
     Parameters
     ----------
     out : Path
         Folder of the campaign.
+    cases : set of int
+        Cases of it that are whole.
 
     Returns
     -------
     Summary
-        Nothing where there is no table yet.
+        How many of them there are, and how many are undecided.
     """
-    if not (out / "results.csv").exists():
+    if not cases:
         return Summary(0, 0)
     with (out / "results.csv").open(newline="", encoding="utf-8", errors="replace") as file:
-        verdicts = [row["verdict"] for row in csv.DictReader(file)]
-    return Summary(len(verdicts), verdicts.count("undecided"))
+        rows = csv.DictReader(file)
+        return Summary(len(cases), [row["verdict"] for row in rows].count("undecided"))
 
 
 def replace(path: Path, write: Callable[[BinaryIO], object]) -> None:

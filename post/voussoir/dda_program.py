@@ -7,6 +7,7 @@ import re
 import shutil
 import subprocess
 import sys
+from dataclasses import dataclass
 from pathlib import Path
 
 
@@ -93,8 +94,20 @@ def version_of(dda: Path) -> str:
     return subprocess.run([dda, "--version"], capture_output=True, text=True).stdout.strip()
 
 
-def count_cases(dda: Path, deck: Path, settings: list[str]) -> int:
-    """Check a deck and count its cases.
+@dataclass(frozen=True)
+class Asked:
+    """What a deck asks for, as the program says it."""
+
+    #: Number of cases
+    cases: int
+    #: Text of deck.record: keys, values, check sums of the files named, build of the program
+    record: str
+    #: First line of every table that a run writes, by its name
+    headers: dict[str, str]
+
+
+def ask(dda: Path, deck: Path, settings: list[str]) -> Asked:
+    """Check a deck.
 
     Parameters
     ----------
@@ -107,20 +120,40 @@ def count_cases(dda: Path, deck: Path, settings: list[str]) -> int:
 
     Returns
     -------
-    int
-        Number of cases.
+    Asked
+        What it asks for.
 
     Raises
     ------
     DdaError
         If the deck is bad input: with the program's own message.
     """
-    words = [str(dda), "check", str(deck)]
-    done = subprocess.run(words + set_options(settings), capture_output=True, text=True)
-    cases = re.search(r"^ +cases +(\d+)$", done.stdout, flags=re.MULTILINE)
+    words = [str(dda), "check", path_word(deck), "--record", *set_options(settings)]
+    done = subprocess.run(words, capture_output=True, text=True, errors="surrogateescape")
+    plan, _, rest = done.stdout.partition("\ntables:\n")
+    tables, _, record = rest.partition("\ndeck.record:\n")
+    cases = re.search(r"^ +cases +(\d+)$", plan, flags=re.MULTILINE)
     if done.returncode != 0 or not cases:
         raise DdaError(done.stderr.strip() or f"dda check ended with status {done.returncode}")
-    return int(cases[1])
+    lines = [line.strip().partition(" ") for line in tables.splitlines()]
+    return Asked(int(cases[1]), record, {name: header for name, _, header in lines})
+
+
+def path_word(path: Path) -> str:
+    """A path as a word of a command line that no program takes for an option.
+
+    Parameters
+    ----------
+    path : Path
+        Such as -dash.nml, as pathlib writes ./-dash.nml.
+
+    Returns
+    -------
+    str
+        The path, with "./" before a dash.
+    """
+    word = str(path)
+    return os.path.join(os.curdir, word) if word.startswith("-") else word
 
 
 def set_options(settings: list[str]) -> list[str]:

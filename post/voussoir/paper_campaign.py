@@ -13,6 +13,7 @@ from functools import cached_property, lru_cache
 from pathlib import Path
 
 from voussoir import paper_tables, results, theory
+from voussoir.dda_program import path_word
 
 #: Roughly how long each part takes beside the others; a part that is not named here counts 1
 _WEIGHTS = {"figure12": 12.0, "figure15": 12.0, "figure9": 5.0, "figure18": 4.0, "figure8": 2.0}
@@ -177,7 +178,7 @@ class Campaign:
                 workers.submit(
                     run_program,
                     file.stem,
-                    [dda, "run", file, "--out", self.out / file.stem, *options],
+                    [dda, "run", path_word(file), "--out", self.out / file.stem, *options],
                 )
                 for file in longest_first
             ]

@@ -18,7 +18,7 @@ from voussoir import (
     validation_rest,
     validation_strain,
 )
-from voussoir.dda_program import DdaError, set_options
+from voussoir.dda_program import DdaError, path_word, set_options
 from voussoir.validation_scene import Check, Outcome, Scene
 
 #: Errors below this are round-off: they have no rate
@@ -131,7 +131,8 @@ def _measured(scene: Scene, folder: Path) -> list[float | str]:
 
 def _run(dda: Path, deck: Path, settings: list[str], folder: Path) -> None:
     """Run a deck into a folder."""
-    words = [str(dda), "run", str(deck), "--out", str(folder), "--quiet", *set_options(settings)]
+    words = [str(dda), "run", path_word(deck), "--out", str(folder), "--quiet"]
+    words += set_options(settings)
     done = subprocess.run(words, capture_output=True, text=True)
     if done.returncode != 0:
         message = done.stderr.strip() or f"dda run ended with status {done.returncode}"
