@@ -66,6 +66,9 @@ def run(arguments: argparse.Namespace) -> int:
     """
     try:
         return _run(arguments)
+    except results.DamagedTable as error:
+        sys.stderr.write(f"{error}\n")
+        return 2
     except (FileNotFoundError, KeyError, ValueError) as error:
         words = error.args[0] if isinstance(error, KeyError) else error
         sys.stderr.write(f"{arguments.folder}:1: error: {words}\n")

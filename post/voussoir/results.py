@@ -9,7 +9,6 @@ for frame in run.frames_of(1): frame.blocks
 
 from __future__ import annotations
 
-import csv
 from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
@@ -17,23 +16,9 @@ from typing import Any
 
 import numpy as np
 
-#: Columns of whole numbers, by name; every other column of numbers has floats
-_WHOLE = frozenset(
-    (
-        "case blocks voussoirs steps open_close_iterations factorisations"
-        " joint frame step block vertex point block_1 block_2"
-    ).split()
-)
-#: Columns of words; what is left are numbers
-_WORDS = frozenset(
-    (
-        "deck mode geometry verdict collapses_at collapse_mode springing_hinge"
-        " state state_1 state_2 mechanism"
-    ).split()
-)
-#: Columns of several angles joined by semicolons
-_LISTS = frozenset(("intrados_hinge_deg", "extrados_hinge_deg"))
+from voussoir._tables import DamagedTable, read_columns
 
+__all__ = ["Block", "DamagedTable", "Frame", "Results", "Table", "read"]
 
 class Table:
     """Columns of equal length.
@@ -284,7 +269,7 @@ def read(folder: str | Path) -> Results:
     ------
     FileNotFoundError
         If there is no results.csv in the folder.
-    ValueError
+    DamagedTable
         If a table holds what `dda` does not write.
     """
     folder = Path(folder)
@@ -306,30 +291,5 @@ def _read_table(file: Path) -> Table | None:
     """A table with typed columns in the order of its cases, None if there is no such file."""
     if not file.is_file():
         return None
-    with file.open(newline="", encoding="utf-8") as lines:
-        names, *rows = csv.reader(lines)
-    for number, row in enumerate(rows, 2):
-        if len(row) != len(names):
-            raise ValueError(f"{file}:{number}: {len(names)} cells wanted, {len(row)} found")
-    cells = list(zip(*rows)) or [()] * len(names)
-    try:
-        table = Table({name: _typed(name, column) for name, column in zip(names, cells)})
-    except ValueError as problem:
-        raise ValueError(f"{file}: {problem}") from problem
+    table = Table(read_columns(file))
     return table.take(np.argsort(table["case"], kind="stable"))
-
-
-def _typed(name: str, cells: tuple[str, ...]) -> np.ndarray:
-    """A column with its type."""
-    if name in _LISTS:
-        column = np.empty(len(cells), dtype=object)
-        column[:] = [tuple(float(part) for part in cell.split(";") if part) for cell in cells]
-        return column
-    if name in _WHOLE:
-        return np.array(cells, dtype=np.int64)
-    if name not in _WORDS:
-        try:
-            return np.array([cell or "nan" for cell in cells], dtype=float)
-        except ValueError:  # a swept parameter that takes words
-            pass
-    return np.array(cells, dtype=str)

@@ -129,7 +129,7 @@ def test_folder_without_results_is_named(tmp_path: Path) -> None:
 def test_torn_row_is_named_with_its_line(searched: results.Results, tmp_path: Path) -> None:
     text = (searched.folder / "results.csv").read_text()
     (tmp_path / "results.csv").write_text(text[:-40])
-    with pytest.raises(ValueError, match=r"results.csv:7: \d+ cells wanted"):
+    with pytest.raises(ValueError, match=r"results.csv:7: error: expected \d+ cells"):
         results.read(tmp_path)
 
 

@@ -1,0 +1,146 @@
+"""The tables of `dda run` as columns with types; what is damaged is told with file and line."""
+
+from __future__ import annotations
+
+import csv
+from pathlib import Path
+
+import numpy as np
+
+#: Columns of whole numbers, by name; every other column of numbers has floats
+_WHOLE = frozenset(
+    (
+        "case blocks voussoirs steps open_close_iterations factorisations"
+        " joint frame step block vertex point block_1 block_2"
+    ).split()
+)
+#: Columns of words; what is left are numbers
+_WORDS = frozenset(
+    (
+        "deck mode geometry verdict collapses_at collapse_mode springing_hinge"
+        " state state_1 state_2 mechanism"
+    ).split()
+)
+#: What to do about a table that is damaged
+_AGAIN = "run the deck again with --resume"
+#: Columns that a table must have, each once; results.csv has those of swept parameters beside them
+_NEEDED = {
+    "results.csv": (
+        "deck case blocks half_angle_deg thickness_ratio friction_deg mode geometry verdict"
+        " critical critical_low critical_high collapses_at exact relative_error collapse_mode"
+        " sliding_share intrados_hinge_deg extrados_hinge_deg springing_hinge steps"
+    ).split(),
+    "joints.csv": (
+        "case joint angle_deg x_intrados y_intrados x_extrados y_extrados normal_force shear_force"
+        " eccentricity_ratio opening_intrados opening_extrados slip state block_1 block_2 x y"
+        " force_x force_y mechanism slides_x slides_y"
+    ).split(),
+    "blocks.csv": "case block state vertex x y u v".split(),
+    "frames.csv": "case frame step time block vertex x y".split(),
+    "frame_joints.csv": "case frame joint x_1 y_1 x_2 y_2 x y force_x force_y state_1 state_2".split(),
+    "points.csv": "case step time point x y u v".split(),
+}
+#: Columns of numbers whatever is swept
+_NUMBERS = frozenset(
+    (
+        "critical critical_low critical_high exact relative_error sliding_share x_intrados y_intrados"
+        " x_extrados y_extrados normal_force shear_force eccentricity_ratio opening_intrados"
+        " opening_extrados slip x y u v time x_1 y_1 x_2 y_2 force_x force_y slides_x slides_y"
+        " angle_deg"
+    ).split()
+)
+#: Columns of several angles joined by semicolons
+_LISTS = frozenset(("intrados_hinge_deg", "extrados_hinge_deg"))
+
+
+class DamagedTable(ValueError):
+    """A table that dda does not write so: the message begins with file and line."""
+
+
+def read_columns(file: Path) -> dict[str, np.ndarray]:
+    """Read a table.
+
+    Parameters
+    ----------
+    file : Path
+        Its file.
+
+    Returns
+    -------
+    dict of str to ndarray
+        Its columns with their types, rows as they stand.
+
+    Raises
+    ------
+    DamagedTable
+        If dda does not write such a table.
+    """
+    try:
+        names, rows = _cells_of(file)
+    except (UnicodeDecodeError, csv.Error) as problem:
+        raise DamagedTable(f"{file}:{_spoilt_line(file)}: error: expected a table, got: {problem}; "
+                           + _AGAIN) from problem
+    lost = [name for name in _NEEDED.get(file.name, ("case",)) if names.count(name) != 1]
+    if lost:
+        raise DamagedTable(f"{file}:1: error: expected one column {lost[0]}, got "
+                           f"{names.count(lost[0])}; " + _AGAIN)
+    for number, row in rows:
+        if len(row) != len(names):
+            raise DamagedTable(f"{file}:{number}: error: expected {len(names)} cells, got "
+                               f"{len(row)}; " + _AGAIN)
+    cells = list(zip(*(row for _, row in rows))) or [()] * len(names)
+    lines = [number for number, _ in rows]
+    return {name: _typed(file, lines, name, column) for name, column in zip(names, cells)}
+
+
+def _cells_of(file: Path) -> tuple[list[str], list[tuple[int, list[str]]]]:
+    """Names of the columns, and each row with its line."""
+    with file.open(newline="", encoding="utf-8") as lines:
+        reader = csv.reader(lines)
+        names = next(reader, [])
+        return names, [(reader.line_num, row) for row in reader]
+
+
+def _spoilt_line(file: Path) -> int:
+    """The first line that is no text; 1 if all are."""
+    for number, line in enumerate(file.read_bytes().split(b"\n"), 1):
+        try:
+            if "\0" in line.decode("utf-8"):
+                return number
+        except UnicodeDecodeError:
+            return number
+    return 1
+
+
+def _typed(file: Path, lines: list[int], name: str, cells: tuple[str, ...]) -> np.ndarray:
+    """A column with its type."""
+    try:
+        return _column(name, cells)
+    except (ValueError, OverflowError):
+        pass
+    for line, cell in zip(lines, cells):
+        try:
+            _column(name, (cell,))
+        except (ValueError, OverflowError):
+            raise DamagedTable(f"{file}:{line}: error: expected {name} as dda writes it, got "
+                               f"'{cell[:40]}'; " + _AGAIN) from None
+    raise DamagedTable(f"{file}:1: error: expected {name} as dda writes it, got another column; "
+                       + _AGAIN)
+
+
+def _column(name: str, cells: tuple[str, ...]) -> np.ndarray:
+    """A column with its type; ValueError or OverflowError where a cell has another one."""
+    if name in _LISTS:
+        column = np.empty(len(cells), dtype=object)
+        column[:] = [tuple(float(part) for part in cell.split(";") if part) for cell in cells]
+        return column
+    if name in _WHOLE:
+        return np.array(cells, dtype=np.int64)
+    if name in _NUMBERS:
+        return np.array([cell or "nan" for cell in cells], dtype=float)
+    if name not in _WORDS:
+        try:
+            return np.array([cell or "nan" for cell in cells], dtype=float)
+        except ValueError:  # a swept parameter that takes words
+            pass
+    return np.array(cells, dtype=str)
