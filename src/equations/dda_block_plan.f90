@@ -183,7 +183,8 @@ contains
             plan%first_row(i + 1) = plan%first_row(i) + next(i)
          end do
          next = plan%first_row
-         allocate (plan%row(plan%first_row(size(next)) - 1))
+         ! one more: where a last panel without rows would begin
+         allocate (plan%row(plan%first_row(size(next))), source=1)
       end do
    end subroutine list_rows
 
