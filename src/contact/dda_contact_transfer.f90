@@ -166,7 +166,11 @@ contains
       call lock_joint(system, system%moved, joint)
       call place_joint(system, system%moved, joint, gap)
       do k = 1, joint%n_contact
-         if (source(k) == 0) cycle
+         if (source(k) == 0) then
+            ! what begins inside, as a corner that meets a corner does, is not pushed out
+            if (.not. in_time) joint%contact(k)%closed_at = min(0.0_wp, gap(k))
+            cycle
+         end if
          associate (contact => joint%contact(k))
             length = edge_size(system, contact)
             contact%lock = contact%lock - past(source(k))%slip/length

@@ -127,6 +127,9 @@ contains
          call choose_end(near, [next(pair(1)), pair(2)], [pair(2), pair(1)], to(2) - to(1), &
             & min(met, angle)*shorter, corner(2), edge(2))
       end associate
+      ! corners that have just passed one another are no edges yet
+      if (length < met*shorter .and. .not. (near%beginning .or. was_closed(near, corner(1), &
+         & edge(1)) .or. was_closed(near, corner(2), edge(2)))) return
       joint%n_contact = 2
       joint%length = length
       do k = 1, 2
