@@ -3,13 +3,14 @@
 module dda_balance
    use dda_assembly, only : equations_t
    use dda_block_system, only : block_system_t
+   use dda_contact_types, only : joint_t
    use dda_joint_springs, only : joint_springs_t
    use dda_kinds, only : wp
    use dda_step_context, only : step_context_t
    implicit none
    private
 
-   public :: free_acceleration, is_felt, measure_balance
+   public :: free_acceleration, is_drowned, is_felt, measure_balance
 
    !> A block that bears less than this share of the mean load, or of the mean mass, is light
    real(wp), parameter :: light = 1.0e-2_wp
@@ -17,6 +18,9 @@ module dda_balance
    real(wp), parameter :: left_over = 1.0e-12_wp
    !> What is left over of the whole load may be this share of a light block's own
    real(wp), parameter :: felt_share = 1.0e-3_wp
+
+   !> Where rounding presses a block with this multiple of its load, it is noise that moves it
+   real(wp), parameter :: drowned = 10.0_wp
 
 contains
 
@@ -46,6 +50,38 @@ contains
          own(e) = norm2(equations%felt(1:2, e)) + equations%felt(3, e)/gyration(system, b)
       end do
    end function own_load
+
+   !> Whether rounded coordinates press a block with far more than its load: its contacts then tell
+   !> nothing of it
+   pure logical function is_drowned(system, joint, springs, equations)
+      !> The blocks
+      type(block_system_t), intent(in) :: system
+      !> The joints, placed: (n_joint)
+      type(joint_t), intent(in) :: joint(:)
+      !> Their springs
+      type(joint_springs_t), intent(in) :: springs
+      !> The equations, with all loads
+      type(equations_t), intent(in) :: equations
+      real(wp) :: least, own(size(equations%felt, 2)), rounding
+      integer :: j, k, side
+
+      is_drowned = .false.
+      own = own_load(system, equations)
+      do j = 1, size(joint)
+         rounding = 0.0_wp
+         do k = 1, joint(j)%n_contact
+            associate (contact => joint(j)%contact(k))
+               rounding = max(rounding, dot_product(abs(contact%normal), abs(contact%point)))
+            end associate
+         end do
+         least = huge(least)
+         do side = 1, 2
+            if (springs%equation(side, j) > 0) least = min(least, own(springs%equation(side, j)))
+         end do
+         is_drowned = is_drowned .or. least > 0.0_wp &
+            & .and. epsilon(rounding)*rounding*springs%stiffness(j) > drowned*least
+      end do
+   end function is_drowned
 
    !> Radius of gyration of a block
    pure real(wp) function gyration(system, b)

@@ -1,6 +1,7 @@
 !> Forward analysis: a run of steps to a verdict (Shi: df)
 module dda_forward
    use dda_assembly, only : equations_t, new_equations
+   use dda_balance, only : is_drowned
    use dda_block_system, only : block_system_t
    use dda_condition, only : factored_condition
    use dda_contact_detection, only : contacts_t
@@ -92,13 +93,15 @@ contains
          call first_interval(system, contacts%springs, settings, equations, step%state, march, &
             & error)
          contacts%face = step%state%face
+         if (settings%current .and. .not. settings%dynamic .and. contacts%springs%give) &
+            & march%drowned = is_drowned(system, contacts%joint, contacts%springs, equations)
       end if
       if (settings%dynamic .and. march%steps == 0) call audit_step(settings, system, equations, &
          & contacts, step, 0.0_wp, march%energy)
       if (present(album)) call keep_pictures(settings, system, contacts, march, 0.0_wp, .false., &
          & album)
       do while (.not. allocated(error))
-         if (march%steps - march%begun >= settings%max_steps) exit
+         if (march%steps - march%begun >= settings%max_steps .or. march%drowned) exit
          if (settings%duration > 0.0_wp .and. march%time >= settings%duration) exit
          call take_step(settings, system, contacts, equations, march, step, rest, neighbours, &
             & outcome%verdict, error, album)
@@ -133,6 +136,9 @@ contains
       else if (settings%dynamic) then
          outcome%verdict = verdict%undecided
          outcome%reason = "all steps are spent before the end of the run"
+      else if (outcome%verdict == verdict%undecided .and. march%drowned) then
+         outcome%reason = "rounded coordinates press a small block with more than its weight; " &
+            & //"compute it apart from larger ones"
       else if (outcome%verdict == verdict%undecided) then
          outcome%reason = "all steps are spent and neither rest nor collapse is proven"
       end if

@@ -108,6 +108,8 @@ module dda_step_context
       real(wp) :: resolution = 0.0_wp
       !> Motion that the rounding of coordinates may feign, where blocks move [m]
       real(wp) :: rounding = 0.0_wp
+      !> Whether that rounding presses a block with more than its load, where springs give
+      logical :: drowned = .false.
       !> Longest step: the one that was asked for in a dynamic run; in a static one that which
       !> leaves the matrix well enough conditioned [s]
       real(wp) :: longest = 0.0_wp

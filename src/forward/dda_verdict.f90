@@ -36,7 +36,8 @@ module dda_verdict
    real(wp), parameter :: beyond_elastic = 1.0e8_wp
    !> The least free fall over elastic motion that can prove a collapse
    real(wp), parameter :: beyond_any = 100.0_wp
-   !> Where blocks move, collapse is a displacement of this multiple of the elastic motion
+   !> Where blocks move, collapse is a displacement of this multiple of the elastic motion, and of
+   !> what the rounding of coordinates feigns
    real(wp), parameter :: collapse_multiple = 100.0_wp
    !> What has moved as far and loses more than half of its acceleration in a step may come to rest
    real(wp), parameter :: slowing = 0.5_wp
@@ -123,7 +124,7 @@ contains
       far = settings%collapse_displacement
       moved = march%displacement
       if (settings%current .and. .not. far > 0.0_wp) then
-         far = collapse_multiple*march%elastic_motion
+         far = collapse_multiple*max(march%elastic_motion, march%rounding)
          moved = march%moved
          ! on a path blocks may leap to another rest
          if (march%begun > 0) far = max(far, march%allowed_motion/settings%max_displacement_ratio)
