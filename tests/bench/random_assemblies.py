@@ -171,8 +171,8 @@ def give_friction(pick: random.Random, joints: list[Joint]) -> None:
             joint.kind = "no_slip"
 
 
-def make(seed: int) -> Assembly:
-    """The assembly of a seed; the families take turns."""
+def shape(seed: int) -> tuple[Assembly, list[Polygon], random.Random]:
+    """Blocks and joints of a seed, its ground, and what picks the rest; the families take turns."""
     family = FAMILIES[seed % len(FAMILIES)]
     pick = random.Random(seed)
     while True:
@@ -181,8 +181,24 @@ def make(seed: int) -> Assembly:
             break
     assembly = Assembly(f"{family.__name__}_{seed}", blocks, find_joints(blocks, ground))
     give_friction(pick, assembly.joints)
+    return assembly, ground, pick
+
+
+def make(seed: int) -> Assembly:
+    """The assembly of a seed."""
+    assembly, _, pick = shape(seed)
     load(pick, assembly)
     return assembly
+
+
+def make_pushed(seed: int) -> tuple[Assembly, list[Polygon]]:
+    """The assembly of a seed under weights and a push of all blocks, and its ground."""
+    assembly, ground, _ = shape(seed)
+    for block in assembly.blocks:
+        area, _ = area_and_centre(block)
+        assembly.dead.append([0.0, -area, 0.0])
+        assembly.live.append([area, 0.0, 0.0])
+    return assembly, ground
 
 
 def main() -> None:

@@ -1,0 +1,103 @@
+"""Decisions and limits of random assemblies by the command dda, beside the linear programmes of HiGHS (needs SciPy).
+
+    python tests/bench/decisions.py build/bin/dda 0 200
+
+Each assembly is pushed sideways: its associated limit and its Coulomb value are searched, then decided at shares of
+the limit under both rules. The last lines tell the worst of all.
+"""
+
+from __future__ import annotations
+
+import argparse
+import csv
+import io
+import math
+import subprocess
+import tempfile
+from pathlib import Path
+
+from assembly import Assembly
+from highs import judge, read_graphs
+from random_assemblies import make_pushed
+
+SHARES = (0.5, 0.9, 0.99, 1.01, 1.1, 1.5, 5.0)
+FLOWS = ("associated", "coulomb")
+
+
+def block_text(assembly: Assembly, ground: list[list[tuple[float, float]]]) -> str:
+    """The assembly as a file of blocks; each block has a material, each pair of them a law."""
+    lines = []
+    for polygon in ground:
+        lines += ["block fixed", *(f"{x!r} {y!r}" for x, y in polygon)]
+    for number, polygon in enumerate(assembly.blocks, start=2):
+        lines += [f"block material {number}", *(f"{x!r} {y!r}" for x, y in polygon)]
+    lines += [f"material {number + 2} density 1000" for number in range(len(assembly.blocks))]
+    laws = {tuple(sorted(number + 1 for number in joint.blocks)): joint for joint in assembly.joints}
+    for joint in assembly.joints:
+        law = laws[tuple(sorted(number + 1 for number in joint.blocks))]
+        joint.friction, joint.kind = law.friction, law.kind
+    for (one, other), joint in laws.items():
+        angle = 90.0 if joint.kind == "no_slip" else math.degrees(math.atan(joint.friction))
+        lines.append(f"joint {one} {other} friction_deg {angle!r}")
+    return "\n".join(lines) + "\n"
+
+
+def run(dda: Path, folder: Path, flow: str, task: str) -> list[dict[str, str]]:
+    """Rows of a deck."""
+    (folder / "deck.nml").write_text(
+        f"&scene kind = 'blocks', geometry = 'x.blocks' /\n&analysis flow = '{flow}' /\n"
+        f"&output joints = .false., blocks = .false. /\n{task}\n")
+    done = subprocess.run([dda, "run", "deck.nml", "--quiet"], cwd=folder, capture_output=True, check=False)
+    if done.returncode not in (0, 3):  # 3: a case is undecided
+        raise RuntimeError(done.stderr.decode())
+    with (folder / "deck" / "results.csv").open(newline="") as table:
+        return sorted(csv.DictReader(table), key=lambda row: int(row["case"]))
+
+
+def study(dda: Path, folder: Path, seed: int, worst: dict[str, float]) -> str:
+    """Search and decide one assembly; what is worst is kept."""
+    assembly, ground = make_pushed(seed)
+    (folder / "x.blocks").write_text(block_text(assembly, ground))
+    state, factor = judge(next(read_graphs(io.StringIO(assembly.text()))))
+    search = "&search parameter = 'horizontal_coefficient', high = 1e4 /"
+    found = {flow: run(dda, folder, flow, search)[0] for flow in FLOWS}
+    words = [f"{assembly.name:14s} {len(assembly.blocks):3d} HiGHS {state}"]
+    limit = found["associated"]
+    worst["seconds"] = max(worst["seconds"], *(float(row["seconds"]) for row in found.values()))
+    worst["undecided"] += sum(row["verdict"] == "undecided" for row in found.values())
+    if limit["verdict"] != "found" or state != "found":
+        return " ".join([*words, limit["verdict"], found["coulomb"]["verdict"]])
+    value = float(limit["critical"])
+    error = abs(value - factor) / max(abs(factor), 1e-3)
+    worst["error"] = max(worst["error"], error)
+    sweep = ", ".join(repr(value * share) for share in SHARES)
+    for flow in FLOWS:
+        rows = run(dda, folder, flow, f"&sweep parameter = 'horizontal_coefficient', values = {sweep} /")
+        falls_at = float(found[flow]["critical"] or 0.0)
+        for share, row in zip(SHARES, rows):
+            expected = "stable" if share * value < falls_at else "collapsed"
+            worst["wrong"] += row["verdict"] != expected
+            worst["seconds"] = max(worst["seconds"], float(row["seconds"]))
+            if flow == "associated" or share > 1.0:
+                worst["factorisations"] = max(worst["factorisations"], int(row["factorisations"]))
+        words.append(f"{flow} {found[flow]['verdict']} {falls_at:.9f}"
+                     f" [{' '.join(row['factorisations'] for row in rows)}]")
+    return " ".join([*words, f"error {error:.1e}"])
+
+
+def main() -> None:
+    """Study assemblies and tell the worst."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("dda", type=Path, help="the command")
+    parser.add_argument("first", type=int, help="first seed")
+    parser.add_argument("count", type=int, help="how many")
+    given = parser.parse_args()
+    worst = {"error": 0.0, "wrong": 0.0, "undecided": 0.0, "factorisations": 0.0, "seconds": 0.0}
+    with tempfile.TemporaryDirectory() as folder:
+        for seed in range(given.first, given.first + given.count):
+            print(study(given.dda.resolve(), Path(folder), seed, worst), flush=True)
+    print(" ".join(f"{name} {number:.3g}" for name, number in worst.items()))
+
+
+if __name__ == "__main__":
+    main()
