@@ -149,11 +149,12 @@ def copy_pictures(attempts: list[Path], owner: dict[int, Path], out: Path) -> No
         Folder of the campaign.
     """
     for attempt in attempts:
-        for path in attempt.glob("*/case_*"):
+        for path in [*attempt.glob("*/case_*"), *attempt.glob("case_*")]:
             case = re.match(r"case_(\d+)", path.name)
             if case and attempt != out and owner.get(int(case[1])) == attempt:
-                (out / path.parent.name).mkdir(exist_ok=True)
-                shutil.copy2(path, out / path.parent.name / path.name)
+                copy = out / path.relative_to(attempt)
+                copy.parent.mkdir(exist_ok=True)
+                shutil.copy2(path, copy)
 
 
 def merged(out: Path, cases: set[int]) -> Summary:

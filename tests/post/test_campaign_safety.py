@@ -203,3 +203,23 @@ def test_shares_work_side_by_side(tmp_path: Path) -> None:
     shares = [subprocess.Popen([*words, "--index", str(i), "--of", "3"]) for i in (1, 2, 3)]
     assert [share.wait() for share in shares] == [0, 0, 0]
     assert tables(out) == undisturbed(deck)
+
+
+def test_restart_files_of_cases_are_kept_and_known_by_their_content(tmp_path: Path, capsys) -> None:
+    (tmp_path / "a.blocks").write_text(BLOCKS.format(x=0.5).replace(" 0\n0.5 0", " 0.1\n0.5 0.1"))
+    deck, out = tmp_path / "deck.nml", str(tmp_path / "out")
+    deck.write_text(
+        "&scene kind = 'blocks', geometry = 'a.blocks' /\n"
+        "&analysis mode = 'dynamic', geometry = 'current', duration = 0.02, time_step = 0.01 /\n"
+        "&sweep parameter = 'gravity', values = 5, 9 /\n"
+    )
+    words = ["campaign", str(deck), "--quiet", "--out"]
+    assert main([*words, out, "--set", "output%restart=.true."]) == 0
+    files = [tmp_path / "out" / f"case_{case}.restart" for case in (1, 2)]
+    first, second = (file.read_bytes() for file in files)
+    (tmp_path / "on.restart").write_bytes(first)
+    go_on = [*words, str(tmp_path / "on"), "--set", "analysis%restart='on.restart'"]
+    assert main(go_on) == 0
+    (tmp_path / "on.restart").write_bytes(second)
+    assert main(go_on) == 2
+    assert "(other files)" in capsys.readouterr().err
