@@ -31,13 +31,13 @@ contains
       type(chain_t), intent(in) :: chain
       !> The decision, without blocks and springs; of the left half alone if the chain is halved
       type(decision_t), intent(out) :: decision
-      !> Whether it counts: not where joints of what stands slide, and Coulomb's law has the last
-      !> word, nor where the forces have come neither into the cones nor to a mechanism
+      !> Whether it counts: not where joints of what stands slide, or may have slid on the way to
+      !> its loads, nor where the forces have come neither into the cones nor to a mechanism
       logical, intent(out) :: decided
       type(thrust_t) :: thrust
       real(wp) :: beyond(3, size(chain%half)), force(3, size(chain%half)), noise, worst
       real(wp) :: load(3, size(chain%half))
-      integer :: j, passes
+      integer :: j, n, passes
 
       call find_thrust(chain, thrust, load)
       call carry_forces(chain, load, thrust%reaction, force)
@@ -64,9 +64,15 @@ contains
             outcome%reason = "the forces lie beyond the joints' limits by no more than rounding"
          else
             outcome%verdict = verdict%stable
-            if (settings%verdict_flow == flow_rule%coulomb) &
-               & call see_sliding(chain, load, thrust, noise, contacts%face)
-            decided = all(contacts%face(:size(chain%half) - merge(1, 0, chain%halved))%slip == 0)
+            ! the plane of symmetry is smooth
+            n = size(chain%half) - merge(1, 0, chain%halved)
+            if (settings%verdict_flow == flow_rule%coulomb &
+               & .and. any(chain%limit(:n) <= 0.0_wp)) then
+               call see_sliding(chain, load, thrust, noise, contacts%face)
+               ! what tilts or pushes comes after the weight, and the way there has its say
+               decided = all(contacts%face(:n)%slip == 0) .and. .not. &
+                  & (abs(settings%tilt) > 0.0_wp .or. abs(settings%push) > 0.0_wp)
+            end if
          end if
          if (chain%free_acceleration > 0.0_wp) outcome%elastic_time &
             & = sqrt(2.0_wp*thrust%elastic_motion/chain%free_acceleration)
@@ -115,7 +121,6 @@ contains
       real(wp) :: admissible(3), force(3, size(face))
       integer :: j
 
-      if (all(chain%limit > 0.0_wp)) return
       call refine_thrust(chain, load, thrust)
       call carry_forces(chain, load, thrust%reaction, force)
       do j = 1, size(face)

@@ -160,3 +160,21 @@ def test_a_wall_without_ground_under_a_course_falls_by_a_few_factorisations(tmp_
         (row,) = csv.DictReader(table)
     assert row["verdict"] == "collapsed"
     assert int(row["factorisations"]) <= 40
+
+
+def test_arch_has_one_verdict_with_and_without_tables(tmp_path: Path) -> None:
+    """Three voussoirs that fall on the way to tilted gravity and a push, though forces balance both at once."""
+    verdicts = []
+    for flag in (".true.", ".false."):
+        (tmp_path / "deck.nml").write_text(
+            "&scene kind = 'arch' /\n"
+            "&arch voussoirs = 3, half_angle_deg = 54.474975328928494, thickness_ratio = 0.011061216872680255 /\n"
+            "&joint friction_deg = 45 /\n"
+            "&load horizontal_coefficient = 0.5, gravity_direction_deg = -120 /\n"
+            f"&output joints = {flag}, blocks = .false. /\n"
+        )
+        done = run_dda("run", "deck.nml", "--quiet", cwd=tmp_path)
+        assert done.returncode == 0, done.stderr
+        with (tmp_path / "deck" / "results.csv").open() as rows:
+            verdicts += [row["verdict"] for row in csv.DictReader(rows)]
+    assert verdicts == ["collapsed", "collapsed"]
