@@ -202,7 +202,7 @@ def _written() -> Iterator[Scene]:
         ("no file named", b"&scene kind = 'blocks' /\n", "geometry"),
     ):
         yield scene(name, deck, Refused(word))
-    yield _blocks("no number in a file", BASE + _BLOCK.replace("1.0", "one"), Refused("blocks:6"))
+    yield _blocks("no number in a file", BASE + _BLOCK.replace("1.0", "one"), Refused("blocks:8"))
     comma = BASE + _BLOCK.replace("1.0 0.0", "1,0 0,0")
     yield _blocks("comma decimal in a file", comma, Refused("scene.blocks:"))
     for word in ("NaN", "Inf", "1e999"):
