@@ -101,7 +101,7 @@ contains
       if (present(album)) call keep_pictures(settings, system, contacts, march, 0.0_wp, .false., &
          & album)
       do while (.not. allocated(error))
-         if (march%steps - march%begun >= settings%max_steps .or. march%drowned) exit
+         if (march%steps - march%begun >= settings%max_steps) exit
          if (settings%duration > 0.0_wp .and. march%time >= settings%duration) exit
          call take_step(settings, system, contacts, equations, march, step, rest, neighbours, &
             & outcome%verdict, error, album)
@@ -136,7 +136,9 @@ contains
       else if (settings%dynamic) then
          outcome%verdict = verdict%undecided
          outcome%reason = "all steps are spent before the end of the run"
-      else if (outcome%verdict == verdict%undecided .and. march%drowned) then
+      else if (outcome%verdict /= verdict%stable .and. march%drowned) then
+         ! rounding may throw a block, but it does not balance one
+         outcome%verdict = verdict%undecided
          outcome%reason = "rounded coordinates press a small block with more than its weight; " &
             & //"compute it apart from larger ones"
       else if (outcome%verdict == verdict%undecided) then
