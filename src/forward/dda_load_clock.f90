@@ -35,6 +35,8 @@ module dda_load_clock
    real(wp), parameter :: n_strides = 16.0_wp
    !> Shortest stride, over a leg of the path from bend to bend
    real(wp), parameter :: shortest = 2.0_wp**(-14)
+   !> A stride that is longer than the shortest by less is the shortest
+   real(wp), parameter :: barely_longer = 1.001_wp
 
 contains
 
@@ -97,7 +99,8 @@ contains
       !> Whether there is a shorter stride
       logical, intent(out) :: shorter
 
-      shorter = clock%now - clock%rested > shortest*leg_length(clock)
+      ! rounding must not take the shortest for a longer one
+      shorter = clock%now - clock%rested > barely_longer*shortest*leg_length(clock)
       if (.not. shorter) return
       if (falls) clock%fails = clock%now
       clock%stride = (clock%now - clock%rested)/2.0_wp
@@ -122,7 +125,7 @@ contains
       else
          clock%now = min(clock%now, clock%fails)
       end if
-      clock%tries = clock%now - clock%rested > least
+      clock%tries = clock%now - clock%rested > barely_longer*least
    end subroutine set_now
 
    !> Number of the leg that begins, or goes on, at the last rest
