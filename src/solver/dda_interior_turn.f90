@@ -173,6 +173,9 @@ contains
       real(wp), intent(in) :: reach(2)
       real(wp) :: after, centring
 
+      ! where every force may have any sign there is nothing to aim at
+      product = 0.0_wp
+      if (.not. turn%barrier > 0.0_wp) return
       after = sum((point%x + reach(1)*turn%dx)*(point%s + reach(2)*turn%ds)*rays%bounded) &
          & /real(max(1, rays%n_bounded), wp)
       centring = min(1.0_wp, (after/turn%barrier)**3)

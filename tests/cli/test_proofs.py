@@ -148,3 +148,10 @@ def test_proofs_are_written_unasked_for_at_most_100_cases(tmp_path: Path, count:
     found = rows(tmp_path, ARCH.format(75, 4, 0.2) + sweep, head="")
     assert len(found) == count
     assert (tmp_path / "x" / "proof_forces.csv").exists() is written
+
+
+def test_a_block_on_held_points_alone_stands(tmp_path: Path) -> None:
+    """Its forces may have any sign: nothing bounds them, and nothing divides by their number."""
+    held = "block\n0 0\n1 0\n1 2\n0 2\nfix 0 0\nfix 1 0\n"
+    (row,) = rows(tmp_path, "", held)
+    assert row["verdict"] == "stable"
