@@ -9,19 +9,7 @@ module dda_wide_panels
    !> Kind of numbers with 30 digits or more
    integer, parameter :: rk = selected_real_kind(30)
 
-   !> Numbers of a factor L D L', or L U where the matrix is not symmetric
-   type :: panels_t
-      !> L by panels, of which the diagonal triples are inverses
-      real(rk), allocatable :: lower(:)
-      !> The transpose of U likewise, or without entries
-      real(rk), allocatable :: upper(:)
-      !> D, ones where the matrix is not symmetric: (3, n)
-      real(rk), allocatable :: pivot(:, :)
-      !> Whether the matrix is symmetric
-      logical :: symmetric = .true.
-      !> Whether the factor can be used
-      logical :: usable = .false.
-   end type panels_t
+   include "dda_panel_type.inc"
 
 contains
 

@@ -218,15 +218,15 @@ contains
       !> Whether it has factors
       logical, intent(out) :: regular
       integer :: a, i, n
-      logical :: used(equations%n_answer)
+      logical :: is_active(equations%n_answer)
 
-      do a = 1, size(used)
+      do a = 1, size(is_active)
          associate (place => equations%origin(1, a), part => equations%origin(2, a))
-            used(a) = any(abs(equations%difference(part, :, place)) > 0.0_wp)
+            is_active(a) = any(abs(equations%difference(part, :, place)) > 0.0_wp)
          end associate
       end do
-      n = count(used)
-      equations%active = pack([(a, a=1, size(used))], used)
+      n = count(is_active)
+      equations%active = pack([(a, a=1, size(is_active))], is_active)
       if (allocated(equations%capacity)) deallocate (equations%capacity, equations%exchange)
       allocate (equations%capacity(n, n), equations%exchange(n))
       do i = 1, n
