@@ -30,6 +30,9 @@ CHAPTERS = {
         "howto.md": "Arches, studies, results, pictures",
         "howto_blocks.md": "My own blocks",
         "howto_limerick.md": "A Limerick model",
+        "howto_tunnel.md": "A tunnel and a slope",
+        "howto_fortran.md": "From a Fortran program",
+        "howto_python.md": "From Python",
     },
     "Reference": {
         "input.md": "The input deck",
@@ -53,10 +56,18 @@ CHAPTERS = {
         "performance.md": "Performance",
         "scaling.md": "Scaling",
     },
-    "Inside": {"architecture.md": "Architecture"},
+    "Inside": {"architecture.md": "Architecture", "modules.md": "Modules", "tolerances.md": "Tolerances"},
 }
 #: Formulas in a line that are longer than so many characters of TeX scroll on narrow screens
 LONG = 30
+#: Modules of the names that scripts import: those of the package itself, or all of a module
+PUBLIC = {
+    "running": ("run", "Deck"),
+    "models": ("Arch",),
+    "block_model": ("Blocks",),
+    "results": (),
+    "theory": (),
+}
 #: Packages that build the site
 PACKAGES = ("mkdocs", "ford", "latex2mathml")
 #: What the theme lacks: room for tables, which wrap, and names that break where they must
@@ -86,7 +97,7 @@ def main() -> int:
     missing = [name for name in PACKAGES if not importlib.util.find_spec(name)]
     if missing:
         print(
-            f"build_site.py:1: error: wanted the packages {', '.join(PACKAGES)}, found no "
+            f"build_site.py:1: error: expected the packages {', '.join(PACKAGES)}, got no "
             f"{' and no '.join(missing)}; pip install {' '.join(PACKAGES)}",
             file=sys.stderr,
         )
@@ -180,25 +191,33 @@ def keys_page(help_text: str) -> str:
 
 
 def python_page() -> str:
-    """Public functions and classes of the Python package, with their docstrings."""
+    """Public names of the Python package, with their docstrings."""
     lines = [
         "# Python interfaces", "",
-        "What scripts import comes first: results and theory. The other modules are those of the commands.", "",
+        "What scripts import: `import voussoir`. [How to](howto_python.md) shows it at work.", "",
     ]
-    modules = (ROOT / "post/voussoir").glob("*.py")
-    for path in sorted(modules, key=lambda path: (path.stem not in ("results", "theory"), path.stem)):
-        tree = ast.parse(path.read_text(encoding="utf-8"))
-        if path.stem.startswith("_") or not ast.get_docstring(tree):
-            continue
-        lines += [f"## voussoir.{path.stem}", "", *block(ast.get_docstring(tree))]
+    for module, names in PUBLIC.items():
+        tree = ast.parse((ROOT / f"post/voussoir/{module}.py").read_text(encoding="utf-8"))
+        home = "voussoir" if names else f"voussoir.{module}"
+        lines += [] if names else [f"## {home}", "", *block(ast.get_docstring(tree) or "")]
         for node in tree.body:
-            if isinstance(node, (ast.FunctionDef, ast.ClassDef)) and not node.name.startswith("_"):
-                text = ast.get_docstring(node)
-                head = node.name
-                if isinstance(node, ast.FunctionDef):
-                    head += f"({ast.unparse(node.args)})"
-                lines += [f"### `{head}`", "", *block(text or "")]
+            if not isinstance(node, (ast.FunctionDef, ast.ClassDef)) or node.name.startswith("_"):
+                continue
+            if not names or node.name in names:
+                lines += interface(node, f"{home}.", "##" if names else "###")
     return "\n".join(lines)
+
+
+def interface(node: ast.FunctionDef | ast.ClassDef, before: str, level: str) -> list[str]:
+    """A function, or a class and its public methods."""
+    head = before + node.name
+    if isinstance(node, ast.FunctionDef):
+        head += f"({ast.unparse(node.args)})"
+    lines = [f"{level} `{head}`", "", *block(ast.get_docstring(node) or "")]
+    for inner in node.body if isinstance(node, ast.ClassDef) else []:
+        if isinstance(inner, ast.FunctionDef) and not inner.name.startswith("_"):
+            lines += interface(inner, f"{node.name}.", level + "#")
+    return lines
 
 
 def block(text: str) -> list[str]:

@@ -1,10 +1,40 @@
-"""Masonry arches by discontinuous deformation analysis and by theory.
+"""Masonry arches and block systems by discontinuous deformation analysis and by theory.
 
-Modules
--------
+run
+    Run a deck, its text, or Python values; gives tables and pictures.
+Arch, Blocks
+    Decks made of Python values, shapely polygons among them.
+read
+    Read a folder that `dda run` has written.
 theory
-    The analytic solutions of the Couplet-Heyman problem, computed by the Fortran module of the
-    build.
+    The analytic solutions of the Couplet-Heyman problem.
 """
 
+from __future__ import annotations
+
+from importlib import import_module
+from typing import Any
+
 __version__ = "0.1.0"
+__all__ = ["Arch", "Blocks", "read", "results", "run", "theory"]
+
+#: Where the public names are; a module is loaded when its name is first used
+_HOMES = {
+    "Arch": "voussoir.models",
+    "Blocks": "voussoir.block_model",
+    "read": "voussoir.results",
+    "run": "voussoir.running",
+}
+
+
+def __getattr__(name: str) -> Any:
+    """A public name, loaded when it is first used."""
+    if name in _HOMES:
+        return getattr(import_module(_HOMES[name]), name)
+    if name in ("results", "theory"):
+        return import_module(f"voussoir.{name}")
+    raise AttributeError(f"module 'voussoir' has no attribute '{name}'")
+
+
+def __dir__() -> list[str]:
+    return sorted({*globals(), *__all__})

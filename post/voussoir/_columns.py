@@ -39,7 +39,7 @@ def theory_number(name: str) -> int:
         If there is no such theory.
     """
     if not isinstance(name, str) or name.lower() not in THEORIES:
-        raise ValueError(f"theory wants one of {', '.join(map(repr, THEORIES))}, got {name!r}")
+        raise ValueError(f"theory must be one of {', '.join(map(repr, THEORIES))}, got {name!r}")
     return THEORIES[name.lower()]
 
 
@@ -65,7 +65,7 @@ def real_array(name: str, value: npt.ArrayLike) -> Column:
     """
     array = np.asarray(value)
     if array.dtype.kind not in "iuf" and array.size > 0:
-        raise ValueError(f"{name} wants real numbers, got {value!r}")
+        raise ValueError(f"{name} must be real numbers, got {value!r}")
     return array.astype(np.float64)
 
 
@@ -178,4 +178,4 @@ def refuse(
         return
     value = flat[argument - 1][element - 1].item()
     where = f" at element {element - 1}" if flat[argument - 1].size > 1 else ""
-    raise ValueError(f"{names[argument - 1]} wants {ranges[argument - 1]}, got {value!r}{where}")
+    raise ValueError(f"{names[argument - 1]} must be {ranges[argument - 1]}, got {value!r}{where}")

@@ -82,7 +82,7 @@ def discrete_critical(
     if none.size > 0:
         angle = flat[-1][none[0]].item()
         raise ValueError(
-            "friction wants an angle at which some thickness ratio below 2 admits equilibrium, "
+            "friction must be an angle at which some thickness ratio below 2 admits equilibrium, "
             f"got {angle!r} rad"
         )
     return shaped(shape, eta)
@@ -109,7 +109,7 @@ def discrete_solution(
     """
     _, status, eta, h, joint, role, _ = _solve(joints, alpha, facet, friction, springing_no_slip)
     if status.size != 1:
-        raise ValueError(f"discrete_solution wants one arch, got {status.size}")
+        raise ValueError(f"discrete_solution needs one arch, got {status.size}")
     found = STATUS[status[0]] == "found"
     bound = {
         name: tuple(float(angle) for angle in joint[role[:, 0] == number, 0])
@@ -128,7 +128,7 @@ def _solve(joints, alpha, facet, friction, springing_no_slip):
     angles = real_array("joints", joints)
     if angles.ndim != 1 or angles.size == 0:
         raise ValueError(
-            "joints wants the angles of one half arch, or a number together with alpha, "
+            "joints must be the angles of one half arch, or a number together with alpha, "
             f"got {joints!r}"
         )
     shape, flat = columns(facet=facet, friction=friction)
@@ -152,7 +152,7 @@ def _solve_equal(joints, alpha, facet, friction, springing_no_slip):
     if not whole.all():
         value = count[~whole][0].item()
         raise ValueError(
-            f"joints wants whole numbers of voussoirs together with alpha, got {value!r}"
+            f"joints must be whole numbers of voussoirs together with alpha, got {value!r}"
         )
     counts = count.astype(np.int32)
     if counts.size == 0:
@@ -176,7 +176,7 @@ def _positive_facet(facet: npt.ArrayLike) -> npt.NDArray[np.float64]:
     array = real_array("facet", facet)
     wrong = array[~(array > 0.0)]
     if wrong.size > 0:
-        raise ValueError(f"facet wants {_WANTS['facet']}, got {wrong[0].item()!r}")
+        raise ValueError(f"facet must be {_WANTS['facet']}, got {wrong[0].item()!r}")
     return array
 
 

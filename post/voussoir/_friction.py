@@ -40,7 +40,7 @@ def friction(theory: str, alpha: float = _SEMICIRCLE) -> dict[str, float | str]:
         results=5,
     )
     if found[0].ndim > 0:
-        raise ValueError(f"alpha wants one angle, got {alpha!r}")
+        raise ValueError(f"alpha must be one angle, got {alpha!r}")
     rotational, mixed, h, slip, springing = found
     beta, eta, _ = friction_critical(mixed, theory, alpha)
     return {

@@ -38,14 +38,15 @@ _NEEDED = {
     "blocks.csv": "case block state vertex x y u v".split(),
     "frames.csv": "case frame step time block vertex x y".split(),
     "frame_joints.csv": "case frame joint x_1 y_1 x_2 y_2 x y force_x force_y state_1 state_2".split(),
-    "points.csv": "case step time point x y u v".split(),
+    "points.csv": "case step time point x y u v vx vy".split(),
+    "reactions.csv": "case time block point fx fy moment".split(),
 }
 #: Columns of numbers whatever is swept
 _NUMBERS = frozenset(
     (
         "critical critical_low critical_high exact relative_error sliding_share x_intrados y_intrados"
         " x_extrados y_extrados normal_force shear_force eccentricity_ratio opening_intrados"
-        " opening_extrados slip x y u v time x_1 y_1 x_2 y_2 force_x force_y slides_x slides_y"
+        " opening_extrados slip x y u v vx vy fx fy moment time x_1 y_1 x_2 y_2 force_x force_y slides_x slides_y"
         " angle_deg"
     ).split()
 )

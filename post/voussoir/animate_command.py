@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from voussoir import results
+from voussoir.extras import advice
 from voussoir.plot_command import magnification
 
 #: Most cases that move side by side without being named
@@ -39,7 +40,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "--out",
         metavar="FILE",
         type=Path,
-        help="a .gif, an .mp4 (wants ffmpeg), or a .png for one numbered file a picture "
+        help="a .gif, an .mp4 (needs ffmpeg), or a .png for one numbered file a picture "
         "(default: DIR/plots/motion.gif)",
     )
     parser.add_argument(
@@ -75,14 +76,13 @@ def run(arguments: argparse.Namespace) -> int:
         return 2
     except ImportError as error:
         sys.stderr.write(
-            f"voussoir:1: error: wanted matplotlib, found none ({error}); install "
-            "python3-matplotlib\n"
+            f"voussoir:1: error: expected matplotlib, got none ({error}); {advice('matplotlib')}\n"
         )
         return 2
     except OSError as error:
         sys.stderr.write(
-            f"{error.filename or arguments.out}:1: error: wanted a file that can be written, "
-            f"found: {error.strerror}; choose another one with --out\n"
+            f"{error.filename or arguments.out}:1: error: the file cannot be written: "
+            f"{error.strerror}; choose another one with --out\n"
         )
         return 4
 
@@ -102,7 +102,7 @@ def _run(arguments: argparse.Namespace) -> int:
     if not moving or arguments.case and len(moving) < len(cases):
         still = next(number for number in cases if number not in moving)
         raise ValueError(
-            f"wanted frames of case {still}, found none; give the deck &analysis geometry = "
+            f"expected frames of case {still}, got none; give the deck &analysis geometry = "
             "'current' / and &output frames = 20 /"
         )
     file = arguments.out or arguments.folder / "plots" / "motion.gif"

@@ -106,7 +106,7 @@ def run(arguments: argparse.Namespace) -> int:
     except OSError as error:
         name = error.filename or arguments.out or arguments.deck
         sys.stderr.write(
-            f"{name}:1: error: wanted files that can be written, found: {error.strerror}; "
+            f"{name}:1: error: files cannot be written: {error.strerror}; "
             "what is finished stays safe in the folder parts\n"
         )
         return 4
@@ -196,15 +196,15 @@ def _report(campaign: Campaign, arguments: argparse.Namespace) -> int:
 def _share_of(arguments: argparse.Namespace) -> tuple[int, int]:
     """Index and number of shares, checked."""
     if (arguments.index is None) != (arguments.of is None):
-        raise DdaError("--index:1: error: wanted --index and --of, found one of them; give both")
+        raise DdaError("--index:1: error: expected --index and --of, got one of them; give both")
     if arguments.index is None:
         return 1, 1
     if arguments.anew:
-        raise DdaError("--anew:1: error: wanted no --anew with --index, found both; the shares "
+        raise DdaError("--anew:1: error: expected no --anew with --index, got both; the shares "
                        "would discard one another: remove the folder before they begin")
     if arguments.index > arguments.of:
         raise DdaError(
-            f"--index:1: error: wanted an index from 1 to {arguments.of}, found "
+            f"--index:1: error: expected an index from 1 to {arguments.of}, got "
             f"{arguments.index}; number the shares from 1"
         )
     return arguments.index, arguments.of
@@ -213,5 +213,5 @@ def _share_of(arguments: argparse.Namespace) -> tuple[int, int]:
 def _positive(word: str) -> int:
     """A whole number from 1."""
     if not word.isdigit() or int(word) < 1:
-        raise argparse.ArgumentTypeError(f"wants a whole number from 1, got '{word}'")
+        raise argparse.ArgumentTypeError(f"must be a whole number from 1, got '{word}'")
     return int(word)

@@ -8,6 +8,7 @@ from voussoir import campaign_part
 from voussoir.campaign import Engine, Outcome
 from voussoir.campaign_part import Part, run_part
 from voussoir.dda_program import DdaError
+from voussoir.extras import advice
 
 #: How long a scheduler may take to answer [s]
 WAIT = 30.0
@@ -38,14 +39,14 @@ def dask_engine(address: str) -> tuple[Engine, int]:
         from distributed import Client, as_completed
     except ImportError as error:
         raise DdaError(
-            f"--scheduler:1: error: wanted Dask, found none ({error}); install python3-distributed "
-            "or pip install distributed, or leave --scheduler away"
+            f"--scheduler:1: error: expected Dask, got none ({error}); {advice('distributed')}, "
+            "or omit --scheduler"
         ) from error
     try:
         client = Client(address, timeout=WAIT)
     except (OSError, ValueError) as error:
         raise DdaError(
-            f"--scheduler:1: error: wanted a Dask scheduler at {address}, found none "
+            f"--scheduler:1: error: expected a Dask scheduler at {address}, got none "
             f"({error}); start one with 'dask scheduler', or correct the address"
         ) from error
     # by value: the workers need not have this package

@@ -29,6 +29,8 @@ TABLES = (
     "frame_joints.csv",
     "points.csv",
     "energy.csv",
+    "reactions.csv",
+    "bars.csv",
     "sizes.record",
     "results.csv",
 )

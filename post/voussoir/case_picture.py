@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 from typing import Any
 
-import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib.artist import Artist
 from matplotlib.axes import Axes
@@ -16,8 +15,9 @@ from matplotlib.patches import Patch
 
 from voussoir.case_scene import CaseScene, scene_of, view
 from voussoir.collapse_picture import MARKS, MEANINGS
-from voussoir.figure_style import INK, STONE
+from voussoir.figure_style import INK, STONE, Picture
 from voussoir.results import Results, Table
+from voussoir.shape_rings import ring_joints
 from voussoir.units import force_text, length_text, rounded
 
 #: Longest force, largest displacement and length of slip marks in the picture, over its size
@@ -96,7 +96,8 @@ def new_figure(low: np.ndarray, high: np.ndarray) -> tuple[Figure, Axes]:
     """A figure whose shape is that of a piece of plane, and its bare axes."""
     wide, tall = high - low
     height = min(max(WIDTH * tall / wide, LEAST_HEIGHT), MOST_HEIGHT) + 0.5
-    figure, axes = plt.subplots(figsize=(WIDTH, height), layout="constrained")
+    figure = Picture(figsize=(WIDTH, height), layout="constrained")
+    axes = figure.subplots()
     axes.set_aspect("equal")
     axes.set_axis_off()
     axes.set_xlim(low[0], high[0])
@@ -140,9 +141,26 @@ def title_of(row: Row, run: Results | None = None) -> str:
         end += f": critical {what} {row['critical']:.6g}"
         if not math.isnan(row["exact"]):
             end += f", exact {row['exact']:.6g}"
+    if row["verdict"] == "stable":
+        end += safety_of(row)
     if row["collapse_mode"] != "none":
         end += f", {row['collapse_mode']} collapse"
     return f"Case {row['case']}: " + ", ".join(given) + "\n" + end
+
+
+def safety_of(row: Row) -> str:
+    """The safety numbers of what stands, as far as they are told."""
+    words = ""
+    for name, text in (
+        ("safety_thickness", ", thickness {:.3g} × critical"),
+        ("exact_low", ", load factor {:.4g}"),
+    ):
+        if not math.isnan(row.get(name, math.nan)):
+            words += text.format(row[name])
+    ends = [row.get(name, math.nan) for name in ("thrust_min", "thrust_max")]
+    if not any(map(math.isnan, ends)):
+        words += f", thrust {force_text(ends[0])} to {force_text(ends[1])}"
+    return words
 
 
 def draw_supports(axes: Axes, supports: list[np.ndarray]) -> list[Artist]:
@@ -234,6 +252,8 @@ def draw_joints(
 ) -> list[Artist]:
     """Draw thrust, forces, hinges and slips; gives the entries of the legend."""
     entries = draw_thrust(axes, joints) if scene.is_arch else []
+    if scene.voussoirs:
+        entries = draw_ring_thrust(axes, scene, joints)
     if with_forces:
         entries += draw_forces(axes, scene, joints, size)
     return entries + draw_hinges(axes, scene, joints) + draw_slips(axes, scene, joints, size)
@@ -249,6 +269,14 @@ def thrust_points(joints: Table) -> np.ndarray:
 def draw_thrust(axes: Axes, joints: Table) -> list[Artist]:
     """Draw the line of thrust of an arch; gives the entries of the legend."""
     axes.plot(*thrust_points(joints).T, color=INK[1], linewidth=2.6, zorder=4)
+    return [_line("line of thrust", linestyle="-", color=INK[1])]
+
+
+def draw_ring_thrust(axes: Axes, scene: CaseScene, joints: Table) -> list[Artist]:
+    """Draw the line of thrust through the voussoirs of each ring; gives the entries of the legend."""
+    points = thrust_points(joints)
+    for pair in ring_joints(joints["block_1"], joints["block_2"], scene.count, scene.voussoirs):
+        axes.plot(*points[list(pair)].T, color=INK[1], linewidth=2.6, solid_capstyle="round", zorder=4)
     return [_line("line of thrust", linestyle="-", color=INK[1])]
 
 

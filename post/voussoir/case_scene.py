@@ -30,6 +30,10 @@ class CaseScene:
         Whether the blocks are computed where they go, so that pictures show them there.
     falls : bool
         Whether the displacements are a collapse mechanism, which has no size.
+    voussoirs : int
+        Of an arch of any shape, the voussoirs of a ring, which are numbered first.
+    count : int
+        The number of all of them.
     """
 
     blocks: list[Block]
@@ -37,6 +41,8 @@ class CaseScene:
     is_arch: bool
     moves: bool
     falls: bool
+    voussoirs: int = 0
+    count: int = 0
 
     @property
     def largest(self) -> float:
@@ -82,7 +88,13 @@ def scene_of(run: Results, number: int) -> CaseScene:
     row = run.case(number)
     moves = row["geometry"] == "current" and not run.searched
     falls = row["collapse_mode"] != "none" and not moves
-    return CaseScene(free, supports, is_arch, moves, falls)
+    if run.kind != "shape":
+        return CaseScene(free, supports, is_arch, moves, falls)
+    one, rings, spans = (
+        int(row.get(name, run.setting(f"arch%{name}") or usual))
+        for name, usual in (("voussoirs", 36), ("rings", 1), ("spans", 1))
+    )
+    return CaseScene(free, supports, is_arch, moves, falls, one, one * rings * spans)
 
 
 def shortened(support: Block, free: list[Block]) -> Block:

@@ -39,9 +39,9 @@ def check_ending(file: Path) -> None:
     """
     ending = file.suffix.lower()
     if ending not in ENDINGS:
-        raise WriterError(f"wanted a file .gif, .mp4 or .png, found '{file.name}'; change its ending")
+        raise WriterError(f"expected a file .gif, .mp4 or .png, got '{file.name}'; change its ending")
     if ending == ".mp4" and not FFMpegWriter.isAvailable():
-        raise WriterError("wanted the program ffmpeg for .mp4, found none; install it, or choose .gif or .png")
+        raise WriterError("expected the program ffmpeg for .mp4, got none; install it, or choose .gif or .png")
 
 
 def animate(

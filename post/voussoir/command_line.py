@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 import importlib
+import os
 import sys
 from collections.abc import Sequence
 
@@ -13,10 +14,14 @@ from voussoir import __version__
 #: and one line of help
 COMMANDS = {
     "animate": ("voussoir.animate_command", "the motion of cases as a GIF"),
+    "assess": ("voussoir.assess_command", "one page for a client: does the arch stand, and how safely"),
     "campaign": (
         "voussoir.campaign_command",
         "the cases of one deck on many processes or machines",
     ),
+    "lines": ("voussoir.lines_command", "a picture of what dda lines has drawn"),
+    "examples": ("voussoir.examples_command", "the decks that came with the program"),
+    "import": ("voussoir.import_command", "a drawing, GeoJSON, WKT or a mesh as a deck of blocks"),
     "paper": ("voussoir.paper_command", "every table and figure of the paper, and the report"),
     "plot": ("voussoir.plot_command", "pictures and charts of a folder of results"),
     "theory": ("voussoir.theory_command", "the three analytic solutions at given half angles"),
@@ -98,5 +103,6 @@ def main(arguments: Sequence[str] | None = None) -> int:
     words = list(sys.argv[1:] if arguments is None else arguments)
     if words[:1] in ([], ["help"]):
         words = [*words[1:2], "--help"] if words[1:2] != ["help"] else ["--help"]
+    os.environ["MPLBACKEND"] = "Agg"  # pictures are files: no display is wanted
     chosen = build_parser(words[0] if words else None).parse_args(words)
     return importlib.import_module(COMMANDS[chosen.command][0]).run(chosen)

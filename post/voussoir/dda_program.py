@@ -44,9 +44,9 @@ def find_dda(named: Path | None = None) -> Path:
     places = [str(build), str(Path(sys.executable).parent), None]
     found = [shutil.which(wish)] if wish else [shutil.which("dda", path=path) for path in places]
     if not any(found):
-        wanted = f"'{wish}' is no program" if wish else "none was found"
+        wanted = f"got '{wish}', which is no program" if wish else "got none"
         raise DdaError(
-            f"wanted the program dda, {wanted}; put it on the path, or name it with VOUSSOIR_DDA"
+            f"expected the program dda, {wanted}; put it on the path, or name it with VOUSSOIR_DDA"
         )
     return Path(next(filter(None, found))).resolve()
 
@@ -75,7 +75,7 @@ def find_input(name: str) -> Path:
     for root in [*roots, here.resolve().parents[2]]:
         if (root / "input" / name).is_dir():
             return root / "input" / name
-    raise DdaError(f"wanted the decks input/{name}, found none; name their folder with --decks")
+    raise DdaError(f"expected the decks input/{name}, got none; name their folder with --decks")
 
 
 def version_of(dda: Path) -> str:

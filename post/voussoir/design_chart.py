@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-import matplotlib.pyplot as plt
 import numpy as np
+from matplotlib.cm import ScalarMappable
+from matplotlib.colors import Normalize
 from matplotlib.figure import Figure
 
-from voussoir.figure_style import DASHES, INK
+from voussoir.figure_style import INK, Picture
 from voussoir.results import Results, Table
 
 #: What columns mean, for the axes
@@ -65,7 +66,8 @@ def draw_chart(run: Results, column: str | None = None) -> Figure:
     Returns
     -------
     Figure
-        The figure: brackets' middles as points, exact values of the same polygons as lines.
+        The figure: brackets' middles as points, exact values of the same polygons as crosses;
+        nothing is joined by lines that are not computed.
 
     Raises
     ------
@@ -77,15 +79,15 @@ def draw_chart(run: Results, column: str | None = None) -> Figure:
     numeric = [name for name in swept if found[name].dtype.kind in "if"]
     if column is None:
         if not numeric:
-            raise ChartError("wanted a swept number, found none; name a case instead: --case 1")
+            raise ChartError("expected a swept number, got none; name a case instead: --case 1")
         column = max(numeric, key=lambda name: len(_values(found, name)))
     if column not in numeric:
         raise ChartError(
-            f"wanted one of {', '.join(numeric) or 'no columns'} to chart, found '{column}'; "
+            f"expected one of {', '.join(numeric) or 'no columns'} to chart, got '{column}'; "
             "choose a number that was swept"
         )
     if len(found) < 2:
-        raise ChartError("wanted two critical values or more, found fewer; give the deck &search")
+        raise ChartError("expected two critical values or more, got fewer; give the deck &search")
     others = [name for name in swept if name != column and not _follows(found, name, column)]
     groups = _groups(found, others)
     if len(groups) <= MOST_CURVES:
@@ -94,7 +96,7 @@ def draw_chart(run: Results, column: str | None = None) -> Figure:
         figure = _draw_by_colour(run, groups, column, others[0])
     else:
         raise ChartError(
-            f"wanted at most {MOST_CURVES} curves or one number beside {column}, found "
+            f"expected at most {MOST_CURVES} curves or one number beside {column}, got "
             f"{len(groups)} curves of {', '.join(others)}; sweep fewer values, or fewer keys"
         )
     missing = len(run.cases) - len(found)
@@ -106,23 +108,27 @@ def draw_chart(run: Results, column: str | None = None) -> Figure:
 
 
 def _draw(run: Results, groups: list[tuple[str, Table]], column: str) -> Figure:
-    figure, axes = plt.subplots(figsize=(6.4, 4.4), layout="constrained")
+    figure = Picture(figsize=(6.4, 4.4), layout="constrained")
+    axes = figure.subplots()
     exact = False
     for number, (label, rows) in enumerate(groups):
         rows = rows.take(np.argsort(rows[column], kind="stable"))
         color = INK[number % 3]
         known = ~np.isnan(rows["exact"])
         exact |= bool(known.any())
-        axes.plot(rows[column][known], rows["exact"][known], color=color, linewidth=1.2)
         axes.plot(
-            rows[column], rows["critical"], linestyle="none" if known.any() else DASHES[3],
-            linewidth=1.0, color=color, marker=_MARKERS[number], markerfacecolor="white",
-            markeredgecolor=color, markersize=6, label=label or "DDA",
+            rows[column], rows["critical"], linestyle="none", color=color, markersize=6,
+            marker=_MARKERS[number], markerfacecolor="white", label=label or "DDA",
+        )
+        axes.plot(
+            rows[column][known], rows["exact"][known], linestyle="none", color=color,
+            marker="+", markersize=9, markeredgewidth=0.9,
         )
     axes.set_xlabel(MEANINGS.get(column, column))
     axes.set_ylabel(_searched(run))
     if exact:
-        axes.plot([], [], color=INK[3], linewidth=1.2, label="limit analysis, same polygons")
+        axes.plot([], [], color=INK[0], linestyle="none", marker="+", markersize=9,
+                  markeredgewidth=0.9, label="limit analysis, same polygons")
     axes.legend()
     return figure
 
@@ -131,14 +137,15 @@ def _draw_by_colour(
     run: Results, groups: list[tuple[str, Table]], column: str, other: str
 ) -> Figure:
     """Curves too many for marks: their colour tells the second parameter."""
-    figure, axes = plt.subplots(figsize=(6.8, 4.4), layout="constrained")
+    figure = Picture(figsize=(6.8, 4.4), layout="constrained")
+    axes = figure.subplots()
     values = [float(rows[other][0]) for _, rows in groups]
-    scale = plt.cm.ScalarMappable(plt.Normalize(min(values), max(values)), "viridis")
+    scale = ScalarMappable(Normalize(min(values), max(values)), "viridis")
     for value, (_, rows) in zip(values, groups):
         rows = rows.take(np.argsort(rows[column], kind="stable"))
         axes.plot(
-            rows[column], rows["critical"], color=scale.to_rgba(value), linewidth=1.2,
-            marker=".", markersize=4,
+            rows[column], rows["critical"], color=scale.to_rgba(value), linestyle="none",
+            marker=".", markersize=5,
         )
     axes.set_xlabel(MEANINGS.get(column, column))
     axes.set_ylabel(_searched(run))

@@ -2,15 +2,12 @@
 
 from __future__ import annotations
 
+import io
 from contextlib import contextmanager
 from pathlib import Path
 
-import matplotlib
-
-matplotlib.use("Agg")
-
-import matplotlib.pyplot as plt  # noqa: E402
-from matplotlib.figure import Figure  # noqa: E402
+import matplotlib.pyplot as plt
+from matplotlib.figure import Figure
 
 #: Dark to light in greyscale as well: black, blue, vermilion, grey
 INK = ("#000000", "#1f5fa8", "#d1632a", "#9a9a9a")
@@ -36,6 +33,15 @@ _SETTINGS = {
     "svg.hashsalt": "voussoir",
     "svg.fonttype": "path",
 }
+
+
+class Picture(Figure):
+    """A figure that notebooks show whatever backend is chosen."""
+
+    def _repr_png_(self) -> bytes:
+        stream = io.BytesIO()
+        self.savefig(stream, format="png", dpi=110, bbox_inches="tight")
+        return stream.getvalue()
 
 
 @contextmanager

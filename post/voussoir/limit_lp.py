@@ -24,7 +24,14 @@ def scipy_version() -> str | None:
     return str(scipy.__version__)
 
 
-def stands_by_general(half_angle: float, voussoirs: int, ratio: float, friction: float) -> bool:
+def stands_by_general(
+    half_angle: float,
+    voussoirs: int,
+    ratio: float,
+    friction: float,
+    method: str = "highs",
+    tolerance: float = 1e-7,
+) -> bool:
     """Whether an arch stands, by the general program.
 
     Parameters
@@ -37,6 +44,10 @@ def stands_by_general(half_angle: float, voussoirs: int, ratio: float, friction:
         Thickness over radius.
     friction : float
         Coefficient of friction.
+    method : str, optional
+        "highs-ds" (simplex), "highs-ipm" (interior points), or "highs", which chooses.
+    tolerance : float, optional
+        By how much HiGHS may violate rows.
 
     Returns
     -------
@@ -65,7 +76,8 @@ def stands_by_general(half_angle: float, voussoirs: int, ratio: float, friction:
             A_eq=balance,
             b_eq=loads,
             bounds=np.column_stack([lower, np.full(3 * joints, np.inf)]),
-            method="highs",
+            method=method,
+            options={"primal_feasibility_tolerance": tolerance},
         )
     )
 
@@ -114,7 +126,7 @@ def stands_by_compact(half_angle: float, voussoirs: int, ratio: float, friction:
     from scipy.optimize import linprog
 
     if voussoirs % 2:
-        raise ValueError(f"voussoirs wants an even number for the compact program, got {voussoirs}")
+        raise ValueError(f"voussoirs must be an even number for the compact program, got {voussoirs}")
     angle, _, _, weight, centre = _blocks(half_angle, voussoirs, ratio)
     half = voussoirs // 2
     angle, weight, lever = angle[half:], weight[half:], centre[half:, 0]

@@ -5,20 +5,29 @@ from __future__ import annotations
 import os
 import subprocess
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor, as_completed
-from contextlib import contextmanager
 from dataclasses import dataclass, field
-from functools import cached_property, lru_cache
+from functools import cached_property
 from pathlib import Path
 
 from voussoir import paper_tables, results, theory
 from voussoir.dda_program import path_word
 
-#: Roughly how long each part takes beside the others; a part that is not named here counts 1
-_WEIGHTS = {"figure12": 12.0, "figure15": 12.0, "figure9": 5.0, "figure18": 4.0, "figure8": 2.0}
+#: Roughly how long each part takes [s of processor]: decks, then figures that are drawn; a part
+#: that is not named here counts 1
+_WEIGHTS = {
+    "figure12": 3.0, "figure15": 3.0, "figure9": 1.5, "figure18": 1.5,
+    "drawing animation8": 10.0, "drawing animation13": 4.0, "drawing animation16": 4.0,
+    "drawing animation18": 11.0, "drawing figure9": 4.0, "drawing figure12": 3.0,
+    "drawing figure15": 3.0, "drawing figure18": 2.0,
+}
+#: Before the name of a figure or an animation that is drawn
+DRAWING = "drawing "
 #: Name of the part that all decks are together
 TOGETHER = "all decks"
+#: Name of the part that all figures and animations are together
+FIGURES = "figures and animations"
 #: Decks of this ending are run on demand only: the original program's scheme takes long
 SLOW_ENDING = "_limerick"
 
@@ -57,13 +66,6 @@ class Clock:
     def elapsed(self) -> float:
         """Wall time since the beginning [s]."""
         return time.monotonic() - self._start
-
-    @contextmanager
-    def part(self, name: str) -> Iterator[None]:
-        """Measure one part that runs no program."""
-        start = time.monotonic()
-        yield
-        self.record(Timing(name, time.monotonic() - start, 0.0))
 
     def record(self, timing: Timing) -> None:
         """Count one part and tell how long the others will take."""
@@ -115,7 +117,7 @@ class Campaign:
     out: Path
 
     def __post_init__(self) -> None:
-        self.results = lru_cache(maxsize=None)(self._results)
+        self._read: dict[str, results.Results] = {}
 
     def deck_files(self, slow: bool = False) -> list[Path]:
         """The decks in their order.
@@ -190,9 +192,11 @@ class Campaign:
         clock.timings.sort(key=lambda timing: order.get(timing.part, len(order)))
         return next((status for status in (4, 2, 3) if status in statuses), max(statuses, key=abs))
 
-    def _results(self, deck: str) -> results.Results:
+    def results(self, deck: str) -> results.Results:
         """Results of one deck, read once."""
-        return results.read(self.out / deck)
+        if deck not in self._read:
+            self._read[deck] = results.read(self.out / deck)
+        return self._read[deck]
 
     @cached_property
     def tables(self) -> dict[str, paper_tables.PaperTable]:
@@ -206,8 +210,7 @@ class Campaign:
 
 def weights(decks: list[Path], parts: list[str]) -> dict[str, float]:
     """How long the decks and other parts take beside one another."""
-    names = [file.stem for file in decks] + parts
-    return {name: _WEIGHTS.get(name, 8.0 if name in parts else 1.0) for name in names}
+    return {name: _WEIGHTS.get(name, 1.0) for name in [*(file.stem for file in decks), *parts]}
 
 
 def _order(stem: str) -> tuple[str, int, str]:

@@ -7,14 +7,13 @@ import importlib.util
 import os
 import sys
 import time
+from concurrent.futures import ProcessPoolExecutor, as_completed
 from pathlib import Path
 
 from voussoir import paper_tables
 from voussoir.dda_program import DdaError, find_dda, find_input
-from voussoir.paper_campaign import TOGETHER, Campaign, Clock, Timing, weights
-
-_PARTS = ["figures", "animations"]
-
+from voussoir.extras import advice
+from voussoir.paper_campaign import DRAWING, FIGURES, TOGETHER, Campaign, Clock, Timing, weights
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the options of the subcommand.
@@ -36,7 +35,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         metavar="N",
         type=_at_least_one,
         default=os.cpu_count() or 1,
-        help="decks computed at the same time (default: one a processor)",
+        help="decks computed, and figures drawn, at the same time (default: one a processor)",
     )
     parser.add_argument(
         "--resume", action="store_true", help="keep what an earlier run has finished"
@@ -61,7 +60,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def _at_least_one(word: str) -> int:
     number = int(word)
     if number < 1:
-        raise argparse.ArgumentTypeError(f"a number from 1 is wanted, {word} was found")
+        raise argparse.ArgumentTypeError(f"expected a number from 1, got {word}")
     return number
 
 
@@ -86,7 +85,8 @@ def run(arguments: argparse.Namespace) -> int:
         print(f"voussoir: error: {problem}", file=sys.stderr)
         return 2
     try:
-        return _make(campaign, arguments, dda, Clock(_teller(arguments), weights(decks, _PARTS)))
+        parts = [DRAWING + name for name in _drawings()]
+        return _make(campaign, arguments, dda, Clock(_teller(arguments), weights(decks, parts)))
     except OSError as problem:
         print(f"voussoir: error: {problem}", file=sys.stderr)
         return 4
@@ -109,15 +109,7 @@ def _make(campaign: Campaign, arguments: argparse.Namespace, dda: Path, clock: C
     if status in (2, 4) or status not in (0, 3):
         return status
     folder = arguments.out
-    if importlib.util.find_spec("matplotlib"):
-        from voussoir import paper_figures
-
-        with clock.part("figures"):
-            paper_figures.draw_all(campaign, folder / "figures")
-        with clock.part("animations"):
-            paper_figures.animate_all(campaign, folder / "figures")
-    else:
-        clock.tell("figures are left out: matplotlib was not found")
+    _draw(campaign, folder / "figures", clock, arguments.jobs)
     start = time.monotonic()
     paper_tables.write_tables(list(campaign.tables.values()), folder / "tables")
     from voussoir import paper_report
@@ -129,5 +121,42 @@ def _make(campaign: Campaign, arguments: argparse.Namespace, dda: Path, clock: C
     if not arguments.quiet:
         for table in campaign.tables.values():
             print(f"\n{table.title}\n{paper_tables.as_text(table)}")
-        print(f"\nReport: {report}\nTables as CSV and Markdown: {folder / 'tables'}")
+        print(f"\nTables as CSV and Markdown: {folder / 'tables'}")
+        print(f"Report: {report.resolve().as_uri()} (open it in a browser)")
     return status
+
+
+def _drawings() -> list[str]:
+    """Names of what is drawn; none without matplotlib."""
+    if not importlib.util.find_spec("matplotlib"):
+        return []
+    from voussoir import paper_figures
+
+    return paper_figures.names()
+
+
+def _draw(campaign: Campaign, folder: Path, clock: Clock, jobs: int) -> None:
+    """Draw all figures and animations, so many at the same time."""
+    names = _drawings()
+    if not names:
+        clock.tell(f"figures are left out: matplotlib is missing; {advice('matplotlib')}")
+        return
+    start = time.monotonic()
+    plain = Campaign(campaign.decks, campaign.out)
+    with ProcessPoolExecutor(min(jobs, len(names))) as workers:
+        running = {workers.submit(_draw_one, plain, folder, name): name for name in names}
+        for done in as_completed(running):
+            seconds = done.result()
+            clock.record(Timing(DRAWING + running[done], seconds, 0.0))
+    drawn = [timing for timing in clock.timings if timing.part.startswith(DRAWING)]
+    clock.timings[:] = [timing for timing in clock.timings if timing not in drawn]
+    clock.timings.append(Timing(FIGURES, time.monotonic() - start, 0.0))
+
+
+def _draw_one(campaign: Campaign, folder: Path, name: str) -> float:
+    """Draw one figure in a process of its own; gives its time [s]."""
+    from voussoir import paper_figures
+
+    start = time.monotonic()
+    paper_figures.make(campaign, folder, name)
+    return time.monotonic() - start

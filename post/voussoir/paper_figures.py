@@ -13,6 +13,7 @@ from voussoir import (
 from voussoir.collapse_animation import animate
 from voussoir.figure_style import house_style, save
 from voussoir.paper_campaign import Campaign
+from voussoir.results import Results
 
 FIGURES = {
     "figure8": paper_mechanism_figures.friction_modes,
@@ -33,8 +34,24 @@ FIGURES = {
 """Name of each figure and what draws it from a campaign."""
 
 
-def draw_all(campaign: Campaign, folder: Path) -> list[Path]:
-    """Draw figures 1 to 20 as SVG and PNG.
+#: Animations by their names: the deck whose cases move, and what stands above them
+ANIMATIONS = {
+    "animation8": ("figure8", paper_mechanism_figures.short_friction_title),
+    "animation13": ("figure12", paper_mechanism_figures.imposed_title),
+    "animation16": ("figure15", paper_mechanism_figures.imposed_title),
+    "animation18": ("figure18", paper_mechanism_figures.short_half_angle_title),
+}
+#: Figures 1 to 7, from the theory alone
+THEORY = {f"figure{number}": draw for number, draw in enumerate(theory_figures.FIGURES, 1)}
+
+
+def names() -> list[str]:
+    """Names of all figures and animations, those that take longest first."""
+    return [*reversed(ANIMATIONS), *FIGURES, *THEORY]
+
+
+def make(campaign: Campaign, folder: Path, name: str) -> list[Path]:
+    """Draw one figure as SVG and PNG, or write one animation as GIF.
 
     Parameters
     ----------
@@ -42,57 +59,33 @@ def draw_all(campaign: Campaign, folder: Path) -> list[Path]:
         The results.
     folder : Path
         Where the files go.
+    name : str
+        Of `names`.
 
     Returns
     -------
     list of Path
         The files.
     """
-    files = theory_figures.draw_all(folder)
+    folder.mkdir(parents=True, exist_ok=True)
     with house_style():
-        for name, draw in FIGURES.items():
-            files += save(draw(campaign), folder, name)
-    return files
+        if name in THEORY:
+            return save(THEORY[name](), folder, name)
+        if name in FIGURES:
+            return save(FIGURES[name](campaign), folder, name)
+        deck, title = ANIMATIONS[name]
+        run = campaign.results(deck)
+        return [animate(run, _cases(name, run), title, folder / f"{name}.gif")]
 
 
-def animate_all(campaign: Campaign, folder: Path) -> list[Path]:
-    """Write the animations as GIF.
-
-    Parameters
-    ----------
-    campaign : Campaign
-        The results.
-    folder : Path
-        Where the files go.
-
-    Returns
-    -------
-    list of Path
-        The files.
-    """
+def _cases(name: str, run: Results) -> list[int]:
+    """Cases that an animation shows."""
     titles = paper_mechanism_figures
-    four, wide, five = (campaign.results(name) for name in ("figure12", "figure15", "figure18"))
-    friction = campaign.results("figure8")
-    shown = [int(five.cases.where(half_angle_deg=angle)["case"][0]) for angle in (45, 90, 120, 145)]
-    with house_style():
-        return [
-            animate(
-                friction,
-                list(friction.cases["case"]),
-                titles.short_friction_title,
-                folder / "animation8.gif",
-            ),
-            animate(
-                four,
-                [titles.case_of_joint(four, 54.5)],
-                titles.imposed_title,
-                folder / "animation13.gif",
-            ),
-            animate(
-                wide,
-                [titles.case_of_joint(wide, 59.0)],
-                titles.imposed_title,
-                folder / "animation16.gif",
-            ),
-            animate(five, shown, titles.short_half_angle_title, folder / "animation18.gif"),
-        ]
+    if name == "animation13":
+        return [titles.case_of_joint(run, 54.5)]
+    if name == "animation16":
+        return [titles.case_of_joint(run, 59.0)]
+    if name == "animation18":
+        angles = (45, 90, 120, 145)
+        return [int(run.cases.where(half_angle_deg=angle)["case"][0]) for angle in angles]
+    return list(run.cases["case"])

@@ -12,13 +12,17 @@ import numpy as np
 
 import voussoir
 from voussoir import paper_findings, paper_tables, theory
-from voussoir.paper_campaign import TOGETHER, Campaign, Timing
+from voussoir.paper_campaign import FIGURES, TOGETHER, Campaign, Timing
 from voussoir.paper_contents import ANIMATIONS, CAPTIONS, SECTIONS, THEORY_CAPTIONS
 from voussoir.paper_tables import THEORIES, PaperTable, Row, percent, thickness
 from voussoir.report import Page, escape
 
 #: Stands where the time goes that making the page itself has taken
 PAGE_TIME = "@@page@@"
+
+
+#: Decimal places of the errors in percent, one notation a column; others have 2
+_PLACES = {"ours, rigid": 4, "ours, elastic": 4}
 
 
 def build(campaign: Campaign, figures: Path, timings: list[Timing], dda: Path) -> str:
@@ -53,6 +57,9 @@ def build(campaign: Campaign, figures: Path, timings: list[Timing], dda: Path) -
         "kN/m<sup>3</sup>, Young's modulus 5e6 kN/m<sup>2</sup>, Poisson's ratio 0.2, plane "
         "stress, friction 50 degrees where nothing else is said.",
     )
+    top = figures / "figure18.png"
+    if top.is_file():
+        page.picture(top, "Arches at their critical thickness, collapsing: Fig. 18 below.", "top")
     _glance(page, campaign)
     page.section("What the comparison shows", "findings")
     for number, finding in enumerate(paper_findings.find_all(campaign), 1):
@@ -91,15 +98,20 @@ def _add(page: Page, campaign: Campaign, figures: Path, part: str) -> None:
         _thicknesses(page, campaign.tables[part])
     elif part in CAPTIONS:
         svg = figures / f"{part}.svg"
+        name, caption = ANIMATIONS.get(part, ("", ""))
+        gif = figures / f"{name}.gif"
+        moves = bool(name) and gif.is_file()
+        if moves:
+            page.begin_pair()
         if svg.is_file():
             page.figure(svg, CAPTIONS[part], part)
         else:
             page.text(
                 f'<span id="{part}">{CAPTIONS[part]} (left out: matplotlib is missing)</span>'
             )
-        name, caption = ANIMATIONS.get(part, ("", ""))
-        if name and (figures / f"{name}.gif").is_file():
-            page.animation(figures / f"{name}.gif", caption, name)
+        if moves:
+            page.picture(gif, caption, name)
+            page.end_pair()
     else:
         {
             "figure8_modes": _modes,
@@ -112,27 +124,20 @@ def _add(page: Page, campaign: Campaign, figures: Path, part: str) -> None:
 def _thicknesses(page: Page, table: PaperTable) -> None:
     """Tables 1 to 4: values, and below each its error."""
     imposed = bool(table.rows[0].joint)
-    head = ["joint [deg]"] if imposed else []
-    head += [
-        "blocks",
-        "&alpha; [deg]",
-        "exact polygon",
-        *map(escape, table.columns),
-        "hinge, ours [deg]",
-    ]
+    columns = [name for name in table.columns if not (imposed and name == THEORIES["heyman"])]
+    first = "joint [deg]" if imposed else "&alpha; [deg]" if table.name == "table4" else "blocks"
+    second = ["blocks"] if table.name == "table4" else []
+    head = [first, *map(escape, columns), "exact polygon", *second, "hinge, ours [deg]"]
     rows = []
     for row in table.rows:
-        cells = [row.joint] if imposed else []
-        cells += [row.blocks, row.half_angle, thickness(row.exact, "exact")]
-        cells += [_cell(row, column) for column in table.columns]
-        rows.append([*cells, escape(row.values["ours, rigid"].hinge)])
-    if table.name == "table4":
-        head[0], head[1] = head[1], head[0]
-        rows = [[row[1], row[0], *row[2:]] for row in rows]
+        name = row.joint if imposed else row.half_angle if second else row.blocks
+        cells = [name, *(_cell(row, column) for column in columns), thickness(row.exact, "exact")]
+        rows.append([*cells, *([row.blocks] if second else []),
+                     escape(row.values["ours, rigid"].hinge)])
     page.table(
         f"<strong>{escape(table.title)}.</strong> Critical thickness ratio; below it the "
         "deviation from the exact polygon value in percent; in parentheses how far the paper's "
-        "DDA lies from that theory." + (" Theories: &eta;(&beta;)." if imposed else ""),
+        "DDA lies from that theory." + (" Theories: &eta;(&beta;); Heyman's is that of CCR." if imposed else ""),
         head,
         rows,
         anchor=table.name,
@@ -144,11 +149,13 @@ def _cell(row: Row, column: str) -> str:
     value = row.values.get(column)
     if value is None:
         return ""
-    below = percent(value.error)
+    places = _PLACES.get(column, 2)
+    # plus nothing, so that a rounded -0 is 0
+    below = "" if value.error is None else f"{round(100.0 * value.error, places) + 0.0:+.{places}f}"
     paper = row.values["paper DDA"].eta
     if column in THEORIES.values() and value.eta and paper:
         below += f" ({100.0 * (paper / value.eta - 1.0):+.2f})"
-    return f"{thickness(value.eta, column)}<small>{below}</small>"
+    return f"{value.digits(column)}<small>{below}</small>"
 
 
 def _modes(page: Page, campaign: Campaign) -> None:
@@ -290,7 +297,7 @@ def _decks(page: Page, campaign: Campaign) -> None:
     page.text(
         "What was computed, as files for <code>dda run</code>. Each has a folder of results "
         "beside this page: <code>results.csv</code>, <code>joints.csv</code>, and where "
-        "pictures were wanted <code>frames.csv</code> and <code>frames/case_N.pvd</code> for "
+        "pictures were asked for <code>frames.csv</code> and <code>frames/case_N.pvd</code> for "
         "ParaView."
     )
     for file in campaign.finished_decks():
@@ -326,7 +333,7 @@ def _run(page: Page, timings: list[Timing], dda: Path) -> None:
     rows = [[escape(t.part), f"{t.wall:.2f}", f"{t.computing:.2f}"] for t in timings]
     rows.append(["page", PAGE_TIME, ""])
     decks = sum(timing.wall for timing in timings if timing.part == TOGETHER)
-    drawing = sum(timing.wall for timing in timings if timing.part in ("figures", "animations"))
+    drawing = sum(timing.wall for timing in timings if timing.part == FIGURES)
     rows.append(["<strong>all but the page</strong>", f"{decks + drawing:.2f}", ""])
     page.table(
         "How long each part took: wall time, and processor time of the Fortran program [s]. "

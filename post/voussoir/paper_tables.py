@@ -10,7 +10,7 @@ import argparse
 import csv
 import math
 from collections.abc import Iterator
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
@@ -40,11 +40,18 @@ class Value:
         Deviation from the exact value of the same polygons, relative to that.
     hinge : str
         Intrados hinges [deg], joined by semicolons.
+    printed : str
+        The thickness as the paper prints it; empty of what is computed here.
     """
 
     eta: float | None
     error: float | None
     hinge: str
+    printed: str = ""
+
+    def digits(self, column: str) -> str:
+        """The thickness as people read it."""
+        return self.printed or thickness(self.eta, column)
 
 
 @dataclass
@@ -112,7 +119,11 @@ def read_paper(file: Path, table: str) -> list[Row]:
             half_angle=row["alpha_deg"],
             blocks=row["blocks"],
             joint=row["beta_imposed_deg"],
-            values={"paper DDA": Value(float(row["eta_dda"]), None, row["beta_dda_deg"])},
+            values={
+                "paper DDA": Value(
+                    float(row["eta_dda"]), None, row["beta_dda_deg"], row["eta_dda"]
+                )
+            },
         )
         for row in read_table(file)
         if row["table"] == table
@@ -206,7 +217,7 @@ def build_table(name: str, results: Path, paper: Path, theory: Any = None) -> Pa
     for row in rows:
         for heading, value in row.values.items():
             if value.error is None and value.eta is not None and row.exact is not None:
-                row.values[heading] = Value(value.eta, value.eta / row.exact - 1.0, value.hinge)
+                row.values[heading] = replace(value, error=value.eta / row.exact - 1.0)
     return PaperTable(name, columns, rows)
 
 
@@ -226,8 +237,6 @@ def thickness(eta: float | None, column: str) -> str:
     """A thickness ratio in the digits that its column deserves."""
     if eta is None:
         return "undecided"
-    if column == "paper DDA":
-        return f"{eta:g}"
     return f"{eta:.10f}" if column in ("ours, rigid", "exact") else f"{eta:.7f}"
 
 
@@ -245,7 +254,7 @@ def cells_of(table: PaperTable, row: Row) -> list[str]:
     cells.append("" if row.exact is None else thickness(row.exact, "exact"))
     for column in table.columns:
         value = row.values.get(column, Value(None, None, ""))
-        cells += [thickness(value.eta, column), percent(value.error)]
+        cells += [value.digits(column), percent(value.error)]
     return [*cells, row.values.get("ours, rigid", Value(None, None, "")).hinge]
 
 

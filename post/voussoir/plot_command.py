@@ -8,6 +8,7 @@ import sys
 from pathlib import Path
 
 from voussoir import results
+from voussoir.extras import advice
 
 #: Most cases that are drawn without being named
 MOST_CASES = 12
@@ -33,7 +34,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         metavar="N",
         type=int,
         nargs="+",
-        help=f"cases to draw (default: the first {MOST_CASES}; none with --chart)",
+        help=f"cases to draw (default: the first {MOST_CASES}; none with --chart or --fragility)",
     )
     parser.add_argument(
         "--chart",
@@ -42,6 +43,14 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         const=_AUTO,
         help="chart the critical values against this column, such as half_angle_deg; without a "
         "name against the swept column with the most values (default: no chart)",
+    )
+    parser.add_argument(
+        "--fragility",
+        metavar="COLUMN",
+        nargs="?",
+        const=_AUTO,
+        help="draw the share of records that make the blocks collapse against this swept column, "
+        "amplitude or scale without a name; or, of searches, against the critical values",
     )
     parser.add_argument(
         "--out", metavar="DIR", type=Path, help="where the pictures go (default: DIR/plots)"
@@ -89,14 +98,13 @@ def run(arguments: argparse.Namespace) -> int:
         return 2
     except ImportError as error:
         sys.stderr.write(
-            f"voussoir:1: error: wanted matplotlib, found none ({error}); install "
-            "python3-matplotlib\n"
+            f"voussoir:1: error: expected matplotlib, got none ({error}); {advice('matplotlib')}\n"
         )
         return 2
     except OSError as error:
         sys.stderr.write(
-            f"{error.filename or arguments.out}:1: error: wanted a file that can be written, "
-            f"found: {error.strerror}; choose another folder with --out\n"
+            f"{error.filename or arguments.out}:1: error: the file cannot be written: "
+            f"{error.strerror}; choose another folder with --out\n"
         )
         return 4
 
@@ -115,6 +123,13 @@ def _run(arguments: argparse.Namespace) -> int:
             column = None if arguments.chart == _AUTO else arguments.chart
             name = "chart" if column is None else f"chart_{column}"
             paths += save(draw_chart(read, column), out, name, tuple(arguments.format))
+        if arguments.fragility:
+            from voussoir.fragility import draw_fragility
+
+            figure, fit = draw_fragility(read, None if arguments.fragility == _AUTO else arguments.fragility)
+            if fit:
+                print(f"lognormal fragility: median {fit.median:.6g}, dispersion {fit.dispersion:.4g}")
+            paths += save(figure, out, "fragility", tuple(arguments.format))
         for number in _cases(arguments, read):
             figure = draw_case(read, number, arguments.magnify, not arguments.no_forces)
             paths += save(figure, out, f"case_{number}", tuple(arguments.format))
@@ -125,7 +140,7 @@ def _run(arguments: argparse.Namespace) -> int:
 
 def _cases(arguments: argparse.Namespace, read: results.Results) -> list[int]:
     """Cases to draw."""
-    if arguments.case or arguments.chart:
+    if arguments.case or arguments.chart or arguments.fragility:
         return arguments.case or []
     drawn = [int(number) for number in read.cases["case"][:MOST_CASES]]
     if len(drawn) < len(read.cases):
@@ -156,5 +171,5 @@ def magnification(word: str) -> float:
     except ValueError:
         number = math.nan
     if not 0.0 <= number < math.inf:
-        raise argparse.ArgumentTypeError(f"wants a number from 0, got '{word}'")
+        raise argparse.ArgumentTypeError(f"must be a number from 0, got '{word}'")
     return number

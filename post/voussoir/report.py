@@ -12,7 +12,7 @@ _STYLE = """
 :root { color-scheme: light; }
 * { box-sizing: border-box; }
 body { margin: 0 auto; max-width: 74rem; padding: 0 1rem 4rem; background: #fff; color: #1a1a1a;
-  font: 1rem/1.55 Georgia, 'Times New Roman', serif; overflow-wrap: break-word; }
+  font: 1rem/1.55 STIXGeneral, "STIX Two Text", Georgia, serif; overflow-wrap: break-word; }
 h1 { font-size: 1.9rem; line-height: 1.2; margin: 2rem 0 .5rem; }
 h2 { font-size: 1.45rem; margin: 3rem 0 .5rem; padding-top: .5rem; border-top: 2px solid #1a1a1a; }
 h3 { font-size: 1.15rem; margin: 2rem 0 .4rem; }
@@ -26,8 +26,10 @@ figcaption, .caption { font-size: .95rem; max-width: 46rem; margin: 0; padding: 
 .table { margin: 1.5rem 0; }
 .wide { overflow-x: auto; }
 .wide:focus { outline: 2px solid #1f5fa8; }
-figure svg { display: block; width: 100%; height: auto; min-width: calc(.8*var(--width));
-  max-width: calc(1.2*var(--width)); }
+figure svg { display: block; width: 100%; height: auto; max-width: calc(1.2*var(--width)); }
+#top img { max-width: min(34rem, 100%); }
+.pair { display: grid; grid-template-columns: repeat(auto-fit, minmax(min(26rem, 100%), 1fr));
+  gap: 1rem; align-items: end; }
 figure img { display: block; max-width: 100%; height: auto; }
 table { border-collapse: collapse; font: .86rem/1.35 Arial, Helvetica, sans-serif;
   font-variant-numeric: tabular-nums; }
@@ -39,8 +41,15 @@ tr > :first-child { position: sticky; left: 0; background: #fff; }
 table.words td { text-align: left; white-space: normal; }
 pre { overflow-x: auto; background: #f4f4f1; padding: .8rem; font-size: .82rem; line-height: 1.4; }
 summary { cursor: pointer; }
-@media (max-width: 40rem) { nav ol { columns: 1; } h1 { font-size: 1.5rem; } }
-@media print { nav { columns: 1; } .wide { overflow: visible; } }
+@media (max-width: 40rem) { nav ol { columns: 1; } h1 { font-size: 1.5rem; }
+  body { padding: 0 .6rem 3rem; } table { font-size: .72rem; } th, td { padding: .2rem .28rem; }
+  th { white-space: normal; } }
+@media print { @page { margin: 12mm; } body { max-width: none; padding: 0; font-size: 10pt; }
+  .wide, pre { overflow: visible; } table { font-size: 7pt; } th, td { padding: 1pt 3pt; }
+  th { white-space: normal; } pre { white-space: pre-wrap; } figure, tr { break-inside: avoid; }
+  figure svg, figure img { max-height: 230mm; width: auto; max-width: 100%; }
+  h2, h3, .caption { break-after: avoid; } #top img { max-width: min(34rem, 100%); }
+.pair { display: block; } }
 """
 
 
@@ -124,12 +133,20 @@ class Page:
             f"<figcaption>{caption}</figcaption></figure>"
         )
 
-    def animation(self, gif: Path, caption: str, anchor: str) -> None:
-        """Add a GIF."""
-        data = base64.b64encode(gif.read_bytes()).decode("ascii")
+    def begin_pair(self) -> None:
+        """Put the figures that follow side by side, where there is room."""
+        self._body.append('<div class="pair">')
+
+    def end_pair(self) -> None:
+        """End what `begin_pair` has begun."""
+        self._body.append("</div>")
+
+    def picture(self, file: Path, caption: str, anchor: str) -> None:
+        """Add a GIF or a PNG."""
+        data = base64.b64encode(file.read_bytes()).decode("ascii")
         plain = escape(re.sub("<[^>]*>", "", caption))
         self._body.append(
-            f'<figure id="{anchor}"><img alt="{plain}" src="data:image/gif;base64,{data}">'
+            f'<figure id="{anchor}"><img alt="{plain}" src="data:image/{file.suffix[1:]};base64,{data}">'
             f"<figcaption>{caption}</figcaption></figure>"
         )
 

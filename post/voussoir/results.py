@@ -4,24 +4,37 @@ from voussoir import results
 run = results.read("table1")
 run.cases["critical"]            # a column as an array, cases in order
 run.cases.where(geometry="current")["relative_error"]
+run.cases.to_pandas()
+run.plot(1)
 for frame in run.frames_of(1): frame.blocks
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import ItemsView, Iterator, KeysView, Mapping, ValuesView
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from voussoir import _table_view
 from voussoir._tables import DamagedTable, read_columns
+from voussoir.extras import advice
+from voussoir.shape_rings import is_shape
+
+if TYPE_CHECKING:
+    import pandas
+
+    from voussoir.figure_style import Picture
 
 __all__ = ["Block", "DamagedTable", "Frame", "Results", "Table", "read"]
 
-class Table:
-    """Columns of equal length.
+
+class Table(Mapping):
+    """Columns of equal length by their names.
+
+    As of a data frame, `len` is the number of rows, and iteration gives the names of the columns.
 
     Parameters
     ----------
@@ -37,13 +50,53 @@ class Table:
         """A column."""
         return self.columns[name]
 
-    def __contains__(self, name: str) -> bool:
-        """Whether there is a column of that name."""
-        return name in self.columns
+    def __iter__(self) -> Iterator[str]:
+        """Names of the columns."""
+        return iter(self.columns)
 
     def __len__(self) -> int:
         """Number of rows."""
         return len(next(iter(self.columns.values()), ()))
+
+    def __eq__(self, other: object) -> bool:
+        """Whether another table has the same columns and cells; NaN equals NaN."""
+        if not isinstance(other, Table) or list(self) != list(other):
+            return False
+        return all(map(_equal, self.values(), other.values()))
+
+    __hash__ = None
+
+    def __repr__(self) -> str:
+        return _table_view.as_text(self.columns, len(self))
+
+    def _repr_html_(self) -> str:
+        return _table_view.as_html(self.columns, len(self))
+
+    def keys(self) -> KeysView:
+        """Names of the columns."""
+        return self.columns.keys()
+
+    def values(self) -> ValuesView:
+        """The columns."""
+        return self.columns.values()
+
+    def items(self) -> ItemsView:
+        """Names and columns."""
+        return self.columns.items()
+
+    def to_pandas(self) -> pandas.DataFrame:
+        """The table as a data frame of pandas.
+
+        Raises
+        ------
+        ImportError
+            If there is no pandas.
+        """
+        try:
+            import pandas
+        except ImportError as missing:
+            raise ImportError(f"expected pandas, got none ({missing}); {advice('pandas')}") from missing
+        return pandas.DataFrame(dict(self.columns))
 
     def rows(self) -> Iterator[dict[str, Any]]:
         """Rows one by one."""
@@ -118,7 +171,7 @@ class Block:
     displacement: np.ndarray
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Results:
     """The results of one deck.
 
@@ -132,8 +185,8 @@ class Results:
         joints.csv, likewise; None if the deck did not want it.
     frames, frame_joints : Table or None
         frames.csv and frame_joints.csv, likewise.
-    blocks, points : Table or None
-        blocks.csv and points.csv, likewise.
+    blocks, points, reactions : Table or None
+        blocks.csv, points.csv and reactions.csv, likewise.
     """
 
     folder: Path
@@ -143,16 +196,69 @@ class Results:
     frame_joints: Table | None
     blocks: Table | None = None
     points: Table | None = None
+    reactions: Table | None = None
+
+    def __repr__(self) -> str:
+        return _table_view.summary(self)
+
+    def _repr_html_(self) -> str:
+        return f"<p>{_table_view.summary(self, as_html=True)}</p>{self.cases._repr_html_()}"
+
+    def plot(self, case: int = 1, **options: Any) -> Picture:
+        """Draw a case as `voussoir plot` does.
+
+        Parameters
+        ----------
+        case : int, optional
+            Its number.
+        **options
+            Those of `case_picture.draw_case`: magnify, with_forces and so on.
+
+        Returns
+        -------
+        Picture
+            A figure of matplotlib that notebooks show; `savefig` writes it.
+        """
+        from voussoir.case_picture import draw_case
+
+        return _drawn(draw_case, self, case, **options)
+
+    def chart(self, column: str | None = None) -> Picture:
+        """Draw the critical values of a sweep against one of its columns, as `voussoir plot --chart`.
+
+        Parameters
+        ----------
+        column : str, optional
+            The abscissa; by default the swept number with the most values.
+
+        Returns
+        -------
+        Picture
+            As of `plot`.
+        """
+        from voussoir.design_chart import draw_chart
+
+        return _drawn(draw_chart, self, column)
 
     def setting(self, name: str) -> str | None:
         """What the deck says of a key such as "arch%radius"; None if it leaves it out."""
         lines = self._record()
         return lines[lines.index(name) + 1].strip() if name in lines else None
 
+    def settings(self, name: str) -> list[str]:
+        """All that the deck says of a key with a list, such as "vehicle%axles"; empty if it leaves it out."""
+        lines, found = self._record(), []
+        for line in lines[lines.index(name) + 1 :] if name in lines else []:
+            if not line.startswith("  "):
+                break
+            found.append(line.strip())
+        return found
+
     @property
     def kind(self) -> str:
-        """Kind of the scene: "arch", "lines" or "blocks"."""
-        return self.setting("scene%kind") or "arch"
+        """Kind of the scene: "arch", "shape" for arches that are no circular ring, "lines" or "blocks"."""
+        kind = self.setting("scene%kind") or "arch"
+        return "shape" if kind == "arch" and is_shape(self._record(), self.searched) else kind
 
     @property
     def searched(self) -> str | None:
@@ -284,7 +390,21 @@ def read(folder: str | Path) -> Results:
         frame_joints=_read_table(folder / "frame_joints.csv"),
         blocks=_read_table(folder / "blocks.csv"),
         points=_read_table(folder / "points.csv"),
+        reactions=_read_table(folder / "reactions.csv"),
     )
+
+
+def _drawn(draw: Any, *arguments: Any, **options: Any) -> Picture:
+    """A picture in the style of all figures."""
+    from voussoir.figure_style import house_style
+
+    with house_style():
+        return draw(*arguments, **options)
+
+
+def _equal(left: np.ndarray, right: np.ndarray) -> bool:
+    """Whether two columns are the same, NaN where NaN is."""
+    return np.array_equal(left, right, equal_nan=left.dtype.kind == right.dtype.kind == "f")
 
 
 def _read_table(file: Path) -> Table | None:

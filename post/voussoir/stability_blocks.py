@@ -278,7 +278,7 @@ def _corners() -> Iterator[Scene]:
             f"corner on corner and nothing else, {geometry}",
             guard,
             post + over,
-            Refused("rests on nothing"),
+            Refused("has no support"),
             **more,
         )
         side = written_block(rectangle(1.0, 0.0, 1.0, 1.0))
@@ -298,7 +298,7 @@ def _corners() -> Iterator[Scene]:
             f"a wedge upside down on the tip of another, {geometry}",
             guard,
             BASE + written_block(roof) + written_block(saddle),
-            Refused("rests on nothing"),
+            Refused("has no support"),
             **more,
         )
     for geometry, young in GEOMETRIES:

@@ -89,20 +89,20 @@ def _supports() -> Iterator[Scene]:
     falls = Measured((verdict("completed", "verdict"), fall))
     free = _BLOCK + "measure 0.5 0.5\n"
     gap = written_block(rectangle(-10.0, -9.0, 20.0, 1.0), "fixed")
-    yield _blocks("floating, static", BASE + high, Refused("block 2 rests on nothing"))
+    yield _blocks("floating, static", BASE + high, Refused("block 2 has no support"))
     still = {"geometry": "current"}
     name = "floating, static, moving"
-    yield _blocks(name, BASE + high, Refused("block 2 rests on nothing"), analysis=still)
+    yield _blocks(name, BASE + high, Refused("block 2 has no support"), analysis=still)
     for name, text in (("nothing fixed", free), ("floating", gap + free)):
-        word = "nothing is fixed" if name == "nothing fixed" else "rests on nothing"
+        word = "nothing is fixed" if name == "nothing fixed" else "has no support"
         deck = {"analysis": {**_FALLS, "steps": 10000}, "material": {"density": 2240.0}}
         yield _blocks(f"{name}, dynamic", text, Warned(word, falls), **deck)
-    yield _blocks("nothing fixed, static", _BLOCK + high, Refused("rests on nothing"))
+    yield _blocks("nothing fixed, static", _BLOCK + high, Refused("has no support"))
     fixed = Warned("fixed", Verdict("stable"))
     yield _blocks("all fixed", BASE + written_block(_SQUARE, "fixed"), fixed)
     yield _blocks("a held point outside", BASE + _BLOCK + "fix 5 5\n", Refused("lies in none"))
     led = "fix 0.5 0.5\ndisplacement 0.5 0.5 0.1 0\n"
-    yield _blocks("a held point that is led", BASE + _BLOCK + led, Refused("held"))
+    yield _blocks("a held point that is led", BASE + _BLOCK + led, Refused("prescribed points"))
     pinned = BASE + _BLOCK + "fix block 2 0 0\nfix block 2 1 0\n"
     yield _blocks("a block held twice", pinned, Verdict("stable"))
     up = {"gravity_direction_deg": 90.0}

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import csv
 import html
+import statistics
 from collections import Counter
 from collections.abc import Sequence
 from dataclasses import asdict, dataclass, fields
@@ -30,15 +31,84 @@ class Line:
     reason: str
 
 
-_STYLE = """body { font: 13px/1.35 sans-serif; margin: 2em; }
-table { border-collapse: collapse; margin-bottom: 2em; }
-th, td { padding: .15em .5em; text-align: left; vertical-align: top; }
-td.number { text-align: right; font-variant-numeric: tabular-nums; }
-td.guard, td.reason { min-width: 14em; } td.wanted, td.found, td.error { max-width: 20em; }
+_STYLE = """body { font: 14px/1.4 sans-serif; margin: 1em auto; max-width: 72em; padding: 0 1em; }
+div.wide { overflow-x: auto; } table { border-collapse: collapse; margin-bottom: 1em; }
+th, td { padding: .15em .6em; text-align: left; vertical-align: top; }
+.number { text-align: right; font-variant-numeric: tabular-nums; white-space: nowrap; }
 th { border-bottom: 2px solid #000; } td { border-bottom: 1px solid #ddd; }
 td.right { background: #d9efd9; } td.undecided { background: #fbeebf; }
 td.WRONG { background: #d1632a; color: #fff; font-weight: bold; }
-h1.bad { color: #d1632a; }"""
+h1 { font-size: 1.4em; } h1.bad { color: #d1632a; } summary { cursor: pointer; padding: .2em 0; }
+@media print { details { display: none; } }"""
+#: Columns of the table of scenes; those of the ones that are not right have the reason, too
+_SHOWN = ("scene", "result", "wanted", "found", "error", "seconds")
+
+
+@dataclass(frozen=True)
+class Kind:
+    """What came of the scenes of one kind.
+
+    Attributes
+    ----------
+    name : str
+        The kind.
+    count : Counter
+        Scenes by their result.
+    worst : float or None
+        Largest relative error of those that are right; None where none is told.
+    median, longest : float
+        Times of one scene [s].
+    """
+
+    name: str
+    count: Counter[str]
+    worst: float | None
+    median: float
+    longest: float
+
+    def cells(self) -> list[str]:
+        """Its row."""
+        total = self.count.total()
+        undecided = self.count[UNDECIDED]
+        return [
+            self.name,
+            str(total),
+            "-" if self.worst is None else f"{self.worst:.0e}",
+            f"{undecided} ({100.0 * undecided / total:.1f} %)" if undecided else "0",
+            str(self.count[WRONG]),
+            f"{1e3 * self.median:.3g}",
+            f"{1e3 * self.longest:.3g}",
+        ]
+
+
+#: Heads of the table of kinds
+_HEADS = ("kind", "scenes", "worst error", "undecided", "WRONG", "median time [ms]", "longest [ms]")
+
+
+def kinds(lines: Sequence[Line]) -> list[Kind]:
+    """What came of each kind of scene, all of them last.
+
+    Parameters
+    ----------
+    lines : sequence of Line
+        The table.
+
+    Returns
+    -------
+    list of Kind
+        In the order of the table.
+    """
+    groups = {line.group: [other for other in lines if other.group == line.group] for line in lines}
+    found = []
+    for name, own in {**groups, "all": list(lines)}.items():
+        errors = [
+            abs(float(line.error)) for line in own if line.result == RIGHT and _is_number(line.error)
+        ]
+        times = [float(line.seconds) for line in own if line.seconds] or [0.0]
+        count = Counter(line.result for line in own)
+        worst = max(errors, default=None)
+        found.append(Kind(name, count, worst, statistics.median(times), max(times)))
+    return found
 
 
 def headline(lines: Sequence[Line]) -> str:
@@ -79,7 +149,7 @@ def write_csv(lines: Sequence[Line], file: Path) -> None:
 
 
 def write_markdown(lines: Sequence[Line], file: Path) -> None:
-    """Write a summary by group, and every scene that is not right, as Markdown.
+    """Write a table by kind, and every scene that is not right, as Markdown.
 
     Parameters
     ----------
@@ -89,10 +159,8 @@ def write_markdown(lines: Sequence[Line], file: Path) -> None:
         Where.
     """
     text = [f"# Stiff and extreme scenes\n\n**{headline(lines)}**\n"]
-    text.append("| group | scenes | right | undecided | WRONG | largest error | longest [s] |")
-    text.append("| --- | ---: | ---: | ---: | ---: | ---: | ---: |")
-    for group in dict.fromkeys(line.group for line in lines):
-        text.append(_summary(group, [line for line in lines if line.group == group]))
+    text.append("| " + " | ".join(_HEADS) + " |\n| --- |" + " ---: |" * (len(_HEADS) - 1))
+    text += ["| " + " | ".join(kind.cells()) + " |" for kind in kinds(lines)]
     text.append("\n| scene | result | wanted | found | error | reason |\n" + "| --- " * 6 + "|")
     text += [
         f"| {line.group}: {line.scene} | {line.result} | {line.wanted} | {line.found} "
@@ -101,18 +169,6 @@ def write_markdown(lines: Sequence[Line], file: Path) -> None:
         if line.result != RIGHT
     ]
     file.write_text("\n".join(text) + "\n", encoding="utf-8")
-
-
-def _summary(group: str, lines: Sequence[Line]) -> str:
-    """Row of one group."""
-    count = Counter(line.result for line in lines)
-    errors = [abs(float(line.error)) for line in lines if _is_number(line.error)]
-    worst = f"{max(errors):.1e}" if errors else "-"
-    longest = max(float(line.seconds or 0.0) for line in lines)
-    return (
-        f"| {group} | {len(lines)} | {count[RIGHT]} | {count[UNDECIDED]} | {count[WRONG]} "
-        f"| {worst} | {longest:.2f} |"
-    )
 
 
 def _is_number(text: str) -> bool:
@@ -125,7 +181,7 @@ def _is_number(text: str) -> bool:
 
 
 def write_page(lines: Sequence[Line], file: Path) -> None:
-    """Write a page: the groups, what is not right, then every scene; green, yellow and red.
+    """Write a page: the kinds, what is not right, then every scene by kind, folded.
 
     Parameters
     ----------
@@ -138,47 +194,52 @@ def write_page(lines: Sequence[Line], file: Path) -> None:
     doubtful = [line for line in lines if line.result != RIGHT]
     text = [
         "<!DOCTYPE html><html lang='en'><head><meta charset='utf-8'>",
+        "<meta name='viewport' content='width=device-width, initial-scale=1'>",
         f"<title>Stiff and extreme scenes</title><style>{_STYLE}</style></head><body>",
         f"<h1{bad}>{html.escape(headline(lines))}</h1>",
-        *_group_table(lines),
+        *_kind_table(lines),
     ]
     if doubtful:
-        text += ["<h2>What is not right, and why</h2>", *_scene_table(doubtful)]
-    text += ["<h2>Every scene</h2>", *_scene_table(lines), "</body></html>"]
-    file.write_text("\n".join(text) + "\n", encoding="utf-8")
+        text += ["<h2>What is not right, and why</h2>"]
+        text += _scene_table(doubtful, ("group", "scene", "result", "found", "reason"))
+    text += ["<h2>Every scene, by kind</h2>"]
+    for kind in kinds(lines)[:-1]:
+        own = [line for line in lines if line.group == kind.name]
+        text += [f"<details><summary>{html.escape(kind.name)}: {len(own)} scenes</summary>"]
+        text += [*_scene_table(own, _SHOWN), "</details>"]
+    file.write_text("\n".join([*text, "</body></html>"]) + "\n", encoding="utf-8")
 
 
-def _group_table(lines: Sequence[Line]) -> list[str]:
-    """Counts of each group; a count above zero has its colour."""
-    results = (RIGHT, UNDECIDED, WRONG)
-    head = "".join(f"<th>{name}</th>" for name in ("group", "scenes", *results))
-    text = [f"<table><thead><tr>{head}</tr></thead><tbody>"]
-    for group in dict.fromkeys(line.group for line in lines):
-        count = Counter(line.result for line in lines if line.group == group)
+def _kind_table(lines: Sequence[Line]) -> list[str]:
+    """A row a kind; what is undecided or WRONG has its colour."""
+    number = " class='number'"
+    heads = "".join(f"<th{number if place else ''}>{name}</th>" for place, name in enumerate(_HEADS))
+    text = [f"<div class='wide'><table><thead><tr>{heads}</tr></thead><tbody>"]
+    for kind in kinds(lines):
+        colour = {3: UNDECIDED if kind.count[UNDECIDED] else "", 4: WRONG if kind.count[WRONG] else ""}
         cells = "".join(
-            f"<td class='number {result if count[result] else ''}'>{count[result]}</td>"
-            for result in results
-        )
-        name = html.escape(group)
-        text.append(f"<tr><td>{name}</td><td class='number'>{count.total()}</td>{cells}</tr>")
-    return [*text, "</tbody></table>"]
-
-
-def _scene_table(lines: Sequence[Line]) -> list[str]:
-    """One row a scene."""
-    names = [field.name for field in fields(Line)]
-    head = "".join(f"<th>{name}</th>" for name in names)
-    text = [f"<table><thead><tr>{head}</tr></thead><tbody>"]
-    for line in lines:
-        cells = "".join(
-            f"<td class='{value if name == 'result' else _kind(name, value)}'>"
-            f"{html.escape(value)}</td>"
-            for name, value in asdict(line).items()
+            f"<td class='{'number' if place else ''} {colour.get(place, '')}'>{html.escape(cell)}</td>"
+            for place, cell in enumerate(kind.cells())
         )
         text.append(f"<tr>{cells}</tr>")
-    return [*text, "</tbody></table>"]
+    return [*text, "</tbody></table></div>"]
 
 
-def _kind(name: str, value: str) -> str:
+def _scene_table(lines: Sequence[Line], names: Sequence[str]) -> list[str]:
+    """One row a scene."""
+    heads = "".join(f"<th>{name}</th>" for name in names)
+    text = [f"<div class='wide'><table><thead><tr>{heads}</tr></thead><tbody>"]
+    for line in lines:
+        row = asdict(line)
+        cells = "".join(
+            f"<td class='{row[name] if name == 'result' else _class(name, row[name])}'>"
+            f"{html.escape(row[name])}</td>"
+            for name in names
+        )
+        text.append(f"<tr>{cells}</tr>")
+    return [*text, "</tbody></table></div>"]
+
+
+def _class(name: str, value: str) -> str:
     """Class of a cell."""
     return "number" if name not in ("wanted", "found") and _is_number(value) else name

@@ -64,7 +64,7 @@ def _half_angle(word: str) -> float:
     except ValueError:
         angle = math.nan
     if not 0.0 < angle < 180.0:
-        raise argparse.ArgumentTypeError(f"wants an angle in (0, 180) degrees, got '{word}'")
+        raise argparse.ArgumentTypeError(f"must be an angle in (0, 180) degrees, got '{word}'")
     return angle
 
 

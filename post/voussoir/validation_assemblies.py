@@ -135,7 +135,7 @@ def _pressed() -> list[Scene]:
     for more, accept in (((), 1e-4), (MOVED, 2e-3)):
         scenes.append(Scene(ASSEMBLIES, "jammed", "2 mu N = W", jammed, more))
         wedge = (critical(roof, pull, accept),)
-        source = "Brady and Brown, derived anew"
+        source = "Brady and Brown, derived again"
         scenes.append(Scene(ASSEMBLIES, "roof_wedge", source, wedge, more))
     return [
         *scenes,

@@ -47,7 +47,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def _whole(word: str) -> int:
     if not word.isdecimal():
-        raise argparse.ArgumentTypeError(f"a whole number from 0 is wanted, {word} was found")
+        raise argparse.ArgumentTypeError(f"expected a whole number from 0, got {word}")
     return int(word)
 
 
@@ -89,7 +89,7 @@ def _lines(arguments: argparse.Namespace, dda: Path) -> list[Line]:
     unknown = [name for name in arguments.scenes or () if name not in names]
     if unknown:
         known = ", ".join(sorted(names))
-        raise DdaError(f"wanted a scene, found '{unknown[0]}'; the scenes are {known}")
+        raise DdaError(f"expected a scene, got '{unknown[0]}'; the scenes are {known}")
     decks = arguments.decks or find_input("benchmarks")
     lines = []
     for scene in scenes:

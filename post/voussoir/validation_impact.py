@@ -158,7 +158,7 @@ def _bounces() -> list[Scene]:
         ),
     )
     flight = 2.0 * math.sqrt(2.0 / GRAVITY)
-    period = Check("time between blows, e = 1.0 [s]", flight, _period, 1e-6, 4)
+    period = Check("time between impacts, e = 1.0 [s]", flight, _period, 1e-6, 4)
     fall = DENSITY * GRAVITY
     rise = "largest rise of energy in a step, e = {}, over the fall's"
     rises = tuple(

@@ -110,7 +110,7 @@ def _share(size, velocity, spin: float, place) -> np.ndarray:
 def _momentum_checks() -> tuple[Check, ...]:
     """Checks that momentum and its moment stay, over the sum of their sizes at the beginning."""
     scale = sum(DENSITY * w * h * math.hypot(*v) for (w, h), v, _ in _THROWN)
-    names = ("momentum along x", "momentum along y", "moment of momentum")
+    names = ("momentum along x", "momentum along y", "angular momentum")
     return tuple(
         Check(f"{name} gained", 0.0, _gained(i), 1e-9, scale=scale)
         for i, name in enumerate(names)

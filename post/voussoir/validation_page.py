@@ -29,12 +29,12 @@ two are. This page is written by `voussoir validation` from a run of the decks i
 """
 
 _TAIL = """
-## What the lines that miss tell
+## What the lines that miss show
 
 - **dry walls.** The limit is that of dilatant friction, an upper bound for Coulomb's. The answer
   under Coulomb friction depends on the way of the loads; [limits.md](limits.md) says what was found.
 
-## What the rates tell
+## What the rates show
 
 - Flight is exact at any step, and so are bounces with restitution: a step ends where blocks meet.
 - **rocking.** A block that turns about its corner in steps of constant acceleration loses a little
@@ -50,7 +50,7 @@ _TAIL = """
 
 ## Not in the suite
 
-- **Newton's cradle.** Blows at the same time have no one answer.
+- **Newton's cradle.** Simultaneous impacts are not unique.
 - **The cantilever of one block.** A block has one strain and does not bend ([limits.md](limits.md)).
 - **Sliding of a flat arch** between walls that do not yield: its thrust may grow, so there is no
   one coefficient of friction at which it slips.

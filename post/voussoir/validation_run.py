@@ -145,5 +145,5 @@ def _step(deck: Path, halvings: int) -> list[str]:
         return []
     step = re.search(r"time_step = ([-+.\de]+)", deck.read_text(encoding="utf-8"))
     if not step:
-        raise DdaError(f"{deck}: wanted a time_step to halve, found none; give one in &analysis")
+        raise DdaError(f"{deck}: expected a time_step to halve, got none; give one in &analysis")
     return [f"analysis%time_step={float(step[1]) / 2**halvings!r}"]

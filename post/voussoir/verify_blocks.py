@@ -33,8 +33,17 @@ class Held:
 
 
 @dataclass
+class Law:
+    """Friction angle, cohesion and tensile strength of a joint."""
+
+    friction_deg: float
+    cohesion: float = 0
+    tension: float = 0
+
+
+@dataclass
 class Source:
-    """What is on a file of blocks, or what an arch has instead."""
+    """What is on a file of blocks, on files of lines, or what an arch has instead."""
 
     corners: list[np.ndarray] = field(default_factory=list)
     material: list[int] = field(default_factory=list)
@@ -43,7 +52,8 @@ class Source:
     friction_deg: dict[tuple[int, int], float] = field(default_factory=dict)
     forces: list[PointForce] = field(default_factory=list)
     held: list[Held] = field(default_factory=list)
-    shaking: Point = (0.0, 0.0)
+    shaking: Point = (0, 0)
+    lines: list[tuple[np.ndarray, Law]] = field(default_factory=list)
 
 
 def read_blocks(path: Path, deck: Deck) -> Source:
@@ -73,7 +83,7 @@ def read_blocks(path: Path, deck: Deck) -> Source:
         if not words:
             continue
         if words[0][0] in "0123456789+-.":
-            rows.append([float(word.replace("d", "e")) for word in words])
+            rows.append([deck.read(word.replace("d", "e")) for word in words])
             continue
         if entry:
             _take(entry, rows, source, deck)
@@ -84,35 +94,37 @@ def read_blocks(path: Path, deck: Deck) -> Source:
 def _take(entry: list[str], rows: list[list[float]], source: Source, deck: Deck) -> None:
     """Take in one entry with its rows."""
     keys = dict(zip(entry, entry[1:]))
+    if "file" in entry:
+        raise VerifyError("records of files are not verified")
     if entry[0] == "block":
-        source.corners.append(np.array(rows, dtype=float))
+        source.corners.append(np.array(rows))
         source.material.append(int(keys.get("material", "1")))
     elif entry[0] == "material":
         number = int(entry[1])
         if "density" in keys:
-            source.densities[number] = float(keys["density"])
-            source.weights[number] = float(keys["density"]) * deck.number("load%gravity")
+            source.densities[number] = deck.read(keys["density"])
+            source.weights[number] = source.densities[number] * deck.number("load%gravity")
         if "unit_weight" in keys:
-            source.weights[number] = float(keys["unit_weight"])
+            source.weights[number] = deck.read(keys["unit_weight"])
     elif entry[0] == "joint":
         if any(float(keys.get(name, "0")) > 0.0 for name in ("cohesion", "tension")):
             raise VerifyError("joints with cohesion or tension have no proof")
         if "friction_deg" in keys:
             pair = sorted((int(entry[1]), int(entry[2])))
-            source.friction_deg[pair[0], pair[1]] = float(keys["friction_deg"])
+            source.friction_deg[pair[0], pair[1]] = deck.read(keys["friction_deg"])
     elif entry[0] == "base_acceleration":
-        ax, ay = (rows[-1][1:] if rows else [float(word) for word in entry[1:3]])
+        ax, ay = (rows[-1][1:] if rows else [deck.read(word) for word in entry[1:3]])
         source.shaking = (-ax, -ay)
     elif entry[0] in ("base_velocity", "base_displacement"):
         raise VerifyError(f"{entry[0]} is not verified: only base_acceleration is")
     elif entry[0] in ("load", "live", "fix", "displacement", "fix_line"):
-        _take_point(entry, rows, source)
+        _take_point(entry, rows, source, deck)
 
 
-def _take_point(entry: list[str], rows: list[list[float]], source: Source) -> None:
+def _take_point(entry: list[str], rows: list[list[float]], source: Source, deck: Deck) -> None:
     """Take in a point that is loaded or held."""
     block, at = (int(entry[2]), 3) if entry[1] == "block" else (0, 1)
-    numbers = [float(word.replace("d", "e")) for word in entry[at:] if word not in ("x", "y")]
+    numbers = [deck.read(word.replace("d", "e")) for word in entry[at:] if word not in ("x", "y")]
     point = (numbers[0], numbers[1])
     if entry[0] in ("load", "live"):
         force = rows[-1][1:] if rows else numbers[2:4]
@@ -136,19 +148,19 @@ def arch_corners(deck: Deck) -> list[np.ndarray]:
     list of ndarray
         Corners of each block that moves, in either sense.
     """
-    half = [math.radians(angle) for angle in deck.numbers("arch%joints_deg")]
+    half = deck.numbers("arch%joints_deg")
     if half:
         angles = [-angle for angle in half[:0:-1]] + half
     else:
-        count, end = round(deck.number("arch%voussoirs")), math.radians(deck.number("arch%half_angle_deg"))
-        angles = [-end + 2.0 * end * k / count for k in range(count + 1)]
+        count, end = round(deck.number("arch%voussoirs")), deck.number("arch%half_angle_deg")
+        angles = [-end + 2 * end * k / count for k in range(count + 1)]
     radius, ratio = deck.number("arch%radius"), deck.number("arch%thickness_ratio")
-    facet = math.radians(deck.number("arch%facet_deg"))
+    facet = deck.number("arch%facet_deg")
     blocks = []
     for left, right in zip(angles, angles[1:]):
-        chords = math.ceil((right - left) / facet - 1e-9) if facet > 0.0 else 1
-        fan = [left + (right - left) * k / chords for k in range(chords + 1)]
-        rings = (radius * (1.0 - ratio / 2.0), radius * (1.0 + ratio / 2.0))
-        inner, outer = ([(r * math.sin(a), r * math.cos(a)) for a in fan] for r in rings)
+        chords = math.ceil((right - left) / facet - 1e-9) if facet > 0 else 1
+        fan = [deck.sine_cosine(left + (right - left) * k / chords) for k in range(chords + 1)]
+        rings = (radius * (1 - ratio / 2), radius * (1 + ratio / 2))
+        inner, outer = ([(r * sine, r * cosine) for sine, cosine in fan] for r in rings)
         blocks.append(np.array([*inner, *outer[::-1]]))
     return blocks

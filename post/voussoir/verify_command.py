@@ -12,6 +12,8 @@ import numpy as np
 from voussoir.verify_blocks import Source, arch_corners, read_blocks
 from voussoir.verify_contacts import find_joints, make_block
 from voussoir.verify_deck import Deck, VerifyError, read_record
+from voussoir.verify_exact import MOST_JOINTS, check_exactly
+from voussoir.verify_lines import read_lines
 from voussoir.verify_proofs import TOLERANCE, Finding, Row, Scene, check_forces, check_motion
 from voussoir.verify_tables import check_joints, check_rigid
 
@@ -31,7 +33,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.description = (
         "Check the proofs of static verdicts that dda run has left in a folder: forces must balance the loads and keep "
         "the law of every joint, mechanisms must open or leave every joint and be driven by the loads. Joints, weights "
-        "and loads are found anew from blocks.csv, deck.record and the file of blocks."
+        "and loads are found again from blocks.csv, deck.record and the file of blocks."
     )
     parser.add_argument("folder", metavar="DIR", type=Path, help="folder of the results")
     parser.add_argument(
@@ -39,6 +41,11 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         metavar="DIR",
         type=Path,
         help="folder of the deck, which names a file of blocks (default: the folder that holds DIR, then this one)",
+    )
+    parser.add_argument(
+        "--exact",
+        action="store_true",
+        help=f"prove limits again in rational arithmetic, of cases of at most {MOST_JOINTS} joints",
     )
     parser.add_argument("--quiet", action="store_true", help="tell the worst case alone")
 
@@ -61,6 +68,11 @@ def run(arguments: argparse.Namespace) -> int:
         tables = {name: read_table(arguments.folder / f"{name}.csv") for name in TABLES}
         places = [arguments.decks] if arguments.decks else [arguments.folder.parent, Path()]
         found = {number: _check_case(deck, number, tables, places) for number in sorted(tables["results"])}
+        if arguments.exact:
+            for number, finding in found.items():
+                if finding.figures:
+                    rows = {name: tables[name].get(number, []) for name in TABLES}
+                    check_exactly(*_case_of(deck, number, rows["results"][0], places), rows, finding)
     except (VerifyError, KeyError, IndexError, ValueError) as error:
         sys.stderr.write(f"{arguments.folder}: error: {error}\n")
         return 1 if isinstance(error, (KeyError, IndexError)) else 2
@@ -75,6 +87,8 @@ def _report(found: dict[int, Finding], quiet: bool) -> int:
         elif not quiet:
             figures = ", ".join(f"{name} {value:.1e}" for name, value in finding.figures.items())
             sys.stdout.write(f"case {number}: {figures or 'no proof'}\n")
+        if finding.interval and not finding.faults:
+            sys.stdout.write(f"case {number}: {finding.interval}\n")
     proven = {number: finding for number, finding in found.items() if finding.figures}
     failed = sum(1 for finding in found.values() if finding.faults)
     text = f"{len(proven)} of {len(found)} cases have proofs, {failed} fail"
@@ -117,9 +131,7 @@ def _check_case(deck: Deck, number: int, tables: dict[str, dict[int, list[Row]]]
         if result["imbalance"] or result["mechanism_power"]:
             finding.faults.append("figures of a proof without its rows")
         return finding
-    of_case = deck.case(number)
-    if result["worst_position"]:
-        of_case.values["vehicle%position"] = [result["worst_position"]]
+    of_case, _ = _case_of(deck, number, result, places)
     for rows, name in ((forces, "forces"), (motion, "motion")):
         if not rows:
             continue
@@ -143,6 +155,22 @@ def _check_case(deck: Deck, number: int, tables: dict[str, dict[int, list[Row]]]
                 finding.keep("power at the limit", abs(power))
     _check_told(deck, of_case, result, {name: tables[name].get(number, []) for name in TABLES}, places, finding)
     return finding
+
+
+def _case_of(deck: Deck, number: int, result: Row, places: list[Path]) -> tuple[Deck, list[Path]]:
+    """The deck of a case, and its file of blocks or of lines and their materials."""
+    of_case = deck.case(number)
+    if result["worst_position"]:
+        of_case.values["vehicle%position"] = [result["worst_position"]]
+    return of_case, _files_of(of_case, places)
+
+
+def _files_of(deck: Deck, places: list[Path]) -> list[Path]:
+    """The file of blocks of a deck, or its files of lines and of their materials."""
+    keys = ["geometry"] if deck.text("scene%kind") == "blocks" else []
+    if deck.gives("scene%analysis"):
+        keys = ["geometry", "analysis"]
+    return [_find(deck.text(f"scene%{key}"), places) for key in keys]
 
 
 def _check_told(
@@ -194,8 +222,6 @@ def scene_of(deck: Deck, rows: list[Row], places: list[Path], finding: Finding) 
     """
     if not rows:
         raise VerifyError("no blocks of a case in blocks.csv: run the deck with output%blocks = .true.")
-    if deck.gives("scene%analysis"):
-        raise VerifyError("decks with an analysis file are not verified")
     corners: dict[int, list[list[float]]] = {}
     fixed: dict[int, bool] = {}
     for row in rows:
@@ -203,10 +229,13 @@ def scene_of(deck: Deck, rows: list[Row], places: list[Path], finding: Finding) 
         fixed[int(row["block"])] = row["state"] == "fixed"
     blocks = [make_block(number, np.array(corners[number]), fixed[number]) for number in sorted(corners)]
     source = Source()
+    deck.refuse_unknown()
     if deck.text("scene%kind") == "blocks":
-        source = read_blocks(_find(deck.text("scene%geometry"), places), deck)
+        source = read_blocks(*_files_of(deck, places), deck)
         _compare([np.array(corners[n]) for n in sorted(corners)], source.corners, finding)
-    elif deck.text("scene%kind") == "arch":
+    elif deck.gives("scene%analysis"):
+        source = read_lines(*_files_of(deck, places), blocks, deck)
+    elif deck.text("scene%kind") == "arch" and not deck.is_shape():
         _compare([np.array(corners[n]) for n in sorted(corners) if not fixed[n]], arch_corners(deck), finding)
     return Scene(blocks, find_joints(blocks), source, deck)
 

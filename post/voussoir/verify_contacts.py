@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
 
-#: Blocks touch within this share of the smaller one's size
+#: Blocks touch within this share of the smaller one's size, the root of its area
 TOUCH = 1e-4
 
 
@@ -31,6 +32,8 @@ class Joint:
     ends: np.ndarray
     normal: np.ndarray
     single: bool
+    #: The edge that the normal stands on, that of the first block
+    edge: np.ndarray
 
     @property
     def tangent(self) -> np.ndarray:
@@ -58,10 +61,10 @@ def make_block(number: int, corners: np.ndarray, fixed: bool) -> Block:
     shift = corners.mean(axis=0)
     x, y = (corners - shift).T
     cross = x * np.roll(y, -1) - np.roll(x, -1) * y
-    area = cross.sum() / 2.0
-    centre = np.array([((x + np.roll(x, -1)) * cross).sum(), ((y + np.roll(y, -1)) * cross).sum()]) / (6.0 * area)
-    ordered = corners if area > 0.0 else corners[::-1]
-    return Block(number, ordered, fixed, abs(area), centre + shift, float(np.linalg.norm(np.ptp(corners, axis=0))))
+    area = cross.sum() / 2
+    centre = np.array([((x + np.roll(x, -1)) * cross).sum(), ((y + np.roll(y, -1)) * cross).sum()]) / (6 * area)
+    ordered = corners if area > 0 else corners[::-1]
+    return Block(number, ordered, fixed, abs(area), centre + shift, math.sqrt(abs(area)))
 
 
 def find_joints(blocks: list[Block]) -> list[Joint]:
@@ -107,7 +110,8 @@ def _joints_of(first: Block, second: Block) -> list[Joint]:
                 continue
             _, direction, _ = _edge(owner, a)
             normal = np.array([direction[1], -direction[0]])
-            joints.append(Joint(owner.number, other.number, np.array([corner, corner]), normal, True))
+            ends = np.array([corner, corner])
+            joints.append(Joint(owner.number, other.number, ends, normal, True, _corners_of(owner, a)))
     return joints
 
 
@@ -141,6 +145,11 @@ def _edge(block: Block, number: int) -> tuple[np.ndarray, np.ndarray, float]:
     return start, (end - start) / length, length
 
 
+def _corners_of(block: Block, number: int) -> np.ndarray:
+    """Both corners of an edge."""
+    return block.corners[[number, (number + 1) % len(block.corners)]]
+
+
 def _edges_together(first: Block, a: int, second: Block, b: int, reach: float) -> Joint | None:
     """The joint of two edges that lie together, if they do."""
     start, direction, length = _edge(first, a)
@@ -151,7 +160,7 @@ def _edges_together(first: Block, a: int, second: Block, b: int, reach: float) -
     tail = other + other_length * opposite
     low = max(0.0, min((other - start) @ direction, (tail - start) @ direction))
     high = min(length, max((other - start) @ direction, (tail - start) @ direction))
-    if high - low <= 2.0 * reach:
+    if high - low <= reach:
         return None
     ends = []
     for place in (low, high):
@@ -163,7 +172,7 @@ def _edges_together(first: Block, a: int, second: Block, b: int, reach: float) -
         # the corner that makes the end, of whichever block
         corners = [*first.corners, *second.corners]
         ends.append(min(corners, key=lambda corner: float(np.linalg.norm(corner - on_first))))
-    return Joint(first.number, second.number, np.array(ends), normal, False)
+    return Joint(first.number, second.number, np.array(ends), normal, False, _corners_of(first, a))
 
 
 def numbers_of(joints: list[Joint]) -> dict[tuple[int, int], list[Joint]]:

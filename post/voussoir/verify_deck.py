@@ -4,8 +4,11 @@ from __future__ import annotations
 
 import math
 import re
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
+from fractions import Fraction
 from pathlib import Path
+
+from voussoir.verify_rational import sine_cosine
 
 #: Groups of the keys that matter here, and their defaults
 DEFAULTS: dict[str, str] = {
@@ -46,6 +49,13 @@ OTHERS = (
 )
 
 
+#: Keys that make an arch more than a circular ring of voussoirs; an assembly of blocks then
+SHAPES = tuple(f"arch%{name}" for name in (
+    "shape", "span", "rise", "right_rise", "thickness", "crown_thickness", "springing_thickness", "joint_direction",
+    "rings", "spans", "pier_width", "pier_height", "pier_courses", "buttress_width", "buttress_height", "lune_deg",
+))
+
+
 class VerifyError(ValueError):
     """Something that cannot be verified, with the reason."""
 
@@ -61,26 +71,50 @@ class Sweep:
 
 @dataclass
 class Deck:
-    """Values by group%key, as texts, and the sweeps."""
+    """Values by group%key, as texts, the sweeps, and whether numbers are the decimals themselves."""
 
     values: dict[str, list[str]]
     sweeps: list[Sweep]
+    exact: bool = False
 
     def text(self, key: str) -> str:
         """A single value as text."""
         return self.values.get(key, [DEFAULTS.get(key, "")])[0]
 
+    def read(self, text: str) -> float:
+        """A number from its decimal, a fraction where all is exact."""
+        return Fraction(text) if self.exact else float(text)
+
     def number(self, key: str) -> float:
         """A single number."""
-        return float(self.text(key))
+        return self.read(self.text(key))
 
     def numbers(self, key: str) -> list[float]:
         """A list of numbers, empty if it is not given."""
-        return [float(value) for value in self.values.get(key, [])]
+        return [self.read(value) for value in self.values.get(key, [])]
+
+    def sine_cosine(self, degrees: float) -> tuple[float, float]:
+        """Sine and cosine of an angle."""
+        if self.exact:
+            return sine_cosine(Fraction(degrees))
+        return math.sin(math.radians(degrees)), math.cos(math.radians(degrees))
 
     def gives(self, key: str) -> bool:
         """Whether a key is given."""
         return key in self.values
+
+    def is_shape(self) -> bool:
+        """Whether it is an arch of any shape: blocks that are taken as blocks.csv has them."""
+        given = [key for key in SHAPES if self.gives(key) and self.text(key).lower() != "circular"]
+        searched = (self.searched or "").split("%")[-1]
+        return self.text("scene%kind") == "arch" and (bool(given) or f"arch%{searched}" in SHAPES)
+
+    def refuse_unknown(self) -> None:
+        """Refuse what acts on blocks in ways that are not recomputed."""
+        if any(key.startswith("fill%") or key == "&fill" for key in self.values):
+            raise VerifyError("decks with &fill are not verified: its weight and pressure are not recomputed")
+        if self.gives("arch%lune_deg"):
+            raise VerifyError("decks with lune_deg are not verified: the weight of wedges is not recomputed")
 
     def with_value(self, name: str, value: str) -> Deck:
         """A deck with another value of a parameter, such as friction_deg, arch%radius or x(2)."""
@@ -89,7 +123,7 @@ class Deck:
             raise VerifyError(f"expected the name of a parameter, got {name!r}")
         group, key, item = match.groups()
         # keys of &scene do not vary
-        names = [full.split("%") for full in (*DEFAULTS, *OTHERS) if not full.startswith("scene%")]
+        names = [full.split("%") for full in (*DEFAULTS, *OTHERS, *SHAPES) if not full.startswith("scene%")]
         known = ["%".join(name) for name in names if name[1] == key and group in (None, name[0])]
         values = dict(self.values)
         if known:
@@ -97,7 +131,7 @@ class Deck:
             new = list(values.get(full, [""]))
             new[int(item) - 1 if item else 0] = value
             values[full] = new
-        return Deck(values, self.sweeps)
+        return replace(self, values=values)
 
     def case(self, number: int) -> Deck:
         """The deck of one case; the last sweep runs fastest, a linked one goes with the one before."""
@@ -121,9 +155,10 @@ class Deck:
     def direction(self) -> tuple[float, float]:
         """Direction of gravity."""
         angle = self.number("load%gravity_direction_deg")
-        if angle == -90.0:
-            return 0.0, -1.0
-        return math.cos(math.radians(angle)), math.sin(math.radians(angle))
+        if angle == -90:
+            return self.read("0"), self.read("-1")
+        sine, cosine = self.sine_cosine(angle)
+        return cosine, sine
 
     def push(self) -> float:
         """Horizontal force over the weight."""

@@ -6,12 +6,12 @@ import math
 
 import numpy as np
 
-from voussoir.verify_blocks import PointForce, Source
+from voussoir.verify_blocks import Law, PointForce, Source
 from voussoir.verify_contacts import TOUCH, Block, Joint
 from voussoir.verify_deck import Deck, VerifyError
 
 #: Friction angles of files of blocks count up to this one [deg]
-MOST_FRICTION_DEG = 89.9
+MOST_FRICTION_DEG = "89.9"
 
 
 def loads_on(deck: Deck, source: Source, blocks: list[Block]) -> np.ndarray:
@@ -32,7 +32,7 @@ def loads_on(deck: Deck, source: Source, blocks: list[Block]) -> np.ndarray:
         Force along x and y, and moment, of each block: (n, 3).
     """
     direction, push = deck.direction(), deck.push()
-    load = np.zeros((len(blocks), 3))
+    load = np.zeros((len(blocks), 3), dtype=object if deck.exact else float)
     for i, block in enumerate(blocks):
         material = source.material[i] if source.material else 1
         weight = source.weights.get(material, deck.unit_weight()) * block.area
@@ -41,7 +41,7 @@ def loads_on(deck: Deck, source: Source, blocks: list[Block]) -> np.ndarray:
         load[i, 1] = weight * direction[1] + mass * source.shaking[1]
     factor = deck.number("load%load_factor")
     for force in source.forces:
-        _add(force, factor if force.live else 1.0, blocks, load)
+        _add(force, factor if force.live else 1, blocks, load)
     for force in _live_of_deck(deck):
         _add(force, factor, [b for b in blocks if not b.fixed], load)
     for force in _axles_of_deck(deck, blocks):
@@ -51,19 +51,19 @@ def loads_on(deck: Deck, source: Source, blocks: list[Block]) -> np.ndarray:
 
 def _axles_of_deck(deck: Deck, blocks: list[Block]) -> list[PointForce]:
     """Axles of a vehicle, in pieces between the corners below them."""
-    place = deck.number("vehicle%position") if deck.gives("vehicle%position") else 0.0
-    half = deck.number("vehicle%length") / 2.0
+    place = deck.number("vehicle%position") if deck.gives("vehicle%position") else 0
+    half = deck.number("vehicle%length") / 2
     forces = []
     for k, weight in enumerate(deck.numbers("vehicle%axles")):
         middle = place + sum(deck.numbers("vehicle%spacings")[:k])
-        corners = [float(x) for block in blocks for x in block.corners[:, 0] if abs(x - middle) < half]
+        corners = [x for block in blocks for x in block.corners[:, 0] if abs(x - middle) < half]
         cuts = sorted([middle - half, *corners, middle + half])
         for left, right in zip(cuts, cuts[1:]):
-            share = (right - left) / (2.0 * half) if half > 0.0 else 1.0
-            below = _upper(blocks, (left + right) / 2.0)
-            if share > 0.0 and below is not None and not below[0].fixed:
-                point = ((left + right) / 2.0, below[1])
-                forces.append(PointForce(below[0].number, point, (0.0, -share * weight), True))
+            share = (right - left) / (2 * half) if half > 0 else 1
+            below = _upper(blocks, (left + right) / 2)
+            if share > 0 and below is not None and not below[0].fixed:
+                point = ((left + right) / 2, below[1])
+                forces.append(PointForce(below[0].number, point, (0, -share * weight), True))
     return forces
 
 
@@ -72,21 +72,21 @@ def _upper(blocks: list[Block], x: float) -> tuple[Block, float] | None:
     found = None
     for block in blocks:
         for start, end in zip(block.corners, np.roll(block.corners, -1, axis=0)):
-            if (start[0] - x) * (end[0] - x) > 0.0:
+            if (start[0] - x) * (end[0] - x) > 0:
                 continue
             y = max(start[1], end[1])
             if start[0] != end[0]:
                 y = start[1] + (x - start[0]) / (end[0] - start[0]) * (end[1] - start[1])
             if found is None or y > found[1]:
-                found = (block, float(y))
+                found = (block, y)
     return found
 
 
 def _live_of_deck(deck: Deck) -> list[PointForce]:
     """Forces of &live."""
     x, y = deck.numbers("live%x"), deck.numbers("live%y")
-    fx = deck.numbers("live%fx") or [0.0] * len(x)
-    fy = deck.numbers("live%fy") or [0.0] * len(x)
+    fx = deck.numbers("live%fx") or [0] * len(x)
+    fy = deck.numbers("live%fy") or [0] * len(x)
     return [PointForce(0, place, force, True) for place, force in zip(zip(x, y), zip(fx, fy))]
 
 
@@ -115,7 +115,8 @@ def depth(block: Block, point: np.ndarray) -> float:
     float
         Its distance from the outline, with a sign.
     """
-    start, end = block.corners, np.roll(block.corners, -1, axis=0)
+    start, point = block.corners.astype(float), np.asarray(point, dtype=float)
+    end = np.roll(start, -1, axis=0)
     along = end - start
     share = np.clip(((point - start) * along).sum(axis=1) / (along * along).sum(axis=1), 0.0, 1.0)
     distance = float(np.linalg.norm(start + share[:, None] * along - point, axis=1).min())
@@ -146,16 +147,31 @@ def friction_of(deck: Deck, source: Source, joint: Joint, springing: bool) -> fl
     float
         The coefficient.
     """
-    for name in ("cohesion", "tension"):
-        if deck.number(f"joint%{name}") > 0.0:
-            raise VerifyError(f"joints with {name} have no proof")
-    angle = deck.number("joint%friction_deg")
-    if source.material:
+    law = Law(*(deck.number(f"joint%{name}") for name in ("friction_deg", "cohesion", "tension")))
+    if source.lines:
+        listed = min(source.lines, key=lambda line: _distance(line[0], joint.edge))[1]
+        law = Law(*(getattr(law if deck.gives(f"joint%{name}") else listed, name)
+                    for name in ("friction_deg", "cohesion", "tension")))
+    if max(law.cohesion, law.tension) > 0:
+        raise VerifyError("joints with cohesion or tension have no proof")
+    angle, most = law.friction_deg, deck.read(MOST_FRICTION_DEG)
+    if source.material and not source.lines:
         pair = sorted((source.material[joint.first - 1], source.material[joint.second - 1]))
-        angle = min(source.friction_deg.get((pair[0], pair[1]), angle), MOST_FRICTION_DEG)
-    elif angle >= MOST_FRICTION_DEG or springing and deck.text("arch%springing") == "no-slip":
+        angle = min(source.friction_deg.get((pair[0], pair[1]), angle), most)
+    elif deck.is_shape():
+        angle = most if springing and deck.text("arch%springing") == "no-slip" else min(angle, most)
+    elif angle >= most or springing and deck.text("arch%springing") == "no-slip":
         return math.inf
-    return math.tan(math.radians(angle))
+    sine, cosine = deck.sine_cosine(angle)
+    return sine / cosine
+
+
+def _distance(line: np.ndarray, edge: np.ndarray) -> float:
+    """How far the middle and the ends of an edge lie from a line at most."""
+    along = line[1] - line[0]
+    away = np.array([edge[0], edge.mean(axis=0), edge[1]]) - line[0]
+    share = np.clip(away @ along / (along @ along), 0.0, 1.0)
+    return float(np.linalg.norm(away - share[:, None] * along, axis=1).max())
 
 
 def may_hold(source: Source, block: Block, point: np.ndarray, force: np.ndarray) -> bool:

@@ -19,11 +19,12 @@ TOLERANCE = 1e-8
 
 @dataclass
 class Finding:
-    """What was found of a case: figures that must be small, and sentences about what is wrong."""
+    """What was found of a case: figures that must be small, sentences about what is wrong, and a proven interval."""
 
     figures: dict[str, float] = field(default_factory=dict)
     allowed: dict[str, float] = field(default_factory=dict)
     faults: list[str] = field(default_factory=list)
+    interval: str = ""
 
     def keep(self, name: str, value: float, most: float = TOLERANCE) -> None:
         """Keep the largest value of a figure, and say where it is too large."""
@@ -196,7 +197,7 @@ def check_motion(scene: Scene, rows: list[Row], finding: Finding) -> float:
             beyond = (friction * slip - opening) / max(1.0, friction)
         finding.keep("law of velocities", max(0.0, beyond) / fastest)
     for block in scene.blocks:
-        for point, along in [] if block.fixed else _held_points(scene, block):
+        for point, along in [] if block.fixed else held_points(scene, block):
             rate = velocity_at(scene, velocity, block.number, point)
             moved = max((abs(float(rate[k])) for k in range(2) if along[k]), default=0.0)
             finding.keep("law of velocities", moved / fastest)
@@ -206,8 +207,21 @@ def check_motion(scene: Scene, rows: list[Row], finding: Finding) -> float:
     return float((load * velocity).sum()) / max(most, 1e-300)
 
 
-def _held_points(scene: Scene, block: Block) -> list[tuple[np.ndarray, tuple[bool, bool]]]:
-    """Held points of a block, and along what."""
+def held_points(scene: Scene, block: Block) -> list[tuple[np.ndarray, tuple[bool, bool]]]:
+    """Held points of a block, and along what.
+
+    Parameters
+    ----------
+    scene : Scene
+        The case.
+    block : Block
+        The block.
+
+    Returns
+    -------
+    list of tuple
+        Each point, and whether it is held along x and along y.
+    """
     return [(np.array(end), held.along) for held in scene.source.held for end in held.ends
             if held.block in (0, block.number) and depth(block, np.array(end)) >= -TOUCH * block.size]
 

@@ -30,7 +30,7 @@ def cell_field(path: Path, name: str) -> np.ndarray:
     cells = re.search(r"<CellData.*?</CellData>", head.decode(), re.DOTALL)
     entry = re.search(rf'<DataArray[^>]*Name="{name}"[^>]*>', cells[0]) if cells else None
     if entry is None:
-        raise ValueError(f"{path}: wanted a field {name} of the cells, found none")
+        raise ValueError(f"{path}: expected a field {name} of the cells, got none")
     start = int(re.search(r'offset="(\d+)"', entry[0])[1])
     columns = int((re.search(r'NumberOfComponents="(\d+)"', entry[0]) or (0, 1))[1])
     data = data[data.index(b"_") + 1 :]

@@ -9,11 +9,12 @@ from pathlib import Path
 
 from voussoir import limit_lp
 from voussoir.dda_program import DdaError, find_dda
+from voussoir.work_precision_fronts import CLASSES, Panel, panels
 from voussoir.work_precision_motion import MotionPoint, motion_points
-from voussoir.work_precision_motion_page import draw_motion, motion_table, write_motion_csv
-from voussoir.work_precision_page import best_table, draw, race_table, write_csv
+from voussoir.work_precision_motion_page import motion_table, write_motion_csv
+from voussoir.work_precision_page import draw, front_table, race_table, write_csv
 from voussoir.work_precision_plan import cost_table, plan_costs
-from voussoir.work_precision_runs import Arch, Point, Race, bisected, dda_points, race
+from voussoir.work_precision_runs import Arch, Race, race
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -44,6 +45,10 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         help="numbers of voussoirs, even ones",
     )
     parser.add_argument("--repeats", type=int, default=5, help="runs of each setting")
+    parser.add_argument(
+        "--scenes", nargs="+", choices=CLASSES, default=list(CLASSES), metavar="CLASS",
+        help="classes of scenes in the diagram: " + ", ".join(CLASSES),
+    )
     part = parser.add_mutually_exclusive_group()
     part.add_argument(
         "--race", action="store_true", help="only the times of one decision, no diagram"
@@ -84,48 +89,39 @@ def run(arguments: argparse.Namespace) -> int:
         sys.stdout.write(table)
         return 0
     races: list[Race] = []
-    points: list[Point] = []
+    drawn: list[Panel] = []
     motion: list[MotionPoint] = []
     if not arguments.motion:
         races = [race(arch, runs, arguments.repeats) for arch in arches]
     if not arguments.motion and not arguments.race:
-        points = [point for arch in arches for point in _points(arch, runs, arguments.repeats)]
-        write_csv(points, arguments.out / "work_precision.csv")
-        draw(points, arguments.out)
-    if not arguments.race:
+        drawn = list(panels(runs, arguments.repeats, arguments.scenes))
+        write_csv(drawn, arguments.out / "work_precision.csv")
+        draw(drawn, arguments.out)
+    if not arguments.race and "motion" in arguments.scenes:
         motion = list(motion_points(runs, arguments.repeats))
         write_motion_csv(motion, arguments.out / "work_precision_motion.csv")
-        draw_motion(motion, arguments.out)
-    text = "\n".join(_report(races, points, motion)) + "\n"
+    text = "\n".join(_report(races, drawn, motion)) + "\n"
     (arguments.out / "work_precision.md").write_text(text, encoding="utf-8")
     sys.stdout.write(text)
     return 0
 
 
-def _points(arch: Arch, runs: Path, repeats: int) -> list[Point]:
-    """All points of one arch."""
-    points = list(dda_points(arch, runs, repeats))
-    if limit_lp.scipy_version() is not None:
-        points += bisected(arch, limit_lp.stands_by_compact, "compact LP, bisected")
-        points += bisected(arch, limit_lp.stands_by_general, "general LP, bisected")
-    return points
-
-
-def _report(races: list[Race], points: list[Point], motion: list[MotionPoint]) -> list[str]:
+def _report(races: list[Race], drawn: list[Panel], motion: list[MotionPoint]) -> list[str]:
     """Lines of the report."""
     version = limit_lp.scipy_version()
     peer = f"HiGHS of scipy {version}" if version else "scipy is missing: no linear programs"
     lines = [
         "# Error against run time",
         "",
-        f"Python {platform.python_version()}; {peer}. Times are the least of this run; only "
-        "their ratios mean anything. dda: the column seconds, wall time (arch, decision). Linear "
-        "programs: processor time (building, solving).",
+        f"Python {platform.python_version()}; {peer}. Only ratios of times mean "
+        "anything. dda: the column seconds, wall time in the process, or the processor time of runs "
+        "that take longer than 20 ms a case. Linear programs: processor time (building, solving).",
     ]
+    if drawn:
+        lines += ["", "Least time in which the best setting of a method reaches an error:", ""]
+        lines += front_table(drawn)
     if races:
-        lines += ["", *race_table(races)]
-    if points:
-        lines += ["", "Fastest setting that reaches an accuracy:", "", *best_table(points)]
+        lines += ["", "One decision, and one search to 1e-8 (least times):", "", *race_table(races)]
     if motion:
         lines += ["", "Blocks that move in time:", "", *motion_table(motion)]
     return lines

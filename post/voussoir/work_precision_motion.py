@@ -10,14 +10,28 @@ from pathlib import Path
 
 import numpy as np
 
-from voussoir.deck_runs import run_deck
+from voussoir.deck_runs import Finished, run_deck
+from voussoir.deck_text import Groups, deck_text, merged
 from voussoir.stability_scene import BLOCKS, Corners, rectangle, written_block
 from voussoir.validation_impact import next_amplitude, quarter_period
 from voussoir.validation_motion import slide
 from voussoir.validation_scene import GRAVITY, Outcome
+from voussoir.work_precision_scenes import ELASTIC, ORIGINAL, RIGID
 
 #: Length of a step over that of the longest
 SHARES = (1.0, 1.0 / 2.0, 1.0 / 4.0, 1.0 / 8.0, 1.0 / 16.0, 1.0 / 32.0)
+#: Methods that are compared, and what their decks say
+MOTION_METHODS: dict[str, Groups] = {
+    ELASTIC: {},
+    RIGID: {"analysis": {"unknowns": 3}},
+    ORIGINAL: {
+        "analysis": {
+            "mode": "limerick", "restitution": None, "duration": None,
+            "max_displacement_ratio": 0.01,
+        },
+        "limerick": {"dynamic": True},
+    },
+}
 #: Errors below this are rounding: they have no order
 ROUNDING = 1e-9
 
@@ -48,26 +62,50 @@ class MotionPoint:
 
 
 @dataclass(frozen=True)
-class _Motion:
+class Motion:
     """Blocks that move, and what of their motion is known."""
 
     blocks: str
-    groups: str
+    groups: dict[str, dict]
     duration: float
     longest: float
     checks: tuple[tuple[str, float, Callable[[Outcome], float]], ...]
     restitution: float = 0.0
 
-    def deck(self, step: float, repeats: int) -> str:
-        """The deck for one length of the step."""
-        return (
-            f"&scene kind = 'blocks', geometry = '{BLOCKS}' /\n"
-            "&analysis mode = 'dynamic', geometry = 'current', max_displacement_ratio = 1.0,\n"
-            f"  steps = 100000000, time_step = {step!r}, duration = {self.duration!r},\n"
-            f"  restitution = {self.restitution} /\n"
-            f"&output vtu = .false., joints = .false., energy = .true. /\n{self.groups}"
-            f"&sweep parameter = 'penalty_ratio', values = {repeats}*100.0 /\n"
-        )
+    def deck(self, step: float, repeats: int, more: Groups) -> str:
+        """The deck for one length of the step; further groups go before its own."""
+        analysis = {
+            "mode": "dynamic", "geometry": "current", "max_displacement_ratio": 1.0,
+            "steps": 100000000, "time_step": step, "duration": self.duration,
+            "restitution": self.restitution,
+        }
+        groups = {
+            "scene": {"kind": "blocks", "geometry": BLOCKS},
+            "analysis": analysis,
+            "output": {"vtu": False, "joints": False, "blocks": False},
+            **self.groups,
+            "sweep": {"parameter": "penalty_ratio", "values": [100.0] * repeats},
+        }
+        groups = merged(groups, more)
+        if groups["analysis"]["mode"] == "limerick":  # its runs end with their steps
+            groups["analysis"]["steps"] = math.ceil(self.duration / step)
+        unused = [key for key, value in groups["analysis"].items() if value is None]
+        for key in unused:
+            del groups["analysis"][key]
+        return deck_text(groups)
+
+    def run(self, step: float, folder: Path, more: Groups, repeats: int) -> Finished:
+        """Run one length of the step so many times."""
+        deck = self.deck(step, repeats, more)
+        return run_deck(deck, folder / "motion", files={BLOCKS: self.blocks})
+
+    def outcome(self, finished: Finished) -> Outcome:
+        """What a run has left of its first case."""
+        return Outcome(finished.folder, 1)
+
+    def steps(self) -> list[float]:
+        """Lengths of the step [s]."""
+        return [self.longest * share for share in SHARES]
 
 
 def motion_points(folder: Path, repeats: int) -> Iterator[MotionPoint]:
@@ -85,15 +123,13 @@ def motion_points(folder: Path, repeats: int) -> Iterator[MotionPoint]:
     MotionPoint
         One a scene, quantity and length.
     """
-    for motion in (_slide(), _rocking(), _pendulum(), _bounce()):
-        for share in SHARES:
-            step = motion.longest * share
-            deck = motion.deck(step, repeats)
-            finished = run_deck(deck, folder / "motion", files={BLOCKS: motion.blocks})
+    for motion in (_slide(), rocking(), _pendulum(), _bounce()):
+        for step in motion.steps():
+            finished = motion.run(step, folder, {}, repeats)
             if not finished.rows or finished.rows[0]["verdict"] != "completed":
                 continue
             seconds = statistics.median(float(row["seconds"]) for row in finished.rows)
-            outcome = Outcome(finished.folder, 1)
+            outcome = motion.outcome(finished)
             for name, exact, measure in motion.checks:
                 error = abs(measure(outcome) / exact - 1.0)
                 yield MotionPoint(name, step, error, seconds, int(finished.rows[0]["steps"]))
@@ -119,17 +155,20 @@ def order(points: list[MotionPoint]) -> float | None:
     return float(np.polyfit(steps, errors, 1)[0])
 
 
-def _slide() -> _Motion:
+def _slide() -> Motion:
     """A block that slides down 30 degrees with friction 20 for a second."""
     text = written_block(rectangle(-2.0, -1.0, 16.0, 1.0), "fixed")
     text += written_block(rectangle(0.0, 0.0, 2.0, 0.5)) + "measure 1.0 0.25\n"
     way: Callable[[Outcome], float] = lambda outcome: float(outcome.end(1)[0])  # noqa: E731
-    groups = "&joint friction_deg = 20.0 /\n&load gravity_direction_deg = -60.0 /\n"
-    groups += "&material young = 5e12 /\n"
-    return _Motion(text, groups, 1.0, 0.04, (("incline: way", slide(30.0, 20.0) / 2.0, way),))
+    groups = {
+        "joint": {"friction_deg": 20.0},
+        "load": {"gravity_direction_deg": -60.0},
+        "material": {"young": 5e12},
+    }
+    return Motion(text, groups, 1.0, 0.04, (("incline: way", slide(30.0, 20.0) / 2.0, way),))
 
 
-def _rocking() -> _Motion:
+def rocking() -> Motion:
     """Housner's block of 0.5 x 1.0 m, let go at half of its angle."""
     width, height = 0.5, 1.0
     angle = math.atan2(width, height)
@@ -151,11 +190,11 @@ def _rocking() -> _Motion:
     exact = quarter_period(width / 2.0, height / 2.0, 0.5)
     other = next_amplitude(width / 2.0, height / 2.0, 0.5)
     checks = (("rocking: quarter period", exact, upright), ("rocking: next tilt", other, swing))
-    groups = "&joint friction_deg = 78.0 /\n"
-    return _Motion(text, groups, 0.75, 0.008, checks)
+    groups = {"joint": {"friction_deg": 78.0}}
+    return Motion(text, groups, 0.75, 0.008, checks)
 
 
-def _pendulum() -> _Motion:
+def _pendulum() -> Motion:
     """A bar of 1 m held at the middle of its upper end, let go at 60 degrees."""
     width, height, amplitude = 0.1, 1.0, math.pi / 3.0
     hanging = rectangle(-width / 2.0, -height, width, height)
@@ -178,10 +217,10 @@ def _pendulum() -> _Motion:
         ("pendulum: quarter period", exact, quarter),
         ("pendulum: next amplitude", amplitude, swing),
     )
-    return _Motion(text, "&material young = 1e12 /\n", 1.2, 0.016, checks)
+    return Motion(text, {"material": {"young": 1e12}}, 1.2, 0.016, checks)
 
 
-def _bounce() -> _Motion:
+def _bounce() -> Motion:
     """A cube dropped from 1 m with restitution 0.8, at its second top."""
     restitution = 0.8
     text = written_block(rectangle(-3.0, -1.0, 7.0, 1.0), "fixed")
@@ -189,7 +228,7 @@ def _bounce() -> _Motion:
     time = math.sqrt(2.0 / GRAVITY) * (1.0 + 2.0 * restitution + restitution**2)
     height: Callable[[Outcome], float] = lambda outcome: 1.0 + float(outcome.end(1)[1])  # noqa: E731
     checks = (("bounce: second top", restitution**4, height),)
-    return _Motion(text, "&material young = 5e12 /\n", time, 0.064, checks, restitution)
+    return Motion(text, {"material": {"young": 5e12}}, time, 0.064, checks, restitution)
 
 
 def pendulum_quarter(amplitude: float, frequency: float) -> float:

@@ -1,4 +1,4 @@
-"""Work-precision of blocks that move in time: the points as CSV, a table, and the figure."""
+"""Work-precision of blocks that move in time: the points as CSV, and a table."""
 
 from __future__ import annotations
 
@@ -7,7 +7,6 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from voussoir.work_precision_motion import MotionPoint, order
-from voussoir.work_precision_page import LEAST_ERROR
 
 #: Errors that the table tells the cost of
 GOALS = (1e-2, 1e-3, 1e-4, 1e-6)
@@ -79,44 +78,3 @@ def _cheapest(points: Sequence[MotionPoint], goal: float) -> str:
         return "none"
     best = max(reached, key=lambda point: point.step)
     return f"{best.step * 1e3:g} ms: {best.seconds * 1e3:.1f} ms"
-
-
-def draw_motion(points: Sequence[MotionPoint], folder: Path) -> list[Path]:
-    """Error against run time, and against the length of the step with straight lines of order.
-
-    Parameters
-    ----------
-    points : sequence of MotionPoint
-        The points.
-    folder : Path
-        Where work_precision_motion.svg and .png go.
-
-    Returns
-    -------
-    list of Path
-        The files.
-    """
-    from voussoir.figure_style import DASHES, INK, house_style, plt, save
-
-    with house_style():
-        figure, (by_time, by_step) = plt.subplots(1, 2, figsize=(9.6, 4.6), sharey=True)
-        for number, (scene, own) in enumerate(_by_scene(points).items()):
-            slope = order(own)
-            told = "rounding" if slope is None else f"order {slope:.1f}"
-            style = {
-                "marker": "osv^Dx"[number % 6],
-                "markersize": 4,
-                "linewidth": 1.1,
-                "color": INK[number % len(INK)],
-                "linestyle": DASHES[number // len(INK) % len(DASHES)],
-            }
-            error = [max(point.error, LEAST_ERROR) for point in own]
-            by_time.loglog([point.seconds * 1e3 for point in own], error, **style)
-            label = f"{scene} ({told})"
-            by_step.loglog([point.step * 1e3 for point in own], error, label=label, **style)
-        by_time.set_xlabel("time of the run [ms]")
-        by_time.set_ylabel("relative error")
-        by_step.set_xlabel("longest step [ms]")
-        figure.legend(loc="lower center", ncol=2, fontsize=9)
-        figure.tight_layout(rect=(0.0, 0.17, 1.0, 1.0))
-        return save(figure, folder, "work_precision_motion")

@@ -1,16 +1,16 @@
-"""Error and run time of many settings of dda, and of linear programs, in one run on one machine."""
+"""Times of single decisions of dda and of linear programs, in turn, in one run on one machine."""
 
 from __future__ import annotations
 
 import math
 import statistics
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 
 from voussoir import limit_lp, theory
-from voussoir.deck_runs import Row, run_deck
+from voussoir.deck_runs import run_deck
 
 #: Friction angle of all joints [deg]: enough for a rotational collapse at every half angle here
 FRICTION_DEG = 60.0
@@ -42,162 +42,9 @@ class Arch:
         """Groups of a deck that all runs share."""
         return (
             f"&arch half_angle_deg = {self.half_angle_deg}, voussoirs = {self.voussoirs} /\n"
-            f"&joint friction_deg = {FRICTION_DEG} /\n&output joints = .false., blocks = .false. /\n"
+            f"&joint friction_deg = {FRICTION_DEG} /\n"
+            "&output joints = .false., blocks = .false., proof = .false. /\n"
         )
-
-
-@dataclass(frozen=True)
-class Point:
-    """One point of a diagram.
-
-    Attributes
-    ----------
-    arch
-        What was searched.
-    family
-        What was varied, and with what else.
-    setting
-        The value it had.
-    error
-        Relative error of the critical thickness ratio; None where none was found.
-    seconds
-        Median time.
-    decisions
-        Factorisations of dda; decisions of a linear program.
-    """
-
-    arch: Arch
-    family: str
-    setting: str
-    error: float | None
-    seconds: float
-    decisions: int
-
-
-#: Family, group and key, values, further keys of &analysis and &material
-_FAMILIES: tuple[tuple[str, str, str, tuple[float, ...], str], ...] = (
-    ("tolerance", "search", "tolerance", tuple(10.0**-k for k in range(2, 13)), ""),
-    (
-        "tolerance, 6 unknowns",
-        "search",
-        "tolerance",
-        tuple(10.0**-k for k in range(2, 13, 2)),
-        "&analysis unknowns = 6 /\n",
-    ),
-    ("penalty", "analysis", "penalty_ratio", tuple(10.0**k for k in range(-2, 7, 2)), ""),
-    ("first step", "analysis", "time_step", tuple(10.0**k for k in range(-4, 3)), ""),
-    ("most steps", "analysis", "steps", (2, 3, 4, 6, 10, 50), ""),
-    (
-        "Young's modulus, moving",
-        "material",
-        "young",
-        tuple(5.0 * 10.0**k for k in range(8, 13)),
-        "&analysis geometry = 'current' /\n",
-    ),
-    (
-        "displacement a step, moving",
-        "analysis",
-        "max_displacement_ratio",
-        (0.5, 0.05, 0.005),
-        "geometry = 'current'",
-    ),
-    (
-        "penalty, moving",
-        "analysis",
-        "penalty_ratio",
-        (1.0, 10.0, 100.0, 1000.0),
-        "geometry = 'current'",
-    ),
-    (
-        "Limerick's scheme, tolerance",
-        "search",
-        "tolerance",
-        (1e-1, 1e-2, 1e-3),
-        "&analysis mode = 'limerick' /\n",
-    ),
-)
-#: Arches of more voussoirs than this are searched with blocks that do not move only
-MOST_MOVING = 100
-
-
-def dda_points(arch: Arch, folder: Path, repeats: int) -> Iterator[Point]:
-    """Searches by dda with every setting.
-
-    Parameters
-    ----------
-    arch : Arch
-        What is searched.
-    folder : Path
-        Where decks and results go.
-    repeats : int
-        Runs of each setting; the median counts.
-
-    Yields
-    ------
-    Point
-        One a setting.
-    """
-    exact = arch.exact()
-    for family, group, key, values, more in _FAMILIES:
-        original = family.startswith("Limerick")
-        if ("moving" in family or original) and arch.voussoirs > MOST_MOVING:
-            continue
-        for value in values:
-            keys = {"search": "parameter = 'thickness_ratio'"}
-            text = more
-            if more and not more.startswith("&"):
-                keys[group] = more
-                text = ""
-            keys[group] = ", ".join(filter(None, [keys.get(group), f"{key} = {value!r}"]))
-            groups = "".join(f"&{name} {line} /\n" for name, line in keys.items())
-            deck = arch.deck() + text + groups
-            deck += f"&sweep parameter = 'radius', values = {1 if original else repeats}*10.0 /\n"
-            rows = run_deck(deck, folder / f"{arch.half_angle_deg:g}_{arch.voussoirs}").rows
-            if rows:
-                yield _dda_point(arch, family, f"{value:g}", rows, exact)
-
-
-def _dda_point(arch: Arch, family: str, setting: str, rows: list[Row], exact: float) -> Point:
-    """The point of repeated rows."""
-    found = rows[0]["verdict"] == "found"
-    error = abs(float(rows[0]["critical"]) / exact - 1.0) if found else None
-    seconds = statistics.median(float(row["seconds"]) for row in rows)
-    return Point(arch, family, setting, error, seconds, int(rows[0]["factorisations"]))
-
-
-def bisected(arch: Arch, stands: Callable[..., bool], family: str) -> Iterator[Point]:
-    """A critical thickness by bisection of linear programs, from 20 % below to 20 % above.
-
-    Parameters
-    ----------
-    arch : Arch
-        What is searched.
-    stands : callable
-        One of `limit_lp.stands_by_general` and `limit_lp.stands_by_compact`.
-    family : str
-        Name of the family.
-
-    Yields
-    ------
-    Point
-        One a tolerance.
-    """
-    exact = arch.exact()
-    low, high = 0.8 * exact, 1.2 * exact
-    goals = [10.0**-k for k in range(2, 9)]
-    decisions = 0
-    start = time.perf_counter()
-    while goals:
-        middle = (low + high) / 2.0
-        if decide(arch, stands, middle):
-            high = middle
-        else:
-            low = middle
-        decisions += 1
-        while goals and high - low <= goals[0] * middle:
-            error = abs((low + high) / 2.0 / exact - 1.0)
-            seconds = time.perf_counter() - start
-            yield Point(arch, family, f"{goals.pop(0):g}", error, seconds, decisions)
 
 
 def decide(arch: Arch, stands: Callable[..., bool], ratio: float) -> bool:

@@ -6,6 +6,7 @@ program dda
    use dda_cut, only : cut_files
    use dda_error, only : error_line, error_t
    use dda_export, only : export_decks
+   use dda_lines, only : draw_lines
    use dda_help, only : print_help, version
    use dda_memory, only : keep_memory
    use dda_process, only : exit_status, leave, survive_file_limit, worst_status
@@ -32,6 +33,8 @@ program dda
       call check_decks(command, status)
    case ("cut")
       call cut_files(command, status)
+   case ("lines")
+      call draw_lines(command, status)
    case ("export")
       call export_decks(command, status)
    case ("version")

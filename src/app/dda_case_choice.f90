@@ -30,8 +30,8 @@ contains
          call read_range(text(first:first + comma - 2), low, high, ok)
          if (ok) ok = low >= 1 .and. low <= high .and. high <= total
          if (.not. ok) then
-            call fatal_error(error, "wanted cases from 1 to "//to_text(total)// &
-               & ", found '"//shown(text(first:first + comma - 2))//"'; write them like 1-4,7", &
+            call fatal_error(error, "expected cases from 1 to "//to_text(total)// &
+               & ", got '"//shown(text(first:first + comma - 2))//"'; write them like 1-4,7", &
                & "--cases", 1)
             return
          end if

@@ -4,7 +4,7 @@ module dda_check
    use dda_boundary, only : boundary_t
    use dda_command_line, only : command_t, name_of
    use dda_deck, only : deck_t, flag_of, geometry_of, has_group, integer_of, is_given, &
-      & keeps_velocities, text_of, word_of
+      & keeps_velocities, scene_kind, text_of, word_of
    use dda_deck_scene, only : deck_scene
    use dda_deck_sweep, only : case_deck, n_cases, swept_names
    use dda_cut, only : print_warnings
@@ -70,7 +70,7 @@ contains
       type(deck_t), intent(in) :: deck
       !> Its name without folder and ending
       character(len=*), intent(in) :: stem
-      !> Lines parted by line ends
+      !> Lines separated by line ends
       character(len=:), allocatable :: text
       type(result_tables_t) :: tables
       integer :: i
@@ -100,7 +100,7 @@ contains
       integer :: s, blocks
       logical :: arch
 
-      arch = word_of(deck, "scene", "kind") == "arch"
+      arch = scene_kind(deck) == "arch"
       call case_deck(deck, 1, first, error)
       if (word_of(deck, "scene", "kind") /= "blocks") call deck_scene(first, scene)
       blocks = maxval(scene%system%equation)
@@ -114,9 +114,9 @@ contains
       call tell(screen, "cases", to_text(n_cases(deck)))
       if (swept /= "") call tell(screen, "swept", swept(2:))
       if (has_group(deck, "search")) then
-         call tell(screen, "searched", text_of(deck, "search", "parameter"))
+         call tell(screen, "search", text_of(deck, "search", "parameter"))
       else
-         call tell(screen, "searched", "nothing: each case is decided as it is")
+         call tell(screen, "search", "none")
       end if
       if (left_out(deck) /= "") call tell(screen, "tables", left_out(deck))
       call check_lines(deck, error)
@@ -128,16 +128,38 @@ contains
          return
       end if
       call tell(screen, "blocks", &
-         & to_text(blocks)//" that move, "//to_text(size(scene%system%equation) &
-         & - blocks)//trim(merge(" fixed springings", " held            ", arch)))
+         & to_text(blocks)//" free, "//to_text(size(scene%system%equation) &
+         & - blocks)//trim(merge(" fixed springings", " fixed           ", arch)))
       call tell(screen, "joints", joints_text(scene))
       call tell(screen, "strength", merge("cohesion or tension, until a joint breaks", &
-         & "none: friction alone                     ", any(scene%contacts%springs%shift > 0.0) &
+         & "none: friction only                      ", any(scene%contacts%springs%shift > 0.0) &
          & .or. any(scene%contacts%joint%law%cohesion > 0.0)))
       call tell(screen, "points", points_text(scene%settings%boundary))
       call print_parts(screen, first, blocks)
-      call tell(screen, "also told", tables_text(first))
+      call tell(screen, "other output", tables_text(first))
+      if (.not. arch) call print_blocks(screen, scene)
    end subroutine print_plan
+
+   !> Print number, area and centre of each block
+   subroutine print_blocks(screen, scene)
+      !> Where it goes
+      type(screen_t), intent(in) :: screen
+      !> The scene of the first case
+      type(scene_t), intent(in) :: scene
+      integer, parameter :: most_rows = 50
+      integer :: b
+
+      call print_line(screen, "   block  area  centre")
+      associate (system => scene%system, n => size(scene%system%area))
+         do b = 1, min(n, most_rows)
+            call print_line(screen, "   "//to_text(b)//"  "//to_text(system%area(b))//"  (" &
+               & //to_text(system%centroid(1, b) + scene%origin(1))//", " &
+               & //to_text(system%centroid(2, b) + scene%origin(2))//")" &
+               & //trim(merge("  held", "      ", system%equation(b) == 0)))
+         end do
+         if (n > most_rows) call print_line(screen, "   and "//to_text(n - most_rows)//" more")
+      end associate
+   end subroutine print_blocks
 
    !> Print which model it is, which others there are, and what can be searched in it
    subroutine print_model(screen, deck)
@@ -147,10 +169,10 @@ contains
       type(deck_t), intent(in) :: deck
       character(len=:), allocatable :: kind, mode
 
-      kind = trim(word_of(deck, "scene", "kind"))
+      kind = trim(scene_kind(deck))
       mode = trim(word_of(deck, "analysis", "mode"))
-      call tell(screen, "model", kind//", "//mode//" "//trim(geometry_of(deck))//"; "//kind &
-         & //" are run: "//models_of(kind))
+      call tell(screen, "model", kind//", "//mode//" "//trim(geometry_of(deck)) &
+         & //"; available for "//kind//": "//models_of(kind))
       if (keeps_velocities(deck)) mode = "dynamic"
       call tell(screen, "searchable", searches_of(kind, mode))
    end subroutine print_model
@@ -167,9 +189,9 @@ contains
       if (allocated(boundary%held)) n(1) = size(boundary%held)
       if (allocated(boundary%loaded)) n(2) = size(boundary%loaded)
       if (allocated(boundary%measured)) n(3) = size(boundary%measured)
-      text = "none: nothing is held, loaded or measured at a point"
-      if (any(n > 0)) text = to_text(n(1))//" held, "//to_text(n(2))//" loaded, "//to_text(n(3)) &
-         & //" measured"
+      text = "none"
+      if (any(n > 0)) text = to_text(n(1))//" fixed or prescribed, "//to_text(n(2)) &
+         & //" loaded, "//to_text(n(3))//" measured"
    end function points_text
 
    !> What is written besides results.csv and joints.csv
@@ -187,9 +209,9 @@ contains
          if (flag_of(deck, "output", trim(name(i)))) text = text//", "//trim(name(i))
       end do
       if (text == "") then
-         text = "nothing: output%vtu, energy, condition and restart are .false."
+         text = "none"
       else
-         text = text(3:)//": as &output asks"
+         text = text(3:)
       end if
    end function tables_text
 
@@ -207,17 +229,16 @@ contains
       call limerick_scene(deck, scene, model)
       n = size(model%block_material)
       if (word_of(deck, "scene", "kind") == "arch") then
-         call tell(screen, "blocks", to_text(n - 2)//" and 2 abutments, each held at 4 points")
+         call tell(screen, "blocks", to_text(n - 2)//" and 2 abutments, each fixed at 4 points")
       else
-         call tell(screen, "blocks", to_text(n)//", held at " &
+         call tell(screen, "blocks", to_text(n)//", fixed at " &
             & //to_text(size(model%boundary%held))//" points")
       end if
       call tell(screen, "half size", &
-         & to_text(half_size(model))//" m: what penetration, opening and "// &
-         & "motion are compared with")
+         & to_text(half_size(model))//" m: the scale of penetration, opening and motion")
       call tell(screen, "contacts", &
-         & "a vertex and an edge, or two corners; sought anew in each step")
-      call tell(screen, "unknowns", "6 a block, "//to_text(6*n)//" in all")
+         & "vertex to edge or vertex to vertex; detected in each step")
+      call tell(screen, "unknowns", "6 per block, "//to_text(6*n)//" in all")
       call tell(screen, "penalty", merge("follows the penetration, up or down", &
          & "fixed                              ", model%constants%auto_penalty))
       call tell(screen, "velocities", merge("kept                            ", &
@@ -235,13 +256,13 @@ contains
       singles = count(scene%contacts%joint%n_contact == 1)
       text = to_text(size(scene%contacts%joint) - singles)//" of two normal springs and one "// &
          & "shear spring"
-      if (singles > 0) text = text//", "//to_text(singles)//" of one corner before an edge"
+      if (singles > 0) text = text//", "//to_text(singles)//" of one corner against an edge"
       if (.not. scene%settings%current) then
-         text = text//"; fixed pairs, for the blocks do not move apart in reference geometry"
+         text = text//"; fixed contact pairs (small displacements)"
       else if (scene%contacts%searched) then
-         text = text//"; searched anew in every step, for the blocks move"
+         text = text//"; contacts detected in every step"
       else
-         text = text//"; fixed pairs that follow the blocks"
+         text = text//"; fixed contact pairs that follow the blocks"
       end if
    end function joints_text
 
@@ -257,33 +278,28 @@ contains
 
       plan = plan_scene(deck)
       call tell(screen, "unknowns", &
-         & to_text(plan%unknowns)//" a block, "//to_text(plan%unknowns*blocks) &
+         & to_text(plan%unknowns)//" per block, "//to_text(plan%unknowns*blocks) &
          & //" in all: "//trim(why(plan%reason)))
       if (plan%chain) then
          call tell(screen, "equations", &
-            & "a chain, without pattern and contact search: each block "// &
-            & "touches its two neighbours alone")
-         if (plan%halved) call tell(screen, "", &
-            & "of the left half, against a plane of symmetry: "// &
-            & "the loads are upright")
+            & "chain: each block touches only its two neighbours")
+            if (plan%halved) call tell(screen, "", "half model (vertical loads)")
       else
-         call tell(screen, "equations", "those of any blocks that touch")
+         call tell(screen, "equations", "general sparse system")
       end if
       call tell(screen, "velocities", &
          & trim(merge("kept: mode is dynamic                          ", &
          & "none: every step starts at rest, mode is static", plan%velocities)))
       if (plan%shared_forces) then
-         call tell(screen, "joints.csv", &
-            & "forces of the arch found to stand once more with 6 unknowns, "// &
-            & "for strain shares them out")
+         call tell(screen, "joints.csv", "joint forces recomputed with deformable blocks")
       else if (flag_of(deck, "output", "joints")) then
-         call tell(screen, "joints.csv", "forces of the decision itself")
+         call tell(screen, "joints.csv", "joint forces of the run itself")
       else
          call tell(screen, "joints.csv", "none: output%joints is "//trim(merge( &
             & ".false.  ", "not given", is_given(deck, "output", "joints"))))
       end if
       if (integer_of(deck, "output", "frames") > 0) then
-         call tell(screen, "frames", "the case is run once more for its pictures")
+         call tell(screen, "frames", "the case is run once more for its frames")
       else
          call tell(screen, "frames", "none: output%frames is 0")
       end if
@@ -296,17 +312,16 @@ contains
       !> The words
       character(len=100) :: words
 
-      words = "the deck gives analysis%unknowns"
-      if (reason == strain_reason%none) words = "rigid, for equilibrium alone decides where "// &
-         & "nothing moves or breaks"
-      if (reason == strain_reason%moving) words = "strain, for it moves corners where blocks move"
-      if (reason == strain_reason%dynamic) words = "strain, for blocks vibrate as they move"
-      if (reason == strain_reason%strength) words = "strain, for it says which joint breaks first"
-      if (reason == strain_reason%forces) words = "strain, for it shares out the forces of "// &
-         & "joints.csv"
-      if (reason == strain_reason%files) words = "strain, for blocks of a file have "// &
-         & "laws and stress of their own"
-      if (reason == strain_reason%displacement) words = "strain, for it is part of the "// &
+      words = "set by analysis%unknowns"
+      if (reason == strain_reason%none) words = "rigid: only equilibrium matters here"
+      if (reason == strain_reason%moving) words = "deformable: strain moves the corners"
+      if (reason == strain_reason%dynamic) words = "deformable: moving blocks vibrate"
+      if (reason == strain_reason%strength) words = "deformable: strain decides which joint "// &
+         & "breaks first"
+      if (reason == strain_reason%forces) words = "deformable: strain distributes joint forces"
+      if (reason == strain_reason%files) words = "deformable: blocks of a file have materials "// &
+         & "and stress of their own"
+      if (reason == strain_reason%displacement) words = "deformable: strain is part of the "// &
          & "displacement that means collapse"
    end function why
 
@@ -319,7 +334,7 @@ contains
       !> What it is, and why
       character(len=*), intent(in) :: how
 
-      character(len=12) :: label
+      character(len=14) :: label
 
       label = what
       call print_line(screen, "   "//label//trim(how))

@@ -14,22 +14,22 @@ module dda_command_line
    integer, parameter :: longest = 32768
    !> What the first argument may be
    character(len=*), parameter :: subcommands(*) = [character(len=9) :: "run", "check", "cut", &
-      & "export", "help", "--help", "--version"]
+      & "lines", "export", "help", "--help", "--version"]
    !> Options of those that read files
    character(len=*), parameter :: options(*) = [character(len=8) :: "--out", "--jobs", "--set", &
       & "--cases", "--resume", "--record", "--quiet", "--help"]
 
    !> What the user asked for
    type :: command_t
-      !> run, check, cut, export, help or version
+      !> run, check, cut, lines, export, help or version
       character(len=16) :: verb = "help"
-      !> Decks to run, check or export, files to cut, or the topic of help: (n)
+      !> Decks to run, check or export, files to cut, maps to draw, or the topic of help: (n)
       character(len=longest), allocatable :: name(:)
       !> Lengths of those names, blanks at their ends counted: (n) [characters]
       integer, allocatable :: name_length(:)
       !> --set values: (n)
       character(len=longest), allocatable :: setting(:)
-      !> Output folder, or the file of cut; unallocated if none is named
+      !> Output folder, or the file of cut or lines; unallocated if none is named
       character(len=:), allocatable :: out
       !> Numbers of the cases to compute; empty for all
       character(len=:), allocatable :: cases
@@ -61,8 +61,8 @@ contains
       do i = 1, size(argument)
          call get_command_argument(i, argument(i), length(i))
          if (length(i) > longest) then
-            call fatal_error(error, "wanted an argument of at most "//to_text(longest) &
-               & //" characters, found one of "//to_text(length(i))//"; shorten it", "dda", i)
+            call fatal_error(error, "expected an argument of at most "//to_text(longest) &
+               & //" characters, got one of "//to_text(length(i))//"; shorten it", "dda", i)
             return
          end if
       end do
@@ -117,7 +117,7 @@ contains
             name(names) = argument(i)
             name_length(names) = length(i)
             if (takes_decks .and. name(names) == "") &
-               & call fatal_error(error, "wanted the name of a file, found an empty one; "// &
+               & call fatal_error(error, "expected the name of a file, got an empty one; "// &
                & "give one")
          end if
          if (allocated(error)) error%line = i
@@ -127,7 +127,7 @@ contains
       allocate (command%name_length, source=name_length(:names))
       allocate (command%setting, source=setting(:settings))
       if (takes_decks .and. .not. allocated(error)) call check_names(command, error)
-      if (command%verb == "cut" .and. .not. allocated(error)) call check_cut(command, error)
+      if (.not. allocated(error)) call check_out(command, error)
       if (allocated(error)) error%file = "dda"
    end subroutine parse_command
 
@@ -139,30 +139,33 @@ contains
       type(error_t), allocatable, intent(out) :: error
 
       if (command%verb == "help" .or. size(command%name) > 0) return
-      call fatal_error(error, "dda "//trim(command%verb)//" wants the name of a " &
-         & //trim(merge("file of lines", "deck         ", command%verb == "cut"))//", found " &
+      call fatal_error(error, "dda "//trim(command%verb)//" needs the name of a " &
+         & //trim(merge("file of lines", "deck         ", command%verb == "cut"))//", got " &
          & //"none; 'dda help "//trim(command%verb)//"' says more", line=1)
    end subroutine check_names
 
-   !> Whether dda cut can do what is asked
-   pure subroutine check_cut(command, error)
+   !> Whether dda cut or dda lines can do what is asked
+   pure subroutine check_out(command, error)
       !> What the user asked for
       type(command_t), intent(in) :: command
       !> Allocated if it cannot
       type(error_t), allocatable, intent(out) :: error
       integer :: n
 
-      if (allocated(command%out)) then
+      if (allocated(command%out) .and. (command%verb == "cut" .or. command%verb == "lines")) then
          n = len(command%out)
          if (size(command%name) > 1) then
-            call fatal_error(error, "--out wants a single file of lines, found " &
+            call fatal_error(error, "--out needs a single file of lines, got " &
                & //to_text(size(command%name))//"; cut them one by one", line=1)
+         else if (command%verb == "lines") then
+            if (command%out(max(n - 3, 1):) /= ".geo") call fatal_error(error, &
+               & "--out expected a file that ends in .geo, got '"//shown(command%out)//"'", line=1)
          else if (all(command%out(max(n - 3, 1):) /= [".vtu", ".csv"])) then
-            call fatal_error(error, "--out wants a file that ends in .vtu or .csv, found '" &
+            call fatal_error(error, "--out must be a file that ends in .vtu or .csv, got '" &
                & //shown(command%out)//"'; give it one of these endings", line=1)
          end if
       end if
-   end subroutine check_cut
+   end subroutine check_out
 
    !> Understand the first argument
    pure subroutine take_subcommand(word, command, takes_decks, error)
@@ -181,11 +184,11 @@ contains
          command%verb = "help"
       case ("--version")
          command%verb = "version"
-      case ("run", "check", "cut", "export")
+      case ("run", "check", "cut", "lines", "export")
          command%verb = word(:len(command%verb))
          takes_decks = .true.
       case default
-         call fatal_error(error, "wanted a subcommand, found '"//shown(trim(word))//"'"// &
+         call fatal_error(error, "expected a subcommand, got '"//shown(trim(word))//"'"// &
             & near_one(trim(word), subcommands)//"; 'dda help' lists all", line=1)
       end select
    end subroutine take_subcommand
@@ -205,15 +208,15 @@ contains
          own = "--out --jobs --set --cases --resume --quiet --help"
       case ("check")
          own = "--set --record --quiet --help"
-      case ("cut")
+      case ("cut", "lines")
          own = "--out --quiet --help"
       case default
          own = "--out --set --quiet --help"
       end select
       if (all(options /= option) .or. index(own, trim(option)) > 0) return
-      call fatal_error(error, "wanted an option of dda "//trim(command%verb)//", found "// &
+      call fatal_error(error, "expected an option of dda "//trim(command%verb)//", got "// &
          & trim(option)//", which dda "//trim(merge("check", "run  ", option == "--record"))// &
-         & " takes; leave it away")
+         & " takes; remove it")
    end subroutine check_option
 
    !> Understand one option and its value
@@ -242,7 +245,7 @@ contains
          return
       case ("--out", "--set", "--jobs", "--cases")
          if (i == size(argument)) then
-            call fatal_error(error, trim(argument(i))//" wants a value, found none; 'dda help " &
+            call fatal_error(error, trim(argument(i))//" needs a value, got none; 'dda help " &
                & //trim(command%verb)//"' shows it")
             return
          end if
@@ -255,16 +258,16 @@ contains
       i = i + 1
       if (argument(i - 1) == "--out") then
          command%out = argument(i)(:length(i))
-         if (command%out == "") call fatal_error(error, "--out wants the name of a folder, "// &
-            & "found an empty one; give one, or leave --out away")
+         if (command%out == "") call fatal_error(error, "--out must be the name of a folder, "// &
+            & "got an empty one; give one, or remove --out")
       else if (argument(i - 1) == "--cases") then
          command%cases = argument(i)(:length(i))
-         if (command%cases == "") call fatal_error(error, "--cases wants numbers of cases, "// &
-            & "found none; write them like 1-4,7")
+         if (command%cases == "") call fatal_error(error, "--cases must be numbers of cases, "// &
+            & "got none; write them like 1-4,7")
       else
          call read_integer(trim(argument(i)), command%jobs, ok)
          if (.not. ok .or. command%jobs < 1) call fatal_error(error, &
-            & "--jobs wants a whole number of cases from 1, found '"//shown(trim(argument(i))) &
+            & "--jobs must be a whole number, 1 or more, got '"//shown(trim(argument(i))) &
             & //"'; correct it, or leave it out for 1")
       end if
    end subroutine take_option

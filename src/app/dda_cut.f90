@@ -2,7 +2,7 @@
 module dda_cut
    use, intrinsic :: iso_fortran_env, only : error_unit
    use dda_command_line, only : command_t, name_of
-   use dda_cut_model, only : cut_model_t, point_kind
+   use dda_cut_model, only : block_vertices, cut_model_t, point_kind
    use dda_cut_report, only : cut_reason, cut_remark_t
    use dda_cutting, only : cut_blocks
    use dda_error, only : error_line, error_t
@@ -11,6 +11,7 @@ module dda_cut
    use dda_process, only : exit_status, worst_status
    use dda_read_limerick, only : read_geometry
    use dda_screen, only : print_line, screen_t
+   use dda_simplex, only : area_moments, area_moments_t
    use dda_text, only : to_text
    use dda_warnings, only : warning_line, warnings_t
    use dda_write_cut, only : write_cut_table, write_cut_vtu
@@ -115,11 +116,13 @@ contains
          call tell(screen, "smallest", to_text(cut%area(smallest))//", block "//to_text(smallest))
          call tell(screen, "largest", to_text(cut%area(largest))//", block "//to_text(largest))
       end if
-      call tell(screen, "joints", to_text(size(cut%pair))//" pairs of edges that lie together")
+      call tell(screen, "joints", to_text(size(cut%pair))//" pairs of coincident edges")
       call tell(screen, "points", to_text(count(cut%point%kind == point_kind%fixed))//" fixed, " &
          & //to_text(count(cut%point%kind == point_kind%load))//" load, " &
          & //to_text(count(cut%point%kind == point_kind%measured))//" measured")
-      if (cut%n_removed > 0) call tell(screen, "taken out", to_text(cut%n_removed) &
+      if (model%bolt%n > 0) call tell(screen, "bolts", to_text(size(cut%bolt)) &
+         & //" between blocks, "//to_text(cut%n_idle_bolts)//" within one block, left out")
+      if (cut%n_removed > 0) call tell(screen, "removed", to_text(cut%n_removed) &
          & //" blocks that hold hole points")
       if (cut%n_merged > 0) call tell(screen, "merged", &
          & to_text(cut%n_merged)//" crossings with a node " &
@@ -135,14 +138,17 @@ contains
       type(screen_t), intent(in) :: screen
       !> The blocks
       type(cut_model_t), intent(in) :: cut
+      type(area_moments_t) :: moments
       character(len=24) :: columns
       integer :: b
 
-      call print_line(screen, "   block  material  corners  area")
+      call print_line(screen, "   block  material  corners  area  centre")
       do b = 1, min(size(cut%area), most_rows)
          write (columns, "(i5, i10, i9)") b, cut%material(b), &
             & cut%first_vertex(b + 1) - cut%first_vertex(b)
-         call print_line(screen, "   "//columns//"  "//to_text(cut%area(b)))
+         moments = area_moments(block_vertices(cut, b))
+         call print_line(screen, "   "//columns//"  "//to_text(cut%area(b))//"  " &
+            & //point_text(cut, moments%centroid))
       end do
       if (size(cut%area) > most_rows) call print_line(screen, "   and " &
          & //to_text(size(cut%area) - most_rows)//" more: --out FILE.csv lists all of them")
@@ -202,7 +208,7 @@ contains
       case (cut_reason%loose_line)
          text = text//": it meets fewer than two other lines"
       case (cut_reason%loose_edge)
-         text = text//": this part ends in nothing"
+         text = text//": this part has a free end"
       case (cut_reason%doubled)
          text = text//": it lies on "//other
       case (cut_reason%crossing)

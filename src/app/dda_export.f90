@@ -1,9 +1,9 @@
-!> dda export: arch decks as files of the Limerick line
+!> dda export: arch decks as files of the Limerick line, or of blocks
 module dda_export
    use, intrinsic :: iso_fortran_env, only : error_unit
    use dda_arch_lines, only : arch_analysis, arch_lines, what_is_lost
    use dda_command_line, only : command_t, name_of
-   use dda_deck, only : deck_error, deck_t, has_group, place_of, word_of
+   use dda_deck, only : deck_error, deck_t, has_group, place_of, scene_kind, word_of
    use dda_deck_keys, only : key_index
    use dda_deck_sweep, only : case_deck, n_cases
    use dda_error, only : error_line, error_t
@@ -13,6 +13,8 @@ module dda_export
    use dda_read_deck, only : read_deck
    use dda_run, only : deck_stem
    use dda_screen, only : print_line, screen_t
+   use dda_shape_check, only : check_form
+   use dda_shape_text, only : shape_losses, shape_text
    use dda_text, only : to_text
    use dda_write_limerick, only : ddaml_analysis, ddaml_geometry, plain_analysis, plain_geometry, &
       & write_text
@@ -37,7 +39,7 @@ contains
       do i = 1, size(command%name)
          call read_deck(name_of(command, i), command%setting, deck, error)
          if (.not. allocated(error) .and. word_of(deck, "scene", "kind") /= "arch") &
-            & call deck_error(error, "dda export expected scene%kind = 'arch', got '" &
+            & call deck_error(error, "dda export needs scene%kind = 'arch', got '" &
             & //trim(word_of(deck, "scene", "kind"))//"'; copy the file that it names", deck, &
             & place_of(deck, key_index("scene", "kind")))
          if (allocated(error)) then
@@ -72,6 +74,13 @@ contains
          stem = folder//"/"//deck_stem(deck%file)
          if (n_cases(deck) > 1) stem = stem//"_"//to_text(number)
          call case_deck(deck, number, case_of_deck, error)
+         if (.not. allocated(error)) then
+            if (scene_kind(case_of_deck) == "shape") then
+               call export_shape(command, stem, case_of_deck, status)
+               if (status /= exit_status%success) return
+               cycle
+            end if
+         end if
          if (.not. allocated(error)) call arch_lines(case_of_deck, model, error)
          if (allocated(error)) status = exit_status%bad_input
          if (.not. allocated(error)) then
@@ -85,6 +94,36 @@ contains
          if (.not. command%quiet) call tell(command%screen, stem, case_of_deck)
       end do
    end subroutine export_deck
+
+   !> Export an arch of any shape as a file of blocks
+   subroutine export_shape(command, stem, deck, status)
+      !> What the user asked for
+      type(command_t), intent(in) :: command
+      !> Name of the file without its ending
+      character(len=*), intent(in) :: stem
+      !> The deck of the case
+      type(deck_t), intent(in) :: deck
+      !> Exit status of this deck
+      integer, intent(out) :: status
+      type(error_t), allocatable :: error
+
+      status = exit_status%success
+      call check_form(deck, error)
+      if (allocated(error)) status = exit_status%bad_input
+      if (.not. allocated(error)) then
+         call write_text(stem//".blocks", shape_text(deck), error)
+         if (allocated(error)) status = exit_status%not_written
+      end if
+      if (allocated(error)) then
+         write (error_unit, "(a)") error_line(error)
+      else if (.not. command%quiet) then
+         call print_line(command%screen, stem//".blocks, for scene%kind = 'blocks'")
+         if (shape_losses(deck) /= "") call print_line(command%screen, &
+            & "   a file of blocks has no place for "//shape_losses(deck))
+         if (has_group(deck, "search")) call print_line(command%screen, &
+            & "   the search is not written: the file holds the deck's own value of its parameter")
+      end if
+   end subroutine export_shape
 
    !> Write geometry and analysis in both forms
    subroutine write_pair(stem, model, analysis, error)

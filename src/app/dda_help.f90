@@ -3,7 +3,8 @@ module dda_help
    use, intrinsic :: iso_fortran_env, only : error_unit
    use dda_command_line, only : command_t
    use dda_deck_token, only : shown
-   use dda_deck_words, only : deck_help, near_one
+   use dda_deck_words, only : deck_help, near_one, registry_help
+   use dda_map_keys, only : map_group, map_key
    use dda_model_table, only : models_help
    use dda_process, only : exit_status
    use dda_screen, only : print_line, print_text, screen_t
@@ -16,7 +17,7 @@ module dda_help
    character(len=*), parameter :: version = "0.1.0"
    !> What there is help on
    character(len=*), parameter :: topics(*) = [character(len=6) :: "run", "check", "cut", &
-      & "export", "keys", "models", "help"]
+      & "lines", "export", "keys", "models", "help"]
 
    !> dda help
    character(len=*), parameter :: general(*) = [character(len=96) :: &
@@ -25,8 +26,9 @@ module dda_help
       & "   dda run DECK [DECK ...]     compute every case of every deck", &
       & "   dda check DECK [DECK ...]   read and check decks, compute nothing", &
       & "   dda cut LINES.geo           cut lines into blocks, say what was dropped", &
+      & "   dda lines MAP.nml [...]     joint sets, slopes, openings to lines for dda cut", &
       & "   dda export DECK [DECK ...]  write arches as files of the Limerick line", &
-      & "   dda help run | check | cut | export", &
+      & "   dda help run | check | cut | lines | export", &
       & "                               options of a subcommand (dda run --help does the same)", &
       & "   dda help keys               every group and key of a deck: unit, range, default", &
       & "   dda help models             what is run with which mode, and what can be searched", &
@@ -38,11 +40,12 @@ module dda_help
       & "   &arch half_angle_deg = 90.0, voussoirs = 36 /", &
       & "   &search parameter = 'thickness_ratio' /", &
       & "", &
-      & "Written into arch.nml, 'dda run arch.nml' finds the thickness at which this arch falls", &
-      & "and writes it to arch/results.csv. Units are SI per metre of depth, angles degrees.", &
+      & "Written into arch.nml, 'dda run arch.nml' finds the thickness at which this arch", &
+      & "collapses and writes it to arch/results.csv. Units are SI per metre of depth, angles", &
+      & "degrees.", &
       & "", &
       & "Exit status: 0 every case reached a verdict; 2 bad input, with a line on standard", &
-      & "error, FILE:LINE: error: what was wanted, what was found; what to do; 3 a case is", &
+      & "error, FILE:LINE: error: what is expected, what it got; what to do; 3 a case is", &
       & "undecided or was not finished; 4 results could not be written. Of several, the first", &
       & "of 4, 2, 3."]
 
@@ -58,18 +61,18 @@ module dda_help
       & "               (without it: the deck as it is)", &
       & "   --cases LIST   compute only these cases, such as 1-500,812 (without it: all)", &
       & "   --resume    skip the cases that an earlier run of the same deck with the same", &
-      & "               --set has finished; if the deck has changed, compute all anew", &
-      & "               (without it: compute all anew)", &
+      & "               --set has finished; if the deck has changed, compute all again", &
+      & "               (without it: compute all again)", &
       & "   --quiet     print nothing but errors (without it: a line a case of up to 100,", &
       & "               the undecided ones of more, and progress where a terminal shows it)", &
       & "   --          what follows are names of decks, even if they begin with -", &
       & "   --help, -h  this page", &
       & "", &
       & "Writes results.csv (a row a case), joints.csv (a row a joint), blocks.csv (a row a", &
-      & "corner), log.txt, and what --resume needs: deck.record (what was asked for),", &
-      & "sizes.record (the bytes of each case) and disk.record (the rows that a loss of power", &
-      & "leaves); and run.lock, which is empty and locked while a run writes there: a second", &
-      & "one ends with 4.", &
+      & "corner), log.txt, and what --resume needs: deck.record (used to verify the deck),", &
+      & "sizes.record (the bytes of each case) and disk.record (rows known to be on disk);", &
+      & "and run.lock, which is empty and locked while a run writes there: a second one ends", &
+      & "with 4.", &
       & "'dda help' lists the exit statuses, 'dda help keys' what a deck may say."]
 
    !> dda help check
@@ -101,6 +104,22 @@ module dda_help
       & "and prints counts, areas, and which parts of lines were dropped, and why.", &
       & "Exit status: 0 all files were cut; 2 one could not be; 4 FILE could not be written."]
 
+   !> dda help lines
+   character(len=*), parameter :: on_lines(*) = [character(len=96) :: &
+      & "dda lines MAP.nml [MAP.nml ...] [--out FILE.geo] [--quiet]", &
+      & "", &
+      & "   --out FILE.geo   where the lines of one MAP.nml go", &
+      & "               (without it: MAP.geo in the current folder)", &
+      & "   --quiet     print nothing but errors (without it: what was drawn)", &
+      & "   --          what follows are names of files, even if they begin with -", &
+      & "   --help, -h  this page", &
+      & "", &
+      & "Draws the joints of a rock mass from sets of them, with slopes, openings, bolts and", &
+      & "points, clips them to the outline, and writes them for dda cut in the form of the", &
+      & "Limerick line; FILE_lines.csv says what each line is for. The same seed gives the", &
+      & "same bytes. Groups and keys of a map:", &
+      & ""]
+
    !> dda help export
    character(len=*), parameter :: on_export(*) = [character(len=96) :: &
       & "dda export DECK [DECK ...] [--out DIR] [--set group%key=value ...] [--quiet]", &
@@ -119,7 +138,7 @@ module dda_help
 
    !> dda help help
    character(len=*), parameter :: on_help(*) = [character(len=96) :: &
-      & "dda help [run | check | cut | export | keys | models | help]", &
+      & "dda help [run | check | cut | lines | export | keys | models | help]", &
       & "", &
       & "Prints help on a subcommand, on the keys of a deck, or on the models that there are", &
       & "(without a topic: the first page)."]
@@ -146,6 +165,9 @@ contains
          call print_lines(command%screen, on_check)
       case ("cut")
          call print_lines(command%screen, on_cut)
+      case ("lines")
+         call print_lines(command%screen, on_lines)
+         call print_text(command%screen, registry_help(map_group, map_key))
       case ("export")
          call print_lines(command%screen, on_export)
       case ("help", "--help", "-h")
@@ -155,8 +177,8 @@ contains
       case ("models")
          call print_text(command%screen, models_help())
       case default
-         write (error_unit, "(a)") "dda:2: error: wanted help on run, check, cut, export, " &
-            & //"keys, models or help, found '"//shown(topic)//"'"//near_one(topic, topics) &
+         write (error_unit, "(a)") "dda:2: error: expected help on run, check, cut, lines, " &
+            & //"export, keys, models or help, got '"//shown(topic)//"'"//near_one(topic, topics) &
             & //"; write one of them"
          status = exit_status%bad_input
       end select

@@ -95,7 +95,7 @@ contains
          place(:, i) = album%point(i)%point
       end do
       call append_line(points, point_lines(number, album%when(:, :album%n_track), place, &
-         & album%track(:, :, :album%n_track), origin), error)
+         & album%track(:, :, :album%n_track), origin, album%speed), error)
    end subroutine write_track
 
    !> Write the energies of a case

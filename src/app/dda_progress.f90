@@ -11,7 +11,7 @@ module dda_progress
 
    !> Width of a line on the screen
    integer, parameter :: width = 60
-   !> A task is told of once it has taken so long, then in intervals [s]
+   !> A task is reported once it has taken so long, then in intervals [s]
    real(wp), parameter :: patience = 0.5_wp, interval = 0.2_wp
 
    !> What was told so far

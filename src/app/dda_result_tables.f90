@@ -1,6 +1,7 @@
 !> The tables of one deck's results: begun, added to case by case, closed
 module dda_result_tables
    use, intrinsic :: iso_fortran_env, only : int64
+   use dda_bar_rows, only : bars_header
    use dda_deck, only : deck_t, flag_of, has_group, integer_of, is_given
    use dda_deck_sweep, only : n_cases, swept_names, swept_texts
    use dda_disk_record, only : write_disk_record
@@ -15,6 +16,7 @@ module dda_result_tables
    use dda_write_blocks, only : block_lines, blocks_header, told_blocks_t
    use dda_write_energy, only : energy_header
    use dda_write_frames, only : frame_joints_header, frames_header, points_header
+   use dda_write_reactions, only : reactions_header
    use dda_write_results, only : joint_line, joint_row_t, joints_header, result_row_t, &
       & results_header, results_line
    implicit none
@@ -48,6 +50,10 @@ module dda_result_tables
       integer :: proof_forces = 10
       !> A row a block: velocities of the proof
       integer :: proof_motion = 11
+      !> A row a bar and time
+      integer :: bars = 12
+      !> A row a support, of dynamic runs for each step
+      integer :: reactions = 13
    end type table_enum
 
    !> The places by name
@@ -70,7 +76,7 @@ module dda_result_tables
       !> Name of the folder
       character(len=:), allocatable :: folder
       !> The tables, by their places
-      type(result_table_t) :: at(11)
+      type(result_table_t) :: at(13)
       !> Bytes of all tables but results.csv and the sizes after the last case
       integer(int64) :: length = 0
       !> File that holds what was asked for
@@ -126,6 +132,9 @@ contains
       tables%at(table%points)%wanted = .false.
       if (allocated(deck%plan%boundary%measured)) tables%at(table%points)%wanted = &
          & size(deck%plan%boundary%measured) > 0 .and. .not. has_group(deck, "search")
+      call name_table(tables%at(table%reactions), "/reactions.csv", reactions_header())
+      tables%at(table%reactions)%wanted = flag_of(deck, "output", "reactions") &
+         & .and. .not. has_group(deck, "search")
       call name_table(tables%at(table%energy), "/energy.csv", energy_header())
       tables%at(table%energy)%wanted = flag_of(deck, "output", "energy") &
          & .and. .not. has_group(deck, "search")
@@ -135,6 +144,9 @@ contains
       call name_table(tables%at(table%proof_forces), "/proof_forces.csv", proof_forces_header())
       call name_table(tables%at(table%proof_motion), "/proof_motion.csv", proof_motion_header())
       tables%at([table%proof_forces, table%proof_motion])%wanted = flag_of(deck, "output", "proof")
+      call name_table(tables%at(table%bars), "/bars.csv", bars_header())
+      tables%at(table%bars)%wanted = allocated(deck%plan%boundary%bar)
+      if (allocated(deck%cut)) tables%at(table%bars)%wanted = size(deck%cut%bolt) > 0
       tables%at([table%frames, table%frame_joints])%wanted = &
          & integer_of(deck, "output", "frames") > 0
 

@@ -97,9 +97,9 @@ contains
       do i = 1, number - 1
          if (.not. good(i) .or. folder_of(command, name_of(command, i)) &
             & /= folder_of(command, name_of(command, number))) cycle
-         call fatal_error(error, "wanted a deck with a folder of its own, found that "// &
-            & name_of(command, i)//" writes to "//folder_of(command, name_of(command, i))// &
-            & " too; rename one deck", name_of(command, number), 1)
+         call fatal_error(error, "expected a deck with a folder of its own, got "// &
+            & folder_of(command, name_of(command, i))//", to which "//name_of(command, i)// &
+            & " writes too; rename one deck", name_of(command, number), 1)
          return
       end do
    end subroutine check_folder

@@ -10,9 +10,11 @@ module dda_run_cases
    use dda_kinds, only : wp
    use dda_picture_files, only : write_album, write_energies, write_track
    use dda_progress, only : clear_progress, progress_t, report_progress
+   use dda_bar_rows, only : bar_lines
    use dda_proof_rows, only : proof_forces_lines, proof_motion_lines
    use dda_restart, only : save_restart
    use dda_result_tables, only : result_tables_t, swept_fields, sync_when_due, table, write_case
+   use dda_reaction_rows, only : reaction_text
    use dda_table_file, only : append_line
    use dda_text, only : to_text
    use dda_write_blocks, only : told_blocks_t
@@ -231,10 +233,14 @@ contains
       if (tables%at(table%frames)%wanted) call write_album(tables%folder, number, &
          & tables%has_vtu, this%scene%system, this%scene%origin, this%album, &
          & tables%at(table%frames)%open, tables%at(table%frame_joints)%open, error)
+      if (tables%at(table%bars)%wanted .and. .not. allocated(error)) call append_line( &
+         & tables%at(table%bars)%open, bar_lines(number, this), error)
       if (tables%at(table%points)%wanted .and. .not. allocated(error)) call write_track( &
          & number, this%scene%origin, this%album, tables%at(table%points)%open, error)
       if (tables%at(table%energy)%wanted .and. .not. allocated(error)) call write_energies( &
          & number, this%album, tables%at(table%energy)%open, error)
+      if (tables%at(table%reactions)%wanted .and. .not. allocated(error)) call append_line( &
+         & tables%at(table%reactions)%open, reaction_text(number, this), error)
    end subroutine write_pictures
 
    !> Write what proves the verdict of a case

@@ -1,4 +1,4 @@
-!> Standard output, written like every other file: Fortran's own unit does not tell when it is full
+!> Standard output, written like every other file: Fortran's own unit does not say when it is full
 module dda_screen
    use dda_binary_file, only : append_text, binary_file_t, close_binary, descriptor_of, &
       & flush_binary, open_binary, open_descriptor

@@ -1,4 +1,4 @@
-!> Someone who is told how far a long task is
+!> Progress of a long task, for someone who watches it
 module dda_watch
    use dda_kinds, only : wp
    implicit none

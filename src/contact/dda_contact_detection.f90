@@ -73,29 +73,28 @@ contains
       type(block_system_t), intent(in) :: system
       !> How they have moved where the joints are placed: (6, n_block)
       real(wp), intent(in) :: motion(:, :)
-      !> The joints, placed: (n_joint)
-      type(joint_t), intent(in) :: joint(:)
+      !> The joints, placed: (n_joint); they become those of the contacts
+      type(joint_t), allocatable, intent(inout) :: joint(:)
       !> Contact stiffness over the stiffness of the block across the joint
       real(wp), intent(in) :: penalty_ratio
       !> Unknowns of one block
       integer, intent(in) :: n_dof
       !> The contacts; their search is kept
       type(contacts_t), intent(inout) :: contacts
-      type(contacts_t) :: fresh
       integer :: n
 
       n = size(joint)
-      fresh%searched = contacts%searched
-      fresh%remember = contacts%remember
-      fresh%search = contacts%search
-      allocate (fresh%joint, source=joint)
-      allocate (fresh%face(n), fresh%past_slip(n))
-      allocate (fresh%broken(2, n), source=.false.)
-      allocate (fresh%trial(3, n), source=0.0_wp)
-      allocate (fresh%force, fresh%gap, fresh%increment, source=fresh%trial)
-      fresh%past_slip = 0.0_wp
-      call new_joint_springs(system, motion, joint, penalty_ratio, n_dof, fresh%springs)
-      contacts = fresh
+      call move_alloc(joint, contacts%joint)
+      if (allocated(contacts%face)) deallocate (contacts%face, contacts%broken)
+      if (allocated(contacts%trial)) deallocate (contacts%past_slip, contacts%trial, &
+         & contacts%force, contacts%gap, contacts%increment)
+      allocate (contacts%face(n), contacts%past_slip(n))
+      allocate (contacts%broken(2, n), source=.false.)
+      allocate (contacts%trial(3, n), source=0.0_wp)
+      allocate (contacts%force, contacts%gap, contacts%increment, source=contacts%trial)
+      contacts%past_slip = 0.0_wp
+      call new_joint_springs(system, motion, contacts%joint, penalty_ratio, n_dof, &
+         & contacts%springs)
    end subroutine set_joints
 
    !> Bounds of the forces by what is left of cohesion and tensile strength

@@ -1,4 +1,4 @@
-!> Which contact of the step before one of the next goes on (Shi: df06)
+!> Which contact of the last step one of the next continues (Shi: df06)
 module dda_contact_match
    use, intrinsic :: iso_fortran_env, only : int64
    use dda_block_system, only : block_system_t

@@ -1,4 +1,4 @@
-!> What touched goes on touching (Shi: df06): forces, states, slip and strength pass from the
+!> Contacts persist from step to step (Shi: df06): forces, states, slip and strength pass from the
 !> contacts of the step before to those of the next
 module dda_contact_transfer
    use, intrinsic :: iso_fortran_env, only : int64
@@ -43,8 +43,8 @@ contains
          joint(j)%contact%closed_at = gap(1:2)
       end do
       call set_joints(system, 0.0_wp*system%motion, joint, penalty_ratio, n_dof, contacts)
-      do j = 1, size(joint)
-         contacts%face(j)%open(2) = joint(j)%n_contact == 1
+      do j = 1, size(contacts%joint)
+         contacts%face(j)%open(2) = contacts%joint(j)%n_contact == 1
       end do
    end subroutine search_contacts
 
@@ -81,10 +81,10 @@ contains
          taken = source(:, j)
          call take_over_slip(system, past, taken, .not. contacts%remember, joint(j))
       end do
-      before%face = contacts%face
-      before%broken = contacts%broken
+      call move_alloc(contacts%face, before%face)
+      call move_alloc(contacts%broken, before%broken)
       call set_joints(system, system%motion, joint, penalty_ratio, n_dof, contacts)
-      do j = 1, size(joint)
+      do j = 1, size(contacts%joint)
          call take_over_state(before, past, source(:, j), j, contacts)
          call keep_shear(system, past, source(:, j), contacts%springs%stiffness(j), &
             & contacts%joint(j))

@@ -1,5 +1,5 @@
 !> Edges of different blocks that come near one another: found by a tree of boxes, and remembered
-!> with a margin, so that the tree is built anew only when a corner has used its margin up
+!> with a margin, so that the tree is built again only when a corner has used its margin up
 !> (L. Verlet, 1967; the fattened boxes of E. Catto's Box2D)
 !>
 !> What is remembered is only where to look: whoever asks gets the pairs whose boxes overlap now, in

@@ -6,6 +6,8 @@
 !>
 !> With a penalty, the force is the admissible one nearest to the trial force (N1, N2, T) that the
 !> springs would carry if they could not fail.
+!>
+!> Equation (M2) of docs/method.md
 module dda_friction_cone
    use dda_kinds, only : wp
    implicit none

@@ -1,5 +1,6 @@
-!> Two convex blocks are apart as long as an edge of one of them has the other beyond its line. That
-!> line is the entrance: what must not cross it keeps the blocks apart, whichever corners meet
+!> Separating axes: two convex blocks are apart as long as an edge of one has the other beyond its
+!> line. That line is the entrance: what must not cross it keeps the blocks apart, whichever corners
+!> meet
 module dda_parting_line
    use dda_entrance, only : add_single, join_edges, joint_list_t, neighbourhood_t, was_closed
    use dda_key_set, only : key_set_t, new_key_set

@@ -7,7 +7,8 @@ module dda_cut_model
    implicit none
    private
 
-   public :: cut_model_t, block_point_t, edge_pair_t, point_kind, point_kind_enum, block_vertices
+   public :: cut_bolt_t, cut_model_t, block_point_t, edge_pair_t, point_kind, point_kind_enum
+   public :: block_vertices
 
    !> What a point of a block is for
    type :: point_kind_enum
@@ -44,6 +45,18 @@ module dda_cut_model
       real(wp) :: place(4) = 0.0_wp
    end type edge_pair_t
 
+   !> A bolt between two blocks
+   type :: cut_bolt_t
+      !> The blocks, 0 for the ground: (2)
+      integer :: block(2) = 0
+      !> Its ends, from the origin of the cut: (4) [m]
+      real(wp) :: place(4) = 0.0_wp
+      !> Stiffness, strength and prestress, below 0 where the analysis file says them: (3)
+      real(wp) :: property(3) = 0.0_wp
+      !> Line of the file
+      integer :: row = 0
+   end type cut_bolt_t
+
    !> The blocks
    type :: cut_model_t
       !> Scales of the cut; its origin is what all coordinates here are counted from
@@ -60,12 +73,16 @@ module dda_cut_model
       integer, allocatable :: material(:)
       !> Fixed points, then load points, then measured points: (n_point)
       type(block_point_t), allocatable :: point(:)
+      !> Bolts: (n_bolt)
+      type(cut_bolt_t), allocatable :: bolt(:)
       !> Edges that lie together: (n_pair)
       type(edge_pair_t), allocatable :: pair(:)
       !> What was dropped
       type(cut_remarks_t) :: remarks
       !> Crossings that became a node that was there already at another place
       integer :: n_merged = 0
+      !> Bolts left out, as both ends lie in one block
+      integer :: n_idle_bolts = 0
       !> Blocks taken out because of hole points
       integer :: n_removed = 0
    end type cut_model_t

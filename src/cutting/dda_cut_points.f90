@@ -1,6 +1,6 @@
 !> Points, fixed lines and material lines find their blocks (Shi: dc10, dc11, dc13)
 module dda_cut_points
-   use dda_cut_model, only : block_point_t, block_vertices, cut_model_t, point_kind
+   use dda_cut_model, only : block_point_t, block_vertices, cut_bolt_t, cut_model_t, point_kind
    use dda_error, only : error_t, fatal_error
    use dda_kinds, only : wp
    use dda_line_model, only : entities_t, line_model_t
@@ -12,7 +12,8 @@ module dda_cut_points
    implicit none
    private
 
-   public :: boxes_t, block_boxes, block_at, place_points, give_materials, remove_holes
+   public :: boxes_t, block_boxes, block_at, place_bolts, place_points, give_materials
+   public :: remove_holes
 
    !> How far inside its block the point of a fixed line lies, over the size of the model
    real(wp), parameter :: fixed_depth = 0.005_wp
@@ -260,6 +261,33 @@ contains
    end function inside_point
 
    !> Blocks get the material of the last material line that crosses one of their edges, or that
+   !> Find the blocks of the bolts (Shi: dc14); an end in no block is held by the ground
+   pure subroutine place_bolts(model, cut)
+      !> Lines and points
+      type(line_model_t), intent(in) :: model
+      !> Receives the bolts
+      type(cut_model_t), intent(inout) :: cut
+      type(boxes_t) :: boxes
+      type(cut_bolt_t) :: bolt(model%bolt%n)
+      integer :: i, n, side
+
+      n = 0
+      boxes = block_boxes(cut)
+      do i = 1, model%bolt%n
+         n = n + 1
+         bolt(n)%place = model%bolt%place(:, i) - [cut%scale%origin, cut%scale%origin]
+         bolt(n)%property = model%bolt_property(:, i)
+         bolt(n)%row = model%bolt%row(i)
+         do side = 1, 2
+            bolt(n)%block(side) = block_at(cut, boxes, bolt(n)%place(2*side - 1:2*side))
+         end do
+         if (bolt(n)%block(1) /= bolt(n)%block(2)) cycle
+         n = n - 1
+         cut%n_idle_bolts = cut%n_idle_bolts + 1
+      end do
+      cut%bolt = bolt(:n)
+   end subroutine place_bolts
+
    !> starts in them and crosses none; the first material otherwise (Shi: dc13)
    pure subroutine give_materials(model, cut, error)
       !> Lines and points
@@ -333,8 +361,8 @@ contains
       !> Its number in the list
       integer, intent(in) :: i
 
-      call fatal_error(error, "a "//what//" in a block is wanted, found one at (" &
+      call fatal_error(error, "expected a "//what//" inside a block, got one at (" &
          & //to_text(entities%place(1, i))//", "//to_text(entities%place(2, i)) &
-         & //") in none; move it into one or remove it", model%file, entities%row(i))
+         & //") outside all; move it into one or remove it", model%file, entities%row(i))
    end subroutine no_block
 end module dda_cut_points

@@ -1,7 +1,7 @@
 !> From lines to blocks (Shi: dc)
 module dda_cutting
    use dda_cut_model, only : cut_model_t
-   use dda_cut_points, only : give_materials, place_points, remove_holes
+   use dda_cut_points, only : give_materials, place_bolts, place_points, remove_holes
    use dda_cut_scale, only : cut_scale
    use dda_error, only : error_t, fatal_error
    use dda_kinds, only : wp
@@ -36,13 +36,14 @@ contains
       call trace_loops(network, loops)
       call blocks_of_loops(network, loops, model%line%material(:model%line%n), cut)
       cut%n_merged = network%n_merged
-      if (size(cut%area) == 0) call fatal_error(error, "lines that enclose a block are wanted, " &
-         & //"found "//to_text(model%line%n)//" that enclose none; join their ends", model%file, 1)
+      if (size(cut%area) == 0) call fatal_error(error, "expected lines that enclose a block, got " &
+         & //to_text(model%line%n)//" that enclose none; join their ends", model%file, 1)
       if (.not. allocated(error)) call check_areas(loops, cut, model%file, error)
       if (.not. allocated(error)) call check_nesting(model, network, loops, cut, error)
       if (.not. allocated(error)) call remove_holes(model, cut, error)
       if (.not. allocated(error)) call give_materials(model, cut, error)
       if (.not. allocated(error)) call place_points(model, cut, error)
+      if (.not. allocated(error)) call place_bolts(model, cut)
    end subroutine cut_blocks
 
    !> Nodes and edges that bound blocks (Shi: dc04 to dc06)
@@ -61,8 +62,8 @@ contains
 
       if (model%line%n > 0) cut%scale = cut_scale(model)
       if (.not. cut%scale%size > 0.0_wp) then
-         call fatal_error(error, "at least one line with a length is wanted, none was found; " &
-            & //"add it", model%file, 1)
+         call fatal_error(error, "expected at least one line with a length, got none; add it", &
+            & model%file, 1)
          return
       end if
       allocate (line, source=model%line%place(:, :model%line%n))
@@ -78,9 +79,9 @@ contains
       call cut_trees(network, cut%remarks)
       call drop_crossing_edges(network, cut%scale, cut%remarks, crossing)
       if (all(crossing > 0)) then
-         call fatal_error(error, "boundary lines without a crossing between their nodes are " &
-            & //"wanted, found that lines "//to_text(crossing(1))//" and "//to_text(crossing(2)) &
-            & //" still cross; make the edge-node distance smaller", model%file, &
+         call fatal_error(error, "expected boundary lines that do not cross between their nodes, " &
+            & //"got lines "//to_text(crossing(1))//" and "//to_text(crossing(2)) &
+            & //", which do; make the edge-node distance smaller", model%file, &
             & model%line%row(crossing(2)))
          return
       end if

@@ -45,8 +45,8 @@ contains
       do cell = 1, grid%n(1)*grid%n(2)
          call cross_in_cell(line, reach, grid, cell, crossings)
          if (crossings%n <= max_crossings) cycle
-         call fatal_error(error, "fewer than "//to_text(max_crossings) &
-            & //" crossings of lines are wanted, found more; remove lines")
+         call fatal_error(error, "expected fewer than "//to_text(max_crossings) &
+            & //" crossings of lines, got more; remove lines")
          return
       end do
       associate (n => crossings%n)

@@ -1,10 +1,11 @@
 !> Lines and points as a geometry file gives them, before they are cut into blocks
 module dda_line_model
+   use dda_growth, only : make_room
    use dda_kinds, only : wp
    implicit none
    private
 
-   public :: line_model_t, entities_t, new_entities, add_entity
+   public :: line_model_t, entities_t, new_entities, new_line_model, add_bolt, add_entity
 
    !> Segments or points of one kind, in the order of the file
    type :: entities_t
@@ -40,6 +41,11 @@ module dda_line_model
       type(entities_t) :: hole
       !> Points of seismic records, which nothing uses yet
       type(entities_t) :: seismic
+      !> Bolts
+      type(entities_t) :: bolt
+      !> Stiffness, strength and prestress of each: (3, n or more); below 0 where the analysis
+      !> file says them
+      real(wp), allocatable :: bolt_property(:, :)
    end type line_model_t
 
 contains
@@ -53,6 +59,38 @@ contains
 
       allocate (entities%place(4, room), entities%material(room), entities%row(room))
    end subroutine new_entities
+
+   !> A model without lines
+   pure subroutine new_line_model(model)
+      !> The model
+      type(line_model_t), intent(out) :: model
+
+      call new_entities(model%line, 64)
+      call new_entities(model%material_line, 0)
+      call new_entities(model%fixed, 0)
+      call new_entities(model%load, 0)
+      call new_entities(model%measured, 0)
+      call new_entities(model%hole, 0)
+      call new_entities(model%seismic, 0)
+      call new_entities(model%bolt, 0)
+      allocate (model%bolt_property(3, 1))
+   end subroutine new_line_model
+
+   !> Add a bolt
+   pure subroutine add_bolt(model, place, property, row)
+      !> Receives it
+      type(line_model_t), intent(inout) :: model
+      !> Its ends: (4) [m]
+      real(wp), intent(in) :: place(4)
+      !> Stiffness, strength and prestress, below 0 where the analysis file says them: (3)
+      real(wp), intent(in) :: property(3)
+      !> Line of the file
+      integer, intent(in) :: row
+
+      call add_entity(model%bolt, place, 0, row)
+      call make_room(model%bolt_property, model%bolt%n)
+      model%bolt_property(:, model%bolt%n) = property
+   end subroutine add_bolt
 
    !> Add a segment or a point
    pure subroutine add_entity(entities, place, material, row)

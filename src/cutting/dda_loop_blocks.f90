@@ -1,4 +1,4 @@
-!> From loops to blocks: corners on a straight edge go, edges that lie together are told
+!> From loops to blocks: corners on a straight edge go, coincident edges are found
 !> (Shi: dc08, dc09)
 module dda_loop_blocks
    use dda_cut_model, only : cut_model_t, edge_pair_t

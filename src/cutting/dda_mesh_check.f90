@@ -31,8 +31,8 @@ contains
       enclosed = -sum(loops%area, loops%area < 0.0_wp)
       room = 1.0e-9_wp*enclosed + 10.0_wp*cut%scale%reach*cut%scale%size
       if (abs(sum(cut%area) - enclosed) <= room) return
-      call fatal_error(error, "blocks of the area that the lines enclose, "//to_text(enclosed) &
-         & //", are wanted, found "//to_text(sum(cut%area)) &
+      call fatal_error(error, "expected block areas that add up to the enclosed area " &
+         & //to_text(enclosed)//", got "//to_text(sum(cut%area)) &
          & //": lines cross without a node; make the edge-node distance smaller", file, 1)
    end subroutine check_areas
 
@@ -97,8 +97,8 @@ contains
 
       h = loops%half_edge(loops%first(inner))
       line = network%line((h + 1)/2)
-      call fatal_error(error, "a block without holes is wanted, found that line "//to_text(line) &
-         & //" belongs to blocks that lie wholly inside block "//to_text(block) &
+      call fatal_error(error, "expected blocks without holes, got line "//to_text(line) &
+         & //" of blocks that lie wholly inside block "//to_text(block) &
          & //", whose corner 1 "// &
          & "is at ("//to_text(cut%vertex(1, cut%first_vertex(block)) + cut%scale%origin(1))//", " &
          & //to_text(cut%vertex(2, cut%first_vertex(block)) + cut%scale%origin(2)) &

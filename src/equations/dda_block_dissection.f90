@@ -1,4 +1,4 @@
-!> An order of the blocks that parts them again and again: nested dissection (A. George, 1973)
+!> An order of the blocks that separates them again and again: nested dissection (A. George, 1973)
 !>
 !> The few blocks that part a group in two are eliminated after both parts. Elimination then costs
 !> n**1.5 for n blocks in a plane, where a narrow order of a square wall costs n**2. Groups are cut
@@ -12,7 +12,7 @@ module dda_block_dissection
 
    public :: dissected_order, smallest_part
 
-   !> Parting of smaller groups gains nothing
+   !> Splitting smaller groups gains nothing
    integer, parameter :: smallest_part = 200
    !> Each part has at least this share of a group, if there is such a level of the search
    real, parameter :: least_share = 0.25

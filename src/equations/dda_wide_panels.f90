@@ -4,10 +4,13 @@ module dda_wide_panels
    implicit none
    private
 
-   public :: panels_t, new_panels, eliminate, substitute_panels
+   public :: panels_t, new_panels, eliminate, substitute_panels, wide
 
-   !> Kind of numbers with 30 digits or more
-   integer, parameter :: rk = selected_real_kind(30)
+   !> Kind of numbers with 30 digits or more; where there is none, with 18
+   integer, parameter :: wide = merge(selected_real_kind(30), selected_real_kind(18), &
+      & selected_real_kind(30) > 0)
+   !> The kind that the panels are written for
+   integer, parameter :: rk = wide
 
    include "dda_panel_type.inc"
 

@@ -1,5 +1,8 @@
 !> The equations of one step: blocks first, then the springs of the joints (Shi: df10 to df18)
+!>
+!> Equation (M3) of docs/method.md
 module dda_assembly
+   use dda_bar_springs, only : bar_springs_t, new_bar_springs
    use dda_block_factor, only : block_factor_t, factorise, plan_factor, substitute
    use dda_block_matrix, only : block_matrix_t, set_pattern
    use dda_block_system, only : block_system_t
@@ -16,7 +19,7 @@ module dda_assembly
    implicit none
    private
 
-   public :: equations_t, new_equations, renew_springs, take_springs, solve_faces
+   public :: equations_t, new_equations, renew_springs, take_springs, refresh, solve_faces
 
    !> Matrix, loads and factor; the pattern and the mass are made once, the numbers where faces or
    !> the length of the step change
@@ -50,6 +53,8 @@ module dda_assembly
       real(wp), allocatable :: load(:, :)
       !> Springs of the held points
       type(fixed_points_t) :: fixed
+      !> Springs of the bars
+      type(bar_springs_t) :: bars
       !> Sum of the forces that bear on the blocks, which small forces are measured by [N/m]
       real(wp) :: force_scale = 0.0_wp
       !> What rounding of the corners' coordinates makes of a gap [m]
@@ -60,6 +65,11 @@ module dda_assembly
       real(wp), allocatable :: held_friction(:)
       !> Equations whose numbers have changed since the factor was made: (n_equation)
       logical, allocatable :: changed(:)
+      !> Whether joints and springs are others than those that pattern and numbers were made for: in
+      !> time few steps need them
+      logical :: new_pattern = .false.
+      !> Whether only the springs are others
+      logical :: new_numbers = .false.
       !> Factorisations so far, whole or in part
       integer :: factorisations = 0
    end type equations_t
@@ -85,6 +95,7 @@ contains
       allocate (equations%mass(nd, nd, n), equations%elastic(nd, nd, n), equations%base(nd, nd, n))
       allocate (equations%glued(nd, nd, n), equations%weight(nd, n), equations%outer(nd, n))
       allocate (equations%load(nd, n), equations%felt(nd, n), equations%changed(n))
+      equations%bars = new_bar_springs(system, settings, nd)
       call new_springs(springs, nd, n, equations)
       do b = 1, size(system%equation)
          e = system%equation(b)
@@ -119,28 +130,49 @@ contains
       if (allocated(equations%held)) deallocate (equations%held, equations%held_friction)
       allocate (equations%held_friction(size(springs%stiffness)), source=0.0_wp)
       allocate (equations%held(size(springs%stiffness)))
-      call take_springs(springs, equations)
+      call add_stuck_springs(springs, equations)
    end subroutine new_springs
 
-   !> Take over the springs of joints that may be others; the pattern is made anew only where other
+   !> Joints that may be others are to be taken over; the pattern is made anew only where other
    !> blocks meet
    pure subroutine renew_springs(before, springs, equations)
       !> Equations of the blocks of each joint so far: (2, n_joint)
       integer, intent(in) :: before(:, :)
       !> The springs of the joints now
       type(joint_springs_t), intent(in) :: springs
-      !> Receives pattern and stiffness
+      !> The equations
       type(equations_t), intent(inout) :: equations
       logical :: same
 
       same = size(before, 2) == size(springs%equation, 2)
       if (same) same = all(before == springs%equation)
-      if (same) then
-         call take_springs(springs, equations)
-      else
-         call new_springs(springs, size(equations%weight, 1), size(equations%weight, 2), equations)
-      end if
+      equations%new_pattern = equations%new_pattern .or. .not. same
+      equations%new_numbers = .true.
    end subroutine renew_springs
+
+   !> Springs whose rows have changed while the coupled pairs have not are to be taken over
+   pure subroutine take_springs(equations)
+      !> The equations
+      type(equations_t), intent(inout) :: equations
+
+      equations%new_numbers = .true.
+   end subroutine take_springs
+
+   !> Bring pattern and numbers up to these springs, if they are not
+   pure subroutine refresh(springs, equations)
+      !> The springs of the joints
+      type(joint_springs_t), intent(in) :: springs
+      !> Receives pattern and stiffness
+      type(equations_t), intent(inout) :: equations
+
+      if (equations%new_pattern) then
+         call new_springs(springs, size(equations%weight, 1), size(equations%weight, 2), equations)
+      else if (equations%new_numbers) then
+         call add_stuck_springs(springs, equations)
+      end if
+      equations%new_pattern = .false.
+      equations%new_numbers = .false.
+   end subroutine refresh
 
    !> Which joints couple which blocks, and the joints of each block
    pure subroutine list_joints(springs, n_dof, n_equation, equations)
@@ -152,14 +184,15 @@ contains
       integer, intent(in) :: n_equation
       !> Receives lists and pattern
       type(equations_t), intent(inout) :: equations
-      integer :: e, j, side, pair(2, size(springs%equation, 2)), next(n_equation)
+      integer :: e, j, side, next(n_equation)
+      integer :: pair(2, size(springs%equation, 2) + size(equations%bars%entry))
 
       if (allocated(equations%entry)) &
          & deallocate (equations%entry, equations%first_joint, equations%joint)
-      allocate (equations%entry(size(pair, 2)), source=0)
+      allocate (equations%entry(size(springs%equation, 2)), source=0)
       allocate (equations%first_joint(n_equation + 1), source=0)
       e = 0
-      do j = 1, size(pair, 2)
+      do j = 1, size(springs%equation, 2)
          do side = 1, 2
             associate (count => equations%first_joint(springs%equation(side, j) + 1))
                if (springs%equation(side, j) > 0) count = count + 1
@@ -170,6 +203,14 @@ contains
          equations%entry(j) = e
          pair(:, e) = springs%equation(:, j)
       end do
+      do j = 1, size(equations%bars%entry)
+         associate (block => equations%bars%equation(:, j))
+            if (any(block == 0) .or. block(1) == block(2)) cycle
+            e = e + 1
+            equations%bars%entry(j) = e
+            pair(:, e) = block
+         end associate
+      end do
       call set_pattern(equations%matrix, n_dof, n_equation, pair(:, :e))
       equations%first_joint(1) = 1
       do e = 1, n_equation
@@ -177,7 +218,7 @@ contains
       end do
       allocate (equations%joint(equations%first_joint(n_equation + 1) - 1))
       next = equations%first_joint(:n_equation)
-      do j = 1, size(pair, 2)
+      do j = 1, size(springs%equation, 2)
          do side = 1, 2
             e = springs%equation(side, j)
             if (e == 0) cycle
@@ -187,8 +228,8 @@ contains
       end do
    end subroutine list_joints
 
-   !> Take over springs whose rows have changed while the coupled pairs have not; all joints stuck
-   pure subroutine take_springs(springs, equations)
+   !> Stiffness of the springs if all joints are stuck
+   pure subroutine add_stuck_springs(springs, equations)
       !> The springs of the joints
       type(joint_springs_t), intent(in) :: springs
       !> Receives the stiffness of the springs
@@ -209,7 +250,7 @@ contains
       do j = 1, size(equations%entry)
          call couple(springs, cone_t(), j, equations)
       end do
-   end subroutine take_springs
+   end subroutine add_stuck_springs
 
    !> Motion of all blocks if every joint keeps to its face
    pure subroutine solve_faces(equations, springs, cone, face, trial, motion)
@@ -227,6 +268,7 @@ contains
       real(wp), intent(inout) :: motion(:, :)
       integer :: j
 
+      call refresh(springs, equations)
       call hold_faces(equations, springs, cone, face)
       if (.not. equations%factor%usable) return
       motion = equations%load

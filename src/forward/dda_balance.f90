@@ -20,7 +20,7 @@ module dda_balance
    real(wp), parameter :: felt_share = 1.0e-3_wp
 
    !> Where rounding presses a block with this multiple of its load, it is noise that moves it
-   real(wp), parameter :: drowned = 10.0_wp
+   real(wp), parameter :: noise = 10.0_wp
 
 contains
 
@@ -79,7 +79,7 @@ contains
             if (springs%equation(side, j) > 0) least = min(least, own(springs%equation(side, j)))
          end do
          is_drowned = is_drowned .or. least > 0.0_wp &
-            & .and. epsilon(rounding)*rounding*springs%stiffness(j) > drowned*least
+            & .and. epsilon(rounding)*rounding*springs%stiffness(j) > noise*least
       end do
    end function is_drowned
 

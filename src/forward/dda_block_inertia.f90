@@ -2,6 +2,7 @@
 !> (Shi: df11 to df16)
 module dda_block_inertia
    use dda_assembly, only : equations_t
+   use dda_bar_springs, only : add_bars, couple_bars, follow_bars
    use dda_block_system, only : block_system_t
    use dda_deformation, only : turned_tensor
    use dda_elasticity, only : stress_load
@@ -9,11 +10,17 @@ module dda_block_inertia
    use dda_inertia, only : mass_matrix
    use dda_kinds, only : wp
    use dda_outer_loads, only : outer_loads
+   use dda_material, only : elasticity_matrix
    use dda_settings, only : settings_t
    implicit none
    private
 
-   public :: assemble_blocks, damping_rate, turn_masses, kinetic_energy, packed_velocity
+   public :: assemble_blocks, damping_rate, turn_masses, hold_energy, kinetic_energy
+   public :: packed_velocity, strain_follows
+
+   !> A block whose strain swings by more than this angle in the longest step [rad] has no strain
+   !> rate: its strain follows its load
+   real(wp), parameter :: resolved = 1.0_wp
 
 contains
 
@@ -59,6 +66,9 @@ contains
       call follow_fixed_points(system, settings, finish, dt, equations%fixed)
       call add_fixed_springs(equations%fixed, equations%fixed%target, equations%base, &
          & equations%load)
+      call follow_bars(system, settings, equations%bars)
+      call add_bars(equations%bars, 1.0_wp, equations%base, equations%load)
+      call couple_bars(equations%bars, equations%matrix%pair, .true., equations%matrix%coupling)
    end subroutine assemble_blocks
 
    !> Rate of mass damping in a dynamic step: never more than what would stop a block within it
@@ -106,6 +116,33 @@ contains
       end do
    end function kinetic_energy
 
+   !> Let the velocities have no more energy than there is: mix into them those of constant
+   !> acceleration. Momentum stays, and a mixture of admissible impulses is admissible
+   pure subroutine hold_energy(equations, steady, allowed, velocity, share)
+      !> The equations, for the masses
+      type(equations_t), intent(in) :: equations
+      !> Velocities at the end of constant acceleration: (n_dof, n_equation)
+      real(wp), intent(in) :: steady(:, :)
+      !> The energy [J/m]
+      real(wp), intent(in) :: allowed
+      !> The velocities: (n_dof, n_equation)
+      real(wp), intent(inout) :: velocity(:, :)
+      !> Share of those of constant acceleration that is mixed into them
+      real(wp), intent(out) :: share
+      real(wp) :: excess, slope, square, root
+
+      share = 0.0_wp
+      excess = kinetic_energy(equations, velocity) - allowed
+      if (.not. excess > 0.0_wp) return
+      square = kinetic_energy(equations, steady - velocity)
+      slope = kinetic_energy(equations, steady) - kinetic_energy(equations, velocity) - square
+      ! excess + share*slope + share**2*square = 0
+      root = slope**2 - 4.0_wp*excess*square
+      if (.not. root > 0.0_wp .or. .not. slope < 0.0_wp) return
+      share = min(1.0_wp, 2.0_wp*excess/(sqrt(root) - slope))
+      velocity = velocity + share*(steady - velocity)
+   end subroutine hold_energy
+
    !> Velocities as the equations have them
    pure function packed_velocity(system, n_dof) result(velocity)
       !> The blocks
@@ -121,4 +158,25 @@ contains
             & velocity(:, system%equation(b)) = system%velocity(:n_dof, b)
       end do
    end function packed_velocity
+
+   !> Blocks whose strain follows their load, as a step does not resolve its swinging. The fastest
+   !> is that across the narrow side of the block: A D11/(rho S)
+   pure function strain_follows(system, dt) result(follows)
+      !> The blocks
+      type(block_system_t), intent(in) :: system
+      !> Length of the longest step [s]
+      real(wp), intent(in) :: dt
+      !> The answer: (n_block)
+      logical :: follows(size(system%equation))
+      real(wp) :: d(3, 3), narrow
+      integer :: b
+
+      do b = 1, size(follows)
+         d = elasticity_matrix(system%materials(system%material(b)))
+         associate (s => system%second(:, b))
+            narrow = (s(1) + s(2))/2.0_wp - norm2([(s(1) - s(2))/2.0_wp, s(3)])
+            follows(b) = dt**2*system%area(b)*d(1, 1) > resolved**2*system%density(b)*narrow
+         end associate
+      end do
+   end function strain_follows
 end module dda_block_inertia

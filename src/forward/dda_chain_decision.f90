@@ -1,5 +1,5 @@
-!> Does a chain stand: forces of its joints that balance the loads within their cones prove that it
-!> does, a mechanism on which the loads do work that it does not
+!> Whether a chain is stable: joint forces within their cones that balance the loads prove that it
+!> is, a mechanism on which the loads do work that it is not
 module dda_chain_decision
    use dda_chain, only : chain_t
    use dda_chain_balance, only : carry_forces, cone_of, holds, influence, &
@@ -18,7 +18,7 @@ module dda_chain_decision
 
    !> Forces beyond the cones by less than so many times their rounding prove nothing
    real(wp), parameter :: doubtful = 4.0_wp
-   !> Joints that fail as much as their neighbours but for this share do so by rounding
+   !> Joints that fail as much as their neighbours except for this share do so by rounding
    real(wp), parameter :: tie = 1.0e-6_wp
 
 contains
@@ -61,7 +61,7 @@ contains
             outcome%rest_tolerance = outcome%acceleration_ratio*doubtful*noise/worst
          else if (worst > noise) then
             outcome%verdict = verdict%undecided
-            outcome%reason = "the forces lie beyond the joints' limits by no more than rounding"
+            outcome%reason = "joint forces exceed their limits by no more than round-off"
          else
             outcome%verdict = verdict%stable
             ! the plane of symmetry is smooth

@@ -1,4 +1,4 @@
-!> The whole of what the left half of a row that is its own mirror image has decided
+!> Expand the result of a half model by symmetry
 module dda_chain_unfold
    use dda_chain, only : chain_t
    use dda_decision, only : decision_t

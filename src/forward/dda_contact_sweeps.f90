@@ -8,13 +8,18 @@
 !>
 !> That ends at the forces of Coulomb's law, bounds and all, without a factorisation. It ends soon
 !> where the forces of the step before are a good beginning or blocks are few, and slowly in tall
-!> stacks; these are left to the open-close loop, which goes on from there.
+!> stacks. Blocks that no contact joins know nothing of one another: each such group is swept by
+!> itself, and those that would take long go on by interior springs (`dda_contact_interior`).
+!>
+!> Equation (M5) of docs/method.md
 module dda_contact_sweeps
    use dda_assembly, only : equations_t
+   use dda_contact_groups, only : group_joints
+   use dda_contact_interior, only : solve_interior
+   use dda_contact_view, only : contact_view_t, move_blocks, see_joints
    use dda_friction_cone, only : cone_t, joint_face_t
    use dda_joint_springs, only : joint_springs_t
    use dda_kinds, only : wp
-   use dda_small_cholesky, only : cholesky, solved
    use dda_spring_products, only : relative_displacement
    use dda_step_state, only : step_state_t
    implicit none
@@ -22,25 +27,17 @@ module dda_contact_sweeps
 
    public :: sweep_contacts
 
-   !> What the joints see of one step
-   type :: view_t
-      !> Motion of the two blocks by a unit of each force: (n_dof, 3, 2, n_joint) [m/(N/m)]
-      real(wp), allocatable :: answer(:, :, :, :)
-      !> Openings and slip of the joint by a unit of each of its forces: (3, 3, n_joint) [m/(N/m)]
-      real(wp), allocatable :: give(:, :, :)
-      !> Gaps before the motion: (3, n_joint) [m]
-      real(wp), allocatable :: gap(:, :)
-   end type view_t
-
    !> Change of a force that counts as none, over the sum of all that bear on the blocks
    real(wp), parameter :: tolerance = 1.0e-15_wp
-   !> After this many sweeps another measure will do
-   integer, parameter :: strictly = 64
    !> Change of an opening or slip that counts as none, over the size of the smallest block
    real(wp), parameter :: no_matter = 1.0e-9_wp
-   !> Multiple of it that will do where more sweeps bring no less
+   !> The same of a force, over the largest of its group
+   real(wp), parameter :: no_force = 1.0e-7_wp
+   !> Few blocks settle to rounding in so many sweeps
+   integer, parameter :: strictly = 64
+   !> Multiple of no_matter that will do where more sweeps bring no less
    real(wp), parameter :: coarse = 1.0e2_wp
-   !> The same where they bring no less without haste either
+   !> The same where they bring no less without haste either, or behind interior springs
    real(wp), parameter :: coarsest = 1.0e4_wp
    !> After this many sweeps a change that falls no more ends them
    integer, parameter :: plain_sweeps = 1000
@@ -52,6 +49,14 @@ module dda_contact_sweeps
    integer, parameter :: patience = 100
    !> What counts as noticeable
    real(wp), parameter :: falling = 0.8_wp
+   !> Groups of more joints than this may go on by interior springs
+   integer, parameter :: few = 2
+   !> Sweeps that cost as much as interior springs
+   integer, parameter :: worth = 32
+
+   !> What a group is swept for: to rounding, to see whether it settles soon, or to make good what
+   !> interior springs leave
+   integer, parameter :: to_the_end = 1, soon = 2, afterwards = 3
 
 contains
 
@@ -64,74 +69,139 @@ contains
       !> Multipliers and trial forces to begin with in; motion, forces and faces out, as far as they
       !> came
       type(step_state_t), intent(inout) :: state
-      type(view_t) :: view
-      real(wp), dimension(3, size(springs%stiffness)) :: before, force, way
-      real(wp) :: change(2), enough(2), last, noise, square
+      type(contact_view_t) :: view
+      real(wp) :: force(3, size(springs%stiffness)), enough(2), noise
       real(wp) :: motion(size(state%motion, 1), 0:size(state%motion, 2))
-      logical :: active(size(springs%stiffness)), hasty
-      integer :: sweep
+      integer :: g, n, joint(size(springs%stiffness)), first(size(springs%stiffness) + 1)
+      logical :: settled(size(springs%stiffness)), left(size(springs%stiffness))
 
       call see_joints(equations, springs, state, view)
+      call group_joints(springs, size(state%motion, 2), n, first, joint)
       force = state%multiplier
       motion(:, 0) = 0.0_wp
-      call move_blocks(equations, springs, force, motion(:, 1:))
+      call move_blocks(equations, springs, view, force, motion(:, 1:))
       noise = min(1.0_wp, state%fineness)*equations%gap_noise
       enough = [tolerance*equations%force_scale, no_matter*state%fineness*smallest(equations)]
+      left = .false.
+      do g = 1, n
+         associate (of_group => joint(first(g):first(g + 1) - 1))
+            call sweep_group(of_group, merge(soon, to_the_end, size(of_group) > few), springs, &
+               & view, noise, enough, force, motion, settled(g))
+            if (.not. settled(g)) left(first(g):first(g + 1) - 1) = .true.
+         end associate
+      end do
+      state%passes = state%passes + 1
+      if (any(left)) then
+         call solve_interior(equations, springs, view, pack(joint, left), force, motion(:, 1:), &
+            & state%passes)
+         call move_blocks(equations, springs, view, force, motion(:, 1:))
+         do g = 1, n
+            if (.not. settled(g)) call sweep_group(joint(first(g):first(g + 1) - 1), afterwards, &
+               & springs, view, noise, enough, force, motion, settled(g))
+         end do
+      end if
+      state%settled = all(settled(:n))
+      call keep_forces(equations, springs, view, force, state)
+   end subroutine sweep_contacts
+
+   !> Sweep one group until nothing changes, or until that is seen to take too long
+   pure subroutine sweep_group(joint, purpose, springs, view, noise, enough, force, motion, settled)
+      !> Joints of the group: (n)
+      integer, intent(in) :: joint(:)
+      !> What for: to_the_end, soon or afterwards
+      integer, intent(in) :: purpose
+      !> The springs of the joints
+      type(joint_springs_t), intent(in) :: springs
+      !> What the joints see
+      type(contact_view_t), intent(in) :: view
+      !> Gap that rounding can make [m]
+      real(wp), intent(in) :: noise
+      !> Changes that count as none, of a force [N/m] and of a gap [m]: (2)
+      real(wp), intent(in) :: enough(2)
+      !> Forces of all joints: (3, n_joint) [N/m]
+      real(wp), intent(inout) :: force(:, :)
+      !> Motion of the blocks, of those that do not move first: (n_dof, 0:n_equation)
+      real(wp), intent(inout) :: motion(:, 0:)
+      !> Whether it is settled
+      logical, intent(out) :: settled
+      real(wp) :: before(3, size(joint)), change(2), last, lately, square, wanted(2)
+      real(wp) :: way(3, size(joint))
+      logical :: active(size(joint)), hasty
+      integer :: sweep
+
       last = huge(last)
+      lately = huge(last)
       square = 0.0_wp
       way = 0.0_wp
       hasty = .true.
-      active = .true.
-      state%settled = .false.
+      settled = .false.
       do sweep = 0, max_sweeps
          change = 0.0_wp
          if (modulo(sweep, round) == 0) active = .true.
-         before = force
-         call sweep_twice(springs, view, noise, active, force, motion, change)
-         state%settled = modulo(sweep, round) == 0 .and. (change(1) <= enough(1) &
-            & .or. sweep >= strictly .and. change(2) <= enough(2))
-         if (state%settled) exit
+         before = force(:, joint)
+         call sweep_twice(joint, springs, view, noise, active, force, motion, change)
+         if (modulo(sweep, round) == 0) then
+            wanted = [max(enough(1), no_force*maxval(abs(force(:, joint)))), enough(2)]
+            if (purpose == afterwards .and. sweep > 0) wanted = coarsest*wanted
+            settled = change(1) <= enough(1) .or. all(change <= wanted) &
+               & .and. (purpose /= to_the_end .or. sweep >= strictly)
+            if (settled) exit
+            if (purpose == soon .and. sweep > 0) then
+               if (takes_long(maxval(change/wanted), lately)) exit
+            end if
+            lately = maxval(change/wanted)
+         end if
          if (modulo(sweep, patience) == 0 .and. sweep > 0) then
             if (.not. change(2) < falling*last) then
-               state%settled = change(2) <= merge(coarse, coarsest, hasty)*enough(2)
-               if (state%settled .or. sweep >= plain_sweeps) exit
+               settled = change(2) <= merge(coarse, coarsest, hasty)*enough(2)
+               if (settled .or. sweep >= plain_sweeps) exit
                hasty = .false.
             end if
             last = change(2)
          end if
          ! not before an end: the forces that it goes on to need not be admissible
-         if (hasty) call go_on(springs, view, force - before, square, way, force, motion)
+         if (hasty) call go_on(joint, springs, view, force(:, joint) - before, square, way, force, &
+            & motion)
       end do
-      call keep_forces(equations, springs, view, force, state)
-   end subroutine sweep_contacts
+   end subroutine sweep_group
+
+   !> Whether a change that falls as it did in the last round needs more sweeps than are worth it
+   pure logical function takes_long(change, lately)
+      !> The change over what counts as none
+      real(wp), intent(in) :: change
+      !> That of a round before
+      real(wp), intent(in) :: lately
+
+      takes_long = .not. change < lately
+      if (.not. takes_long) takes_long = -log(change) < worth/round*log(change/lately)
+   end function takes_long
 
    !> One sweep over the joints forwards and one backwards
-   pure subroutine sweep_twice(springs, view, noise, active, force, motion, change)
+   pure subroutine sweep_twice(joint, springs, view, noise, active, force, motion, change)
+      !> The joints: (n)
+      integer, intent(in) :: joint(:)
       !> The springs of the joints
       type(joint_springs_t), intent(in) :: springs
       !> What the sweeps need of the joints
-      type(view_t), intent(in) :: view
+      type(contact_view_t), intent(in) :: view
       !> Gap that rounding can make [m]
       real(wp), intent(in) :: noise
-      !> Joints that are looked at; after it, those that carry a force: (n_joint)
+      !> Joints that are looked at; after it, those that carry a force: (n)
       logical, intent(inout) :: active(:)
-      !> Forces of the joints: (3, n_joint) [N/m]
+      !> Forces of all joints: (3, n_joint) [N/m]
       real(wp), intent(inout) :: force(:, :)
       !> Motion of the blocks, of those that do not move first: (n_dof, 0:n_equation)
       real(wp), intent(inout) :: motion(:, 0:)
       !> Largest change of a force [N/m] and of a gap [m]: (2)
       real(wp), intent(inout) :: change(2)
-      integer :: i, j
+      integer :: i, j, k
 
-      do i = 1, 2*size(active)
-         j = merge(i, 2*size(active) + 1 - i, i <= size(active))
-         if (.not. active(j)) cycle
-         if (size(motion, 1) == 3) then
-            call relax(3, springs, view, j, noise, force(:, j), motion, change)
-         else
-            call relax(6, springs, view, j, noise, force(:, j), motion, change)
-         end if
-         active(j) = any(abs(force(:, j)) > 0.0_wp)
+      do i = 1, 2*size(joint)
+         k = merge(i, 2*size(joint) + 1 - i, i <= size(joint))
+         if (.not. active(k)) cycle
+         j = joint(k)
+         call relax(size(motion, 1), springs, view, j, noise, force(:, j), motion, change)
+         active(k) = any(abs(force(:, j)) > 0.0_wp)
       end do
    end subroutine sweep_twice
 
@@ -142,15 +212,14 @@ contains
       !> The springs of the joints
       type(joint_springs_t), intent(in) :: springs
       !> What the sweeps need of the joints
-      type(view_t), intent(in) :: view
+      type(contact_view_t), intent(in) :: view
       !> Forces of the joints: (3, n_joint) [N/m]
       real(wp), intent(in) :: force(:, :)
       !> Receives them
       type(step_state_t), intent(inout) :: state
       integer :: j, k
 
-      call move_blocks(equations, springs, force, state%motion)
-      state%passes = state%passes + 1
+      call move_blocks(equations, springs, view, force, state%motion)
       state%increment = relative_displacement(springs, state%motion)
       state%multiplier = force
       state%force = force
@@ -171,79 +240,22 @@ contains
       smallest = sqrt(12.0_wp*minval(equations%mass(3, 3, :)/equations%mass(1, 1, :)))
    end function smallest
 
-   !> How the blocks answer the forces of each joint
-   pure subroutine see_joints(equations, springs, state, view)
-      !> Blocks assembled
-      type(equations_t), intent(in) :: equations
-      !> The springs of the joints
-      type(joint_springs_t), intent(in) :: springs
-      !> The step, for the gaps
-      type(step_state_t), intent(in) :: state
-      !> The view
-      type(view_t), intent(out) :: view
-      real(wp) :: lower(size(state%motion, 1), size(state%motion, 1), size(state%motion, 2))
-      integer :: e, j, k, side
-
-      do e = 1, size(lower, 3)
-         lower(:, :, e) = cholesky(equations%base(:, :, e))
-      end do
-      allocate (view%answer, mold=springs%row)
-      allocate (view%give(3, 3, size(springs%stiffness)), source=0.0_wp)
-      allocate (view%gap, mold=state%start)
-      do j = 1, size(springs%stiffness)
-         view%gap(:, j) = (state%multiplier(:, j) - state%start(:, j))/springs%stiffness(j)
-         do side = 1, 2
-            e = springs%equation(side, j)
-            do k = 1, 3
-               view%answer(:, k, side, j) = 0.0_wp
-               if (e == 0) cycle
-               view%answer(:, k, side, j) = solved(lower(:, :, e), springs%row(:, k, side, j))
-               view%give(:, k, j) = view%give(:, k, j) &
-                  & + matmul(view%answer(:, k, side, j), springs%row(:, :, side, j))
-            end do
-         end do
-      end do
-   end subroutine see_joints
-
-   !> Motion of the blocks under given joint forces
-   pure subroutine move_blocks(equations, springs, force, motion)
-      !> Blocks assembled
-      type(equations_t), intent(in) :: equations
-      !> The springs of the joints
-      type(joint_springs_t), intent(in) :: springs
-      !> Joint forces: (3, n_joint) [N/m]
-      real(wp), intent(in) :: force(:, :)
-      !> The motion: (n_dof, n_equation)
-      real(wp), intent(out) :: motion(:, :)
-      integer :: e, j, side
-
-      motion = equations%load
-      do j = 1, size(force, 2)
-         do side = 1, 2
-            e = springs%equation(side, j)
-            if (e > 0) motion(:, e) = motion(:, e) &
-               & + matmul(springs%row(:, :, side, j), force(:, j))
-         end do
-      end do
-      do e = 1, size(motion, 2)
-         motion(:, e) = solved(cholesky(equations%base(:, :, e)), motion(:, e))
-      end do
-   end subroutine move_blocks
-
    !> Go on in the direction of the sweeps so far, as conjugate gradients do, unless the last sweep
    !> has changed more than the one before
-   pure subroutine go_on(springs, view, change, square, way, force, motion)
+   pure subroutine go_on(joint, springs, view, change, square, way, force, motion)
+      !> Joints of the group: (n)
+      integer, intent(in) :: joint(:)
       !> The springs of the joints
       type(joint_springs_t), intent(in) :: springs
       !> What the joints see
-      type(view_t), intent(in) :: view
-      !> What the sweep has changed: (3, n_joint) [N/m]
+      type(contact_view_t), intent(in) :: view
+      !> What the sweep has changed: (3, n) [N/m]
       real(wp), intent(in) :: change(:, :)
       !> Its square; that of the sweep before in
       real(wp), intent(inout) :: square
-      !> The direction: (3, n_joint) [N/m]
+      !> The direction: (3, n) [N/m]
       real(wp), intent(inout) :: way(:, :)
-      !> Joint forces: (3, n_joint) [N/m]
+      !> Forces of all joints: (3, n_joint) [N/m]
       real(wp), intent(inout) :: force(:, :)
       !> Motion of the blocks: (n_dof, 0:n_equation)
       real(wp), intent(inout) :: motion(:, 0:)
@@ -261,8 +273,8 @@ contains
       where (.not. abs(change) > 0.0_wp) way = 0.0_wp
       do j = 1, size(change, 2)
          if (.not. any(abs(way(:, j)) > 0.0_wp)) cycle
-         force(:, j) = force(:, j) + ratio*way(:, j)
-         call push(size(motion, 1), springs, view, j, ratio*way(:, j), motion)
+         force(:, joint(j)) = force(:, joint(j)) + ratio*way(:, j)
+         call push(size(motion, 1), springs, view, joint(j), ratio*way(:, j), motion)
       end do
       way = ratio*way + change
    end subroutine go_on
@@ -275,7 +287,7 @@ contains
       !> The springs of the joints
       type(joint_springs_t), intent(in) :: springs
       !> What the joints see
-      type(view_t), intent(in) :: view
+      type(contact_view_t), intent(in) :: view
       !> Number of the joint
       integer, intent(in) :: j
       !> Gaps that rounding makes: they ask for no force, which could grow without end [m]
@@ -292,10 +304,15 @@ contains
       a = springs%equation(1, j)
       b = springs%equation(2, j)
       gap = view%gap(:, j)
-      do k = 1, 3
-         do i = 1, n_dof
+      ! three unknowns at a time, so that the compiler knows the length
+      do i = 1, n_dof, 3
+         do k = 1, 3
             gap(k) = gap(k) + springs%row(i, k, 1, j)*motion(i, a) &
-               & + springs%row(i, k, 2, j)*motion(i, b)
+               & + springs%row(i + 1, k, 1, j)*motion(i + 1, a) &
+               & + springs%row(i + 2, k, 1, j)*motion(i + 2, a) &
+               & + springs%row(i, k, 2, j)*motion(i, b) &
+               & + springs%row(i + 1, k, 2, j)*motion(i + 1, b) &
+               & + springs%row(i + 2, k, 2, j)*motion(i + 2, b)
          end do
       end do
       before = force
@@ -327,7 +344,7 @@ contains
       !> The springs of the joints
       type(joint_springs_t), intent(in) :: springs
       !> What the joints see
-      type(view_t), intent(in) :: view
+      type(contact_view_t), intent(in) :: view
       !> Number of the joint
       integer, intent(in) :: j
       !> The change: (3) [N/m]
@@ -338,11 +355,12 @@ contains
 
       a = springs%equation(1, j)
       b = springs%equation(2, j)
-      do k = 1, 3
-         if (.not. abs(change(k)) > 0.0_wp) cycle
-         do i = 1, n_dof
-            motion(i, a) = motion(i, a) + change(k)*view%answer(i, k, 1, j)
-            motion(i, b) = motion(i, b) + change(k)*view%answer(i, k, 2, j)
+      do i = 1, n_dof, 3
+         do k = i, i + 2
+            motion(k, a) = motion(k, a) + change(1)*view%answer(k, 1, 1, j) &
+               & + change(2)*view%answer(k, 2, 1, j) + change(3)*view%answer(k, 3, 1, j)
+            motion(k, b) = motion(k, b) + change(1)*view%answer(k, 1, 2, j) &
+               & + change(2)*view%answer(k, 2, 2, j) + change(3)*view%answer(k, 3, 2, j)
          end do
       end do
    end subroutine push

@@ -1,4 +1,4 @@
-!> Does a structure stand under Coulomb friction: the decision that searches are made of
+!> Whether a structure is stable under Coulomb friction: the decision that searches are made of
 !>
 !> The convex problem, in which sliding opens the joint, comes first: what falls there falls under
 !> every flow rule. What stands there without sliding stands. What slides before it comes to rest is
@@ -92,11 +92,12 @@ contains
       call decide_graph(settings, system, contacts, bare, proof)
       if (proof%end == path_end%collapsed) then
          call record_collapse(settings, system, contacts, proof, decision, album)
-      else if (proof%end == path_end%reached .and. (bare .or. proof%on_path)) then
+      else if (proof%end == path_end%reached .and. (bare .or. proof%on_path &
+         & .or. .not. may_run(settings))) then
          call record_rest(settings, system, contacts, proof, decision)
       else if (proof%end == path_end%reached) then
          call share_forces(settings, system, contacts, proof, decision, album)
-      else if (proof%unproven) then
+      else if (proof%unproven .and. may_run(settings)) then
          call decide_by_steps(settings, system, contacts, decision, album)
       else
          decision%system = system
@@ -110,6 +111,14 @@ contains
             & allocate (outcome%motion(settings%n_dof, maxval(system%equation)), source=0.0_wp)
       end associate
    end subroutine decide_by_graph
+
+   !> Whether a run of steps can tell what the graph does not: steps know no bounded forces
+   pure logical function may_run(settings)
+      !> Settings of the run
+      type(settings_t), intent(in) :: settings
+
+      may_run = .not. allocated(settings%boundary%bounded)
+   end function may_run
 
    !> How the blocks of what stands share out the forces: as elastic blocks do, or where joints
    !> slide, as the loading path leaves them
@@ -203,7 +212,7 @@ contains
       decision%flow = proof%flow
       decision%system = system
       decision%contacts = contacts
-      if (proof%flow == flow_rule%associated .and. .not. proof%is_told) then
+      if (proof%flow == flow_rule%associated .and. .not. proof%is_told .and. may_run(settings)) then
          convex = settings
          convex%flow = flow_rule%associated
          call run_to_verdict(convex, decision%system, decision%contacts, decision%outcome, album)
@@ -216,7 +225,7 @@ contains
       decision%outcome%verdict = verdict%collapsed
       if (allocated(decision%outcome%motion)) deallocate (decision%outcome%motion)
       allocate (decision%outcome%motion(settings%n_dof, maxval(system%equation)), source=0.0_wp)
-      decision%outcome%motion(:3, :) = proof%mechanism
+      decision%outcome%motion(:3, :) = proof%mechanism(:, :maxval(system%equation))
       call show_mechanism(settings, system, proof, decision%contacts)
       if (present(album)) call show_end(settings, decision, album)
    end subroutine record_collapse

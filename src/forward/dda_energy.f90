@@ -1,4 +1,4 @@
-!> Where the energy of a dynamic run is, and where it went
+!> Energy balance of a dynamic run
 module dda_energy
    use dda_assembly, only : equations_t
    use dda_block_inertia, only : damping_rate, kinetic_energy, packed_velocity

@@ -1,5 +1,5 @@
-!> Corners that a step would leave inside a neighbour, because the edge that they go in by is
-!> another one than that which they were held off
+!> Penetration check of a step: corners that would end inside a neighbour because they enter by
+!> another edge than that of their contact
 module dda_entry
    use dda_block_system, only : block_system_t
    use dda_block_update, only : update_blocks, update_contacts

@@ -1,4 +1,4 @@
-!> Whether a block has fallen: it has turned over, or has left by its own size what carried it
+!> Whether a block has collapsed: it has turned over, or has left its support by its own size
 !>
 !> What comes to rest after that is another structure than the one in question. A block may go far
 !> and not have fallen: with others that settle under it, or with what is led.

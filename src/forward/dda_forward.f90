@@ -3,6 +3,7 @@ module dda_forward
    use dda_assembly, only : equations_t, new_equations
    use dda_balance, only : is_drowned
    use dda_block_system, only : block_system_t
+   use dda_collapse_test, only : has_collapsed, still_moves_away
    use dda_condition, only : factored_condition
    use dda_contact_detection, only : contacts_t
    use dda_energy, only : audit_step, keep_energy
@@ -11,6 +12,7 @@ module dda_forward
    use dda_frames, only : album_t, keep_pictures
    use dda_kinds, only : wp
    use dda_load_clock, only : goes_on_at, has_path
+   use dda_reactions, only : keep_reactions
    use dda_rest, only : leaps, leave_rest, rest_t, return_to_rest
    use dda_settings, only : settings_t
    use dda_step, only : advance, begin_step
@@ -128,23 +130,42 @@ contains
       outcome%steps = march%steps
       outcome%passes = march%passes
       outcome%factorisations = equations%factorisations
+      call conclude(settings, march, error, outcome)
+   end subroutine run_to_verdict
+
+   !> What the end of a run says
+   pure subroutine conclude(settings, march, error, outcome)
+      !> Settings of the run
+      type(settings_t), intent(in) :: settings
+      !> Where it ended
+      type(march_t), intent(in) :: march
+      !> Why no step settled; unallocated if it did
+      type(error_t), allocatable, intent(in) :: error
+      !> How it ended; receives the verdict, and why it is undecided
+      type(outcome_t), intent(inout) :: outcome
+
       if (allocated(error)) then
          outcome%verdict = verdict%undecided
          outcome%reason = error%message
+      else if (settings%dynamic .and. outcome%verdict == verdict%collapsed) then
+         continue
+      else if (settings%dynamic .and. still_moves_away(settings, march)) then
+         outcome%verdict = verdict%undecided
+         outcome%reason = "the blocks still move away at the end of the run; give a longer duration"
       else if (settings%dynamic .and. march%time >= settings%duration) then
          outcome%verdict = verdict%completed
       else if (settings%dynamic) then
          outcome%verdict = verdict%undecided
-         outcome%reason = "all steps are spent before the end of the run"
+         outcome%reason = "step limit reached before the end of the run"
       else if (outcome%verdict /= verdict%stable .and. march%drowned) then
          ! rounding may throw a block, but it does not balance one
          outcome%verdict = verdict%undecided
-         outcome%reason = "rounded coordinates press a small block with more than its weight; " &
-            & //"compute it apart from larger ones"
+         outcome%reason = "round-off of coordinates loads a small block with more than its " &
+            & //"weight; compute it apart from larger ones"
       else if (outcome%verdict == verdict%undecided) then
-         outcome%reason = "all steps are spent and neither rest nor collapse is proven"
+         outcome%reason = "step limit reached; neither equilibrium nor collapse established"
       end if
-   end subroutine run_to_verdict
+   end subroutine conclude
 
    !> One step and what it says of the blocks
    pure subroutine take_step(settings, system, contacts, equations, march, step, rest, neighbours, &
@@ -171,6 +192,7 @@ contains
       type(error_t), allocatable, intent(inout) :: error
       !> Receives pictures
       type(album_t), intent(inout), optional :: album
+      logical :: collapsed
 
       answer = verdict%undecided
       call advance(settings, system, contacts, equations, march, step, error)
@@ -186,8 +208,12 @@ contains
       if (settings%current .and. .not. settings%dynamic) &
          & march%has_fallen = has_fallen(system, neighbours, settings%boundary%held)
       if (step%whole .and. .not. settings%dynamic) answer = judge_verdict(march, step, settings)
-      if (present(album)) call keep_pictures(settings, system, contacts, march, step%farthest, &
-         & .false., album)
+      call has_collapsed(settings, system, march, collapsed)
+      if (collapsed) answer = verdict%collapsed
+      if (present(album)) then
+         call keep_reactions(settings, system, contacts, equations, step, album)
+         call keep_pictures(settings, system, contacts, march, step%farthest, .false., album)
+      end if
       if (answer == verdict%undecided) call next_interval(settings, system, step, march)
    end subroutine take_step
 

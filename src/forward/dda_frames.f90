@@ -1,5 +1,6 @@
 !> Pictures of a run: corners, stresses, joint forces and states at chosen steps
 module dda_frames
+   use dda_bar, only : bar_state_t
    use dda_block_system, only : block_system_t
    use dda_boundary, only : measured_point_t
    use dda_contact_detection, only : contacts_t
@@ -39,6 +40,8 @@ module dda_frames
       real(wp) :: farthest = 0.0_wp
       !> Faces that the forces lie on: (n_joint)
       type(joint_face_t), allocatable :: face(:)
+      !> The bars: (n_bar)
+      type(bar_state_t), allocatable :: bar(:)
    end type frame_t
 
    !> The pictures of a run
@@ -70,6 +73,15 @@ module dda_frames
       real(wp), allocatable :: when(:, :)
       !> Where the points are: (2, n_point, :) [m]
       real(wp), allocatable :: track(:, :, :)
+      !> How fast they are, in time: (2, n_point, :) [m/s]
+      real(wp), allocatable :: speed(:, :, :)
+      !> Supports whose reactions are kept in every step, as block and held point; unallocated where
+      !> none are: (2, n)
+      integer, allocatable :: support(:, :)
+      !> Reactions of the last step: (3, n) [N/m, N/m, N]
+      real(wp), allocatable :: reaction_now(:, :)
+      !> Those of all steps: (3, n, :)
+      real(wp), allocatable :: reaction(:, :, :)
    end type album_t
 
    !> What is so near to being due is: sums of steps are rounded
@@ -91,6 +103,7 @@ contains
       blank%begin = album%begin
       blank%audit%wanted = album%audit%wanted
       if (allocated(album%point)) blank%point = album%point
+      if (allocated(album%support)) blank%support = album%support
    end function blank_album
 
    !> Keep a picture if one is due, and where the measured points are
@@ -166,6 +179,7 @@ contains
          frame%moved = system%moved
          frame%motion = system%motion
          frame%stress = system%stress
+         if (allocated(system%bar)) frame%bar = system%bar
          frame%joint = contacts%joint
          frame%force = contacts%force
          frame%slip = contacts%increment(3, :)
@@ -186,32 +200,79 @@ contains
       real(wp), intent(in) :: time
       !> Receives the places
       type(album_t), intent(inout) :: album
-      real(wp), allocatable :: when(:, :), track(:, :, :)
       integer :: i, n
 
       if (.not. allocated(album%point)) return
-      if (.not. allocated(album%when)) &
-         & allocate (album%when(2, 64), album%track(2, size(album%point), 64))
       n = album%n_track
-      if (n == size(album%when, 2)) then
-         allocate (when(2, 2*n), track(2, size(album%point), 2*n))
-         when(:, :n) = album%when
-         track(:, :, :n) = album%track
-         call move_alloc(when, album%when)
-         call move_alloc(track, album%track)
-      end if
+      call make_room_for_track(n + 1, album)
       album%n_track = n + 1
+      if (allocated(album%reaction_now)) album%reaction(:, :, n + 1) = album%reaction_now
       album%when(:, n + 1) = [real(step, wp), time]
       do i = 1, size(album%point)
          associate (point => album%point(i)%point, b => album%point(i)%block, &
-            & place => album%track(:, i, n + 1))
+            & place => album%track(:, i, n + 1), speed => album%speed(:, i, n + 1))
             if (current) then
                place = moved_point(point, system%centroid(:, b), system%motion(:, b))
             else
                place = point + matmul(displacement_matrix(point, system%centroid(:, b)), &
                   & system%motion(:, b))
             end if
+            speed = speed_of(system, current, b, place, point)
          end associate
       end do
    end subroutine keep_track
+
+   !> Velocity of a point of a block
+   pure function speed_of(system, current, block, place, point) result(speed)
+      !> The blocks
+      type(block_system_t), intent(in) :: system
+      !> Whether they move
+      logical, intent(in) :: current
+      !> The block
+      integer, intent(in) :: block
+      !> Where the point is: (2) [m]
+      real(wp), intent(in) :: place(2)
+      !> Where it is in the reference shape: (2) [m]
+      real(wp), intent(in) :: point(2)
+      !> The velocity: (2) [m/s]
+      real(wp) :: speed(2)
+
+      associate (centre => system%centroid(:, block))
+         if (current) then
+            speed = matmul(displacement_matrix(place, centre + system%motion(1:2, block)), &
+               & system%velocity(:, block))
+         else
+            speed = matmul(displacement_matrix(point, centre), system%velocity(:, block))
+         end if
+      end associate
+   end function speed_of
+
+   !> Room for the ways of points and the reactions of so many steps
+   pure subroutine make_room_for_track(n, album)
+      !> Number of steps
+      integer, intent(in) :: n
+      !> The album
+      type(album_t), intent(inout) :: album
+      real(wp), allocatable :: when(:, :), track(:, :, :), speed(:, :, :), reaction(:, :, :)
+      integer :: before, room
+
+      before = 0
+      if (allocated(album%when)) before = size(album%when, 2)
+      if (n <= before) return
+      room = max(64, 2*before)
+      allocate (when(2, room), source=0.0_wp)
+      allocate (track(2, size(album%point), room), speed(2, size(album%point), room), source=0.0_wp)
+      if (allocated(album%support)) &
+         & allocate (reaction(3, size(album%support, 2), room), source=0.0_wp)
+      if (before > 0) then
+         when(:, :before) = album%when
+         track(:, :, :before) = album%track
+         speed(:, :, :before) = album%speed
+         if (allocated(reaction)) reaction(:, :, :before) = album%reaction
+      end if
+      call move_alloc(when, album%when)
+      call move_alloc(track, album%track)
+      call move_alloc(speed, album%speed)
+      call move_alloc(reaction, album%reaction)
+   end subroutine make_room_for_track
 end module dda_frames

@@ -1,5 +1,7 @@
 !> Coulomb friction without dilatancy: the shear force is bounded by friction times a normal force
 !> that has converged, never by one that has not
+!>
+!> Equation (M4) of docs/method.md
 module dda_friction
    use dda_assembly, only : equations_t
    use dda_friction_cone, only : cone_t

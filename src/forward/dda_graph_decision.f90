@@ -5,6 +5,7 @@
 !> dead loads at once, then what is live, from event to event, with slip remembered. The first load
 !> at which the blocks fall is the collapse, and all beyond it is collapsed.
 module dda_graph_decision
+   use dda_bar_joints, only : keep_bar_forces
    use dda_block_strain, only : strain_blocks
    use dda_block_system, only : block_system_t
    use dda_boundary, only : value_at
@@ -26,8 +27,7 @@ module dda_graph_decision
    private
 
    public :: graph_verdict_t, decide_graph, decides_as_graph, follow_stations, has_friction
-   public :: see_fall, slide_along
-   public :: show_mechanism, show_state
+   public :: see_fall, show_mechanism, show_state, slide_along
 
    !> A verdict and its proof
    type :: graph_verdict_t
@@ -126,14 +126,14 @@ contains
          verdict%end = path_end%reached
          call move_alloc(decision%force, verdict%force)
       else
-         verdict%reason = "limit analysis proves neither forces nor a mechanism beyond rounding"
+         verdict%reason = "limit analysis proves neither equilibrium nor collapse beyond round-off"
          verdict%unproven = .true.
       end if
       dead_alone = ubound(stations%tilt, 1) == 0
       verdict%on_path = verdict%end == path_end%reached .and. .not. dead_alone
       if (settings%verdict_flow == flow_rule%associated .or. .not. has_friction(graph)) return
       if (verdict%end /= path_end%reached .and. dead_alone) return
-      call follow_stations(settings, system, graph, stations, huge(1.0_wp), path)
+      call follow_stations(settings, system, graph, stations, path)
       path%n_factorisation = path%n_factorisation + verdict%n_factorisation
       path%unproven = verdict%unproven .or. dead_alone
       if (dead_alone .and. path%end == path_end%collapsed) path%end = path_end%undecided
@@ -249,7 +249,7 @@ contains
    end subroutine slide_along
 
    !> Follow the loading path from its dead loads to its end or its collapse
-   pure subroutine follow_stations(settings, system, graph, stations, cap, verdict)
+   pure subroutine follow_stations(settings, system, graph, stations, verdict)
       !> Settings of the run
       type(settings_t), intent(in) :: settings
       !> The blocks
@@ -258,8 +258,6 @@ contains
       type(joint_graph_t), intent(in) :: graph
       !> The stations
       type(load_stations_t), intent(in) :: stations
-      !> Share of the last leg at which the associated limit lies; huge if it is not known
-      real(wp), intent(in) :: cap
       !> How it ended
       type(graph_verdict_t), intent(out) :: verdict
       type(loading_path_t) :: path
@@ -283,7 +281,7 @@ contains
          call loads_at(stations, i, settings, system, graph, load, opening)
          rate%load = rate%load + load
          rate%opening = rate%opening + opening
-         call follow_path(path, state, rate, 1.0_wp, merge(cap, huge(cap), i == n), result)
+         call follow_path(path, state, rate, 1.0_wp, result)
          call count_up(result, verdict)
          verdict%station = i - 1
          verdict%share = result%reached
@@ -297,7 +295,7 @@ contains
       else if (result%reason == path_reason%too_many) then
          verdict%reason = "the loading path has too many jumps"
       else
-         verdict%reason = "a motion on the loading path does not settle"
+         verdict%reason = "a jump on the loading path does not converge"
       end if
    end subroutine follow_stations
 
@@ -381,6 +379,7 @@ contains
       if (allocated(verdict%state)) force = verdict%state%force
       if (size(force) == 0) return
       contacts%force = force(:, :n)
+      call keep_bar_forces(settings, force, system)
       if (settings%n_dof == 6) call strain_blocks(settings, last_history_time(settings), &
          & contacts%force, force(:, n + 1:), contacts, system)
       if (.not. allocated(verdict%state)) return

@@ -1,4 +1,4 @@
-!> The clock of what is live in a static run: loads, led points and the ground
+!> The clock of what is live in a static run: loads, prescribed displacements and the ground
 !>
 !> A history is a path from its beginning to its end, whatever the lengths of the steps. The clock
 !> goes on when the blocks are at rest, stands still until they are again, and goes back to the last

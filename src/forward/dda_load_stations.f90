@@ -91,7 +91,7 @@ contains
       type(settings_t), intent(in) :: settings
       !> The blocks
       type(block_system_t), intent(in) :: system
-      !> Their joints, the pins of held points last
+      !> Their joints, then the pins of held points, then those of bounded forces
       type(joint_graph_t), intent(in) :: graph
       !> Loads: (n_dof, n_block) [N/m, N/m, N]
       real(wp), intent(out) :: load(:, :)
@@ -100,6 +100,8 @@ contains
       real(wp) :: direction(2), force(2), shaking(2), of_block(6)
       integer :: b, e, i
 
+      load = 0.0_wp
+      call press_carriers(settings, system, load)
       direction = gravity_direction(stations%tilt(station))
       direction(1) = direction(1) + stations%push(station)
       shaking = -value_at(settings%boundary%base_acceleration, stations%time(station))
@@ -110,6 +112,11 @@ contains
             & system%area(b))
          load(:, e) = of_block(:size(load, 1))
       end do
+      if (allocated(graph%bound)) then
+         b = graph%n_block - size(graph%bound)
+         load(:, b + 1:) = 0.0_wp
+         load(1, b + 1:) = -graph%bound
+      end if
       opening = 0.0_wp
       call lead_pins(stations, station, settings, system, graph, opening)
       if (.not. allocated(settings%boundary%loaded)) return
@@ -124,6 +131,27 @@ contains
          end associate
       end do
    end subroutine loads_at
+
+   !> Loads of the carriers of bounded forces, the last blocks of a graph
+   pure subroutine press_carriers(settings, system, load)
+      !> Settings of the run
+      type(settings_t), intent(in) :: settings
+      !> The blocks
+      type(block_system_t), intent(in) :: system
+      !> Loads; theirs are set: (n_dof, n_block) [N/m, N/m, N]
+      real(wp), intent(inout) :: load(:, :)
+      integer :: e, i
+
+      if (.not. allocated(settings%boundary%bounded)) return
+      e = maxval(system%equation)
+      do i = 1, size(settings%boundary%bounded)
+         associate (most => settings%boundary%bounded(i)%most)
+            if (.not. most < huge(most)) cycle
+            e = e + 1
+            load(1, e) = most
+         end associate
+      end do
+   end subroutine press_carriers
 
    !> What led points make of their pins
    pure subroutine lead_pins(stations, station, settings, system, graph, opening)
@@ -143,7 +171,8 @@ contains
       integer :: i, j
 
       if (.not. allocated(settings%boundary%held)) return
-      j = count(graph%kind /= joint_kind%pin)
+      if (.not. any(graph%kind == joint_kind%pin)) return
+      j = findloc(graph%kind, joint_kind%pin, dim=1) - 1
       do i = 1, size(settings%boundary%held)
          associate (held => settings%boundary%held(i))
             if (system%equation(held%block) == 0) cycle
@@ -200,6 +229,7 @@ contains
       if (allocated(settings%boundary%held)) n = n + sum(bends(settings%boundary%held%path))
       if (allocated(settings%boundary%loaded)) n = n + sum(bends(settings%boundary%loaded%force))
       allocate (time(n))
+      if (n == 0) return
       n = 0
       call take_times(settings%boundary%base_acceleration, time, n)
       if (allocated(settings%boundary%held)) then

@@ -2,6 +2,7 @@
 !> nothing, so that the penalty leaves no trace
 module dda_multipliers
    use dda_assembly, only : equations_t
+   use dda_bar_springs, only : add_bars, couple_bars, judge_bars
    use dda_fixed_points, only : correct_fixed_forces
    use dda_friction, only : iterate_friction
    use dda_joint_springs, only : joint_springs_t
@@ -17,6 +18,8 @@ module dda_multipliers
 
    !> Most passes of the multipliers in one step
    integer, parameter :: max_multiplier_passes = 100
+   !> Most changes of the conditions of bars in one step; after the few only the worst bar changes
+   integer, parameter :: max_bar_passes = 200, few_bar_passes = 20
    !> Change of a force that counts as none, over the sum of all that bear on the blocks
    real(wp), parameter :: force_tolerance = 1.0e-10_wp
 
@@ -33,6 +36,33 @@ contains
       type(joint_springs_t), intent(in) :: springs
       !> Faces to begin with in, motion and joints out
       type(step_state_t), intent(inout) :: state
+      integer :: pass
+      logical :: agreed
+
+      do pass = 1, max_bar_passes
+         call settle_with_bars(settings, equations, springs, state)
+         if (.not. state%settled .or. size(equations%bars%entry) == 0) return
+         call add_bars(equations%bars, -1.0_wp, equations%base, equations%load)
+         call judge_bars(equations%bars, state%motion, pass > few_bar_passes, agreed)
+         call add_bars(equations%bars, 1.0_wp, equations%base, equations%load)
+         if (agreed) return
+         call couple_bars(equations%bars, equations%matrix%pair, .true., &
+            & equations%matrix%coupling)
+         equations%changed = .true.
+      end do
+      state%settled = .false.
+   end subroutine settle_joints
+
+   !> Settle the joints for given conditions of the bars
+   pure subroutine settle_with_bars(settings, equations, springs, state)
+      !> Settings of the run
+      type(settings_t), intent(in) :: settings
+      !> Blocks assembled; matrix and factor are made anew
+      type(equations_t), intent(inout) :: equations
+      !> The springs of the joints
+      type(joint_springs_t), intent(in) :: springs
+      !> Faces to begin with in, motion and joints out
+      type(step_state_t), intent(inout) :: state
 
       if (settings%current .and. settings%dynamic) then
          call settle_in_time(settings, (equations%fixed%target), equations, springs, state)
@@ -41,7 +71,7 @@ contains
       else
          call settle_once(settings, equations, springs, state)
       end if
-   end subroutine settle_joints
+   end subroutine settle_with_bars
 
    !> Settle the joints until neither the multipliers nor the forces at the held points change
    pure subroutine settle_exactly(settings, equations, springs, state)

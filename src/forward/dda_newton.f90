@@ -1,7 +1,10 @@
 !> Newton's method on the energy of a step, with an exact line search: the energy is convex and
 !> piecewise quadratic, so that it must end
+!>
+!> Equation (M1) of docs/method.md
 module dda_newton
    use dda_assembly, only : equations_t, solve_faces
+   use dda_bar_springs, only : bar_motion
    use dda_block_factor, only : substitute
    use dda_friction_cone, only : joint_face_t, project
    use dda_joint_springs, only : joint_springs_t
@@ -67,13 +70,16 @@ contains
       !> Whether rounding can make as much
       logical, intent(out) :: balanced
       real(wp) :: rounding(size(rest, 1), size(rest, 2)), noise
+      real(wp) :: coupled(size(rest, 1), size(rest, 2))
       integer :: e, j, side
 
       noise = force_noise(equations, springs, state)
+      coupled = bar_motion(equations%bars, state%motion)
       do e = 1, size(rest, 2)
-         rest(:, e) = equations%load(:, e) - matmul(equations%base(:, :, e), state%motion(:, e))
+         rest(:, e) = equations%load(:, e) - coupled(:, e) &
+            & - matmul(equations%base(:, :, e), state%motion(:, e))
          rounding(:, e) = 8.0_wp*epsilon(1.0_wp)*(abs(equations%load(:, e)) &
-            & + matmul(abs(equations%base(:, :, e)), abs(state%motion(:, e))))
+            & + abs(coupled(:, e)) + matmul(abs(equations%base(:, :, e)), abs(state%motion(:, e))))
       end do
       do j = 1, size(state%face)
          do side = 1, 2
@@ -107,8 +113,8 @@ contains
 
       start = relative_displacement(springs, from)
       rate = relative_displacement(springs, direction)
-      slope_at_zero = 0.0_wp
-      curvature = 0.0_wp
+      slope_at_zero = sum(bar_motion(equations%bars, direction)*from)
+      curvature = sum(bar_motion(equations%bars, direction)*direction)
       do e = 1, size(from, 2)
          slope_at_zero = slope_at_zero + dot_product(direction(:, e), &
             & matmul(equations%base(:, :, e), from(:, e)) - equations%load(:, e))

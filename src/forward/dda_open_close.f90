@@ -4,9 +4,11 @@
 !> linear system; each joint that disagrees with its face more than its neighbours do then changes
 !> it, as the simplex method pivots. Should a set of faces come again, only the worst joint does;
 !> should one come again then, Newton's method with an exact line search, which must end.
+!>
+!> Equation (M3) of docs/method.md
 module dda_open_close
    use, intrinsic :: iso_fortran_env, only : int64
-   use dda_assembly, only : equations_t, solve_faces
+   use dda_assembly, only : equations_t, refresh, solve_faces
    use dda_friction_cone, only : joint_face_t
    use dda_joint_springs, only : joint_springs_t
    use dda_kinds, only : wp
@@ -17,7 +19,7 @@ module dda_open_close
 
    public :: iterate_open_close, change_faces
 
-   !> Joints that disagree as much as the worst but for rounding change with it: mirror images do
+   !> Joints that disagree as much as the worst except for rounding change with it: mirror images do
    real(wp), parameter :: tie = 1.0e-9_wp
    !> Joints whose disagreement is below this share of the largest wait for their turn
    real(wp), parameter :: notable = 0.1_wp
@@ -45,6 +47,7 @@ contains
       integer :: change, most, since
       logical :: peaks
 
+      call refresh(springs, equations)
       most = merge(max_changes, min(max_changes, few_changes), equations%matrix%width <= 1)
       peaks = .true.
       if (present(one_by_one)) peaks = .not. one_by_one

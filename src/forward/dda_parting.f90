@@ -1,4 +1,4 @@
-!> Whether the lines that have parted blocks in a step were the right ones
+!> Whether the separating axes of a step were the right ones
 !>
 !> Where corners pass corners, which edge the one would go in by depends on the way that both take,
 !> and that is only known when the step has been settled. A line that has held off a block which

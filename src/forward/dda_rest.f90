@@ -1,4 +1,4 @@
-!> A rest on the path of a static run: what there is to go back to
+!> Converged states on the path of a static run, to return to
 module dda_rest
    use dda_assembly, only : equations_t, renew_springs
    use dda_block_system, only : block_system_t
@@ -33,7 +33,7 @@ module dda_rest
       real(wp) :: due = 0.0_wp
    end type rest_t
 
-   !> Free fall in a step in which points are led, over the way that they are led: their inertia
+   !> Free fall in a step with prescribed displacements, over these displacements: their inertia
    !> must not throw the blocks about
    real(wp), parameter :: led_fall = 1.0e4_wp
    !> Motions in one stride are smooth below this multiple of what the last stride lets expect

@@ -1,7 +1,8 @@
 !> The joints of a scene whose blocks keep their places, as a graph of rigid blocks
 module dda_scene_graph
+   use dda_bar_joints, only : add_bar_joints, add_nodes, n_bar_joints
    use dda_block_system, only : block_system_t
-   use dda_boundary, only : held_point_t
+   use dda_boundary, only : bounded_force_t, held_point_t
    use dda_contact_detection, only : contacts_t
    use dda_contact_types, only : joint_t
    use dda_deformation, only : displacement_matrix
@@ -14,18 +15,22 @@ module dda_scene_graph
 
    public :: scene_graph, has_pure_friction
 
+   !> Mass of such a node over that of a block
+   real(wp), parameter :: node_mass = 1.0e-6_wp
    !> Unknowns of a rigid block
    integer, parameter :: n_rigid = 3
    !> A block counts as no smaller at a joint than this share of the root of its area
    real(wp), parameter :: least_size = 0.1_wp
    !> A held point is stiffer than the stiffest joint by this factor
    real(wp), parameter :: pin_stiffness = 10.0_wp
+   !> A bounded force is softer than a held point by this factor
+   real(wp), parameter :: softness = 1.0e4_wp
 
 contains
 
-   !> Joints first, then a pin for each held point
+   !> Joints first, then a pin for each held point, then bounded forces, then the bars
    pure subroutine scene_graph(settings, system, contacts, graph)
-      !> Settings of the run, for the held points
+      !> Settings of the run, for held points and bounded forces
       type(settings_t), intent(in) :: settings
       !> The blocks
       type(block_system_t), intent(in) :: system
@@ -39,9 +44,11 @@ contains
 
       allocate (pin, source=pins(settings, system))
       n = size(contacts%joint)
-      graph%n_block = maxval(system%equation)
+      graph%n_block = maxval(system%equation) + n_carrier(settings)
       graph%n_dof = n_rigid
-      call allocate_joints(n + size(pin), graph)
+      call add_nodes(settings, graph)
+      call allocate_joints(n + size(pin) + n_bounded_joint(settings) + n_bar_joints(settings), &
+         & graph)
       do j = 1, n
          associate (cone => contacts%springs%cone(j), law => contacts%joint(j)%law)
             graph%block(:, j) = contacts%springs%equation(:, j)
@@ -68,14 +75,86 @@ contains
          graph%block(:, j) = [0, system%equation(pin(i)%block)]
          graph%row(:, :, 2, j) = pin_rows(pin(i), system%centroid(:, pin(i)%block))
       end do
-      allocate (graph%mass(n_rigid, graph%n_block))
+      call add_bar_joints(settings, system, n + size(pin) + n_bounded_joint(settings), graph)
+      allocate (graph%mass(n_rigid, graph%n_block), source=1.0_wp)
+      call add_bounded(settings, system, compliance, n + size(pin), graph)
       do b = 1, size(system%equation)
          e = system%equation(b)
          if (e == 0) cycle
          full = mass_matrix(system%density(b), system%area(b), system%second(:, b))
          graph%mass(:, e) = [full(1, 1), full(2, 2), full(3, 3)]
       end do
+      e = graph%n_block - size(graph%bound)
+      graph%mass(:, e + 1:) = node_mass*sum(graph%mass(1, :e))/real(max(1, e), wp)
    end subroutine scene_graph
+
+   !> Bounded forces of a scene that have a bound: each has a carrier without weight in the graph
+   pure integer function n_carrier(settings)
+      !> Settings of the run
+      type(settings_t), intent(in) :: settings
+
+      n_carrier = 0
+      if (allocated(settings%boundary%bounded)) &
+         & n_carrier = count(settings%boundary%bounded%most < huge(1.0_wp))
+   end function n_carrier
+
+   !> Joints that bounded forces are made from
+   pure integer function n_bounded_joint(settings)
+      !> Settings of the run
+      type(settings_t), intent(in) :: settings
+
+      n_bounded_joint = 2*n_carrier(settings)
+      if (allocated(settings%boundary%bounded)) &
+         & n_bounded_joint = n_bounded_joint + size(settings%boundary%bounded)
+   end function n_bounded_joint
+
+   !> Make bounded forces from joints. A force without a bound is that of a joint with the ground.
+   !> One with a bound is that of a joint with a carrier: a block without weight, which a load as
+   !> large as the bound presses against the block, and which a stop on the ground keeps where it
+   !> is. What the block does not take the stop does, so that its force has any value up to the
+   !> bound. The joint with the block is soft: at rest the stop carries it all
+   pure subroutine add_bounded(settings, system, compliance, before, graph)
+      !> Settings of the run
+      type(settings_t), intent(in) :: settings
+      !> The blocks
+      type(block_system_t), intent(in) :: system
+      !> Compliance of a pin [m2/N]
+      real(wp), intent(in) :: compliance
+      !> Joints and pins before them
+      integer, intent(in) :: before
+      !> Receives the joints
+      type(joint_graph_t), intent(inout) :: graph
+      real(wp) :: t(2, 6)
+      integer :: e, i, j
+
+      if (.not. allocated(settings%boundary%bounded)) return
+      j = before
+      e = maxval(system%equation)
+      do i = 1, size(settings%boundary%bounded)
+         associate (force => settings%boundary%bounded(i))
+            j = j + 1
+            t = displacement_matrix(force%point, system%centroid(:, force%block))
+            graph%kind(j) = joint_kind%corner
+            graph%block(:, j) = [0, system%equation(force%block)]
+            graph%row(:, 1, 2, j) = matmul(force%direction, t(:, :n_rigid))
+            graph%compliance(:, j) = softness*compliance
+            if (.not. force%most < huge(force%most)) cycle
+            ! the carrier moves along the force by its first unknown
+            e = e + 1
+            graph%block(1, j) = e
+            graph%row(1, 1, 1, j) = -1.0_wp
+            graph%kind(j + 1) = joint_kind%corner
+            graph%block(:, j + 1) = [0, e]
+            graph%row(1, 1, 2, j + 1) = -1.0_wp
+            graph%kind(j + 2) = joint_kind%pin
+            graph%block(:, j + 2) = [0, e]
+            graph%row(2, 1, 2, j + 2) = 1.0_wp
+            graph%row(3, 3, 2, j + 2) = 1.0_wp
+            graph%compliance(:, j + 1:j + 2) = compliance
+            j = j + 2
+         end associate
+      end do
+   end subroutine add_bounded
 
    !> Compliance l/(E t) of what lies between two centres of gravity, l across the joint and t along
    !> it: rigid blocks have that of their halves in the joints

@@ -60,7 +60,8 @@ contains
          return
       end if
       ! glue hands on waves of strain, which are finer than what sweeps leave
-      if (size(equations%fixed%point) == 0 .and. .not. any(springs%shift > 0.0_wp)) then
+      if (size(equations%fixed%point) == 0 .and. .not. any(springs%shift > 0.0_wp) &
+         & .and. .not. any(equations%bars%entry > 0)) then
          call sweep_contacts(equations, springs, state)
          if (state%settled) return
          if (present(in_vain)) then

@@ -1,6 +1,9 @@
 !> One step as a transaction: blocks and contacts change only when it is accepted
+!>
+!> Equation (M1) of docs/method.md
 module dda_step
    use dda_assembly, only : equations_t, renew_springs, take_springs
+   use dda_bar_springs, only : keep_bars
    use dda_block_inertia, only : assemble_blocks, turn_masses
    use dda_block_system, only : block_system_t
    use dda_block_update, only : update_blocks, update_contacts
@@ -84,7 +87,7 @@ contains
          if (again) travel = travel_by(system, step%state%motion)
       end do
       if (.not. step%accepted) then
-         call fatal_error(error, "the open-close loop settles at no length of the step")
+         call fatal_error(error, "open-close iteration does not converge for any time step")
          return
       end if
       call commit(settings, system, contacts, equations, march, step)
@@ -110,6 +113,7 @@ contains
       call measure_step(system, contacts%springs, equations, contacts%force, step)
       call update_contacts(step, settings, contacts, breaks)
       call update_blocks(step, settings, system)
+      call keep_bars(equations%bars, settings, step%state%motion, system)
       step%whole = .not. breaks
       march%steps = march%steps + 1
       march%clock%tries = .false.
@@ -137,7 +141,7 @@ contains
 
       step%dt = march%dt
       if (in_time) call stiffen_contacts(system, step%dt, contacts)
-      if (in_time) call take_springs(contacts%springs, equations)
+      if (in_time) call take_springs(equations)
       call begin_step(contacts, size(equations%weight, 1), size(equations%weight, 2), step%state)
       call assemble_blocks(system, settings, step%dt, equations, &
          & merge(march%time, march%clock%now, settings%dynamic))
@@ -212,7 +216,7 @@ contains
          call renew_springs(before, contacts%springs, equations)
       else
          call follow_contacts(system, settings%penalty_ratio, settings%n_dof, contacts)
-         call take_springs(contacts%springs, equations)
+         call take_springs(equations)
       end if
    end subroutine place_contacts
 

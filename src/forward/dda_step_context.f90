@@ -45,6 +45,11 @@ module dda_step_context
       real(wp), allocatable :: curve(:, :)
       !> Velocities at its end, where blocks move in time: (n_dof, n_equation)
       real(wp), allocatable :: velocity(:, :)
+      !> Mean forces of the joints that change the velocities, where blocks move in time:
+      !> (3, n_joint) [N/m]
+      real(wp), allocatable :: impulse(:, :)
+      !> Likewise those of the springs at held points: (n_spring) [N/m]
+      real(wp), allocatable :: held_impulse(:)
       !> Energy that impacts took from the velocities [J/m]
       real(wp) :: impact = 0.0_wp
       !> Contacts that meet more slowly do not rebound [m/s]
@@ -102,6 +107,10 @@ module dda_step_context
       real(wp), allocatable :: reach(:)
       !> Largest motion of a corner since the beginning [m]
       real(wp) :: displacement = 0.0_wp
+      !> How far the blocks have gone of what means collapse in a dynamic run
+      real(wp) :: progress = 0.0_wp
+      !> The most of it before the last part of the run
+      real(wp) :: early_progress = 0.0_wp
       !> Whether a block has turned over or left what carried it, where blocks move
       logical :: has_fallen = .false.
       !> Motions that the coordinates of corners cannot tell from none [m]

@@ -1,6 +1,7 @@
 !> The length of a step (Shi: step)
 module dda_step_interval
    use dda_assembly, only : equations_t, solve_faces
+   use dda_bar_springs, only : longest_give
    use dda_balance, only : free_acceleration
    use dda_boundary, only : history_t
    use dda_block_inertia, only : assemble_blocks, packed_velocity
@@ -91,7 +92,7 @@ contains
       call assemble_first_loads(system, settings, march, equations)
       call solve_faces(equations, springs, glued, closed, state%start, state%motion)
       if (.not. equations%factor%usable) then
-         call fatal_error(error, "the blocks with all joints closed make no stable system")
+         call fatal_error(error, "stiffness matrix is singular even with all joints closed")
          return
       end if
       call change_faces(equations, springs, state)
@@ -102,6 +103,8 @@ contains
       if (falls_glued(equations, state%motion, march%dt) .and. size(springs%stiffness) > 0) &
          & march%elastic_motion = min(march%elastic_motion, (1.0_wp + settings%penalty_ratio) &
          & *sum(norm2(equations%felt(1:2, :), dim=1))/minval(springs%stiffness))
+      march%elastic_motion = max(march%elastic_motion, longest_give(equations%bars, &
+         & sum(norm2(equations%felt(1:2, :), dim=1))))
       if (march%free_acceleration > 0.0_wp) march%dt = min(march%longest, &
          & sqrt(2.0_wp*first_fall*march%elastic_motion/march%free_acceleration))
       if (settings%time_step > 0.0_wp) march%dt = min(march%longest, settings%time_step)

@@ -1,4 +1,4 @@
-!> Velocities at the end of a dynamic step where blocks move: the law of impact
+!> Velocities at the end of a dynamic step where blocks move: the law of impact, equation (M5)
 !>
 !> The motion of the step says which contacts are closed. What their impulses make of the velocities
 !> is a problem of its own, with the same cones, in the metric of mass:
@@ -10,14 +10,15 @@
 !> 1, and has never less energy. Without contact the two are the same.
 module dda_velocity
    use dda_assembly, only : equations_t, take_springs
-   use dda_block_inertia, only : damping_rate, kinetic_energy, packed_velocity
+   use dda_bar_springs, only : couple_bars, push_bars
+   use dda_block_inertia, only : damping_rate, hold_energy, kinetic_energy, packed_velocity, &
+      & strain_follows
    use dda_block_system, only : block_system_t
    use dda_contact_detection, only : contacts_t
    use dda_elasticity, only : stress_load
    use dda_fixed_points, only : add_fixed_springs, hold_rigidly, turn_fixed_row
    use dda_joint_springs, only : joint_springs_t
    use dda_kinds, only : wp
-   use dda_material, only : elasticity_matrix
    use dda_settle_in_time, only : settle_in_time
    use dda_settings, only : settings_t
    use dda_step_context, only : step_context_t
@@ -33,9 +34,6 @@ module dda_velocity
    real(wp), parameter :: near = 1.0e-10_wp
    !> Stiffness of the springs that stand for impulses, over the inertia m/dt**2
    real(wp), parameter :: over_inertia = 1.0e3_wp
-   !> A block whose strain swings by more than this angle in the longest step [rad] has no strain
-   !> rate: its strain follows its load
-   real(wp), parameter :: resolved = 1.0_wp
    !> Most tries with less restitution; the last one has none
    integer, parameter :: max_tries = 10
    !> What speeds leave of gaps in the longest step, over what motions leave
@@ -64,7 +62,7 @@ contains
       type(step_context_t), intent(inout) :: step
       logical :: closed(2, size(contacts%joint))
       real(wp) :: part(2, size(contacts%joint)), allowed, before, less
-      real(wp) :: steady(size(step%state%motion, 1), size(step%state%motion, 2))
+      real(wp) :: steady(size(step%state%motion, 1), size(step%state%motion, 2)), share
       integer :: try
 
       closed = closed_contacts(system, contacts, step)
@@ -83,34 +81,13 @@ contains
          part = (1.0_wp - less)*part
          less = min(20.0_wp*less, 0.2_wp)
       end do
-      if (any(closed)) &
-         & call hold_energy(equations, steady, allowed + energy_noise*before, step%velocity)
+      share = 0.0_wp
+      if (any(closed)) call hold_energy(equations, steady, allowed + energy_noise*before, &
+         & step%velocity, share)
+      step%impulse = (1.0_wp - share)*step%impulse + share*step%state%force
+      step%held_impulse = (1.0_wp - share)*step%held_impulse + share*equations%fixed%force
       step%impact = before - kinetic_energy(equations, step%velocity)
    end subroutine settle_velocities
-
-   !> Let the velocities have no more energy than there is: mix into them those of constant
-   !> acceleration. Momentum stays, and a mixture of admissible impulses is admissible
-   pure subroutine hold_energy(equations, steady, allowed, velocity)
-      !> The equations, for the masses
-      type(equations_t), intent(in) :: equations
-      !> Velocities at the end of constant acceleration: (n_dof, n_equation)
-      real(wp), intent(in) :: steady(:, :)
-      !> The energy [J/m]
-      real(wp), intent(in) :: allowed
-      !> The velocities: (n_dof, n_equation)
-      real(wp), intent(inout) :: velocity(:, :)
-      real(wp) :: excess, slope, square, share, root
-
-      excess = kinetic_energy(equations, velocity) - allowed
-      if (.not. excess > 0.0_wp) return
-      square = kinetic_energy(equations, steady - velocity)
-      slope = kinetic_energy(equations, steady) - kinetic_energy(equations, velocity) - square
-      ! excess + share*slope + share**2*square = 0
-      root = slope**2 - 4.0_wp*excess*square
-      if (.not. root > 0.0_wp .or. .not. slope < 0.0_wp) return
-      share = min(1.0_wp, 2.0_wp*excess/(sqrt(root) - slope))
-      velocity = velocity + share*(steady - velocity)
-   end subroutine hold_energy
 
    !> Velocities for given speeds at which the contacts must part
    pure subroutine settle_impulses(settings, system, contacts, closed, part, equations, step)
@@ -146,8 +123,11 @@ contains
          call keep_closed(closed(:, j), follows(contacts%joint(j)%block), j, springs, state)
          state%start(1:2, j) = state%start(1:2, j) + springs%stiffness(j)*step%dt*part(:, j)
       end do
-      call take_springs(springs, equations)
+      call take_springs(equations)
       call settle_in_time(settings, step%dt*equations%fixed%rate, equations, springs, state)
+      ! half of the forces of the motion have acted as they did
+      step%held_impulse = equations%fixed%force + held_force/2.0_wp
+      step%impulse = state%force
       equations%fixed%force = held_force
       step%accepted = state%settled
       if (.not. step%accepted) return
@@ -209,27 +189,6 @@ contains
       end do
    end function parting_speed
 
-   !> Blocks whose strain follows their load, as a step does not resolve its swinging. The fastest
-   !> is that across the narrow side of the block: A D11/(rho S)
-   pure function strain_follows(system, dt) result(follows)
-      !> The blocks
-      type(block_system_t), intent(in) :: system
-      !> Length of the longest step [s]
-      real(wp), intent(in) :: dt
-      !> The answer: (n_block)
-      logical :: follows(size(system%equation))
-      real(wp) :: d(3, 3), narrow
-      integer :: b
-
-      do b = 1, size(follows)
-         d = elasticity_matrix(system%materials(system%material(b)))
-         associate (s => system%second(:, b))
-            narrow = (s(1) + s(2))/2.0_wp - norm2([(s(1) - s(2))/2.0_wp, s(3)])
-            follows(b) = dt**2*system%area(b)*d(1, 1) > resolved**2*system%density(b)*narrow
-         end associate
-      end do
-   end function strain_follows
-
    !> Equations of the velocities, as motions v1*dt: M/dt**2 (v1 dt) = M v0/dt + f
    pure subroutine assemble_rates(settings, system, follows, step, equations)
       !> Settings of the run
@@ -264,6 +223,7 @@ contains
                & - matmul(equations%elastic(:, :, e), step%state%motion(:, e))
          end if
       end do
+      call push_bars(equations%bars, step%state%motion, equations%load)
       do i = 1, size(equations%fixed%point)
          e = equations%fixed%equation(i)
          call turn_fixed_row(system, settings, i, step%state%motion(:, e), equations%fixed, &
@@ -275,6 +235,7 @@ contains
          call hold_rigidly(e, equations%fixed)
          equations%load(4:, e) = 0.0_wp
       end do
+      call couple_bars(equations%bars, equations%matrix%pair, .false., equations%matrix%coupling)
       call add_fixed_springs(equations%fixed, step%dt*equations%fixed%rate, equations%base, &
          & equations%load)
    end subroutine assemble_rates

@@ -1,6 +1,7 @@
-!> Does it stand, does it fall, or is it not known yet
+!> Termination criteria of a run: stable, collapsed, or not known yet
 module dda_verdict
    use dda_assembly, only : equations_t
+   use dda_bar_springs, only : bar_energies
    use dda_balance, only : measure_balance
    use dda_block_system, only : block_system_t
    use dda_deformation, only : displacement_matrix
@@ -37,15 +38,15 @@ module dda_verdict
    !> The least free fall over elastic motion that can prove a collapse
    real(wp), parameter :: beyond_any = 100.0_wp
    !> Where blocks move, collapse is a displacement of this multiple of the elastic motion, and of
-   !> what the rounding of coordinates feigns
+   !> the round-off of coordinates
    real(wp), parameter :: collapse_multiple = 100.0_wp
    !> What has moved as far and loses more than half of its acceleration in a step may come to rest
    real(wp), parameter :: slowing = 0.5_wp
-   !> At rest the strains of every block are in balance but for this share of what strains it
+   !> At rest the strains of every block are in balance except for this share of what strains it
    real(wp), parameter :: unstrained = 1.0e-11_wp
    !> Where blocks move, rest is a step of this share of the displacement so far
    real(wp), parameter :: still = 1.0e-8_wp
-   !> Or of this share at most, where rounding alone feigns it
+   !> Or of this share at most, where it is round-off alone
    real(wp), parameter :: barely = 1.0e-6_wp
 
 contains
@@ -62,15 +63,17 @@ contains
       real(wp), intent(in) :: force_before(:, :)
       !> The step; its measures are set
       type(step_context_t), intent(inout) :: step
+      real(wp) :: bar(2)
       integer :: b, e, nd
 
       call measure_balance(system, springs, equations, step)
       nd = size(equations%weight, 1)
       associate (motion => step%state%motion)
-         step%work = sum(equations%outer*motion)
+         bar = bar_energies(equations%bars, motion)
+         step%work = sum(equations%outer*motion) - bar(2)
          step%kinetic = 0.0_wp
          step%stored = sum(sum(step%state%force**2 - force_before**2, dim=1) &
-            & /(2.0_wp*springs%stiffness))
+            & /(2.0_wp*springs%stiffness)) + bar(1)
          do b = 1, size(system%equation)
             e = system%equation(b)
             if (e == 0) cycle

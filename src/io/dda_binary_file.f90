@@ -1,4 +1,4 @@
-!> Files written through the C library, which tells when a disk is full; Fortran's flush does not.
+!> Files written through the C library, which says when a disk is full; Fortran's flush does not.
 !> Whatever fails on the way is reported when the file is flushed or closed
 module dda_binary_file
    use, intrinsic :: iso_c_binding, only : c_associated, c_char, c_int, c_loc, c_long, &
@@ -23,8 +23,8 @@ module dda_binary_file
    end type binary_file_t
 
    !> What a write that failed may have met
-   character(len=*), parameter :: no_room = "expected room for all that is written, got none: "// &
-      & "the disk is full, or no file may grow so large (ulimit -f); make room or write elsewhere"
+   character(len=*), parameter :: no_room = "cannot write the results: no space left on the "// &
+      & "disk, or above the limit of a file (ulimit -f); make room or write elsewhere"
 
    interface
       !> C: open a file
@@ -151,8 +151,8 @@ contains
       file%name = name
       file%handle = c_fopen(name//c_null_char, mode//c_null_char)
       if (.not. c_associated(file%handle)) &
-         & call fatal_error(error, "expected a file that can be written, got one that cannot; "// &
-         & "choose another folder with --out", name, 1)
+         & call fatal_error(error, "the file cannot be written; choose another folder with --out", &
+         & name, 1)
    end subroutine open_binary
 
    !> Take over a file that the system has opened already
@@ -199,9 +199,8 @@ contains
       if (.not. c_associated(file%handle) .or. allocated(error)) return
       call flush_binary(file, error)
       if (allocated(error)) return
-      if (c_fsync(c_fileno(file%handle)) /= 0) call fatal_error(error, "expected a disk that "// &
-         & "takes what is written, got a failure of fsync; check the disk or write elsewhere", &
-         & file%name, 1)
+      if (c_fsync(c_fileno(file%handle)) /= 0) call fatal_error(error, "cannot write the "// &
+         & "results: fsync failed; check the disk or write elsewhere", file%name, 1)
    end subroutine sync_binary
 
    !> Bytes written so far, 0 of a file that is not open

@@ -20,8 +20,10 @@ module dda_block_lines
       integer :: number = 0
       !> Number of words
       integer :: n = 0
-      !> The words
+      !> The words; a quote for the one in quotes
       character(len=word_size) :: word(max_words) = ""
+      !> What stands in quotes, as it was written; unallocated if nothing does
+      character(len=:), allocatable :: quoted
    end type line_t
 
    !> The entry that is being read
@@ -44,6 +46,8 @@ module dda_block_lines
       integer :: n_column = 0
       !> Words of its first line: (n)
       character(len=word_size), allocatable :: word(:)
+      !> What stands there in quotes; unallocated if nothing does
+      character(len=:), allocatable :: quoted
       !> Rows of numbers below it: (3, n_row)
       real(wp), allocatable :: row(:, :)
    end type waiting_entry_t
@@ -70,6 +74,7 @@ contains
             longer(i)%number = later(i)%number
             longer(i)%n_column = later(i)%n_column
             call move_alloc(later(i)%word, longer(i)%word)
+            call move_alloc(later(i)%quoted, longer(i)%quoted)
             call move_alloc(later(i)%row, longer(i)%row)
          end do
          call move_alloc(longer, later)
@@ -78,6 +83,7 @@ contains
       later(n)%number = entry%head%number
       later(n)%n_column = entry%n_column
       allocate (later(n)%word, source=entry%head%word(:entry%head%n))
+      if (allocated(entry%head%quoted)) later(n)%quoted = entry%head%quoted
       allocate (later(n)%row, source=entry%row(:, :entry%n_row))
    end subroutine keep_entry
 
@@ -93,10 +99,11 @@ contains
       entry%head%word(:entry%head%n) = waiting%word
       entry%n_column = waiting%n_column
       entry%n_row = size(waiting%row, 2)
+      call move_alloc(waiting%quoted, entry%head%quoted)
       call move_alloc(waiting%row, entry%row)
    end subroutine take_entry
 
-   !> Part a line into words; what follows a ! is a comment
+   !> Part a line into words; what follows a ! is a comment. One text may stand in quotes
    pure subroutine split_line(text, number, line, error)
       !> The line
       character(len=*), intent(in) :: text
@@ -104,31 +111,71 @@ contains
       integer, intent(in) :: number
       !> The words
       type(line_t), intent(out) :: line
-      !> Too many or too long words
+      !> Too many or too long words, or a quote without end
       type(error_t), allocatable, intent(out) :: error
-      integer :: i, last, first
+      integer :: first, next
 
       line%number = number
-      last = index(text//"!", "!") - 1
-      first = 0
-      do i = 1, last + 1
-         if (i <= last) then
-            if (index(" "//achar(9), text(i:i)) == 0) then
-               if (first == 0) first = i
-               cycle
-            end if
+      next = 1
+      do
+         first = next
+         do while (first <= len(text))
+            if (index(" "//achar(9), text(first:first)) == 0) exit
+            first = first + 1
+         end do
+         if (first > len(text)) return
+         if (text(first:first) == "!") return
+         if (scan(text(first:first), "'""") > 0) then
+            call take_quoted(text, first, next, line, error)
+         else
+            next = first + scan(text(first:)//"!", " "//achar(9)//"!") - 1
+            if (next - first > word_size) call fatal_error(error, too_much(), line=number)
          end if
-         if (first == 0) cycle
-         if (line%n == max_words .or. i - first > word_size) then
-            call fatal_error(error, "wanted at most "//to_text(max_words)//" words of " &
-               & //to_text(word_size)//" characters, found more", line=number)
-            return
-         end if
+         if (line%n == max_words) call fatal_error(error, too_much(), line=number)
+         if (allocated(error)) return
          line%n = line%n + 1
-         line%word(line%n) = lower_case(text(first:i - 1))
-         first = 0
+         line%word(line%n) = lower_case(text(first:min(next - 1, first + word_size - 1)))
+         if (scan(text(first:first), "'""") > 0) line%word(line%n) = "'"
       end do
+
+   contains
+
+      !> What is wrong with a line of too many or too long words
+      pure function too_much() result(message)
+         !> The message
+         character(len=:), allocatable :: message
+
+         message = "expected at most "//to_text(max_words)//" words of "//to_text(word_size) &
+            & //" characters, got more"
+      end function too_much
    end subroutine split_line
+
+   !> Take the text between two quotes
+   pure subroutine take_quoted(text, first, next, line, error)
+      !> The line
+      character(len=*), intent(in) :: text
+      !> Place of the first quote
+      integer, intent(in) :: first
+      !> Place after the last one
+      integer, intent(out) :: next
+      !> Receives the text
+      type(line_t), intent(inout) :: line
+      !> No second quote, or another text before
+      type(error_t), allocatable, intent(out) :: error
+      integer :: length
+
+      length = index(text(first + 1:), text(first:first)) - 1
+      next = first + length + 2
+      if (length < 0) then
+         call fatal_error(error, "expected a second quote, got none; close the name of the file", &
+            & line=line%number)
+      else if (allocated(line%quoted)) then
+         call fatal_error(error, "expected one text in quotes, got two; remove one", &
+            & line=line%number)
+      else
+         line%quoted = text(first + 1:first + length)
+      end if
+   end subroutine take_quoted
 
    !> Read the numbers behind a word
    pure subroutine take_numbers(line, i, number, error)
@@ -147,7 +194,7 @@ contains
          ok = i + k <= line%n
          if (ok) call read_number(trim(line%word(i + k)), number(k), ok)
          if (.not. ok) then
-            call fatal_error(error, "wanted "//to_text(size(number))//" numbers after '" &
+            call fatal_error(error, "expected "//to_text(size(number))//" numbers after '" &
                & //shown(trim(line%word(i)))//"'", line=line%number)
          else if (abs(number(k)) > largest_number) then
             call fatal_error(error, "expected numbers of at most 1e30 in magnitude after '" &

@@ -1,13 +1,16 @@
 !> Points of a file of blocks, and what acts on them in time
 module dda_block_points
+   use dda_bar_entries, only : take_bar, take_water
    use dda_block_input, only : block_plan_t
    use dda_block_lines, only : entry_t, take_entry, take_numbers, waiting_entry_t
+   use dda_block_records, only : take_record
    use dda_block_sites, only : site_t, add_held, block_at, blocks_along, close_held, &
       & holds_point, rivals_at
    use dda_boundary, only : boundary_t, held_point_t, history_t, measured_point_t
    use dda_deck_token, only : shown
    use dda_error, only : error_t, fatal_error
-   use dda_ground_motion, only : acceleration_of_displacement, acceleration_of_velocity
+   use dda_ground_motion, only : acceleration_of_displacement, acceleration_of_record, &
+      & acceleration_of_velocity
    use dda_kinds, only : wp
    use dda_polygon, only : parts_inside
    use dda_text, only : read_integer, to_text
@@ -31,7 +34,7 @@ contains
       type(block_plan_t), intent(inout) :: plan
       !> Where the blocks are; receives the points too
       type(site_t), intent(inout) :: site
-      !> Name of the file, for warnings
+      !> Name of the file, for warnings and records beside it
       character(len=*), intent(in) :: file
       !> Receives points that several blocks have
       type(warnings_t), intent(inout) :: warnings
@@ -48,11 +51,17 @@ contains
          if (present(watch) .and. modulo(i, 1000) == 0) &
             & call watch%tell("reading points", real(i, wp)/real(size(later), wp))
          call take_entry(later(i), entry)
+         call take_record(entry, file, plan%record_marks, error)
+         if (allocated(error)) return
          select case (entry%head%word(1))
          case ("base_acceleration", "base_velocity", "base_displacement")
             call take_ground(entry, plan, error)
          case ("fix_line")
             call hold_line(entry, plan, site, error)
+         case ("bar")
+            call take_bar(entry, plan, site, file, warnings, error)
+         case ("water")
+            call take_water(entry, plan, error)
          case default
             call take_point(entry, plan, site, file, warnings, error)
          end select
@@ -99,7 +108,7 @@ contains
       integer :: i
 
       if (allocated(plan%boundary%base_acceleration%time)) then
-         call fatal_error(error, "wanted the motion of the ground once, found it a second time", &
+         call fatal_error(error, "expected the motion of the ground once, got it a second time", &
             & line=entry%head%number)
          return
       end if
@@ -115,10 +124,12 @@ contains
       call read_history(entry, has_value, value, history, error)
       if (allocated(error)) return
       plan%ground_line = entry%head%number
-      if (entry%head%word(1) == "base_acceleration") then
+      if (entry%head%word(1) == "base_acceleration" .and. allocated(entry%head%quoted)) then
+         plan%boundary%base_acceleration = acceleration_of_record(history)
+      else if (entry%head%word(1) == "base_acceleration") then
          plan%boundary%base_acceleration = history
       else if (size(history%time) < 2) then
-         call fatal_error(error, "wanted two rows of time and components or more below " &
+         call fatal_error(error, "expected two rows of time and components or more below " &
             & //trim(entry%head%word(1)), line=entry%head%number)
       else if (entry%head%word(1) == "base_velocity") then
          plan%boundary%base_acceleration = acceleration_of_velocity(history)
@@ -166,7 +177,7 @@ contains
          end do
       end do
       if (site%n_held == n_before) call fatal_error(error, &
-         & "wanted a line that crosses a block or runs along its edge, found none", &
+         & "expected a line that crosses a block or runs along its edge, got one that does not", &
          & line=entry%head%number)
    end subroutine hold_line
 
@@ -320,7 +331,7 @@ contains
       if (i > entry%head%n) return
       along = entry%head%word(i) == ["x", "y"]
       if (.not. any(along) .or. i < entry%head%n) call fatal_error(error, &
-         & "wanted x, y or nothing after the numbers, found '" &
+         & "expected x, y or nothing after the numbers, got '" &
          & //shown(trim(entry%head%word(i)))//"'", &
          & line=entry%head%number)
    end subroutine take_directions
@@ -341,14 +352,15 @@ contains
 
       n = entry%n_row
       if (has_value .eqv. n > 0) then
-         call fatal_error(error, "wanted either two components behind the point or rows of time " &
-            & //"and components below it", line=entry%head%number)
+         call fatal_error(error, "expected two components after the point or rows of time and " &
+            & //"components below it, got "//trim(merge("both   ", "neither", has_value)), &
+            & line=entry%head%number)
       else if (has_value) then
          allocate (history%time(1), source=0.0_wp)
          allocate (history%value(2, 1))
          history%value(:, 1) = value
       else if (any(entry%row(1, 2:n) <= entry%row(1, :n - 1))) then
-         call fatal_error(error, "wanted increasing times [s]", line=entry%head%number)
+         call fatal_error(error, "expected increasing times [s]", line=entry%head%number)
       else
          allocate (history%time, source=entry%row(1, :n))
          allocate (history%value, source=entry%row(2:3, :n))

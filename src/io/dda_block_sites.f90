@@ -179,16 +179,16 @@ contains
 
       if (plan%fixed(held%block) .and. allocated(held%path%value)) then
          if (any(abs(held%path%value) > 0.0_wp)) then
-            call fatal_error(error, "block "//to_text(held%block)//" is fixed and cannot be led", &
-               & line=held%line)
+            call fatal_error(error, "block "//to_text(held%block) &
+               & //" is fixed and cannot have a prescribed displacement", line=held%line)
             return
          end if
       end if
       call compare_paths(plan%boundary%held, held_before(site, held%block), held, &
          & site%size_of(held%block), contradicts, telling)
       if (contradicts) then
-         call fatal_error(error, "wanted a way that the block can go with the points of it that " &
-            & //"are held or led already, found another", line=held%line)
+         call fatal_error(error, "the prescribed displacement conflicts with the other fixed or " &
+            & //"prescribed points of the block", line=held%line)
          return
       end if
       if (site%n_held == size(plan%boundary%held)) &

@@ -39,7 +39,7 @@ contains
       real(wp) :: extent(2), point(2)
 
       if (size(plan%fixed) == 0) then
-         call fatal_error(error, "wanted a block or more, found none", line=1)
+         call fatal_error(error, "expected at least one block, got none", line=1)
          return
       end if
       call check_materials(plan, file, warnings, error)
@@ -74,7 +74,7 @@ contains
       known(plan%materials%number) = .true.
       do b = 1, size(plan%fixed)
          if (known(plan%material(b))) cycle
-         call fatal_error(error, "block "//to_text(b)//" wants material " &
+         call fatal_error(error, "block "//to_text(b)//" needs material " &
             & //to_text(plan%material(b))//", which is not given", line=plan%line(b))
          return
       end do

@@ -9,7 +9,8 @@ module dda_ddaml_analysis
    use dda_plain_analysis, only : check_steps, largest_value
    use dda_text, only : to_text
    use dda_warnings, only : add_warning, warnings_t
-   use dda_word_list, only : quoted, take_numbers, take_whole, word_list_t
+   use dda_word_list, only : quoted, split_words, take_numbers, take_property, take_whole, &
+      & word_list_t
    use dda_xml_tree, only : attribute_of, attribute_place, count_children, find_child, &
       & first_child, next_sibling, xml_tree_t
    implicit none
@@ -131,7 +132,7 @@ contains
          if (attribute_place(tree, at, "pfactor") > 0) then
             call read_number(tree, at, "pfactor", 0.0_wp, analysis%penalty_factor, error)
          else
-            call add_warning(warnings, "Autopenalty wants the attribute pfactor, 50 is taken", &
+            call add_warning(warnings, "Autopenalty needs the attribute pfactor: using 50", &
                & tree%file, tree%element(at)%row)
          end if
       end select
@@ -150,7 +151,9 @@ contains
       !> What is wrong
       type(error_t), allocatable, intent(out) :: error
       integer :: at, n_blocks, n_joints
+      logical :: has_bolt
 
+      has_bolt = .false.
       allocate (analysis%material(count_children(tree, part, "Blockmaterial")))
       allocate (analysis%joint(count_children(tree, part, "Jointproperties")))
       n_blocks = 0
@@ -166,10 +169,36 @@ contains
             n_joints = n_joints + 1
             call check_type(tree, at, n_joints, warnings)
             call read_joint(tree, at, analysis%joint(n_joints), warnings, error)
+         else if (tree%element(at)%name == "Boltproperties" .and. .not. has_bolt) then
+            has_bolt = .true.
+            call read_bolt(tree, at, analysis%bolt, error)
          end if
          at = next_sibling(tree, at)
       end do
    end subroutine read_properties
+
+   !> Read what bolts are like: the first of these elements counts for all, as in the original
+   pure subroutine read_bolt(tree, at, property, error)
+      !> The file's elements
+      type(xml_tree_t), intent(in) :: tree
+      !> Place of the element
+      integer, intent(in) :: at
+      !> Stiffness, strength and prestress: (3)
+      real(wp), intent(out) :: property(3)
+      !> What is wrong
+      type(error_t), allocatable, intent(out) :: error
+      character(len=*), parameter :: what(3) = [character(len=9) :: "stiffness", "strength", &
+         & "prestress"]
+      type(word_list_t) :: words
+      integer :: k
+
+      property = 0.0_wp
+      call split_words(tree%element(at)%text, tree%file, tree%element(at)%text_row, words)
+      do k = 1, 3
+         call take_property(words, "the "//trim(what(k))//" of bolts", property(k), error)
+         if (allocated(error)) return
+      end do
+   end subroutine read_bolt
 
    !> Materials are counted in the order of the file, whatever their type says
    pure subroutine check_type(tree, at, number, warnings)
@@ -186,7 +215,7 @@ contains
       given = attribute_of(tree, at, "type")
       if (given == "" .or. given == to_text(number)) return
       call add_warning(warnings, "expected type "//to_text(number)//" of "//tree%element(at)%name &
-         & //", its place in the file, got "//quoted(given)//": the place is taken", tree%file, &
+         & //", its place in the file, got "//quoted(given)//": using its place", tree%file, &
          & tree%element(at)%row)
    end subroutine check_type
 
@@ -275,8 +304,8 @@ contains
       word = attribute_of(tree, at, name)
       yes = len(word) > 0 .and. index(" "//words_for_yes//" ", " "//word//" ") > 0
       if (.not. yes .and. word /= word_for_no) call fatal_error(error, "the attribute "//name &
-         & //" of "//quoted(tree%element(at)%name)//" wants one of "//words_for_yes//" " &
-         & //word_for_no//", found "//quoted(word)//"; choose one", tree%file, tree%element(at)%row)
+         & //" of "//quoted(tree%element(at)%name)//" must be one of "//words_for_yes//" " &
+         & //word_for_no//", got "//quoted(word)//"; choose one", tree%file, tree%element(at)%row)
    end subroutine choose
 
    !> Read an attribute that is a number
@@ -301,8 +330,8 @@ contains
          & call take_numbers(words, "the attribute "//name, largest_value, number, error)
       if (allocated(error)) return
       value = number(1)
-      if (value < low) call fatal_error(error, "the attribute "//name//" from "//to_text(low) &
-         & //" is wanted, found "//to_text(value)//"; correct it", tree%file, tree%element(at)%row)
+      if (value < low) call fatal_error(error, "the attribute "//name//" must be "//to_text(low) &
+         & //" or more, got "//to_text(value)//"; correct it", tree%file, tree%element(at)%row)
    end subroutine read_number
 
    !> Read an attribute that is a whole number
@@ -344,12 +373,13 @@ contains
 
       do i = 1, size(wanted)
          if (find_child(tree, part, trim(wanted(i))) > 0) cycle
-         call fatal_error(error, "the element "//trim(wanted(i))//" is wanted in Analysis, none " &
-            & //"was found; add it", tree%file, tree%element(part)%row)
+         call fatal_error(error, "expected the element "//trim(wanted(i))//" in Analysis, got " &
+            & //"none; add it", tree%file, tree%element(part)%row)
          return
       end do
-      if (find_child(tree, part, "Autopenalty") == 0) call add_warning(warnings, "Autopenalty is " &
-         & //"wanted, flag=""no"" with pfactor=""50"" is taken", tree%file, tree%element(part)%row)
+      if (find_child(tree, part, "Autopenalty") == 0) call add_warning(warnings, "expected " &
+         & //"Autopenalty, got none: using flag=""no"" with pfactor=""50""", &
+         & tree%file, tree%element(part)%row)
       call check_steps(analysis, tree%file, tree%element(part)%row, error)
    end subroutine check_complete
 end module dda_ddaml_analysis

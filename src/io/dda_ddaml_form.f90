@@ -17,7 +17,7 @@ module dda_ddaml_form
       !> Their names, a blank before and behind each
       character(len=34) :: names = ""
       !> Names of their attributes, likewise
-      character(len=18) :: attributes = ""
+      character(len=36) :: attributes = ""
       !> Whether they hold numbers
       logical :: has_numbers = .false.
       !> Whether there may be more than one
@@ -34,7 +34,7 @@ module dda_ddaml_form
       & form_t("Geometry", " Measuredpointlist ", "", no, yes), &
       & form_t("Geometry", " Holepointlist Seismicpointlist ", "", no, yes), &
       & form_t("Geometry", " Boltlist ", "", no, yes), &
-      & form_t("Boltlist", " Bolt ", " type ", yes, yes), &
+      & form_t("Boltlist", " Bolt ", " type stiffness strength pretension ", yes, yes), &
       & form_t("Boundlist", " Line Joint ", " type ", yes, yes), &
       & form_t("Jointlist", " Joint ", " type ", yes, yes), &
       & form_t("Matlinelist", " Line ", " type ", yes, yes), &
@@ -64,6 +64,7 @@ module dda_ddaml_form
       & form_t("Analysis", " AConstants ", "", no, no), &
       & form_t("Analysis", " Blockmaterial Jointproperties ", " type ", no, yes), &
       & form_t("Analysis", " Loadpointlist ", "", no, yes), &
+      & form_t("Analysis", " Boltproperties ", " type ", yes, yes), &
       & form_t("AConstants", " Openclose ", " value ", no, no), &
       & form_t("AConstants", " Opencriteria ", " value ", no, no), &
       & form_t("AConstants", " NormSpringPen ", " value ", no, no), &
@@ -99,8 +100,8 @@ contains
       part = 1
       if (tree%element(1)%name == name) return
       part = find_child(tree, 1, name)
-      if (part == 0) call fatal_error(error, "an element "//name//" inside the root is wanted, " &
-         & //"none was found; add it", tree%file, tree%element(1)%row)
+      if (part == 0) call fatal_error(error, "expected an element "//name//" inside the root, " &
+         & //"got none; add it", tree%file, tree%element(1)%row)
    end subroutine find_part
 
    !> Check every element of a file and mark those that are not read
@@ -201,7 +202,7 @@ contains
                & tree%file, element%row)
          else
             call add_warning(warnings, "the element "//quoted(element%name)//" has no meaning in " &
-               & //quoted(around%name)//" and is not read", tree%file, element%row)
+               & //quoted(around%name)//" and is ignored", tree%file, element%row)
          end if
       end associate
    end subroutine refuse_element
@@ -241,7 +242,7 @@ contains
             associate (name => element%attribute(i)%name)
                if (index(form%attributes, " "//name//" ") == 0) then
                   call add_warning(warnings, "the attribute "//quoted(name) &
-                     & //" has no meaning in "//quoted(element%name)//" and is not read", &
+                     & //" has no meaning in "//quoted(element%name)//" and is ignored", &
                      & tree%file, element%row)
                else if (attribute_place(tree, at, name) /= i) then
                   call fatal_error(error, "expected one attribute "//quoted(name)//" of " &
@@ -266,7 +267,7 @@ contains
 
       call split_words(tree%element(at)%text, tree%file, tree%element(at)%text_row, words)
       if (words%n > 0) call add_warning(warnings, "text has no meaning in " &
-         & //quoted(tree%element(at)%name)//" and is not read: "//quoted(this_word(words)), &
+         & //quoted(tree%element(at)%name)//" and is ignored: "//quoted(this_word(words)), &
          & tree%file, this_row(words))
    end subroutine check_text
 end module dda_ddaml_form

@@ -3,11 +3,12 @@ module dda_ddaml_geometry
    use dda_ddaml_form, only : check_form, find_part, geometry_form
    use dda_error, only : error_t, fatal_error
    use dda_kinds, only : wp
-   use dda_line_model, only : add_entity, entities_t, line_model_t, new_entities
+   use dda_line_model, only : add_bolt, add_entity, entities_t, line_model_t, new_entities, &
+      & new_line_model
    use dda_text, only : to_text
    use dda_warnings, only : add_warning, warnings_t
    use dda_word_list, only : quoted, largest_coordinate, split_words, take_material, take_number, &
-      & take_numbers, this_row, this_word, word_list_t, words_left
+      & take_numbers, take_property, this_row, this_word, word_list_t, words_left
    use dda_xml_tree, only : attribute_of, attribute_place, first_child, next_sibling, xml_tree_t
    implicit none
    private
@@ -42,18 +43,12 @@ contains
       type(entities_t) :: boundary
       integer :: part, at, i
 
-      model%file = tree%file
       call find_part(tree, "Geometry", part, error)
       if (.not. allocated(error)) call check_form(tree, part, geometry_form, warnings, error)
       if (allocated(error)) return
-      call new_entities(model%line, 64)
+      call new_line_model(model)
+      model%file = tree%file
       call new_entities(boundary, 0)
-      call new_entities(model%material_line, 0)
-      call new_entities(model%fixed, 0)
-      call new_entities(model%load, 0)
-      call new_entities(model%measured, 0)
-      call new_entities(model%hole, 0)
-      call new_entities(model%seismic, 0)
       at = first_child(tree, part)
       do while (at > 0 .and. .not. allocated(error))
          call read_list(tree, at, model, boundary, warnings, error)
@@ -109,9 +104,7 @@ contains
             if (.not. allocated(error) .and. model%seismic%n > 0) call add_warning(warnings, &
                & "seismic points have no effect", tree%file, element%row)
          case ("Boltlist")
-            if (element%last > at) call fatal_error(error, "a model without bolts is wanted, " &
-               & //"found some: this program has no bolts; remove them", tree%file, &
-               & tree%element(at + 1)%row)
+            call read_bolts(tree, at, model, warnings, error)
          end select
       end associate
    end subroutine read_list
@@ -132,9 +125,8 @@ contains
       if (.not. allocated(error)) call take_number(words, "the edge-node distance", ratio, error)
       if (allocated(error)) return
       if (ratio < 0.0_wp .or. ratio > 0.5_wp) call fatal_error(error, &
-         & "an edge-node distance from 0 " &
-         & //"to 0.5 is wanted, found "//to_text(ratio)//"; correct it", tree%file, &
-         & tree%element(at)%row)
+         & "the edge-node distance must be from 0 to 0.5, got "//to_text(ratio)//"; correct it", &
+         & tree%file, tree%element(at)%row)
    end subroutine read_ratio
 
    !> The words of an attribute that must be there
@@ -153,8 +145,8 @@ contains
       associate (element => tree%element(at))
          call split_words(attribute_of(tree, at, name), tree%file, element%row, words)
          words%row = element%row
-         if (words%n /= 1) call fatal_error(error, "the attribute "//name//" with one value is " &
-            & //"wanted in "//quoted(element%name)//", found " &
+         if (words%n /= 1) call fatal_error(error, "expected the attribute "//name &
+            & //" with one value in "//quoted(element%name)//", got " &
             & //quoted(attribute_of(tree, at, name))//"; write one value", tree%file, element%row)
       end associate
    end subroutine attribute_words
@@ -181,6 +173,42 @@ contains
          at = next_sibling(tree, at)
       end do
    end subroutine read_entities
+
+   !> Read bolts; what they are like may stand in attributes of ours, else the analysis file says it
+   pure subroutine read_bolts(tree, list, model, warnings, error)
+      !> The file's elements
+      type(xml_tree_t), intent(in) :: tree
+      !> Place of the list
+      integer, intent(in) :: list
+      !> Receives them
+      type(line_model_t), intent(inout) :: model
+      !> Receives what the reader ignores
+      type(warnings_t), intent(inout) :: warnings
+      !> What is wrong
+      type(error_t), allocatable, intent(out) :: error
+      character(len=*), parameter :: name(3) = [character(len=10) :: "stiffness", "strength", &
+         & "pretension"]
+      type(entities_t) :: bolt
+      type(word_list_t) :: words
+      real(wp) :: property(3)
+      integer :: at, k
+
+      call new_entities(bolt, 0)
+      at = first_child(tree, list)
+      do while (at > 0)
+         call read_entity(tree, at, type_is%none, bolt, warnings, error)
+         property = -1.0_wp
+         do k = 1, merge(3, 0, attribute_place(tree, at, trim(name(1))) > 0)
+            if (.not. allocated(error)) &
+               & call attribute_words(tree, at, trim(name(k)), words, error)
+            if (.not. allocated(error)) call take_property(words, "the "//trim(name(k)) &
+               & //" of a bolt", property(k), error)
+         end do
+         if (allocated(error)) return
+         call add_bolt(model, bolt%place(:, bolt%n), property, bolt%row(bolt%n))
+         at = next_sibling(tree, at)
+      end do
+   end subroutine read_bolts
 
    !> Read one element of a list
    pure subroutine read_entity(tree, at, type, entities, warnings, error)
@@ -219,9 +247,9 @@ contains
                & place, error)
          end if
          if (allocated(error)) return
-         if (words_left(words) > 0) call add_warning(warnings, "nothing is wanted behind the " &
-            & //"coordinates of "//element%name//", what follows is not read: " &
-            & //quoted(this_word(words)), tree%file, this_row(words))
+         if (words_left(words) > 0) call add_warning(warnings, "trailing text ignored after the " &
+            & //"coordinates of "//element%name//": "//quoted(this_word(words)), &
+            & tree%file, this_row(words))
          call add_entity(entities, place, material, element%row)
       end associate
    end subroutine read_entity

@@ -78,8 +78,8 @@ contains
 
       weight = material%density*gravity
       if (abs(material%unit_weight - weight) <= same_weight*abs(weight)) return
-      call add_warning(warnings, "Unitweight = Unitmass*Gravaccel = "//to_text(weight) &
-         & //" is wanted and taken, found "//to_text(material%unit_weight), tree%file, &
+      call add_warning(warnings, "expected Unitweight = Unitmass*Gravaccel = "//to_text(weight) &
+         & //", got "//to_text(material%unit_weight)//": using the former", tree%file, &
          & tree%element(at)%row)
       material%unit_weight = weight
    end subroutine check_weight
@@ -133,8 +133,8 @@ contains
 
       child = find_child(tree, at, name)
       if (child == 0) then
-         if (needed) call fatal_error(error, "the element "//name//" is wanted in " &
-            & //tree%element(at)%name//", none was found; add it", tree%file, tree%element(at)%row)
+         if (needed) call fatal_error(error, "expected the element "//name//" in " &
+            & //tree%element(at)%name//", got none; add it", tree%file, tree%element(at)%row)
          if (needed) value = 0.0_wp
          return
       end if
@@ -142,8 +142,8 @@ contains
       call take_numbers(words, "a number of "//name, largest_value, number, error)
       value = number
       if (.not. allocated(error) .and. words_left(words) > 0) call add_warning(warnings, &
-         & "nothing is wanted behind the numbers of "//name//", what follows is not read: " &
-         & //quoted(this_word(words)), tree%file, this_row(words))
+         & "trailing text ignored after the numbers of "//name//": "//quoted(this_word(words)), &
+         & tree%file, this_row(words))
    end subroutine read_child
 
    !> Read a Loadpoint: records of time and force, parted by semicolons
@@ -167,8 +167,8 @@ contains
       call split_words(tree%element(at)%text, tree%file, tree%element(at)%text_row, words, &
          & also_blank=";")
       if (words%n /= 3*n) then
-         call fatal_error(error, to_text(n)//" records of 3 numbers are wanted in Loadpoint, " &
-            & //"found "//to_text(words%n)//" numbers; correct numpoints or the records", &
+         call fatal_error(error, "expected "//to_text(n)//" records of 3 numbers in Loadpoint, " &
+            & //"got "//to_text(words%n)//" numbers; correct numpoints or the records", &
             & tree%file, tree%element(at)%row)
          return
       end if
@@ -180,7 +180,7 @@ contains
          if (allocated(error)) return
          if (i == 1) cycle
          if (history%record(1, i) > history%record(1, i - 1)) cycle
-         call fatal_error(error, "times that increase are wanted in Loadpoint, found " &
+         call fatal_error(error, "expected increasing times in Loadpoint, got " &
             & //to_text(history%record(1, i))//" after "//to_text(history%record(1, i - 1)) &
             & //"; sort the records", tree%file, row)
          return

@@ -1,20 +1,25 @@
 !> A deck in memory: a value for every key of the registry, and where each one came from
 module dda_deck
    use, intrinsic :: ieee_arithmetic, only : ieee_value, ieee_quiet_nan
+   use dda_arch_keys, only : shape_keys
    use dda_block_input, only : block_plan_t, new_plan
+   use dda_boundary, only : history_t
    use dda_cut_model, only : cut_model_t
    use dda_kinds, only : wp
    use dda_error, only : error_t, fatal_error
    use dda_limerick_analysis, only : limerick_analysis_t
-   use dda_text, only : read_number
+   use dda_text, only : lower_case, read_number
    use dda_warnings, only : warnings_t
-   use dda_deck_keys, only : deck_key, deck_group, key_kind, key_index, group_index, word_length
+   use dda_deck_key, only : key_kind, word_length
+   use dda_deck_keys, only : deck_key, deck_group, key_index, group_index
    implicit none
    private
 
    public :: deck_t, deck_value_t, deck_sweep_t, deck_place_t, parameter_t, new_deck
+   public :: ground_record_t
    public :: real_of, integer_of, word_of, text_of, flag_of, list_of
    public :: geometry_of, is_given, has_group, keeps_velocities, line_of, place_of, deck_error
+   public :: scene_kind
    public :: add_file_mark, file_beside
 
    !> Where a value was written
@@ -65,6 +70,14 @@ module dda_deck
       character(len=word_length), allocatable :: texts(:)
    end type deck_sweep_t
 
+   !> A record of the ground's motion that the deck names
+   type :: ground_record_t
+      !> Its name in the deck
+      character(len=:), allocatable :: name
+      !> The motion as the file has it
+      type(history_t) :: motion
+   end type ground_record_t
+
    !> A deck
    type :: deck_t
       !> Name of the file
@@ -86,6 +99,8 @@ module dda_deck
       type(warnings_t) :: warnings
       !> The blocks of that file
       type(block_plan_t) :: plan
+      !> Records of the ground's motion; unallocated if none is named: (n)
+      type(ground_record_t), allocatable :: ground_record(:)
    end type deck_t
 
 contains
@@ -270,6 +285,32 @@ contains
       if (allocated(deck%analysis) .and. .not. is_given(deck, "limerick", "dynamic")) &
          & yes = deck%analysis%dynamic
    end function keeps_velocities
+
+   !> What the blocks of a case are made from, the word of scene%kind: but for arches that are more
+   !> than a circular ring of voussoirs, which are a shape
+   pure function scene_kind(deck) result(kind)
+      !> The deck of the case
+      type(deck_t), intent(in) :: deck
+      !> arch, shape, lines or blocks
+      character(len=word_length) :: kind
+      character(len=word_length) :: name
+      integer :: first, last
+      logical :: shaped
+
+      kind = word_of(deck, "scene", "kind")
+      if (kind /= "arch") return
+      first = key_index("arch", "shape")
+      last = key_index("arch", "lune_deg")
+      shaped = any(deck%value(first + 1:last)%given) .or. has_group(deck, "fill") &
+         .or. word_of(deck, "arch", "shape") /= "circular"
+      if (.not. shaped .and. has_group(deck, "search")) then
+         ! of fixed length, as in word_of
+         name = lower_case(word_of(deck, "search", "parameter"))
+         name = name(index(name, "%") + 1:)
+         shaped = any(name == shape_keys)
+      end if
+      if (shaped) kind = "shape"
+   end function scene_kind
 
    !> Geometry of a case; in the mode of the original blocks always move
    pure function geometry_of(deck) result(word)

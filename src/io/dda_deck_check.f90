@@ -3,7 +3,8 @@ module dda_deck_check
    use dda_kinds, only : wp
    use dda_error, only : error_t
    use dda_text, only : to_text
-   use dda_deck_keys, only : key_t, deck_key, key_kind, key_index, group_index
+   use dda_deck_key, only : key_t, key_kind
+   use dda_deck_keys, only : deck_key, key_index, group_index
    use dda_deck_words, only : full_name
    use dda_deck, only : deck_t, deck_place_t, parameter_t, deck_error, &
       integer_of, word_of, text_of, is_given, has_group, place_of
@@ -46,11 +47,14 @@ contains
 
       kind = trim(word_of(deck, "scene", "kind"))
       if (kind /= "arch" .and. .not. is_given(deck, "scene", "geometry")) then
-         call deck_error(error, "scene%kind = '"//kind//"' wants scene%geometry, a file of "// &
+         call deck_error(error, "scene%kind = '"//kind//"' needs scene%geometry, a file of "// &
             kind//"; name one", deck, place_of(deck, key_index("scene", "kind")))
       else if (kind /= "arch" .and. has_group(deck, "arch")) then
          call deck_error(error, "&arch has no effect: scene%kind is '"//kind// &
             "'; remove one of the two", deck, deck%group(group_index("arch")))
+      else if (kind /= "arch" .and. has_group(deck, "fill")) then
+         call deck_error(error, "&fill needs an arch, got scene%kind = '"//kind// &
+            "'; remove one of the two", deck, deck%group(group_index("fill")))
       end if
       do i = 1, 2
          if (allocated(error) .or. .not. is_given(deck, "scene", file_key(i))) cycle
@@ -58,8 +62,8 @@ contains
          if (kind == "arch") problem = "'lines' or 'blocks'"
          if (kind /= "lines" .and. file_key(i) == "analysis") problem = "'lines'"
          if (len(problem) == 0) cycle
-         call deck_error(error, "scene%"//trim(file_key(i))//" wants scene%kind = "//problem// &
-            ", found '"//kind//"'; change the one or remove the other", deck, &
+         call deck_error(error, "scene%"//trim(file_key(i))//" needs scene%kind = "//problem// &
+            ", got '"//kind//"'; change the one or remove the other", deck, &
             place_of(deck, key_index("scene", file_key(i))))
       end do
    end subroutine check_kind
@@ -98,7 +102,7 @@ contains
          key = deck_key(searched%key)
          if (key%group == "search" .or. &
             .not. any(key%kind == [key_kind%number, key_kind%numbers])) then
-            problem = "wanted a key with real values, found "//full_name(key)// &
+            problem = "expected a key with real values, got "//full_name(key)// &
                "; sweep it instead, or search one like thickness_ratio"
          end if
       end if
@@ -159,8 +163,8 @@ contains
       end if
       here = size(deck%sweep(s)%numbers) + size(deck%sweep(s)%texts)
       before = size(deck%sweep(s - 1)%numbers) + size(deck%sweep(s - 1)%texts)
-      if (here /= before) problem = "a linked &sweep wants as many values as the one before, "// &
-         to_text(before)//", found "//to_text(here)//"; make them equal"
+      if (here /= before) problem = "a linked &sweep needs as many values as the one before, "// &
+         to_text(before)//", got "//to_text(here)//"; make them equal"
    end subroutine check_link
 
    !> Check that varying a parameter has an effect and does not undo a --set
@@ -220,9 +224,9 @@ contains
 
       n = n_cases(deck)
       if (n > integer_of(deck, "output", "max_cases")) then
-         call deck_error(error, "wanted at most "// &
+         call deck_error(error, "expected at most "// &
             to_text(integer_of(deck, "output", "max_cases"))// &
-            " cases, found "//to_text(n)//" or more; raise output%max_cases if they are meant", &
+            " cases, got "//to_text(n)//" or more; raise output%max_cases if they are meant", &
             deck, &
             deck%sweep(size(deck%sweep))%place)
          return

@@ -5,7 +5,8 @@ module dda_deck_check_case
    use dda_text, only : to_text
    use dda_deck_keys, only : deck_key, key_index, group_index
    use dda_deck, only : deck_t, deck_place_t, parameter_t, deck_error, flag_of, geometry_of, &
-      integer_of, keeps_velocities, real_of, word_of, is_given, place_of
+      integer_of, keeps_velocities, real_of, scene_kind, word_of, is_given, place_of
+   use dda_deck_check_ground, only : check_ground
    use dda_deck_check_live, only : check_live
    use dda_deck_parameter, only : parameter_name
    use dda_deck_set, only : put_number, number_problem
@@ -33,22 +34,23 @@ contains
       call check_model(deck, searched, error)
       if (.not. allocated(error)) call check_use(deck, error)
       if (.not. allocated(error)) call check_live(deck, searched, error)
+      if (.not. allocated(error)) call check_ground(deck, searched, error)
       if (allocated(error)) return
       ! files of blocks have loads of their own
       if (.not. keeps_velocities(deck) .and. .not. (real_of(deck, "load", "gravity") > 0.0_wp .or. &
          is_given(deck, "material", "unit_weight") .or. is_given(deck, "scene", "analysis") .or. &
          word_of(deck, "scene", "kind") == "blocks" .and. &
          word_of(deck, "analysis", "mode") /= "limerick")) then
-         call deck_error(error, "a static analysis wants a weight: load%gravity is 0 and "// &
+         call deck_error(error, "a static analysis needs a weight: load%gravity is 0 and "// &
             "material%unit_weight is not given; give one of them", deck, &
             deck%value(key_index("load", "gravity"))%place)
       else if (is_given(deck, "analysis", "unknowns") .and. &
          all(integer_of(deck, "analysis", "unknowns") /= [3, 6])) then
-         call deck_error(error, "analysis%unknowns wants 3 or 6, found "// &
+         call deck_error(error, "analysis%unknowns must be 3 or 6, got "// &
             to_text(integer_of(deck, "analysis", "unknowns"))//"; choose one of the two", deck, &
             place_of(deck, key_index("analysis", "unknowns")))
       else
-         if (word_of(deck, "scene", "kind") == "arch") call check_shape(deck, error)
+         if (scene_kind(deck) == "arch") call check_shape(deck, error)
          if (allocated(error) .or. searched%key == 0) return
          call check_bracket(deck, searched, error)
       end if
@@ -65,7 +67,7 @@ contains
       character(len=:), allocatable :: mode, kind, problem
 
       mode = trim(word_of(deck, "analysis", "mode"))
-      kind = trim(word_of(deck, "scene", "kind"))
+      kind = trim(scene_kind(deck))
       problem = model_problem(kind, mode, trim(geometry_of(deck)))
       if (len(problem) > 0) then
          call deck_error(error, "expected a geometry that mode = '"//mode//"' of scene%kind = '"// &
@@ -75,8 +77,9 @@ contains
          return
       end if
       if (searched%key == 0) return
-      if (keeps_velocities(deck)) mode = "dynamic"
       problem = search_problem(deck_key(searched%key), kind, mode)
+      if (mode == "limerick" .and. keeps_velocities(deck)) &
+         problem = "with velocities it ends 'completed', neither stable nor collapsed"
       if (len(problem) > 0) call deck_error(error, "search%parameter: expected a key that "// &
          "mode = '"//trim(word_of(deck, "analysis", "mode"))//"' of scene%kind = '"//kind// &
          "' searches, got "//full_name(deck_key(searched%key))//": "//problem// &
@@ -100,36 +103,36 @@ contains
       if (real_of(deck, "analysis", "restitution") > 0.0_wp &
          .and. .not. (mode == "dynamic" .and. moves)) then
          key = key_index("analysis", "restitution")
-         problem = "restitution wants mode = 'dynamic' and geometry = 'current'"
+         problem = "restitution needs mode = 'dynamic' and geometry = 'current'"
       else if (real_of(deck, "analysis", "damping") > 0.0_wp .and. mode /= "dynamic") then
          key = key_index("analysis", "damping")
-         problem = "damping expects mode = 'dynamic', got '"//mode//"'; remove one of the two"
+         problem = "damping needs mode = 'dynamic', got '"//mode//"'; remove one of the two"
       else if (is_given(deck, "analysis", "duration") .and. mode /= "dynamic") then
          key = key_index("analysis", "duration")
-         problem = "duration wants mode = 'dynamic': a static run has no time"
+         problem = "duration needs mode = 'dynamic': a static run has no time"
       else if (is_given(deck, "analysis", "restart") .and. mode /= "dynamic") then
          key = key_index("analysis", "restart")
-         problem = "analysis%restart wants mode = 'dynamic': a static run comes to rest by itself"
+         problem = "analysis%restart needs mode = 'dynamic': a static run comes to rest by itself"
       else if (word_of(deck, "analysis", "flow") == "associated" .and. mode /= "static") then
          key = key_index("analysis", "flow")
-         problem = "flow = 'associated' expects mode = 'static', got '"//mode// &
+         problem = "flow = 'associated' needs mode = 'static', got '"//mode// &
             "'; remove one of the two"
       else if (is_given(deck, "analysis", "unknowns") .and. mode == "limerick") then
          key = key_index("analysis", "unknowns")
-         problem = "analysis%unknowns expects another mode than 'limerick', whose blocks "// &
+         problem = "analysis%unknowns needs another mode than 'limerick', whose blocks "// &
             "have 6; remove it"
       else if (integer_of(deck, "output", "frames") > 0 .and. mode == "limerick") then
          key = key_index("output", "frames")
-         problem = "output%frames wants another mode than 'limerick', which keeps no pictures"
+         problem = "output%frames needs another mode than 'limerick', which keeps no frames"
       else if (flag_of(deck, "output", "energy") .and. mode == "limerick") then
          key = key_index("output", "energy")
-         problem = "output%energy expects mode = 'dynamic', got 'limerick'; remove one of the two"
+         problem = "output%energy needs mode = 'dynamic', got 'limerick'; remove one of the two"
       else if (flag_of(deck, "output", "restart") .and. mode == "limerick") then
          key = key_index("output", "restart")
-         problem = "output%restart expects mode = 'dynamic', got 'limerick'; remove one of the two"
+         problem = "output%restart needs mode = 'dynamic', got 'limerick'; remove one of the two"
       else if (integer_of(deck, "output", "frames") > 0 .and. .not. moves) then
          key = key_index("output", "frames")
-         problem = "output%frames wants geometry = 'current': in reference geometry no block "// &
+         problem = "output%frames needs geometry = 'current': in reference geometry no block "// &
             "moves; change one of the two"
       end if
       if (key > 0) call deck_error(error, problem, deck, place_of(deck, key))
@@ -149,8 +152,8 @@ contains
       end if
       span = 2.0_wp*real_of(deck, "arch", "half_angle_deg")/real_of(deck, "arch", "voussoirs")
       if (span < 180.0_wp .or. is_given(deck, "arch", "facet_deg")) return
-      call deck_error(error, "one chord a voussoir wants voussoirs of less than 180 degrees, "// &
-         "found "//to_text(span)//"; give facet_deg or more voussoirs", deck, &
+      call deck_error(error, "one chord per voussoir needs voussoirs of less than 180 degrees, "// &
+         "got "//to_text(span)//"; give facet_deg or more voussoirs", deck, &
          later(deck, "half_angle_deg", "voussoirs"))
    end subroutine check_shape
 
@@ -169,10 +172,10 @@ contains
       associate (joints => deck%value(key_index("arch", "joints_deg"))%numbers)
          n = size(joints)
          if (n < 2) then
-            problem = "wants two angles or more, found "//to_text(n)// &
+            problem = "must be two angles or more, got "//to_text(n)// &
                "; write 0 (the crown) and the springing at least"
          else if (abs(joints(1)) > 0.0_wp) then
-            problem = "wants 0 first (the crown), found "//to_text(joints(1))// &
+            problem = "must begin with 0 (the crown), got "//to_text(joints(1))// &
                "; write the joints of one half only"
          else if (is_given(deck, "arch", "voussoirs")) then
             problem = "and arch%voussoirs exclude one another; remove one of them"
@@ -181,7 +184,7 @@ contains
          do i = 2, n
             if (len(problem) > 0) exit
             if (joints(i) > joints(i - 1) + same_angle) cycle
-            problem = "wants increasing angles [deg], found "//to_text(joints(i - 1))// &
+            problem = "must be increasing angles [deg], got "//to_text(joints(i - 1))// &
                " before "//to_text(joints(i))//"; sort them, each one once"
          end do
       end associate
@@ -244,10 +247,10 @@ contains
       call bracket_of(deck, searched, low, high)
       if (.not. low > -huge(low) .or. .not. high < huge(high)) then
          call deck_error(error, "a search for "//parameter_name(searched)// &
-            " wants search%low and search%high, which have no default; give both", deck, &
+            " needs search%low and search%high, which have no default; give both", deck, &
             place_of(deck, key_index("search", "parameter")))
       else if (.not. low < high) then
-         call deck_error(error, "wanted search%low below search%high, found "//to_text(low)// &
+         call deck_error(error, "search%low must be below search%high, got "//to_text(low)// &
             " and "//to_text(high)//"; make low the smaller one", deck, &
             place_of(deck, key_index("search", &
             trim(merge("high", "low ", is_given(deck, "search", "high"))))))
@@ -276,7 +279,7 @@ contains
          call deck_error(error, "search%"//name//": "//problem// &
             "; choose an end that it can take", deck, &
             deck%value(key_index("search", name))%place)
-      else if (deck_key(searched%key)%group == "arch") then
+      else if (deck_key(searched%key)%group == "arch" .and. scene_kind(deck) == "arch") then
          trial = deck
          call put_number(trial, searched, real_of(deck, "search", name), &
             deck%value(key_index("search", name))%place, error)

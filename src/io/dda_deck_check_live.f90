@@ -31,7 +31,7 @@ contains
       push = key_index("load", "horizontal_coefficient")
       pushed = searched%key == push .or. abs(deck%value(push)%number) > 0.0_wp
       if (flag_of(deck, "load", "live_horizontal") .and. .not. pushed) &
-         & call deck_error(error, "load%live_horizontal expects a horizontal_coefficient other "// &
+         & call deck_error(error, "load%live_horizontal needs a horizontal_coefficient other "// &
          & "than 0, got 0; give one, or remove live_horizontal", deck, &
          & place_of(deck, key_index("load", "live_horizontal")))
    end subroutine check_live
@@ -52,26 +52,26 @@ contains
       place = deck%group(group_index("live"))
       problem = ""
       n = size(list_of(deck, "live", "x"))
-      if (n == 0) problem = "&live expects x and y, where its forces act, got none; give both"
+      if (n == 0) problem = "&live needs x and y, where its forces act, got none; give both"
       do i = 2, size(name)
          if (len(problem) > 0) exit
          if (i > 2 .and. .not. is_given(deck, "live", name(i))) cycle
          if (size(list_of(deck, "live", name(i))) == n) cycle
-         problem = "live%"//trim(name(i))//" expects as many numbers as live%x, "//to_text(n) &
-            & //", got "//to_text(size(list_of(deck, "live", name(i))))//"; give one a force"
+         problem = "live%"//trim(name(i))//" needs as many numbers as live%x, "//to_text(n) &
+            & //", got "//to_text(size(list_of(deck, "live", name(i))))//"; give one per force"
          place = place_of(deck, key_index("live", trim(name(i))))
       end do
       if (len(problem) > 0) then
          continue
       else if (word_of(deck, "analysis", "mode") == "limerick") then
-         problem = "&live expects another mode than 'limerick', whose loads are those of its "// &
+         problem = "&live needs another mode than 'limerick', whose loads are those of its "// &
             & "files; remove one of the two"
       else if (group_of(searched) == "arch") then
-         problem = "&live expects an arch that keeps its shape, but the search changes it, "// &
+         problem = "&live needs an arch that keeps its shape, but the search changes it, "// &
             & "and its points stay; sweep the shape, with x and y linked"
          place = place_of(deck, key_index("search", "parameter"))
       else if (group_of(searched) /= "live" .and. .not. has_forces(deck)) then
-         problem = "&live expects a force other than 0, got none; give fx or fy"
+         problem = "&live needs a force other than 0, got none; give fx or fy"
       end if
       if (len(problem) > 0) call deck_error(error, problem, deck, place)
    end subroutine check_lists
@@ -94,28 +94,28 @@ contains
       n = size(list_of(deck, "vehicle", "axles"))
       problem = ""
       if (n == 0) then
-         problem = "&vehicle expects axles, got none; give their weights"
+         problem = "&vehicle needs axles, got none; give their weights"
       else if (size(list_of(deck, "vehicle", "spacings")) /= n - 1) then
-         problem = "vehicle%spacings expects one number fewer than there are axles, "// &
+         problem = "vehicle%spacings needs one number fewer than there are axles, "// &
             & to_text(n - 1)//", got "//to_text(size(list_of(deck, "vehicle", "spacings"))) &
             & //"; give the distances between axles"
       else if (.not. (is_given(deck, "vehicle", "position") .or. worst &
          & .or. searched%key == key_index("vehicle", "position"))) then
-         problem = "&vehicle expects a position, got none; give it, or worst = .true."
+         problem = "&vehicle needs a position, got none; give it, or worst = .true."
       else if (worst .and. is_given(deck, "vehicle", "position")) then
-         problem = "vehicle%worst expects no position, got one; remove one of the two"
+         problem = "vehicle%worst needs no position, got one; remove one of the two"
          place = place_of(deck, key_index("vehicle", "position"))
       else if (word_of(deck, "analysis", "mode") == "limerick") then
-         problem = "&vehicle expects another mode than 'limerick', whose loads are those of "// &
+         problem = "&vehicle needs another mode than 'limerick', whose loads are those of "// &
             & "its files; remove one of the two"
       else if (worst .and. (searched%key /= key_index("load", "load_factor") &
          & .or. word_of(deck, "analysis", "mode") /= "static" &
          & .or. word_of(deck, "analysis", "geometry") /= "reference")) then
-         problem = "vehicle%worst expects a search for load_factor in static reference "// &
+         problem = "vehicle%worst needs a search for load_factor in static reference "// &
             & "geometry, got none; add &search parameter = 'load_factor'"
          place = place_of(deck, key_index("vehicle", "worst"))
       else if (group_of(searched) == "arch") then
-         problem = "&vehicle expects an arch that keeps its shape, but the search changes it; "// &
+         problem = "&vehicle needs an arch that keeps its shape, but the search changes it; "// &
             & "sweep the shape"
          place = place_of(deck, key_index("search", "parameter"))
       end if

@@ -3,7 +3,8 @@ module dda_deck_entry
    use dda_kinds, only : wp
    use dda_error, only : error_t
    use dda_text, only : to_text, lower_case, read_number, read_integer
-   use dda_deck_keys, only : deck_key, key_kind, key_index, max_items, word_length
+   use dda_deck_key, only : key_kind, max_items, word_length
+   use dda_deck_keys, only : deck_key, key_index
    use dda_deck_words, only : wanted, full_name, or_leave_out
    use dda_deck_token, only : deck_scan_t, token_kind, token_text, shown
    use dda_deck, only : deck_t, deck_place_t, parameter_t, deck_error
@@ -95,8 +96,8 @@ contains
          end do
       end if
       if (len(found) == 0) return
-      call deck_error(error, full_name(deck_key(parameter%key))//" wants "// &
-         wanted(deck_key(parameter%key))//", found "//found//or_leave_out(parameter%key), deck, &
+      call deck_error(error, full_name(deck_key(parameter%key))//" must be "// &
+         wanted(deck_key(parameter%key))//", got "//found//or_leave_out(parameter%key), deck, &
          place_at(scan, i, place))
    end subroutine check_values
 

@@ -3,96 +3,25 @@
 !> A new key is one entry here and its paragraph in docs/input.md. Reading, range checks, --set,
 !> sweeps, searches and the printed help follow from the entry.
 module dda_deck_keys
+   use dda_arch_keys, only : arch_keys, fill_keys
+   use dda_deck_key, only : group_t, key_kind, key_t
    use dda_kinds, only : wp
    implicit none
    private
 
-   public :: key_t, key_kind, group_t, deck_key, deck_group, key_index, group_index
-   public :: name_length, word_length, max_items
-
-   !> Longest name of a key [characters]
-   integer, parameter :: name_length = 32
-   !> Longest word of a list of words [characters]
-   integer, parameter :: word_length = 64
-   !> Most items that a list may have
-   integer, parameter :: max_items = 100000
-
-   !> What kind of value a key takes
-   type :: key_kind_enum
-      !> One real number
-      integer :: number = 1
-      !> One whole number
-      integer :: whole = 2
-      !> One of the words of the entry
-      integer :: word = 3
-      !> Any text on one line
-      integer :: text = 4
-      !> .true. or .false.
-      integer :: flag = 5
-      !> A list of real numbers
-      integer :: numbers = 6
-      !> A list of words
-      integer :: texts = 7
-      !> Known, but refused: a later version of the program reads it
-      integer :: later = 8
-   end type key_kind_enum
-
-   !> The kinds of value by name
-   type(key_kind_enum), parameter :: key_kind = key_kind_enum()
-
-   !> One key of a deck
-   type :: key_t
-      !> Group that the key belongs to
-      character(len=16) :: group = ""
-      !> Name of the key
-      character(len=name_length) :: name = ""
-      !> One of key_kind
-      integer :: kind = key_kind%number
-      !> Unit of the value; empty if it has none
-      character(len=8) :: unit = ""
-      !> Default as one would write it in a deck; empty if there is none
-      character(len=24) :: default = ""
-      !> What happens without the key where it has no default
-      character(len=56) :: without = ""
-      !> Smallest value that is allowed
-      real(wp) :: at_least = -huge(1.0_wp)
-      !> Largest value that is allowed
-      real(wp) :: at_most = huge(1.0_wp)
-      !> Bound that the value must exceed
-      real(wp) :: above = -huge(1.0_wp)
-      !> Bound that the value must stay below
-      real(wp) :: below = huge(1.0_wp)
-      !> Words that are allowed, separated by blanks
-      character(len=40) :: words = ""
-      !> Words that a later version of the program allows, separated by blanks
-      character(len=40) :: later = ""
-      !> Whether &sweep may name the key; &search may, if it is also a real number
-      logical :: varies = .true.
-      !> Lower end of a search that gives none
-      real(wp) :: search_low = -huge(1.0_wp)
-      !> Upper end of a search that gives none
-      real(wp) :: search_high = huge(1.0_wp)
-      !> What the key means, in one sentence
-      character(len=100) :: meaning = ""
-   end type key_t
-
-   !> One group of a deck
-   type :: group_t
-      !> Name of the group
-      character(len=16) :: name = ""
-      !> What the group describes
-      character(len=72) :: meaning = ""
-   end type group_t
+   public :: deck_key, deck_group, key_index, group_index
 
    !> All groups, in the order of the contract
    type(group_t), parameter :: deck_group(*) = [ &
       group_t("scene", "what is studied"), &
-      group_t("arch", "the shape of a circular arch, crown up, centre at the origin"), &
+      group_t("arch", "the shape of an arch, its rings, spans and piers"), &
       group_t("material", "the blocks' material"), &
       group_t("joint", "the Mohr-Coulomb law of the joints"), &
       group_t("load", "what acts on the blocks"), &
       group_t("live", "forces on points that the load factor multiplies"), &
       group_t("vehicle", "axles above the blocks, multiplied by the load factor, too"), &
+      group_t("fill", "what lies on an arch, up to a level surface"), &
+      group_t("ground", "how the ground moves, with mode = 'dynamic' only"), &
       group_t("analysis", "how a single case is computed"), &
       group_t("limerick", "the original's scheme: with mode = 'limerick' only"), &
       group_t("search", "looks for the critical value of one parameter"), &
@@ -111,36 +40,6 @@ module dda_deck_keys
       key_t(group="scene", name="analysis", kind=key_kind%text, &
             without="the keys of this deck", varies=.false., &
             meaning="File of materials and loads for kind = 'lines'; keys of the deck go before.")]
-
-   !> Keys of &arch
-   type(key_t), parameter :: arch_keys(*) = [ &
-      key_t(group="arch", name="radius", unit="m", default="10.0", &
-            at_least=1.0e-9_wp, at_most=1.0e9_wp, &
-            meaning="Radius of the circle half way between intrados and extrados."), &
-      key_t(group="arch", name="thickness_ratio", default="0.15", &
-            at_least=1.0e-15_wp, below=2.0_wp, search_low=0.0_wp, search_high=2.0_wp, &
-            meaning="Thickness of the ring over the radius of its middle circle."), &
-      key_t(group="arch", name="half_angle_deg", unit="deg", default="90.0", &
-            at_least=1.0e-6_wp, below=180.0_wp, search_low=5.0_wp, search_high=175.0_wp, &
-            meaning="Angle from the crown to a springing; follows from joints_deg if given."), &
-      key_t(group="arch", name="voussoirs", kind=key_kind%whole, default="36", &
-            at_least=1.0_wp, at_most=1.0e6_wp, &
-            meaning="Number of equal voussoirs; an odd number leaves no joint at the crown."), &
-      key_t(group="arch", name="joints_deg", kind=key_kind%numbers, unit="deg", &
-            without="equal voussoirs", at_least=0.0_wp, below=180.0_wp, &
-            meaning="Joints of one half from the crown, 0 first, the springing last; mirrored."), &
-      key_t(group="arch", name="facet_deg", unit="deg", without="one chord a voussoir", &
-            at_least=1.0e-3_wp, below=180.0_wp, &
-            meaning="Largest angle of one chord of a voussoir's intrados or extrados."), &
-      key_t(group="arch", name="springing", kind=key_kind%word, default="'frictional'", &
-            words="frictional no-slip", &
-            meaning="Whether the two springing joints obey friction or cannot slide."), &
-      key_t(group="arch", name="abutment_size", unit="m", without="0.43 of the radius", &
-            at_least=1.0e-9_wp, at_most=1.0e9_wp, &
-            meaning="Depth of the abutments of mode 'limerick' and of dda export."), &
-      key_t(group="arch", name="abutment_overhang", unit="m", without="abutment_size", &
-            at_least=0.0_wp, at_most=1.0e9_wp, &
-            meaning="By how much such abutments are longer than the joints, at either end.")]
 
    !> Keys of &material
    type(key_t), parameter :: material_keys(*) = [ &
@@ -184,7 +83,10 @@ module dda_deck_keys
             meaning="Whether the forces of horizontal_coefficient are live."), &
       key_t(group="load", name="displacement_factor", default="1.0", &
             at_least=-1.0e12_wp, at_most=1.0e12_wp, &
-            meaning="What the displacements of led points are multiplied by.")]
+            meaning="What prescribed displacements are multiplied by."), &
+      key_t(group="load", name="water_rise", unit="m", default="0.0", &
+            at_least=-1.0e9_wp, at_most=1.0e9_wp, &
+            meaning="By how much the lines of heads of a file of blocks have risen.")]
 
    !> Keys of &live
    type(key_t), parameter :: live_keys(*) = [ &
@@ -217,6 +119,36 @@ module dda_deck_keys
       key_t(group="vehicle", name="worst", kind=key_kind%flag, default=".false.", &
             meaning="Whether the position of the least load factor is sought.")]
 
+   !> Keys of &ground
+   type(key_t), parameter :: ground_keys(*) = [ &
+      key_t(group="ground", name="scale", default="1.0", &
+            at_least=-1.0e12_wp, at_most=1.0e12_wp, &
+            meaning="What the motion of the ground is multiplied by."), &
+      key_t(group="ground", name="pulse", kind=key_kind%word, words="rectangular sine", &
+            without="a record, or the file of blocks", &
+            meaning="Acceleration that is constant for a time, or a sine."), &
+      key_t(group="ground", name="record", kind=key_kind%text, &
+            without="a pulse, or the file of blocks", &
+            meaning="File of the motion, beside the deck unless it begins with a slash."), &
+      key_t(group="ground", name="amplitude", unit="m/s2", &
+            without="must be given for a pulse", at_least=-1.0e12_wp, at_most=1.0e12_wp, &
+            meaning="Largest acceleration: of the pulse, or that the record is brought to."), &
+      key_t(group="ground", name="duration", bare=.false., unit="s", &
+            without="one period of a sine", at_least=1.0e-12_wp, at_most=1.0e12_wp, &
+            meaning="How long the pulse lasts."), &
+      key_t(group="ground", name="frequency", unit="Hz", &
+            without="must be given for a sine", at_least=1.0e-9_wp, at_most=1.0e9_wp, &
+            meaning="Frequency of the sine."), &
+      key_t(group="ground", name="direction_deg", unit="deg", default="0.0", &
+            at_least=-360.0_wp, at_most=360.0_wp, &
+            meaning="Direction of a pulse, or by how much a record is turned, from +x."), &
+      key_t(group="ground", name="columns", kind=key_kind%text, default="'1 2'", varies=.false., &
+            meaning="Columns of time, x and y in the record: numbers, 0 for none, or names."), &
+      key_t(group="ground", name="quantity", kind=key_kind%word, default="'acceleration'", &
+            words="acceleration velocity displacement", meaning="What the record holds."), &
+      key_t(group="ground", name="unit", default="1.0", at_least=1.0e-12_wp, at_most=1.0e12_wp, &
+            meaning="One of the record's units in m/s2, m/s or m: 9.81 for accelerations in g.")]
+
    !> Keys of &analysis
    type(key_t), parameter :: analysis_keys(*) = [ &
       key_t(group="analysis", name="mode", kind=key_kind%word, default="'static'", &
@@ -230,7 +162,7 @@ module dda_deck_keys
             meaning="Friction rule of a static verdict: sliding along the joint, or opening it."), &
       key_t(group="analysis", name="steps", kind=key_kind%whole, default="400", &
             at_least=1.0_wp, at_most=1.0e9_wp, &
-            meaning="Most time steps of one run; a static run left open by them is undecided."), &
+            meaning="Step limit of one run; a static run that reaches it is undecided."), &
       key_t(group="analysis", name="max_displacement_ratio", default="0.05", &
             at_least=1.0e-12_wp, at_most=1.0_wp, &
             meaning="Largest vertex displacement of a step over the size of the smallest block."), &
@@ -252,12 +184,18 @@ module dda_deck_keys
       key_t(group="analysis", name="collapse_displacement", unit="m", &
             without="a test without a length", at_least=1.0e-15_wp, at_most=1.0e15_wp, &
             meaning="Largest vertex displacement that means collapse."), &
+      key_t(group="analysis", name="collapse_rotation_deg", unit="deg", &
+            without="45 in a search", above=0.0_wp, at_most=360.0_wp, &
+            meaning="Rotation of a block that means collapse, in a dynamic run."), &
+      key_t(group="analysis", name="collapse_point", kind=key_kind%whole, &
+            without="any corner", at_least=1.0_wp, at_most=1.0e7_wp, &
+            meaning="Measured point whose displacement means collapse, by its number."), &
       key_t(group="analysis", name="open_close_limit", kind=key_kind%whole, default="400", &
             at_least=1.0_wp, at_most=1.0e9_wp, &
             meaning="Most open-close changes of a step before the line search takes over."), &
       key_t(group="analysis", name="restart", kind=key_kind%text, varies=.false., &
             without="the run begins at the beginning", &
-            meaning="Restart file of a dynamic run that goes on; steps counts those before."), &
+            meaning="Restart file that a dynamic run continues; steps counts those before."), &
       key_t(group="analysis", name="unknowns", kind=key_kind%whole, &
             without="what the scene needs", at_least=3.0_wp, at_most=6.0_wp, &
             meaning="Unknowns of a block: 6, or 3 for blocks without strain.")]
@@ -291,7 +229,7 @@ module dda_deck_keys
    type(key_t), parameter :: search_keys(*) = [ &
       key_t(group="search", name="parameter", kind=key_kind%text, &
             default="'thickness_ratio'", varies=.false., &
-            meaning="Name of the real-valued key whose critical value is wanted."), &
+            meaning="Name of the real-valued key whose critical value is sought."), &
       key_t(group="search", name="low", without="the parameter's own lower end", &
             at_least=-1.0e30_wp, at_most=1.0e30_wp, &
             meaning="Where the search begins, in the parameter's unit."), &
@@ -328,7 +266,7 @@ module dda_deck_keys
    !> Keys of &output
    type(key_t), parameter :: output_keys(*) = [ &
       key_t(group="output", name="vtu", kind=key_kind%flag, default=".true.", varies=.false., &
-            meaning="Write the pictures of output%frames for ParaView too."), &
+            meaning="Write the frames for ParaView too."), &
       key_t(group="output", name="joints", kind=key_kind%flag, varies=.false., &
             without="up to 100 cases", &
             meaning="Write forces, openings and states of the joints to joints.csv."), &
@@ -338,28 +276,35 @@ module dda_deck_keys
       key_t(group="output", name="proof", kind=key_kind%flag, varies=.false., &
             without="as joints, for up to 100 cases", &
             meaning="Prove static verdicts in proof_forces.csv and proof_motion.csv."), &
+      key_t(group="output", name="thrust_bar", kind=key_kind%whole, varies=.false., &
+            without="none", at_least=1.0_wp, at_most=1.0e7_wp, meaning="Bar whose least and "// &
+            "greatest force are reported for stable cases, in thrust_min and thrust_max."), &
+      key_t(group="output", name="reactions", kind=key_kind%flag, varies=.false., &
+            without="as joints, of static runs", &
+            meaning="Write the forces of fixed blocks and held points to reactions.csv."), &
       key_t(group="output", name="thrust_joint", kind=key_kind%whole, varies=.false., &
             without="the one nearest to the crown of an arch", &
             at_least=1.0_wp, at_most=1.0e7_wp, &
-            meaning="Joint whose least and greatest thrust are told of what stands."), &
+            meaning="Joint whose thrust range is reported for stable cases."), &
       key_t(group="output", name="condition", kind=key_kind%flag, default=".false.", &
             varies=.false., &
             meaning="Estimate the condition number of the last equations of each case."), &
       key_t(group="output", name="frames", kind=key_kind%whole, default="0", varies=.false., &
             at_least=0.0_wp, at_most=10000.0_wp, &
-            meaning="Pictures of moving blocks; a collapse is then followed for radius/10."), &
+            meaning="Frames of moving blocks; a collapse is then followed for radius/10."), &
       key_t(group="output", name="energy", kind=key_kind%flag, default=".false.", varies=.false., &
             meaning="Write the energies after each step of a dynamic run to energy.csv."), &
       key_t(group="output", name="restart", kind=key_kind%flag, default=".false.", varies=.false., &
-            meaning="Write the end of each dynamic case to case_N.restart, to go on from there."), &
+            meaning="Write the end of each dynamic case to case_N.restart, to continue it."), &
       key_t(group="output", name="max_cases", kind=key_kind%whole, default="100000", &
             varies=.false., at_least=1.0_wp, at_most=1.0e7_wp, &
             meaning="Most cases that the &sweep groups may make; more is an error.")]
 
    !> All keys, group by group
    type(key_t), parameter :: deck_key(*) = [scene_keys, arch_keys, material_keys, joint_keys, &
-      load_keys, live_keys, vehicle_keys, analysis_keys, limerick_keys, search_keys, &
-      sweep_keys, output_keys]
+      load_keys, live_keys, vehicle_keys, fill_keys, ground_keys, analysis_keys, &
+      limerick_keys, &
+      search_keys, sweep_keys, output_keys]
 
 contains
 

@@ -1,7 +1,8 @@
 !> Names of what a sweep, a search or a --set may vary
 module dda_deck_parameter
    use dda_text, only : to_text, lower_case, read_integer
-   use dda_deck_keys, only : key_t, deck_key, key_kind
+   use dda_deck_key, only : key_t, key_kind
+   use dda_deck_keys, only : deck_key
    use dda_deck_words, only : full_name, near_key
    use dda_deck_token, only : shown
    use dda_deck, only : parameter_t
@@ -53,10 +54,11 @@ contains
       integer :: i
 
       call split_name(name, group, key, parameter%item, ok)
-      fits = deck_key%name == key .and. (deck_key%group == group .or. len(group) == 0)
+      fits = deck_key%name == key .and. (deck_key%group == group &
+         .or. len(group) == 0 .and. deck_key%bare)
       problem = ""
       if (.not. ok) then
-         problem = "wanted a name such as joints_deg(2), found '"//shown(name)// &
+         problem = "expected a name such as joints_deg(2), got '"//shown(name)// &
             "'; number the items from 1"
       else if (.not. any(fits)) then
          problem = "'"//shown(name)//"' is no key: "//near_key(key, group)
@@ -72,8 +74,8 @@ contains
       if (deck_key(i)%kind == key_kind%numbers .eqv. parameter%item > 0) return
       problem = trim(deck_key(i)%name)//" is a list; name one item, such as "// &
          trim(deck_key(i)%name)//"(2)"
-      if (parameter%item > 0) problem = trim(deck_key(i)%name)//" has no items; leave the "// &
-         "parentheses away"
+      if (parameter%item > 0) problem = trim(deck_key(i)%name)//" has no items; remove the "// &
+         "parentheses"
    end subroutine find_parameter
 
    !> Name of a parameter as a column is headed
@@ -86,7 +88,8 @@ contains
 
       key = deck_key(parameter%key)
       name = trim(key%name)
-      if (count(deck_key%name == key%name .and. deck_key%varies) > 1) name = full_name(key)
+      if (.not. key%bare .or. count(deck_key%name == key%name .and. deck_key%varies &
+         .and. deck_key%bare) > 1) name = full_name(key)
       if (parameter%item > 0) name = name//"("//to_text(parameter%item)//")"
    end function parameter_name
 end module dda_deck_parameter

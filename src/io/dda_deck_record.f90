@@ -1,7 +1,8 @@
 !> What was asked for, as a text: two runs with equal records compute the same cases
 module dda_deck_record
    use dda_deck, only : deck_sweep_t, deck_t, deck_value_t, has_group
-   use dda_deck_keys, only : deck_group, deck_key, key_kind
+   use dda_deck_key, only : key_kind
+   use dda_deck_keys, only : deck_group, deck_key
    use dda_deck_parameter, only : parameter_name
    use dda_deck_words, only : full_name
    use dda_growing_text, only : add_line, growing_text_t, lines_of

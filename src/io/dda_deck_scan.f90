@@ -2,7 +2,7 @@
 module dda_deck_scan
    use dda_error, only : error_t, fatal_error
    use dda_text, only : to_text, lower_case, read_integer
-   use dda_deck_keys, only : max_items
+   use dda_deck_key, only : max_items
    use dda_deck_token, only : deck_scan_t, token_kind, token_text, shown, &
       start, add_token, skip_blanks, word_end, starts_with
    implicit none
@@ -40,7 +40,7 @@ contains
       if (scan%open_group > 0) then
          call not_closed(scan, "the end of the file", error)
       else if (scan%n == 0) then
-         call fatal_error(error, "wanted at least one group, found none; write &arch / for an "// &
+         call fatal_error(error, "expected at least one group, got none; write &arch / for an "// &
             "arch of defaults", line=1)
       end if
    end subroutine scan_deck
@@ -64,8 +64,8 @@ contains
       end do
       do i = 1, scan%n
          if (scan%token(i)%kind == token_kind%key .or. scan%token(i)%kind == token_kind%close) then
-            call fatal_error(error, "wanted values, found '"//shown(text)// &
-               "'; write one value, or several parted by commas")
+            call fatal_error(error, "expected values, got '"//shown(text)// &
+               "'; write one value, or several separated by commas")
             return
          end if
       end do
@@ -82,12 +82,12 @@ contains
       first = scan%position
       last = word_end(scan)
       if (scan%text(first:first) /= "&") then
-         call fatal_error(error, "wanted a group such as &arch, found text between groups: '"// &
+         call fatal_error(error, "expected a group such as &arch, got text between groups: '"// &
             shown(scan%text(first:max(first, last)))//"'; remove it or put '!' before it", &
             line=scan%line)
       else if (last == first .or. &
          verify(lower_case(scan%text(first + 1:last)), name_letters) > 0) then
-         call fatal_error(error, "wanted the name of a group after '&', found '"// &
+         call fatal_error(error, "expected the name of a group after '&', got '"// &
             shown(scan%text(first + 1:last))//"'; write one like &arch", line=scan%line)
       else
          call add_token(scan, token_kind%group, first + 1, last, 1, error)
@@ -112,7 +112,7 @@ contains
       case (",")
          call scan_comma(scan, error)
       case ("=")
-         call fatal_error(error, "wanted a key before '=', found none; write key = value", &
+         call fatal_error(error, "expected a key before '=', got none; write key = value", &
             line=scan%line)
       case ("'", """")
          call scan_quoted(scan, 1, error)
@@ -198,8 +198,8 @@ contains
          end if
       end do
       last = min(last - 1, len(scan%text))
-      call fatal_error(error, "wanted a closing quote on the same line after at most "// &
-         to_text(max_text)//" characters, found '"//shown(scan%text(first:last))// &
+      call fatal_error(error, "expected a closing quote on the same line after at most "// &
+         to_text(max_text)//" characters, got '"//shown(scan%text(first:last))// &
          "'; close the quote", &
          line=scan%line)
    end subroutine scan_quoted
@@ -255,8 +255,8 @@ contains
       call read_integer(scan%text(first:first + star - 2), count, ok)
       if (ok) ok = count >= 1 .and. count <= max_items
       if (ok) return
-      call fatal_error(error, "wanted a repeat count from 1 to "//to_text(max_items)// &
-         " before '*', found '"//shown(scan%text(first:first + star - 2))// &
+      call fatal_error(error, "expected a repeat count from 1 to "//to_text(max_items)// &
+         " before '*', got '"//shown(scan%text(first:first + star - 2))// &
          "'; write it like 3*1.5", line=scan%line)
    end subroutine repeat_count
 
@@ -270,10 +270,10 @@ contains
       type(error_t), allocatable, intent(out) :: error
 
       if (scan%open_group == 0) then
-         call fatal_error(error, "wanted values, found "//found//"; remove it")
+         call fatal_error(error, "expected values, got "//found//"; remove it")
       else
-         call fatal_error(error, "wanted '/' at the end of &"// &
-            token_text(scan, scan%open_group)//", found "//found//"; close the group", &
+         call fatal_error(error, "expected '/' at the end of &"// &
+            token_text(scan, scan%open_group)//", got "//found//"; close the group", &
             line=scan%token(scan%open_group)%line)
       end if
    end subroutine not_closed

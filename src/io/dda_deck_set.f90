@@ -3,7 +3,8 @@ module dda_deck_set
    use dda_kinds, only : wp
    use dda_error, only : error_t
    use dda_text, only : to_text, lower_case
-   use dda_deck_keys, only : key_t, deck_key, key_kind, key_index
+   use dda_deck_key, only : key_t, key_kind
+   use dda_deck_keys, only : deck_key, key_index
    use dda_deck_words, only : wanted, quoted_words, full_name, near_word, or_leave_out
    use dda_deck_token, only : shown
    use dda_deck, only : deck_t, deck_place_t, parameter_t, deck_error
@@ -170,7 +171,7 @@ contains
 
       problem = ""
       if (number_fits(key, value)) return
-      problem = full_name(deck_key(key))//" wants "//wanted(deck_key(key))//", found "// &
+      problem = full_name(deck_key(key))//" must be "//wanted(deck_key(key))//", got "// &
          to_text(value)
    end function number_problem
 
@@ -215,8 +216,8 @@ contains
       case default
          fits = entry%kind == key_kind%text
       end select
-      if (.not. fits .and. len(problem) == 0) problem = full_name(entry)//" wants "// &
-         wanted(entry)//", found '"//shown(trim(text))//"'"//near_word(entry, text)
+      if (.not. fits .and. len(problem) == 0) problem = full_name(entry)//" must be "// &
+         wanted(entry)//", got '"//shown(trim(text))//"'"//near_word(entry, text)
    end function text_problem
 
    !> Whether a list of words holds a word, whatever its case

@@ -3,7 +3,8 @@ module dda_deck_sweep
    use dda_kinds, only : wp
    use dda_error, only : error_t
    use dda_text, only : to_text, lower_case
-   use dda_deck_keys, only : deck_key, key_index, word_length
+   use dda_deck_key, only : key_kind, word_length
+   use dda_deck_keys, only : deck_key, key_index
    use dda_deck_words, only : wanted, full_name
    use dda_deck, only : deck_t, deck_value_t, deck_sweep_t, deck_place_t, &
       deck_error, real_of, integer_of, text_of, flag_of, is_given, place_of
@@ -34,13 +35,13 @@ contains
 
       sweep%place = place
       if (size(deck%sweep) == max_sweeps) then
-         call deck_error(error, "wanted at most "//to_text(max_sweeps)//" &sweep groups, found "// &
+         call deck_error(error, "expected at most "//to_text(max_sweeps)//" &sweep groups, got "// &
             "one more; split the deck", &
             deck, place)
          return
       end if
       if (.not. is_given(deck, "sweep", "parameter")) then
-         call deck_error(error, "wanted sweep%parameter, the name of a key, found none; "// &
+         call deck_error(error, "expected sweep%parameter, the name of a key, got none; "// &
             "give it, such as parameter = 'voussoirs'", deck, place)
          return
       end if
@@ -109,8 +110,8 @@ contains
          found = "more than one"
          if (has_any .and. .not. has_all) found = "one of these three missing"
          if (.not. any([has_values, has_texts, has_any])) found = "none"
-         call deck_error(error, "wanted exactly one of: values, texts, or first with last "// &
-            "and count, found "//trim(found)//"; give one of them", deck, sweep%place)
+         call deck_error(error, "expected exactly one of: values, texts, or first with last "// &
+            "and count, got "//trim(found)//"; give one of them", deck, sweep%place)
          return
       end if
       allocate (sweep%numbers(0), sweep%texts(0))
@@ -121,7 +122,8 @@ contains
          i = key_index("sweep", "texts")
          sweep%texts = deck%value(i)%texts
          do s = 1, size(sweep%texts)
-            sweep%texts(s) = lower_case(sweep%texts(s))
+            if (deck_key(sweep%parameter%key)%kind /= key_kind%text) &
+               sweep%texts(s) = lower_case(sweep%texts(s))
          end do
       else
          i = key_index("sweep", "first")
@@ -145,7 +147,7 @@ contains
       last = real_of(deck, "sweep", "last")
       n = integer_of(deck, "sweep", "count")
       if (n == 1 .and. abs(last - first) > 0.0_wp) then
-         call deck_error(error, "sweep%count = 1 wants the same first and last, found "// &
+         call deck_error(error, "sweep%count = 1 needs the same first and last, got "// &
             to_text(first)//" and "//to_text(last)//"; make them equal, or count larger", deck, &
             place_of(deck, key_index("sweep", "count")))
       else
@@ -168,9 +170,9 @@ contains
 
       problem = ""
       associate (key => sweep%parameter%key)
-         if (is_numeric(key) .neqv. size(sweep%numbers) > 0) problem = "wanted "// &
-            trim(merge("values", "texts ", is_numeric(key)))//": "// &
-            full_name(deck_key(key))//" wants "//wanted(deck_key(key))//"; write "// &
+         if (is_numeric(key) .neqv. size(sweep%numbers) > 0) problem = "expected "// &
+            trim(merge("values, got texts", "texts, got values", is_numeric(key)))//": "// &
+            full_name(deck_key(key))//" must be "//wanted(deck_key(key))//"; write "// &
             trim(merge("values", "texts ", is_numeric(key)))//" = ..."
          do i = 1, size(sweep%numbers)
             if (len(problem) == 0) problem = advised(number_problem(key, sweep%numbers(i)))

@@ -150,8 +150,8 @@ contains
       type(token_t), allocatable :: longer(:)
 
       if (scan%n == max_tokens) then
-         call fatal_error(error, "wanted at most "//to_text(max_tokens)// &
-            " groups, keys and values, found more; split the deck", line=scan%line)
+         call fatal_error(error, "expected at most "//to_text(max_tokens)// &
+            " groups, keys and values, got more; split the deck", line=scan%line)
          return
       end if
       if (scan%n == size(scan%token)) then

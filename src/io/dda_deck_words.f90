@@ -1,13 +1,14 @@
-!> The registry in words: what a key wants, which key was meant, the printed help
+!> The registry in words: what a key must be, which key was meant, the printed help
 module dda_deck_words
    use dda_kinds, only : wp
    use dda_text, only : to_text, lower_case
-   use dda_deck_keys, only : key_t, key_kind, deck_key, deck_group, word_length
+   use dda_deck_key, only : group_t, key_t, key_kind, word_length
+   use dda_deck_keys, only : deck_key, deck_group
    implicit none
    private
 
    public :: wanted, quoted_words, full_name, near_group, near_key, near_word
-   public :: near_one, or_leave_out, deck_help
+   public :: near_one, or_leave_out, deck_help, registry_help
 
    !> Longest word that is compared letter by letter [characters]
    integer, parameter :: longest = 40
@@ -245,19 +246,31 @@ contains
    pure function deck_help() result(text)
       !> Lines, each ended by a line feed
       character(len=:), allocatable :: text
+
+      text = registry_help(deck_group, deck_key)
+   end function deck_help
+
+   !> The groups and keys of a registry with unit, range, default and meaning
+   pure function registry_help(groups, keys) result(text)
+      !> The groups
+      type(group_t), intent(in) :: groups(:)
+      !> The keys
+      type(key_t), intent(in) :: keys(:)
+      !> Lines, each ended by a line feed
+      character(len=:), allocatable :: text
       character(len=1), parameter :: lf = achar(10)
       integer :: g, i
 
       text = ""
-      do g = 1, size(deck_group)
+      do g = 1, size(groups)
          if (g > 1) text = text//lf
-         text = text//"&"//trim(deck_group(g)%name)//"   "//trim(deck_group(g)%meaning)//lf
-         do i = 1, size(deck_key)
-            if (deck_key(i)%group /= deck_group(g)%name) cycle
-            text = text//key_help(deck_key(i), lf)
+         text = text//"&"//trim(groups(g)%name)//"   "//trim(groups(g)%meaning)//lf
+         do i = 1, size(keys)
+            if (keys(i)%group /= groups(g)%name) cycle
+            text = text//key_help(keys(i), lf)
          end do
       end do
-   end function deck_help
+   end function registry_help
 
    !> Help on one key
    pure function key_help(key, lf) result(text)

@@ -1,16 +1,19 @@
 !> Which models there are, and what can be searched in them: the one place that says so. Decks are
 !> checked by it; `dda check` prints what it says of a deck, `dda help models` all of it
 module dda_model_table
-   use dda_deck_keys, only : key_t
+   use dda_deck_key, only : key_t
    implicit none
    private
 
    public :: model_problem, models_of, models_help, search_problem, searches_of
 
    !> What blocks are made from
-   character(len=*), parameter :: kinds(3) = [character(len=6) :: "arch", "lines", "blocks"]
+   character(len=*), parameter :: kinds(4) = [character(len=6) :: "arch", "shape", "lines", &
+      & "blocks"]
    !> All of them
-   character(len=*), parameter :: all_kinds = "arch lines blocks"
+   character(len=*), parameter :: all_kinds = "arch shape lines blocks"
+   !> Those that the scheme of the original runs
+   character(len=*), parameter :: of_original = "arch lines blocks"
    !> What a number of the method is no answer to
    character(len=*), parameter :: of_the_method = "a number of the method, not of the structure"
    !> End of a line
@@ -23,7 +26,7 @@ module dda_model_table
       !> Word of analysis%geometry
       character(len=9) :: geometry = ""
       !> Kinds of scene%kind that it runs, parted by blanks
-      character(len=20) :: kinds = ""
+      character(len=24) :: kinds = ""
       !> Why it runs no others
       character(len=60) :: why = ""
    end type model_t
@@ -33,11 +36,13 @@ module dda_model_table
       !> Their group
       character(len=16) :: group = ""
       !> Their names, parted by blanks; all others of the group if there are none
-      character(len=40) :: names = ""
+      character(len=160) :: names = ""
       !> Kinds of scene%kind with mode = 'static' in which they are searched, parted by blanks
-      character(len=20) :: static = ""
+      character(len=24) :: static = ""
+      !> Likewise with mode = 'dynamic'
+      character(len=24) :: dynamic = ""
       !> Likewise with mode = 'limerick'
-      character(len=20) :: limerick = ""
+      character(len=24) :: limerick = ""
       !> Why not in the others
       character(len=60) :: why = ""
    end type search_t
@@ -49,24 +54,34 @@ module dda_model_table
       model_t("dynamic", "reference", all_kinds), &
       model_t("dynamic", "current", all_kinds), &
       model_t("limerick", "reference", "", "its blocks always move"), &
-      model_t("limerick", "current", all_kinds)]
+      model_t("limerick", "current", of_original, "dda export writes such arches as blocks")]
 
    !> All keys that have real values
-   type(search_t), parameter :: search(11) = [ &
-      search_t("arch", "abutment_size abutment_overhang", "", "arch", &
+   type(search_t), parameter :: search(16) = [ &
+      search_t("arch", "abutment_size abutment_overhang", "", "", "arch", &
          "abutments are blocks with mode = 'limerick' alone"), &
-      search_t("arch", "", "arch", "arch", "there is no generated arch"), &
-      search_t("material", "", all_kinds, all_kinds), &
-      search_t("joint", "cohesion tension", all_kinds, "", &
-         "joints of the original begin open: what is bonded lets go"), &
-      search_t("joint", "", all_kinds, all_kinds), &
-      search_t("load", "displacement_factor", "blocks", "", &
-         "points are led in files of blocks, and not by the original"), &
-      search_t("load", "", all_kinds, all_kinds), &
-      search_t("live", "", all_kinds, "", "the original's scheme has no &live"), &
-      search_t("vehicle", "", all_kinds, "", "the original's scheme has no &vehicle"), &
-      search_t("analysis", "", "", "", of_the_method), &
-      search_t("limerick", "", "", "", of_the_method)]
+      search_t("arch", "span rise right_rise thickness crown_thickness springing_thickness "// &
+         "pier_width pier_height buttress_width buttress_height lune_deg", "shape", "", "", &
+         "with them an arch is a shape"), &
+      search_t("arch", "", "arch shape", "arch", "arch", "there is no generated arch"), &
+      search_t("fill", "", "shape", "", "", "there is no arch that it lies on"), &
+      search_t("material", "", all_kinds, of_original, of_original), &
+      search_t("joint", "cohesion tension", all_kinds, of_original, "", &
+         "joints of the original begin open: bonds are lost"), &
+      search_t("joint", "", all_kinds, of_original, of_original), &
+      search_t("load", "displacement_factor", "blocks", "blocks", "", &
+         "only files of blocks prescribe displacements"), &
+      search_t("load", "water_rise", "blocks", "blocks", "", &
+         "water stands in files of blocks alone"), &
+      search_t("load", "", all_kinds, of_original, of_original), &
+      search_t("live", "", all_kinds, of_original, "", "the original's scheme has no &live"), &
+      search_t("vehicle", "", all_kinds, of_original, "", &
+         "the original's scheme has no &vehicle"), &
+      search_t("ground", "", "", all_kinds, "", "the ground moves in time"), &
+      search_t("analysis", "restitution damping", "", of_original, "", &
+         "motion in time has them"), &
+      search_t("analysis", "", "", "", "", of_the_method), &
+      search_t("limerick", "", "", "", "", of_the_method)]
 
 contains
 
@@ -109,8 +124,6 @@ contains
          why = trim(search(i)%why)
          if (holds(kinds_of(search(i), mode), kind)) why = ""
       end do
-      if (mode == "dynamic") why = "a dynamic run ends 'completed', neither standing nor "// &
-         & "fallen: choose mode = 'static'"
    end function search_problem
 
    !> Kinds in which keys are searched with a mode
@@ -120,10 +133,11 @@ contains
       !> Word of analysis%mode
       character(len=*), intent(in) :: mode
       !> The kinds, parted by blanks
-      character(len=20) :: list
+      character(len=24) :: list
 
       list = ""
       if (mode == "static") list = rule%static
+      if (mode == "dynamic") list = rule%dynamic
       if (mode == "limerick") list = rule%limerick
    end function kinds_of
 
@@ -167,7 +181,6 @@ contains
       do i = 1, size(search)
          if (holds(kinds_of(search(i), mode), kind)) text = text//", "//name_of(search(i), "")
       end do
-      if (text == "") text = ", nothing: a dynamic run neither stands nor falls"
       text = text(3:)
    end function searches_of
 
@@ -202,8 +215,8 @@ contains
       character(len=:), allocatable :: text
       integer :: i, k
 
-      text = "| mode | geometry | arch | lines | blocks | why not |"//lf &
-         & //"| --- | --- | --- | --- | --- | --- |"//lf
+      text = "| mode | geometry | arch | shape | lines | blocks | why not |"//lf &
+         & //"| --- | --- | --- | --- | --- | --- | --- |"//lf
       do i = 1, size(model)
          text = text//"| `"//trim(model(i)%mode)//"` | `"//trim(model(i)%geometry)//"` |"
          do k = 1, size(kinds)
@@ -211,8 +224,8 @@ contains
          end do
          text = text//ending(model(i)%why)
       end do
-      text = text//lf//"| searched | arch | lines | blocks | why not |"//lf &
-         & //"| --- | --- | --- | --- | --- |"//lf
+      text = text//lf//"| searched | arch | shape | lines | blocks | why not |"//lf &
+         & //"| --- | --- | --- | --- | --- | --- |"//lf
       do i = 1, size(search)
          text = text//"| "//name_of(search(i), "`")//" |"
          do k = 1, size(kinds)
@@ -233,6 +246,7 @@ contains
 
       text = ""
       if (holds(rule%static, kind)) text = ", static"
+      if (holds(rule%dynamic, kind)) text = text//", dynamic"
       if (holds(rule%limerick, kind)) text = text//", limerick"
       if (text == "") text = ", no"
       text = text(3:)

@@ -67,14 +67,13 @@ contains
       open (newunit=unit, file=file, access="stream", form="unformatted", status="old", &
          & action="read", iostat=stat)
       if (stat /= 0) then
-         call fatal_error(error, "expected a file that can be read, got none; check its name", &
-            & file, 1)
+         call fatal_error(error, "the file cannot be read; check its name", file, 1)
          return
       end if
       found = ""
       read (unit, iostat=stat) found
       if (stat /= 0 .or. found /= title) then
-         call fatal_error(error, "expected a "//title//" file, got another one; make it anew", &
+         call fatal_error(error, "expected a "//title//" file, got another one; write it again", &
             & file, 1)
       else
          inquire (unit=unit, size=length)
@@ -85,7 +84,7 @@ contains
          end if
          if (stat == 0) call read_sealed(unit, n, whole, number, stat)
          if (stat /= 0) call fatal_error(error, "expected a file as it was written, got a "// &
-            & "damaged one; make it anew", file, 1)
+            & "damaged one; write it again", file, 1)
       end if
       close (unit)
    end subroutine read_numbers

@@ -39,7 +39,7 @@ contains
       analysis%file = file
       allocate (analysis%load(0))
       call split_words(text, file, 1, words)
-      call take_whole(words, "the type of analysis, 0 static or 1 dynamic,", 0, 1, kind, error)
+      call take_whole(words, "the type of analysis (0 static, 1 dynamic)", 0, 1, kind, error)
       analysis%dynamic = kind == 1
       if (.not. allocated(error)) &
          & call take_whole(words, "the number of time steps", 1, most_steps, analysis%steps, error)
@@ -56,8 +56,8 @@ contains
       analysis%gravity = 0.0_wp
       if (analysis%material(1)%density > 0.0_wp) &
          & analysis%gravity = analysis%material(1)%unit_weight/analysis%material(1)%density
-      if (words_left(words) > 0) call add_warning(warnings, "nothing is wanted behind the last " &
-         & //"record, what follows is not read: "//quoted(this_word(words)), file, this_row(words))
+      if (words_left(words) > 0) call add_warning(warnings, "trailing text ignored after the " &
+         & //"last record: "//quoted(this_word(words)), file, this_row(words))
    end subroutine read_plain_analysis
 
    !> Read the two numbers that bound a step
@@ -92,8 +92,8 @@ contains
       integer :: i, row
 
       if (words_left(words) < 13*n) then
-         call fatal_error(error, to_text(n)//" block materials of 13 numbers are wanted, " &
-            & //"found "//to_text(words_left(words))//" more words; add what is missing", &
+         call fatal_error(error, "expected "//to_text(n)//" block materials of 13 numbers, " &
+            & //"got "//to_text(words_left(words))//" more words; add what is missing", &
             & words%file, this_row(words))
          return
       end if
@@ -126,7 +126,7 @@ contains
       integer :: i, row
 
       if (words_left(words) < 3*n) then
-         call fatal_error(error, to_text(n)//" joint materials of 3 numbers are wanted, found " &
+         call fatal_error(error, "expected "//to_text(n)//" joint materials of 3 numbers, got " &
             & //to_text(words_left(words))//" more words; add what is missing", words%file, &
             & this_row(words))
          return
@@ -156,16 +156,16 @@ contains
       type(error_t), allocatable, intent(out) :: error
 
       if (.not. material%density > 0.0_wp) then
-         call fatal_error(error, "a unit mass above 0 is wanted, found " &
+         call fatal_error(error, "the unit mass must be above 0, got " &
             & //to_text(material%density)//"; correct it", file, row)
       else if (material%unit_weight < 0.0_wp) then
-         call fatal_error(error, "a unit weight from 0 is wanted, found " &
+         call fatal_error(error, "the unit weight must be 0 or more, got " &
             & //to_text(material%unit_weight)//"; correct it", file, row)
       else if (.not. material%young > 0.0_wp) then
-         call fatal_error(error, "Young's modulus above 0 is wanted, found " &
+         call fatal_error(error, "Young's modulus must be above 0, got " &
             & //to_text(material%young)//"; correct it", file, row)
       else if (material%poisson <= -1.0_wp .or. material%poisson >= 0.5_wp) then
-         call fatal_error(error, "Poisson's ratio between -1 and 0.5 is wanted, found " &
+         call fatal_error(error, "Poisson's ratio must be between -1 and 0.5, got " &
             & //to_text(material%poisson)//"; correct it", file, row)
       end if
    end subroutine check_material
@@ -182,10 +182,10 @@ contains
       type(error_t), allocatable, intent(out) :: error
 
       if (joint%friction_deg < 0.0_wp .or. joint%friction_deg > 90.0_wp) then
-         call fatal_error(error, "a friction angle from 0 to 90 degrees is wanted, found " &
+         call fatal_error(error, "the friction angle must be from 0 to 90 degrees, got " &
             & //to_text(joint%friction_deg)//"; correct it", file, row)
       else if (joint%cohesion < 0.0_wp .or. joint%tension < 0.0_wp) then
-         call fatal_error(error, "cohesion and tensile strength from 0 are wanted, found " &
+         call fatal_error(error, "cohesion and tensile strength must be 0 or more, got " &
             & //to_text(min(joint%cohesion, joint%tension))//"; correct it", file, row)
       end if
    end subroutine check_joint
@@ -202,10 +202,10 @@ contains
       type(error_t), allocatable, intent(out) :: error
 
       if (.not. analysis%displacement_ratio > 0.0_wp .or. analysis%displacement_ratio > 1.0_wp) then
-         call fatal_error(error, "the largest displacement ratio above 0 and at most 1 is " &
-            & //"wanted, found "//to_text(analysis%displacement_ratio)//"; correct it", file, row)
+         call fatal_error(error, "the largest displacement ratio must be above 0 and at most 1, " &
+            & //"got "//to_text(analysis%displacement_ratio)//"; correct it", file, row)
       else if (.not. analysis%max_time_step > 0.0_wp) then
-         call fatal_error(error, "a largest time step above 0 is wanted, found " &
+         call fatal_error(error, "the largest time step must be above 0, got " &
             & //to_text(analysis%max_time_step)//"; correct it", file, row)
       end if
    end subroutine check_steps

@@ -2,11 +2,12 @@
 module dda_plain_geometry
    use dda_error, only : error_t, fatal_error
    use dda_kinds, only : wp
-   use dda_line_model, only : add_entity, entities_t, line_model_t, new_entities
+   use dda_line_model, only : add_bolt, add_entity, entities_t, line_model_t, new_entities, &
+      & new_line_model
    use dda_text, only : to_text
    use dda_warnings, only : add_warning, warnings_t
    use dda_word_list, only : quoted, largest_coordinate, split_words, take_material, take_number, &
-      & take_numbers, take_whole, this_row, this_word, word_list_t, words_left
+      & take_numbers, take_property, take_whole, this_row, this_word, word_list_t, words_left
    implicit none
    private
 
@@ -49,13 +50,14 @@ contains
       type(word_list_t) :: words
       type(counts_t) :: n
 
+      call new_line_model(model)
       model%file = file
       call split_words(text, file, 1, words)
       call take_number(words, "the edge-node distance ratio e00", model%edge_node_ratio, error)
       if (allocated(error)) return
       if (model%edge_node_ratio < 0.0_wp .or. model%edge_node_ratio > 0.5_wp) then
-         call fatal_error(error, "the edge-node distance ratio e00 from 0 to 0.5 is wanted, " &
-            & //"found "//to_text(model%edge_node_ratio)//"; correct it", file, words%row(1))
+         call fatal_error(error, "the edge-node distance ratio e00 must be from 0 to 0.5, " &
+            & //"got "//to_text(model%edge_node_ratio)//"; correct it", file, words%row(1))
          return
       end if
       call read_counts(words, n, error)
@@ -64,6 +66,7 @@ contains
       call read_records(words, "line", n%lines, 4, .true., model%line, error)
       if (.not. allocated(error)) call read_records(words, "material line", n%material_lines, 4, &
          & .true., model%material_line, error)
+      if (.not. allocated(error)) call read_bolts(words, n%bolts, model, error)
       if (.not. allocated(error)) &
          & call read_records(words, "fixed point", n%fixed, 4, .false., model%fixed, error)
       if (.not. allocated(error)) &
@@ -73,9 +76,8 @@ contains
       if (.not. allocated(error)) &
          & call read_records(words, "hole point", n%hole, 2, .false., model%hole, error)
       if (allocated(error)) return
-      call new_entities(model%seismic, 0)
-      if (words_left(words) > 0) call add_warning(warnings, "nothing is wanted behind the last " &
-         & //"record, what follows is not read: "//quoted(this_word(words)), file, this_row(words))
+      if (words_left(words) > 0) call add_warning(warnings, "trailing text ignored after the " &
+         & //"last record: "//quoted(this_word(words)), file, this_row(words))
    end subroutine read_plain_geometry
 
    !> Read how many things there are
@@ -87,19 +89,14 @@ contains
       !> What is wrong
       type(error_t), allocatable, intent(out) :: error
       integer, parameter :: most = 100000000
-      integer :: row
 
       call take_whole(words, "the number of lines", 0, most, n%lines, error)
-      if (.not. allocated(error)) call take_whole(words, "the number of boundary lines, which " &
-         & //"are counted among the lines,", 0, n%lines, n%boundary, error)
+      if (.not. allocated(error)) call take_whole(words, "the number of boundary lines " &
+         & //"(counted among the lines)", 0, n%lines, n%boundary, error)
       if (.not. allocated(error)) &
          & call take_whole(words, "the number of material lines", 0, most, n%material_lines, error)
-      row = this_row(words)
       if (.not. allocated(error)) &
          & call take_whole(words, "the number of bolts", 0, most, n%bolts, error)
-      if (.not. allocated(error) .and. n%bolts > 0) call fatal_error(error, &
-         & "a model without bolts is wanted, found "//to_text(n%bolts)//" of them: this program " &
-         & //"has no bolts; remove them", words%file, row)
       if (.not. allocated(error)) &
          & call take_whole(words, "the number of fixed points", 0, most, n%fixed, error)
       if (.not. allocated(error)) &
@@ -109,6 +106,34 @@ contains
       if (.not. allocated(error)) &
          & call take_whole(words, "the number of hole points", 0, most, n%hole, error)
    end subroutine read_counts
+
+   !> Read bolts: ends, stiffness, strength and prestress of each, as Shi's programs have them
+   pure subroutine read_bolts(words, n, model, error)
+      !> The words of the file
+      type(word_list_t), intent(inout) :: words
+      !> How many there are
+      integer, intent(in) :: n
+      !> Receives them
+      type(line_model_t), intent(inout) :: model
+      !> What is wrong
+      type(error_t), allocatable, intent(out) :: error
+      character(len=*), parameter :: what(3) = [character(len=9) :: "stiffness", "strength", &
+         & "prestress"]
+      real(wp) :: place(4), property(3)
+      integer :: i, k, row
+
+      do i = 1, n
+         row = this_row(words)
+         call take_numbers(words, "a coordinate of bolt "//to_text(i)//" of "//to_text(n), &
+            & largest_coordinate, place, error)
+         do k = 1, 3
+            if (.not. allocated(error)) call take_property(words, "the "//trim(what(k)) &
+               & //" of bolt "//to_text(i)//" of "//to_text(n), property(k), error)
+         end do
+         if (allocated(error)) return
+         call add_bolt(model, place, property, row)
+      end do
+   end subroutine read_bolts
 
    !> Read the records of one kind
    pure subroutine read_records(words, what, n, n_number, has_material, entities, error)

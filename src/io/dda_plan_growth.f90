@@ -62,8 +62,8 @@ contains
       if (size(vertex, 2) < size(corner, 2)) &
          & call add_warning(warnings, "corners given twice are merged", file, line)
       if (size(vertex, 2) < 3) then
-         call fatal_error(error, "wanted three different corners or more of " &
-            & //next_name(growing)//", found fewer", line=line)
+         call fatal_error(error, "expected three different corners or more of " &
+            & //next_name(growing)//", got fewer", line=line)
          return
       end if
       call find_crossing(vertex, edge, point)
@@ -77,8 +77,8 @@ contains
       if (moments%area < 0.0_wp) vertex = vertex(:, size(vertex, 2):1:-1)
       perimeter = sum(norm2(cshift(vertex, 1, dim=2) - vertex, dim=1))
       if (.not. 2.0_wp*abs(moments%area) > too_thin*extent*perimeter) then
-         call fatal_error(error, "wanted a block with an area, "//next_name(growing) &
-            & //" is thinner than 1e-8 of its length", line=line)
+         call fatal_error(error, "expected a block with an area, got "//next_name(growing) &
+            & //", thinner than 1e-8 of its length", line=line)
          return
       end if
       call put_block(growing, vertex, fixed, material, line)

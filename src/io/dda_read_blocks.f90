@@ -30,9 +30,10 @@ module dda_read_blocks
    real(wp), parameter :: least_property = 1.0e-12_wp
    !> Words that begin an entry
    character(len=*), parameter :: entries = "block, material, joint, fix, fix_line, "// &
-      & "measure, load, live, displacement, base_acceleration, base_velocity, base_displacement"
+      & "measure, load, live, displacement, base_acceleration, base_velocity, "// &
+      & "base_displacement, bar, water"
 
-   !> Lines between two that the watch is told of
+   !> Lines between two that are reported to the watch
    integer, parameter :: told_lines = 10000
 
    !> What has been read of a file
@@ -92,7 +93,8 @@ contains
       if (.not. allocated(error)) &
          & call add_points(reading%later(:reading%n_later), plan, site, file, warnings, error, &
          & watch)
-      if (allocated(error)) error%file = file
+      if (.not. allocated(error)) return
+      if (.not. allocated(error%file)) error%file = file
    end subroutine parse_blocks
 
    !> Place of the last character of a line
@@ -130,7 +132,7 @@ contains
       end if
       associate (entry => reading%entry)
          if (line%n /= entry%n_column) then
-            call fatal_error(error, row_wanted(entry)//", found "//to_text(line%n)//" words", &
+            call fatal_error(error, row_wanted(entry)//", got "//to_text(line%n)//" words", &
                & line=line%number)
             return
          end if
@@ -139,13 +141,13 @@ contains
          do i = 1, line%n
             call read_number(line%word(i)(:len_trim(line%word(i))), value, ok)
             if (.not. ok) then
-               call fatal_error(error, row_wanted(entry)//", found '" &
+               call fatal_error(error, row_wanted(entry)//", got '" &
                   & //shown(trim(line%word(i)))//"'", line=line%number)
                return
             else if (abs(value) > merge(largest_coordinate, largest_number, &
                & entry%n_column == 2)) then
                call fatal_error(error, row_wanted(entry)//" of at most "//trim(merge("1e15", &
-                  & "1e30", entry%n_column == 2))//" in magnitude, found "//to_text(value) &
+                  & "1e30", entry%n_column == 2))//" in magnitude, got "//to_text(value) &
                   & //"; correct it or change the unit", line=line%number)
                return
             end if
@@ -163,11 +165,12 @@ contains
 
       select case (entry%n_column)
       case (2)
-         text = "wanted a corner x y [m]"
+         text = "expected a corner x y [m]"
+         if (entry%head%word(1) == "water") text = "expected a row of a time [s] and a rise [m]"
       case (3)
-         text = "wanted a row of three numbers: a time [s] and two components"
+         text = "expected a row of three numbers: a time [s] and two components"
       case default
-         text = "wanted one of "//entries
+         text = "expected one of "//entries
       end select
    end function row_wanted
 
@@ -179,7 +182,7 @@ contains
       type(error_t), allocatable, intent(out) :: error
 
       if (index(", "//entries//",", ", "//trim(line%word(1))//",") == 0) &
-         & call fatal_error(error, "wanted one of "//entries//" or a number, found '" &
+         & call fatal_error(error, "expected one of "//entries//" or a number, got '" &
          & //shown(trim(line%word(1)))//"'", line=line%number)
    end subroutine check_entry
 
@@ -192,7 +195,7 @@ contains
 
       entry%head = line
       select case (line%word(1))
-      case ("block")
+      case ("block", "water")
          entry%n_column = 2
       case ("load", "live", "displacement", &
          & "base_acceleration", "base_velocity", "base_displacement")
@@ -219,7 +222,7 @@ contains
       case ("joint")
          call add_law(reading%entry%head, reading%growing, error)
       case ("fix", "fix_line", "measure", "load", "live", "displacement", &
-         & "base_acceleration", "base_velocity", "base_displacement")
+         & "base_acceleration", "base_velocity", "base_displacement", "bar", "water")
          call keep_entry(reading%entry, reading%later, reading%n_later)
       end select
       reading%entry%head%n = 0
@@ -266,15 +269,15 @@ contains
             case (4)
                call take_numbers(head, i, stress, error)
             case default
-               call fatal_error(error, "wanted fixed, material, velocity or stress, found '" &
+               call fatal_error(error, "expected fixed, material, velocity or stress, got '" &
                   & //shown(trim(head%word(i)))//"'", line=head%number)
             end select
          end do
          if (allocated(error)) return
          if (abs(number(1) - anint(number(1))) > 0.0_wp .or. number(1) < 1.0_wp &
             & .or. number(1) > real(most_materials, wp)) then
-            call fatal_error(error, "wanted the number of a material from 1 to " &
-               & //to_text(most_materials)//", found "//to_text(number(1)), line=head%number)
+            call fatal_error(error, "expected the number of a material from 1 to " &
+               & //to_text(most_materials)//", got "//to_text(number(1)), line=head%number)
             return
          end if
          call add_plan_block(growing, reading%entry%row(:2, :reading%entry%n_row), given(1), &
@@ -298,8 +301,8 @@ contains
 
       call read_integer(trim(line%word(2)), material%number, ok)
       if (.not. ok .or. material%number < 2 .or. material%number > most_materials) then
-         call fatal_error(error, "wanted the number of a material from 2 to " &
-            & //to_text(most_materials)//" (1 is that of the deck), found '" &
+         call fatal_error(error, "expected the number of a material from 2 to " &
+            & //to_text(most_materials)//" (1 is that of the deck), got '" &
             & //shown(trim(line%word(2)))//"'", line=line%number)
          return
       else if (any(plan%materials%number == material%number)) then
@@ -314,7 +317,7 @@ contains
             & //"to 1e30, got "//to_text(minval(material%value(:3), material%given(:3))) &
             & //"; correct it", line=line%number)
       else if (material%given(4) .and. .not. abs(material%value(4) + 0.25_wp) < 0.75_wp) then
-         call fatal_error(error, "poisson wants a number between -1 and 0.5, found " &
+         call fatal_error(error, "poisson must be a number between -1 and 0.5, got " &
             & //to_text(material%value(4)), line=line%number)
       else
          plan%materials = [plan%materials, material]
@@ -337,14 +340,14 @@ contains
          call read_integer(trim(line%word(i + 1)), law%material(i), ok(i))
       end do
       if (.not. all(ok) .or. any(law%material < 1) .or. any(law%material > most_materials)) then
-         call fatal_error(error, "wanted the numbers of two materials from 1 to " &
+         call fatal_error(error, "expected the numbers of two materials from 1 to " &
             & //to_text(most_materials)//" after joint", line=line%number)
          return
       end if
       call take_keys(line, 4, law_key, law%value, law%given, error)
       if (allocated(error)) return
       if (any(law%value < 0.0_wp) .or. law%value(1) > 90.0_wp) then
-         call fatal_error(error, "wanted 0 <= friction_deg <= 90 and no negative strength", &
+         call fatal_error(error, "expected 0 <= friction_deg <= 90 and no negative strength", &
             & line=line%number)
       else
          law%line = line%number

@@ -3,7 +3,8 @@ module dda_read_deck
    use dda_error, only : error_t
    use dda_text, only : to_text
    use dda_text_file, only : read_text_file
-   use dda_deck_keys, only : deck_key, key_kind, key_index, group_index
+   use dda_deck_key, only : key_kind
+   use dda_deck_keys, only : deck_key, key_index, group_index
    use dda_deck_words, only : full_name, near_group, near_key
    use dda_deck_token, only : deck_scan_t, token_kind, token_text, shown
    use dda_deck_scan, only : scan_deck, scan_values
@@ -14,8 +15,10 @@ module dda_read_deck
    use dda_deck_entry, only : read_values
    use dda_deck_sweep, only : add_sweep, n_cases
    use dda_deck_check, only : check_deck
+   use dda_deck_check_ground, only : check_block_file
    use dda_deck_lines, only : name_key, read_lines
    use dda_file_mark, only : file_mark, text_mark
+   use dda_ground_records, only : read_ground_records
    use dda_read_blocks, only : parse_blocks
    use dda_watch, only : watch_t
    implicit none
@@ -47,6 +50,7 @@ contains
       call read_text_file(file, text, error)
       if (.not. allocated(error)) call parse_deck(text, file, settings, deck, error)
       if (.not. allocated(error)) call read_lines(deck, error)
+      if (.not. allocated(error)) call read_ground_records(deck, error)
       if (allocated(error)) return
       if (is_given(deck, "analysis", "restart")) call add_file_mark(file_mark( &
          & file_beside(deck, text_of(deck, "analysis", "restart"))), deck)
@@ -59,6 +63,8 @@ contains
       end if
       call parse_blocks(text, geometry, deck%plan, deck%warnings, error, watch)
       call add_file_mark(text_mark(text), deck)
+      if (allocated(deck%plan%record_marks)) call add_file_mark(deck%plan%record_marks, deck)
+      if (.not. allocated(error)) call check_block_file(deck, error)
    end subroutine read_deck
 
    !> Name of the file of blocks: beside the deck unless it begins with a slash
@@ -107,6 +113,10 @@ contains
       associate (proof => deck%value(key_index("output", "proof")))
          if (.not. proof%given) proof%flag = n_cases(deck) <= few_cases &
             & .and. flag_of(deck, "output", "joints")
+      end associate
+      associate (reactions => deck%value(key_index("output", "reactions")))
+         if (.not. reactions%given) reactions%flag = flag_of(deck, "output", "joints") &
+            & .and. word_of(deck, "analysis", "mode") == "static"
       end associate
    end subroutine parse_deck
 
@@ -162,7 +172,7 @@ contains
 
       place%line = scan%token(i)%line
       if (scan%token(i)%kind /= token_kind%key) then
-         call deck_error(error, "wanted key = value in &"//group//", found '"// &
+         call deck_error(error, "expected key = value in &"//group//", got '"// &
             shown(token_text(scan, i))//"'; write a key, '=' and its value", deck, place)
          return
       end if
@@ -212,7 +222,7 @@ contains
       key = key_index(group, name)
       open = index(name//"(", "(")
       if (key == 0 .and. key_index(group, name(:open - 1)) > 0) then
-         call deck_error(error, "wanted the whole list, "//name(:open - 1)//" = ..., found "// &
+         call deck_error(error, "expected the whole list, "//name(:open - 1)//" = ..., got "// &
             shown(name)//"; write all of its items", deck, place)
       else if (key == 0) then
          call deck_error(error, "unknown key '"//shown(name)//"' in &"//group//": "// &
@@ -241,7 +251,7 @@ contains
       equals = index(setting, "=")
       call split_name(setting(:max(equals - 1, 0)), group, name, parameter%item, ok)
       if (.not. ok .or. equals == 0 .or. len(group) == 0 .or. has_control(setting)) then
-         call deck_error(error, "wanted group%key=value, found '"//shown(setting)// &
+         call deck_error(error, "expected group%key=value, got '"//shown(setting)// &
             "'; write it like arch%radius=5.0", deck, place)
       else if (group == "sweep") then
          call deck_error(error, "&sweep cannot be set; change the deck", deck, place)
@@ -287,8 +297,8 @@ contains
       if (is_text .and. .not. has_quotes) then
          call put_text(deck, parameter, trim(adjustl(text)), place, error)
       else if (parameter%item > 0 .and. deck_key(parameter%key)%kind /= key_kind%numbers) then
-         call deck_error(error, full_name(deck_key(parameter%key))//" has no items; leave "// &
-            "the parentheses away", deck, place)
+         call deck_error(error, full_name(deck_key(parameter%key))//" has no items; remove "// &
+            "the parentheses", deck, place)
       else
          call scan_values(text, scan, error)
          if (allocated(error)) then

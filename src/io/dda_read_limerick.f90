@@ -1,4 +1,4 @@
-!> Geometry and analysis files of the Limerick line, plain or DDAML, told apart by their first word
+!> Geometry and analysis files of the Limerick line, plain or DDAML, known by their first word
 module dda_read_limerick
    use dda_ddaml_analysis, only : read_ddaml_analysis
    use dda_ddaml_geometry, only : read_ddaml_geometry
@@ -106,8 +106,8 @@ contains
          call add_warning(warnings, "a load point has no force: "//analysis%file//" gives none", &
             & model%file, model%load%row(1))
       else
-         call fatal_error(error, "forces on "//to_text(model%load%n) &
-            & //" load points are wanted, as many as "//model%file//" has; found " &
+         call fatal_error(error, "expected forces on "//to_text(model%load%n) &
+            & //" load points, as many as "//model%file//" has, got " &
             & //to_text(size(analysis%load))//"; add or remove forces", analysis%file, 1)
       end if
    end subroutine check_materials
@@ -130,8 +130,8 @@ contains
 
       do i = 1, entities%n
          if (entities%material(i) <= n) cycle
-         call fatal_error(error, "one of the "//to_text(n)//" "//what//" materials of " &
-            & //analysis_file//" is wanted, found number "//to_text(entities%material(i)) &
+         call fatal_error(error, "expected one of the "//to_text(n)//" "//what//" materials of " &
+            & //analysis_file//", got number "//to_text(entities%material(i)) &
             & //"; correct it or add the material", file, entities%row(i))
          return
       end do
@@ -169,10 +169,9 @@ contains
       type(error_t), allocatable, intent(out) :: error
 
       if (form_of(text) == form%blank) then
-         call fatal_error(error, "numbers or XML are wanted, found only blanks; write into it", &
-            & file, 1)
+         call fatal_error(error, "the file is blank; write numbers or XML into it", file, 1)
       else
-         call fatal_error(error, "the plain form or DDAML is wanted, found the extended form " &
+         call fatal_error(error, "expected the plain form or DDAML, got the extended form " &
             & //"#!0xDDA-v1, which is not read; save it as one of the two", &
             & file, 1)
       end if

@@ -157,8 +157,8 @@ contains
       type(error_t), allocatable, intent(out) :: error
 
       if (c_rename(part_name(file)//c_null_char, file//c_null_char) /= 0) &
-         & call fatal_error(error, "expected a file that can be replaced, got one "// &
-         & "that cannot; choose another folder with --out", file)
+         & call fatal_error(error, "the file cannot be replaced; choose another folder with "// &
+         & "--out", file)
    end subroutine rename_part
 
    !> Remove a file of an earlier run; one that is not there is no failure

@@ -108,20 +108,18 @@ contains
       if (allocated(error)) return
       handle = c_fopen(file//c_null_char, "rb"//c_null_char)
       if (.not. c_associated(handle)) then
-         call fatal_error(error, "wanted a file that can be read, found one that cannot; "// &
-            "check its permissions")
+         call fatal_error(error, "the file cannot be read; check its permissions")
          return
       end if
       call read_to_end(handle, bytes)
       failed = c_ferror(handle)
       if (failed /= 0) then
-         call fatal_error(error, "wanted a file that can be read, found one that ends in a "// &
-            "failure; copy it to another place")
+         call fatal_error(error, "the file cannot be read to its end; copy it to another place")
       else if (len(bytes) == 0) then
-         call fatal_error(error, "wanted a text, found that the file is empty; write into it")
+         call fatal_error(error, "the file is empty; write into it")
       else if (len(bytes) > max_file_size) then
-         call fatal_error(error, "wanted a file of at most "//to_text(max_file_size/megabyte)// &
-            " MB, found a larger one; split it")
+         call fatal_error(error, "expected a file of at most "//to_text(max_file_size/megabyte)// &
+            " MB, got a larger one; split it")
       end if
       failed = c_fclose(handle)
    end subroutine read_bytes
@@ -135,9 +133,9 @@ contains
       integer(c_int), parameter :: exists = 0
 
       if (len_trim(file) == 0) then
-         call fatal_error(error, "wanted the name of a file, found an empty one; give one")
+         call fatal_error(error, "expected the name of a file, got an empty one; give one")
       else if (c_access(file//"/."//c_null_char, exists) == 0) then
-         call fatal_error(error, "wanted a file, found a folder; name a file in it")
+         call fatal_error(error, "expected a file, got a folder; name a file in it")
       else if (c_access(file//c_null_char, exists) /= 0) then
          if (c_access(file//".nml"//c_null_char, exists) == 0) then
             call fatal_error(error, "there is no such file; write "//file//".nml")
@@ -193,7 +191,7 @@ contains
          if (text(n:n) == lf) line = line + 1
          code = ichar(text(n:n))
          if (code >= 32 .and. code /= 127 .or. text(n:n) == lf .or. text(n:n) == tab) cycle
-         call fatal_error(error, "wanted plain text, found a control character (code "// &
+         call fatal_error(error, "expected plain text, got a control character (code "// &
             to_text(code)//"); save the file as plain text", line=line)
          return
       end do

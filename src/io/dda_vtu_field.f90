@@ -116,12 +116,12 @@ contains
       integer :: wanted(2)
 
       call require(field%kind >= 1 .and. field%kind <= size(height) .and. allocated(field%values), &
-         & "the field '"//trim(field%name)//"' wants a kind and values", error)
+         & "the field '"//trim(field%name)//"' needs a kind and values", error)
       if (allocated(error)) return
       wanted = [height(field%kind), n]
       if (all(shape(field%values) == wanted)) return
-      call require(.false., "the field '"//trim(field%name)//"' wants "//shape_text(wanted) &
-         & //" numbers, found "//shape_text(shape(field%values)), error)
+      call require(.false., "the field '"//trim(field%name)//"' must be "//shape_text(wanted) &
+         & //" numbers, got "//shape_text(shape(field%values)), error)
    end subroutine check_field
 
    !> A shape as people write it

@@ -7,7 +7,8 @@ module dda_word_list
    implicit none
    private
 
-   public :: word_list_t, split_words, words_left, this_word, this_row, take_number, take_whole
+   public :: word_list_t, split_words, words_left, this_word, this_row, take_number, &
+      & take_property, take_whole
    public :: take_numbers, take_material, largest_coordinate, quoted
 
    !> Largest coordinate, so that no square overflows
@@ -129,12 +130,12 @@ contains
 
       value = 0.0_wp
       if (words%next > words%n) then
-         call fatal_error(error, what//" is wanted, found the end of the text; add it", &
+         call fatal_error(error, "expected "//what//", got the end of the text; add it", &
             & words%file, this_row(words))
          return
       end if
       call read_number(words%text(words%start(words%next):words%finish(words%next)), value, ok)
-      if (.not. ok) call fatal_error(error, what//" is wanted, found " &
+      if (.not. ok) call fatal_error(error, "expected "//what//", got " &
          & //quoted(this_word(words))//"; write a number, with a point for decimals", words%file, &
          & this_row(words))
       words%next = words%next + 1
@@ -160,11 +161,32 @@ contains
          call take_number(words, what, value(i), error)
          if (allocated(error)) return
          if (abs(value(i)) <= bound) cycle
-         call fatal_error(error, what//" of at most "//to_text(bound)//" in magnitude is wanted, " &
-            & //"found "//to_text(value(i))//"; correct it or change the unit", words%file, row)
+         call fatal_error(error, "expected "//what//" of at most "//to_text(bound)//" in " &
+            & //"magnitude, got "//to_text(value(i))//"; correct it or change the unit", &
+            & words%file, row)
          return
       end do
    end subroutine take_numbers
+
+   !> Take a number from 0 to 1e30
+   pure subroutine take_property(words, what, value, error)
+      !> The words
+      type(word_list_t), intent(inout) :: words
+      !> What the number is, for the message
+      character(len=*), intent(in) :: what
+      !> The number
+      real(wp), intent(out) :: value
+      !> Another one, or none
+      type(error_t), allocatable, intent(out) :: error
+      real(wp), parameter :: most = 1.0e30_wp
+      integer :: row
+
+      row = this_row(words)
+      call take_number(words, what, value, error)
+      if (.not. allocated(error) .and. .not. (value >= 0.0_wp .and. value <= most)) &
+         & call fatal_error(error, "expected "//what//" from 0 to 1e30, got "//to_text(value), &
+         & words%file, row)
+   end subroutine take_property
 
    !> Take a whole number within bounds; 3.0 is one too
    pure subroutine take_whole(words, what, low, high, value, error)
@@ -191,9 +213,8 @@ contains
          & .and. abs(number - aint(number)) <= 0.0_wp) then
          value = nint(number)
       else
-         call fatal_error(error, what//" from "//to_text(low)//" to "//to_text(high) &
-            & //" is wanted, a whole number, found "//to_text(number)//"; correct it", &
-            & words%file, row)
+         call fatal_error(error, "expected "//what//" as a whole number from "//to_text(low) &
+            & //" to "//to_text(high)//", got "//to_text(number)//"; correct it", words%file, row)
       end if
    end subroutine take_whole
 

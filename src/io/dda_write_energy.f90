@@ -1,4 +1,4 @@
-!> Rows of energy.csv: where the energy of a dynamic run is, and where it went
+!> Rows of energy.csv: the energy balance of a dynamic run
 module dda_write_energy
    use dda_growing_text, only : add_line, growing_text_t, lines_of
    use dda_kinds, only : wp

@@ -104,11 +104,11 @@ contains
       !> The line
       character(len=:), allocatable :: line
 
-      line = "case,step,time,point,x,y,u,v"
+      line = "case,step,time,point,x,y,u,v,vx,vy"
    end function points_header
 
    !> Rows of the measured points of one case in points.csv
-   pure function point_lines(number, when, point, track, origin) result(lines)
+   pure function point_lines(number, when, point, track, origin, speed) result(lines)
       !> Number of the case
       integer, intent(in) :: number
       !> Step and time: (2, n) [-, s]
@@ -119,16 +119,21 @@ contains
       real(wp), intent(in) :: track(:, :, :)
       !> Where the origin of the coordinates is: (2) [m]
       real(wp), intent(in) :: origin(2)
+      !> How fast they are; left out if that is not known: (2, n_point, n or more) [m/s]
+      real(wp), intent(in), optional :: speed(:, :, :)
       !> The rows, parted by line ends
       character(len=:), allocatable :: lines
       type(growing_text_t) :: rows
+      character(len=:), allocatable :: fast
       integer :: i, k
 
       do k = 1, size(when, 2)
          do i = 1, size(track, 2)
+            fast = ","
+            if (present(speed)) fast = pair(speed(:, i, k))
             call add_line(rows, to_text(number)//","//to_text(nint(when(1, k)))//"," &
                & //to_text(when(2, k))//","//to_text(i)//","//pair(track(:, i, k) + origin)//"," &
-               & //pair(track(:, i, k) - point(:, i)))
+               & //pair(track(:, i, k) - point(:, i))//","//fast)
          end do
       end do
       lines = lines_of(rows)

@@ -45,10 +45,12 @@ contains
       character(len=:), allocatable :: text
 
       text = to_text(model%edge_node_ratio)//lf//to_text(model%line%n)//" " &
-         & //to_text(model%n_boundary)//lf//to_text(model%material_line%n)//lf//"0"//lf &
+         & //to_text(model%n_boundary)//lf//to_text(model%material_line%n)//lf &
+         & //to_text(model%bolt%n)//lf &
          & //to_text(model%fixed%n)//lf//to_text(model%load%n)//lf//to_text(model%measured%n)//lf &
          & //to_text(model%hole%n)//records(model%line, 4, .true.) &
-         & //records(model%material_line, 4, .true.)//records(model%fixed, 4, .false.) &
+         & //records(model%material_line, 4, .true.)//bolt_records(model) &
+         & //records(model%fixed, 4, .false.) &
          & //records(model%load, 2, .false.)//records(model%measured, 2, .false.) &
          & //records(model%hole, 2, .false.)
    end function plain_geometry
@@ -71,6 +73,43 @@ contains
          if (has_material) text = text//" "//to_text(entities%material(i))
       end do
    end function records
+
+   !> Bolts in the plain form, as Shi's programs have them
+   pure function bolt_records(model) result(text)
+      !> Lines and points
+      type(line_model_t), intent(in) :: model
+      !> Lines, each with its line end before it
+      character(len=:), allocatable :: text
+      integer :: i
+
+      text = ""
+      do i = 1, model%bolt%n
+         text = text//lf//numbers(model%bolt%place(:, i))//" " &
+            & //numbers(max(model%bolt_property(:, i), 0.0_wp))
+      end do
+   end function bolt_records
+
+   !> Bolts in DDAML; the original reads all but the attributes that say what they are like
+   pure function bolt_list(model) result(text)
+      !> Lines and points
+      type(line_model_t), intent(in) :: model
+      !> Lines, each with its line end; empty without bolts
+      character(len=:), allocatable :: text
+      integer :: i
+
+      text = ""
+      if (model%bolt%n == 0) return
+      text = "<Boltlist>"//lf
+      do i = 1, model%bolt%n
+         text = text//'<Bolt type="1"'
+         if (model%bolt_property(1, i) >= 0.0_wp) text = text//' stiffness="' &
+            & //to_text(model%bolt_property(1, i))//'" strength="' &
+            & //to_text(model%bolt_property(2, i))//'" pretension="' &
+            & //to_text(model%bolt_property(3, i))//'"'
+         text = text//"> "//numbers(model%bolt%place(:, i))//" </Bolt>"//lf
+      end do
+      text = text//"</Boltlist>"//lf
+   end function bolt_list
 
    !> Numbers with blanks between
    pure function numbers(value) result(text)
@@ -101,7 +140,7 @@ contains
          & //list("Fixedpointlist", "", model%fixed, 1, model%fixed%n) &
          & //list("Loadpointlist", "Point", model%load, 1, model%load%n) &
          & //list("Measuredpointlist", "Point", model%measured, 1, model%measured%n) &
-         & //list("Holepointlist", "Point", model%hole, 1, model%hole%n) &
+         & //list("Holepointlist", "Point", model%hole, 1, model%hole%n)//bolt_list(model) &
          & //"</Geometry>"//lf//"</Berkeley:DDA>"
    end function ddaml_geometry
 

@@ -55,7 +55,7 @@ contains
       integer :: n
 
       n = size(first_vertex) - 1
-      call require(n >= 0, "polygons want the number one beyond their last corner", error)
+      call require(n >= 0, "polygons need the number one beyond their last corner", error)
       if (allocated(error)) return
       call require(first_vertex(1) == 1 .and. first_vertex(n + 1) == size(point, 2) + 1, &
          & "the corners of polygons are all the points, in their order", error)
@@ -102,7 +102,7 @@ contains
       type(binary_file_t) :: vtu
       integer :: i
 
-      call require(size(point, 1) == 2, "points want two coordinates", error)
+      call require(size(point, 1) == 2, "points need two coordinates", error)
       do i = 1, size(point_fields)
          call check_field(point_fields(i), size(point, 2), error)
       end do

@@ -6,6 +6,7 @@ module dda_limerick_assembly
    use dda_elasticity, only : elastic_matrix, stress_load
    use dda_inertia, only : mass_matrix
    use dda_kinds, only : wp
+   use dda_limerick_bolts, only : bolt_rows, n_bolts
    use dda_limerick_contact, only : contact_list_t, contact_spring_t, generalised, &
       & limerick_contact_t
    use dda_limerick_model, only : contact_law, force_at, limerick_model_t
@@ -27,6 +28,11 @@ module dda_limerick_assembly
       real(wp), allocatable :: base(:, :, :)
       !> What they give to the right-hand side: (6, n_block)
       real(wp), allocatable :: load(:, :)
+      !> Entries of the matrix that couple the blocks of the bolts, 0 for the ground: (n_bolt)
+      integer, allocatable :: bolt_entry(:)
+      !> Stiffness of each bolt between the block of the row and that of the column:
+      !> (6, 6, n_bolt)
+      real(wp), allocatable :: bolt_coupling(:, :, :)
       !> Right-hand side, then the motion of the step: (6, n_block)
       real(wp), allocatable :: motion(:, :)
    end type limerick_equations_t
@@ -34,7 +40,9 @@ module dda_limerick_assembly
 contains
 
    !> Make the pattern, if other blocks are coupled than before, and tell each contact its entry
-   pure subroutine couple_blocks(contacts, n_block, equations, spring)
+   pure subroutine couple_blocks(model, contacts, n_block, equations, spring)
+      !> The model, for its bolts
+      type(limerick_model_t), intent(in) :: model
       !> Contacts, those of the same two blocks one after the other
       type(contact_list_t), intent(in) :: contacts
       !> Number of blocks
@@ -43,7 +51,7 @@ contains
       type(limerick_equations_t), intent(inout) :: equations
       !> Springs of the contacts; their entries are set: (at least contacts%n)
       type(contact_spring_t), intent(inout) :: spring(:)
-      integer :: pair(2, contacts%n), c, n
+      integer :: pair(2, contacts%n + n_bolts(model)), c, n
       logical :: same
 
       n = 0
@@ -60,6 +68,14 @@ contains
             end if
          end associate
          spring(c)%entry = n
+      end do
+      if (.not. allocated(equations%bolt_entry)) allocate (equations%bolt_entry(n_bolts(model)))
+      equations%bolt_entry = 0
+      do c = 1, n_bolts(model)
+         if (any(model%boundary%bar(c)%block == 0)) cycle
+         n = n + 1
+         equations%bolt_entry(c) = n
+         pair(:, n) = [minval(model%boundary%bar(c)%block), maxval(model%boundary%bar(c)%block)]
       end do
       same = allocated(equations%pair)
       if (same) same = size(equations%pair, 2) == n
@@ -102,6 +118,7 @@ contains
          end associate
       end do
       call add_points(model, blocks, march, equations)
+      call add_bolts(model, blocks, equations)
    end subroutine assemble_blocks
 
    !> Springs at the fixed points, which pull back what has drifted, and forces at the load points
@@ -136,6 +153,37 @@ contains
       end do
    end subroutine add_points
 
+   !> Bolts: their stiffness, and what they pull with
+   pure subroutine add_bolts(model, blocks, equations)
+      !> The model
+      type(limerick_model_t), intent(in) :: model
+      !> The blocks
+      type(limerick_blocks_t), intent(in) :: blocks
+      !> The equations
+      type(limerick_equations_t), intent(inout) :: equations
+      real(wp) :: row(n_unknown, 2)
+      integer :: b, first, i, side
+
+      if (.not. allocated(equations%bolt_coupling)) &
+         & allocate (equations%bolt_coupling(n_unknown, n_unknown, n_bolts(model)))
+      equations%bolt_coupling = 0.0_wp
+      do i = 1, n_bolts(model)
+         row = bolt_rows(model, blocks, i)
+         do side = 1, 2
+            b = model%boundary%bar(i)%block(side)
+            if (b == 0) cycle
+            call add_outer(model%boundary%bar(i)%stiffness, row(:, side), row(:, side), &
+               & equations%base(:, :, b))
+            equations%load(:, b) = equations%load(:, b) - blocks%bolt_force(i)*row(:, side)
+         end do
+         if (equations%bolt_entry(i) == 0) cycle
+         first = merge(1, 2, equations%matrix%pair(1, equations%bolt_entry(i)) &
+            & == model%boundary%bar(i)%block(1))
+         call add_outer(model%boundary%bar(i)%stiffness, row(:, first), row(:, 3 - first), &
+            & equations%bolt_coupling(:, :, i))
+      end do
+   end subroutine add_bolts
+
    !> Matrix and right-hand side with the springs and the friction of the contacts' states
    pure subroutine add_contacts(model, contacts, spring, march, first_pass, equations)
       !> The model
@@ -154,6 +202,10 @@ contains
 
       equations%matrix%diagonal = equations%base
       equations%matrix%coupling = 0.0_wp
+      do c = 1, size(equations%bolt_entry)
+         if (equations%bolt_entry(c) > 0) equations%matrix%coupling(:, :, &
+            & equations%bolt_entry(c)) = equations%bolt_coupling(:, :, c)
+      end do
       equations%motion = equations%load
       do c = 1, contacts%n
          associate (contact => contacts%item(c))

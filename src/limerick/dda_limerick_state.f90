@@ -53,6 +53,10 @@ module dda_limerick_state
       real(wp), allocatable :: fixed_drift(:, :)
       !> Load points: (2, n_load) [m]
       real(wp), allocatable :: load_point(:, :)
+      !> Ends of the bolts: (2, 2, n_bolt) [m]
+      real(wp), allocatable :: bolt_point(:, :, :)
+      !> Force of each, positive where it pulls: (n_bolt) [N]
+      real(wp), allocatable :: bolt_force(:)
       !> Measured points: (2, n_measured) [m]
       real(wp), allocatable :: measured_point(:, :)
    end type limerick_blocks_t
@@ -93,9 +97,8 @@ contains
       type(limerick_model_t), intent(in) :: model
       !> The blocks
       type(limerick_blocks_t), intent(out) :: blocks
-      integer :: b, n, nv, v, first, last
+      integer :: b, i, n, nv, v, first, last
 
-      n = size(model%first_vertex) - 1
       nv = size(model%vertex, 2)
       blocks%first_vertex = model%first_vertex
       blocks%vertex = model%vertex
@@ -109,7 +112,15 @@ contains
             blocks%measured_point(v, :) = boundary%measured%point(v)
          end do
          allocate (blocks%fixed_drift(2, size(boundary%held)), source=0.0_wp)
+         n = 0
+         if (allocated(boundary%bar)) n = size(boundary%bar)
+         allocate (blocks%bolt_point(2, 2, n), blocks%bolt_force(n))
+         do i = 1, n
+            blocks%bolt_point(:, :, i) = boundary%bar(i)%point
+            blocks%bolt_force(i) = boundary%bar(i)%prestress
+         end do
       end associate
+      n = size(model%first_vertex) - 1
       allocate (blocks%owner(nv), blocks%next(nv), blocks%previous(nv))
       allocate (blocks%area(n), blocks%centroid(2, n), blocks%second(3, n), blocks%stress(3, n))
       allocate (blocks%velocity(n_unknown, n), source=0.0_wp)

@@ -36,7 +36,7 @@ module dda_limerick_step
       integer, allocatable :: order(:)
    end type limerick_run_t
 
-   !> Most attempts at one step: the original has no such bound and may go on for ever
+   !> Most attempts at one step: the original has no such bound and may loop forever
    integer, parameter :: max_attempts = 200
 
 contains
@@ -72,8 +72,8 @@ contains
       if (accepted) then
          call update(model, run%equations%motion, run%blocks, run%march, run%moved)
       else
-         call fatal_error(error, "a step was tried again and again without settling; the "// &
-            & "original would not have ended")
+         call fatal_error(error, "no convergence at one step in the attempts that are "// &
+            & "allowed (the original loops forever)")
       end if
    end subroutine advance
 
@@ -114,6 +114,6 @@ contains
       do c = 1, run%contacts%n
          call place_springs(run%blocks, run%contacts%item(c), run%spring(c))
       end do
-      call couple_blocks(run%contacts, size(run%order), run%equations, run%spring)
+      call couple_blocks(model, run%contacts, size(run%order), run%equations, run%spring)
    end subroutine meet
 end module dda_limerick_step

@@ -1,6 +1,7 @@
 !> Where a step takes the blocks, and what it leaves behind (Shi: df24, df25)
 module dda_limerick_update
    use dda_kinds, only : wp
+   use dda_limerick_bolts, only : bolt_elongation, n_bolts
    use dda_limerick_model, only : limerick_model_t
    use dda_limerick_state, only : limerick_blocks_t, limerick_march_t, measure_blocks
    use dda_material, only : elasticity_matrix
@@ -99,6 +100,16 @@ contains
       do i = 1, size(model%boundary%measured)
          blocks%measured_point(:, i) = blocks%measured_point(:, i) &
             & + point_step(blocks%measured_point(:, i), model%boundary%measured(i)%block)
+      end do
+      do i = 1, n_bolts(model)
+         associate (bolt => model%boundary%bar(i))
+            blocks%bolt_force(i) = blocks%bolt_force(i) &
+               & + bolt%stiffness*bolt_elongation(model, blocks, i, motion)
+            do b = 1, 2
+               if (bolt%block(b) > 0) blocks%bolt_point(:, b, i) = blocks%bolt_point(:, b, i) &
+                  & + point_step(blocks%bolt_point(:, b, i), bolt%block(b))
+            end do
+         end associate
       end do
       do b = 1, size(blocks%area)
          blocks%stress(:, b) = blocks%stress(:, b) + matmul(elasticity_matrix( &

@@ -2,6 +2,7 @@
 module dda_block_input
    use dda_boundary, only : boundary_t
    use dda_kinds, only : wp
+   use dda_water, only : water_t
    implicit none
    private
 
@@ -55,10 +56,15 @@ module dda_block_input
       type(material_plan_t), allocatable :: materials(:)
       !> Laws beside that of the deck
       type(law_plan_t), allocatable :: laws(:)
+      !> Water
+      type(water_t), allocatable :: water(:)
       !> Points; they are seen from the origin of the plan too
       type(boundary_t) :: boundary
       !> Line of the file that moves the ground, 0 if there is none
       integer :: ground_line = 0
+      !> Lengths and check sums of the records that the file names, each with a blank before it;
+      !> unallocated without records
+      character(len=:), allocatable :: record_marks
    end type block_plan_t
 
 contains
@@ -71,6 +77,7 @@ contains
       allocate (plan%first_vertex(1), source=1)
       allocate (plan%vertex(2, 0), plan%fixed(0), plan%material(0), plan%velocity(3, 0))
       allocate (plan%stress(3, 0), plan%line(0), plan%materials(0), plan%laws(0))
+      allocate (plan%water(0))
    end subroutine new_plan
 
    !> The first movable block that no chain of joints ties to a fixed one; 0 if there is none

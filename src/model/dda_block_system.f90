@@ -1,5 +1,6 @@
 !> The blocks: shape, moments, motion, stress; carried from step to step
 module dda_block_system
+   use dda_bar, only : bar_state_t
    use dda_kinds, only : wp
    use dda_material, only : material_t
    use dda_simplex, only : area_moments, area_moments_t
@@ -45,6 +46,8 @@ module dda_block_system
       !> Stress that the blocks have without strain, in the frame that turns with the block:
       !> (3, n_block) [Pa]
       real(wp), allocatable :: initial_stress(:, :)
+      !> What the bars carry from step to step; not allocated without them: (n_bar)
+      type(bar_state_t), allocatable :: bar(:)
    end type block_system_t
 
 contains

@@ -1,10 +1,11 @@
 !> What acts on points of the blocks, and how it changes with time (Shi: df09)
 module dda_boundary
+   use dda_bar, only : bar_t
    use dda_kinds, only : wp
    implicit none
    private
 
-   public :: boundary_t, held_point_t, history_t, loaded_point_t, measured_point_t
+   public :: boundary_t, bounded_force_t, held_point_t, history_t, loaded_point_t, measured_point_t
    public :: constant_history, led_displacement, mean_over, rate_at, records_before, value_at
 
    !> A vector given at some times, linear between them, constant before the first and after the
@@ -50,6 +51,19 @@ module dda_boundary
       real(wp) :: point(2) = 0.0_wp
    end type measured_point_t
 
+   !> A force on a point of a block that may have any value from nothing to a bound, as the pressure
+   !> of fill that an arch leans against
+   type :: bounded_force_t
+      !> Number of the block
+      integer :: block = 0
+      !> Where the point is in the reference shape: (2) [m]
+      real(wp) :: point(2) = 0.0_wp
+      !> Unit vector along the force: (2)
+      real(wp) :: direction(2) = 0.0_wp
+      !> Its bound; huge without [N per metre depth]
+      real(wp) :: most = huge(1.0_wp)
+   end type bounded_force_t
+
    !> All of a scene; an array that is not allocated has no points
    type :: boundary_t
       !> Held points
@@ -58,6 +72,10 @@ module dda_boundary
       type(loaded_point_t), allocatable :: loaded(:)
       !> Measured points
       type(measured_point_t), allocatable :: measured(:)
+      !> Bounded forces
+      type(bounded_force_t), allocatable :: bounded(:)
+      !> Bars between points
+      type(bar_t), allocatable :: bar(:)
       !> Acceleration of the ground [m/s2]; motions are relative to the ground, so that all blocks
       !> feel its inertia
       type(history_t) :: base_acceleration

@@ -9,12 +9,29 @@ module dda_ground_motion
    implicit none
    private
 
-   public :: acceleration_of_velocity, acceleration_of_displacement
+   public :: acceleration_of_record, acceleration_of_velocity, acceleration_of_displacement
 
    !> Length of a jump over the interval beside it
    real(wp), parameter :: share = 1.0e-9_wp
 
 contains
+
+   !> Acceleration of a record that holds it; none before and after
+   pure function acceleration_of_record(record) result(acceleration)
+      !> The record: two times or more [m/s2]
+      type(history_t), intent(in) :: record
+      !> The acceleration [m/s2]
+      type(history_t) :: acceleration
+      integer :: n
+
+      n = size(record%time)
+      allocate (acceleration%time(n + 2), acceleration%value(2, n + 2))
+      acceleration%time(1) = record%time(1) - jump_beside(record%time(1:2))
+      acceleration%time(2:n + 1) = record%time
+      acceleration%time(n + 2) = record%time(n) + jump_beside(record%time(n - 1:n))
+      acceleration%value = 0.0_wp
+      acceleration%value(:, 2:n + 1) = record%value
+   end function acceleration_of_record
 
    !> Acceleration of a velocity that is linear between its times; none before and after
    pure function acceleration_of_velocity(velocity) result(acceleration)

@@ -1,4 +1,4 @@
-!> Points of a block that are held or led: whether one more can be
+!> Fixed and prescribed points of a block: whether one more is compatible
 module dda_held_paths
    use dda_boundary, only : held_point_t, history_t, value_at
    use dda_kinds, only : wp

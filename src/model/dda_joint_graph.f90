@@ -14,7 +14,7 @@ module dda_joint_graph
    private
 
    public :: joint_graph_t, joint_kind, joint_kind_enum
-   public :: joint_motion, add_joint_forces, rubs
+   public :: joint_motion, add_joint_forces, keep_joints, rubs
 
    !> What a joint can carry
    type :: joint_kind_enum
@@ -58,10 +58,13 @@ module dda_joint_graph
       real(wp), allocatable :: gap(:, :)
       !> Mass and moment of inertia of each block, for motion damped by mass: (n_dof, n_block)
       real(wp), allocatable :: mass(:, :)
+      !> Strength of bars that yield: each has a node of its own behind the blocks, on which it
+      !> pulls against that load: (n_node) [N]
+      real(wp), allocatable :: bound(:)
    end type joint_graph_t
 
-   !> Coefficient of friction, that of 89.9 degrees but for rounding, from which on a closed joint
-   !> cannot slide
+   !> Coefficient of friction, that of 89.9 degrees except for rounding, from which on a closed
+   !> joint cannot slide
    real(wp), parameter :: rough = 572.9_wp
 
 contains
@@ -77,6 +80,24 @@ contains
       rubs = (kind == joint_kind%contact .or. kind == joint_kind%corner) &
          & .and. friction > 0.0_wp .and. friction < rough
    end function rubs
+
+   !> Keep some of the joints
+   pure subroutine keep_joints(kept, graph)
+      !> Which: (n_joint)
+      logical, intent(in) :: kept(:)
+      !> The joints
+      type(joint_graph_t), intent(inout) :: graph
+      integer :: k(count(kept)), j
+
+      k = pack([(j, j=1, size(kept))], kept)
+      graph%block = graph%block(:, k)
+      graph%row = graph%row(:, :, :, k)
+      graph%kind = graph%kind(k)
+      graph%friction = graph%friction(k)
+      graph%length = graph%length(k)
+      graph%compliance = graph%compliance(:, k)
+      graph%gap = graph%gap(:, k)
+   end subroutine keep_joints
 
    !> Opening at both corners and slip of every joint
    pure subroutine joint_motion(graph, motion, opening)

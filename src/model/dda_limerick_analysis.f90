@@ -90,5 +90,7 @@ module dda_limerick_analysis
       type(limerick_joint_t), allocatable :: joint(:)
       !> Forces on the load points, in their order: (n)
       type(load_history_t), allocatable :: load(:)
+      !> Stiffness, strength and prestress of bolts that say none of their own: (3)
+      real(wp) :: bolt(3) = 0.0_wp
    end type limerick_analysis_t
 end module dda_limerick_analysis

@@ -1,4 +1,4 @@
-!> What a run is told once
+!> Settings of a run
 module dda_settings
    use dda_boundary, only : boundary_t, loaded_point_t
    use dda_kinds, only : wp
@@ -50,6 +50,10 @@ module dda_settings
       real(wp) :: max_displacement_ratio = 0.05_wp
       !> Motion of a corner that means collapse; 0 for a test without a length [m]
       real(wp) :: collapse_displacement = 0.0_wp
+      !> Rotation of a block that means collapse in a dynamic run; 0 for none [rad]
+      real(wp) :: collapse_rotation = 0.0_wp
+      !> Measured point whose displacement means collapse then; 0 for any corner
+      integer :: collapse_point = 0
       !> Angle of gravity from upright, to the right [rad]
       real(wp) :: tilt = 0.0_wp
       !> Horizontal force over the weight, to the right; where it is live, at a load factor of one

@@ -7,6 +7,8 @@
 !>    T = t_T within +-friction*(N1 + N2),          t_T = T_before - slip/compliance_T
 !>
 !> Where both corners are open the joint carries no shear force and forgets the one it had.
+!>
+!> Equation (M4) of docs/method.md
 module dda_coulomb_law
    use dda_coulomb_joints, only : coulomb_joints_t, end_role, shear_role
    use dda_joint_graph, only : add_joint_forces

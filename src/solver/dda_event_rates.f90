@@ -1,4 +1,4 @@
-!> How an assembly goes on under a load that grows: rates of motion and forces at a state
+!> How an assembly responds to a load that grows: rates of motion and forces at a state
 !>
 !> Most faces are given: a corner that pushes stays closed, one with a gap stays open, a joint
 !> within Coulomb's limit sticks. What is left, the weak faces, must agree with the rates: an

@@ -56,6 +56,7 @@ contains
 
       call solve_springs(rays, springs, path%live, turn%unit_response, turn%unit_rate)
       turn%flexibility = sum(path%live*turn%unit_response)
+      if (path%moves) turn%flexibility = huge(turn%flexibility)
    end subroutine respond_to_live_load
 
    !> Direction to balance, compatibility and the aim; where that leaves too much, by a factor with
@@ -90,7 +91,7 @@ contains
       !> Aim in, direction out
       type(turn_t), intent(inout) :: turn
 
-      call set_wide_springs(rays, springs)
+      call set_wide_springs(rays, path%mass, springs)
       if (.not. springs%usable) return
       call respond_to_live_load(rays, path, springs, turn)
       call find_direction(rays, path, point, turn%accepted, springs, turn)
@@ -157,7 +158,7 @@ contains
       !> The direction; receives the rest
       type(turn_t), intent(inout) :: turn
 
-      turn%rest = -turn%lack + turn%dfactor*path%live
+      turn%rest = -turn%lack + turn%dfactor*path%live - path%mass*turn%dv
       call add_ray_forces(rays, turn%dx, turn%rest)
    end subroutine see_rest
 

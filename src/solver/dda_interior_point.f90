@@ -1,10 +1,15 @@
-!> Largest load factor that joints can carry, by a primal-dual interior-point method
+!> Largest load factor that joints can carry, or how a load moves masses between them, by a
+!> primal-dual interior-point method
 !>
 !>    largest f with  A x + f live + dead = 0,  x >= 0      A: arms of the rays, x: their forces
 !>    least -dead.v with  s = A'v >= 0,  live.v = 1         v: velocities of a mechanism
 !>
-!> Both problems at once, by Mehrotra's predictor and corrector. A turn is the assembly and
+!>    mass v = load + A x,  s = A'v >= 0,  x >= 0,  x s = 0  v: accelerations
+!>
+!> Both sides at once, by Mehrotra's predictor and corrector. A turn is the assembly and
 !> factorisation of a DDA step with a spring of stiffness x/s along each ray.
+!>
+!> Equation (M6) of docs/method.md
 module dda_interior_point
    use dda_interior_state, only : interior_goal_t, interior_point_t, interior_state, &
       & load_path_t, no_limit
@@ -16,7 +21,7 @@ module dda_interior_point
    implicit none
    private
 
-   public :: start_by_springs, find_largest_factor
+   public :: start_by_springs, worst, solve_interior
 
    !> Turns without progress before the iteration ends
    integer, parameter :: patience = 8
@@ -42,7 +47,7 @@ contains
       allocate (point%x, point%s, mold=rays%bounded)
       allocate (point%v, mold=path%dead)
       springs%stiffness = rays%bounded + rays%free
-      call set_springs(rays, lift, springs)
+      call set_springs(rays, path%mass, lift, springs)
       call solve_springs(rays, springs, -path%dead, point%v, point%x)
       call solve_springs(rays, springs, path%live, point%v, point%s)
       power = sum(path%live*point%v)
@@ -61,8 +66,8 @@ contains
       point%s = point%s*rays%bounded + (1.0_wp - rays%bounded)
    end subroutine start_by_springs
 
-   !> Largest factor from a point inside the bounds
-   pure subroutine find_largest_factor(rays, path, goal, springs, point)
+   !> Largest factor, or motion of masses, from a point inside the bounds
+   pure subroutine solve_interior(rays, path, goal, springs, point)
       !> The rays
       type(joint_rays_t), intent(in) :: rays
       !> The loads
@@ -98,13 +103,13 @@ contains
             exit
          end if
          call correct(rays, path, goal, springs, point, turn)
-         call move(rays, turn, point)
+         call move(rays, path, turn, point)
       end do
       if (point%state /= interior_state%stalled) return
       best%n_turn = point%n_turn
       best%state = point%state
       point = best
-   end subroutine find_largest_factor
+   end subroutine solve_interior
 
    !> The worst of the three figures
    pure real(wp) function worst(point)

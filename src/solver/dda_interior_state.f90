@@ -1,4 +1,4 @@
-!> What an interior-point method for load factors is told, and what it carries from turn to turn
+!> Input of an interior-point method, and its state from iteration to iteration
 module dda_interior_state
    use dda_kinds, only : wp
    implicit none
@@ -32,12 +32,17 @@ module dda_interior_state
    !> Names of these ends
    type(interior_state_enum), parameter :: interior_state = interior_state_enum()
 
-   !> Loads dead + factor*live in the units of the rays, the entries of live sum up to one
+   !> Loads dead + factor*live in the units of the rays, the entries of live sum up to one; or a
+   !> dead load alone, and masses that it moves
    type :: load_path_t
       !> Loads at factor zero: (3, 0:n_block)
       real(wp), allocatable :: dead(:, :)
       !> What a unit of the factor adds: (3, 0:n_block)
       real(wp), allocatable :: live(:, :)
+      !> Masses: (3, 0:n_block)
+      real(wp), allocatable :: mass(:, :)
+      !> Whether there are any
+      logical :: moves = .false.
       !> Factor of this path that is one for the caller
       real(wp) :: size = 1.0_wp
       !> Factors whose difference is smaller are taken for equal
@@ -65,7 +70,7 @@ module dda_interior_state
       real(wp), allocatable :: x(:, :)
       !> Rate of opening along each ray: (n_side, n_joint)
       real(wp), allocatable :: s(:, :)
-      !> Velocities: (3, 0:n_block)
+      !> Velocities, or accelerations of masses: (3, 0:n_block)
       real(wp), allocatable :: v(:, :)
       !> Factor that the forces carry
       real(wp) :: factor = 0.0_wp
@@ -91,6 +96,7 @@ contains
       type(load_path_t), intent(out) :: path
 
       allocate (path%dead(3, 0:ubound(dead, 2)), path%live(3, 0:ubound(dead, 2)))
+      allocate (path%mass(3, 0:ubound(dead, 2)), source=0.0_wp)
       path%size = sum(abs(live))
       if (.not. path%size > 0.0_wp) path%size = 1.0_wp
       path%dead = dead

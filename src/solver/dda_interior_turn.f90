@@ -1,4 +1,6 @@
 !> One turn of the interior-point method: springs, predictor, corrector
+!>
+!> Equation (M6) of docs/method.md
 module dda_interior_turn
    use dda_interior_direction, only : balance_direction, direct, direct_wide, refine_direction, &
       & respond_to_live_load, turn_t
@@ -24,7 +26,7 @@ module dda_interior_turn
    real(wp), parameter :: longer = 0.3_wp, long_enough = 0.9_wp
    !> Steps that grow by less, both together, are not worth a further correction
    real(wp), parameter :: worthwhile = 0.03_wp
-   !> After steps shorter than this all products are led towards half their mean
+   !> After steps shorter than this all products are drawn towards half their mean
    real(wp), parameter :: short = 0.1_wp, half = 0.5_wp
    !> Products beyond these multiples of the one aimed at are corrected
    real(wp), parameter :: least_product = 0.1_wp, largest_product = 10.0_wp
@@ -61,7 +63,7 @@ contains
       type(turn_t), intent(inout) :: turn
       real(wp) :: against, power
 
-      turn%rest = path%dead + point%factor*path%live
+      turn%rest = path%dead + point%factor*path%live - path%mass*point%v
       call add_ray_forces(rays, point%x, turn%rest)
       turn%lack = -turn%rest
       ! forces that hold one another may be so large that their rounding counts beside the loads
@@ -80,6 +82,8 @@ contains
       if (power > 0.0_wp) point%upper = (against*sum(abs(point%x)) - sum(path%dead*point%v))/power
       point%gap = abs(point%upper - point%factor) &
          & /max(abs(point%factor), abs(point%upper), turn%least_factor, tiny(power))
+      if (path%moves) point%gap = sum(point%x*abs(turn%rate)*rays%bounded) &
+         & /max(abs(sum(path%dead*point%v)), tiny(power))
    end subroutine see_residuals
 
    !> Factor the springs and find the direction to x*s = 0
@@ -98,7 +102,7 @@ contains
       turn%accepted = max(min(1.0e-9_wp, 0.01_wp*point%gap)*path%largest_dead, &
          & 1.0e-13_wp*path%largest_dead, 0.05_wp*maxval(abs(turn%lack)))
       call set_stiffness(rays, point, springs)
-      call set_springs(rays, lift, springs)
+      call set_springs(rays, path%mass, lift, springs)
       if (springs%usable) call respond_to_live_load(rays, path, springs, turn)
       turn%aim = -point%x*rays%bounded
       call direct(rays, path, point, springs, turn)
@@ -254,9 +258,11 @@ contains
    end function longest_steps
 
    !> Move along the direction, almost to the border
-   pure subroutine move(rays, turn, point)
+   pure subroutine move(rays, path, turn, point)
       !> The rays
       type(joint_rays_t), intent(in) :: rays
+      !> The loads
+      type(load_path_t), intent(in) :: path
       !> The direction
       type(turn_t), intent(in) :: turn
       !> The point
@@ -264,6 +270,8 @@ contains
       real(wp) :: reach(2)
 
       reach = share_of_way*longest_steps(rays, point, turn%dx, turn%ds)
+      ! with masses, forces and accelerations balance together
+      if (path%moves) reach = minval(reach)
       point%x = point%x + reach(1)*turn%dx
       point%factor = point%factor + reach(1)*turn%dfactor
       point%s = point%s + reach(2)*(turn%ds*rays%bounded)

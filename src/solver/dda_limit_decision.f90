@@ -5,7 +5,7 @@
 !> more. The interior-point method starts at those forces, in balance, and stops as soon as forces
 !> reach the end of the path or velocities say that none do.
 module dda_limit_decision
-   use dda_interior_point, only : find_largest_factor
+   use dda_interior_point, only : solve_interior
    use dda_interior_state, only : interior_goal_t, interior_point_t, interior_state, &
       & load_path_t, set_path
    use dda_joint_graph, only : joint_graph_t
@@ -17,7 +17,7 @@ module dda_limit_decision
    private
 
    public :: load_decision_t, load_state
-   public :: decide_load, find_margin
+   public :: decide_load
    public :: go_to_load, state_at_end, unit_of_force, keep_velocities, resolution
 
    !> Whether a load can be carried
@@ -48,9 +48,6 @@ module dda_limit_decision
       real(wp) :: violation = 0.0_wp
       !> Power of the load on the mechanism where it falls [W/m]
       real(wp) :: power = 0.0_wp
-      !> How far the end of the path lies inside what can be carried, in lengths of the path:
-      !> positive where it stands, negative where it falls
-      real(wp) :: margin = 0.0_wp
       !> Factorisations
       integer :: n_factorisation = 0
    end type load_decision_t
@@ -72,36 +69,6 @@ contains
       real(wp), intent(in) :: load(:, :)
       !> The decision
       type(load_decision_t), intent(out) :: decision
-
-      call decide(graph, load, resolution, .true., decision)
-   end subroutine decide_load
-
-   !> Whether a load can be carried, and by how much: the margin is followed to its end
-   pure subroutine find_margin(graph, load, tolerance, decision)
-      !> The joints
-      type(joint_graph_t), intent(in) :: graph
-      !> Loads: (n_dof, n_block) [N/m, N/m, N ...]
-      real(wp), intent(in) :: load(:, :)
-      !> Relative accuracy of the margin's path
-      real(wp), intent(in) :: tolerance
-      !> The decision
-      type(load_decision_t), intent(out) :: decision
-
-      call decide(graph, load, tolerance, .false., decision)
-   end subroutine find_margin
-
-   !> Decide, at once or with the margin
-   pure subroutine decide(graph, load, tolerance, at_once, decision)
-      !> The joints
-      type(joint_graph_t), intent(in) :: graph
-      !> Loads: (n_dof, n_block) [N/m, N/m, N ...]
-      real(wp), intent(in) :: load(:, :)
-      !> Relative gap at which it ends
-      real(wp), intent(in) :: tolerance
-      !> Whether the first proof is enough
-      logical, intent(in) :: at_once
-      !> The decision
-      type(load_decision_t), intent(out) :: decision
       type(joint_rays_t) :: rays
       type(ray_matrix_t) :: springs
       type(interior_point_t) :: point
@@ -114,23 +81,19 @@ contains
       end if
       call set_rays(graph, rays)
       call plan_matrix(rays, springs)
-      call go_to_load(rays, load, tolerance, at_once, springs, point)
+      call go_to_load(rays, load, springs, point)
       decision%n_factorisation = springs%n_factorisation
       call joint_forces(rays, point%x, unit_of_force(load), decision%force)
       call keep_velocities(rays, point%v, decision%velocity)
       call conclude(graph, load, point, decision)
-   end subroutine decide
+   end subroutine decide_load
 
    !> Follow the path from a load that strictly admissible forces carry to a given one
-   pure subroutine go_to_load(rays, load, tolerance, at_once, springs, point)
+   pure subroutine go_to_load(rays, load, springs, point)
       !> The rays
       type(joint_rays_t), intent(in) :: rays
       !> Loads: (n_dof, n_block) [N/m, N/m, N ...]
       real(wp), intent(in) :: load(:, :)
-      !> Relative gap at which it ends
-      real(wp), intent(in) :: tolerance
-      !> Whether the first proof is enough
-      logical, intent(in) :: at_once
       !> The matrix
       type(ray_matrix_t), intent(inout) :: springs
       !> Where the path ends; the load is at factor one
@@ -151,12 +114,12 @@ contains
       point%s = path%size/(real(max(1, rays%n_bounded), wp)*force)*rays%bounded &
          & + (1.0_wp - rays%bounded)
       allocate (point%v(3, 0:rays%n_block), source=0.0_wp)
-      goal%tolerance = tolerance
-      if (at_once) goal%target = path%size
-      call find_largest_factor(rays, path, goal, springs, point)
+      goal%tolerance = resolution
+      goal%target = path%size
+      call solve_interior(rays, path, goal, springs, point)
       point%factor = point%factor/path%size
       point%upper = point%upper/path%size
-      if (at_once .and. point%factor > 1.0_wp) then
+      if (point%factor > 1.0_wp) then
          ! between two states in balance all are: back to the load
          point%x = force*rays%bounded + (point%x - force*rays%bounded)/point%factor
          point%factor = 1.0_wp
@@ -230,11 +193,9 @@ contains
          & decision%state = load_state%undecided
       select case (decision%state)
       case (load_state%stands)
-         decision%margin = point%factor - 1.0_wp
          decision%imbalance = imbalance
          decision%violation = beyond_cone
       case (load_state%falls)
-         decision%margin = point%upper - 1.0_wp
          decision%violation = beyond_flow
          decision%power = power
       end select

@@ -2,8 +2,10 @@
 !>
 !> Forces give a factor from below, a mechanism one from above; both are certificates that need no
 !> trust in the method that found them. The dead load is decided first.
+!>
+!> Equation (M6) of docs/method.md
 module dda_limit_load
-   use dda_interior_point, only : find_largest_factor, start_by_springs
+   use dda_interior_point, only : solve_interior, start_by_springs
    use dda_interior_state, only : interior_goal_t, interior_point_t, interior_state, &
       & load_path_t, no_limit, set_path
    use dda_joint_graph, only : joint_graph_t
@@ -11,7 +13,7 @@ module dda_limit_load
    use dda_kinds, only : wp
    use dda_limit_certificate, only : balance_margin, carried_factor, check_forces, &
       & check_velocities, flow_margin, stopping_factor
-   use dda_limit_decision, only : go_to_load, keep_velocities, load_state, resolution, &
+   use dda_limit_decision, only : go_to_load, keep_velocities, load_state, &
       & state_at_end, unit_of_force
    use dda_ray_matrix, only : plan_matrix, ray_matrix_t
    implicit none
@@ -91,7 +93,7 @@ contains
       unit = unit_of_force(dead)
       decided = .false.
       if (present(stands)) decided = stands
-      if (.not. decided) call go_to_load(rays, dead, resolution, .true., springs, point)
+      if (.not. decided) call go_to_load(rays, dead, springs, point)
       if (state_at_end(point) == load_state%falls) then
          limit%state = limit_state%no_dead_equilibrium
       else
@@ -138,7 +140,7 @@ contains
       call start_by_springs(rays, path, springs, point)
       goal%tolerance = tolerance
       goal%ceiling = ceiling
-      call find_largest_factor(rays, path, goal, springs, point)
+      call solve_interior(rays, path, goal, springs, point)
       point%factor = point%factor/path%size
    end subroutine raise_live_load
 
@@ -158,7 +160,7 @@ contains
       type(limit_load_t), intent(inout) :: limit
       type(interior_point_t) :: alone
 
-      call go_to_load(rays, live, resolution, .true., springs, alone)
+      call go_to_load(rays, live, springs, alone)
       if (state_at_end(alone) /= load_state%stands) return
       limit%state = limit_state%unbounded
       point = alone

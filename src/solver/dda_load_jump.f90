@@ -50,14 +50,18 @@ module dda_load_jump
    real(wp), parameter :: moves_unbalanced = 0.01_wp
    !> So many times the motion under the dead load is far
    real(wp), parameter :: far_factor = 1.0e4_wp
+   !> Motion that has not converged is a fall if it has come so far, as a share of what is far
+   real(wp), parameter :: driven = 0.01_wp
    !> An event no further off than this makes no way
    real(wp), parameter :: no_way = 1.0e-13_wp
    !> So many events without way lead nowhere
    integer, parameter :: max_standstill = 60
    !> Steps of a jump: at least so many, and so many more for each joint
-   integer, parameter :: least_patience = 1000, patience = 50
+   integer, parameter :: least_patience = 500, patience = 10
    !> Change of damping after a step that meets no event, and its inverse where there are no rates
    real(wp), parameter :: calmer = 0.1_wp
+   !> Damping that is tried first where there are no rates along a path
+   real(wp), parameter :: first_firm = 1.0e-3_wp
    !> With so much damping there are always rates
    real(wp), parameter :: strongest = 1.0e5_wp
 
@@ -81,97 +85,105 @@ contains
       integer, intent(out) :: end
       type(rates_t) :: rates
       type(event_t) :: event
-      real(wp) :: damping, rest(size(load, 1), size(load, 2)), start(size(load, 1), size(load, 2))
-      real(wp) :: still(3, size(state%slip))
+      real(wp) :: damping, firm, still(3, size(state%slip))
+      real(wp) :: rest(size(load, 1), size(load, 2)), start(size(load, 1), size(load, 2))
       integer :: i, standstill
-      logical :: failed, found, pushed
+      logical :: calm, found, pushed
 
       still = 0.0_wp
       start = state%motion
       standstill = 0
       pushed = .false.
-      failed = .false.
       damping = path_damping
+      firm = first_firm
+      calm = .false.
       rates = new_rates(state)
       do i = 1, least_patience + patience*size(state%slip)
          call imbalance(joints, load, state%force, rest)
-         end = where_it_is(maxval(abs(rest)), state%motion - start, jump)
+         call see_end(joints, equations, rest, start, state, jump, end)
          if (end == motion_end%balanced) state%load = load
-         if (end == motion_end%far) call end_far(joints, equations, rest, state, start, jump, end)
          if (end /= motion_end%unsettled) return
          if (equations%base%n_factorisation >= jump%most_factorisations) return
-         if (event%kind == event_kind%none .and. .not. failed) &
-            & damping = max(path_damping, calmer*damping)
+         if (calm) damping = max(path_damping, calmer*damping)
          call find_rates(joints, equations, state, rest, still, damping, rates, found)
-         failed = .not. found
-         if (failed) then
+         if (.not. found) then
             if (damping > strongest) return
-            damping = damping/calmer
+            calm = .false.
+            damping = merge(firm, damping/calmer, damping < firm)
             cycle
          end if
+         firm = damping
          if (pushed .and. rates%unbalanced > moves_unbalanced) then
             call see_ray(joints, state, rest, rates, event, jump, end)
             if (event%kind == event_kind%none) return
          else
-            event = next_event(joints, state, rates, 1.0_wp)
+            event = next_event(joints, state, rates, stride(joints, rest, rates))
          end if
+         ! forces that drop faster than this have no rates with less damping
+         calm = event%kind == event_kind%none .and. rates%unbalanced < 1.0_wp/(1.0_wp - calmer)
          pushed = .not. damping > path_damping .and. rates%unbalanced > moves_unbalanced &
             & .and. event%kind == event_kind%none
          standstill = merge(standstill + 1, 0, event%distance < no_way)
          if (standstill > max_standstill) return
          call move_on(joints, rates, event, state)
       end do
+      jump%far = driven*jump%far
+      call see_end(joints, equations, rest, start, state, jump, end)
    end subroutine jump_to_balance
 
-   !> Whether a motion has come to balance, or far
-   pure integer function where_it_is(left, way, jump) result(end)
-      !> What the forces leave of the load
-      real(wp), intent(in) :: left
-      !> Motion so far: (n_dof, n_block)
-      real(wp), intent(in) :: way(:, :)
-      !> What it is told
-      type(jump_t), intent(in) :: jump
+   !> How far rates lead, in steps that would bring balance if nothing were damped: while the forces
+   !> that they leave of the load are the same but for a factor
+   pure real(wp) function stride(joints, rest, rates)
+      !> The joints
+      type(coulomb_joints_t), intent(in) :: joints
+      !> What the forces leave of the load: (n_dof, n_block)
+      real(wp), intent(in) :: rest(:, :)
+      !> Rates of motion
+      type(rates_t), intent(in) :: rates
+      real(wp), parameter :: bend = 0.3_wp
+      real(wp) :: change(size(rest, 1), size(rest, 2)), share, largest
 
-      end = motion_end%unsettled
-      if (left <= jump%tolerance) then
-         end = motion_end%balanced
-      else if (maxval(abs(way)) > jump%far) then
-         end = motion_end%far
-      end if
-   end function where_it_is
+      call imbalance(joints, 0.0_wp*rest, -rates%force, change)
+      share = sum(change*rest)/sum(rest**2)
+      largest = maxval(abs(change - share*rest))
+      stride = bend*maxval(abs(rest))/max(largest, tiny(largest))
+      if (share > 0.0_wp) stride = min(stride, 1.0_wp/share)
+      stride = max(1.0_wp, stride)
+   end function stride
 
-   !> Whether a motion that has gone far has no end. If that is not seen, the blocks have fallen by
-   !> all that it went
-   pure subroutine end_far(joints, equations, rest, state, start, jump, end)
+   !> Whether a motion has come to balance, or far. If a far one is not seen to have no end, the
+   !> blocks have fallen by all that it went
+   pure subroutine see_end(joints, equations, rest, start, state, jump, end)
       !> The joints
       type(coulomb_joints_t), intent(in) :: joints
       !> Their equations
       type(coulomb_equations_t), intent(inout) :: equations
       !> What the forces leave of the load: (n_dof, n_block)
       real(wp), intent(in) :: rest(:, :)
-      !> The state
-      type(coulomb_state_t), intent(in) :: state
       !> Motion where it began: (n_dof, n_block)
       real(wp), intent(in) :: start(:, :)
+      !> The state
+      type(coulomb_state_t), intent(in) :: state
       !> Receives the mechanism
       type(jump_t), intent(inout) :: jump
-      !> endless or far
+      !> One of motion_end
       integer, intent(out) :: end
       type(rates_t) :: rates
       type(event_t) :: event
       real(wp) :: still(3, size(state%slip))
       logical :: found
 
+      end = merge(motion_end%balanced, motion_end%unsettled, maxval(abs(rest)) <= jump%tolerance)
+      if (end == motion_end%balanced .or. .not. maxval(abs(state%motion - start)) > jump%far) return
       still = 0.0_wp
       rates = new_rates(state)
-      end = motion_end%unsettled
       call find_rates(joints, equations, state, rest, still, path_damping, rates, found)
       if (found .and. rates%unbalanced > moves_unbalanced) &
          & call see_ray(joints, state, rest, rates, event, jump, end)
       if (end == motion_end%endless) return
       end = motion_end%far
       jump%mechanism = state%motion - start
-   end subroutine end_far
+   end subroutine see_end
 
    !> Follow a motion whose forces stay as they are: to the next gap that closes, or without end
    pure subroutine see_ray(joints, state, rest, rates, event, jump, end)

@@ -2,13 +2,15 @@
 !> with slip remembered
 !>
 !>    call begin_path(graph, dead_load, path, state, result)
-!>    call follow_path(path, state, rate, h_end, cap, result)
+!>    call follow_path(path, state, rate, h_end, result)
 !>
 !> Forces that balance a load may exist where no way leads to them. So a load is followed: between
 !> two events, at which a joint opens, closes or begins to slide, everything grows in proportion,
 !> and each event is a small change of the equations. Where no rates go on from an event the blocks
 !> move at a fixed load until they find balance (a jump) or fall. The first load at which they fall
 !> is the collapse; a state in balance can go on with any other rate.
+!>
+!> Equation (M4) of docs/method.md
 module dda_loading_path
    use dda_coulomb_equations, only : coulomb_equations_t, new_equations
    use dda_coulomb_joints, only : coulomb_joints_t, in_metres, in_motion_units, in_newtons, &
@@ -47,12 +49,10 @@ module dda_loading_path
       integer :: mechanism = 1
       !> A motion ten thousand times as large as the dead load's
       integer :: far_motion = 2
-      !> No forces balance more, under whatever law of friction
-      integer :: associated_limit = 3
       !> A motion at a fixed load did not settle
-      integer :: unsettled_motion = 4
+      integer :: unsettled_motion = 3
       !> Too many events
-      integer :: too_many = 5
+      integer :: too_many = 4
    end type path_reason_enum
 
    !> Names of the ends of a path
@@ -78,18 +78,6 @@ module dda_loading_path
       !> Opening 1, opening 2 and slip that moving supports prescribe: (3, n_joint) [m]
       real(wp), allocatable :: opening(:, :)
    end type path_rate_t
-
-   !> The same in units of the joints
-   type :: way_t
-      !> Load: (n_dof, n_block)
-      real(wp), allocatable :: load(:, :)
-      !> Prescribed openings: (3, n_joint)
-      real(wp), allocatable :: opening(:, :)
-      !> Largest force that grows
-      real(wp) :: strength = 0.0_wp
-      !> How much of it is asked for
-      real(wp) :: h_end = 0.0_wp
-   end type way_t
 
    !> How a path went
    type :: path_result_t
@@ -134,8 +122,6 @@ module dda_loading_path
    integer, parameter :: least_patience = 2000, patience = 100
    !> Jumps at most
    integer, parameter :: max_jump = 1000
-   !> Within this share of the cap a load is at it
-   real(wp), parameter :: cap_share = 1.0e-9_wp
 
 contains
 
@@ -182,7 +168,7 @@ contains
    end subroutine begin_path
 
    !> Follow a load, or supports that move, from a state in balance
-   pure subroutine follow_path(path, state, rate, h_end, cap, result)
+   pure subroutine follow_path(path, state, rate, h_end, result)
       !> What was made once
       type(loading_path_t), intent(inout) :: path
       !> In: a state in balance; out: the last one in balance on the way
@@ -191,38 +177,52 @@ contains
       type(path_rate_t), intent(in) :: rate
       !> How much of it is asked for, as a multiple
       real(wp), intent(in) :: h_end
-      !> The multiple at which the associated limit lies; huge if it is not known
-      real(wp), intent(in) :: cap
       !> How it went
       type(path_result_t), intent(out) :: result
-      type(way_t) :: way
+      type(path_rate_t) :: way
+      real(wp) :: target(size(rate%load, 1), size(rate%load, 2)), strength
 
       path%equations%base%n_factorisation = 0
       if (.not. path%joints%has_weight) call set_force_unit(path%joints, rate%load)
       call scale_state(path%joints, state)
       way%load = in_units(path%joints, rate%load)
       way%opening = rate%opening/path%joints%motion_unit
-      way%strength = max(maxval(abs(way%load)), &
+      strength = max(maxval(abs(way%load)), &
          & maxval(abs(way%opening/path%joints%graph%compliance)))
-      way%h_end = min(h_end, cap*(1.0_wp - cap_share))
       result%end = path_end%reached
-      if (way%strength > 0.0_wp) call follow(path, state, way, result)
-      if (result%end == path_end%reached .and. way%h_end < h_end) then
-         result%end = path_end%collapsed
-         result%reason = path_reason%associated_limit
+      if (strength > 0.0_wp) then
+         target = state%load + h_end*way%load
+         way%load = plain(way%load/strength)
+         way%opening = plain(way%opening/strength)
+         call follow(path, state, way, strength*h_end, result)
+         result%reached = result%reached/strength
       end if
-      if (result%end == path_end%reached) call balance_rest(path, state)
+      if (result%end == path_end%reached) then
+         result%reached = h_end
+         if (strength > 0.0_wp) state%load = target
+         call balance_rest(path, state)
+      end if
       call finish(path, state, result)
    end subroutine follow_path
 
+   !> Numbers without their last digits, which rounding sets: ways to different ends are one way
+   elemental real(wp) function plain(x)
+      !> A number of at most one
+      real(wp), intent(in) :: x
+
+      plain = anint(x*2.0_wp**40)*2.0_wp**(-40)
+   end function plain
+
    !> From event to event, with jumps where no rates go on
-   pure subroutine follow(path, state, way, result)
+   pure subroutine follow(path, state, way, h_end, result)
       !> What was made once
       type(loading_path_t), intent(inout) :: path
       !> The state
       type(coulomb_state_t), intent(inout) :: state
-      !> What grows
-      type(way_t), intent(in) :: way
+      !> What grows, in units of the joints; the largest force is one
+      type(path_rate_t), intent(in) :: way
+      !> How much of it is asked for
+      real(wp), intent(in) :: h_end
       !> How it went
       type(path_result_t), intent(inout) :: result
       type(event_t) :: event
@@ -233,29 +233,30 @@ contains
 
       first_load = state%load
       standstill = 0
-      last_jump = -1.0_wp/way%strength
+      last_jump = -1.0_wp
       width = nudge
       rates = new_rates(state)
       do i = 1, least_patience + patience*size(state%slip)
-         if (result%reached >= way%h_end) return
+         if (result%reached >= h_end) return
          if (result%n_jump > max_jump) exit
          call find_rates(path%joints, path%equations, state, way%load, way%opening, path_damping, &
             & rates, found)
          if (found .and. rates%unbalanced <= moves_unbalanced &
             & .and. standstill <= max_standstill) then
             call undamp_rates(path%joints, path%equations, way%load, rates)
-            event = next_event(path%joints, state, rates, way%h_end - result%reached)
-            standstill = merge(standstill + 1, 0, event%distance*way%strength < no_way)
+            event = next_event(path%joints, state, rates, h_end - result%reached)
+            standstill = merge(standstill + 1, 0, event%distance < no_way)
             call move_on(path%joints, rates, event, state)
-            result%reached = merge(way%h_end, result%reached + event%distance, &
+            result%reached = merge(h_end, result%reached + event%distance, &
                & event%kind == event_kind%none)
             result%n_event = result%n_event + 1
          else
-            slow = (result%reached - last_jump)*way%strength < slow_factor*width
+            slow = result%reached - last_jump < slow_factor*width
             width = merge(min(4.0_wp*width, largest_nudge), nudge, slow)
             last_jump = result%reached
             standstill = 0
-            call nudge_on(path, state, way, width, result)
+            call nudge_on(path, state, way, &
+               & min(width*[1.0_wp, 10.0_wp], h_end - result%reached), result)
             if (result%end /= path_end%reached) return
          end if
          state%load = first_load + result%reached*way%load
@@ -265,18 +266,17 @@ contains
    end subroutine follow
 
    !> Raise the load by a little and let the blocks move
-   pure subroutine nudge_on(path, state, way, width, result)
+   pure subroutine nudge_on(path, state, way, widths, result)
       !> What was made once
       type(loading_path_t), intent(inout) :: path
       !> The state, left as it is unless another in balance is found
       type(coulomb_state_t), intent(inout) :: state
       !> What grows
-      type(way_t), intent(in) :: way
-      !> By how much, as a part of a block's weight
-      real(wp), intent(in) :: width
+      type(path_rate_t), intent(in) :: way
+      !> By how much, one after the other where no motion settles: (n)
+      real(wp), intent(in) :: widths(:)
       !> Receives the jump, or how the blocks fall
       type(path_result_t), intent(inout) :: result
-      integer, parameter :: max_try = 2
       type(coulomb_state_t) :: moved
       type(jump_t) :: jump
       real(wp) :: balance, more
@@ -284,14 +284,13 @@ contains
 
       jump%far = far_factor*max(path%elastic, maxval(state%gap))
       balance = rounding*max(1.0_wp, maxval(abs(state%force)))
-      do try = 0, max_try - 1
-         more = min(width*10.0_wp**try/way%strength, way%h_end - result%reached)
-         jump%tolerance = max(balance, nudge_left*more*way%strength)
+      do try = 1, size(widths)
+         more = widths(try)
+         jump%tolerance = max(balance, nudge_left*more)
          moved = state
          call apply_law(path%joints, state, more*way%opening, moved)
          call jump_to_balance(path%joints, path%equations, state%load + more*way%load, moved, &
-            & jump, &
-            & end)
+            & jump, end)
          if (end /= motion_end%unsettled) exit
       end do
       if (end == motion_end%balanced) then

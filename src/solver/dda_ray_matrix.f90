@@ -4,6 +4,8 @@
 !>
 !> is the matrix of a DDA step whose joints have these springs. Stiffness may spread over more
 !> decades than working precision has: then there is a factor with more digits.
+!>
+!> Equation (M6) of docs/method.md
 module dda_ray_matrix
    use dda_block_factor, only : block_factor_t, factorise, plan_factor, substitute
    use dda_block_matrix, only : block_matrix_t, set_pattern
@@ -68,29 +70,23 @@ contains
       allocate (springs%stiffness(n_side, size(rays%block, 2)))
    end subroutine plan_matrix
 
-   !> Assemble the springs, and masses where blocks have them, and factor their matrix
-   pure subroutine set_springs(rays, lift, springs, mass)
+   !> Assemble springs and masses, and factor their matrix
+   pure subroutine set_springs(rays, mass, lift, springs)
       !> The rays
       type(joint_rays_t), intent(in) :: rays
+      !> Masses: (3, 0:n_block)
+      real(wp), intent(in) :: mass(:, 0:)
       !> Share of itself that each diagonal entry is raised by; what no spring holds gets one
       real(wp), intent(in) :: lift
       !> The matrix with its stiffness; its factor may be unusable
       type(ray_matrix_t), intent(inout) :: springs
-      !> Masses: (3, 0:n_block)
-      real(wp), intent(in), optional :: mass(:, 0:)
       integer :: b, k
 
       call assemble(rays, springs)
-      if (present(mass)) then
-         do b = 1, rays%n_block
-            do k = 1, 3
-               springs%matrix%diagonal(k, k, b) = springs%matrix%diagonal(k, k, b) + mass(k, b)
-            end do
-         end do
-      end if
       do b = 1, rays%n_block
          do k = 1, 3
             associate (d => springs%matrix%diagonal(k, k, b))
+               d = d + mass(k, b)
                d = merge(d*(1.0_wp + lift), 1.0_wp, d > 0.0_wp)
             end associate
          end do
@@ -101,14 +97,16 @@ contains
       springs%n_factorisation = springs%n_factorisation + 1
    end subroutine set_springs
 
-   !> Assemble and factor the same springs with more digits
-   pure subroutine set_wide_springs(rays, springs)
+   !> Assemble and factor the same springs and masses with more digits
+   pure subroutine set_wide_springs(rays, mass, springs)
       !> The rays
       type(joint_rays_t), intent(in) :: rays
+      !> Masses: (3, 0:n_block)
+      real(wp), intent(in) :: mass(:, 0:)
       !> The matrix with its stiffness
       type(ray_matrix_t), intent(inout) :: springs
 
-      call factorise_wide(rays, springs%stiffness, springs%matrix, springs%entry, &
+      call factorise_wide(rays, springs%stiffness, mass, springs%matrix, springs%entry, &
          & springs%factor%plan, springs%wide)
       springs%is_wide = springs%wide%usable
       springs%usable = springs%usable .or. springs%is_wide

@@ -5,14 +5,14 @@ module dda_wide_factor
    use dda_block_plan, only : block_plan_t
    use dda_joint_rays, only : joint_rays_t
    use dda_kinds, only : wp
-   use dda_wide_panels, only : eliminate, new_panels, panels_t, substitute_panels
+   use dda_wide_panels, only : eliminate, new_panels, panels_t, substitute_panels, wide
    implicit none
    private
 
    public :: wide_factor_t, factorise_wide, substitute_wide
 
-   !> Kind of numbers with 30 digits or more
-   integer, parameter :: qp = selected_real_kind(30)
+   !> Kind of numbers with 30 digits or more where the compiler has them
+   integer, parameter :: qp = wide
 
    !> The factor; its plan is that of the factor in working precision
    type :: wide_factor_t
@@ -24,12 +24,14 @@ module dda_wide_factor
 
 contains
 
-   !> Assemble springs along all rays, and factor
-   pure subroutine factorise_wide(rays, stiffness, matrix, entry, plan, wide)
+   !> Assemble springs along all rays and masses, and factor
+   pure subroutine factorise_wide(rays, stiffness, mass, matrix, entry, plan, wide)
       !> The rays
       type(joint_rays_t), intent(in) :: rays
       !> Stiffness of each: (n_side, n_joint)
       real(wp), intent(in) :: stiffness(:, :)
+      !> Masses: (3, 0:n_block)
+      real(wp), intent(in) :: mass(:, 0:)
       !> The matrix, of which the pattern counts
       type(block_matrix_t), intent(in) :: matrix
       !> Entry of the matrix that each joint couples, 0 for none: (n_joint)
@@ -43,6 +45,9 @@ contains
       integer :: c, i, j, row, side
 
       allocate (diagonal(3, 3, rays%n_block), coupling(3, 3, size(matrix%pair, 2)), source=0.0_qp)
+      do i = 1, 3
+         diagonal(i, i, :) = mass(i, 1:)
+      end do
       do j = 1, size(rays%block, 2)
          row = 0
          if (entry(j) > 0) row = merge(1, 2, matrix%pair(1, entry(j)) == rays%block(1, j))

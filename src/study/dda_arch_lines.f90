@@ -10,7 +10,7 @@ module dda_arch_lines
    use dda_limerick_analysis, only : limerick_analysis_t, limerick_joint_t, limerick_material_t
    use dda_limerick_model, only : limerick_constants_t
    use dda_limerick_scene, only : abutment_sides, set_constants
-   use dda_line_model, only : add_entity, line_model_t, new_entities
+   use dda_line_model, only : add_entity, line_model_t, new_line_model
    use dda_scene, only : scene_t
    use dda_text, only : to_text
    use dda_vector, only : along, right_normal
@@ -49,19 +49,13 @@ contains
          corner(:, :, side) = abutment(scene%system, n + side, side == 2, depth, overhang)
       end do
       if (maxval(corner(1, :, 1)) >= 0.0_wp .or. minval(corner(1, :, 2)) <= 0.0_wp) then
-         call deck_error(error, "arch%abutment_size wants abutments apart, found that those " &
-            & //"of "//to_text(depth)//" m meet below the arch; make it smaller", deck, &
+         call deck_error(error, "arch%abutment_size must keep the abutments apart, got " &
+            & //to_text(depth)//" m, where they meet below the arch; make it smaller", deck, &
             & deck%value(key_index("arch", "abutment_size"))%place)
          return
       end if
+      call new_line_model(model)
       model%file = deck%file
-      call new_entities(model%line, 6*n)
-      call new_entities(model%fixed, 8)
-      call new_entities(model%material_line, 0)
-      call new_entities(model%load, 0)
-      call new_entities(model%measured, 0)
-      call new_entities(model%hole, 0)
-      call new_entities(model%seismic, 0)
       do b = 1, n
          call add_chords(scene%system, b, model)
       end do

@@ -20,6 +20,8 @@ module dda_arch_scene
 
    !> Friction angles from here on mean that no joint slides [deg]
    real(wp), parameter :: no_slip_deg = 89.9_wp
+   !> Rotation of a block that means collapse to a search in time by default [rad]
+   real(wp), parameter :: overturned = pi/4.0_wp
 
 contains
 
@@ -184,6 +186,12 @@ contains
          & settings%collapse_displacement = real_of(deck, "analysis", "collapse_displacement")
       if (is_given(deck, "analysis", "duration")) &
          & settings%duration = real_of(deck, "analysis", "duration")
+      if (is_given(deck, "analysis", "collapse_rotation_deg")) then
+         settings%collapse_rotation = degree*real_of(deck, "analysis", "collapse_rotation_deg")
+      else if (has_group(deck, "search") .and. .not. settings%collapse_displacement > 0.0_wp) then
+         settings%collapse_rotation = overturned
+      end if
+      settings%collapse_point = integer_of(deck, "analysis", "collapse_point")
       settings%restitution = real_of(deck, "analysis", "restitution")
       settings%damping = real_of(deck, "analysis", "damping")
       settings%max_displacement_ratio = real_of(deck, "analysis", "max_displacement_ratio")

@@ -7,6 +7,7 @@ module dda_block_scene
    use dda_kinds, only : wp
    use dda_material, only : friction_coefficient, joint_law_t, material_t
    use dda_scene, only : scene_t
+   use dda_water_loads, only : add_water_loads
    implicit none
    private
 
@@ -22,6 +23,8 @@ module dda_block_scene
       real(wp) :: gravity = 9.81_wp
       !> Friction angle, cohesion, tensile strength of the joints: (3) [deg, Pa, Pa]
       real(wp) :: law(3) = [50.0_wp, 0.0_wp, 0.0_wp]
+      !> By how much all lines of heads have risen [m]
+      real(wp) :: water_rise = 0.0_wp
    end type base_t
 
    !> Friction angles count up to this one: a joint that is open must not hold by friction without
@@ -47,6 +50,7 @@ contains
       allocate (law, source=laws_of(plan, base, size(material)))
       scene%settings%boundary = plan%boundary
       scene%origin = plan%origin
+      call add_water_loads(plan, base%water_rise, scene%settings%boundary)
       associate (system => scene%system)
          system = new_block_system(plan%first_vertex, plan%vertex, plan%fixed, base%material)
          deallocate (system%materials)
@@ -57,6 +61,7 @@ contains
             system%unit_weight(b) = unit_weight(plan%material(b))
             call set_initial_state(system, b, plan%velocity(:, b), plan%stress(:, b))
          end do
+         if (allocated(plan%boundary%bar)) allocate (system%bar(size(plan%boundary%bar)))
          scene%contacts%searched = .true.
          scene%contacts%search = new_joint_search(system, law)
          call search_contacts(system, scene%settings%penalty_ratio, scene%settings%n_dof, &
@@ -71,7 +76,8 @@ contains
       !> The scene
       type(scene_t), intent(in) :: scene
       logical :: fixed(size(scene%system%area))
-      integer :: pair(2, size(scene%contacts%joint)), i
+      integer, allocatable :: pair(:, :)
+      integer :: i, n
 
       fixed = scene%system%equation == 0
       if (allocated(scene%settings%boundary%held)) then
@@ -79,9 +85,19 @@ contains
             fixed(scene%settings%boundary%held(i)%block) = .true.
          end do
       end if
-      do i = 1, size(scene%contacts%joint)
+      n = size(scene%contacts%joint)
+      allocate (pair(2, n))
+      do i = 1, n
          pair(:, i) = scene%contacts%joint(i)%block
       end do
+      if (allocated(scene%settings%boundary%bar)) then
+         do i = 1, size(scene%settings%boundary%bar)
+            associate (block => scene%settings%boundary%bar(i)%block)
+               if (all(block > 0)) pair = reshape([pair, block], [2, size(pair, 2) + 1])
+               if (any(block == 0)) fixed(maxval(block)) = .true.
+            end associate
+         end do
+      end if
       floating_block = unsupported_block(fixed, pair)
    end function floating_block
 

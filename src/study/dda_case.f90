@@ -12,7 +12,7 @@ module dda_case
    use dda_critical, only : critical_t, find_critical, search_t
    use dda_decision, only : decide, decision_t
    use dda_deck, only : deck_t, file_beside, flag_of, has_group, integer_of, is_given, &
-      & parameter_t, real_of, text_of, word_of
+      & parameter_t, real_of, scene_kind, text_of, word_of
    use dda_deck_check, only : search_bracket
    use dda_deck_parameter, only : find_parameter, parameter_name
    use dda_deck_keys, only : key_index
@@ -21,6 +21,7 @@ module dda_case
    use dda_error, only : error_t
    use dda_forward, only : outcome_t, run_to_verdict
    use dda_frames, only : album_t
+   use dda_reactions, only : supports_of
    use dda_restart, only : load_restart
    use dda_step_context, only : march_t
    use dda_kinds, only : wp
@@ -85,7 +86,7 @@ module dda_case
       real(wp) :: seconds = 0.0_wp
    end type case_t
 
-   !> The thrust of an arch of more joints than this is told only where it is asked for
+   !> The thrust of an arch of more joints than this is reported only where it is asked for
    integer, parameter :: most_thrust_joints = 2001
 
 contains
@@ -111,7 +112,7 @@ contains
             & this%family)
       end if
       this%exact_known = (searched == "" .or. searched == "thickness_ratio") &
-         & .and. word_of(deck, "scene", "kind") == "arch"
+         & .and. scene_kind(deck) == "arch"
    end subroutine prepare_case
 
    !> Compute a case
@@ -153,7 +154,8 @@ contains
          & call take_pictures(this)
       call system_clock(finish)
       this%seconds = real(finish - start, wp)/real(rate, wp)
-      if (this%proves .and. .not. (this%limerick .or. allocated(this%error))) &
+      if (this%proves .and. .not. (this%limerick .or. this%plan%velocities &
+         & .or. allocated(this%error))) &
          & call prove_case(this)
    end subroutine compute_case
 
@@ -187,7 +189,9 @@ contains
          if (joint == 0 .and. size(this%scene%joint_angle_deg) > 0 &
             & .and. size(this%scene%joint_angle_deg) <= most_thrust_joints) &
             & joint = minloc(abs(this%scene%joint_angle_deg), dim=1)
-         call prove_decision(this%scene, this%decision, joint, this%proof)
+         joint = merge(joint, this%scene%crown_joint, joint > 0)
+         call prove_decision(this%scene, this%decision, joint, &
+            & integer_of(this%deck, "output", "thrust_bar"), this%proof)
       end if
    end subroutine prove_case
 
@@ -202,7 +206,7 @@ contains
       type(chain_t) :: chain
       logical :: decided
 
-      ! tables tell displacements at the end, which a chain does not keep
+      ! tables tell displacements, which a chain does not keep
       decided = this%family%decides_chains .and. .not. this%tells_tables
       if (decided) call this%family%link(real_of(this%deck, "arch", "thickness_ratio"), settings, &
          & chain, decided)
@@ -219,6 +223,8 @@ contains
             & this%error)
          if (allocated(this%error)) return
       end if
+      if (this%scene%settings%dynamic .and. flag_of(this%deck, "output", "reactions")) &
+         & this%album%support = supports_of(system, this%scene%settings%boundary)
       call decide(this%scene%settings, system, contacts, this%decision, this%album, this%onward)
    end subroutine compute_decision
 
@@ -233,12 +239,10 @@ contains
       type(decision_t), intent(inout) :: decision
       type(error_t), allocatable :: error
       logical :: collapsed, wanted
-
       if (this%family%decides_chains) this%scene%joint_angle_deg = this%family%joint_angle_deg
       collapsed = decision%outcome%verdict == verdict%collapsed
-      wanted = this%searches
-      if (this%family%decides_chains) wanted = this%tells_tables &
-         & .or. integer_of(this%deck, "output", "frames") > 0
+      wanted = merge(this%tells_tables .or. integer_of(this%deck, "output", "frames") > 0, &
+         & this%searches, this%family%decides_chains)
       ! nothing is told of the joints of a chain that stands
       if (wanted .or. collapsed) call unfold(decision)
       if (collapsed) wanted = wanted .or. any(decision%contacts%face%slip /= 0)
@@ -257,17 +261,14 @@ contains
 
       frames = integer_of(this%deck, "output", "frames")
       allocate (this%album%point(0))
+      if (frames > 0 .and. this%plan%velocities) &
+         & this%album%interval = real_of(this%deck, "analysis", "duration")/real(frames, wp)
+      if (frames > 0 .and. this%plan%velocities .and. .not. this%album%interval > 0.0_wp) &
+         & this%album%every = max(1, integer_of(this%deck, "analysis", "steps")/frames)
       if (this%searches) return
-      this%album%audit%wanted = flag_of(this%deck, "output", "energy") &
-         & .and. word_of(this%deck, "analysis", "mode") == "dynamic"
+      this%album%audit%wanted = flag_of(this%deck, "output", "energy") .and. this%plan%velocities
       if (allocated(this%deck%plan%boundary%measured)) &
          & this%album%point = this%deck%plan%boundary%measured
-      if (frames == 0 .or. word_of(this%deck, "analysis", "mode") /= "dynamic") return
-      if (is_given(this%deck, "analysis", "duration")) then
-         this%album%interval = real_of(this%deck, "analysis", "duration")/real(frames, wp)
-      else
-         this%album%every = max(1, integer_of(this%deck, "analysis", "steps")/frames)
-      end if
    end subroutine plan_album
 
    !> Share out the joint forces of the arch nearest to critical that was found to stand
@@ -341,7 +342,7 @@ contains
          scene_size = sqrt(sum(system%area, mask=system%equation > 0) &
             & /real(max(1, count(system%equation > 0)), wp))
       end associate
-      if (word_of(this%deck, "scene", "kind") == "arch") &
+      if (scene_kind(this%deck) == "arch") &
          & scene_size = real_of(this%deck, "arch", "radius")
       if (allocated(this%deck%cut)) scene_size = this%deck%cut%scale%size
    end function scene_size
@@ -379,18 +380,17 @@ contains
       call find_parameter(text_of(deck, "search", "parameter"), parameter, problem)
       call new_family(deck, plan, parameter, family)
       call search_bracket(deck, search%low, search%high)
+      search%in_time = plan%velocities
       search%tolerance = real_of(deck, "search", "tolerance")
-      ! the original's own verdicts near the limit are no sharper
-      if (word_of(deck, "analysis", "mode") == "limerick" &
+      ! the original's own verdicts near the limit are no sharper, nor those of a motion in steps
+      if (word_of(deck, "analysis", "mode") /= "static" &
          & .and. .not. is_given(deck, "search", "tolerance")) search%tolerance = 1.0e-4_wp
-      if (word_of(deck, "scene", "kind") == "arch") search%resolution = arch_resolution(deck)
+      if (scene_kind(deck) == "arch") search%resolution = arch_resolution(deck)
       search%start = search%low
-      if (searched /= "thickness_ratio") return
-      search%resolution_at = real_of(deck, "arch", "thickness_ratio")
-      if (family%decides_chains) then
-         search%resolution = chain_resolution(deck)
-         search%resolution_at = 0.0_wp
-      end if
+      if (searched /= "thickness_ratio" .or. plan%velocities) return
+      if (family%decides_chains) search%resolution = chain_resolution(deck)
+      if (.not. family%decides_chains) &
+         & search%resolution_at = real_of(deck, "arch", "thickness_ratio")
       search%start = search_start(deck)
       if (.not. is_given(deck, "search", "low")) search%low = 1.0e-5_wp*search%start
       search%check_far_end = is_given(deck, "search", "high")

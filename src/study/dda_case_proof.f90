@@ -4,20 +4,22 @@
 !> be under any law of friction. A collapse on the loading path below the associated limit has no
 !> proof of this kind, and none is told.
 module dda_case_proof
+   use dda_bar_joints, only : bar_joint
    use dda_contact_detection, only : contacts_t
    use dda_critical, only : critical_t
    use dda_decision, only : decision_t
    use dda_error, only : error_t
    use dda_graph_decision, only : decides_as_graph
-   use dda_joint_graph, only : joint_graph_t, joint_kind
+   use dda_joint_graph, only : joint_graph_t, joint_kind, keep_joints
    use dda_kinds, only : wp
    use dda_limit_certificate, only : check_forces, check_velocities
    use dda_limit_decision, only : decide_load, load_decision_t, load_state
    use dda_limit_load, only : find_limit, limit_load_t, limit_state
-   use dda_load_coefficient, only : full_loads, with_coefficient
+   use dda_load_coefficient, only : added_loads, full_loads, with_coefficient
    use dda_load_stations, only : bears_live_load
    use dda_scene, only : family_t, scene_t, searched_load
    use dda_scene_graph, only : scene_graph
+   use dda_settings, only : settings_t
    use dda_thrust_range, only : find_thrust_range
    use dda_verdict, only : verdict
    implicit none
@@ -62,13 +64,15 @@ module dda_case_proof
 contains
 
    !> Prove a decision
-   pure subroutine prove_decision(scene, decision, thrust_joint, proof)
+   pure subroutine prove_decision(scene, decision, thrust_joint, thrust_bar, proof)
       !> Its scene at the beginning
       type(scene_t), intent(in) :: scene
       !> The decision
       type(decision_t), intent(in) :: decision
       !> Joint whose range of thrust is wanted, 0 for none
       integer, intent(in) :: thrust_joint
+      !> Bar whose range of force is wanted, 0 for none
+      integer, intent(in) :: thrust_bar
       !> The proof
       type(proof_t), intent(out) :: proof
       type(joint_graph_t) :: graph
@@ -79,16 +83,20 @@ contains
       call scene_graph(scene%settings, scene%system, scene%contacts, graph)
       call prove_state(scene, graph, decision%outcome%verdict, proof)
       if (decision%outcome%verdict /= verdict%stable) return
-      if (thrust_joint > 0 .and. thrust_joint <= size(scene%contacts%joint) &
-         & .and. allocated(proof%force)) call find_thrust_range(graph, &
-         & full_loads(scene%settings, scene, graph), proof%force, thrust_joint, proof%thrust, &
-         & proof%has_thrust)
+      if (thrust_bar > 0 .and. allocated(scene%settings%boundary%bar)) then
+         if (thrust_bar <= size(scene%settings%boundary%bar)) &
+            & call find_bar_range(scene, thrust_bar, proof)
+      else if (thrust_joint > 0 .and. allocated(proof%force)) then
+         if (thrust_joint <= size(scene%contacts%joint)) call find_thrust_range(graph, &
+            & full_loads(scene%settings, scene, graph), proof%force, thrust_joint, proof%thrust, &
+            & proof%has_thrust)
+      end if
       if (.not. bears_live_load(with_coefficient(scene%settings, searched_load%factor, 1.0_wp))) &
          & return
       allocate (dead, source=full_loads(with_coefficient(scene%settings, searched_load%factor, &
          & 0.0_wp), scene, graph))
-      call find_limit(graph, dead, full_loads(with_coefficient(scene%settings, &
-         & searched_load%factor, 1.0_wp), scene, graph) - dead, limit_gap, limit)
+      call find_limit(graph, dead, added_loads(searched_load%factor, scene%settings, scene, &
+         & graph), limit_gap, limit)
       proof%has_limit = limit%state == limit_state%found
       proof%limit = [limit%lower, limit%upper]
    end subroutine prove_decision
@@ -132,6 +140,52 @@ contains
       if (.not. allocated(proof%force)) proof%scene = scene
       proof%same_shape = .not. any(abs(proof%scene%system%vertex - scene%system%vertex) > 0.0_wp)
    end subroutine prove_search
+
+   !> Least and greatest force of a bar with which the blocks stand: a pair of forces in its place
+   pure subroutine find_bar_range(scene, bar, proof)
+      !> The scene
+      type(scene_t), intent(in) :: scene
+      !> Number of the bar
+      integer, intent(in) :: bar
+      !> Receives them
+      type(proof_t), intent(inout) :: proof
+      type(settings_t) :: settings
+      type(joint_graph_t) :: graph
+      type(load_decision_t) :: decision
+      type(limit_load_t) :: limit
+      real(wp), allocatable :: dead(:, :), live(:, :)
+      logical, allocatable :: kept(:)
+      integer :: j, k, side
+
+      settings = scene%settings
+      settings%boundary%bar(bar)%strength = huge(1.0_wp)
+      call scene_graph(settings, scene%system, scene%contacts, graph)
+      allocate (dead, source=full_loads(settings, scene, graph))
+      allocate (live, source=0.0_wp*dead)
+      j = bar_joint(settings, size(graph%kind), bar)
+      do side = 1, 2
+         if (graph%block(side, j) > 0) live(1:3, graph%block(side, j)) = graph%row(:, 1, side, j)
+      end do
+      call decide_load(graph, dead, decision)
+      if (decision%state /= load_state%stands) return
+      dead = dead + decision%force(1, j)*live
+      allocate (kept(size(graph%kind)), source=.true.)
+      kept(j) = .false.
+      call keep_joints(kept, graph)
+      do k = 1, 2
+         call find_limit(graph, dead, merge(-1.0_wp, 1.0_wp, k == 1)*live, limit_gap, limit)
+         proof%has_thrust(k) = limit%state == limit_state%found
+         if (proof%has_thrust(k)) proof%thrust(k) = decision%force(1, j) &
+            & + merge(-0.5_wp, 0.5_wp, k == 1)*(limit%lower + limit%upper)
+      end do
+      ! a bar pulls with no less than nothing and no more than its strength
+      proof%thrust(1) = max(0.0_wp, proof%thrust(1))
+      if (scene%settings%boundary%bar(bar)%strength < huge(1.0_wp)) then
+         if (.not. proof%has_thrust(2)) proof%thrust(2) = huge(1.0_wp)
+         proof%thrust(2) = min(proof%thrust(2), scene%settings%boundary%bar(bar)%strength)
+         proof%has_thrust(2) = .true.
+      end if
+   end subroutine find_bar_range
 
    !> Forces that carry the load of a scene, or a mechanism that it drives
    pure subroutine prove_state(scene, graph, wanted, proof)

@@ -8,7 +8,7 @@ module dda_case_remarks
    implicit none
    private
 
-   public :: jump_remark, path_remark
+   public :: change_remark, jump_remark, path_remark
 
 contains
 
@@ -24,20 +24,46 @@ contains
       remark = before
       if (outcome%verdict /= verdict%stable) then
          if (len(remark) > 0) remark = remark//"; "
-         remark = remark//trim(merge("the blocks fall    ", "rest is proven till", &
+         remark = remark//trim(merge("the blocks collapse at     ", "equilibrium is proven up to", &
             & outcome%verdict == verdict%collapsed))
          if (outcome%path_time < 0.0_wp) then
-            remark = remark//" when led points have gone " &
-               & //to_text(1.0_wp + outcome%path_time)//" of their way"
+            remark = remark//" "//to_text(1.0_wp + outcome%path_time) &
+               & //" of the prescribed displacement"
          else
-            remark = remark//" at time "//to_text(outcome%path_time)
+            remark = remark//" time "//to_text(outcome%path_time)
          end if
       end if
       if (outcome%jumps == 0) return
       if (len(remark) > 0) remark = remark//"; "
-      remark = remark//"jumps on the way: "//to_text(outcome%jumps)//", the largest " &
+      remark = remark//"jumps on the loading path: "//to_text(outcome%jumps)//", the largest " &
          & //to_text(outcome%largest_jump)//" m"
    end function path_remark
+
+   !> What a search in time has found on both sides of its bracket
+   pure function change_remark(critical, before) result(remark)
+      !> What was found
+      type(critical_t), intent(in) :: critical
+      !> What else there is to know
+      character(len=*), intent(in) :: before
+      !> All of it
+      character(len=:), allocatable :: remark
+      integer :: i
+
+      remark = before
+      if (len(remark) > 0) remark = remark//"; "
+      if (.not. allocated(critical%other_change)) then
+         remark = remark//to_text(critical%others)//" values between the ends agree with them"
+      else if (size(critical%other_change) == 0) then
+         remark = remark//to_text(critical%others)//" values on both sides agree with it"
+      else
+         remark = remark//"not monotone: the answer changes again"
+         do i = 1, size(critical%other_change, 2)
+            if (i > 1) remark = remark//","
+            remark = remark//" between "//to_text(critical%other_change(1, i))//" and " &
+               & //to_text(critical%other_change(2, i))
+         end do
+      end if
+   end function change_remark
 
    !> What the user should know of jumps on the loading path
    pure function jump_remark(critical, before) result(remark)

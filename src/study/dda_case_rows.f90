@@ -1,14 +1,14 @@
-!> A computed case told as rows of the result tables
+!> A computed case as rows of the result tables
 module dda_case_rows
    use dda_block_scene, only : lacks_friction
    use dda_case, only : case_t, searched_name
    use dda_case_proof, only : proof_t
-   use dda_case_remarks, only : jump_remark, path_remark
+   use dda_case_remarks, only : change_remark, jump_remark, path_remark
    use dda_contact_detection, only : contacts_t
    use dda_contact_types, only : joint_t
    use dda_critical, only : critical_t
    use dda_decision, only : decision_t
-   use dda_deck, only : deck_t, flag_of, is_given, real_of, word_of
+   use dda_deck, only : deck_t, flag_of, is_given, real_of, scene_kind, word_of
    use dda_deck_scene, only : movable_blocks
    use dda_error, only : error_line, error_t
    use dda_forward, only : outcome_t
@@ -107,7 +107,7 @@ contains
       row%geometry = word_of(this%deck, "analysis", "geometry")
       if (this%limerick) row%geometry = "current"
       row%blocks = movable_blocks(this%deck)
-      if (word_of(this%deck, "scene", "kind") == "arch") then
+      if (scene_kind(this%deck) == "arch") then
          row%springing_hinge = "none"
          row%half_angle_deg = given_number(this%deck, "arch", "half_angle_deg", searched)
          row%thickness_ratio = given_number(this%deck, "arch", "thickness_ratio", searched)
@@ -219,7 +219,7 @@ contains
       associate (critical => this%critical)
          row%verdict = verdict_name(critical%verdict)
          if (critical%verdict == verdict%undecided) then
-            remark = "the bracket cannot be closed further"
+            remark = "the bracket cannot be narrowed further"
             if (allocated(critical%reason)) &
                & remark = "at "//to_text(critical%undecided_at)//" "//critical%reason
          end if
@@ -228,8 +228,10 @@ contains
             row%exact_low = some_number(minval(critical%limit))
             row%exact_high = some_number(maxval(critical%limit))
          end if
-         if (critical%has_other) remark = "it falls at "//to_text(critical%other)//", too"
+         if (critical%has_other) remark = "it also collapses at "//to_text(critical%other)
          if (critical%jumps > 0) remark = jump_remark(critical, remark)
+         if (critical%others > 0 .and. critical%verdict /= verdict%undecided) &
+            & remark = change_remark(critical, remark)
          if (allocated(critical%fallen)) &
             & call tell_mechanism(critical%fallen, this%scene%joint_angle_deg, row)
          if (this%tells_tables) call tell_nearest(this, joint_row, blocks)

@@ -1,5 +1,4 @@
-!> Critical value of a parameter: a bracket of two real decisions, one that falls and one that
-!> stands
+!> Critical value of a parameter: a bracket of two decisions, one collapsed and one stable
 !>
 !> The joints of a collapse, frozen, tell where it would stop; two decisions close around that value
 !> prove it. Where the joints tell nothing, the bracket is halved.
@@ -18,6 +17,7 @@ module dda_critical
    use dda_scene, only : family_t, scene_t, searched_load
    use dda_search, only : critical_t, search_t
    use dda_settings, only : settings_t
+   use dda_time_search, only : find_critical_in_time
    use dda_verdict, only : verdict
    implicit none
    private
@@ -48,8 +48,9 @@ contains
       type(critical_t), intent(out) :: critical
       logical :: done
 
-      done = .false.
-      if (family%load /= searched_load%none) &
+      done = search%in_time
+      if (done) call find_critical_in_time(family, search, critical)
+      if (.not. done .and. family%load /= searched_load%none) &
          & call find_critical_load(family, search, critical, done)
       if (done) return
       call close_bracket(family, search, critical)

@@ -1,21 +1,28 @@
 !> From a deck of any kind to its scene
 module dda_deck_scene
+   use dda_arch_assembly, only : arch_assembly_t, n_movable
    use dda_arch_chain, only : arch_chain, arch_numbers_t, arch_rays_t
+   use dda_arch_form, only : arch_form_t, form_problem_t
    use dda_arch_scene, only : arch_numbers, arch_scene, half_joints_deg, joint_angles_deg, &
       & material_of, settings_of, unit_weight
+   use dda_block_input, only : block_plan_t
    use dda_block_scene, only : base_t, block_scene
    use dda_chain, only : chain_t
    use dda_constants, only : degree, pi
-   use dda_deck, only : deck_t, is_given, parameter_t, real_of, word_of
+   use dda_deck, only : deck_t, has_group, is_given, parameter_t, real_of, scene_kind, word_of
    use dda_deck_keys, only : key_index
    use dda_deck_set, only : number_fits, put_number
    use dda_error, only : error_t, fatal_error
+   use dda_fill_loads, only : add_fill_weight, fill_of, fill_t, press_fill
+   use dda_ground, only : move_ground
    use dda_kinds, only : wp
    use dda_line_scene, only : held_blocks, line_scene
    use dda_live_loads, only : add_live_loads, check_live_points
    use dda_scene, only : family_t, scene_t, searched_load
    use dda_scene_plan, only : scene_plan_t
    use dda_settings, only : load_direction, settings_t
+   use dda_shape_scene, only : add_lune_weights, find_crown_joint, shape_assembly, &
+      & shape_form
    implicit none
    private
 
@@ -106,6 +113,8 @@ contains
       !> Allocated if the parameter cannot have the value
       type(error_t), allocatable, intent(out) :: error
       type(deck_t) :: deck
+      type(arch_assembly_t) :: assembly
+      type(form_problem_t) :: problem
 
       if (.not. number_fits(family%parameter%key, value)) then
          call fatal_error(error, "the searched parameter cannot have this value")
@@ -114,6 +123,11 @@ contains
       deck = family%deck
       call put_number(deck, family%parameter, value, deck%value(family%parameter%key)%place, error)
       if (allocated(error)) return
+      if (scene_kind(deck) == "shape") call shape_assembly(deck, assembly, problem)
+      if (len_trim(problem%text) > 0) then
+         call fatal_error(error, "the searched parameter makes no arch of this value")
+         return
+      end if
       call deck_scene(deck, scene)
       call check_live_points(deck, scene, error)
    end subroutine build_deck_scene
@@ -125,35 +139,71 @@ contains
       !> The scene
       type(scene_t), intent(out) :: scene
 
-      select case (word_of(deck, "scene", "kind"))
+      select case (scene_kind(deck))
       case ("arch")
          call arch_scene(deck, scene)
       case ("lines")
          call line_scene(deck, scene)
       case ("blocks")
-         call file_scene(deck, scene)
+         call file_scene(deck, deck%plan, scene)
+      case ("shape")
+         call shape_scene(deck, scene)
       end select
-      call add_live_loads(deck, scene)
+      call move_ground(deck, scene%settings%boundary%base_acceleration)
+      if (scene_kind(deck) /= "shape") call add_live_loads(deck, scene)
    end subroutine deck_scene
+
+   !> The scene of an arch of any shape
+   pure subroutine shape_scene(deck, scene)
+      !> The deck, checked
+      type(deck_t), intent(in) :: deck
+      !> The scene; of an arch that cannot be, without blocks
+      type(scene_t), intent(out) :: scene
+      type(arch_assembly_t) :: assembly
+      type(form_problem_t) :: problem
+      type(fill_t) :: fill
+
+      call shape_assembly(deck, assembly, problem)
+      if (len_trim(problem%text) > 0) return
+      call file_scene(deck, assembly%plan, scene)
+      call find_crown_joint(assembly, scene)
+      if (is_given(deck, "arch", "lune_deg")) &
+         & call add_lune_weights(real_of(deck, "arch", "lune_deg"), scene)
+      if (has_group(deck, "fill")) then
+         fill = fill_of(deck, assembly)
+         call add_fill_weight(fill, scene)
+         call add_live_loads(deck, scene, fill)
+         call press_fill(fill, scene)
+      else
+         call add_live_loads(deck, scene)
+      end if
+   end subroutine shape_scene
 
    !> Number of blocks that can move in the scene of a case
    pure integer function movable_blocks(deck)
       !> The deck, checked
       type(deck_t), intent(in) :: deck
+      type(arch_form_t) :: form
+      type(form_problem_t) :: problem
 
       if (allocated(deck%cut)) then
          movable_blocks = count(.not. held_blocks(deck%cut))
       else if (word_of(deck, "scene", "kind") == "blocks") then
          movable_blocks = count(.not. deck%plan%fixed)
+      else if (scene_kind(deck) == "shape") then
+         call shape_form(deck, form, problem)
+         movable_blocks = n_movable(form)
       else
          movable_blocks = size(joint_angles_deg(deck)) - 1
       end if
    end function movable_blocks
 
-   !> The scene of a deck's file of blocks
-   pure subroutine file_scene(deck, scene)
+   !> The scene of blocks as a file or an arch gives them
+   pure subroutine file_scene(deck, plan, scene)
       !> The deck, checked
       type(deck_t), intent(in) :: deck
+      !> The blocks
+      type(block_plan_t), intent(in) :: plan
       !> The scene
       type(scene_t), intent(out) :: scene
       type(base_t) :: base
@@ -164,8 +214,9 @@ contains
       base%gravity = real_of(deck, "load", "gravity")
       base%law = [real_of(deck, "joint", "friction_deg"), real_of(deck, "joint", "cohesion"), &
          & real_of(deck, "joint", "tension")]
-      scene%settings = settings_of(deck, pi/2.0_wp, size(deck%plan%fixed))
-      call block_scene(deck%plan, base, scene)
+      base%water_rise = real_of(deck, "load", "water_rise")
+      scene%settings = settings_of(deck, pi/2.0_wp, size(plan%fixed))
+      call block_scene(plan, base, scene)
       if (.not. is_given(deck, "load", "displacement_factor")) return
       if (.not. allocated(scene%settings%boundary%held)) return
       do i = 1, size(scene%settings%boundary%held)

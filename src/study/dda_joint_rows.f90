@@ -1,4 +1,4 @@
-!> The joints of a decision told as rows: forces, openings, and what they do in the collapse
+!> The joints of a decision as rows: forces, openings, and what they do in the collapse
 module dda_joint_rows
    use dda_contact_detection, only : contacts_t
    use dda_contact_types, only : joint_t, same_joint

@@ -48,6 +48,7 @@ contains
       end do
       model%material(1) = model%material(1 + max(1, findloc(plan%fixed, .false., dim=1)))
       model%loads_go_on = .false.
+      model%boundary = scene%settings%boundary
       call take_points(plan, scene%settings%load_factor, model%boundary)
    end subroutine blocks_model
 
@@ -57,14 +58,14 @@ contains
       type(block_plan_t), intent(in) :: plan
       !> What live loads are multiplied by
       real(wp), intent(in) :: load_factor
-      !> The points
-      type(boundary_t), intent(out) :: boundary
+      !> The points of the scene, which may be more than the plan's
+      type(boundary_t), intent(inout) :: boundary
       type(held_point_t), allocatable :: held(:)
       integer :: b, i, n, v
 
-      boundary = plan%boundary
-      if (.not. allocated(boundary%held)) &
-         & allocate (boundary%held(0), boundary%loaded(0), boundary%measured(0))
+      if (.not. allocated(boundary%held)) allocate (boundary%held(0))
+      if (.not. allocated(boundary%loaded)) allocate (boundary%loaded(0))
+      if (.not. allocated(boundary%measured)) allocate (boundary%measured(0))
       do i = 1, size(boundary%loaded)
          if (boundary%loaded(i)%live) &
             & boundary%loaded(i)%force%value = load_factor*boundary%loaded(i)%force%value

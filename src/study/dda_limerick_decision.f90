@@ -46,6 +46,7 @@ contains
          call run_limerick(model, run, outcome)
       end if
       decision%system = scene%system
+      if (allocated(decision%system%bar)) decision%system%bar%force = run%blocks%bolt_force
       decision%contacts = scene%contacts
       call place_corners(word_of(deck, "scene", "kind"), run, decision%system)
       call tell_joints(scene, model, run, decision%system%moved, decision%contacts)
@@ -57,7 +58,7 @@ contains
          if (outcome%verdict == limerick_verdict%collapsed) told%verdict = verdict%collapsed
          if (outcome%verdict == limerick_verdict%completed) told%verdict = verdict%completed
          if (allocated(outcome%reason)) told%reason = outcome%reason
-         if (outcome%still_moving) told%reason = "it still moved when the steps were spent"
+         if (outcome%still_moving) told%reason = "step limit reached while still moving"
       end associate
    end subroutine decide_limerick
 

@@ -101,6 +101,7 @@ contains
                boundary%measured(n(3)) = measured_point_t(point(i)%block, point(i)%place)
             end if
          end do
+         if (allocated(scene%settings%boundary%bar)) boundary%bar = scene%settings%boundary%bar
          do b = 1, size(system%area)
             do v = system%first_vertex(b), system%first_vertex(b + 1) - 1
                boundary%measured(n(3) + v) = measured_point_t(b, system%vertex(:, v))
@@ -158,7 +159,7 @@ contains
 
       if (.not. allocated(deck%analysis)) return
       if (abs(deck%analysis%contact_damping) > 0.0_wp) call deck_error(error, &
-         & "scene%analysis: contacts without damping are wanted, found damping of " &
+         & "scene%analysis: expected contacts without damping, got damping of " &
          & //to_text(deck%analysis%contact_damping)//"; remove it", deck, &
          & deck%value(key_index("scene", "analysis"))%place)
    end subroutine check_limerick_lines

@@ -118,7 +118,7 @@ contains
       if (allocated(decision%outcome%reason)) critical%reason = decision%outcome%reason
       if (answer == verdict%completed) then
          answer = verdict%undecided
-         critical%reason = "a dynamic run ends completed, neither standing nor fallen"
+         critical%reason = "a dynamic run ends completed, neither stable nor collapsed"
       end if
       if (answer == verdict%collapsed) then
          critical%falls = value

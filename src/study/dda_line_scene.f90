@@ -1,6 +1,7 @@
 !> From blocks that were cut from lines to a scene: edges that lie together are joints
 module dda_line_scene
    use dda_arch_scene, only : joint_law, material_of, settings_of, unit_weight
+   use dda_bar, only : bar_t
    use dda_block_system, only : block_system_t, new_block_system
    use dda_constants, only : pi
    use dda_contact_detection, only : find_contacts
@@ -21,6 +22,9 @@ module dda_line_scene
 
    !> Friction angles from here on mean that a joint cannot slide [deg]
    real(wp), parameter :: no_slip_deg = 89.9_wp
+
+   !> Least stiffness of a bolt, for those of which no file says what they are like
+   real(wp), parameter :: least_stiffness = 1.0e-12_wp
 
 contains
 
@@ -49,7 +53,40 @@ contains
       end do
       call find_contacts(scene%system, edge_pair, law, scene%settings%penalty_ratio, &
          & scene%settings%n_dof, scene%contacts)
+      if (size(split%bolt) == 0) return
+      scene%settings%boundary%bar = bars_of(deck, split)
+      allocate (scene%system%bar(size(split%bolt)))
    end subroutine line_scene
+
+   !> Bolts as bars. The stiffness of old files is that of a bar of length one
+   pure function bars_of(deck, cut) result(bar)
+      !> The deck
+      type(deck_t), intent(in) :: deck
+      !> The blocks
+      type(cut_model_t), intent(in) :: cut
+      !> The bars: (n)
+      type(bar_t), allocatable :: bar(:)
+      real(wp) :: property(3), length
+      integer :: i
+
+      allocate (bar(size(cut%bolt)))
+      do i = 1, size(bar)
+         associate (bolt => cut%bolt(i))
+            property = bolt%property
+            if (property(1) < 0.0_wp) then
+               property = [0.0_wp, 0.0_wp, 0.0_wp]
+               if (allocated(deck%analysis)) property = deck%analysis%bolt
+            end if
+            bar(i)%block = bolt%block
+            bar(i)%point = reshape(bolt%place, [2, 2])
+            bar(i)%line = bolt%row
+            length = norm2(bolt%place(3:4) - bolt%place(1:2))
+            bar(i)%stiffness = max(property(1), least_stiffness)/length
+            bar(i)%strength = property(2)
+            bar(i)%prestress = min(property(3), property(2))
+         end associate
+      end do
+   end function bars_of
 
    !> Whether this version can run the blocks of a deck
    pure subroutine check_line_scene(deck, error)
@@ -65,21 +102,20 @@ contains
       b = pinned_block(deck%cut)
       call make_system(deck, deck%cut, system)
       if (b > 0) then
-         problem = "blocks held by two fixed points or more are wanted, found that block " &
-            & //to_text(b)//" has one: this version has no hinges; add a fixed point"
+         problem = "expected blocks held by two fixed points or more, got block " &
+            & //to_text(b)//" with one: this version has no hinges; add a fixed point"
       else if (all(system%equation == 0)) then
-         problem = "a block that can move is wanted, found that all are held; remove fixed points"
+         problem = "expected a block that can move, got only fixed ones; remove fixed points"
       else if (has_forces(deck)) then
-         problem = "load points without forces are wanted, found forces; remove them " &
+         problem = "expected load points without forces, got forces; remove them " &
             & //"or choose mode = 'limerick'"
       else if (.not. any(system%equation(deck%cut%pair%side(1)) > 0 &
          & .or. system%equation(deck%cut%pair%side(3)) > 0)) then
-         problem = "edges of blocks that lie together are wanted, none were found: this version " &
-            & //"finds no other contacts; choose mode = 'limerick'"
+         problem = "expected coincident edges of blocks, got none: this version finds no other " &
+            & //"contacts; choose mode = 'limerick'"
       else if (word_of(deck, "analysis", "mode") == "static" &
          & .and. .not. any(system%unit_weight > 0.0_wp .and. system%equation > 0)) then
-         problem = "a weight is wanted for a static analysis, none was found on blocks that " &
-            & //"move; give one"
+         problem = "a static analysis needs a weight on blocks that move, got none; give one"
       end if
       if (len(problem) > 0) call deck_error(error, "scene%geometry: "//problem, deck, &
          & deck%value(key_index("scene", "geometry"))%place)

@@ -6,9 +6,11 @@ module dda_live_loads
       & real_of
    use dda_deck_keys, only : key_index
    use dda_error, only : error_t
+   use dda_fill_loads, only : fill_t
    use dda_kinds, only : wp
    use dda_polygon, only : depth_in
    use dda_scene, only : scene_t
+   use dda_shape_scene, only : add_loads
    use dda_text, only : to_text
    use dda_vehicle, only : axle_loads, vehicle_of
    implicit none
@@ -22,33 +24,18 @@ module dda_live_loads
 contains
 
    !> Put the forces of &live and the axles of &vehicle on the blocks of a scene
-   pure subroutine add_live_loads(deck, scene)
+   pure subroutine add_live_loads(deck, scene, fill)
       !> The deck of the case
       type(deck_t), intent(in) :: deck
       !> The scene; forces in none of its blocks are left out
       type(scene_t), intent(inout) :: scene
+      !> What lies on the blocks and spreads axles
+      type(fill_t), intent(in), optional :: fill
 
       if (has_group(deck, "live")) call add_loads(loads_of_live(deck, scene), scene)
       if (has_group(deck, "vehicle")) &
-         & call add_loads(axle_loads(vehicle_of(deck), scene%system, scene%origin), scene)
+         & call add_loads(axle_loads(vehicle_of(deck, fill), scene%system, scene%origin), scene)
    end subroutine add_live_loads
-
-   !> Add loads to those of a scene
-   pure subroutine add_loads(more, scene)
-      !> The loads
-      type(loaded_point_t), intent(in) :: more(:)
-      !> The scene
-      type(scene_t), intent(inout) :: scene
-      type(loaded_point_t), allocatable :: loaded(:)
-      integer :: before
-
-      before = 0
-      if (allocated(scene%settings%boundary%loaded)) before = size(scene%settings%boundary%loaded)
-      allocate (loaded(before + size(more)))
-      if (before > 0) loaded(:before) = scene%settings%boundary%loaded
-      loaded(before + 1:) = more
-      call move_alloc(loaded, scene%settings%boundary%loaded)
-   end subroutine add_loads
 
    !> The forces of &live on the blocks of a scene
    pure function loads_of_live(deck, scene) result(of_live)
@@ -153,7 +140,7 @@ contains
 
       if (has_group(deck, "vehicle") .and. .not. flag_of(deck, "vehicle", "worst")) then
          if (size(axle_loads(vehicle_of(deck), scene%system, scene%origin)) == 0) then
-            call deck_error(error, "&vehicle expects an axle above a block that moves, got "// &
+            call deck_error(error, "&vehicle needs an axle above a block that moves, got "// &
                & "none at position "//to_text(real_of(deck, "vehicle", "position"))//"; move it", &
                & deck, place_of(deck, key_index("vehicle", "position")))
             return
@@ -163,7 +150,7 @@ contains
       call live_lists(deck, scene%origin, point, force)
       do i = 1, size(point, 2)
          b = block_at(scene%system, point(:, i))
-         text = "&live expects points of blocks that move, got ("//to_text(point(1, i) &
+         text = "&live needs points of blocks that move, got ("//to_text(point(1, i) &
             & + scene%origin(1))//", "//to_text(point(2, i) + scene%origin(2))//"), which lies in "
          if (b == 0) then
             call deck_error(error, text//"none; move point "//to_text(i), deck, &

@@ -14,7 +14,11 @@ module dda_load_coefficient
    implicit none
    private
 
-   public :: can_follow, coefficient, full_loads, only_weight, value_at_end, with_coefficient
+   public :: added_loads, can_follow, coefficient, full_loads, only_weight, value_at_end, &
+      & with_coefficient
+
+   !> A coefficient beside which rounding of the constant loads is not felt
+   real(wp), parameter :: many = 2.0_wp**40
 
 contains
 
@@ -111,6 +115,23 @@ contains
       call loads_at(stations, ubound(stations%tilt, 1), settings, scene%system, graph, load, &
          & opening)
    end function full_loads
+
+   !> What a coefficient of one adds to the loads
+   pure function added_loads(load, settings, scene, graph) result(live)
+      !> One of searched_load
+      integer, intent(in) :: load
+      !> Settings of the run, without histories
+      type(settings_t), intent(in) :: settings
+      !> The scene
+      type(scene_t), intent(in) :: scene
+      !> Its joints
+      type(joint_graph_t), intent(in) :: graph
+      !> The loads: (3, n_block) [N/m, N/m, N]
+      real(wp) :: live(3, graph%n_block)
+
+      live = (full_loads(with_coefficient(settings, load, many), scene, graph) &
+         & - full_loads(with_coefficient(settings, load, 0.0_wp), scene, graph))/many
+   end function added_loads
 
    !> Value of what is searched at which a path ended
    pure real(wp) function value_at_end(load, far, stations, proof) result(value)

@@ -10,7 +10,7 @@ module dda_load_search
    use dda_joint_graph, only : joint_graph_t
    use dda_kinds, only : wp
    use dda_limit_load, only : find_limit, limit_load_t, limit_state
-   use dda_load_coefficient, only : can_follow, coefficient, full_loads, only_weight, &
+   use dda_load_coefficient, only : added_loads, can_follow, coefficient, full_loads, only_weight, &
       & value_at_end, with_coefficient
    use dda_load_stations, only : load_stations, load_stations_t
    use dda_loading_path, only : path_end
@@ -154,7 +154,7 @@ contains
          if (abs(far) < abs(last)) far = far*(1.0_wp - path_resolution)
          settings = with_coefficient(scene%settings, load, far)
          stations = load_stations(settings, .true.)
-         call follow_stations(settings, scene%system, graph, stations, huge(1.0_wp), proof)
+         call follow_stations(settings, scene%system, graph, stations, proof)
          proof%n_factorisation = proof%n_factorisation + limit%n_factorisation
          side%end = proof%end
          side%value = value_at_end(load, far, stations, proof)
@@ -167,9 +167,11 @@ contains
             proof%flow = flow_rule%associated
          end if
          side%half = max(0.5_wp*search%tolerance, path_resolution)*abs(side%value)
-         ! where nothing slides in the collapse both rules agree, and limit analysis has more digits
-         if (.not. side%has_limit .or. side%end /= path_end%collapsed) return
-         if (abs(side%value - side%limit(2)) <= 10.0_wp*path_resolution*abs(side%value)) &
+         ! where nothing slides in the collapse both rules agree, and limit analysis is sharper;
+         ! what does not settle so near to the limit falls there
+         if (.not. side%has_limit .or. side%end == path_end%reached) return
+         if (abs(side%value - side%limit(2)) <= merge(10.0_wp, 100.0_wp, &
+            & side%end == path_end%collapsed)*path_resolution*abs(side%value)) &
             & call take_associated(last, search, limit, side)
       end associate
    end subroutine follow_side
@@ -204,7 +206,7 @@ contains
          varied = searched_load%push
       end if
       dead = full_loads(with_coefficient(settings, varied, 0.0_wp), scene, graph)
-      live = full_loads(with_coefficient(settings, varied, sign(1.0_wp, last)), scene, graph) - dead
+      live = sign(1.0_wp, last)*added_loads(varied, settings, scene, graph)
       tolerance = min(path_resolution, max(least_gap, 1.0e-2_wp*search%tolerance))
       call find_limit(graph, dead, live, tolerance, limit)
       side%has_limit = limit%state == limit_state%found

@@ -1,4 +1,4 @@
-!> How a structure falls: hinges, sliding share and mode of its last step
+!> Collapse mechanism: hinges, sliding share and mode of the last step
 module dda_mechanism
    use dda_contact_detection, only : contacts_t
    use dda_decision, only : decision_t, follow_coulomb

@@ -40,8 +40,7 @@ contains
       character(len=:), allocatable :: lines
       type(growing_text_t) :: rows
       character(len=:), allocatable :: start
-      real(wp) :: force(3)
-      integer :: i, j, n
+      integer :: j, n
 
       lines = ""
       if (.not. allocated(proof%force)) return
@@ -55,16 +54,30 @@ contains
                & + proof%scene%origin, proof%force(:, j)]))
          end associate
       end do
-      if (.not. allocated(proof%scene%settings%boundary%held)) then
-         lines = lines_of(rows)
-         return
-      end if
-      j = n
+      call add_held(start, proof, n, rows)
+      call add_bounded(start, proof, n, rows)
+      lines = lines_of(rows)
+   end function proof_forces_lines
+
+   !> Rows of the forces of held points
+   pure subroutine add_held(start, proof, n, rows)
+      !> First fields of a row
+      character(len=*), intent(in) :: start
+      !> The proof
+      type(proof_t), intent(in) :: proof
+      !> Number of the last joint before them; theirs are added
+      integer, intent(inout) :: n
+      !> Receives the rows
+      type(growing_text_t), intent(inout) :: rows
+      real(wp) :: force(3)
+      integer :: i
+
+      if (.not. allocated(proof%scene%settings%boundary%held)) return
       do i = 1, size(proof%scene%settings%boundary%held)
          associate (held => proof%scene%settings%boundary%held(i))
             if (proof%scene%system%equation(held%block) == 0) cycle
-            j = j + 1
-            force = [proof%force(1, j), proof%force(3, j), 0.0_wp]
+            n = n + 1
+            force = [proof%force(1, n), proof%force(3, n), 0.0_wp]
             ! one that holds along one axis does so by both of its forces
             if (.not. held%along(1)) force = [0.0_wp, sum(force), 0.0_wp]
             if (.not. held%along(2)) force = [sum(force), 0.0_wp, 0.0_wp]
@@ -73,8 +86,37 @@ contains
                & force]))
          end associate
       end do
-      lines = lines_of(rows)
-   end function proof_forces_lines
+   end subroutine add_held
+
+   !> Rows of bounded forces, along x and y, with the bound as the third; empty without one
+   pure subroutine add_bounded(start, proof, n, rows)
+      !> First fields of a row
+      character(len=*), intent(in) :: start
+      !> The proof
+      type(proof_t), intent(in) :: proof
+      !> Number of the last joint before them; theirs are added
+      integer, intent(inout) :: n
+      !> Receives the rows
+      type(growing_text_t), intent(inout) :: rows
+      character(len=:), allocatable :: line
+      integer :: i
+
+      if (.not. allocated(proof%scene%settings%boundary%bounded)) return
+      do i = 1, size(proof%scene%settings%boundary%bounded)
+         associate (bounded => proof%scene%settings%boundary%bounded(i))
+            n = n + 1
+            line = start//"bounded,0,"//to_text(bounded%block)//"," &
+               & //numbers([bounded%point + proof%scene%origin, bounded%point &
+               & + proof%scene%origin, proof%force(1, n)*bounded%direction])//","
+            if (bounded%most < huge(bounded%most)) then
+               ! then come the stop and the guide of its carrier
+               n = n + 2
+               line = line//to_text(bounded%most)
+            end if
+         end associate
+         call add_line(rows, line)
+      end do
+   end subroutine add_bounded
 
    !> Velocities of the mechanism: of the centres of blocks that move, and their spins
    pure function proof_motion_lines(number, value, proof) result(lines)

@@ -1,4 +1,4 @@
-!> The state of a run as a file, from which it goes on to the last bit as if it had not been broken
+!> The state of a run as a file, from which it continues to the last bit as if it had not stopped
 !>
 !> The file holds what a run cannot make anew: motions, velocities, stresses, joints with their
 !> forces, and the march; everything else follows from the deck. Each number is checked on reading,
@@ -146,7 +146,7 @@ contains
          if (.not. sound) fault = "joints that these blocks cannot have"
       end if
       if (fault /= "") call fatal_error(error, "expected the end of a run of these blocks, got "// &
-         & trim(fault)//"; make the file anew", file, 1)
+         & trim(fault)//"; write the file again", file, 1)
    end subroutine load_restart
 
    !> Whether numbers are neither infinite nor none, told from their bits: a signalling NaN may not
@@ -320,7 +320,7 @@ contains
             & system%first_vertex(b):system%first_vertex(b + 1) - 1))
             if (state%reach(b) < 0.0_wp .or. state%reach(b) > longest_reach &
                & *sum(maxval(corner, dim=2) - minval(corner, dim=2))) &
-               & fault = "reaches that no block has"
+               & fault = "search distances that no block has"
          end associate
          if (system%equation(b) > 0) cycle
          if (any(abs(state%motion(:, b)) > 0.0_wp) .or. any(abs(state%velocity(:, b)) > 0.0_wp)) &

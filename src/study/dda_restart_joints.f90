@@ -65,7 +65,7 @@ contains
       type(contacts_t), intent(inout) :: contacts
       !> Whether the numbers are those of joints between the blocks
       logical, intent(out) :: sound
-      type(joint_t) :: joint(size(whole, 2))
+      type(joint_t), allocatable :: joint(:)
       integer(int32), allocatable :: given(:, :)
       real(wp), allocatable :: ignored(:, :)
       integer :: j
@@ -74,16 +74,17 @@ contains
          & .and. all(whole(11:12, :) == 0 .or. whole(11:12, :) == 1)
       if (.not. sound) return
       if (contacts%searched .and. settings%current) then
+         allocate (joint(size(whole, 2)))
          call make_joints(system, contacts, whole, number, joint, sound)
          if (sound) call set_joints(system, system%motion, joint, settings%penalty_ratio, &
             & settings%n_dof, contacts)
       else
-         sound = size(contacts%joint) == size(joint)
+         sound = size(contacts%joint) == size(whole, 2)
          if (sound) call pack_joints(system, contacts, given, ignored)
          if (sound) sound = all(given(:7, :) == whole(:7, :))
       end if
       if (.not. sound) return
-      do j = 1, size(joint)
+      do j = 1, size(whole, 2)
          contacts%face(j)%open = whole(8:9, j) == 1
          contacts%face(j)%slip = whole(10, j)
          contacts%broken(:, j) = whole(11:12, j) == 1

@@ -38,6 +38,8 @@ module dda_scene
       real(wp) :: origin(2) = 0.0_wp
       !> Angle of each joint from the crown, positive to the right; only for arches: (n_joint) [deg]
       real(wp), allocatable :: joint_angle_deg(:)
+      !> Number of the joint at the crown of an arch of any shape; 0 for what is none
+      integer :: crown_joint = 0
    end type scene_t
 
    !> Scenes that differ by the value of one parameter
@@ -84,7 +86,6 @@ contains
       !> Whether there is one
       logical, intent(out) :: linked
 
-      settings = settings_t()
       chain = chain_t()
       ! what is asked of the arguments cannot be
       linked = .not. same_type_as(family, family) .and. value > 0.0_wp

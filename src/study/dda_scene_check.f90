@@ -1,4 +1,4 @@
-!> Checks of a deck that want its scene: whether its modes can run the blocks
+!> Checks of a deck that need its scene: whether its modes can run the blocks
 module dda_scene_check
    use dda_block_scene, only : floating_block
    use dda_deck, only : deck_error, deck_place_t, deck_t, file_beside, has_group, is_given, &
@@ -17,6 +17,7 @@ module dda_scene_check
    use dda_read_deck, only : geometry_file
    use dda_restart, only : check_restart, load_restart
    use dda_scene, only : scene_t
+   use dda_shape_check, only : check_shapes
    use dda_step_context, only : march_t
    use dda_text, only : to_text
    use dda_warnings, only : add_warning, warnings_t
@@ -45,6 +46,7 @@ contains
 
       if (present(watch)) call watch%tell("looking for joints", -1.0_wp)
       if (is_given(deck, "analysis", "restart")) call check_start(deck, error)
+      if (.not. allocated(error)) call check_shapes(deck, error)
       if (.not. allocated(error)) call check_live_cases(deck, error)
       if (allocated(error) .or. word_of(deck, "scene", "kind") /= "blocks") return
       call check_modes(deck, scene, error)
@@ -64,19 +66,20 @@ contains
 
       place = factor_place(deck, "displacement_factor")
       if (place%line > 0 .and. .not. leads_points(deck)) then
-         call deck_error(error, "load%displacement_factor expects a point that is led, got "// &
+         call deck_error(error, "load%displacement_factor needs a prescribed displacement, got "// &
             & "none; add a displacement line to a file of blocks", deck, place)
          return
       end if
       place = factor_place(deck, "load_factor")
       points = has_group(deck, "live") .or. has_group(deck, "vehicle")
       if (place%line == 0 .and. .not. points) return
-      reshaped = any(deck_key(deck%sweep%parameter%key)%group == "arch")
+      reshaped = any(deck_key(deck%sweep%parameter%key)%group == "arch" &
+         & .or. deck_key(deck%sweep%parameter%key)%group == "fill")
       do number = 1, n_cases(deck)
          call turn_to_case(deck, number, work, error)
          if (allocated(error)) return
          if (place%line > 0 .and. .not. bears_live(work)) then
-            call deck_error(error, "load%load_factor expects a live load, got none; add "// &
+            call deck_error(error, "load%load_factor needs a live load, got none; add "// &
                & "&live, a live line of a file of blocks, or load%live_horizontal", deck, place)
          else if (points) then
             if (number == 1 .or. reshaped) call deck_scene(work, scene)
@@ -253,7 +256,8 @@ contains
          end if
       end associate
       call fatal_error(error, "expected a load, got none: load%gravity is 0, no material has a "// &
-         & "unit_weight, and no point is loaded or led; add one", geometry_file(deck), 1)
+         & "unit_weight, and no point has a load or a prescribed displacement; add one", &
+         & geometry_file(deck), 1)
    end subroutine check_loads
 
    !> Check that a static scene can come to rest at all
@@ -267,8 +271,8 @@ contains
       integer :: b
 
       b = floating_block(scene)
-      if (b > 0) call fatal_error(error, "block "//to_text(b)//" rests on nothing: no chain of "// &
-         & "joints ties it to a fixed block, as mode = 'static' wants; add a joint or remove it", &
+      if (b > 0) call fatal_error(error, "block "//to_text(b)//" has no support: no chain of "// &
+         & "joints ties it to a fixed block, as mode = 'static' needs; add a joint or remove it", &
          & geometry_file(deck), deck%plan%line(b))
    end subroutine check_support
 
@@ -285,7 +289,7 @@ contains
       call doubt_units(deck, scene, warnings)
       b = floating_block(scene)
       if (b > 0 .and. any(deck%plan%fixed)) call add_warning(warnings, "block " &
-         & //to_text(b)//" rests on nothing, and will fall", geometry_file(deck), &
+         & //to_text(b)//" has no support and falls freely", geometry_file(deck), &
          & deck%plan%line(b))
       if (any(deck%plan%fixed)) return
       b = 0

@@ -1,11 +1,12 @@
-!> What a scene needs: the parts of the method without which its answer would be another one
+!> Model options of a scene: the parts of the method without which its answer would be another one
 !>
 !> Whether a structure stands is a matter of equilibrium alone as long as its shape stays. Strain
 !> matters where blocks move, where they keep their velocities, where joints break one after the
 !> other, and where a displacement means collapse; and it shares out the joint forces at rest.
 module dda_scene_plan
    use dda_block_system, only : n_unknown
-   use dda_deck, only : deck_t, flag_of, has_group, integer_of, is_given, real_of, word_of
+   use dda_deck, only : deck_t, flag_of, has_group, integer_of, is_given, real_of, &
+      & scene_kind, word_of
    use dda_kinds, only : wp
    implicit none
    private
@@ -95,7 +96,7 @@ contains
       if (plan%strength) plan%reason = strain_reason%strength
       if (plan%velocities) plan%reason = strain_reason%dynamic
       if (plan%moving) plan%reason = strain_reason%moving
-      if (word_of(deck, "scene", "kind") /= "arch") plan%reason = strain_reason%files
+      if (scene_kind(deck) /= "arch") plan%reason = strain_reason%files
       if (word_of(deck, "analysis", "mode") == "limerick") plan%reason = strain_reason%original
       if (plan%reason == strain_reason%none) then
          plan%unknowns = n_rigid
@@ -113,7 +114,7 @@ contains
       !> Its plan, otherwise made
       type(scene_plan_t), intent(inout) :: plan
 
-      plan%row = word_of(deck, "scene", "kind") == "arch" &
+      plan%row = scene_kind(deck) == "arch" &
          & .and. word_of(deck, "analysis", "mode") == "static" &
          & .and. .not. (plan%moving .or. plan%strength .or. has_group(deck, "live") &
          & .or. has_group(deck, "vehicle"))

@@ -22,6 +22,8 @@ module dda_search
       !> Value at which that holds; elsewhere it goes with the inverse of the value's square. 0
       !> where it holds everywhere
       real(wp) :: resolution_at = 0.0_wp
+      !> Whether its runs are dynamic
+      logical :: in_time = .false.
       !> Whether the end beyond the critical value is decided too; not needed where it is known to
       !> stand
       logical :: check_far_end = .true.
@@ -53,6 +55,10 @@ module dda_search
       real(wp) :: other = 0.0_wp
       !> Whether it does so within the range
       logical :: has_other = .false.
+      !> Values that a search in time has run beside its bracket
+      integer :: others = 0
+      !> Neighbours between which the answer of a search in time changes too: (2, n)
+      real(wp), allocatable :: other_change(:, :)
       !> The associated limit of a load coefficient, from below and from above
       real(wp) :: limit(2) = 0.0_wp
       !> Whether it is known

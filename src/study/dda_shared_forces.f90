@@ -1,4 +1,4 @@
-!> How elastic blocks share out the joint forces of a structure that was decided with rigid ones
+!> Joint forces of elastic blocks, for a structure that was decided with rigid ones
 module dda_shared_forces
    use dda_block_system, only : n_unknown
    use dda_decision, only : decide, decision_t, share_elastically

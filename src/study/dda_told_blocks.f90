@@ -1,4 +1,4 @@
-!> The blocks of a case told as a table: corners, how they are held, and how they move
+!> The blocks of a case as a table: corners, how they are held, and how they move
 module dda_told_blocks
    use dda_block_system, only : block_system_t
    use dda_deformation, only : displacement_matrix

@@ -3,6 +3,7 @@ module dda_vehicle
    use dda_block_system, only : block_system_t
    use dda_boundary, only : constant_history, loaded_point_t
    use dda_deck, only : deck_t, list_of, real_of
+   use dda_fill_loads, only : fill_t
    use dda_kinds, only : wp
    use dda_sort, only : sorted_order
    implicit none
@@ -20,6 +21,10 @@ module dda_vehicle
       real(wp) :: length = 0.0_wp
       !> Where the first axle is [m]
       real(wp) :: position = 0.0_wp
+      !> How far an axle spreads to either side, over the depth of the blocks below the surface
+      real(wp) :: spread = 0.0_wp
+      !> Height of the surface that it stands on [m]
+      real(wp) :: surface = 0.0_wp
    end type vehicle_t
 
    !> A corner no lower than the upper face by this share of the size of all is on it
@@ -28,9 +33,11 @@ module dda_vehicle
 contains
 
    !> The vehicle of a deck
-   pure function vehicle_of(deck) result(vehicle)
+   pure function vehicle_of(deck, fill) result(vehicle)
       !> The deck of the case, with &vehicle
       type(deck_t), intent(in) :: deck
+      !> Fill that it stands on
+      type(fill_t), intent(in), optional :: fill
       !> The vehicle
       type(vehicle_t) :: vehicle
       real(wp), allocatable :: spacing(:)
@@ -44,6 +51,9 @@ contains
       end do
       vehicle%length = real_of(deck, "vehicle", "length")
       vehicle%position = real_of(deck, "vehicle", "position")
+      if (.not. present(fill)) return
+      vehicle%spread = fill%spread
+      vehicle%surface = fill%surface
    end function vehicle_of
 
    !> Live loads of the axles; what is not above a block that moves is left out
@@ -61,11 +71,13 @@ contains
       real(wp) :: half, middle, top, width, x
       integer :: b, i, k, n
 
-      half = 0.5_wp*vehicle%length
       allocate (piece(size(vehicle%axle)*(size(system%vertex, 2) + 1)))
       n = 0
       do i = 1, size(vehicle%axle)
          x = vehicle%position + vehicle%offset(i) - origin(1)
+         half = 0.5_wp*vehicle%length
+         if (vehicle%spread > 0.0_wp) half = half + vehicle%spread &
+            & *max(0.0_wp, vehicle%surface - origin(2) - top_below(system, x))
          if (allocated(cut)) deallocate (cut)
          allocate (cut, source=[x - half, pack(system%vertex(1, :), &
             & abs(system%vertex(1, :) - x) < half), x + half])
@@ -88,8 +100,32 @@ contains
       allocate (loaded, source=piece(:n))
    end function axle_loads
 
+   !> Height of the lower end of the upper edge below an axle, of blocks that move; beside them all,
+   !> of the nearest end
+   pure real(wp) function top_below(system, x) result(top)
+      !> The blocks
+      type(block_system_t), intent(in) :: system
+      !> The place [m]
+      real(wp), intent(in) :: x
+      real(wp) :: low, high, top_low
+      integer :: b, block
+
+      low = huge(low)
+      high = -huge(high)
+      do b = 1, size(system%area)
+         if (system%equation(b) == 0) cycle
+         associate (place => system%vertex(1, &
+            & system%first_vertex(b):system%first_vertex(b + 1) - 1))
+            low = min(low, minval(place))
+            high = max(high, maxval(place))
+         end associate
+      end do
+      call find_top(system, min(max(x, low), high), block, top, top_low)
+      top = top_low
+   end function top_below
+
    !> The highest block at a place
-   pure subroutine find_top(system, x, block, top)
+   pure subroutine find_top(system, x, block, top, lower_end)
       !> The blocks
       type(block_system_t), intent(in) :: system
       !> The place [m]
@@ -98,6 +134,8 @@ contains
       integer, intent(out) :: block
       !> Its height [m]
       real(wp), intent(out) :: top
+      !> Height of the lower end of that edge [m]
+      real(wp), intent(out), optional :: lower_end
       real(wp) :: share, y
       integer :: b, first, k, n, next
 
@@ -118,6 +156,8 @@ contains
             end associate
             if (.not. y > top) cycle
             top = y
+            if (present(lower_end)) lower_end = min(system%vertex(2, first + k), &
+               & system%vertex(2, next))
             block = b
          end do
       end do

@@ -4,15 +4,19 @@
 !> and the inverse of its associated limit is convex in it: of axles that are points the least
 !> factor is at a corner, on one side of it. Axles that are spread are closed in around the least.
 module dda_worst_position
+   use dda_arch_assembly, only : arch_assembly_t
+   use dda_arch_form, only : form_problem_t
    use dda_boundary, only : loaded_point_t
-   use dda_deck, only : deck_t
+   use dda_deck, only : deck_t, has_group
+   use dda_fill_loads, only : fill_of, fill_t, press_fill
    use dda_graph_decision, only : decides_as_graph
    use dda_joint_graph, only : joint_graph_t
    use dda_kinds, only : wp
    use dda_limit_load, only : find_limit, limit_load_t, limit_state
-   use dda_load_coefficient, only : full_loads, with_coefficient
+   use dda_load_coefficient, only : added_loads, full_loads, with_coefficient
    use dda_scene, only : scene_t, searched_load
    use dda_scene_graph, only : scene_graph
+   use dda_shape_scene, only : add_loads, shape_assembly
    use dda_sort, only : sorted_order
    use dda_vehicle, only : axle_loads, upper_corners, vehicle_of, vehicle_t
    implicit none
@@ -39,6 +43,8 @@ module dda_worst_position
       real(wp), allocatable :: dead(:, :)
       !> The vehicle
       type(vehicle_t) :: vehicle
+      !> Fill that it stands on
+      type(fill_t), allocatable :: fill
       !> All other loads on points: (n)
       type(loaded_point_t), allocatable :: other(:)
    end type bridge_t
@@ -64,7 +70,7 @@ contains
       found = .false.
       if (.not. decides_as_graph(scene%settings, scene%contacts)) return
       bridge%scene = scene
-      bridge%vehicle = vehicle_of(deck)
+      call take_vehicle(deck, bridge)
       ! those of the vehicle are the last
       associate (loaded => scene%settings%boundary%loaded, vehicle => bridge%vehicle)
          allocate (bridge%other, source=loaded(:size(loaded) &
@@ -142,16 +148,65 @@ contains
       if (allocated(scene%settings%boundary%loaded)) deallocate (scene%settings%boundary%loaded)
       allocate (axles, source=axle_loads(vehicle, scene%system, bridge%scene%origin))
       if (size(axles) == 0) return
+      if (allocated(bridge%fill)) then
+         inverse = inverse_in_fill(bridge, axles)
+         return
+      end if
       allocate (scene%settings%boundary%loaded(size(bridge%other) + size(axles)))
       scene%settings%boundary%loaded(:size(bridge%other)) = bridge%other
       scene%settings%boundary%loaded(size(bridge%other) + 1:) = axles
-      live = full_loads(scene%settings, scene, bridge%graph)
-      scene%settings%load_factor = 0.0_wp
-      live = live - full_loads(scene%settings, scene, bridge%graph)
+      live = added_loads(searched_load%factor, scene%settings, scene, bridge%graph)
       if (.not. maxval(abs(live)) > 0.0_wp) return
       call find_limit(bridge%graph, bridge%dead, live, gap, limit)
       if (limit%state == limit_state%found) inverse = 2.0_wp/(limit%lower + limit%upper)
    end function inverse_factor
+
+   !> The vehicle of a deck, and the fill that it stands on
+   pure subroutine take_vehicle(deck, bridge)
+      !> The deck of the case
+      type(deck_t), intent(in) :: deck
+      !> Receives them
+      type(bridge_t), intent(inout) :: bridge
+      type(arch_assembly_t) :: assembly
+      type(form_problem_t) :: problem
+
+      if (has_group(deck, "fill")) then
+         call shape_assembly(deck, assembly, problem)
+         allocate (bridge%fill)
+         bridge%fill = fill_of(deck, assembly)
+         bridge%vehicle = vehicle_of(deck, bridge%fill)
+      else
+         bridge%vehicle = vehicle_of(deck)
+      end if
+   end subroutine take_vehicle
+
+   !> Inverse of the associated limit for axles on fill, which is leant against on the side away
+   !> from them; 0 where there is none
+   pure real(wp) function inverse_in_fill(bridge, axles) result(inverse)
+      !> The scene and the vehicle
+      type(bridge_t), intent(in) :: bridge
+      !> Loads of the axles
+      type(loaded_point_t), intent(in) :: axles(:)
+      type(joint_graph_t) :: graph
+      type(limit_load_t) :: limit
+      type(scene_t) :: scene
+      real(wp), allocatable :: dead(:, :), live(:, :)
+
+      inverse = 0.0_wp
+      scene = bridge%scene
+      deallocate (scene%settings%boundary%loaded)
+      allocate (scene%settings%boundary%loaded, source=bridge%other)
+      call add_loads(axles, scene)
+      call press_fill(bridge%fill, scene)
+      call scene_graph(scene%settings, scene%system, scene%contacts, graph)
+      live = full_loads(scene%settings, scene, graph)
+      scene%settings%load_factor = 0.0_wp
+      dead = full_loads(scene%settings, scene, graph)
+      live = live - dead
+      if (.not. maxval(abs(live)) > 0.0_wp) return
+      call find_limit(graph, dead, live, gap, limit)
+      if (limit%state == limit_state%found) inverse = 2.0_wp/(limit%lower + limit%upper)
+   end function inverse_in_fill
 
    !> Close in around the least factor by golden sections
    pure subroutine close_in(bridge, left, right, least, position, best)

@@ -1,4 +1,4 @@
-!> Points of the blocks that are held or led along a path: stiff springs (Shi: df12)
+!> Points of the blocks that are fixed or prescribed along a path: stiff springs (Shi: df12)
 !>
 !> A spring pulls its point to where it ought to be at the end of the step, with the force that it
 !> had before; what it lacks is added until nothing changes, so that its stiffness leaves no trace.

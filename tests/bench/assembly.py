@@ -134,6 +134,6 @@ def _shared(a: Point, b: Point, c: Point, d: Point) -> tuple[Point, Point] | Non
     if along[0] <= along[1]:
         return None
     low, high = max(0.0, along[1]), min(length, along[0])
-    if high - low <= 1e4 * tiny:
+    if high - low <= 10.0 * tiny:
         return None
     return (a[0] + low * ex, a[1] + low * ey), (a[0] + high * ex, a[1] + high * ey)

@@ -46,6 +46,20 @@ base_acceleration
   0 0 0
   0.02 1 0
 """,
+    b"""block fixed
+0 0
+4 0
+4 -1
+0 -1
+block
+1 0
+2 0
+2 1
+1 1
+measure 1.5 0.5
+base_acceleration file 'record.csv' columns time 2 up scale 9.81
+load 1.5 0.5 file "record.csv" columns 1 2
+""",
     b"block fixed\n0 0\n4 0\n4 -1\n0 -1\nblock\n1 0\n2 0\n2 1\n1 1\nblock\n1 1\n2 1\n1.5 2\n"
     b"block velocity 0 -1 0.5\n2.5 0.5\n3.5 0.5\n3 1.5\ndisplacement 1.5 0.5 0 0.001\n",
 ]
@@ -58,9 +72,15 @@ GROUPS = [
     b"&analysis mode = 'limerick', steps = 4 / &joint friction_deg = 20 /\n",
     b"&analysis geometry = 'current', steps = 5 / &search parameter = 'friction_deg' /\n",
     b"&load horizontal_coefficient = 0.1 / &joint cohesion = 1e3, tension = 1e2 /\n",
+    b"&ground record = 'record.csv', columns = '1 east', quantity = 'velocity', unit = 9.81, amplitude = 2 /\n"
+    b"&analysis mode = 'dynamic', geometry = 'current', duration = 0.01 /\n",
+    b"&ground pulse = 'sine', amplitude = 2, frequency = 5 /\n&search parameter = 'ground%scale', low = 0, high = 2 /\n"
+    b"&analysis mode = 'dynamic', geometry = 'current', duration = 0.01, collapse_displacement = 1e-4 /\n",
 ]
+RECORDS = [b"Station 1\ntime,east,up\n0.0,0.1,0\n\n0.005, -0.2,0.1\n0.01,0,0\n", b"0 1 2\n0.1\t2 3\n! end\n0.2 0 0\n"]
 WORDS = b"""block fixed material joint measure load fix displacement base_acceleration velocity stress
-density young x y friction_deg 0 -1 1e300 1e-300 nan 2147483648 99999999999 1e15 0.5 ! & /""".split()
+density young x y friction_deg
+file columns scale 'record.csv' time 0 -1 1e300 1e-300 nan 2147483648 99999999999 1e15 0.5 ! & /""".split()
 #: Words of a run that keep it short
 SHORT = ["--cases", "1", "--quiet", "--set", "analysis%steps=6"]
 
@@ -203,6 +223,8 @@ def main() -> int:
         folder = Path(name)
         for start in range(0, options.mutants, options.batch):
             numbers = range(start, min(start + options.batch, options.mutants))
+            # one record for the whole batch: an error in it is one of every deck that names it
+            (folder / "record.csv").write_bytes(rng.choice(RECORDS) if rng.random() < 0.5 else mutant(rng, RECORDS))
             decks = [write_mutant(rng, folder, number) for number in numbers]
             status, lines = run([options.dda, "check"], decks, 20.0)
             together = complaint(status, lines, folder)
@@ -211,6 +233,9 @@ def main() -> int:
             for deck in decks:
                 broken = ""
                 named = {str(deck), str(deck.with_suffix(".blocks"))}
+                texts = deck.read_bytes() + deck.with_suffix(".blocks").read_bytes()
+                if b"record.csv" in texts:
+                    named.add(str(folder / "record.csv"))
                 if together:
                     broken = complaint(*run([options.dda, "check"], [deck], 20.0), folder)
                 elif not named & refused:
@@ -222,7 +247,7 @@ def main() -> int:
                 if broken:
                     failed.append(f"{deck.name}: {broken}")
                     Path(options.keep).mkdir(parents=True, exist_ok=True)
-                    for path in (deck, deck.with_suffix(".blocks")):
+                    for path in (deck, deck.with_suffix(".blocks"), folder / "record.csv"):
                         shutil.copy(path, options.keep)
                 deck.unlink()
                 deck.with_suffix(".blocks").unlink()

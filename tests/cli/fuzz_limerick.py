@@ -31,6 +31,15 @@ SMALL = """<?xml version="1.0"?>
 <Fixedpointlist><Line> -0.5 0.5 1.5 0.5 </Line></Fixedpointlist></Geometry></d:DDA>
 """
 SQUARES = "0.01\n5 4\n0\n0\n1\n0\n0\n0\n0 0 2 0 1\n2 0 2 1 1\n2 1 0 1 1\n0 1 0 0 1\n1 0 1 1 2\n"
+BOLTED = SQUARES.replace("5 4\n0\n0\n", "5 4\n0\n2\n", 1) + (
+    "0.5 0.5 1.5 0.5 1e6 1e3 10\n0.2 0.2 1.8 -3 2e6 1e30 0\n0.5 0.5 0.5 0.5\n"
+)
+BOLTED_XML = SMALL.replace(
+    "</Jointlist>",
+    '</Jointlist><Boltlist><Bolt type="1"> 0.2 0.2 0.8 3 </Bolt><Bolt stiffness="1e6" '
+    'strength="1e3" pretension="5"> 0.2 0.2 0.8 3 </Bolt></Boltlist>',
+    1,
+)
 FAN = "0.001\n12 0 0 0 0 0 0 0\n" + "".join(
     f"{5 - dx} {5 - dy} {5 + dx} {5 + dy} 1\n" for dx, dy in ((5, 0), (5, 1), (5, 1e-4), (0, 5))
 ) + "".join(f"{a} {b} {c} {d} 1\n" for a, b, c, d in (
@@ -38,10 +47,16 @@ FAN = "0.001\n12 0 0 0 0 0 0 0\n" + "".join(
     (1, 1, 9, 1), (1, 1, 1, 9), (9, 1, 9, 9), (1, 9, 9, 9)))
 SEEDS = {
     "plain.geo": [(INPUT / "terrace.geo").read_bytes(), SQUARES.encode() + b"0.5 0.5 0.5 0.5\n",
-                  FAN.encode()],
-    "ddaml.geo": [(INPUT / "terrace_ddaml.geo").read_bytes(), SMALL.encode()],
+                  FAN.encode(), BOLTED.encode(), BOLTED.encode()],
+    "ddaml.geo": [(INPUT / "terrace_ddaml.geo").read_bytes(), SMALL.encode(),
+                  BOLTED_XML.encode()],
     "plain.ana": [(INPUT / "terrace.ana").read_bytes()],
-    "ddaml.ana": [(INPUT / "terrace_ddaml.ana").read_bytes()],
+    "ddaml.ana": [
+        (INPUT / "terrace_ddaml.ana").read_bytes(),
+        (INPUT / "terrace_ddaml.ana").read_bytes().replace(
+            b"<Jointproperties", b"<Boltproperties> 1e6 1e3 5 </Boltproperties>\n<Jointproperties", 1
+        ),
+    ],
 }
 NUMBERS = b"""0 1 -1 2 3 17 0.5 1e-9 1e-300 1e300 1e308 1e309 -1e15 1e15 2e15 99999999 2147483648 nan
 inf -inf 1,5 1d3 0x10 1.2.3 1e 3.9999999 0.4999999 5.0000001 1e-16""".split()

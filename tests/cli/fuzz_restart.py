@@ -23,7 +23,7 @@ import tempfile
 from collections import Counter
 from pathlib import Path
 
-from fuzz_blocks import BLOCKS, complaint
+from fuzz_blocks import BLOCKS, RECORDS, complaint
 from fuzz_deck import run
 
 #: First bytes of a restart file
@@ -152,6 +152,7 @@ def main() -> int:
     outcomes: Counter[tuple[str, int | None]] = Counter()
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
+        (folder / "record.csv").write_bytes(RECORDS[0])
         for stem, blocks in zip("ab", BLOCKS):
             (folder / f"{stem}.blocks").write_bytes(blocks)
         good = []

@@ -8,6 +8,9 @@ import random
 import numpy as np
 from bridges import abutment, polygon, voussoirs
 
+#: A factor beside which rounding of the dead loads is not felt
+MANY = 2.0**40
+
 
 def random_wall(source: random.Random) -> str:
     """Courses of bricks of random lengths and heights, on fixed ground, some leaning."""
@@ -69,7 +72,8 @@ def programme(scene) -> float | None:
     from voussoir.verify_proofs import push
 
     dead = loads_on(scene.deck.with_value("load_factor", "0"), scene.source, scene.blocks)
-    live = loads_on(scene.deck.with_value("load_factor", "1"), scene.source, scene.blocks) - dead
+    # of many, lest rounding of the weights be in it
+    live = (loads_on(scene.deck.with_value("load_factor", repr(MANY)), scene.source, scene.blocks) - dead) / MANY
     free = [block.number - 1 for block in scene.blocks if not block.fixed]
     columns = []
     for joint in scene.joints:

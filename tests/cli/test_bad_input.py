@@ -192,12 +192,12 @@ SWEEPS_AND_SEARCHES = {
     "dynamic-associated": (
         1,
         "&analysis mode='dynamic', flow='associated', steps=10 /\n",
-        "expects mode = 'static', got 'dynamic'",
+        "needs mode = 'static', got 'dynamic'",
     ),
     "limerick-associated": (
         1,
         "&analysis mode='limerick', flow='associated' /\n",
-        "expects mode = 'static', got 'limerick'",
+        "needs mode = 'static', got 'limerick'",
     ),
     "too-many-cases": (
         2,
@@ -384,7 +384,7 @@ def test_errors_of_cases_name_cases(tmp_path: Path, cases: str) -> None:
     done = run_dda("run", "deck.nml", "--cases", cases, cwd=tmp_path)
     assert done.returncode == 2
     assert re.fullmatch(
-        r"--cases:1: error: wanted cases from 1 to 1, found '.*'; write them like 1-4,7\n",
+        r"--cases:1: error: expected cases from 1 to 1, got '.*'; write them like 1-4,7\n",
         done.stderr,
     )
     assert not (tmp_path / "deck").exists()

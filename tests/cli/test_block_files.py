@@ -31,15 +31,15 @@ def test_check_tells_what_was_found(tmp_path: Path) -> None:
     tip = "block\n0.5 2\n1 3\n0 3\n"
     done = run_dda("check", write(tmp_path, BASE + BLOCK + tip))
     assert done.returncode == 0
-    assert "2 that move, 1 held" in done.stdout
-    assert "1 of two normal springs and one shear spring, 1 of one corner before an edge" in done.stdout
+    assert "2 free, 1 fixed" in done.stdout
+    assert "1 of two normal springs and one shear spring, 1 of one corner against an edge" in done.stdout
 
 
 def test_check_tells_the_points(tmp_path: Path) -> None:
     deck = write(tmp_path, BLOCK + "fix 0 0\nfix 1 0\nmeasure 0.5 1\nload 0.5 2 1 0\n")
     done = run_dda("check", deck)
     assert done.returncode == 0 and done.stderr == ""
-    assert "2 held, 1 loaded, 1 measured" in done.stdout
+    assert "2 fixed or prescribed, 1 loaded, 1 measured" in done.stdout
 
 
 def test_nothing_fixed_is_warned_of(tmp_path: Path) -> None:
@@ -93,8 +93,8 @@ def test_a_load_on_a_joint_without_a_block_is_warned_of(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     "blocks, line, words",
     [
-        (BASE + BLOCK.replace("0 0\n1 0", "0 0.1\n1 0.1"), 6, "block 2 rests on nothing"),
-        (BLOCK, 1, "block 1 rests on nothing"),
+        (BASE + BLOCK.replace("0 0\n1 0", "0 0.1\n1 0.1"), 6, "block 2 has no support"),
+        (BLOCK, 1, "block 1 has no support"),
         (BASE + BLOCK.replace("0 0\n", "0 -0.2\n"), 6, "blocks 1 and 2 overlap"),
         (BASE + "block\n0 -0.8\n1 -0.8\n1 -0.2\n", 6, "block 2 lies inside block 1"),
         (BASE + "block\n0 0\n1 1\n1 0\n0 1\n", 6, "its edges 1 and 3 meet at"),
@@ -103,7 +103,7 @@ def test_a_load_on_a_joint_without_a_block_is_warned_of(tmp_path: Path) -> None:
         (BASE + BLOCK + "load block 3 0.5 0.5 1 0\n", 11, "a block from 1 to 2, got '3'"),
         (BASE + BLOCK + "material 2 density 0\n", 11, "above 0"),
         (BASE + BLOCK.replace("1 2", "1,5 2"), 9, "a corner x y"),
-        (BASE + BLOCK + "fix 0.5 1\ndisplacement 0.5 1 0.1 0\n", 12, "held or led already"),
+        (BASE + BLOCK + "fix 0.5 1\ndisplacement 0.5 1 0.1 0\n", 12, "conflicts with the other fixed or"),
     ],
 )
 def test_bad_blocks_are_refused_with_file_and_line(
@@ -121,7 +121,7 @@ def test_bad_blocks_are_refused_with_file_and_line(
     "blocks, line, words",
     [
         (BASE.replace("block", "block fixed\n5 5\n6 5\n6 6\nblock", 1), 1, "all blocks are fixed"),
-        (BASE + BLOCK.replace("0\n", "3\n", 2).replace("2\n", "5\n"), 6, "rests on nothing"),
+        (BASE + BLOCK.replace("0\n", "3\n", 2).replace("2\n", "5\n"), 6, "has no support"),
         (BASE + BLOCK + "material 2 density 1\n" + "block\n1e7 0\n10000000.1 0\n1e7 0.1\n", 12, "few digits"),
         (
             (BASE + BLOCK).replace("1", "1000").replace("2", "2000"),

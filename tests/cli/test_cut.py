@@ -109,14 +109,14 @@ def test_line_ends_marks_and_tabs_do_not_matter(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("text", "wanted"),
     [
-        ("", "1: error: wanted a text, found that the file is empty"),
-        ("\n \n", "1: error: numbers or XML are wanted"),
-        ("#!0xDDA-v1.5\n1\n", "1: error: the plain form or DDAML is wanted, found the extended"),
-        (SQUARE[:-4], "12: error: a coordinate of line 4 of 4 is wanted"),
-        (SQUARE.replace("1 1 0 1", "1 1 0 1;"), "11: error: a coordinate of line 3 of 4"),
-        ("0.01 0 0 0 0 0 0 0 0", "1: error: at least one line"),
-        (SQUARE.replace("4 0\n", "3 0\n", 1), "1: error: lines that enclose a block"),
-        (SQUARE.replace("0\n0\n0\n0 0 1", "1\n0\n0\n0 0 1", 1) + "5 5\n", "13: error: a load point"),
+        ("", "1: error: the file is empty"),
+        ("\n \n", "1: error: the file is blank"),
+        ("#!0xDDA-v1.5\n1\n", "1: error: expected the plain form or DDAML, got the extended"),
+        (SQUARE[:-4], "12: error: expected a coordinate of line 4 of 4, got"),
+        (SQUARE.replace("1 1 0 1", "1 1 0 1;"), "11: error: expected a coordinate of line 3 of 4"),
+        ("0.01 0 0 0 0 0 0 0 0", "1: error: expected at least one line"),
+        (SQUARE.replace("4 0\n", "3 0\n", 1), "1: error: expected lines that enclose a block"),
+        (SQUARE.replace("0\n0\n0\n0 0 1", "1\n0\n0\n0 0 1", 1) + "5 5\n", "13: error: expected a load point"),
     ],
 )
 def test_bad_files_are_refused_with_their_line(tmp_path: Path, text: str, wanted: str) -> None:

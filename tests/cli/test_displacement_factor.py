@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import csv
+import math
 from pathlib import Path
 
 import pytest
@@ -28,6 +30,22 @@ def test_a_semicircle_falls_where_its_supports_have_spread_by_its_kinematics(tmp
     assert float(row["critical"]) / 20.0 == pytest.approx(0.0588, abs=3e-4)
 
 
+@pytest.mark.parametrize("spread", [0.4, 1.0])
+def test_the_crown_sinks_with_the_hinge_at_its_extrados(tmp_path: Path, spread: float) -> None:
+    """Each half turns rigidly between the hinges at the crown's extrados and the intrados at 56.25 degrees."""
+    measured = SPREADS + "measure block 8 0 10.75\nmeasure block 8 0 9.25\n"
+    rows(tmp_path, MOVING + f"&load displacement_factor = {spread} /\n", measured)
+    with (tmp_path / "x" / "points.csv").open(newline="") as lines:
+        extrados, intrados = [-float(row["v"]) for row in list(csv.DictReader(lines))[-2:]]
+    angle = math.radians(56.25)
+    across, height = 9.25 * math.sin(angle), 10.75 - 9.25 * math.cos(angle)
+    moved = math.hypot(across, height)**2 - (across + spread / 2.0)**2
+    assert extrados == pytest.approx(height - math.sqrt(moved), rel=1e-4)
+    # the half turns about that hinge, which takes the intrados up on the way
+    turns = math.atan2(height, across) - math.atan2(math.sqrt(moved), across + spread / 2.0)
+    assert intrados == pytest.approx(extrados - 1.5 * (1.0 - math.cos(turns)), rel=1e-4)
+
+
 def test_decisions_agree_with_it(tmp_path: Path) -> None:
     sweep = "&sweep parameter = 'displacement_factor', values = 0, 0.4, 1.16, 1.19, 1.3 /\n"
     verdicts = [row["verdict"] for row in rows(tmp_path, MOVING + sweep, SPREADS)]
@@ -40,4 +58,4 @@ def test_a_factor_of_nothing_is_refused(tmp_path: Path) -> None:
         (tmp_path / "x.nml").write_text(head + "&load displacement_factor = 2 /\n")
         done = run_dda("check", "x.nml", cwd=tmp_path)
         assert done.returncode == 2
-        assert "displacement_factor expects a point that is led" in done.stderr
+        assert "displacement_factor needs a prescribed displacement" in done.stderr

@@ -24,7 +24,7 @@ INSTALL = re.compile(
     r"sudo apt-get |cmake -|python3 -m venv |env/bin/|xargs -d |ctest |build/bin/voussoir paper "
 )
 COMMAND = re.compile(r"(\$ |dda |voussoir |build/bin/|&[a-z]+\b.*/|python3 |pip |PYTHONPATH=)")
-LABELS = {"", "text", "sh", "sh install", "console", "fortran", "python", "message"}
+LABELS = {"", "text", "sh", "sh install", "console", "f90", "fortran", "python", "message"}
 
 
 @dataclass

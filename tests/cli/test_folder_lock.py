@@ -128,7 +128,7 @@ def test_lock_that_cannot_be_made_gives_4(tmp_path: Path) -> None:
     (tmp_path / "out" / "run.lock").mkdir(parents=True)
     done = run_dda("run", "short.nml", "--out", "out", cwd=tmp_path)
     assert done.returncode == 4
-    assert "out/run.lock:1: error: expected a file that can be written" in done.stderr
+    assert "out/run.lock:1: error: the file cannot be written" in done.stderr
     assert not (tmp_path / "out" / "results.csv").exists()
 
 

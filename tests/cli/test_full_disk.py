@@ -71,7 +71,7 @@ def assert_told(done: subprocess.CompletedProcess[str], name: str) -> None:
     errors = [line for line in done.stderr.splitlines() if ": warning: " not in line]
     errors = [line for line in errors if not line.endswith("/results.csv")]
     assert len(errors) == 1, done.stderr
-    assert name in errors[0].split(":1: error: expected room")[0], done.stderr
+    assert name in errors[0].split(":1: error: cannot write")[0], done.stderr
 
 
 @pytest.mark.skipif(not FULL.exists(), reason="no /dev/full here")
@@ -137,7 +137,7 @@ def test_file_that_may_not_grow_gives_4_and_one_line(
             too_large = [name for name in sizes if sizes[name] > most]
             assert done.returncode == 4, f"{too_large} of more than {most} bytes"
             assert done.stderr.count("error: ") == 1
-            assert done.stderr.count("error: expected room") == 1
+            assert done.stderr.count("error: cannot write") == 1
     assert dda(tmp_path, *words, most=max(sizes.values())).returncode == 0
 
 

@@ -113,7 +113,7 @@ def run_quiet(folder: Path) -> None:
 
 def check_set(folder: Path) -> None:
     done = run_dda("check", "deck.nml", "--set", "arch%voussoirs=7", cwd=folder)
-    assert "7 that move" in done.stdout
+    assert "7 free" in done.stdout
 
 
 def check_record(folder: Path) -> None:

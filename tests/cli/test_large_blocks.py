@@ -64,7 +64,7 @@ def wall(courses: int, bricks: int) -> str:
 def test_a_wall_of_many_bricks_is_checked(tmp_path: Path) -> None:
     done = check(tmp_path, wall(200, 250), "")
     assert done.returncode == 0 and done.stderr == ""
-    assert "50000 that move, 1 held" in done.stdout
+    assert "50000 free, 1 fixed" in done.stdout
     # heads between neighbours, the base, and two bricks below each of the others but at one end
     joints = 200 * 249 + 250 + 199 * (2 * 250 - 1)
     assert f"{joints} of two normal springs and one shear spring" in done.stdout
@@ -82,7 +82,7 @@ def test_many_points_find_their_blocks(tmp_path: Path) -> None:
     lines = "".join(f"fix_line {b}.3 0.2 {b}.7 0.8 y\n" for b in range(n)) + f"fix_line 0 0.9 {n} 0.9 y\n"
     done = check(tmp_path, row(n) + points + lines)
     assert done.returncode == 0 and done.stderr == ""
-    assert f"{5 * n} held, {n} loaded, {n} measured" in done.stdout
+    assert f"{5 * n} fixed or prescribed, {n} loaded, {n} measured" in done.stdout
 
 
 def test_many_points_of_one_block_may_be_held(tmp_path: Path) -> None:
@@ -90,10 +90,10 @@ def test_many_points_of_one_block_may_be_held(tmp_path: Path) -> None:
     points = "".join(f"displacement {x:.6f} {y:.6f}\n0 0 0\n1 0.1 0.1\n" for x, y in golden)
     done = check(tmp_path, row(2) + points)
     assert done.returncode == 0 and done.stderr == ""
-    assert "40000 held" in done.stdout
+    assert "40000 fixed or prescribed" in done.stdout
     done = check(tmp_path, row(2) + points + "fix 0.5 0.5 y\n")
     assert done.returncode == 2
-    assert "many.blocks:120016: error: " in done.stderr and "held or led already" in done.stderr
+    assert "many.blocks:120016: error: " in done.stderr and "conflicts with the other fixed" in done.stderr
 
 
 def test_long_histories_are_read(tmp_path: Path) -> None:

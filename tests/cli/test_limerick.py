@@ -151,7 +151,7 @@ def test_steps_that_are_spent_leave_it_stable_with_a_remark(tmp_path: Path) -> N
         "&analysis mode = 'limerick', steps = 50, collapse_displacement = 0.5 /\n",
     )
     assert row["verdict"] == "stable"
-    assert "still moved" in (tmp_path / "out" / "log.txt").read_text()
+    assert "still moving" in (tmp_path / "out" / "log.txt").read_text()
 
 
 def test_dynamic_run_is_completed(tmp_path: Path) -> None:
@@ -168,10 +168,10 @@ def test_dynamic_run_is_completed(tmp_path: Path) -> None:
     "text, message",
     [
         ("&analysis mode = 'limerick', geometry = 'reference' /", "blocks always move"),
-        ("&analysis mode = 'limerick' /\n&output frames = 5 /", "keeps no pictures"),
+        ("&analysis mode = 'limerick' /\n&output frames = 5 /", "keeps no frames"),
         (
             "&analysis mode = 'limerick' /\n&limerick dynamic = T /\n&search /",
-            "neither standing nor fallen",
+            "neither stable nor collapsed",
         ),
         ("&analysis mode = 'limerick' /\n&limerick overlap_deg = 60 /", "overlap_deg"),
     ],

@@ -84,9 +84,9 @@ def test_one_square_alone_falls_or_rests_where_it_is_fixed(tmp_path: Path) -> No
 def test_check_counts_the_blocks_of_the_file(tmp_path: Path) -> None:
     run(tmp_path, GROUND + BLOCK)
     done = run_dda("check", "x.nml", cwd=tmp_path)
-    assert "2, held at 4 points" in done.stdout
+    assert "2, fixed at 4 points" in done.stdout
     # 6 m wide, 3 m high
-    assert "half size   3 m" in done.stdout
+    assert "half size     3 m" in done.stdout
 
 
 @pytest.mark.parametrize("rows", ["0 -10e3", "\n 0 0 -10e3", "\n 0 0 -10e3\n 5 0 -10e3",

@@ -112,7 +112,7 @@ def test_two_steps_and_a_parapet_stand(tmp_path: Path) -> None:
 def test_check_accepts_a_deck_of_lines(tmp_path: Path) -> None:
     done = run_dda("check", INPUT / "terrace.nml", cwd=tmp_path)
     assert done.returncode == 0
-    assert "7 that move, 3 held" in done.stdout
+    assert "7 free, 3 fixed" in done.stdout
     assert "a load point has no force" in done.stderr
     assert not list(tmp_path.iterdir())
 
@@ -121,8 +121,8 @@ def test_check_accepts_a_deck_of_lines(tmp_path: Path) -> None:
     ("fixed", "loads", "wanted"),
     [
         ("0.5 0.5 0.5 0.5\n", 0, "two fixed points"),
-        ("0.2 0.5 0.2 0.5\n0.7 0.5 0.7 0.5\n", 0, "all are held"),
-        ("", 0, "lie together"),
+        ("0.2 0.5 0.2 0.5\n0.7 0.5 0.7 0.5\n", 0, "only fixed ones"),
+        ("", 0, "expected coincident edges"),
     ],
 )
 def test_what_cannot_be_run_is_checked_and_refused(
@@ -148,7 +148,7 @@ def test_what_cannot_be_run_is_checked_and_refused(
         ("&scene kind='lines', geometry='a.geo',\n analysis='b' /", "a.nml:2: error: scene%anal"),
         ("&scene kind='lines', geometry='bad.geo' /", "bad.geo:2: error: "),
         ("&scene kind='lines', geometry='a.geo', analysis='a.geo' /", "a.geo:1: error: "),
-        ("&scene kind='lines', geometry='two.geo', analysis='a.ana' /", "two.geo:12: error: one of"),
+        ("&scene kind='lines', geometry='two.geo', analysis='a.ana' /", "two.geo:12: error: expected one of"),
     ],
 )
 def test_faults_of_the_files_have_their_line(tmp_path: Path, deck: str, wanted: str) -> None:
@@ -207,7 +207,7 @@ def test_export_refuses_what_it_cannot_write(tmp_path: Path) -> None:
     (tmp_path / "a.nml").write_text("&arch\n half_angle_deg=130,\n abutment_size=8 /\n")
     done = run_dda("export", "a.nml", cwd=tmp_path)
     assert done.returncode == 2
-    assert done.stderr.startswith("a.nml:3: error: arch%abutment_size wants")
+    assert done.stderr.startswith("a.nml:3: error: arch%abutment_size must")
     (tmp_path / "b.nml").write_text("&arch /\n")
     (tmp_path / "b.geo").mkdir()
     assert run_dda("export", "b.nml", cwd=tmp_path).returncode == 4
@@ -256,5 +256,5 @@ def test_export_refuses_what_is_no_arch_with_its_line(tmp_path: Path, kind: str)
     (tmp_path / "a.nml").write_text(f"&scene\n kind='{kind}', geometry='a.{kind}' /\n")
     done = run_dda("export", "a.nml", cwd=tmp_path)
     assert done.returncode == 2
-    assert done.stderr.startswith(f"a.nml:2: error: dda export expected scene%kind = 'arch', got '{kind}'")
+    assert done.stderr.startswith(f"a.nml:2: error: dda export needs scene%kind = 'arch', got '{kind}'")
     assert not (tmp_path / "a.geo").exists()

@@ -51,6 +51,16 @@ def assert_proven(row: dict[str, str], factor: float) -> None:
     assert high - low <= 1e-8 * factor
 
 
+@pytest.mark.parametrize("force", [1.0, 1e-3, 1e-5])
+def test_a_small_live_load_keeps_its_digits_beside_weight(tmp_path: Path, force: float) -> None:
+    """It is the factor that grows: nothing of the push is lost in the weight."""
+    search = "&search parameter = 'load_factor', high = 1e12, tolerance = 1e-10 /\n"
+    (row,) = rows(tmp_path, search, GROUND + BLOCK + f"live 0 2 {force!r} {-force / 3.0!r}\n")
+    factor = 0.5 * WEIGHT / (2.0 * force - force / 3.0)
+    assert float(row["exact_low"]) <= factor * (1.0 + 1e-15) and factor * (1.0 - 1e-15) <= float(row["exact_high"])
+    assert float(row["exact_high"]) - float(row["exact_low"]) < 1e-12 * factor
+
+
 @pytest.mark.parametrize(("friction", "factor"), [(50, TURNS), (5, WEIGHT * math.tan(math.radians(5)) / 1000.0)])
 @pytest.mark.parametrize("flow", ["coulomb", "associated"])
 def test_a_pushed_block_turns_or_slides(tmp_path: Path, friction: float, factor: float, flow: str) -> None:

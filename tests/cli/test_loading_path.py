@@ -162,6 +162,42 @@ def test_a_wall_without_ground_under_a_course_falls_by_a_few_factorisations(tmp_
     assert int(row["factorisations"]) <= 40
 
 
+def two_rings(voussoirs: int, stuck: set[tuple[int, int]]) -> str:
+    """Two rings of voussoirs over 175.5 degrees on fixed springings; some joints cannot slide."""
+    half = math.radians(87.744)
+    angles = [half * (2.0 * i / voussoirs - 1.0) for i in range(voussoirs + 1)]
+    quads = []
+    for inner in (10.0, 10.54374):
+        rings = [[(r * math.sin(a), r * math.cos(a)) for a in angles] for r in (inner, inner + 0.54374)]
+        quads += [(rings[0][i + 1], rings[1][i + 1], rings[1][i], rings[0][i]) for i in range(voussoirs)]
+    text = "".join(f"material {number} density 1000\n" for number in range(2, len(quads) + 2))
+    for number, quad in enumerate(quads, start=2):
+        text += f"block material {number}\n" + "".join(f"{x!r} {y!r}\n" for x, y in quad)
+    for side in (-1.0, 1.0):
+        ends = [(side * r * math.sin(half), r * math.cos(half)) for r in (10.0, 11.08748)]
+        down = (-side * math.cos(half), -math.sin(half))
+        far = [(x + down[0], y + down[1]) for x, y in ends]
+        corners = [*ends, far[1], far[0]] if side < 0.0 else [*ends[::-1], far[0], far[1]]
+        text += "block fixed\n" + "".join(f"{x!r} {y!r}\n" for x, y in corners)
+    return text + "".join(f"joint {a + 1} {b + 1} friction_deg 89.9\n" for a, b in sorted(stuck))
+
+
+def test_how_rings_fall_whose_joints_slide_here_and_there_needs_no_run(tmp_path: Path) -> None:
+    stuck = {(1, 13), (3, 4), (4, 16), (5, 6), (6, 18), (9, 10), (11, 12), (17, 18), (19, 20), (20, 21)}
+    stuck |= {(21, 22), (22, 23), (0, 12)}
+    (tmp_path / "rings.blocks").write_text(two_rings(12, stuck))
+    (tmp_path / "rings.nml").write_text(
+        "&scene kind = 'blocks', geometry = 'rings.blocks' /\n&joint friction_deg = 36.653 /\n"
+    )
+    done = run_dda("run", "rings.nml", "--quiet", cwd=tmp_path)
+    assert done.returncode == 0, done.stderr
+    with (tmp_path / "rings" / "results.csv").open() as table:
+        (row,) = csv.DictReader(table)
+    assert row["verdict"] == "collapsed"
+    # the joint graph tells how, not a run of steps
+    assert int(row["steps"]) == 1
+
+
 def test_arch_has_one_verdict_with_and_without_tables(tmp_path: Path) -> None:
     """Three voussoirs that fall on the way to tilted gravity and a push, though forces balance both at once."""
     verdicts = []

@@ -1,4 +1,4 @@
-"""Messages as a set: file, line, what was wanted, what was found, what to do."""
+"""Messages as a set: file, line, what is expected, what it got, what to do."""
 
 from __future__ import annotations
 
@@ -12,13 +12,14 @@ from dda_command import run_dda
 from limerick_files import HAS_XML, INPUT, SQUARE
 from test_bad_input import COMMAND_LINES, GOOD, MISTAKES, SETTINGS
 
-#: What was wanted or is wrong; what was found; after the semicolon, what to do, as an order
+#: What is expected or wrong; what it got; after the semicolon, what to do, as an order
 MESSAGE = re.compile(
     r"(?P<file>[^:\n]+):(?P<line>\d+): error: (?P<fault>[^\n]+?); (?P<advice>[^;\n]+)\n"
 )
 FAULT = re.compile(
-    r"want(s|ed)\b.+\bfound\b|expect(s|ed)\b.+\bgot\b|unknown|there is no such file|is repeated|exclude one another"
-    r"|, but |is no key|cannot be|is swept|is both|has no item|wants|is a list|is not yet there"
+    r"(expected|must \w+|needs)\b.+\bgot\b|needs|unknown|there is no such file|is repeated"
+    r"|exclude one another|, but |is no key|cannot be|is swept|is both|has no item|is a list|is not yet there"
+    r"|is empty|is blank|is not well-formed"
 )
 ORDER = re.compile(
     r"(change|check|choose|close|copy|correct|give|join|leave|make|move|name|number|put|raise"
@@ -90,7 +91,7 @@ MISSPELT = {
     "&arch vousoirs = 36 /\n": "voussoirs",
     "&joint fricton = 30 /\n": "friction_deg",
     "&analysis max_displacement = 0.1 /\n": "max_displacement_ratio",
-    "&search parameter = 'thikness' /\n": "thickness_ratio",
+    "&search parameter = 'thiknes_ratio' /\n": "thickness_ratio",
     "&arch springing = 'no_slip' /\n": "'no-slip'",
     "&material plane = 'stres' /\n": "'stress'",
 }
@@ -127,8 +128,8 @@ def test_option_of_another_subcommand_is_refused(tmp_path: Path, arguments: list
     done = run_dda(verb, "deck.nml", *options, cwd=tmp_path)
     assert done.returncode == 2
     assert done.stderr == (
-        f"dda:3: error: wanted an option of dda {verb}, found {options[0]}, which dda run takes; "
-        "leave it away\n"
+        f"dda:3: error: expected an option of dda {verb}, got {options[0]}, which dda run takes; "
+        "remove it\n"
     )
     assert sorted(path.name for path in tmp_path.iterdir()) == ["deck.nml"]
 
@@ -158,7 +159,7 @@ GEOMETRIES_XML = {
     "no type": SQUARE_XML.replace("type='1'", "", 1),
     "too few": SQUARE_XML.replace("0 0 1 0", "0 0 1"),
     "ratio": SQUARE_XML.replace("<Jointlist>", "<Edgenodedist distance='1'/><Jointlist>"),
-    "bolts": SQUARE_XML.replace("<Jointlist>", "<Boltlist><Bolt/></Boltlist><Jointlist>"),
+    "bolts": SQUARE_XML.replace("<Jointlist>", "<Boltlist><Bolt> 0 0 1 </Bolt></Boltlist><Jointlist>"),
     "entity": "<!DOCTYPE a [<!ENTITY e '0'>]>" + SQUARE_XML.replace("0 0 1 0", "0 &e; 1 0"),
     "encoding": '<?xml version="1.0" encoding="EBCDIC-US"?>' + SQUARE_XML,
     "too deep": "<a>" * 110 + "</a>" * 110,

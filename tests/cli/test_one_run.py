@@ -37,7 +37,7 @@ SCENES = {
         "&analysis geometry = 'current' /\n&load horizontal_coefficient = 0.4 /\n"
         "&joint friction_deg = 20 /",
     ),
-    "steps are spent": (
+    "step limit": (
         BLOCK,
         "&analysis geometry = 'current', steps = 3, collapse_displacement = 9 /\n"
         "&load horizontal_coefficient = 0.6 /",

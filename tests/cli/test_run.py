@@ -17,7 +17,7 @@ STABLE = "&arch thickness_ratio = 0.12 /\n"
 UNDECIDED = "&arch thickness_ratio = 0.12 /\n&analysis geometry = 'current', steps = 1 /\n"
 BAD = "&arch\n thickness_ratio = 2 /\n"
 PROOFS = ["proof_forces.csv", "proof_motion.csv"]
-TABLES = ["blocks.csv", "joints.csv", "log.txt", *PROOFS, "results.csv"]
+TABLES = ["blocks.csv", "joints.csv", "log.txt", *PROOFS, "reactions.csv", "results.csv"]
 FILES = sorted(["deck.record", "disk.record", "run.lock", "sizes.record", *TABLES])
 
 
@@ -130,7 +130,7 @@ def test_one_undecided_case_among_many_gives_3(tmp_path: Path) -> None:
     assert run_dda("run", "deck.nml", cwd=tmp_path).returncode == 3
     verdicts = [row["verdict"] for row in rows_of(tmp_path / "deck")]
     assert verdicts == ["stable", "undecided", "stable"]
-    assert "steps" in (tmp_path / "deck" / "log.txt").read_text()
+    assert "step limit" in (tmp_path / "deck" / "log.txt").read_text()
 
 
 def test_undecided_search_gives_3_and_no_critical_value(tmp_path: Path) -> None:
@@ -360,7 +360,8 @@ def test_set_may_switch_joints_off(tmp_path: Path) -> None:
     write_decks(tmp_path, deck=STABLE)
     setting = "output%joints=.false."
     assert run_dda("run", "deck.nml", "--set", setting, cwd=tmp_path).returncode == 0
-    assert names_in(tmp_path / "deck") == [name for name in FILES if name not in ("joints.csv", *PROOFS)]
+    left_out = ("joints.csv", "reactions.csv", *PROOFS)
+    assert names_in(tmp_path / "deck") == [name for name in FILES if name not in left_out]
 
 
 def test_set_of_a_search_key_starts_a_search(tmp_path: Path) -> None:

@@ -57,4 +57,4 @@ def test_a_tiny_block_on_a_large_one_that_moves(tmp_path: Path, size: float, cas
         assert verdict == case[-1]
     else:
         assert verdict == "undecided"
-        assert "rounded coordinates press a small block with more than its weight" in log
+        assert "round-off of coordinates loads a small block with more than its weight" in log

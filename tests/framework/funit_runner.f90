@@ -2,7 +2,7 @@
 !>
 !> Types and procedures that the translated tests name are spelt as pFUnit spells them.
 module funit_runner
-   use, intrinsic :: iso_fortran_env, only : output_unit
+   use, intrinsic :: iso_fortran_env, only : int64, output_unit
    implicit none
    private
 
@@ -97,27 +97,47 @@ contains
       end do
    end subroutine record_failure
 
-   !> Run every test of a suite; the name is written first, so that a crash shows whose it was
+   !> Run the tests of a suite that the command line selects, all of them without -f; the name is
+   !> written first, so that a crash shows whose it was
    subroutine run_suite(suite, tally)
       !> The suite
       type(TestSuite), intent(in) :: suite
       !> Counts to add to
       type(tally_t), intent(inout) :: tally
+      integer(int64) :: start, end, rate
       integer :: i
 
       do i = 1, size(suite%test)
+         if (.not. is_selected(trim(suite%name)//"."//trim(suite%test(i)%name))) cycle
          write (output_unit, "(1x, 3a)", advance="no") &
             trim(suite%name), ".", trim(suite%test(i)%name)
          flush (output_unit)
+         call system_clock(start, rate)
          call run_test(suite%test(i))
+         call system_clock(end)
          tally%n_test = tally%n_test + 1
          if (anyExceptions()) then
             tally%n_failed = tally%n_failed + 1
          else
-            write (output_unit, "(a)") " ok"
+            write (output_unit, "(a, f0.3, a)") " ok ", real(end - start)/real(rate), " s"
          end if
       end do
    end subroutine run_suite
+
+   !> Whether a test is to be run: -f TEXT, given once or more, selects names that contain a text
+   logical function is_selected(name)
+      !> Name of the suite and the test
+      character(len=*), intent(in) :: name
+      character(len=255) :: word, text
+      integer :: i
+
+      is_selected = command_argument_count() == 0
+      do i = 1, command_argument_count() - 1
+         call get_command_argument(i, word)
+         call get_command_argument(i + 1, text)
+         if (word == "-f") is_selected = is_selected .or. index(name, trim(text)) > 0
+      end do
+   end function is_selected
 
    !> Run one test: after a failed setUp neither the test nor tearDown is run
    subroutine run_test(test)
@@ -136,7 +156,11 @@ contains
       !> What has been run
       type(tally_t), intent(in) :: tally
 
-      if (tally%n_failed == 0) then
+      if (tally%n_test == 0) then
+         write (output_unit, "(a)") &
+            " FAILED  (no test was selected: -f TEXT expects a part of a name)"
+         stop 2
+      else if (tally%n_failed == 0) then
          write (output_unit, "(a, i0, a)") " OK  (", tally%n_test, " tests)"
       else
          write (output_unit, "(2(a, i0), a)") &

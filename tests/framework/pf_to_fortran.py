@@ -5,7 +5,8 @@ a file accepted here compiles under pFUnit too. Its rules:
 
 * one module a file, of the file's name, alone on its line; no lines for the C preprocessor;
 * @test, @before and @after stand alone on a line, and the next line that is not a comment is a
-  subroutine without arguments; a test is named test_*; one @before and one @after a file;
+  subroutine without arguments; a test is named test_*, and what is named so is a test; one @before
+  and one @after a file;
 * an assertion is one whole line: no continuation, no comment, no second statement;
 * the assertions are those of ASSERTIONS below, with tolerance= and message= as keywords.
 """
@@ -32,6 +33,7 @@ ASSERTIONS = {
 LINE_LENGTH = 132
 MODULE = re.compile(r"\s*module\s+(?!procedure\b|subroutine\b|function\b)(\w+)(.*)", re.I)
 SUBROUTINE = re.compile(r"\s*subroutine\s+(\w+)\s*(\(\s*\))?\s*(!.*)?", re.I)
+UNMARKED = re.compile(r"\s*((pure|impure|recursive)\s+)*subroutine\s+(test_\w+).*", re.I)
 CLOSES = {"(": ")", "[": "]"}
 
 
@@ -204,6 +206,8 @@ def translate(source: str, path: Path) -> str:
             else:
                 out += translate_assertion(statement, path, line)
                 continue
+        elif unmarked := UNMARKED.fullmatch(text):
+            raise PfError(line, f"'{unmarked[3]}' has the name of a test: @test is missing above it")
         out.append(text)
     if directive or not suite.module or not suite.tests:
         missing = f"a subroutine after @{directive}" if directive else "a module and a @test"
@@ -270,6 +274,41 @@ end program run_test_suites
 """
 
 
+def read(path: Path) -> str:
+    """Text of a .pf file.
+
+    Parameters
+    ----------
+    path : Path
+        The file.
+
+    Returns
+    -------
+    str
+        Its text; bytes that are not UTF-8 are an error with their line.
+    """
+    content = path.read_bytes()
+    try:
+        return content.decode("utf-8").replace("\r\n", "\n")
+    except UnicodeDecodeError as error:
+        line = content.count(b"\n", 0, error.start) + 1
+        raise PfError(line, f"expected UTF-8, got the byte 0x{content[error.start]:02x}") from None
+
+
+def write_new(path: Path, text: str) -> None:
+    """Write a file if that changes it: what is as it was is not compiled again.
+
+    Parameters
+    ----------
+    path : Path
+        The file.
+    text : str
+        Its text.
+    """
+    if not path.exists() or path.read_text("utf-8") != text:
+        path.write_text(text, "utf-8")
+
+
 def main() -> None:
     """Translate the files named on the command line."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
@@ -278,15 +317,13 @@ def main() -> None:
     parser.add_argument("--driver", action="store_true", help="write the program that runs them")
     arguments = parser.parse_args()
     if arguments.driver:
-        text = driver([path.stem for path in arguments.source])
-        if not arguments.output.exists() or arguments.output.read_text("utf-8") != text:
-            arguments.output.write_text(text, "utf-8")
+        write_new(arguments.output, driver([path.stem for path in arguments.source]))
         return
     path = arguments.source[0]
     if len(arguments.source) > 1:
         parser.error("without --driver one file is translated at a time")
     try:
-        arguments.output.write_text(translate(path.read_text("utf-8"), path), "utf-8")
+        write_new(arguments.output, translate(read(path), path))
     except PfError as error:
         sys.exit(f"{path}:{error.line}: error: {error}")
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 from pathlib import Path
 
 import fortran_rules
@@ -144,3 +145,13 @@ def test_what_breaks_a_rule_of_python_is_found(tmp_path: Path, old: str, new: st
     (tmp_path / "bad.py").write_text(GOOD_PYTHON.replace(old, new, 1))
     found = python_rules.offences(tmp_path / "bad.py", strict=True)
     assert len(found) == 1 and rule in found[0], found
+
+
+def test_pages_of_the_sources_are_what_the_sources_say() -> None:
+    sys.path.insert(0, str(REPOSITORY / "docs" / "site"))
+    import source_pages
+
+    for name, text in source_pages.pages().items():
+        written = (REPOSITORY / "docs" / name).read_text(encoding="utf-8")
+        assert written == text, f"{name}: expected what `python3 docs/site/source_pages.py` writes, got another page"
+    assert {folder.name for folder in (REPOSITORY / "src").iterdir() if folder.is_dir()} == set(source_pages.ROOMS)

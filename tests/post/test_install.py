@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import re
+import shlex
 import shutil
 import subprocess
 import sys
@@ -65,6 +66,29 @@ def test_decks_are_found_where_pip_puts_them(tmp_path: Path) -> None:
     environment = {**os.environ, "PYTHONPATH": str(tmp_path / "site")}
     done = subprocess.run([sys.executable, "-c", code], env=environment, capture_output=True, text=True)
     assert done.stdout.strip() == str(tmp_path / "site/voussoir/input/paper")
+
+
+def flags_of(pc_file: Path) -> list[str]:
+    """What pkg-config --static tells a compiler, without pkg-config."""
+    entry = dict(line.split(": ", 1) for line in pc_file.read_text().splitlines() if ": " in line)
+    words = shlex.split(f"{entry['Cflags']} {entry['Libs']}")
+    xml = ["-lxml2"] if entry.get("Requires.private", "") == "libxml-2.0" else []
+    return [word.replace("${pcfiledir}", str(pc_file.parent)) for word in words] + xml
+
+
+def test_programs_of_the_page_on_fortran_run(prefix: Path, tmp_path: Path) -> None:
+    page = (Path(__file__).parents[2] / "docs/howto_fortran.md").read_text(encoding="utf-8")
+    deck = re.search(r"```fortran\n(.*?)```", page, re.S).group(1)
+    (tmp_path / "arch.nml").write_text(deck)
+    flags = flags_of(next((prefix / "lib").rglob("voussoir.pc")))
+    printed = {}
+    for source in re.findall(r"```f90\n(.*?)```", page, re.S):
+        name = re.match(r"program (\w+)", source).group(1)
+        (tmp_path / f"{name}.f90").write_text(source)
+        subprocess.run(["gfortran", f"{name}.f90", *flags, "-o", name], cwd=tmp_path, check=True)
+        done = subprocess.run([tmp_path / name], cwd=tmp_path, capture_output=True, text=True, check=True)
+        printed[name] = done.stdout
+    assert printed == {"critical": "found      0.107424138\n", "slope": " 0.400000000 0.400000000\n"}
 
 
 def test_documents_are_installed(prefix: Path) -> None:

@@ -174,7 +174,7 @@ def test_assertion_may_fill_the_line_but_not_more() -> None:
     ("end module test_arch\n", "end module test_arch\nmodule test_arch\nend module\n", 10,
      "the one module"),
     ("end module test_arch\n", "end module test_arch\n@test\n", 10, "a subroutine after @test"),
-    ("   @test\n", "", 8, "ends without a module and a @test"),
+    ("   @test\n", "", 5, "@test is missing above it"),
     ("   @test\n", "   @before\n", 9, "ends without a module and a @test"),
     ("   @test\n", "   @after\n   subroutine a\n   end subroutine\n   @after\n   subroutine b\n", 9,
      "there is one @after"),
@@ -215,6 +215,28 @@ def test_command_tells_file_and_line_and_writes_nothing(tmp_path: Path) -> None:
     assert result.returncode == 1
     assert result.stderr.startswith(f"{source}:7: error: outside the subset")
     assert not (tmp_path / "test_arch.F90").exists()
+
+
+@pytest.mark.parametrize("head", ["subroutine test_two()", "  Pure Subroutine TEST_two(x)", "subroutine test_two ! y"])
+def test_a_test_without_its_mark_is_refused(head: str) -> None:
+    line, text = refusal(PASSING.replace("end module", f"{head}\nend subroutine test_two\nend module"))
+    assert line == 9 and "@test is missing" in text
+
+
+def test_bytes_that_are_not_utf_8_are_refused_with_their_line(tmp_path: Path) -> None:
+    path = tmp_path / "test_arch.pf"
+    path.write_bytes(PASSING.encode().replace(b"one_is_one()", b"one_is_one() ! \xe9", 1))
+    done = run(path, tmp_path / "out.F90")
+    assert done.returncode == 1 and not (tmp_path / "out.F90").exists()
+    assert done.stderr == f"{path}:6: error: expected UTF-8, got the byte 0xe9\n"
+
+
+def test_unchanged_source_is_not_written_again(tmp_path: Path) -> None:
+    path, out = tmp_path / "test_arch.pf", tmp_path / "out.F90"
+    path.write_text(PASSING)
+    assert run(path, out).returncode == 0
+    before = out.stat().st_mtime_ns
+    assert run(path, out).returncode == 0 and out.stat().st_mtime_ns == before
 
 
 def test_unchanged_driver_is_not_written_again(tmp_path: Path) -> None:

@@ -253,11 +253,12 @@ def test_chart_shows_critical_and_exact_values(searches, tmp_path: Path) -> None
     assert swept_columns(searches.cases) == ["half_angle_deg", "friction_deg"]
     with house_style():
         axes = draw_chart(searches, "friction_deg").axes[0]
-    points = [line for line in axes.lines if line.get_marker() != "None" and len(line.get_xdata())]
-    assert [list(line.get_xdata()) for line in points] == [[20, 21, 50], [20, 21, 50]]
-    lines = [line for line in axes.lines if line.get_marker() == "None" and len(line.get_xdata())]
-    for line, marks in zip(lines, points):
-        assert line.get_ydata() == pytest.approx(marks.get_ydata(), abs=1e-8)
+    drawn = [line for line in axes.lines if len(line.get_xdata())]
+    assert {line.get_linestyle() for line in drawn} == {"None"}  # nothing is computed between them
+    assert [list(line.get_xdata()) for line in drawn] == 4 * [[20, 21, 50]]
+    for found, exact in zip(drawn[::2], drawn[1::2]):
+        assert exact.get_marker() == "+"
+        assert found.get_ydata() == pytest.approx(exact.get_ydata(), abs=1e-8)
     assert axes.get_xlabel().startswith("friction angle")
     assert axes.get_ylabel().startswith("critical thickness")
     assert main(["plot", str(searches.folder), "--chart", "--out", str(tmp_path)]) == 0
@@ -278,7 +279,7 @@ def test_chart_over_blocks_of_a_linked_sweep(tmp_path: Path) -> None:
     ("words", "message"),
     [
         (["--case", "99"], "no case 99"),
-        (["--chart", "radius"], "wanted one of"),
+        (["--chart", "radius"], "expected one of"),
         (["--chart"], "give the deck &search"),
     ],
 )
@@ -327,7 +328,7 @@ def test_too_many_curves_are_refused(tmp_path: Path) -> None:
         "&sweep parameter = 'springing', texts = 'frictional', 'no-slip' /\n"
         "&sweep parameter = 'friction_deg', values = 40, 50, 60 /\n",
     )
-    with pytest.raises(ChartError, match="found 10 curves of .*; sweep fewer values"):
+    with pytest.raises(ChartError, match="got 10 curves of .*; sweep fewer values"):
         draw_chart(run, "friction_deg")
 
 
@@ -369,7 +370,7 @@ def test_blocks_in_time_are_animated(rocking: results.Results, tmp_path: Path, c
 @pytest.mark.skipif(FFMpegWriter.isAvailable(), reason="ffmpeg is there: skipped")
 def test_missing_ffmpeg_is_told(motion: results.Results, tmp_path: Path, capsys) -> None:
     assert main(["animate", str(motion.folder), "--out", str(tmp_path / "fall.mp4")]) == 2
-    assert "wanted the program ffmpeg" in capsys.readouterr().err
+    assert "expected the program ffmpeg" in capsys.readouterr().err
     assert not list(tmp_path.iterdir())
 
 
@@ -381,7 +382,7 @@ def test_motion_is_a_film(motion: results.Results, tmp_path: Path) -> None:
 
 def test_unknown_ending_of_an_animation_is_told(motion, tmp_path: Path, capsys) -> None:
     assert main(["animate", str(motion.folder), "--out", str(tmp_path / "fall.avi")]) == 2
-    assert "wanted a file .gif, .mp4 or .png, found 'fall.avi'" in capsys.readouterr().err
+    assert "expected a file .gif, .mp4 or .png, got 'fall.avi'" in capsys.readouterr().err
 
 
 def test_mechanism_of_a_collapse_without_frames_is_animated(arches, tmp_path: Path, capsys) -> None:
@@ -399,4 +400,4 @@ def test_mechanism_of_a_collapse_without_frames_is_animated(arches, tmp_path: Pa
 
 def test_results_that_do_not_move_are_not_animated(arches, capsys) -> None:
     assert main(["animate", str(arches.folder), "--case", "2"]) == 2
-    assert "wanted frames of case 2, found none; give the deck" in capsys.readouterr().err
+    assert "expected frames of case 2, got none; give the deck" in capsys.readouterr().err

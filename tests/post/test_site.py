@@ -115,4 +115,4 @@ def test_missing_packages_are_told(tmp_path: Path) -> None:
         [sys.executable, "-S", "-E", script, "--out", tmp_path], capture_output=True, text=True
     )
     assert done.returncode == 2
-    assert "wanted the packages mkdocs, ford, latex2mathml" in done.stderr
+    assert "expected the packages mkdocs, ford, latex2mathml" in done.stderr

@@ -76,9 +76,9 @@ def test_cases_that_must_agree_are_compared():
 
 
 def test_undecided_gives_its_reason():
-    left = Finished(3, [row("undecided")], {"1": "all steps are spent"})
+    left = Finished(3, [row("undecided")], {"1": "step limit reached"})
     judgement = judge(Critical(0.1), left)
-    assert (judgement.colour, judgement.reason) == ("undecided", "all steps are spent")
+    assert (judgement.colour, judgement.reason) == ("undecided", "step limit reached")
 
 
 @pytest.mark.parametrize(
@@ -88,7 +88,7 @@ def test_undecided_gives_its_reason():
         Finished(-11, [row()]),
         Finished(0, [row()], not_a_number=("joints.csv",)),
         Finished(0, []),
-        Finished(2, [], message="deck.nml:1: error: young wants a number"),
+        Finished(2, [], message="deck.nml:1: error: young must be a number"),
     ],
 )
 def test_crashes_and_nan_and_lost_rows_are_wrong_whatever_they_say(left):
@@ -96,7 +96,7 @@ def test_crashes_and_nan_and_lost_rows_are_wrong_whatever_they_say(left):
 
 
 def test_refusal_must_name_the_key():
-    left = Finished(2, [], message="deck.nml:1: error: young wants a number")
+    left = Finished(2, [], message="deck.nml:1: error: young must be a number")
     assert judge(Refused("young"), left).colour == "right"
     assert judge(Refused("poisson"), left).colour == "WRONG"
 
@@ -172,7 +172,8 @@ def test_scenes_are_run_and_told(tmp_path, capsys):
     assert all(float(line["condition"]) > 1.0 and int(line["passes"]) > 0 for line in rows)
     assert "0 WRONG" in (tmp_path / "stability.md").read_text()
     page = (tmp_path / "stability.html").read_text()
-    assert page.count("<td class='right'>") == 4 and "class='number right'>4<" in page
+    assert page.count("<td class='right'>") == 4 and "<td class='number '>4</td>" in page
+    assert "<details><summary>friction, large angles: 4 scenes</summary>" in page
     assert "not right" not in page
 
 

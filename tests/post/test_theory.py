@@ -156,7 +156,7 @@ def test_unknown_theory_is_refused(name):
         lambda: theory.limits(name),
         lambda: theory.friction(name),
     ):
-        with pytest.raises(ValueError, match="theory wants one of"):
+        with pytest.raises(ValueError, match="theory must be one of"):
             call()
 
 

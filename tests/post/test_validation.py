@@ -138,7 +138,7 @@ def test_miss_is_told_and_is_the_exit_status(tmp_path: Path, monkeypatch, capsys
 
 def test_what_is_no_scene_or_no_deck_is_bad_input(tmp_path: Path, capsys) -> None:
     assert command("--scenes", "colum", "--out", tmp_path) == 2
-    assert "wanted a scene, found 'colum'" in capsys.readouterr().err
+    assert "expected a scene, got 'colum'" in capsys.readouterr().err
     assert command("--scenes", "column", "--decks", tmp_path, "--out", tmp_path / "out") != 0
     assert "column.nml" in capsys.readouterr().err
     (tmp_path / "file").write_text("")

@@ -89,6 +89,13 @@ def test_proofs_of_benchmarks_hold(tmp_path: Path, name: str) -> None:
     assert main(["verify", str(tmp_path / name), "--decks", str(decks)]) == 0
 
 
+def test_a_joint_as_short_as_blocks_may_be_apart_has_two_ends(tmp_path: Path) -> None:
+    """Bricks that overlap by 1.8e-4 of their size."""
+    blocks, friction = random_assembly(113)
+    folder = run_deck(tmp_path, HEAD + f"&joint friction_deg = {friction!r} /\n" + SEARCH, blocks)
+    assert main(["verify", str(folder), "--exact"]) == 0
+
+
 @pytest.mark.parametrize("seed", range(12))
 def test_random_assemblies_are_proven_on_both_sides_of_their_programme(tmp_path: Path, seed: int) -> None:
     pytest.importorskip("scipy", reason="the linear programme wants scipy")

@@ -4,16 +4,21 @@ import csv
 import math
 import os
 
+import numpy as np
 import pytest
 
-pytest.importorskip("voussoir", reason="PYTHONPATH wants the build's python folder")
+voussoir = pytest.importorskip("voussoir", reason="PYTHONPATH wants the build's python folder")
 
 from voussoir import limit_lp, theory  # noqa: E402
 from voussoir.command_line import main  # noqa: E402
+from voussoir.running import Deck  # noqa: E402
 from voussoir.work_precision_motion import MotionPoint, order, pendulum_quarter  # noqa: E402
 from voussoir.work_precision_motion_page import motion_table  # noqa: E402
-from voussoir.work_precision_page import best_table, race_table  # noqa: E402
-from voussoir.work_precision_runs import Arch, Point, Race  # noqa: E402
+from voussoir.limit_lp_blocks import assembly_of, limit_factor  # noqa: E402
+from voussoir.work_precision_fronts import Panel, Point, front  # noqa: E402
+from voussoir.work_precision_page import front_table, race_table  # noqa: E402
+from voussoir.work_precision_runs import Arch, Race  # noqa: E402
+from voussoir.work_precision_scenes import RIGID, three_rings, wall  # noqa: E402
 
 needs_scipy = pytest.mark.skipif(limit_lp.scipy_version() is None, reason="scipy is missing")
 needs_dda = pytest.mark.skipif("DDA" not in os.environ, reason="the program is named by DDA")
@@ -50,17 +55,36 @@ def test_general_program_takes_an_odd_number_of_voussoirs():
         limit_lp.stands_by_compact(math.pi / 2.0, 35, exact, 1.0)
 
 
-def test_fastest_setting_is_named_for_each_accuracy():
-    arch = Arch(90.0, 36)
-    points = [
-        Point(arch, "tolerance", "0.01", 1e-5, 0.001, 3),
-        Point(arch, "tolerance", "1e-8", 1e-9, 0.004, 9),
-        Point(arch, "penalty", "1", 1e-9, 0.003, 9),
-        Point(arch, "steps", "2", None, 0.0001, 2),
-    ]
-    row = best_table(points)[-1]
-    fast, fine = "tolerance = 0.01: 1.00 ms", "penalty = 1: 3.00 ms"
-    assert row.endswith(f"| {fast} | {fine} | {fine} | none |")
+def point(error, seconds):
+    """A point of one method."""
+    return Point("arch", RIGID, "", error, seconds, None)
+
+
+def test_front_never_runs_backwards_and_nothing_beats_it():
+    points = [point(1e-5, 1.0), point(1e-3, 0.5), point(1e-2, 0.7), point(None, 0.1), point(1e-9, 4.0),
+              point(1e-9, 3.0)]
+    best = front(points)
+    assert [(one.error, one.seconds) for one in best] == [(1e-3, 0.5), (1e-5, 1.0), (1e-9, 3.0)]
+    assert front([point(None, 1.0)]) == []
+    row = front_table([Panel("", tuple(points))])[-1]
+    assert row == f"| arch | {RIGID} | 1e-09 | 500 ms | 500 ms | 3e+03 ms | 3e+03 ms |"
+
+
+@needs_scipy
+@needs_dda
+@pytest.mark.parametrize("scene", [wall(3, 3), wall(8, 5), three_rings(2, 12)])
+@pytest.mark.parametrize("solver", ["highs-ds", "highs-ipm"])
+def test_program_of_blocks_knows_the_associated_limit(scene, solver):
+    groups = {**scene.groups, "output": {}}
+    run = voussoir.run(Deck(groups, scene.files))
+    push = None
+    if scene.live_block is not None:
+        push = scene.live_block, np.array(scene.live_point), np.array([0.0, -1000.0 / (2240 * 9.81)])
+    friction = math.tan(math.radians(scene.friction_deg))
+    found = limit_factor(assembly_of(run, push), friction, solver, 1e-9)
+    row = run.case(1)
+    assert row["exact_low"] * (1 - 1e-8) < found < row["exact_high"] * (1 + 1e-8)
+    assert row["critical"] < found * (1 + 1e-7)  # Coulomb friction carries no more
 
 
 def test_ratios_are_those_of_the_times():
@@ -97,30 +121,28 @@ def test_motion_alone_converges_as_it_should(tmp_path, capsys):
     assert worst["incline: way"] < 1e-8 and worst["bounce: second top"] < 1e-8
     assert least["rocking: quarter period"] < 5e-4 and least["rocking: next tilt"] < 1e-2
     assert least["pendulum: next amplitude"] < 1e-7
-    assert (tmp_path / "work_precision_motion.svg").stat().st_size > 5000
     assert not (tmp_path / "work_precision.csv").exists()
 
 
 @needs_dda
-def test_small_run_writes_tables_and_figure(tmp_path, capsys):
+def test_small_run_writes_tables_and_figures(tmp_path, capsys):
     pytest.importorskip("matplotlib")
-    options = ["--angles", "90", "--voussoirs", "6", "--repeats", "1"]
-    assert main(["work-precision", "--out", str(tmp_path), *options]) == 0
+    words = ["work-precision", "--angles", "90", "--voussoirs", "6", "--repeats", "1", "--scenes",
+             "arch"]
+    assert main([*words, "--out", str(tmp_path)]) == 0
     printed = capsys.readouterr().out
     assert printed == (tmp_path / "work_precision.md").read_text()
-    assert "| 90 | 6 |" in printed
+    assert "| 90 | 6 |" in printed and f"| arch | {RIGID} |" in printed
     with (tmp_path / "work_precision.csv").open() as lines:
         rows = list(csv.DictReader(lines))
-    fine = [row for row in rows if row["family"] == "tolerance" and float(row["setting"]) < 1e-7]
-    assert fine and all(float(row["error"]) < float(row["setting"]) for row in fine[:3])
-    original = [row for row in rows if row["family"] == "Limerick's scheme, tolerance"]
-    assert original and all(0.0 < float(row["error"]) < 0.5 for row in original)
-    moving = {row["setting"]: row for row in rows if row["family"] == "Young's modulus, moving"}
-    shift = [float(moving[young]["error"]) for young in ("5e+09", "5e+10", "5e+11")]
-    assert shift[0] / shift[1] == pytest.approx(10.0, rel=0.01)
-    assert shift[1] / shift[2] == pytest.approx(10.0, rel=0.01)
-    for name in ("work_precision.svg", "work_precision.png"):
-        assert (tmp_path / name).stat().st_size > 5000
+    fine = [row for row in rows if row["method"] == RIGID and "tolerance = 1e-08" in row["setting"]]
+    assert float(fine[0]["error"]) < 1e-8
+    original = [float(row["error"]) for row in rows if row["method"] == "the original's scheme"]
+    assert original and all(0.01 < error < 0.5 for error in original)
+    assert {row["on_front"] for row in rows} == {"0", "1"}
+    for name in ("work_precision", "work_precision_arch"):
+        for ending in ("svg", "png"):
+            assert (tmp_path / f"{name}.{ending}").stat().st_size > 5000
 
 
 @needs_dda

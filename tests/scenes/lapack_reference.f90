@@ -6,6 +6,7 @@ module lapack_reference
    private
 
    public :: band_factor_t, factorise, substitute, condition_estimate
+   public :: fill_band, factor_band
 
    !> Cholesky factor in LAPACK's band storage
    type :: band_factor_t
@@ -94,14 +95,22 @@ contains
       type(block_matrix_t), intent(in) :: matrix
       !> Its factor; storage of an earlier factor of the same pattern is used again
       type(band_factor_t), intent(inout) :: factor
-      integer :: info, kd, n
 
       call fill_band(matrix, factor)
+      call factor_band(factor)
+   end subroutine factorise
+
+   !> Factor a matrix that lies in its band
+   pure subroutine factor_band(factor)
+      !> The band in, the factor out
+      type(band_factor_t), intent(inout) :: factor
+      integer :: info, kd, n
+
       kd = size(factor%band, 1) - 1
       n = size(factor%band, 2)
       call dpbtrf("L", n, kd, factor%band, kd + 1, info)
       factor%usable = info == 0
-   end subroutine factorise
+   end subroutine factor_band
 
    !> Lay the blocks of a matrix into the band
    pure subroutine fill_band(matrix, factor)

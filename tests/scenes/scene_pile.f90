@@ -103,7 +103,7 @@ contains
       ended = record%verdict == verdict%completed
       if (ended) return
       record%reason = outcome%reason
-      ended = index(outcome%reason, "all steps") == 0
+      ended = index(outcome%reason, "step limit") == 0
    end subroutine watch_step
 
    !> Turned bricks in rows above a floor

@@ -258,10 +258,10 @@ contains
          if (builder%depth > max_depth) exit
       end do
       if (builder%depth > max_depth) then
-         call fatal_error(error, "elements at most 100 deep are wanted, found deeper ones; " &
+         call fatal_error(error, "expected elements at most 100 deep, got deeper ones; " &
             & //"remove some", file, builder%tree%element(builder%open)%row)
       else if (builder%tree%n == 0) then
-         call fatal_error(error, "an XML element is wanted, none was found; write one", file, 1)
+         call fatal_error(error, "expected an XML element, got none; write one", file, 1)
       end if
       call free_reader(reader)
       call free_document(document)
@@ -366,7 +366,7 @@ contains
          line = int(said%line)
       end if
       if (index(message, achar(10)) > 0) message = message(:index(message, achar(10)) - 1)
-      call fatal_error(error, "well-formed XML is wanted, libxml2 found "//quoted(message) &
+      call fatal_error(error, "the XML is not well-formed: libxml2 says "//quoted(message) &
          & //"; correct it", file, line + skipped)
    end subroutine report_error
 

@@ -25,7 +25,7 @@ contains
 
       tree%file = file
       allocate (tree%element(0))
-      if (len(text) >= 0) call fatal_error(error, "the plain form is wanted, found XML: this " &
+      if (len(text) >= 0) call fatal_error(error, "expected the plain form, got XML: this " &
          & //"build has no libxml2 (on Debian: libxml2-dev); install it and configure again", &
          & file, 1)
    end subroutine parse_xml

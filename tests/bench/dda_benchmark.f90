@@ -164,9 +164,9 @@ contains
       family%voussoirs = voussoirs
       family%unknowns = unknowns
       family%decides_chains = unknowns == 3
-      family%numbers = arch_numbers_t(density=material%density, young=material%young, &
-         & body_force=[0.0_wp, -unit_weight], penalty_ratio=settings%penalty_ratio, &
-         & law=joint_law_t(no_slip=.true.), halved=family%decides_chains)
+      family%numbers = arch_numbers_t(family%numbers%shape, material%density, material%young, &
+         & [0.0_wp, -unit_weight], settings%penalty_ratio, joint_law_t(no_slip=.true.), &
+         & halved=family%decides_chains)
       allocate (family%numbers%shape%joint_angle, source=equal_joints(voussoirs, half_angle))
       allocate (family%numbers%shape%facets((voussoirs + 1)/2), source=1)
       call arch_rays(family%numbers, family%rays)

@@ -49,6 +49,12 @@ contains
       step_case%current = .false.
       step_case%dynamic = .true.
       call measure_sizes(step_case, ", in time")
+      step_case%name = "ten courses, settled"
+      step_case%steps(1) = 40
+      step_case%steps(2) = 20
+      call measure_sizes(step_case, ", in time")
+      step_case%current = .true.
+      call measure_sizes(step_case, ", in time, current")
    end subroutine measure_walls
 
    !> Loose blocks that have begun to land on one another

@@ -1,0 +1,186 @@
+"""Decks written from Python values, and keys found by their bare names."""
+
+from __future__ import annotations
+
+import difflib
+import re
+import subprocess
+from collections.abc import Mapping
+from functools import lru_cache
+from pathlib import Path
+from typing import Any, Union
+
+#: Groups of a deck: a mapping of keys each; of &sweep a list of such mappings will do
+Groups = Mapping[str, Union[Mapping[str, Any], list]]
+#: What a bare name means that several groups have, as in &sweep
+_MEANT = {"geometry": "analysis", "friction_deg": "joint", "unit_weight": "material"}
+
+
+def value_text(value: Any) -> str:
+    """A value as a deck writes it.
+
+    Parameters
+    ----------
+    value : bool, number, str, Path, or a sequence or array of these
+        A Python or NumPy value.
+
+    Returns
+    -------
+    str
+        Such as ".true.", "0.5", "'no-slip'" or "0, 54.5, 90".
+
+    Raises
+    ------
+    TypeError
+        If a deck has no such value.
+    """
+    if hasattr(value, "tolist"):  # NumPy
+        value = value.tolist()
+    if isinstance(value, bool):
+        return ".true." if value else ".false."
+    if isinstance(value, (int, float)):
+        return repr(value)
+    if isinstance(value, (str, Path)):
+        return "'" + str(value).replace("'", "''") + "'"
+    if isinstance(value, (list, tuple, range)):
+        return ", ".join(map(value_text, value))
+    raise TypeError(f"expected a number, a flag, a text or a list of them, got {value!r}")
+
+
+def deck_text(groups: Groups) -> str:
+    """A deck as text.
+
+    Parameters
+    ----------
+    groups : mapping
+        Keys and values by group: {"arch": {"voussoirs": 36}, "search": {}}; "sweep" may hold a
+        list of mappings.
+
+    Returns
+    -------
+    str
+        The deck, a line a group.
+    """
+    lines = []
+    for group, keys in groups.items():
+        for one in [keys] if isinstance(keys, Mapping) else keys:
+            words = ", ".join(f"{key} = {value_text(value)}" for key, value in one.items())
+            lines.append(f"&{group} {words} /".replace("  ", " "))
+    return "\n".join(lines) + "\n"
+
+
+def merged(groups: Groups, more: Groups) -> dict[str, Any]:
+    """Groups whose keys go before those of other groups.
+
+    Parameters
+    ----------
+    groups, more : mapping
+        As for `deck_text`; keys of `more` win, its sweeps are added.
+
+    Returns
+    -------
+    dict
+        The groups of both.
+    """
+    joint: dict[str, Any] = dict(groups)
+    for group, keys in more.items():
+        there = joint.get(group)
+        if group == "sweep":
+            joint[group] = [*_as_list(there or []), *_as_list(keys)]
+        else:
+            joint[group] = {**(there or {}), **keys}
+    return joint
+
+
+def _as_list(keys: Any) -> list:
+    """Sweeps as a list of mappings."""
+    return [keys] if isinstance(keys, Mapping) else list(keys)
+
+
+@lru_cache(maxsize=4)
+def groups_of_keys(dda: Path) -> dict[str, tuple[str, ...]]:
+    """Which groups have a key of that name, as the program says it.
+
+    Parameters
+    ----------
+    dda : Path
+        The program.
+
+    Returns
+    -------
+    dict of str to tuple of str
+        Groups by key; a group's own name stands for itself.
+    """
+    done = subprocess.run([dda, "help", "keys"], capture_output=True, text=True, check=True)
+    owners: dict[str, tuple[str, ...]] = {}
+    group = ""
+    for line in done.stdout.splitlines():
+        if found := re.match(r"&(\w+)", line):
+            group = found[1]
+            owners.setdefault("&" + group, (group,))
+        elif found := re.match(r" {3}(\w+)(?: = | +\(|$)", line):
+            owners[found[1]] = (*owners.get(found[1], ()), group)
+    return owners
+
+
+def groups_of(dda: Path, keys: Mapping[str, Any]) -> dict[str, Any]:
+    """Groups from keyword arguments.
+
+    Parameters
+    ----------
+    dda : Path
+        The program, which knows the keys.
+    keys : mapping
+        By bare name ("friction_deg"), with the group ("arch%radius"), or a group as a mapping
+        ("search" to {"parameter": "friction_deg"}); the name of a parameter will do for "search".
+
+    Returns
+    -------
+    dict
+        As for `deck_text`.
+
+    Raises
+    ------
+    ValueError
+        If no group has such a key, or several do.
+    """
+    owners = groups_of_keys(dda)
+    groups: dict[str, Any] = {}
+    for name, value in keys.items():
+        if "&" + name in owners and not _is_plain_key(name, value, owners):
+            groups = merged(groups, {name: _group_of(name, value)})
+            continue
+        group, _, key = name.rpartition("%")
+        group = group or _only_owner(key, owners)
+        groups = merged(groups, {group: {key: value}})
+    return groups
+
+
+def _is_plain_key(name: str, value: Any, owners: Mapping[str, tuple[str, ...]]) -> bool:
+    """Whether a name that is a group's is meant as a key: scene%analysis is one."""
+    return name in owners and not isinstance(value, Mapping)
+
+
+def _group_of(name: str, value: Any) -> Any:
+    """Keys of a group that was given whole."""
+    if name == "search" and not isinstance(value, Mapping):
+        return {"parameter": value} if isinstance(value, str) else {}
+    if isinstance(value, Mapping) or (name == "sweep" and isinstance(value, (list, tuple))):
+        return value
+    raise ValueError(f"expected the keys of &{name} as a dict, got {value!r}")
+
+
+def _only_owner(key: str, owners: Mapping[str, tuple[str, ...]]) -> str:
+    """The group that has a key."""
+    plain = re.sub(r"\(\d+\)$", "", key)
+    groups = owners.get(plain, ())
+    if plain in _MEANT:
+        return _MEANT[plain]
+    if len(groups) == 1:
+        return groups[0]
+    if groups:
+        names = " or ".join(f"'{group}%{plain}'" for group in groups)
+        raise ValueError(f"expected {names}, got '{key}', a key of several groups")
+    near = difflib.get_close_matches(plain, owners, 1)
+    words = f"; did you mean '{near[0]}'?" if near else ""
+    raise ValueError(f"expected a key of a deck, got '{key}'{words}")

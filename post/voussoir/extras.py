@@ -1,0 +1,80 @@
+"""Packages that only some commands want: how to get one that is missing."""
+
+from __future__ import annotations
+
+import importlib
+import sys
+import sysconfig
+from pathlib import Path
+from types import ModuleType
+
+#: Debian's name of a package, where it has one
+_DEBIAN = {
+    "distributed": "python3-distributed",
+    "ezdxf": "python3-ezdxf",
+    "matplotlib": "python3-matplotlib",
+    "meshio": "python3-meshio",
+    "pandas": "python3-pandas",
+    "scipy": "python3-scipy",
+    "shapely": "python3-shapely",
+}
+
+
+class MissingPackage(ImportError):
+    """A package that a command wants is not there: the message says how to get it."""
+
+
+def advice(package: str) -> str:
+    """How to install a package for this interpreter.
+
+    Parameters
+    ----------
+    package : str
+        Its name on the package index.
+
+    Returns
+    -------
+    str
+        With pip in a virtual environment or where the system leaves its Python to pip; else with
+        the system's package, and an environment where it has none.
+    """
+    if not _is_managed():
+        return f"install it: {Path(sys.executable).name} -m pip install {package}"
+    if package in _DEBIAN:
+        return f"install it: apt-get install {_DEBIAN[package]}"
+    return f"the system has no package of it: use a virtual environment and pip install {package}"
+
+
+def _is_managed() -> bool:
+    """Whether the system's packages alone may change this interpreter's (PEP 668)."""
+    if sys.prefix != sys.base_prefix:
+        return False
+    return (Path(sysconfig.get_path("stdlib")) / "EXTERNALLY-MANAGED").is_file()
+
+
+def load(package: str, purpose: str) -> ModuleType:
+    """Import a package.
+
+    Parameters
+    ----------
+    package : str
+        Its name, that of a module.
+    purpose : str
+        What wants it, such as "a DXF drawing".
+
+    Returns
+    -------
+    module
+        The package.
+
+    Raises
+    ------
+    MissingPackage
+        If it cannot be imported.
+    """
+    try:
+        return importlib.import_module(package)
+    except ImportError as missing:
+        raise MissingPackage(
+            f"{purpose} needs {package}, got none ({missing}); {advice(package)}"
+        ) from missing

@@ -1,0 +1,73 @@
+"""Polygons of shapely made fit for blocks: collections taken apart, holes cut open."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import Any
+
+from voussoir.extras import load
+
+_PURPOSE = "polygons"
+
+
+def polygons_of(shapes: Any) -> tuple[list, list[str]]:
+    """Polygons of a geometry, or of several.
+
+    Parameters
+    ----------
+    shapes : geometry or iterable of geometries
+        Polygons, or collections of them.
+
+    Returns
+    -------
+    tuple of list
+        The polygons, and in words what is none.
+
+    Raises
+    ------
+    TypeError
+        If something is no geometry.
+    """
+    base = load("shapely.geometry.base", _PURPOSE)
+    if not isinstance(shapes, (base.BaseGeometry, Iterable)):
+        raise TypeError(f"expected geometries of shapely, got {shapes!r}")
+    found, dropped = [], []
+    for number, shape in enumerate([shapes] if isinstance(shapes, base.BaseGeometry) else shapes, 1):
+        if not isinstance(shape, base.BaseGeometry):
+            raise TypeError(f"expected a geometry of shapely, got {shape!r}")
+        for part in getattr(shape, "geoms", [shape]):
+            if part.geom_type == "Polygon" and part.area > 0.0:
+                found.append(part)
+            elif hasattr(part, "geoms"):
+                inner, lost = polygons_of(part)
+                found += inner
+                dropped += lost
+            else:
+                dropped.append(f"geometry {number}, a {part.geom_type} without area")
+    return found, dropped
+
+
+def pieces_of(polygon: Any) -> list:
+    """A polygon as polygons without holes.
+
+    Parameters
+    ----------
+    polygon : Polygon
+        With holes or without.
+
+    Returns
+    -------
+    list of Polygon
+        Itself, or the pieces that upright lines through the middle of each hole make of it.
+    """
+    if not polygon.interiors:
+        return [polygon]
+    load("shapely", _PURPOSE)
+    from shapely.geometry import LineString
+    from shapely.ops import split
+
+    low, high = polygon.bounds[1], polygon.bounds[3]
+    reach = high - low
+    middle = polygon.interiors[0].envelope.centroid.x
+    line = LineString([(middle, low - reach), (middle, high + reach)])
+    return [piece for part in split(polygon, line).geoms for piece in pieces_of(part)]

@@ -1,0 +1,155 @@
+!> dda lines: from a map of joints to a file of lines (Shi: DL)
+module dda_lines
+   use, intrinsic :: iso_fortran_env, only : error_unit
+   use dda_command_line, only : command_t, name_of
+   use dda_error, only : error_line, error_t
+   use dda_joint_map, only : joint_map_t
+   use dda_kinds, only : wp
+   use dda_line_model, only : entities_t, line_model_t
+   use dda_map_lines, only : map_lines
+   use dda_process, only : exit_status, worst_status
+   use dda_read_joint_map, only : read_joint_map
+   use dda_run_cases, only : deck_stem
+   use dda_screen, only : print_line
+   use dda_table_file, only : append_line, close_table, open_table, table_file_t
+   use dda_text, only : to_text
+   use dda_write_limerick, only : ddaml_geometry, plain_geometry, write_text
+   implicit none
+   private
+
+   public :: draw_lines
+
+contains
+
+   !> Draw the lines of all maps of the command line
+   subroutine draw_lines(command, status)
+      !> What the user asked for
+      type(command_t), intent(in) :: command
+      !> Exit status of the program
+      integer, intent(out) :: status
+      type(error_t), allocatable :: error
+      integer :: i, one
+
+      status = exit_status%success
+      do i = 1, size(command%name)
+         call draw_map(command, name_of(command, i), one, error)
+         if (allocated(error)) write (error_unit, "(a)") error_line(error)
+         status = worst_status(status, one)
+      end do
+   end subroutine draw_lines
+
+   !> Draw the lines of one map
+   subroutine draw_map(command, name, status, error)
+      !> What the user asked for
+      type(command_t), intent(in) :: command
+      !> Name of the map
+      character(len=*), intent(in) :: name
+      !> Exit status of this map
+      integer, intent(out) :: status
+      !> Bad input, or files that cannot be written
+      type(error_t), allocatable, intent(out) :: error
+      type(joint_map_t) :: map
+      type(line_model_t) :: model
+      character(len=:), allocatable :: file
+      logical :: is_ddaml
+
+      status = exit_status%bad_input
+      call read_joint_map(name, map, is_ddaml, error)
+      if (.not. allocated(error)) call map_lines(map, model, error)
+      if (allocated(error)) return
+      status = exit_status%success
+      file = deck_stem(name)//".geo"
+      if (allocated(command%out)) file = command%out
+      if (is_ddaml) then
+         call write_text(file, ddaml_geometry(model), error)
+      else
+         call write_text(file, plain_geometry(model), error)
+      end if
+      if (.not. allocated(error)) call write_table(table_name(file), model, error)
+      if (allocated(error)) status = exit_status%not_written
+      if (allocated(error) .or. command%quiet) return
+      call print_line(command%screen, name//": "//to_text(model%n_boundary)//" boundary lines, " &
+         & //to_text(model%line%n - model%n_boundary)//" joints of " &
+         & //to_text(total_length(model%line, model%n_boundary))//" m in all, " &
+         & //to_text(size(map%opening))//" openings, "//to_text(model%bolt%n)//" bolts")
+      call print_line(command%screen, "   "//file//" is for 'dda cut', "//table_name(file) &
+         & //" for pictures")
+   end subroutine draw_map
+
+   !> Length of all lines behind the first ones
+   pure real(wp) function total_length(line, first)
+      !> The lines
+      type(entities_t), intent(in) :: line
+      !> Lines that do not count
+      integer, intent(in) :: first
+      integer :: i
+
+      total_length = 0.0_wp
+      do i = first + 1, line%n
+         total_length = total_length + norm2(line%place(3:4, i) - line%place(1:2, i))
+      end do
+   end function total_length
+
+   !> Name of the table beside a file of lines
+   pure function table_name(file) result(name)
+      !> Name of the file
+      character(len=*), intent(in) :: file
+      !> The same with the ending .csv
+      character(len=:), allocatable :: name
+
+      name = file
+      if (index(file, ".geo", back=.true.) == len(file) - 3) name = file(:len(file) - 4)
+      name = name//"_lines.csv"
+   end function table_name
+
+   !> Write what each line and point is for
+   subroutine write_table(file, model, error)
+      !> Name of the file
+      character(len=*), intent(in) :: file
+      !> Lines and points
+      type(line_model_t), intent(in) :: model
+      !> Allocated if it cannot be written
+      type(error_t), allocatable, intent(out) :: error
+      type(table_file_t) :: table
+      integer :: i
+
+      call open_table(file, "role,x1,y1,x2,y2,material,row", table, error)
+      do i = 1, model%line%n
+         call write_rows(table, trim(merge("boundary", "joint   ", i <= model%n_boundary)), &
+            & model%line, i, i, error)
+      end do
+      call write_rows(table, "material", model%material_line, 1, model%material_line%n, error)
+      call write_rows(table, "fix", model%fixed, 1, model%fixed%n, error)
+      call write_rows(table, "load", model%load, 1, model%load%n, error)
+      call write_rows(table, "measure", model%measured, 1, model%measured%n, error)
+      call write_rows(table, "hole", model%hole, 1, model%hole%n, error)
+      call write_rows(table, "bolt", model%bolt, 1, model%bolt%n, error)
+      call close_table(table, error)
+   end subroutine write_table
+
+   !> Write rows of one role
+   subroutine write_rows(table, role, entities, first, last, error)
+      !> The table
+      type(table_file_t), intent(inout) :: table
+      !> Their role
+      character(len=*), intent(in) :: role
+      !> Lines or points
+      type(entities_t), intent(in) :: entities
+      !> The first of them and the last
+      integer, intent(in) :: first, last
+      !> Allocated if they cannot be written; nothing is done if it is allocated already
+      type(error_t), allocatable, intent(inout) :: error
+      integer :: i, k
+      character(len=:), allocatable :: line
+
+      do i = first, last
+         if (allocated(error)) return
+         line = role
+         do k = 1, 4
+            line = line//","//to_text(entities%place(k, i))
+         end do
+         call append_line(table, line//","//to_text(entities%material(i))//"," &
+            & //to_text(entities%row(i)), error)
+      end do
+   end subroutine write_rows
+end module dda_lines

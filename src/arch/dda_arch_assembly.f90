@@ -1,0 +1,333 @@
+!> Arches as blocks: voussoirs in rings, span by span, on piers, buttresses and fixed springings
+module dda_arch_assembly
+   use dda_arch_form, only : arch_form_t, form_problem_t
+   use dda_arch_sections, only : arch_sections, arch_sections_t
+   use dda_block_input, only : block_plan_t, law_plan_t, material_plan_t, new_plan
+   use dda_kinds, only : wp
+   use dda_vector, only : along, right_normal
+   implicit none
+   private
+
+   public :: arch_assembly_t, assemble_arch, n_movable, top_chord_t
+
+   !> A chord of an upper face, which fill may lie on
+   type :: top_chord_t
+      !> Number of the block
+      integer :: block = 0
+      !> Its left end: (2) [m]
+      real(wp) :: left(2) = 0.0_wp
+      !> Its right end: (2) [m]
+      real(wp) :: right(2) = 0.0_wp
+      !> Number of its span; 0 on a pier
+      integer :: span = 0
+   end type top_chord_t
+
+   !> The blocks of an arch
+   type :: arch_assembly_t
+      !> Blocks: the voussoirs of each span, ring by ring, from left to right; then piers and
+      !> buttresses from the ground up; then what is fixed
+      type(block_plan_t) :: plan
+      !> Chords of the upper faces of blocks that move: (n)
+      type(top_chord_t), allocatable :: top(:)
+      !> Where the crown of each span is along x: (n_span) [m]
+      real(wp), allocatable :: crown_x(:)
+      !> Number of voussoirs
+      integer :: n_voussoir = 0
+      !> Height of the left springing of the intrados [m]
+      real(wp) :: springing_y = 0.0_wp
+   end type arch_assembly_t
+
+   !> Material of supports, whose joints may be another law's
+   integer, parameter :: of_supports = 2
+   !> The friction angle of joints that cannot slide [deg]
+   real(wp), parameter :: no_slip_deg = 90.0_wp
+   !> Corners nearer than this share of a pier's width are one
+   real(wp), parameter :: same = 1.0e-9_wp
+
+contains
+
+   !> Make the blocks of a form
+   pure subroutine assemble_arch(form, assembly, problem)
+      !> The form
+      type(arch_form_t), intent(in) :: form
+      !> Its blocks
+      type(arch_assembly_t), intent(out) :: assembly
+      !> What makes no arch
+      type(form_problem_t), intent(out) :: problem
+      type(arch_sections_t) :: sections
+      real(wp) :: shift(2)
+      integer :: s, n
+
+      call new_plan(assembly%plan)
+      allocate (assembly%top(0), assembly%crown_x(form%spans))
+      call arch_sections(form, sections, problem)
+      if (len_trim(problem%text) > 0) return
+      n = size(sections%is_joint)
+      assembly%springing_y = sections%intrados(2, 1)
+      do s = 1, form%spans
+         shift = real(s - 1, wp)*(sections%intrados(:, n) - sections%intrados(:, 1) &
+            & + [form%pier(1), 0.0_wp])
+         assembly%crown_x(s) = sections%crown_x + shift(1)
+         call add_voussoirs(form, sections, shift, s, assembly)
+      end do
+      assembly%n_voussoir = size(assembly%plan%fixed)
+      call add_supports(form, sections, assembly, problem)
+      if (len_trim(problem%text) > 0) return
+      assembly%plan%materials = [material_plan_t(number=of_supports)]
+      if (form%no_slip) assembly%plan%laws = [law_plan_t(material=[1, of_supports], &
+         & value=[no_slip_deg, 0.0_wp, 0.0_wp], given=[.true., .false., .false.])]
+   end subroutine assemble_arch
+
+   !> Number of blocks that can move
+   pure integer function n_movable(form)
+      !> The form
+      type(arch_form_t), intent(in) :: form
+
+      n_movable = form%spans*form%rings*form%voussoirs + form%courses*(form%spans - 1)
+      if (form%buttress(1) > 0.0_wp) n_movable = n_movable + 2*form%courses
+   end function n_movable
+
+   !> The voussoirs of one span
+   pure subroutine add_voussoirs(form, sections, shift, span, assembly)
+      !> The form
+      type(arch_form_t), intent(in) :: form
+      !> Sections of the first span
+      type(arch_sections_t), intent(in) :: sections
+      !> Where the span is, from the first: (2) [m]
+      real(wp), intent(in) :: shift(2)
+      !> Number of the span
+      integer, intent(in) :: span
+      !> Receives the voussoirs
+      type(arch_assembly_t), intent(inout) :: assembly
+      real(wp), allocatable :: inner(:, :), outer(:, :)
+      integer, allocatable :: joint(:)
+      integer :: i, k, n, ring
+
+      n = size(sections%is_joint)
+      joint = pack([(i, i=1, n)], sections%is_joint)
+      allocate (inner(2, n), outer(2, n))
+      do ring = 1, form%rings
+         inner = between(real(ring - 1, wp)/real(form%rings, wp))
+         outer = between(real(ring, wp)/real(form%rings, wp))
+         do i = 1, size(joint) - 1
+            associate (a => joint(i), b => joint(i + 1))
+               call add_block(assembly%plan, reshape([inner(:, a:b), outer(:, b:a:-1)], &
+                  & [2, 2*(b - a + 1)]), .false., 1)
+               if (ring < form%rings) cycle
+               do k = a, b - 1
+                  call add_top(assembly, outer(:, k), outer(:, k + 1), span)
+               end do
+            end associate
+         end do
+      end do
+
+   contains
+
+      !> The line at a share of the thickness
+      pure function between(share) result(line)
+         !> 0 at the intrados, 1 at the extrados
+         real(wp), intent(in) :: share
+         !> The line: (2, n) [m]
+         real(wp) :: line(2, n)
+
+         line = sections%intrados + share*(sections%extrados - sections%intrados) &
+            & + spread(shift, 2, n)
+         if (share >= 1.0_wp) line = sections%extrados + spread(shift, 2, n)
+      end function between
+   end subroutine add_voussoirs
+
+   !> Piers, buttresses and what is fixed
+   pure subroutine add_supports(form, sections, assembly, problem)
+      !> The form
+      type(arch_form_t), intent(in) :: form
+      !> Sections of the first span
+      type(arch_sections_t), intent(in) :: sections
+      !> Receives the blocks
+      type(arch_assembly_t), intent(inout) :: assembly
+      !> A pier too narrow for its springings
+      type(form_problem_t), intent(inout) :: problem
+      real(wp) :: left(2, 2, 0:form%spans), right(2, 2, 0:form%spans), step(2)
+      integer :: n, s
+
+      n = size(sections%is_joint)
+      step = sections%intrados(:, n) - sections%intrados(:, 1) + [form%pier(1), 0.0_wp]
+      do s = 0, form%spans
+         ! the end of the span on the left, the beginning of that on the right
+         left(:, 1, s) = sections%intrados(:, n) + real(s - 1, wp)*step
+         left(:, 2, s) = sections%extrados(:, n) + real(s - 1, wp)*step
+         right(:, 1, s) = sections%intrados(:, 1) + real(s, wp)*step
+         right(:, 2, s) = sections%extrados(:, 1) + real(s, wp)*step
+      end do
+      if (form%buttress(1) > 0.0_wp) then
+         ! the face of a buttress that no arch stands on is upright
+         left(1, :, 0) = right(1, 1, 0) - form%buttress(1)
+         left(2, :, 0) = right(2, 2, 0)
+         right(1, :, form%spans) = left(1, 1, form%spans) + form%buttress(1)
+         right(2, :, form%spans) = left(2, 2, form%spans)
+      end if
+      do s = 0, form%spans
+         if (.not. stands_free(s)) cycle
+         call add_pier(form, left(:, :, s), right(:, :, s), height(s), assembly, problem)
+         if (len_trim(problem%text) > 0) return
+      end do
+      do s = 0, form%spans
+         if (stands_free(s)) then
+            call add_block(assembly%plan, ground(left(1, 1, s), right(1, 1, s), &
+               & min(left(2, 1, s), right(2, 1, s)) - height(s)), .true., of_supports)
+         else if (s == 0) then
+            call add_block(assembly%plan, springing(right(:, 2, s), right(:, 1, s)), .true., &
+               & of_supports)
+         else
+            call add_block(assembly%plan, springing(left(:, 1, s), left(:, 2, s)), .true., &
+               & of_supports)
+         end if
+      end do
+
+   contains
+
+      !> Whether a support is a pier or a buttress
+      pure logical function stands_free(s)
+         !> Its number, from 0
+         integer, intent(in) :: s
+
+         stands_free = s > 0 .and. s < form%spans .or. form%buttress(1) > 0.0_wp
+      end function stands_free
+
+      !> Height of a pier or a buttress [m]
+      pure real(wp) function height(s)
+         !> Its number, from 0
+         integer, intent(in) :: s
+
+         height = merge(form%pier(2), form%buttress(2), s > 0 .and. s < form%spans)
+      end function height
+   end subroutine add_supports
+
+   !> A pier from the ground up, in courses; the uppermost carries the springings
+   pure subroutine add_pier(form, left, right, height, assembly, problem)
+      !> The form
+      type(arch_form_t), intent(in) :: form
+      !> Intrados and extrados of the springing of the arch on its left, or its upper left corner
+      !> twice: (2, 2) [m]
+      real(wp), intent(in) :: left(2, 2)
+      !> Likewise on its right: (2, 2) [m]
+      real(wp), intent(in) :: right(2, 2)
+      !> Its height up to the lower springing [m]
+      real(wp), intent(in) :: height
+      !> Receives the courses
+      type(arch_assembly_t), intent(inout) :: assembly
+      !> A pier too narrow for its springings
+      type(form_problem_t), intent(inout) :: problem
+      real(wp) :: base, course, gap, low, width
+      real(wp), allocatable :: corner(:, :)
+      integer :: i
+
+      width = right(1, 1) - left(1, 1)
+      gap = right(1, 2) - left(1, 2)
+      if (gap < -same*width .or. .not. width > 0.0_wp) then
+         problem = form_problem_t("expected supports as wide as the springings on them, got "// &
+            & "narrower ones; widen pier_width and buttress_width", "pier_width")
+         return
+      end if
+      base = min(left(2, 1), right(2, 1)) - height
+      if (.not. minval([left(2, :), right(2, :)]) > base) then
+         problem = form_problem_t("expected supports higher than the springings slope, got "// &
+            & "lower ones; raise pier_height and buttress_height", "pier_height")
+         return
+      end if
+      course = height/real(form%courses, wp)
+      do i = 1, form%courses
+         low = base + real(i - 1, wp)*course
+         allocate (corner, source=reshape([left(1, 1), low, right(1, 1), low, right(1, 1), &
+            & low + course, left(1, 1), low + course], [2, 4]))
+         if (i == form%courses) corner = reshape([left(1, 1), low, right(1, 1), low, right, &
+            & left(:, 2), left(:, 1)], [2, 6])
+         call add_block(assembly%plan, distinct(corner, same*width), .false., of_supports)
+         deallocate (corner)
+      end do
+      if (gap > same*width) call add_top(assembly, left(:, 2), right(:, 2), 0)
+   end subroutine add_pier
+
+   !> Corners without those that repeat the one before
+   pure function distinct(corner, near) result(kept)
+      !> The corners: (2, n) [m]
+      real(wp), intent(in) :: corner(:, :)
+      !> How far corners are apart that are one [m]
+      real(wp), intent(in) :: near
+      !> Those kept: (2, m) [m]
+      real(wp), allocatable :: kept(:, :)
+      integer :: i, n
+
+      n = size(corner, 2)
+      kept = reshape(pack(corner, spread([(norm2(corner(:, i) &
+         & - corner(:, 1 + modulo(i - 2, n))) > near, i=1, n)], 1, 2)), [2, &
+         & count([(norm2(corner(:, i) - corner(:, 1 + modulo(i - 2, n))) > near, i=1, n)])])
+   end function distinct
+
+   !> The ground below a pier, as deep as half its width
+   pure function ground(left, right, top) result(corner)
+      !> Left end [m]
+      real(wp), intent(in) :: left
+      !> Right end [m]
+      real(wp), intent(in) :: right
+      !> Its height [m]
+      real(wp), intent(in) :: top
+      !> Corners, counter-clockwise: (2, 4) [m]
+      real(wp) :: corner(2, 4)
+
+      associate (low => top - 0.5_wp*(right - left))
+         corner = reshape([left, low, right, low, right, top, left, top], [2, 4])
+      end associate
+   end function ground
+
+   !> What a springing that is fixed stands on, as deep as the joint is long
+   pure function springing(start, finish) result(corner)
+      !> Where the joint starts, seen with the arch on its left: (2) [m]
+      real(wp), intent(in) :: start(2)
+      !> Where it ends: (2) [m]
+      real(wp), intent(in) :: finish(2)
+      !> Corners, counter-clockwise: (2, 4) [m]
+      real(wp) :: corner(2, 4)
+      real(wp) :: outward(2)
+
+      outward = norm2(finish - start)*right_normal(along(start, finish))
+      corner = reshape([start, start + outward, finish + outward, finish], [2, 4])
+   end function springing
+
+   !> Add a block
+   pure subroutine add_block(plan, corner, fixed, material)
+      !> Receives it
+      type(block_plan_t), intent(inout) :: plan
+      !> Its corners, counter-clockwise: (2, n) [m]
+      real(wp), intent(in) :: corner(:, :)
+      !> Whether it cannot move
+      logical, intent(in) :: fixed
+      !> Number of its material
+      integer, intent(in) :: material
+      integer :: n, v
+
+      n = size(plan%fixed)
+      v = size(plan%vertex, 2)
+      plan%first_vertex = [plan%first_vertex, plan%first_vertex(n + 1) + size(corner, 2)]
+      plan%vertex = reshape([plan%vertex, corner], [2, v + size(corner, 2)])
+      plan%fixed = [plan%fixed, fixed]
+      plan%material = [plan%material, material]
+      plan%line = [plan%line, 1]
+      plan%velocity = reshape([plan%velocity, [0.0_wp, 0.0_wp, 0.0_wp]], [3, n + 1])
+      plan%stress = reshape([plan%stress, [0.0_wp, 0.0_wp, 0.0_wp]], [3, n + 1])
+   end subroutine add_block
+
+   !> Add a chord of the upper face of the last block; what leans over carries nothing
+   pure subroutine add_top(assembly, left, right, span)
+      !> Receives it
+      type(arch_assembly_t), intent(inout) :: assembly
+      !> Its left end: (2) [m]
+      real(wp), intent(in) :: left(2)
+      !> Its right end: (2) [m]
+      real(wp), intent(in) :: right(2)
+      !> Number of its span; 0 on a pier
+      integer, intent(in) :: span
+
+      if (right(1) > left(1)) assembly%top = [assembly%top, &
+         & top_chord_t(size(assembly%plan%fixed), left, right, span)]
+   end subroutine add_top
+end module dda_arch_assembly

@@ -1,0 +1,246 @@
+!> Sections of an arch: where its joints are, and the corners of its chords between them
+module dda_arch_sections
+   use dda_arch_curve, only : curve_length, curve_t, station_at, station_t
+   use dda_arch_form, only : arch_form_t, form_curve, form_problem_t
+   use dda_constants, only : degree
+   use dda_kinds, only : wp
+   use dda_vector, only : cross
+   implicit none
+   private
+
+   public :: arch_sections_t, arch_sections
+
+   !> Sections of one span, from left to right
+   type :: arch_sections_t
+      !> Intrados: (2, n) [m]
+      real(wp), allocatable :: intrados(:, :)
+      !> Extrados: (2, n) [m]
+      real(wp), allocatable :: extrados(:, :)
+      !> Which sections are joints: (n)
+      logical, allocatable :: is_joint(:)
+      !> Where the crown is along x [m]
+      real(wp) :: crown_x = 0.0_wp
+   end type arch_sections_t
+
+   !> Lengths closer than this share of the whole are one
+   real(wp), parameter :: same = 1.0e-9_wp
+
+contains
+
+   !> The sections of a form
+   pure subroutine arch_sections(form, sections, problem)
+      !> The form
+      type(arch_form_t), intent(in) :: form
+      !> Its sections
+      type(arch_sections_t), intent(out) :: sections
+      !> What makes no arch
+      type(form_problem_t), intent(out) :: problem
+      type(curve_t) :: curve
+      type(station_t) :: crown
+      real(wp), allocatable :: at(:)
+      integer :: i
+
+      call form_curve(form, curve, problem)
+      if (len_trim(problem%text) > 0) return
+      call place_sections(form, curve, at, sections%is_joint)
+      allocate (sections%intrados(2, size(at)), sections%extrados(2, size(at)))
+      do i = 1, size(at)
+         call cut_section(form, curve, at(i), sections%intrados(:, i), sections%extrados(:, i))
+      end do
+      crown = station_at(curve, curve%crown, .false.)
+      sections%crown_x = crown%point(1)
+      call check_sections(sections, problem)
+   end subroutine arch_sections
+
+   !> Lengths at which there are sections: joints of equal voussoirs, a bend, chords in between
+   pure subroutine place_sections(form, curve, at, is_joint)
+      !> The form
+      type(arch_form_t), intent(in) :: form
+      !> Its line
+      type(curve_t), intent(in) :: curve
+      !> The lengths, rising: (n) [m]
+      real(wp), allocatable, intent(out) :: at(:)
+      !> Which of them are joints: (n)
+      logical, allocatable, intent(out) :: is_joint(:)
+      real(wp) :: from, to, whole
+      integer :: i
+
+      whole = curve_length(curve)
+      allocate (at(1), source=0.0_wp)
+      allocate (is_joint(1), source=.true.)
+      do i = 1, form%voussoirs
+         from = at(size(at))
+         to = whole*real(i, wp)/real(form%voussoirs, wp)
+         if (curve%pointed .and. abs(to - curve%crown) <= same*whole) to = curve%crown
+         if (curve%pointed .and. from < curve%crown .and. to > curve%crown) then
+            call add_chords(form, curve, from, curve%crown, at, is_joint)
+            is_joint(size(at)) = .false.
+            from = curve%crown
+         end if
+         call add_chords(form, curve, from, to, at, is_joint)
+      end do
+   end subroutine place_sections
+
+   !> Add sections up to a joint, so many that no chord spans too large an angle
+   pure subroutine add_chords(form, curve, from, to, at, is_joint)
+      !> The form
+      type(arch_form_t), intent(in) :: form
+      !> Its line
+      type(curve_t), intent(in) :: curve
+      !> Length where they begin, a section already [m]
+      real(wp), intent(in) :: from
+      !> Length of the joint [m]
+      real(wp), intent(in) :: to
+      !> Receives their lengths: (n) [m]
+      real(wp), allocatable, intent(inout) :: at(:)
+      !> Receives that the last is a joint: (n)
+      logical, allocatable, intent(inout) :: is_joint(:)
+      type(station_t) :: first, last
+      integer :: i, n
+
+      n = 1
+      if (form%facet_deg > 0.0_wp) then
+         first = station_at(curve, from, .true.)
+         last = station_at(curve, to, .false.)
+         n = max(1, ceiling(abs(atan2(cross(first%along, last%along), &
+            & dot_product(first%along, last%along)))/(degree*form%facet_deg) - same))
+      end if
+      do i = 1, n - 1
+         call append(from + (to - from)*real(i, wp)/real(n, wp), .false., at, is_joint)
+      end do
+      call append(to, .true., at, is_joint)
+   end subroutine add_chords
+
+   !> Add a section
+   pure subroutine append(length, joint, at, is_joint)
+      !> Its length along the line [m]
+      real(wp), intent(in) :: length
+      !> Whether it is a joint
+      logical, intent(in) :: joint
+      !> Receives the length: (n) [m]
+      real(wp), allocatable, intent(inout) :: at(:)
+      !> Receives whether it is a joint: (n)
+      logical, allocatable, intent(inout) :: is_joint(:)
+      real(wp), allocatable :: longer(:)
+
+      allocate (longer(size(at) + 1))
+      longer(:size(at)) = at
+      longer(size(longer)) = length
+      call move_alloc(longer, at)
+      is_joint = [is_joint, joint]
+   end subroutine append
+
+   !> Ends of a section
+   pure subroutine cut_section(form, curve, at, intrados, extrados)
+      !> The form
+      type(arch_form_t), intent(in) :: form
+      !> Its line
+      type(curve_t), intent(in) :: curve
+      !> Length along the line [m]
+      real(wp), intent(in) :: at
+      !> Its inner end: (2) [m]
+      real(wp), intent(out) :: intrados(2)
+      !> Its outer end: (2) [m]
+      real(wp), intent(out) :: extrados(2)
+      type(station_t) :: station
+      real(wp) :: across(2), share, slope, thickness, middle(2)
+
+      station = station_at(curve, at, .false.)
+      if (at < curve%crown) then
+         share = (curve%crown - at)/curve%crown
+         slope = -1.0_wp/curve%crown
+      else
+         share = (at - curve%crown)/(curve_length(curve) - curve%crown)
+         slope = 1.0_wp/(curve_length(curve) - curve%crown)
+      end if
+      if (abs(at - curve%crown) <= same*curve%crown) slope = 0.0_wp
+      thickness = form%thickness(1) + share*(form%thickness(2) - form%thickness(1))
+      slope = slope*(form%thickness(2) - form%thickness(1))
+      intrados = station%point
+      if (curve%pointed .and. .not. abs(at - curve%crown) > 0.0_wp) then
+         extrados = outer_apex(curve, thickness)
+      else if (form%by_radius) then
+         intrados = station%point - 0.5_wp*thickness*station%outward
+         extrados = station%point + 0.5_wp*thickness*station%outward
+      else if (form%radial) then
+         extrados = intrados + thickness*from_centre(form, curve, station)
+      else if (abs(slope) > 0.0_wp) then
+         ! square to the middle line, whose derivative has the slope of the thickness in it
+         middle = station%point + 0.5_wp*thickness*station%outward
+         across = (1.0_wp + 0.5_wp*thickness*station%curvature)*station%outward &
+            & - 0.5_wp*slope*station%along
+         across = across/norm2(across)
+         intrados = middle - 0.5_wp*thickness*across
+         extrados = middle + 0.5_wp*thickness*across
+      else
+         extrados = intrados + thickness*station%outward
+      end if
+   end subroutine cut_section
+
+   !> Direction of a joint that points from a centre: that of the arc; of an ellipse, a parabola or
+   !> a catenary, the middle between the springings; of a flat arch, where its skewbacks meet. The
+   !> joint of a flat arch reaches to the level extrados
+   pure function from_centre(form, curve, station) result(across)
+      !> The form
+      type(arch_form_t), intent(in) :: form
+      !> Its line
+      type(curve_t), intent(in) :: curve
+      !> The place
+      type(station_t), intent(in) :: station
+      !> Direction; a unit vector but for flat arches: (2)
+      real(wp) :: across(2)
+      type(station_t) :: left, right
+
+      across = station%outward
+      select case (form%shape)
+      case ("elliptic", "parabolic", "catenary")
+         left = station_at(curve, 0.0_wp, .false.)
+         right = station_at(curve, curve_length(curve), .false.)
+         across = station%point - 0.5_wp*(left%point + right%point)
+         across = across/norm2(across)
+      case ("flat")
+         across = [tan(degree*form%half_angle_deg)*station%point(1)/(0.5_wp*form%span), 1.0_wp]
+      end select
+   end function from_centre
+
+   !> Where the extrados of the two arcs of a pointed arch meet
+   pure function outer_apex(curve, thickness) result(point)
+      !> The line, with two arcs
+      type(curve_t), intent(in) :: curve
+      !> Thickness at the crown [m]
+      real(wp), intent(in) :: thickness
+      !> The point: (2) [m]
+      real(wp) :: point(2)
+      real(wp) :: apart(2), distance, radius(2), foot
+
+      radius = curve%piece%a + thickness
+      apart = curve%piece(2)%centre - curve%piece(1)%centre
+      distance = norm2(apart)
+      foot = 0.5_wp*(distance + (radius(1)**2 - radius(2)**2)/distance)
+      apart = apart/distance
+      point = curve%piece(1)%centre + foot*apart
+      ! the arc on the left has its centre on the right
+      point = point + sqrt(max(0.0_wp, radius(1)**2 - foot**2))*[apart(2), -apart(1)]
+   end function outer_apex
+
+   !> Check that no two joints cross
+   pure subroutine check_sections(sections, problem)
+      !> The sections
+      type(arch_sections_t), intent(in) :: sections
+      !> Joints that do
+      type(form_problem_t), intent(inout) :: problem
+      integer :: i
+
+      do i = 2, size(sections%is_joint)
+         associate (a => sections%intrados(:, i - 1), b => sections%intrados(:, i), &
+            & c => sections%extrados(:, i), d => sections%extrados(:, i - 1))
+            if (min(cross(b - a, c - a), cross(c - a, d - a), cross(b - a, d - a), &
+               & cross(c - b, d - b)) > 0.0_wp) cycle
+            problem = form_problem_t("expected joints that do not cross, got some that do: "// &
+               & "the arch is too thick where it bends, or joints lean too much; make it thinner", &
+               & "thickness")
+            return
+         end associate
+      end do
+   end subroutine check_sections
+end module dda_arch_sections

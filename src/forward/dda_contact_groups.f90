@@ -1,0 +1,69 @@
+!> Groups of joints whose blocks hang together: each is a problem of its own
+module dda_contact_groups
+   use dda_joint_springs, only : joint_springs_t
+   implicit none
+   private
+
+   public :: group_joints
+
+contains
+
+   !> Groups of joints whose blocks hang together
+   pure subroutine group_joints(springs, n_equation, n, first, joint)
+      !> The springs of the joints
+      type(joint_springs_t), intent(in) :: springs
+      !> Number of movable blocks
+      integer, intent(in) :: n_equation
+      !> Number of groups
+      integer, intent(out) :: n
+      !> First joint of each group in the list, and one beyond the last: (n_joint + 1)
+      integer, intent(out) :: first(:)
+      !> The joints, group by group, rising in each: (n_joint)
+      integer, intent(out) :: joint(:)
+      integer :: root(n_equation), number(n_equation), group(size(joint)), pair(2), i, j
+
+      root = [(i, i=1, n_equation)]
+      do j = 1, size(joint)
+         pair = springs%equation(:, j)
+         if (any(pair == 0)) cycle
+         pair = [root_of(pair(1)), root_of(pair(2))]
+         root(maxval(pair)) = minval(pair)
+         root(springs%equation(:, j)) = minval(pair)
+      end do
+      n = 0
+      number = 0
+      first = 0
+      do j = 1, size(joint)
+         i = root_of(maxval(springs%equation(:, j)))
+         if (number(i) == 0) then
+            n = n + 1
+            number(i) = n
+         end if
+         group(j) = number(i)
+         first(group(j)) = first(group(j)) + 1
+      end do
+      ! the place behind each group's last joint, from which it is filled backwards
+      do i = 2, n
+         first(i) = first(i) + first(i - 1)
+      end do
+      first(n + 1:) = size(joint) + 1
+      first(:n) = first(:n) + 1
+      do j = size(joint), 1, -1
+         first(group(j)) = first(group(j)) - 1
+         joint(first(group(j))) = j
+      end do
+
+   contains
+
+      !> The block that stands for the group of a block
+      pure integer function root_of(block)
+         !> The block
+         integer, intent(in) :: block
+
+         root_of = block
+         do while (root(root_of) /= root_of)
+            root_of = root(root_of)
+         end do
+      end function root_of
+   end subroutine group_joints
+end module dda_contact_groups

@@ -1,0 +1,333 @@
+!> Contact forces of blocks that move in time by interior springs: where many blocks meet, sweeps
+!> hand a force on by one block in each, but a factor reaches all at once
+!>
+!>    base d = load + R f,   gap + R'd + C (f - f0) = F_flow' z,   s = F f >= 0, z >= 0, s z = 0
+!>
+!> The rows of F are the bounds N1, N2, bound + T and bound - T, those of F_flow N1, N2, T and -T:
+!> joints that slide do not open (Coulomb). C is far below what the blocks themselves give, and f0
+!> the force of the step before: of all forces that stop the blocks those nearest to them count, so
+!> that shear is remembered. With d = z/s the spring of a joint is the inverse of the triangle
+!> C + F_flow' d F; each iteration is one factorisation, with predictor and corrector (Mehrotra
+!> 1992). It begins with the forces of the step before.
+module dda_contact_interior
+   use dda_assembly, only : equations_t
+   use dda_block_factor, only : substitute
+   use dda_contact_view, only : contact_view_t
+   use dda_interior_problem, only : answer, compliance, factor_springs, interior_t, move_joints
+   use dda_interior_problem, only : pose, problem_t, push_blocks, see_bounds, see_openings
+   use dda_joint_springs, only : joint_springs_t
+   use dda_kinds, only : wp
+   implicit none
+   private
+
+   public :: solve_interior
+
+   !> What slack and flow begin with at the least, over the size of a force
+   real(wp), parameter :: lift(2) = [1.0e-4_wp, 1.0e-1_wp]
+   !> Forces across gaps, and by openings, that are left, over the size of a force
+   real(wp), parameter :: tolerance = 3.0e-7_wp
+   !> A step shorter than this share of the whole is stuck at a bound
+   real(wp), parameter :: stuck = 0.2_wp
+   !> Most iterations
+   integer, parameter :: max_iterations = 24
+   !> Iterations without progress that end the search
+   integer, parameter :: patience = 12
+
+contains
+
+   !> Forces of some joints, from those of the step before
+   pure subroutine solve_interior(equations, springs, view, joint, force, motion, passes)
+      !> Blocks assembled
+      type(equations_t), intent(in) :: equations
+      !> The springs of the joints
+      type(joint_springs_t), intent(in) :: springs
+      !> What the joints see
+      type(contact_view_t), intent(in) :: view
+      !> Numbers of the joints: (n)
+      integer, intent(in) :: joint(:)
+      !> Forces of all joints: (3, n_joint) [N/m]
+      real(wp), intent(inout) :: force(:, :)
+      !> Motion of all blocks: (n_dof, n_equation) [m]
+      real(wp), intent(in) :: motion(:, :)
+      !> Factorisations so far
+      integer, intent(inout) :: passes
+      type(problem_t) :: p
+      type(interior_t) :: x, best
+      real(wp) :: length, mean, merit, least
+      integer :: i, waited
+      logical :: near
+
+      call pose(equations, springs, view, joint, force, motion, p)
+      call begin(springs, view, motion, lift(1), p, x)
+      best = x
+      least = huge(least)
+      waited = 0
+      near = .true.
+      length = 1.0_wp
+      do i = 1, max_iterations
+         call find_rest(equations, springs, view, p, x, mean, merit)
+         waited = waited + 1
+         if (merit < 0.9_wp*least) waited = 0
+         if (merit < least) then
+            least = merit
+            best = x
+         end if
+         if (merit < tolerance .or. waited == patience .or. .not. merit <= huge(merit)) exit
+         if (length < stuck .and. near) then
+            ! too near to a corner of the bounds: begin farther away
+            near = .false.
+            call begin(springs, view, motion, lift(2), p, x)
+            call find_rest(equations, springs, view, p, x, mean, merit)
+         end if
+         call factor_springs(equations, springs, p, x)
+         passes = passes + 1
+         if (.not. p%factor%usable) exit
+         call improve(springs, mean, merit, p, x, length)
+      end do
+      call keep_forces(springs, p, best, force)
+   end subroutine solve_interior
+
+   !> One step from an iterate: a predictor, and a corrector towards equal products
+   pure subroutine improve(springs, mean, merit, p, x, length)
+      !> The springs of the joints
+      type(joint_springs_t), intent(in) :: springs
+      !> Mean product of slack and flow, in squares of a force
+      real(wp), intent(in) :: mean
+      !> Forces that are wrong, over the size of a force
+      real(wp), intent(in) :: merit
+      !> The problem, factored
+      type(problem_t), intent(inout) :: p
+      !> The iterate
+      type(interior_t), intent(inout) :: x
+      !> How much of the step was gone
+      real(wp), intent(out) :: length
+      type(interior_t) :: step
+
+      step = x
+      p%product = -x%slack*x%flow
+      call find_step(springs, p, x, step)
+      length = longest(p, x, step, 1.0_wp)
+      p%product = p%product - length*step%slack*step%flow + weighted(p, mean*min(1.0_wp, &
+         & mean_product(p, x%slack + length*step%slack, x%flow + length*step%flow)/mean)**3)
+      call find_step(springs, p, x, step)
+      length = longest(p, x, step, max(0.995_wp, 1.0_wp - merit**2))
+      x%motion = x%motion + length*step%motion
+      x%force = x%force + length*step%force
+      x%slack = x%slack + length*step%slack
+      x%flow = x%flow + length*step%flow
+   end subroutine improve
+
+   !> The forces of the step before, and the motion that they make, lifted off the bounds
+   pure subroutine begin(springs, view, motion, shallow, p, x)
+      !> The springs of the joints
+      type(joint_springs_t), intent(in) :: springs
+      !> What the joints see
+      type(contact_view_t), intent(in) :: view
+      !> Motion of all blocks: (n_dof, n_equation) [m]
+      real(wp), intent(in) :: motion(:, :)
+      !> How far off the bounds at the least, over the size of a force
+      real(wp), intent(in) :: shallow
+      !> The problem; the size of a force is set
+      type(problem_t), intent(inout) :: p
+      !> The iterate
+      type(interior_t), intent(out) :: x
+      real(wp) :: opening(3, size(p%joint)), flow, least, unit
+      integer :: i, k
+
+      x%motion = motion(:, p%equation)
+      x%force = p%before
+      allocate (x%slack(4, size(p%joint)), x%flow(4, size(p%joint)))
+      call see_openings(springs, view, p, x%motion, opening)
+      p%size = sum(max(p%before(1:2, :), -opening(1:2, :)/p%unit(1:2, :), 0.0_wp), &
+         & p%given(1:2, :)) &
+         & /real(max(1, count(p%given(1:2, :))), wp)
+      p%size = max(p%size, tiny(1.0_wp)/epsilon(1.0_wp))
+      call see_bounds(springs, p, x%force, x%slack)
+      least = p%size*min(lift(2), max(shallow, 10.0_wp*sum(abs(min(x%slack(:2, :), &
+         & opening(:2, :)/p%unit(:2, :))), p%given(:2, :)) &
+         & /(p%size*real(max(1, count(p%given(:2, :))), wp))))
+      do i = 1, size(p%joint)
+         do k = 1, 4
+            unit = p%unit(min(k, 3), i)
+            flow = merge(opening(min(k, 3), i), -opening(3, i), k < 4)/unit
+            if (k < 3) x%slack(k, i) = max(x%slack(k, i), -flow)
+            ! the same product everywhere, but where one is larger already
+            x%slack(k, i) = max(x%slack(k, i), least**2/max(flow, least))
+            x%flow(k, i) = unit*max(flow, least**2/max(x%slack(k, i), least))
+         end do
+      end do
+      where (.not. p%bounded)
+         x%slack = 1.0_wp
+         x%flow = 0.0_wp
+      end where
+   end subroutine begin
+
+   !> What an iterate leaves of balance and openings
+   pure subroutine find_rest(equations, springs, view, p, x, mean, merit)
+      !> Blocks assembled
+      type(equations_t), intent(in) :: equations
+      !> The springs of the joints
+      type(joint_springs_t), intent(in) :: springs
+      !> What the joints see
+      type(contact_view_t), intent(in) :: view
+      !> The problem; the rests are set
+      type(problem_t), intent(inout) :: p
+      !> The iterate
+      type(interior_t), intent(in) :: x
+      !> Mean product of slack and flow, in squares of a force
+      real(wp), intent(out) :: mean
+      !> Forces that are wrong, over the size of a force
+      real(wp), intent(out) :: merit
+      integer :: b
+
+      do b = 1, size(p%equation)
+         associate (e => p%equation(b))
+            p%balance(:, b) = equations%load(:, e) &
+               & - matmul(equations%base(:, :, e), x%motion(:, b))
+         end associate
+      end do
+      call push_blocks(springs, p, x%force, p%balance)
+      call see_openings(springs, view, p, x%motion, p%opening)
+      p%opening = -p%opening - compliance*p%unit*(x%force - p%before)
+      p%opening(1:2, :) = p%opening(1:2, :) + x%flow(1:2, :)
+      p%opening(3, :) = p%opening(3, :) + x%flow(3, :) - x%flow(4, :)
+      where (.not. p%given) p%opening = 0.0_wp
+      mean = mean_product(p, x%slack, x%flow)
+      merit = max(sqrt(mean), maxval(abs(p%opening)/p%unit))/p%size
+   end subroutine find_rest
+
+   !> The step that brings what is left to nothing
+   pure subroutine find_step(springs, p, x, step)
+      !> The springs of the joints
+      type(joint_springs_t), intent(in) :: springs
+      !> The problem, factored
+      type(problem_t), intent(in) :: p
+      !> The iterate
+      type(interior_t), intent(in) :: x
+      !> The step
+      type(interior_t), intent(inout) :: step
+      real(wp) :: drive(3, size(p%joint)), moved(3, size(p%joint)), rest(4), slack(4), source(4)
+      real(wp) :: bound
+      integer :: i
+
+      do i = 1, size(p%joint)
+         call see_rest(i, rest)
+         source = (p%product(:, i) - x%flow(:, i)*rest)/x%slack(:, i)
+         drive(1:2, i) = p%opening(1:2, i) + source(1:2)
+         drive(3, i) = p%opening(3, i) + source(3) - source(4)
+         step%force(:, i) = answer(springs, p, x, i, drive(:, i))
+      end do
+      step%motion = p%balance
+      call push_blocks(springs, p, step%force, step%motion)
+      call substitute(p%factor, step%motion)
+      call move_joints(springs, p, step%motion, moved)
+      do i = 1, size(p%joint)
+         step%force(:, i) = answer(springs, p, x, i, drive(:, i) - moved(:, i))
+         associate (f => step%force(:, i))
+            bound = springs%cone(p%joint(i))%friction*(f(1) + f(2))
+            slack = [f(1), f(2), bound + f(3), bound - f(3)]
+         end associate
+         call see_rest(i, rest)
+         slack = slack + rest
+         step%slack(:, i) = merge(slack, 0.0_wp, p%bounded(:, i))
+         step%flow(:, i) = merge((p%product(:, i) - x%flow(:, i)*slack)/x%slack(:, i), 0.0_wp, &
+            & p%bounded(:, i))
+      end do
+
+   contains
+
+      !> What the slacks of a joint lack
+      pure subroutine see_rest(i, rest)
+         !> Place of the joint
+         integer, intent(in) :: i
+         !> What they lack: (4) [N/m]
+         real(wp), intent(out) :: rest(4)
+
+         associate (cone => springs%cone(p%joint(i)), f => x%force(:, i), &
+            & shift => springs%shift(:, p%joint(i)))
+            rest(1:2) = f(1:2) + shift(1:2)
+            rest(3) = cone%limit + cone%friction*(rest(1) + rest(2)) + f(3)
+            rest(4) = rest(3) - 2.0_wp*f(3)
+         end associate
+         rest = merge(rest - x%slack(:, i), 0.0_wp, p%bounded(:, i))
+      end subroutine see_rest
+   end subroutine find_step
+
+   !> Mean of slack times flow, over what the blocks give: in squares of a force
+   pure real(wp) function mean_product(p, slack, flow)
+      !> The problem
+      type(problem_t), intent(in) :: p
+      !> Slacks: (4, n_joint) [N/m]
+      real(wp), intent(in) :: slack(:, :)
+      !> Flows: (4, n_joint) [m]
+      real(wp), intent(in) :: flow(:, :)
+
+      mean_product = (sum(slack(:3, :)*flow(:3, :)/p%unit, p%bounded(:3, :)) &
+         & + sum(slack(4, :)*flow(4, :)/p%unit(3, :), p%bounded(4, :))) &
+         & /real(max(1, count(p%bounded)), wp)
+   end function mean_product
+
+   !> A product that is the same for all bounds, as each joint has it
+   pure function weighted(p, mean) result(product_of)
+      !> The problem
+      type(problem_t), intent(in) :: p
+      !> The product in squares of a force
+      real(wp), intent(in) :: mean
+      !> The products: (4, n_joint) [J/m]
+      real(wp) :: product_of(4, size(p%joint))
+
+      product_of(:3, :) = mean*p%unit
+      product_of(4, :) = product_of(3, :)
+      where (.not. p%bounded) product_of = 0.0_wp
+   end function weighted
+
+   !> The longest step, 1 at most, that keeps a share of every slack and flow
+   pure real(wp) function longest(p, x, step, share)
+      !> The problem
+      type(problem_t), intent(in) :: p
+      !> The iterate
+      type(interior_t), intent(in) :: x
+      !> The step
+      type(interior_t), intent(in) :: step
+      !> How much of the way to the first zero is gone
+      real(wp), intent(in) :: share
+      integer :: i, k
+
+      longest = 1.0_wp
+      do i = 1, size(p%joint)
+         do k = 1, 4
+            if (.not. p%bounded(k, i)) cycle
+            if (step%slack(k, i)*longest < -share*x%slack(k, i)) &
+               & longest = -share*x%slack(k, i)/step%slack(k, i)
+            if (step%flow(k, i)*longest < -share*x%flow(k, i)) &
+               & longest = -share*x%flow(k, i)/step%flow(k, i)
+         end do
+      end do
+   end function longest
+
+   !> Forces of an iterate, those of open contacts none, and no shear force beyond its bound
+   pure subroutine keep_forces(springs, p, x, force)
+      !> The springs of the joints
+      type(joint_springs_t), intent(in) :: springs
+      !> The problem
+      type(problem_t), intent(in) :: p
+      !> The iterate
+      type(interior_t), intent(in) :: x
+      !> Receives the forces: (3, n_joint of all) [N/m]
+      real(wp), intent(inout) :: force(:, :)
+      real(wp) :: bound
+      integer :: i
+
+      do i = 1, size(p%joint)
+         associate (f => force(:, p%joint(i)), shift => springs%shift(:, p%joint(i)), &
+            & cone => springs%cone(p%joint(i)))
+            where (p%given(:, i)) f = x%force(:, i)
+            where (p%bounded(1:2, i) .and. (x%slack(1:2, i)*p%unit(1:2, i) < x%flow(1:2, i) &
+               & .or. f(1:2) < -shift(1:2))) f(1:2) = -shift(1:2)
+            if (.not. p%bounded(3, i)) cycle
+            bound = cone%limit + cone%friction*sum(f(1:2) + shift(1:2))
+            f(3) = max(-bound, min(bound, f(3)))
+         end associate
+      end do
+   end subroutine keep_forces
+end module dda_contact_interior

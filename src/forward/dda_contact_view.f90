@@ -1,0 +1,102 @@
+!> What the joints see of blocks without springs between them: how these answer their forces
+module dda_contact_view
+   use dda_assembly, only : equations_t
+   use dda_joint_springs, only : joint_springs_t
+   use dda_kinds, only : wp
+   use dda_small_cholesky, only : cholesky, solved
+   use dda_step_state, only : step_state_t
+   implicit none
+   private
+
+   public :: contact_view_t, see_joints, move_blocks
+
+   !> What the joints see of one step
+   type :: contact_view_t
+      !> Cholesky factor of each block's equations: (n_dof, n_dof, n_equation)
+      real(wp), allocatable :: lower(:, :, :)
+      !> Motion of the two blocks by a unit of each force: (n_dof, 3, 2, n_joint) [m/(N/m)]
+      real(wp), allocatable :: answer(:, :, :, :)
+      !> Openings and slip of the joint by a unit of each of its forces: (3, 3, n_joint) [m/(N/m)]
+      real(wp), allocatable :: give(:, :, :)
+      !> Gaps before the motion: (3, n_joint) [m]
+      real(wp), allocatable :: gap(:, :)
+   end type contact_view_t
+
+contains
+
+   !> How the blocks answer the forces of each joint
+   pure subroutine see_joints(equations, springs, state, view)
+      !> Blocks assembled
+      type(equations_t), intent(in) :: equations
+      !> The springs of the joints
+      type(joint_springs_t), intent(in) :: springs
+      !> The step, for the gaps
+      type(step_state_t), intent(in) :: state
+      !> The view
+      type(contact_view_t), intent(out) :: view
+      real(wp) :: inverse(size(state%motion, 1), size(state%motion, 1), size(state%motion, 2))
+      real(wp) :: sum_of(3), unit(size(inverse, 1))
+      integer :: c, e, j, k, n, side
+
+      n = size(inverse, 1)
+      allocate (view%lower, mold=inverse)
+      do e = 1, size(inverse, 3)
+         view%lower(:, :, e) = cholesky(equations%base(:, :, e))
+         do k = 1, n
+            unit = 0.0_wp
+            unit(k) = 1.0_wp
+            inverse(:, k, e) = solved(view%lower(:, :, e), unit)
+         end do
+      end do
+      allocate (view%answer, mold=springs%row)
+      allocate (view%give(3, 3, size(springs%stiffness)), source=0.0_wp)
+      allocate (view%gap, mold=state%start)
+      do j = 1, size(springs%stiffness)
+         view%gap(:, j) = (state%multiplier(:, j) - state%start(:, j))/springs%stiffness(j)
+         do side = 1, 2
+            e = springs%equation(side, j)
+            view%answer(:, :, side, j) = 0.0_wp
+            if (e == 0) cycle
+            associate (row => springs%row(:, :, side, j), answer => view%answer(:, :, side, j))
+               do k = 1, 3
+                  do c = 1, n
+                     answer(:, k) = answer(:, k) + inverse(:, c, e)*row(c, k)
+                  end do
+                  sum_of = 0.0_wp
+                  do c = 1, n
+                     sum_of = sum_of + row(c, :)*answer(c, k)
+                  end do
+                  view%give(:, k, j) = view%give(:, k, j) + sum_of
+               end do
+            end associate
+         end do
+      end do
+   end subroutine see_joints
+
+   !> Motion of the blocks under given joint forces
+   pure subroutine move_blocks(equations, springs, view, force, motion)
+      !> Blocks assembled
+      type(equations_t), intent(in) :: equations
+      !> The springs of the joints
+      type(joint_springs_t), intent(in) :: springs
+      !> What the joints see
+      type(contact_view_t), intent(in) :: view
+      !> Joint forces: (3, n_joint) [N/m]
+      real(wp), intent(in) :: force(:, :)
+      !> The motion: (n_dof, n_equation)
+      real(wp), intent(out) :: motion(:, :)
+      integer :: e, j, side
+
+      motion = equations%load
+      do j = 1, size(force, 2)
+         do side = 1, 2
+            e = springs%equation(side, j)
+            if (e > 0) motion(:, e) = motion(:, e) &
+               & + matmul(springs%row(:, :, side, j), force(:, j))
+         end do
+      end do
+      do e = 1, size(motion, 2)
+         motion(:, e) = solved(view%lower(:, :, e), motion(:, e))
+      end do
+   end subroutine move_blocks
+end module dda_contact_view

@@ -1,0 +1,296 @@
+!> Joints and blocks whose contact forces interior springs find, and the matrix of these springs
+module dda_interior_problem
+   use dda_assembly, only : equations_t
+   use dda_block_factor, only : block_factor_t, factorise, plan_factor
+   use dda_block_matrix, only : block_matrix_t, set_pattern
+   use dda_contact_view, only : contact_view_t
+   use dda_joint_springs, only : joint_springs_t
+   use dda_kinds, only : wp
+   implicit none
+   private
+
+   public :: answer, compliance, factor_springs, interior_t, move_joints, pose, problem_t
+   public :: push_blocks, see_bounds, see_openings
+
+   !> One iterate, or a step from it
+   type :: interior_t
+      !> Motion of the blocks: (n_dof, n_block) [m]
+      real(wp), allocatable :: motion(:, :)
+      !> Forces: (3, n_joint) [N/m]
+      real(wp), allocatable :: force(:, :)
+      !> Distance of the forces from each bound: (4, n_joint) [N/m]
+      real(wp), allocatable :: slack(:, :)
+      !> Opening or slip at each bound: (4, n_joint) [m]
+      real(wp), allocatable :: flow(:, :)
+   end type interior_t
+
+   !> Joints and blocks of the problem, and what an iterate leaves of its equations
+   type :: problem_t
+      !> Numbers of the joints: (n_joint)
+      integer, allocatable :: joint(:)
+      !> Equations of the blocks: (n_block)
+      integer, allocatable :: equation(:)
+      !> Blocks of each joint, 0 for one that cannot move: (2, n_joint)
+      integer, allocatable :: block(:, :)
+      !> Coupling of each joint in the matrix, or 0: (n_joint)
+      integer, allocatable :: entry(:)
+      !> Which forces there are: (3, n_joint)
+      logical, allocatable :: given(:, :)
+      !> Which bounds the forces of each joint have: (4, n_joint)
+      logical, allocatable :: bounded(:, :)
+      !> What the blocks give to each force, which measures openings: (3, n_joint) [m/(N/m)]
+      real(wp), allocatable :: unit(:, :)
+      !> Forces of the step before: (3, n_joint) [N/m]
+      real(wp), allocatable :: before(:, :)
+      !> Size of a force [N/m]
+      real(wp) :: size = 0.0_wp
+      !> Matrix with the springs
+      type(block_matrix_t) :: matrix
+      !> Its factor
+      type(block_factor_t) :: factor
+      !> What is left of the balance of the blocks: (n_dof, n_block) [N/m]
+      real(wp), allocatable :: balance(:, :)
+      !> Of the openings: (3, n_joint) [m]
+      real(wp), allocatable :: opening(:, :)
+      !> Change of slack times flow that a step is to bring: (4, n_joint)
+      real(wp), allocatable :: product(:, :)
+   end type problem_t
+
+   !> Compliance of the springs over that of the blocks
+   real(wp), parameter :: compliance = 1.0e-9_wp
+
+contains
+
+   !> The joints with their blocks numbered anew, and the pattern of their matrix
+   pure subroutine pose(equations, springs, view, joint, force, motion, p)
+      !> Blocks assembled
+      type(equations_t), intent(in) :: equations
+      !> The springs of the joints
+      type(joint_springs_t), intent(in) :: springs
+      !> What the joints see
+      type(contact_view_t), intent(in) :: view
+      !> Numbers of the joints: (n)
+      integer, intent(in) :: joint(:)
+      !> Forces of all joints: (3, n_joint) [N/m]
+      real(wp), intent(in) :: force(:, :)
+      !> Motion of all blocks: (n_dof, n_equation) [m]
+      real(wp), intent(in) :: motion(:, :)
+      !> The problem
+      type(problem_t), intent(out) :: p
+      integer :: e, i, k, n, side, number(0:size(equations%load, 2))
+      integer :: pair(2, size(joint)), equation(2*size(joint))
+
+      n = size(joint)
+      p%joint = joint
+      allocate (p%block(2, n), p%entry(n), p%bounded(4, n), p%unit(3, n), p%before(3, n))
+      allocate (p%opening(3, n), p%product(4, n), p%given(3, n))
+      number = 0
+      e = 0
+      k = 0
+      do i = 1, n
+         do side = 1, 2
+            associate (global => springs%equation(side, joint(i)))
+               if (global > 0 .and. number(global) == 0) then
+                  e = e + 1
+                  number(global) = e
+                  equation(e) = global
+               end if
+               p%block(side, i) = number(global)
+            end associate
+         end do
+         p%entry(i) = 0
+         if (any(p%block(:, i) == 0)) cycle
+         k = k + 1
+         p%entry(i) = k
+         pair(:, k) = p%block(:, i)
+      end do
+      p%equation = equation(:e)
+      call set_pattern(p%matrix, size(motion, 1), e, pair(:, :k), symmetric=.false.)
+      call plan_factor(p%matrix, p%factor)
+      allocate (p%balance(size(motion, 1), e))
+      do i = 1, n
+         associate (j => joint(i), given => p%given(:, i))
+            p%unit(:, i) = [(view%give(k, k, j), k=1, 3)]
+            given = p%unit(:, i) > 0.0_wp
+            where (.not. given) p%unit(:, i) = 1.0_wp
+            p%bounded(1:2, i) = given(1:2)
+            p%bounded(3:4, i) = given(3) .and. springs%cone(j)%limit < huge(1.0_wp)
+            p%before(:, i) = force(:, j)
+         end associate
+      end do
+   end subroutine pose
+
+   !> Openings and slips after a motion, from the gaps before it
+   pure subroutine see_openings(springs, view, p, motion, opening)
+      !> The springs of the joints
+      type(joint_springs_t), intent(in) :: springs
+      !> What the joints see
+      type(contact_view_t), intent(in) :: view
+      !> The problem
+      type(problem_t), intent(in) :: p
+      !> The motion: (n_dof, n_block) [m]
+      real(wp), intent(in) :: motion(:, :)
+      !> The openings: (3, n_joint) [m]
+      real(wp), intent(out) :: opening(:, :)
+      integer :: i
+
+      call move_joints(springs, p, motion, opening)
+      do i = 1, size(p%joint)
+         opening(:, i) = merge(opening(:, i) + view%gap(:, p%joint(i)), 0.0_wp, p%given(:, i))
+      end do
+   end subroutine see_openings
+
+   !> What a motion of the blocks adds to openings and slips
+   pure subroutine move_joints(springs, p, motion, opening)
+      !> The springs of the joints
+      type(joint_springs_t), intent(in) :: springs
+      !> The problem
+      type(problem_t), intent(in) :: p
+      !> The motion: (n_dof, n_block) [m]
+      real(wp), intent(in) :: motion(:, :)
+      !> What it adds: (3, n_joint) [m]
+      real(wp), intent(out) :: opening(:, :)
+      real(wp) :: sum_of(3)
+      integer :: b, d, i, side
+
+      do i = 1, size(p%joint)
+         sum_of = 0.0_wp
+         do side = 1, 2
+            b = p%block(side, i)
+            if (b == 0) cycle
+            associate (row => springs%row(:, :, side, p%joint(i)))
+               do d = 1, size(motion, 1)
+                  sum_of = sum_of + row(d, :)*motion(d, b)
+               end do
+            end associate
+         end do
+         opening(:, i) = sum_of
+      end do
+   end subroutine move_joints
+
+   !> Let forces of the joints act on the blocks
+   pure subroutine push_blocks(springs, p, force, load)
+      !> The springs of the joints
+      type(joint_springs_t), intent(in) :: springs
+      !> The problem
+      type(problem_t), intent(in) :: p
+      !> The forces: (3, n_joint) [N/m]
+      real(wp), intent(in) :: force(:, :)
+      !> Receives them: (n_dof, n_block) [N/m]
+      real(wp), intent(inout) :: load(:, :)
+      integer :: b, i, side
+
+      do i = 1, size(p%joint)
+         do side = 1, 2
+            b = p%block(side, i)
+            if (b == 0) cycle
+            associate (row => springs%row(:, :, side, p%joint(i)))
+               load(:, b) = load(:, b) + row(:, 1)*force(1, i) + row(:, 2)*force(2, i) &
+                  & + row(:, 3)*force(3, i)
+            end associate
+         end do
+      end do
+   end subroutine push_blocks
+
+   !> Distance of the forces from their bounds
+   pure subroutine see_bounds(springs, p, force, slack)
+      !> The springs of the joints
+      type(joint_springs_t), intent(in) :: springs
+      !> The problem
+      type(problem_t), intent(in) :: p
+      !> The forces: (3, n_joint) [N/m]
+      real(wp), intent(in) :: force(:, :)
+      !> The distances: (4, n_joint) [N/m]
+      real(wp), intent(out) :: slack(:, :)
+      real(wp) :: bound
+      integer :: i
+
+      do i = 1, size(p%joint)
+         associate (cone => springs%cone(p%joint(i)), shift => springs%shift(:, p%joint(i)))
+            slack(1:2, i) = force(1:2, i) + shift(1:2)
+            bound = cone%limit + cone%friction*(slack(1, i) + slack(2, i))
+         end associate
+         slack(3, i) = bound + force(3, i)
+         slack(4, i) = bound - force(3, i)
+      end do
+   end subroutine see_bounds
+
+   !> The matrix with the springs of an iterate, and its factor
+   pure subroutine factor_springs(equations, springs, p, x)
+      !> Blocks assembled
+      type(equations_t), intent(in) :: equations
+      !> The springs of the joints
+      type(joint_springs_t), intent(in) :: springs
+      !> The problem; matrix and factor are made anew
+      type(problem_t), intent(inout) :: p
+      !> The iterate
+      type(interior_t), intent(in) :: x
+      real(wp), dimension(size(p%balance, 1), 3, 2) :: steep
+      real(wp) :: unit(3)
+      integer :: b, c, d, first, i, k, n, one
+
+      n = size(p%balance, 1)
+      p%matrix%diagonal = equations%base(:, :, p%equation)
+      p%matrix%coupling = 0.0_wp
+      p%matrix%upper = 0.0_wp
+      do i = 1, size(p%joint)
+         associate (row => springs%row(:, :, :, p%joint(i)), m => p%matrix)
+            ! R S, of columns opening 1, opening 2, slip
+            do k = 1, 3
+               unit = 0.0_wp
+               unit(k) = 1.0_wp
+               unit = answer(springs, p, x, i, unit)
+               do one = 1, 2
+                  steep(:, k, one) = row(:, 1, one)*unit(1) + row(:, 2, one)*unit(2) &
+                     & + row(:, 3, one)*unit(3)
+               end do
+            end do
+            do one = 1, 2
+               b = p%block(one, i)
+               if (b == 0) cycle
+               do c = 1, n
+                  do d = 1, 3
+                     m%diagonal(:, c, b) = m%diagonal(:, c, b) + steep(:, d, one)*row(c, d, one)
+                  end do
+               end do
+            end do
+            if (p%entry(i) == 0) cycle
+            first = merge(1, 2, m%pair(1, p%entry(i)) == p%block(1, i))
+            do c = 1, n
+               do d = 1, 3
+                  m%coupling(:, c, p%entry(i)) = m%coupling(:, c, p%entry(i)) &
+                     & + steep(:, d, first)*row(c, d, 3 - first)
+                  m%upper(:, c, p%entry(i)) = m%upper(:, c, p%entry(i)) &
+                     & + steep(:, d, 3 - first)*row(c, d, first)
+               end do
+            end do
+         end associate
+      end do
+      call factorise(p%matrix, p%factor)
+   end subroutine factor_springs
+
+   !> Forces of a joint's springs that are pressed together
+   pure function answer(springs, p, x, i, drive) result(force)
+      !> The springs of the joints
+      type(joint_springs_t), intent(in) :: springs
+      !> The problem
+      type(problem_t), intent(in) :: p
+      !> The iterate
+      type(interior_t), intent(in) :: x
+      !> Place of the joint in the problem
+      integer, intent(in) :: i
+      !> By how much: (3) [m]
+      real(wp), intent(in) :: drive(3)
+      !> The forces: (3) [N/m]
+      real(wp) :: force(3)
+      real(wp) :: ratio(4)
+
+      ratio = x%flow(:, i)/x%slack(:, i)
+      force(1:2) = merge(drive(1:2)/(compliance*p%unit(1:2, i) + ratio(1:2)), 0.0_wp, &
+         & p%given(1:2, i))
+      force(3) = 0.0_wp
+      if (.not. p%given(3, i)) return
+      force(3) = (drive(3) - springs%cone(p%joint(i))%friction*(ratio(3) - ratio(4)) &
+         & *(force(1) + force(2)))/(compliance*p%unit(3, i) + ratio(3) + ratio(4))
+   end function answer
+end module dda_interior_problem

@@ -1,0 +1,140 @@
+!> What supports put on the blocks: blocks that are fixed, and held points
+module dda_reactions
+   use dda_assembly, only : equations_t
+   use dda_block_system, only : block_system_t
+   use dda_boundary, only : boundary_t
+   use dda_contact_detection, only : contacts_t
+   use dda_contact_types, only : joint_t
+   use dda_deformation, only : moved_point
+   use dda_frames, only : album_t
+   use dda_kinds, only : wp
+   use dda_settings, only : settings_t
+   use dda_step_context, only : step_context_t
+   use dda_vector, only : cross
+   implicit none
+   private
+
+   public :: supports_of, forces_of_blocks, force_on, keep_reactions
+
+contains
+
+   !> All supports: fixed blocks first, then points that are held of others
+   pure function supports_of(system, boundary) result(support)
+      !> The blocks
+      type(block_system_t), intent(in) :: system
+      !> The held points
+      type(boundary_t), intent(in) :: boundary
+      !> Block, and number of the held point or 0: (2, n)
+      integer, allocatable :: support(:, :)
+      integer :: i, n
+
+      n = 0
+      if (allocated(boundary%held)) n = size(boundary%held)
+      allocate (support(2, count(system%equation == 0) + n))
+      n = 0
+      do i = 1, size(system%equation)
+         if (system%equation(i) > 0) cycle
+         n = n + 1
+         support(:, n) = [i, 0]
+      end do
+      if (allocated(boundary%held)) then
+         do i = 1, size(boundary%held)
+            if (system%equation(boundary%held(i)%block) == 0) cycle
+            n = n + 1
+            support(:, n) = [boundary%held(i)%block, i]
+         end do
+      end if
+      support = support(:, :n)
+   end function supports_of
+
+   !> Force of a joint on one of its blocks, and its moment about the origin of coordinates
+   pure function force_on(joint, force, side) result(wrench)
+      !> The joint
+      type(joint_t), intent(in) :: joint
+      !> Its force N1, N2, T: (3) [N/m]
+      real(wp), intent(in) :: force(3)
+      !> Which of its blocks, 1 or 2
+      integer, intent(in) :: side
+      !> Components along x and y, and moment: (3) [N/m, N/m, N]
+      real(wp) :: wrench(3)
+      integer :: k
+
+      wrench(1:2) = force(3)*joint%tangent
+      wrench(3) = cross(joint%middle(:, side), wrench(1:2))
+      do k = 1, joint%n_contact
+         associate (contact => joint%contact(k))
+            wrench(1:2) = wrench(1:2) + force(k)*contact%normal
+            wrench(3) = wrench(3) + force(k)*cross(contact%point, contact%normal)
+         end associate
+      end do
+      if (side == 1) wrench = -wrench
+   end function force_on
+
+   !> What fixed blocks put on those that move
+   pure function forces_of_blocks(system, joint, force, support) result(reaction)
+      !> The blocks
+      type(block_system_t), intent(in) :: system
+      !> The joints: (n_joint)
+      type(joint_t), intent(in) :: joint(:)
+      !> Their forces N1, N2, T: (3, n_joint) [N/m]
+      real(wp), intent(in) :: force(:, :)
+      !> The supports; points get nothing: (2, n)
+      integer, intent(in) :: support(:, :)
+      !> Force, and moment about the origin of coordinates: (3, n) [N/m, N/m, N]
+      real(wp) :: reaction(3, size(support, 2))
+      integer :: i, j, place(size(system%equation)), side
+
+      reaction = 0.0_wp
+      place = 0
+      do i = 1, size(support, 2)
+         if (support(2, i) == 0) place(support(1, i)) = i
+      end do
+      do j = 1, size(joint)
+         do side = 1, 2
+            i = place(joint(j)%block(3 - side))
+            if (i == 0 .or. system%equation(joint(j)%block(side)) == 0) cycle
+            reaction(:, i) = reaction(:, i) + force_on(joint(j), force(:, j), side)
+         end do
+      end do
+   end function forces_of_blocks
+
+   !> Keep the reactions of a dynamic step: the mean over it of what changes the momentum of the
+   !> blocks
+   pure subroutine keep_reactions(settings, system, contacts, equations, step, album)
+      !> Settings of the run
+      type(settings_t), intent(in) :: settings
+      !> The blocks after the step
+      type(block_system_t), intent(in) :: system
+      !> The contacts after the step
+      type(contacts_t), intent(in) :: contacts
+      !> The equations of the step
+      type(equations_t), intent(in) :: equations
+      !> The step
+      type(step_context_t), intent(in) :: step
+      !> Receives the reactions
+      type(album_t), intent(inout) :: album
+      real(wp) :: force(2), place(2)
+      integer :: h, i, k
+
+      if (.not. allocated(album%support)) return
+      if (allocated(step%impulse)) then
+         album%reaction_now = forces_of_blocks(system, contacts%joint, step%impulse, album%support)
+      else
+         album%reaction_now = forces_of_blocks(system, contacts%joint, contacts%force, &
+            & album%support)
+      end if
+      do k = 1, size(equations%fixed%point)
+         h = equations%fixed%point(k)
+         i = findloc(album%support(2, :), h, dim=1)
+         force = 0.0_wp
+         force(equations%fixed%axis(k)) = equations%fixed%force(k)
+         if (allocated(step%held_impulse)) force(equations%fixed%axis(k)) = step%held_impulse(k)
+         associate (held => settings%boundary%held(h))
+            place = held%point
+            if (settings%current) place = moved_point(held%point, &
+               & system%centroid(:, held%block), system%motion(:, held%block))
+         end associate
+         album%reaction_now(:, i) = album%reaction_now(:, i) + [force, cross(place, force)]
+      end do
+   end subroutine keep_reactions
+end module dda_reactions

@@ -1,0 +1,198 @@
+!> What a deck says of the ground, and of what means collapse in time
+module dda_deck_check_ground
+   use dda_deck, only : deck_error, deck_place_t, deck_t, has_group, integer_of, is_given, &
+      & parameter_t, place_of, word_of
+   use dda_deck_keys, only : deck_key, group_index, key_index
+   use dda_error, only : error_t
+   use dda_text, only : to_text
+   implicit none
+   private
+
+   public :: check_block_file, check_ground
+
+contains
+
+   !> Check the motion of the ground in one case
+   pure subroutine check_ground(deck, searched, error)
+      !> The deck of the case
+      type(deck_t), intent(in) :: deck
+      !> What is searched; key 0 if nothing is
+      type(parameter_t), intent(in) :: searched
+      !> Keys that do not go together, or a mode that has no use for them
+      type(error_t), allocatable, intent(out) :: error
+      character(len=:), allocatable :: problem
+      type(deck_place_t) :: place
+      integer :: key
+
+      call check_collapse(deck, error)
+      if (.not. allocated(error) .and. searched%key > 0) call check_search_in_time(deck, error)
+      if (allocated(error) .or. .not. (has_group(deck, "ground") .or. varies_ground())) return
+      place = deck%group(group_index("ground"))
+      if (place%line == 0) place = place_of(deck, key_index("search", "parameter"))
+      key = 0
+      problem = ""
+      if (word_of(deck, "analysis", "mode") /= "dynamic") then
+         problem = "&ground needs mode = 'dynamic', got '" &
+            & //trim(word_of(deck, "analysis", "mode"))//"'; change the one or remove the other"
+      else if (has("pulse") .and. has("record")) then
+         problem = "&ground needs a pulse or a record, got both; remove one of them"
+         key = key_index("ground", "record")
+      else if (.not. (has("pulse") .or. has("record")) &
+         & .and. word_of(deck, "scene", "kind") /= "blocks") then
+         problem = "&ground needs a pulse or a record, got none; give one"
+      end if
+      if (len(problem) == 0) call check_keys(problem, key)
+      if (key > 0) place = place_of(deck, key)
+      if (len(problem) > 0) call deck_error(error, problem, deck, place)
+
+   contains
+
+      !> Whether the search or a sweep gives a key of &ground
+      pure logical function varies_ground()
+         integer :: s
+
+         varies_ground = .false.
+         if (searched%key > 0) varies_ground = deck_key(searched%key)%group == "ground"
+         do s = 1, size(deck%sweep)
+            varies_ground = varies_ground &
+               & .or. deck_key(deck%sweep(s)%parameter%key)%group == "ground"
+         end do
+      end function varies_ground
+
+      !> Whether a key of &ground is given, or searched
+      pure logical function has(name)
+         !> Name of the key
+         character(len=*), intent(in) :: name
+
+         has = is_given(deck, "ground", name) .or. searched%key == key_index("ground", name)
+      end function has
+
+      !> Check what a pulse or a record needs, and what it has no use for
+      pure subroutine check_keys(problem, key)
+         !> What is wrong; left as it was if nothing is
+         character(len=:), allocatable, intent(inout) :: problem
+         !> The key at fault, 0 if one is missing
+         integer, intent(inout) :: key
+         character(len=*), parameter :: name(7) = [character(len=13) :: "amplitude", "duration", &
+            & "frequency", "direction_deg", "columns", "quantity", "unit"]
+         logical :: needed(size(name)), used(size(name))
+         character(len=:), allocatable :: what
+         integer :: i
+
+         needed = .false.
+         used = .false.
+         if (has("record")) then
+            what = "a record"
+            used([1, 4, 5, 6, 7]) = .true.
+         else if (.not. has("pulse")) then
+            what = "the motion of the file of blocks"
+         else if (word_of(deck, "ground", "pulse") == "sine") then
+            what = "a sine"
+            needed([1, 3]) = .true.
+            used(:4) = .true.
+         else
+            what = "a rectangular pulse"
+            needed(:2) = .true.
+            used([1, 2, 4]) = .true.
+         end if
+         do i = 1, size(name)
+            if (needed(i) .and. .not. has(trim(name(i)))) then
+               problem = "&ground needs "//trim(name(i))//" for "//what//", got none; give it"
+            else if (has(trim(name(i))) .and. .not. used(i)) then
+               problem = "ground%"//trim(name(i))//" has no effect on "//what//"; remove it"
+               key = key_index("ground", trim(name(i)))
+            end if
+            if (len(problem) > 0) return
+         end do
+      end subroutine check_keys
+   end subroutine check_ground
+
+   !> Check a deck against its file of blocks: the ground has one motion, and the point that means
+   !> collapse is measured
+   pure subroutine check_block_file(deck, error)
+      !> The deck, its files read
+      type(deck_t), intent(in) :: deck
+      !> No motion of the ground or two, or no such point
+      type(error_t), allocatable, intent(out) :: error
+      logical :: gives
+      integer :: measured, point, s
+
+      measured = 0
+      if (allocated(deck%plan%boundary%measured)) measured = size(deck%plan%boundary%measured)
+      point = integer_of(deck, "analysis", "collapse_point")
+      if (point > measured) then
+         call deck_error(error, "analysis%collapse_point needs a measured point, "// &
+            & "from 1 to "//to_text(measured)//", got "//to_text(point)//"; add 'measure' lines", &
+            & deck, place_of(deck, key_index("analysis", "collapse_point")))
+         return
+      end if
+      gives = is_given(deck, "ground", "pulse") .or. allocated(deck%ground_record)
+      do s = 1, size(deck%sweep)
+         gives = gives .or. deck%sweep(s)%parameter%key == key_index("ground", "pulse")
+      end do
+      if (gives .and. deck%plan%ground_line > 0) then
+         call deck_error(error, "&ground needs a file of blocks whose ground is at rest, got "// &
+            & "one that moves it in line "//to_text(deck%plan%ground_line)//"; remove one", &
+            & deck, deck%group(group_index("ground")))
+      else if (has_group(deck, "ground") .and. .not. gives .and. deck%plan%ground_line == 0) then
+         call deck_error(error, "&ground needs a pulse, a record, or a file of blocks that "// &
+            & "moves the ground, got none; give one", deck, deck%group(group_index("ground")))
+      end if
+   end subroutine check_block_file
+
+   !> Check what a search in time needs
+   pure subroutine check_search_in_time(deck, error)
+      !> The deck of the case
+      type(deck_t), intent(in) :: deck
+      !> No duration, blocks that do not move, or a run that goes on
+      type(error_t), allocatable, intent(out) :: error
+      character(len=:), allocatable :: problem
+
+      if (word_of(deck, "analysis", "mode") /= "dynamic") return
+      problem = ""
+      if (word_of(deck, "analysis", "geometry") /= "current") then
+         problem = "a search with mode = 'dynamic' needs geometry = 'current', where blocks "// &
+            & "move, got 'reference'; change it"
+      else if (.not. is_given(deck, "analysis", "duration")) then
+         problem = "a search with mode = 'dynamic' needs analysis%duration, in which "// &
+            & "blocks can collapse, got none; give it"
+      else if (is_given(deck, "analysis", "restart")) then
+         problem = "a search needs a run from its beginning, got analysis%restart; remove it"
+      else if (.not. (is_given(deck, "search", "low") .and. is_given(deck, "search", "high"))) then
+         problem = "a search with mode = 'dynamic' needs search%low and search%high; give both"
+      end if
+      if (len(problem) > 0) call deck_error(error, problem, deck, &
+         & place_of(deck, key_index("search", "parameter")))
+   end subroutine check_search_in_time
+
+   !> Check what means collapse in a dynamic run
+   pure subroutine check_collapse(deck, error)
+      !> The deck of the case
+      type(deck_t), intent(in) :: deck
+      !> A mode that has no use for it, or a point without a distance
+      type(error_t), allocatable, intent(out) :: error
+      character(len=*), parameter :: name(2) = [character(len=21) :: "collapse_rotation_deg", &
+         & "collapse_point"]
+      integer :: i
+
+      do i = 1, size(name)
+         if (.not. is_given(deck, "analysis", trim(name(i)))) cycle
+         if (word_of(deck, "analysis", "mode") == "dynamic" &
+            & .and. word_of(deck, "analysis", "geometry") == "current") cycle
+         call deck_error(error, "analysis%"//trim(name(i))//" needs mode = 'dynamic' and "// &
+            & "geometry = 'current'; remove it", deck, &
+            & place_of(deck, key_index("analysis", trim(name(i)))))
+         return
+      end do
+      if (.not. is_given(deck, "analysis", "collapse_point")) return
+      if (word_of(deck, "scene", "kind") /= "blocks") then
+         call deck_error(error, "analysis%collapse_point needs a file of blocks with "// &
+            & "measured points, got kind = '"//trim(word_of(deck, "scene", "kind"))//"'", &
+            & deck, place_of(deck, key_index("analysis", "collapse_point")))
+      else if (.not. is_given(deck, "analysis", "collapse_displacement")) then
+         call deck_error(error, "analysis%collapse_point needs collapse_displacement, the "// &
+            & "displacement of that point that means collapse, got none; give it", deck, &
+            & place_of(deck, key_index("analysis", "collapse_point")))
+      end if
+   end subroutine check_collapse
+end module dda_deck_check_ground

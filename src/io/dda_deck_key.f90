@@ -1,0 +1,84 @@
+!> What the registry says of a key and of a group
+module dda_deck_key
+   use dda_kinds, only : wp
+   implicit none
+   private
+
+   public :: key_t, key_kind, group_t, name_length, word_length, max_items
+
+   !> Longest name of a key [characters]
+   integer, parameter :: name_length = 32
+   !> Longest word of a list of words [characters]
+   integer, parameter :: word_length = 64
+   !> Most items that a list may have
+   integer, parameter :: max_items = 100000
+
+   !> What kind of value a key takes
+   type :: key_kind_enum
+      !> One real number
+      integer :: number = 1
+      !> One whole number
+      integer :: whole = 2
+      !> One of the words of the entry
+      integer :: word = 3
+      !> Any text on one line
+      integer :: text = 4
+      !> .true. or .false.
+      integer :: flag = 5
+      !> A list of real numbers
+      integer :: numbers = 6
+      !> A list of words
+      integer :: texts = 7
+      !> Known, but refused: a later version of the program reads it
+      integer :: later = 8
+   end type key_kind_enum
+
+   !> The kinds of value by name
+   type(key_kind_enum), parameter :: key_kind = key_kind_enum()
+
+   !> One key of a deck
+   type :: key_t
+      !> Group that the key belongs to
+      character(len=16) :: group = ""
+      !> Name of the key
+      character(len=name_length) :: name = ""
+      !> One of key_kind
+      integer :: kind = key_kind%number
+      !> Unit of the value; empty if it has none
+      character(len=8) :: unit = ""
+      !> Default as one would write it in a deck; empty if there is none
+      character(len=24) :: default = ""
+      !> What happens without the key where it has no default
+      character(len=56) :: without = ""
+      !> Smallest value that is allowed
+      real(wp) :: at_least = -huge(1.0_wp)
+      !> Largest value that is allowed
+      real(wp) :: at_most = huge(1.0_wp)
+      !> Bound that the value must exceed
+      real(wp) :: above = -huge(1.0_wp)
+      !> Bound that the value must stay below
+      real(wp) :: below = huge(1.0_wp)
+      !> Words that are allowed, separated by blanks
+      character(len=72) :: words = ""
+      !> Words that a later version of the program allows, separated by blanks
+      character(len=40) :: later = ""
+      !> Whether &sweep may name the key; &search may, if it is also a real number
+      logical :: varies = .true.
+      !> Whether its name alone means it where groups share the name
+      logical :: bare = .true.
+      !> Lower end of a search that gives none
+      real(wp) :: search_low = -huge(1.0_wp)
+      !> Upper end of a search that gives none
+      real(wp) :: search_high = huge(1.0_wp)
+      !> What the key means, in one sentence
+      character(len=100) :: meaning = ""
+   end type key_t
+
+   !> One group of a deck
+   type :: group_t
+      !> Name of the group
+      character(len=16) :: name = ""
+      !> What the group describes
+      character(len=72) :: meaning = ""
+   end type group_t
+end module dda_deck_key

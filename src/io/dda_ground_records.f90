@@ -1,0 +1,102 @@
+!> Records of the ground's motion that a deck names, in &ground or in a sweep of ground%record
+module dda_ground_records
+   use dda_deck, only : add_file_mark, deck_error, deck_place_t, deck_t, file_beside, &
+      & ground_record_t, is_given, line_of, text_of
+   use dda_deck_keys, only : key_index
+   use dda_deck_token, only : shown
+   use dda_error, only : error_t
+   use dda_kinds, only : wp
+   use dda_read_record, only : column_size, read_record
+   implicit none
+   private
+
+   public :: read_ground_records
+
+contains
+
+   !> Read all of them
+   subroutine read_ground_records(deck, error)
+      !> The deck, checked; receives the records
+      type(deck_t), intent(inout) :: deck
+      !> Bad input, with file and line
+      type(error_t), allocatable, intent(out) :: error
+      integer :: i, key, s
+
+      key = key_index("ground", "record")
+      if (is_given(deck, "ground", "record")) call add_record(text_of(deck, "ground", "record"), &
+         & deck%value(key)%place, deck, error)
+      do s = 1, size(deck%sweep)
+         if (deck%sweep(s)%parameter%key /= key) cycle
+         do i = 1, size(deck%sweep(s)%texts)
+            if (allocated(error)) return
+            call add_record(trim(deck%sweep(s)%texts(i)), deck%sweep(s)%place, deck, error)
+         end do
+      end do
+   end subroutine read_ground_records
+
+   !> Read one of them, unless it is there already
+   subroutine add_record(name, place, deck, error)
+      !> Its name in the deck
+      character(len=*), intent(in) :: name
+      !> Where the deck names it
+      type(deck_place_t), intent(in) :: place
+      !> Receives the record
+      type(deck_t), intent(inout) :: deck
+      !> Bad input, with file and line
+      type(error_t), allocatable, intent(out) :: error
+      character(len=:), allocatable :: mark, message
+      character(len=column_size) :: column(3)
+      real(wp), allocatable :: row(:, :)
+      type(ground_record_t), allocatable :: longer(:)
+      integer :: i, n
+
+      n = 0
+      if (allocated(deck%ground_record)) n = size(deck%ground_record)
+      do i = 1, n
+         if (deck%ground_record(i)%name == name) return
+      end do
+      call split_columns(deck, column, error)
+      if (allocated(error)) return
+      call read_record(file_beside(deck, name), column, 1.0_wp, row, mark, error)
+      if (allocated(error)) then
+         if (error%line > 0) return
+         message = "ground%record = '"//shown(name)//"': "//error%message
+         call deck_error(error, message, deck, place)
+         return
+      end if
+      allocate (longer(n + 1))
+      if (n > 0) longer(:n) = deck%ground_record
+      longer(n + 1)%name = name
+      longer(n + 1)%motion%time = row(1, :)
+      longer(n + 1)%motion%value = row(2:3, :)
+      call move_alloc(longer, deck%ground_record)
+      call add_file_mark(mark, deck)
+   end subroutine add_record
+
+   !> Part ground%columns into the columns of time, x and y
+   pure subroutine split_columns(deck, column, error)
+      !> The deck
+      type(deck_t), intent(in) :: deck
+      !> The columns; 0 for none: (3)
+      character(len=column_size), intent(out) :: column(3)
+      !> More or fewer
+      type(error_t), allocatable, intent(out) :: error
+      character(len=:), allocatable :: text
+      integer :: blank, n
+
+      text = adjustl(text_of(deck, "ground", "columns"))
+      column = "0"
+      n = 0
+      do while (len_trim(text) > 0)
+         n = n + 1
+         blank = scan(text//" ", " ,")
+         if (n <= 3) column(n) = text(:blank - 1)
+         text = adjustl(text(min(blank + 1, len(text) + 1):))
+      end do
+      if (n == 2 .or. n == 3) return
+      call deck_error(error, "ground%columns needs two or three columns, of time, x and y, "// &
+         & "got '"//text_of(deck, "ground", "columns")//"'; write them as in '1 2'", deck, &
+         & deck_place_t(max(1, line_of(deck, "ground", "columns")), &
+         & deck%value(key_index("ground", "columns"))%place%from_command))
+   end subroutine split_columns
+end module dda_ground_records

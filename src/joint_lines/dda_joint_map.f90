@@ -1,0 +1,147 @@
+!> What a map of joints is made of, before lines are drawn: outline, openings, sets, points
+module dda_joint_map
+   use dda_kinds, only : wp
+   implicit none
+   private
+
+   public :: bolts_t, joint_map_t, joint_set_t, length_t, length_law, map_line_t, map_role
+   public :: opening_t
+
+   !> How a length is spread about its mean
+   type :: length_law_enum
+      !> Not at all
+      integer :: constant = 1
+      !> Evenly, by the randomness on either side
+      integer :: uniform = 2
+      !> Negative exponential
+      integer :: exponential = 3
+      !> Normal, with the randomness as coefficient of variation, cut off at 0 and at twice the mean
+      integer :: normal = 4
+   end type length_law_enum
+
+   !> The laws by name
+   type(length_law_enum), parameter :: length_law = length_law_enum()
+
+   !> What a line or a point is for
+   type :: map_role_enum
+      !> A joint
+      integer :: joint = 1
+      !> It gives the blocks that it crosses their material
+      integer :: material = 2
+      !> It holds the blocks that it crosses
+      integer :: fix = 3
+      !> A force acts there
+      integer :: load = 4
+      !> It is followed
+      integer :: measure = 5
+      !> Its block is taken out
+      integer :: hole = 6
+      !> A bolt
+      integer :: bolt = 7
+   end type map_role_enum
+
+   !> The roles by name
+   type(map_role_enum), parameter :: map_role = map_role_enum()
+
+   !> A length that may be random
+   type :: length_t
+      !> Its mean [m]
+      real(wp) :: mean = 0.0_wp
+      !> One of length_law
+      integer :: law = length_law%constant
+      !> Degree of randomness, 0 to 1
+      real(wp) :: randomness = 0.0_wp
+   end type length_t
+
+   !> A set of joints
+   type :: joint_set_t
+      !> Angle of the joints, anticlockwise from x [rad]
+      real(wp) :: dip = 0.0_wp
+      !> Largest deviation of a joint from it, evenly spread [rad]
+      real(wp) :: dip_spread = 0.0_wp
+      !> Distance between neighbours
+      type(length_t) :: spacing
+      !> Length of a trace; joints without end where its mean is 0
+      type(length_t) :: trace
+      !> Rock between two traces of a joint
+      type(length_t) :: bridge
+      !> Number of the joint material
+      integer :: material = 1
+      !> What chooses the random numbers of the set: seed and stream (2)
+      integer :: seed(2) = 0
+      !> Whether one joint of the set runs through a given point
+      logical :: anchored = .false.
+      !> That point, or the origin of the set: (2) [m]
+      real(wp) :: anchor(2) = 0.0_wp
+      !> Corners of the region of the set; without any it is the whole outline: (2, n) [m]
+      real(wp), allocatable :: region(:, :)
+      !> Line of the file
+      integer :: row = 0
+   end type joint_set_t
+
+   !> An opening
+   type :: opening_t
+      !> Corners, anticlockwise: (2, n) [m]
+      real(wp), allocatable :: corner(:, :)
+      !> Number of the joint material of its edges
+      integer :: material = 1
+      !> Whether it is there from the beginning; joints run through one that is not
+      logical :: excavated = .true.
+      !> Line of the file
+      integer :: row = 0
+   end type opening_t
+
+   !> A line or a point that is placed by hand
+   type :: map_line_t
+      !> One of map_role
+      integer :: role = map_role%joint
+      !> Ends, one and the same for a point: (4) [m]
+      real(wp) :: ends(4) = 0.0_wp
+      !> Number of its material, or of the properties of a bolt
+      integer :: material = 1
+      !> Stiffness, strength and prestress of a bolt: (3) [N/m, N, N]
+      real(wp) :: bolt(3) = 0.0_wp
+      !> Line of the file
+      integer :: row = 0
+   end type map_line_t
+
+   !> Bolts in a pattern around an opening
+   type :: bolts_t
+      !> Number of the opening
+      integer :: opening = 1
+      !> Number of bolts
+      integer :: number = 0
+      !> Directions of the first and of the last, seen from the opening's centre: (2) [rad]
+      real(wp) :: fan(2) = 0.0_wp
+      !> Their length, and how deep inside the rock they begin: (2) [m]
+      real(wp) :: reach(2) = 0.0_wp
+      !> Stiffness, strength and prestress: (3) [N/m, N, N]
+      real(wp) :: property(3) = 0.0_wp
+      !> Line of the file
+      integer :: row = 0
+   end type bolts_t
+
+   !> All of a map
+   type :: joint_map_t
+      !> Name of the file, for messages
+      character(len=:), allocatable :: file
+      !> Shi's e00
+      real(wp) :: edge_node_ratio = 0.0_wp
+      !> Corners of the outline, anticlockwise: (2, n) [m]
+      real(wp), allocatable :: outline(:, :)
+      !> Number of the joint material of the outline
+      integer :: outline_material = 1
+      !> Sides whose blocks are held: left, right, bottom (3)
+      logical :: held_side(3) = .false.
+      !> How far from the side the line that holds them runs [m]
+      real(wp) :: hold_depth = 0.0_wp
+      !> Sets of joints
+      type(joint_set_t), allocatable :: set(:)
+      !> Openings
+      type(opening_t), allocatable :: opening(:)
+      !> Lines and points placed by hand
+      type(map_line_t), allocatable :: line(:)
+      !> Bolts around openings
+      type(bolts_t), allocatable :: bolts(:)
+   end type joint_map_t
+end module dda_joint_map

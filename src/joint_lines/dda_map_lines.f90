@@ -1,0 +1,244 @@
+!> From a map of joints to lines and points for the cut (Shi: DL)
+module dda_map_lines
+   use dda_error, only : error_t, fatal_error
+   use dda_joint_map, only : bolts_t, joint_map_t, map_line_t, map_role
+   use dda_kinds, only : wp
+   use dda_line_clip, only : clip_line, inner_point, outlines_cross, ray_exit
+   use dda_line_model, only : add_bolt, add_entity, line_model_t, new_line_model
+   use dda_polygon, only : contains_point
+   use dda_set_traces, only : joint_count, set_traces
+   use dda_text, only : to_text
+   implicit none
+   private
+
+   public :: map_lines
+
+   !> Most traces of a map
+   integer, parameter :: most_traces = 1000000
+
+contains
+
+   !> Lines and points of a map
+   pure subroutine map_lines(map, model, error)
+      !> The map
+      type(joint_map_t), intent(in) :: map
+      !> Lines and points
+      type(line_model_t), intent(out) :: model
+      !> What cannot be drawn, with file and line
+      type(error_t), allocatable, intent(out) :: error
+      real(wp) :: inside(2)
+      integer :: i
+
+      call new_line_model(model)
+      model%file = map%file
+      model%edge_node_ratio = map%edge_node_ratio
+      call check_openings(map, error)
+      if (allocated(error)) return
+      call add_outline(map%outline, map%outline_material, 1, model)
+      do i = 1, size(map%opening)
+         call add_outline(map%opening(i)%corner, map%opening(i)%material, map%opening(i)%row, model)
+         if (.not. map%opening(i)%excavated) cycle
+         inside = inner_point(map%opening(i)%corner)
+         call add_entity(model%hole, [inside, inside], 0, map%opening(i)%row)
+      end do
+      model%n_boundary = model%line%n
+      call hold_sides(map, model)
+      do i = 1, size(map%set)
+         if (.not. allocated(error)) call add_set(map, i, model, error)
+      end do
+      do i = 1, size(map%line)
+         if (.not. allocated(error)) call add_line(map, map%line(i), model, error)
+      end do
+      do i = 1, size(map%bolts)
+         if (.not. allocated(error)) call add_bolts(map, map%bolts(i), model, error)
+      end do
+   end subroutine map_lines
+
+   !> Whether all openings lie apart inside the outline
+   pure subroutine check_openings(map, error)
+      !> The map
+      type(joint_map_t), intent(in) :: map
+      !> One that does not
+      type(error_t), allocatable, intent(out) :: error
+      integer :: i, k, j
+
+      do i = 1, size(map%opening)
+         associate (corner => map%opening(i)%corner)
+            do k = 1, size(corner, 2)
+               if (contains_point(map%outline, corner(:, k))) cycle
+               call fatal_error(error, "expected an opening inside the outline, got one with a " &
+                  & //"corner at ("//to_text(corner(1, k))//", "//to_text(corner(2, k)) &
+                  & //"); make the outline larger", map%file, map%opening(i)%row)
+               return
+            end do
+            do j = 1, i - 1
+               if (.not. outlines_cross(corner, map%opening(j)%corner)) cycle
+               call fatal_error(error, "expected openings that lie apart, got one that meets " &
+                  & //"opening "//to_text(j)//" of line "//to_text(map%opening(j)%row) &
+                  & //"; draw both as one polygon", map%file, map%opening(i)%row)
+               return
+            end do
+         end associate
+      end do
+   end subroutine check_openings
+
+   !> Add the edges of a polygon
+   pure subroutine add_outline(corner, material, row, model)
+      !> Its corners: (2, n) [m]
+      real(wp), intent(in) :: corner(:, :)
+      !> Number of the joint material
+      integer, intent(in) :: material
+      !> Line of the file
+      integer, intent(in) :: row
+      !> Receives them
+      type(line_model_t), intent(inout) :: model
+      integer :: i
+
+      do i = 1, size(corner, 2)
+         call add_entity(model%line, [corner(:, i), corner(:, modulo(i, size(corner, 2)) + 1)], &
+            & material, row)
+      end do
+   end subroutine add_outline
+
+   !> Hold the blocks along sides of the outline
+   pure subroutine hold_sides(map, model)
+      !> The map
+      type(joint_map_t), intent(in) :: map
+      !> Receives a line a side
+      type(line_model_t), intent(inout) :: model
+      real(wp) :: low(2), high(2), x
+
+      low = minval(map%outline, 2)
+      high = maxval(map%outline, 2)
+      if (map%held_side(1)) then
+         x = low(1) + map%hold_depth
+         call add_entity(model%fixed, [x, low(2), x, high(2)], 0, 1)
+      end if
+      if (map%held_side(2)) then
+         x = high(1) - map%hold_depth
+         call add_entity(model%fixed, [x, low(2), x, high(2)], 0, 1)
+      end if
+      if (map%held_side(3)) then
+         x = low(2) + map%hold_depth
+         call add_entity(model%fixed, [low(1), x, high(1), x], 0, 1)
+      end if
+   end subroutine hold_sides
+
+   !> Draw a set of joints
+   pure subroutine add_set(map, i, model, error)
+      !> The map
+      type(joint_map_t), intent(in) :: map
+      !> Number of the set
+      integer, intent(in) :: i
+      !> Receives its traces
+      type(line_model_t), intent(inout) :: model
+      !> Too many traces
+      type(error_t), allocatable, intent(out) :: error
+      real(wp), allocatable :: trace(:, :)
+      real(wp) :: centre(2), radius
+      integer :: k, n
+
+      centre = 0.5_wp*(minval(map%outline, 2) + maxval(map%outline, 2))
+      radius = 0.5_wp*norm2(maxval(map%outline, 2) - minval(map%outline, 2))
+      associate (set => map%set(i))
+         if (joint_count(set, norm2(centre - set%anchor) + radius) > real(most_traces, wp)) then
+            call fatal_error(error, "expected a set of at most "//to_text(most_traces) &
+               & //" traces, got one with more; make the spacing larger", map%file, set%row)
+            return
+         end if
+         call set_traces(set, centre, radius, trace, n)
+         if (allocated(set%region)) call clip_line(trace, n, set%region, .true.)
+         call clip_to_rock(map, trace, n)
+         do k = 1, n
+            call add_entity(model%line, trace(:, k), set%material, set%row)
+         end do
+      end associate
+   end subroutine add_set
+
+   !> Keep what of some lines lies in rock
+   pure subroutine clip_to_rock(map, line, n)
+      !> The map
+      type(joint_map_t), intent(in) :: map
+      !> Columns of ends: (4, n or more) [m]
+      real(wp), allocatable, intent(inout) :: line(:, :)
+      !> Their number
+      integer, intent(inout) :: n
+      integer :: i
+
+      call clip_line(line, n, map%outline, .true.)
+      do i = 1, size(map%opening)
+         if (map%opening(i)%excavated) call clip_line(line, n, map%opening(i)%corner, .false.)
+      end do
+   end subroutine clip_to_rock
+
+   !> Add a line or a point that is placed by hand
+   pure subroutine add_line(map, line, model, error)
+      !> The map
+      type(joint_map_t), intent(in) :: map
+      !> The line
+      type(map_line_t), intent(in) :: line
+      !> Receives it
+      type(line_model_t), intent(inout) :: model
+      !> A joint outside the outline
+      type(error_t), allocatable, intent(out) :: error
+      real(wp), allocatable :: part(:, :)
+      integer :: k, n
+
+      select case (line%role)
+      case (map_role%joint)
+         allocate (part(4, 1))
+         part(:, 1) = line%ends
+         n = 1
+         call clip_to_rock(map, part, n)
+         if (n == 0) call fatal_error(error, "expected a line in the rock inside the outline, " &
+            & //"got one outside it", map%file, line%row)
+         do k = 1, n
+            call add_entity(model%line, part(:, k), line%material, line%row)
+         end do
+      case (map_role%material)
+         call add_entity(model%material_line, line%ends, line%material, line%row)
+      case (map_role%fix)
+         call add_entity(model%fixed, line%ends, 0, line%row)
+      case (map_role%load)
+         call add_entity(model%load, line%ends, 0, line%row)
+      case (map_role%measure)
+         call add_entity(model%measured, line%ends, 0, line%row)
+      case (map_role%hole)
+         call add_entity(model%hole, line%ends, 0, line%row)
+      case (map_role%bolt)
+         call add_bolt(model, line%ends, line%bolt, line%row)
+      end select
+   end subroutine add_line
+
+   !> Add the bolts of a pattern
+   pure subroutine add_bolts(map, bolts, model, error)
+      !> The map
+      type(joint_map_t), intent(in) :: map
+      !> The pattern
+      type(bolts_t), intent(in) :: bolts
+      !> Receives them
+      type(line_model_t), intent(inout) :: model
+      !> A bolt that leaves the outline
+      type(error_t), allocatable, intent(out) :: error
+      real(wp) :: centre(2), head(2), tip(2), along(2), angle
+      integer :: i
+
+      associate (corner => map%opening(bolts%opening)%corner)
+         centre = 0.5_wp*(minval(corner, 2) + maxval(corner, 2))
+         if (.not. contains_point(corner, centre)) centre = inner_point(corner)
+         do i = 1, bolts%number
+            angle = bolts%fan(1) + (bolts%fan(2) - bolts%fan(1))*real(i - 1, wp) &
+               & /real(max(1, bolts%number - 1), wp)
+            along = [cos(angle), sin(angle)]
+            head = ray_exit(corner, centre, along) + bolts%reach(2)*along
+            tip = head + bolts%reach(1)*along
+            if (.not. contains_point(map%outline, tip)) then
+               call fatal_error(error, "expected bolts inside the outline, got one that ends at (" &
+                  & //to_text(tip(1))//", "//to_text(tip(2))//")", map%file, bolts%row)
+               return
+            end if
+            call add_bolt(model, [head, tip], bolts%property, bolts%row)
+         end do
+      end associate
+   end subroutine add_bolts
+end module dda_map_lines

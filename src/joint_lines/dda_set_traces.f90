@@ -1,0 +1,196 @@
+!> The traces of a set of joints within a circle about the middle of the outline
+!>
+!> Joints are numbered from the anchor of the set outwards, and each has its own random numbers:
+!> a larger outline has more joints and the same ones where the smaller one was.
+module dda_set_traces
+   use dda_growth, only : make_room
+   use dda_joint_map, only : joint_set_t, length_t
+   use dda_kinds, only : wp
+   use dda_random, only : draw, new_random, random_t
+   use dda_renewal, only : draw_covering_length, draw_length
+   implicit none
+   private
+
+   public :: joint_count, set_traces
+
+   !> What of a set has a sequence of numbers of its own
+   integer, parameter :: n_kind = 6
+   !> Streams of a set, enough for its joints on both sides
+   integer, parameter :: set_streams = 2000003
+   !> Most joints on one side of the anchor
+   integer, parameter :: most_joints = 1000000
+
+   !> The line of one joint
+   type :: axis_t
+      !> Unit vector along it: (2)
+      real(wp) :: along(2) = 0.0_wp
+      !> Its point that is nearest to the anchor of the set: (2) [m]
+      real(wp) :: foot(2) = 0.0_wp
+      !> Where the circle begins and ends, from the foot: (2) [m]
+      real(wp) :: window(2) = 0.0_wp
+   end type axis_t
+
+contains
+
+   !> How many joints a set has across a circle, about
+   pure real(wp) function joint_count(set, radius)
+      !> The set
+      type(joint_set_t), intent(in) :: set
+      !> Radius of the circle [m]
+      real(wp), intent(in) :: radius
+
+      joint_count = 2.0_wp*radius/set%spacing%mean
+      if (set%trace%mean > 0.0_wp) joint_count = joint_count*max(1.0_wp, &
+         & 2.0_wp*radius/(set%trace%mean + set%bridge%mean))
+   end function joint_count
+
+   !> Traces of a set that meet a circle
+   pure subroutine set_traces(set, centre, radius, trace, n)
+      !> The set
+      type(joint_set_t), intent(in) :: set
+      !> Centre of the circle: (2) [m]
+      real(wp), intent(in) :: centre(2)
+      !> Its radius [m]
+      real(wp), intent(in) :: radius
+      !> Columns of ends x1, y1, x2, y2: (4, n or more) [m]
+      real(wp), allocatable, intent(out) :: trace(:, :)
+      !> Their number
+      integer, intent(out) :: n
+      type(random_t) :: random
+      real(wp) :: place(2), step, reach
+      integer :: way, number
+
+      allocate (trace(4, 64))
+      n = 0
+      call new_random(n_kind*set%seed(1), set_streams*set%seed(2), random)
+      place = 0.0_wp
+      if (.not. set%anchored) then
+         call draw_covering_length(set%spacing, random, step)
+         call draw(random, place(1))
+         place = [-place(1)*step, step - place(1)*step]
+      end if
+      reach = norm2(centre - set%anchor) + radius
+      do way = 1, 2
+         call new_random(n_kind*set%seed(1) + way, set_streams*set%seed(2), random)
+         number = 0
+         do while (abs(place(way)) <= reach .and. number < most_joints)
+            number = number + 1
+            ! a joint through the anchor is both the first to the left and to the right
+            if (.not. (set%anchored .and. way == 2 .and. number == 1)) &
+               & call add_joint(set, centre, radius, place(way), &
+               & number*merge(1, -1, way == 2), trace, n)
+            call draw_length(set%spacing, random, step)
+            place(way) = place(way) + merge(step, -step, way == 2)
+         end do
+      end do
+   end subroutine set_traces
+
+   !> Add the traces of one joint
+   pure subroutine add_joint(set, centre, radius, distance, number, trace, n)
+      !> The set
+      type(joint_set_t), intent(in) :: set
+      !> Centre of the circle: (2) [m]
+      real(wp), intent(in) :: centre(2)
+      !> Its radius [m]
+      real(wp), intent(in) :: radius
+      !> How far the joint is from the anchor, along the normal [m]
+      real(wp), intent(in) :: distance
+      !> Number of the joint, negative on one side
+      integer, intent(in) :: number
+      !> Receives the traces: (4, n or more) [m]
+      real(wp), allocatable, intent(inout) :: trace(:, :)
+      !> Their number
+      integer, intent(inout) :: n
+      type(random_t) :: random
+      type(axis_t) :: axis
+      real(wp) :: middle, half_chord, u, dip
+
+      call new_random(n_kind*set%seed(1) + 3, set_streams*set%seed(2) + number, random)
+      call draw(random, u)
+      dip = set%dip + set%dip_spread*(2.0_wp*u - 1.0_wp)
+      axis%along = [cos(dip), sin(dip)]
+      axis%foot = set%anchor + distance*[-axis%along(2), axis%along(1)]
+      middle = dot_product(centre - axis%foot, axis%along)
+      half_chord = radius**2 - sum((axis%foot + middle*axis%along - centre)**2)
+      if (half_chord <= 0.0_wp) return
+      axis%window = middle + [-1.0_wp, 1.0_wp]*sqrt(half_chord)
+      if (set%trace%mean > 0.0_wp) then
+         call add_traces(set, axis, number, random, trace, n)
+      else
+         call add_part(axis, axis%window, trace, n)
+      end if
+   end subroutine add_joint
+
+   !> Traces and bridges from the foot of a joint outwards
+   pure subroutine add_traces(set, axis, number, random, trace, n)
+      !> The set
+      type(joint_set_t), intent(in) :: set
+      !> The joint
+      type(axis_t), intent(in) :: axis
+      !> Its number
+      integer, intent(in) :: number
+      !> Its random numbers
+      type(random_t), intent(inout) :: random
+      !> Receives the traces: (4, n or more) [m]
+      real(wp), allocatable, intent(inout) :: trace(:, :)
+      !> Their number
+      integer, intent(inout) :: n
+      type(random_t) :: outward
+      real(wp) :: at(2), length, u
+      logical :: first_is_trace, is_trace
+      integer :: way
+
+      call draw(random, u)
+      first_is_trace = u*(set%trace%mean + set%bridge%mean) < set%trace%mean
+      call draw_covering_length(part_law(set, first_is_trace), random, length)
+      call draw(random, u)
+      at = [-u*length, (1.0_wp - u)*length]
+      if (first_is_trace) call add_part(axis, at, trace, n)
+      do way = 1, 2
+         call new_random(n_kind*set%seed(1) + 3 + way, set_streams*set%seed(2) + number, outward)
+         is_trace = first_is_trace
+         do while (merge(at(2) < axis%window(2), at(1) > axis%window(1), way == 2))
+            is_trace = .not. is_trace
+            call draw_length(part_law(set, is_trace), outward, length)
+            if (way == 1) then
+               if (is_trace) call add_part(axis, [at(1) - length, at(1)], trace, n)
+               at(1) = at(1) - length
+            else
+               if (is_trace) call add_part(axis, [at(2), at(2) + length], trace, n)
+               at(2) = at(2) + length
+            end if
+         end do
+      end do
+   end subroutine add_traces
+
+   !> The law of traces or of bridges
+   pure type(length_t) function part_law(set, is_trace)
+      !> The set
+      type(joint_set_t), intent(in) :: set
+      !> Whether it is a trace
+      logical, intent(in) :: is_trace
+
+      part_law = set%bridge
+      if (is_trace) part_law = set%trace
+   end function part_law
+
+   !> Add the part of a joint between two places, as far as it is in the window
+   pure subroutine add_part(axis, part, trace, n)
+      !> The joint
+      type(axis_t), intent(in) :: axis
+      !> Where the part begins and ends along it: (2) [m]
+      real(wp), intent(in) :: part(2)
+      !> Receives it: (4, n or more) [m]
+      real(wp), allocatable, intent(inout) :: trace(:, :)
+      !> Number of traces
+      integer, intent(inout) :: n
+      real(wp) :: from, to
+
+      from = max(part(1), axis%window(1))
+      to = min(part(2), axis%window(2))
+      if (to <= from) return
+      call make_room(trace, n + 1)
+      n = n + 1
+      trace(:, n) = [axis%foot + from*axis%along, axis%foot + to*axis%along]
+   end subroutine add_part
+end module dda_set_traces

@@ -1,0 +1,228 @@
+!> Fill on an arch up to a level surface: its weight, the pressure that the arch can lean against,
+!> how far it spreads axles
+module dda_fill_loads
+   use dda_arch_assembly, only : arch_assembly_t, top_chord_t
+   use dda_boundary, only : bounded_force_t, constant_history, loaded_point_t
+   use dda_constants, only : degree
+   use dda_deck, only : deck_t, is_given, real_of
+   use dda_kinds, only : wp
+   use dda_scene, only : scene_t
+   use dda_shape_scene, only : add_loads
+   implicit none
+   private
+
+   public :: fill_t, add_fill_weight, fill_of, press_fill
+
+   !> The fill of a case
+   type :: fill_t
+      !> Chords that it lies on: (n)
+      type(top_chord_t), allocatable :: chord(:)
+      !> Where the crown of each span is along x: (n_span) [m]
+      real(wp), allocatable :: crown_x(:)
+      !> Height of its surface [m]
+      real(wp) :: surface = 0.0_wp
+      !> Weight per volume of fill and of backing: (2) [N/m3]
+      real(wp) :: unit_weight(2) = 0.0_wp
+      !> Height of the surface of the backing; below all where there is none [m]
+      real(wp) :: backing = -huge(1.0_wp)
+      !> How far axles spread to either side, over the depth
+      real(wp) :: spread = 0.0_wp
+      !> Largest horizontal pressure over the weight above
+      real(wp) :: passive = 0.0_wp
+   end type fill_t
+
+   !> A chord that rises less than this share of its length is not pressed
+   real(wp), parameter :: level = 1.0e-9_wp
+
+contains
+
+   !> The fill of a deck
+   pure function fill_of(deck, assembly) result(fill)
+      !> The deck of the case, with &fill
+      type(deck_t), intent(in) :: deck
+      !> Its arch
+      type(arch_assembly_t), intent(in) :: assembly
+      !> The fill
+      type(fill_t) :: fill
+      integer :: i
+
+      allocate (fill%chord, source=assembly%top)
+      allocate (fill%crown_x, source=assembly%crown_x)
+      fill%surface = -huge(fill%surface)
+      do i = 1, size(fill%chord)
+         fill%surface = max(fill%surface, fill%chord(i)%left(2), fill%chord(i)%right(2))
+      end do
+      fill%surface = fill%surface + real_of(deck, "fill", "height")
+      fill%unit_weight = real_of(deck, "fill", "unit_weight")
+      fill%unit_weight(2) = real_of(deck, "material", "density")*real_of(deck, "load", "gravity")
+      if (is_given(deck, "material", "unit_weight")) &
+         & fill%unit_weight(2) = real_of(deck, "material", "unit_weight")
+      if (is_given(deck, "fill", "backing_unit_weight")) &
+         & fill%unit_weight(2) = real_of(deck, "fill", "backing_unit_weight")
+      if (is_given(deck, "fill", "backing_height")) fill%backing = assembly%springing_y &
+         & + real_of(deck, "fill", "backing_height")
+      fill%spread = real_of(deck, "fill", "spread")
+      fill%passive = real_of(deck, "fill", "passive_coefficient")
+      if (is_given(deck, "fill", "passive_share")) fill%passive = real_of(deck, "fill", &
+         & "passive_share")*tan(degree*(45.0_wp + 0.5_wp*real_of(deck, "fill", "friction_deg")))**2
+   end function fill_of
+
+   !> Put the weight of the fill on the blocks below it: of what stands above each chord
+   pure subroutine add_fill_weight(fill, scene)
+      !> The fill
+      type(fill_t), intent(in) :: fill
+      !> The scene; the loads are added
+      type(scene_t), intent(inout) :: scene
+      type(loaded_point_t) :: loaded(size(fill%chord))
+      real(wp) :: weight, x
+      integer :: i
+
+      do i = 1, size(fill%chord)
+         call weigh(fill, fill%chord(i), weight, x)
+         loaded(i)%block = fill%chord(i)%block
+         loaded(i)%point = [x, 0.5_wp*(fill%chord(i)%left(2) + fill%chord(i)%right(2))] &
+            & - scene%origin
+         loaded(i)%force = constant_history([0.0_wp, -weight])
+      end do
+      call add_loads(loaded, scene)
+   end subroutine add_fill_weight
+
+   !> Weight of the fill and the backing above a chord, and where it acts
+   pure subroutine weigh(fill, chord, weight, x)
+      !> The fill
+      type(fill_t), intent(in) :: fill
+      !> The chord
+      type(top_chord_t), intent(in) :: chord
+      !> The weight [N/m]
+      real(wp), intent(out) :: weight
+      !> Where it acts along x [m]
+      real(wp), intent(out) :: x
+      real(wp) :: area, first, part(2), bend
+
+      ! all of it as fill, then what is backing is heavier or lighter by the difference
+      part = trapezium(chord%left, chord%right, fill%surface)
+      weight = fill%unit_weight(1)*part(1)
+      x = fill%unit_weight(1)*part(2)
+      associate (low => min(chord%left(2), chord%right(2)), &
+         & high => max(chord%left(2), chord%right(2)), &
+         & top => min(fill%backing, fill%surface))
+         if (top >= high) then
+            part = trapezium(chord%left, chord%right, top)
+         else if (top > low) then
+            bend = chord%left(1) + (top - chord%left(2))*(chord%right(1) - chord%left(1)) &
+               & /(chord%right(2) - chord%left(2))
+            if (chord%left(2) < chord%right(2)) then
+               part = trapezium(chord%left, [bend, top], top)
+            else
+               part = trapezium([bend, top], chord%right, top)
+            end if
+         else
+            part = 0.0_wp
+         end if
+      end associate
+      area = part(1)
+      first = part(2)
+      weight = weight + (fill%unit_weight(2) - fill%unit_weight(1))*area
+      x = x + (fill%unit_weight(2) - fill%unit_weight(1))*first
+      if (weight > 0.0_wp) then
+         x = x/weight
+      else
+         x = 0.5_wp*(chord%left(1) + chord%right(1))
+      end if
+   end subroutine weigh
+
+   !> Area below a level line above a chord, and its first moment along x
+   pure function trapezium(left, right, top) result(part)
+      !> Left end of the chord: (2) [m]
+      real(wp), intent(in) :: left(2)
+      !> Right end of the chord: (2) [m]
+      real(wp), intent(in) :: right(2)
+      !> Height of the line [m]
+      real(wp), intent(in) :: top
+      !> Area and moment: (2) [m2, m3]
+      real(wp) :: part(2)
+      real(wp) :: depth(2), width
+
+      depth = top - [left(2), right(2)]
+      width = right(1) - left(1)
+      part(1) = 0.5_wp*width*sum(depth)
+      part(2) = left(1)*part(1) + width**2*(depth(1) + 2.0_wp*depth(2))/6.0_wp
+   end function trapezium
+
+   !> What the arch can lean against: the backing, whatever the force, and the fill on the side away
+   !> from the live load of a span, on both sides of a span without
+   pure subroutine press_fill(fill, scene)
+      !> The fill
+      type(fill_t), intent(in) :: fill
+      !> The scene with its live loads; its bounded forces are set
+      type(scene_t), intent(inout) :: scene
+      type(bounded_force_t) :: force(size(fill%chord))
+      real(wp) :: load_x, middle(2), rise
+      logical :: is_loaded
+      integer :: i, n
+
+      call find_live(scene, load_x, is_loaded)
+      n = 0
+      do i = 1, size(fill%chord)
+         associate (chord => fill%chord(i))
+            if (chord%span == 0) cycle
+            middle = 0.5_wp*(chord%left + chord%right)
+            rise = chord%right(2) - chord%left(2)
+            if (abs(rise) <= level*(chord%right(1) - chord%left(1))) cycle
+            force(n + 1)%most = fill%passive*fill%unit_weight(1)*(fill%surface - middle(2)) &
+               & *abs(rise)
+            if (middle(2) < fill%backing) then
+               force(n + 1)%most = huge(rise)
+            else if (is_loaded .and. chord%span == loaded_span(fill, load_x)) then
+               associate (crown => fill%crown_x(chord%span))
+                  if ((middle(1) - crown)*(load_x - crown) > 0.0_wp) cycle
+               end associate
+            end if
+            if (.not. force(n + 1)%most > 0.0_wp) cycle
+            n = n + 1
+            force(n)%block = chord%block
+            force(n)%point = middle - scene%origin
+            force(n)%direction = [sign(1.0_wp, rise), 0.0_wp]
+         end associate
+      end do
+      if (allocated(scene%settings%boundary%bounded)) deallocate (scene%settings%boundary%bounded)
+      if (n > 0) allocate (scene%settings%boundary%bounded, source=force(:n))
+   end subroutine press_fill
+
+   !> Span that is nearest to a place
+   pure integer function loaded_span(fill, x)
+      !> The fill
+      type(fill_t), intent(in) :: fill
+      !> The place [m]
+      real(wp), intent(in) :: x
+
+      loaded_span = minloc(abs(fill%crown_x - x), dim=1)
+   end function loaded_span
+
+   !> Where the resultant of the live loads on points is
+   pure subroutine find_live(scene, x, is_loaded)
+      !> The scene
+      type(scene_t), intent(in) :: scene
+      !> The place [m]
+      real(wp), intent(out) :: x
+      !> Whether there are such loads
+      logical, intent(out) :: is_loaded
+      real(wp) :: force, size_of
+      integer :: i
+
+      x = 0.0_wp
+      force = 0.0_wp
+      if (allocated(scene%settings%boundary%loaded)) then
+         do i = 1, size(scene%settings%boundary%loaded)
+            associate (loaded => scene%settings%boundary%loaded(i))
+               if (.not. loaded%live) cycle
+               size_of = norm2(loaded%force%value(:, 1))
+               force = force + size_of
+               x = x + size_of*(loaded%point(1) + scene%origin(1))
+            end associate
+         end do
+      end if
+      is_loaded = force > 0.0_wp
+      if (is_loaded) x = x/force
+   end subroutine find_live
+end module dda_fill_loads

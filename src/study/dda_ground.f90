@@ -1,0 +1,120 @@
+!> How the ground of a scene moves: a pulse, a record, or what the file of blocks says, scaled
+module dda_ground
+   use dda_boundary, only : history_t
+   use dda_constants, only : degree, pi
+   use dda_deck, only : deck_t, is_given, real_of, text_of, word_of
+   use dda_ground_motion, only : acceleration_of_displacement, acceleration_of_record, &
+      & acceleration_of_velocity
+   use dda_kinds, only : wp
+   implicit none
+   private
+
+   public :: move_ground
+
+   !> Points of a period of a sine
+   integer, parameter :: points = 360
+   !> Length of the jump at the end of a pulse, over its duration
+   real(wp), parameter :: jump = 1.0e-9_wp
+
+contains
+
+   !> Give the ground of a scene the motion that &ground asks for
+   pure subroutine move_ground(deck, acceleration)
+      !> The deck of the case, checked
+      type(deck_t), intent(in) :: deck
+      !> Acceleration of the ground: that of the file of blocks in, that of the case out
+      type(history_t), intent(inout) :: acceleration
+
+      if (is_given(deck, "ground", "pulse")) then
+         acceleration = pulse_of(deck)
+      else if (is_given(deck, "ground", "record")) then
+         acceleration = record_of(deck)
+      end if
+      if (allocated(acceleration%value)) &
+         & acceleration%value = real_of(deck, "ground", "scale")*acceleration%value
+   end subroutine move_ground
+
+   !> A pulse. What is constant before its beginning and after its end is no time of the run, and
+   !> nothing
+   pure function pulse_of(deck) result(pulse)
+      !> The deck
+      type(deck_t), intent(in) :: deck
+      !> The pulse
+      type(history_t) :: pulse
+      real(wp) :: duration, frequency, along(2)
+      integer :: i, n
+
+      along = real_of(deck, "ground", "amplitude")*direction_of(deck)
+      duration = real_of(deck, "ground", "duration")
+      frequency = real_of(deck, "ground", "frequency")
+      if (word_of(deck, "ground", "pulse") == "sine") then
+         if (.not. is_given(deck, "ground", "duration")) duration = 1.0_wp/frequency
+         n = max(points, ceiling(min(1.0e5_wp, real(points, wp)*frequency*duration)))
+         allocate (pulse%time(n + 2), pulse%value(2, n + 2))
+         do i = 0, n
+            pulse%time(i + 1) = duration*real(i, wp)/real(n, wp)
+            pulse%value(:, i + 1) = along*swell(pi*frequency*duration/real(n, wp)) &
+               & *sin(2.0_wp*pi*frequency*pulse%time(i + 1))
+         end do
+      else
+         n = 1
+         allocate (pulse%time(3), pulse%value(2, 3))
+         pulse%time(:2) = [0.0_wp, duration]
+         pulse%value(:, :2) = spread(along, 2, 2)
+      end if
+      pulse%time(n + 2) = (1.0_wp + jump)*duration
+      pulse%value(:, n + 2) = 0.0_wp
+   end function pulse_of
+
+   !> By how much the corners of a broken line lie outside its sine, that it have the same impulse
+   pure real(wp) function swell(half_step)
+      !> Half the angle from corner to corner [rad]
+      real(wp), intent(in) :: half_step
+
+      swell = tan(half_step)/half_step
+   end function swell
+
+   !> Unit vector of the direction of a pulse; the four main ones are free of rounding
+   pure function direction_of(deck) result(direction)
+      !> The deck
+      type(deck_t), intent(in) :: deck
+      !> Components along x and y: (2)
+      real(wp) :: direction(2)
+
+      direction = degree*real_of(deck, "ground", "direction_deg")
+      direction = [cos(direction(1)), sin(direction(1))]
+      where (abs(direction) < epsilon(1.0_wp)) direction = 0.0_wp
+   end function direction_of
+
+   !> The record of the case as an acceleration, turned, and brought to its amplitude if one is
+   !> given; none before its first time and after its last
+   pure function record_of(deck) result(acceleration)
+      !> The deck
+      type(deck_t), intent(in) :: deck
+      !> The acceleration
+      type(history_t) :: acceleration
+      type(history_t) :: motion
+      real(wp) :: turn(2, 2), largest
+      integer :: i
+
+      do i = 1, size(deck%ground_record)
+         if (deck%ground_record(i)%name == text_of(deck, "ground", "record")) &
+            & motion = deck%ground_record(i)%motion
+      end do
+      turn(:, 1) = direction_of(deck)
+      turn(:, 2) = [-turn(2, 1), turn(1, 1)]
+      motion%value = real_of(deck, "ground", "unit")*matmul(turn, motion%value)
+      select case (word_of(deck, "ground", "quantity"))
+      case ("velocity")
+         acceleration = acceleration_of_velocity(motion)
+      case ("displacement")
+         acceleration = acceleration_of_displacement(motion)
+      case default
+         acceleration = acceleration_of_record(motion)
+      end select
+      if (.not. is_given(deck, "ground", "amplitude")) return
+      largest = maxval(norm2(acceleration%value, dim=1))
+      if (largest > 0.0_wp) acceleration%value = real_of(deck, "ground", "amplitude")/largest &
+         & *acceleration%value
+   end function record_of
+end module dda_ground

@@ -1,0 +1,302 @@
+!> Arches of any shape from a deck: the form that its keys make, the blocks, what acts on them
+module dda_shape_scene
+   use dda_arch_assembly, only : arch_assembly_t, assemble_arch
+   use dda_arch_form, only : arch_form_t, form_problem_t
+   use dda_block_system, only : block_system_t
+   use dda_boundary, only : constant_history, loaded_point_t
+   use dda_constants, only : degree
+   use dda_deck, only : deck_t, integer_of, is_given, real_of, word_of
+   use dda_kinds, only : wp
+   use dda_scene, only : scene_t
+   use dda_simplex, only : area_moments, area_moments_t
+   implicit none
+   private
+
+   public :: add_loads, add_lune_weights, find_crown_joint, shape_assembly, shape_form
+
+   !> Skewbacks of a flat arch lean so much where the deck does not say [deg]
+   real(wp), parameter :: usual_skewback_deg = 30.0_wp
+
+contains
+
+   !> The form of a deck, its keys checked against one another
+   pure subroutine shape_form(deck, form, problem)
+      !> The deck of the case
+      type(deck_t), intent(in) :: deck
+      !> The form
+      type(arch_form_t), intent(out) :: form
+      !> Keys that do not go together
+      type(form_problem_t), intent(out) :: problem
+
+      form%shape = word_of(deck, "arch", "shape")
+      form%by_radius = (form%shape == "circular" .or. form%shape == "segmental") &
+         & .and. .not. (is_given(deck, "arch", "span") .or. is_given(deck, "arch", "rise"))
+      form%radius = real_of(deck, "arch", "radius")
+      form%half_angle_deg = real_of(deck, "arch", "half_angle_deg")
+      if (form%shape == "flat" .and. .not. is_given(deck, "arch", "half_angle_deg")) &
+         & form%half_angle_deg = usual_skewback_deg
+      form%span = real_of(deck, "arch", "span")
+      form%rise = real_of(deck, "arch", "rise")
+      if (is_given(deck, "arch", "right_rise")) form%rise(2) = real_of(deck, "arch", "right_rise")
+      form%radial = form%shape == "flat"
+      if (is_given(deck, "arch", "joint_direction")) &
+         & form%radial = word_of(deck, "arch", "joint_direction") == "radial"
+      form%voussoirs = integer_of(deck, "arch", "voussoirs")
+      if (is_given(deck, "arch", "facet_deg")) &
+         & form%facet_deg = real_of(deck, "arch", "facet_deg")
+      form%rings = integer_of(deck, "arch", "rings")
+      form%spans = integer_of(deck, "arch", "spans")
+      form%pier = [real_of(deck, "arch", "pier_width"), real_of(deck, "arch", "pier_height")]
+      form%courses = integer_of(deck, "arch", "pier_courses")
+      form%buttress = [real_of(deck, "arch", "buttress_width"), form%pier(2)]
+      if (is_given(deck, "arch", "buttress_height")) &
+         & form%buttress(2) = real_of(deck, "arch", "buttress_height")
+      form%no_slip = word_of(deck, "arch", "springing") == "no-slip"
+      call check_lines(deck, form, problem)
+      if (len_trim(problem%text) == 0) call check_supports(deck, form, problem)
+      if (len_trim(problem%text) == 0) call take_thickness(deck, form, problem)
+   end subroutine shape_form
+
+   !> Check the keys that make the line of an arch
+   pure subroutine check_lines(deck, form, problem)
+      !> The deck of the case
+      type(deck_t), intent(in) :: deck
+      !> Its form
+      type(arch_form_t), intent(in) :: form
+      !> Keys that do not go together
+      type(form_problem_t), intent(inout) :: problem
+      logical :: flat
+
+      flat = form%shape == "flat"
+      if (is_given(deck, "arch", "joints_deg")) then
+         problem = form_problem_t("expected voussoirs, got joints_deg, which is for circular "// &
+            & "arches of one ring alone; remove it", "joints_deg")
+      else if (.not. form%by_radius .and. is_given(deck, "arch", "radius")) then
+         problem = form_problem_t("expected span and rise alone, got a radius beside them; "// &
+            & "remove one of the two", "radius")
+      else if (.not. (form%by_radius .or. flat) .and. is_given(deck, "arch", "half_angle_deg")) then
+         problem = form_problem_t("expected span and rise alone, got half_angle_deg beside "// &
+            & "them; remove one of the two", "half_angle_deg")
+      else if (.not. form%by_radius .and. .not. is_given(deck, "arch", "span")) then
+         problem = form_problem_t("expected a span, got none; give it", "span")
+      else if (.not. (form%by_radius .or. flat .or. is_given(deck, "arch", "rise"))) then
+         problem = form_problem_t("expected a rise, got none; give it", "rise")
+      else if (flat .and. is_given(deck, "arch", "rise")) then
+         problem = form_problem_t("expected no rise of a flat arch, got one; remove it", "rise")
+      else if ((form%by_radius .or. flat) .and. is_given(deck, "arch", "right_rise")) then
+         problem = form_problem_t("expected span and rise beside right_rise, got none; give "// &
+            & "them, or remove it", "right_rise")
+      else if (flat .and. form%half_angle_deg >= 90.0_wp) then
+         problem = form_problem_t("expected skewbacks of a flat arch of less than 90 from "// &
+            & "upright, got more; lower it", "half_angle_deg")
+      else if (is_given(deck, "arch", "abutment_size") &
+         & .or. is_given(deck, "arch", "abutment_overhang")) then
+         problem = form_problem_t("expected no abutment_size and abutment_overhang, which are "// &
+            & "for mode = 'limerick' alone, got one; remove it", "abutment_size")
+      else if (form%by_radius .and. 2.0_wp*form%half_angle_deg &
+         & >= 180.0_wp*real(form%voussoirs, wp) .and. .not. form%facet_deg > 0.0_wp) then
+         problem = form_problem_t("expected voussoirs of less than 180 degrees, got more; give "// &
+            & "facet_deg or more voussoirs", "voussoirs")
+      end if
+   end subroutine check_lines
+
+   !> Check the keys of piers and buttresses, and of what has no use beside others
+   pure subroutine check_supports(deck, form, problem)
+      !> The deck of the case
+      type(deck_t), intent(in) :: deck
+      !> Its form
+      type(arch_form_t), intent(in) :: form
+      !> Keys that do not go together
+      type(form_problem_t), intent(inout) :: problem
+      logical :: buttressed
+
+      buttressed = is_given(deck, "arch", "buttress_width")
+      if (form%spans > 1 .and. .not. is_given(deck, "arch", "pier_width")) then
+         problem = form_problem_t("expected the width of the piers between spans, got none; "// &
+            & "give it", "pier_width")
+      else if ((form%spans > 1 .or. buttressed) .and. .not. form%buttress(2) > 0.0_wp &
+         & .or. form%spans > 1 .and. .not. form%pier(2) > 0.0_wp) then
+         problem = form_problem_t("expected the height of piers and buttresses, got none; "// &
+            & "give it", "pier_height")
+      else if (form%spans == 1 .and. is_given(deck, "arch", "pier_width")) then
+         problem = form_problem_t("expected two spans or more on piers, got one; give spans, "// &
+            & "or remove pier_width", "pier_width")
+      else if (form%spans == 1 .and. .not. buttressed .and. (is_given(deck, "arch", "pier_height") &
+         & .or. is_given(deck, "arch", "pier_courses"))) then
+         problem = form_problem_t("expected piers or buttresses, got none; give spans or "// &
+            & "buttress_width, or remove pier_height and pier_courses", "pier_height")
+      else if (is_given(deck, "arch", "buttress_height") .and. .not. buttressed) then
+         problem = form_problem_t("expected buttress_width beside it, got none; give it", &
+            & "buttress_height")
+      else if (is_given(deck, "arch", "lune_deg") .and. (form%spans > 1 .or. buttressed)) then
+         problem = form_problem_t("expected a lune of one span on fixed springings, got more; "// &
+            & "remove lune_deg, or spans and buttresses", "lune_deg")
+      else if (is_given(deck, "arch", "lune_deg") .and. is_given(deck, "arch", "right_rise")) then
+         problem = form_problem_t("expected a lune with springings of one height, got two; "// &
+            & "remove right_rise", "lune_deg")
+      end if
+   end subroutine check_supports
+
+   !> Thickness of a form at the crown and at the springings
+   pure subroutine take_thickness(deck, form, problem)
+      !> The deck of the case
+      type(deck_t), intent(in) :: deck
+      !> Its form; the thickness is set
+      type(arch_form_t), intent(inout) :: form
+      !> None, or several that contradict
+      type(form_problem_t), intent(inout) :: problem
+      logical :: constant, crown, ratio, springing
+
+      constant = is_given(deck, "arch", "thickness")
+      crown = is_given(deck, "arch", "crown_thickness")
+      springing = is_given(deck, "arch", "springing_thickness")
+      ratio = is_given(deck, "arch", "thickness_ratio")
+      if (crown .neqv. springing) then
+         problem = form_problem_t("expected crown_thickness and springing_thickness, got one; "// &
+            & "give both", merge("crown_thickness    ", "springing_thickness", crown))
+      else if (count([constant, crown, ratio]) > 1) then
+         problem = form_problem_t("expected the thickness once, got it twice; keep one of "// &
+            & "thickness, thickness_ratio, and crown_thickness with springing_thickness", &
+            & "thickness")
+      else if (ratio .and. .not. form%by_radius) then
+         problem = form_problem_t("expected thickness, got thickness_ratio without a radius; "// &
+            & "give thickness", "thickness_ratio")
+      else if (.not. (constant .or. crown .or. form%by_radius)) then
+         problem = form_problem_t("expected a thickness, got none; give it", "thickness")
+      end if
+      form%thickness = real_of(deck, "arch", "thickness_ratio")*form%radius
+      if (constant) form%thickness = real_of(deck, "arch", "thickness")
+      if (crown) form%thickness = [real_of(deck, "arch", "crown_thickness"), &
+         & real_of(deck, "arch", "springing_thickness")]
+   end subroutine take_thickness
+
+   !> The blocks of a deck's arch
+   pure subroutine shape_assembly(deck, assembly, problem)
+      !> The deck of the case
+      type(deck_t), intent(in) :: deck
+      !> The blocks
+      type(arch_assembly_t), intent(out) :: assembly
+      !> What makes no arch
+      type(form_problem_t), intent(out) :: problem
+      type(arch_form_t) :: form
+
+      call shape_form(deck, form, problem)
+      if (len_trim(problem%text) == 0) call assemble_arch(form, assembly, problem)
+   end subroutine shape_assembly
+
+   !> Add loads to those of a scene
+   pure subroutine add_loads(more, scene)
+      !> The loads
+      type(loaded_point_t), intent(in) :: more(:)
+      !> The scene
+      type(scene_t), intent(inout) :: scene
+      type(loaded_point_t), allocatable :: loaded(:)
+      integer :: before
+
+      before = 0
+      if (allocated(scene%settings%boundary%loaded)) before = size(scene%settings%boundary%loaded)
+      allocate (loaded(before + size(more)))
+      if (before > 0) loaded(:before) = scene%settings%boundary%loaded
+      loaded(before + 1:) = more
+      call move_alloc(loaded, scene%settings%boundary%loaded)
+   end subroutine add_loads
+
+   !> Number of the joint between two voussoirs that is nearest to the crown of the first span
+   pure subroutine find_crown_joint(assembly, scene)
+      !> The blocks
+      type(arch_assembly_t), intent(in) :: assembly
+      !> Their scene; the number is set
+      type(scene_t), intent(inout) :: scene
+      real(wp) :: off, least
+      integer :: j
+
+      least = huge(least)
+      do j = 1, size(scene%contacts%joint)
+         associate (joint => scene%contacts%joint(j))
+            if (any(joint%block > assembly%n_voussoir) &
+               & .or. abs(joint%block(1) - joint%block(2)) /= 1) cycle
+            off = abs(0.5_wp*sum(joint%middle(1, :)) + scene%origin(1) - assembly%crown_x(1))
+         end associate
+         if (off >= least) cycle
+         least = off
+         scene%crown_joint = j
+      end do
+   end subroutine find_crown_joint
+
+   !> Give the blocks of a dome's lune the weight of its wedges, whose depth is the angle times the
+   !> distance from the axis. The weight acts where the depth has it: it is put there by a pair of
+   !> forces, as that of a block acts at the centre of its face
+   pure subroutine add_lune_weights(lune_deg, scene)
+      !> Angle of the lune [deg]
+      real(wp), intent(in) :: lune_deg
+      !> The scene, its axis at x = 0; weights are set, and loads added
+      type(scene_t), intent(inout) :: scene
+      type(loaded_point_t) :: pair(2)
+      real(wp) :: sums(3), weight
+      integer :: b
+
+      do b = 1, size(scene%system%area)
+         if (scene%system%equation(b) == 0) cycle
+         sums = wedge_sums(scene%system, b)
+         weight = scene%system%unit_weight(b)*degree*lune_deg*sums(1)
+         scene%system%unit_weight(b) = weight/scene%system%area(b)
+         pair%block = b
+         pair(1)%point = sums(2:3)/sums(1)
+         pair(2)%point = scene%system%centroid(:, b)
+         pair(1)%force = constant_history([0.0_wp, -weight])
+         pair(2)%force = constant_history([0.0_wp, weight])
+         call add_loads(pair, scene)
+      end do
+   end subroutine add_lune_weights
+
+   !> Integrals of abs(x), abs(x) x and abs(x) y over a block
+   pure function wedge_sums(system, block) result(sums)
+      !> The blocks
+      type(block_system_t), intent(in) :: system
+      !> Number of the block
+      integer, intent(in) :: block
+      !> The integrals: (3)
+      real(wp) :: sums(3)
+      type(area_moments_t) :: moments
+      integer :: side
+
+      sums = 0.0_wp
+      associate (vertex => system%vertex(:, &
+         & system%first_vertex(block):system%first_vertex(block + 1) - 1))
+         do side = -1, 1, 2
+            if (.not. any(real(side, wp)*vertex(1, :) > 0.0_wp)) cycle
+            moments = area_moments(half_plane(vertex, real(side, wp)))
+            associate (a => moments%area, c => moments%centroid, s => moments%second)
+               sums = sums + real(side, wp)*[a*c(1), s(1) + a*c(1)**2, s(3) + a*c(1)*c(2)]
+            end associate
+         end do
+      end associate
+   end function wedge_sums
+
+   !> The part of a polygon on one side of the axis
+   pure function half_plane(vertex, side) result(part)
+      !> Its corners: (2, n) [m]
+      real(wp), intent(in) :: vertex(:, :)
+      !> 1 for what is right of x = 0, -1 for what is left
+      real(wp), intent(in) :: side
+      !> Corners of the part: (2, m) [m]
+      real(wp), allocatable :: part(:, :)
+      real(wp) :: corner(2, 2*size(vertex, 2)), share
+      integer :: i, m, n, next
+
+      n = size(vertex, 2)
+      m = 0
+      do i = 1, n
+         next = 1 + modulo(i, n)
+         if (side*vertex(1, i) >= 0.0_wp) then
+            m = m + 1
+            corner(:, m) = vertex(:, i)
+         end if
+         if (.not. vertex(1, i)*vertex(1, next) < 0.0_wp) cycle
+         m = m + 1
+         share = vertex(1, i)/(vertex(1, i) - vertex(1, next))
+         corner(:, m) = vertex(:, i) + share*(vertex(:, next) - vertex(:, i))
+      end do
+      allocate (part, source=corner(:, :m))
+   end function half_plane
+end module dda_shape_scene

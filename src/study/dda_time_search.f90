@@ -1,0 +1,227 @@
+!> Critical value of a parameter of dynamic runs: two neighbours of which one stands, halved
+!>
+!> What falls in time need not fall for all that is more, so values on both sides are run too. The
+!> critical value is the first change from the end that stands, or from the low end where both ends
+!> agree; what changes beyond it is kept for the log.
+module dda_time_search
+   use dda_decision, only : decide, decision_t
+   use dda_error, only : error_t
+   use dda_kinds, only : wp
+   use dda_scene, only : family_t, scene_t
+   use dda_search, only : critical_t, search_t
+   use dda_verdict, only : verdict
+   implicit none
+   private
+
+   public :: find_critical_in_time
+
+   !> Most runs of a search
+   integer, parameter :: max_runs = 200
+   !> Where else two neighbours are parted, if their middle is undecided
+   real(wp), parameter :: share(6) = [0.5_wp, 0.4_wp, 0.6_wp, 0.25_wp, 0.75_wp, 0.1_wp]
+   !> Where other values are run, from the critical value to an end
+   real(wp), parameter :: probe(4) = [0.02_wp, 0.1_wp, 0.3_wp, 0.65_wp]
+   !> Values that are run between two ends that agree
+   integer, parameter :: n_between = 7
+   !> Neighbours that undecided runs keep apart are an answer up to this width over their value
+   real(wp), parameter :: widest = 1.0e-3_wp
+
+   !> What has been run
+   type :: runs_t
+      !> Number of decided values
+      integer :: n = 0
+      !> The values, increasing: (n or more)
+      real(wp) :: value(max_runs + 2) = 0.0_wp
+      !> Whether each falls: (n or more)
+      logical :: falls(max_runs + 2) = .false.
+      !> Values of the decisions that are kept, of one that stands and one that falls
+      real(wp) :: kept(2) = 0.0_wp
+   end type runs_t
+
+contains
+
+   !> Search the critical value
+   pure subroutine find_critical_in_time(family, search, critical)
+      !> The scenes
+      class(family_t), intent(in) :: family
+      !> What is searched
+      type(search_t), intent(in) :: search
+      !> What was found
+      type(critical_t), intent(out) :: critical
+      type(runs_t) :: runs
+      real(wp) :: value
+      integer :: answer, i, side
+
+      critical%current = .true.
+      call run_value(family, search%low, runs, critical, answer)
+      if (answer == verdict%undecided) return
+      call run_value(family, search%high, runs, critical, answer)
+      if (answer == verdict%undecided) return
+      do i = 1, n_between
+         if (any(runs%falls(:runs%n) .neqv. runs%falls(1))) exit
+         call run_value(family, search%low + (search%high - search%low)*real(i, wp) &
+            & /real(n_between + 1, wp), runs, critical, answer)
+         critical%others = critical%others + 1
+      end do
+      if (all(runs%falls(:runs%n) .eqv. runs%falls(1))) then
+         critical%verdict = merge(verdict%collapsed, verdict%stable, runs%falls(1))
+         return
+      end if
+      call close_bracket(family, search, runs, critical)
+      if (critical%verdict /= verdict%found) return
+      value = (critical%falls + critical%stands)/2.0_wp
+      do side = 1, 2
+         do i = 1, size(probe)
+            call run_value(family, value + probe(i) &
+               & *(merge(search%low, search%high, side == 1) - value), runs, critical, answer)
+            critical%others = critical%others + 1
+         end do
+      end do
+      call close_bracket(family, search, runs, critical)
+      call keep_decisions(family, runs, critical)
+      call keep_changes(runs, critical)
+   end subroutine find_critical_in_time
+
+   !> The first two neighbours of which one falls, from the end that stands, or from the low end
+   !> where both agree
+   pure integer function first_change(runs)
+      !> What has been run; not all alike
+      type(runs_t), intent(in) :: runs
+      integer :: i, n
+
+      n = runs%n
+      if (runs%falls(1) .and. .not. runs%falls(n)) then
+         do i = n - 1, 1, -1
+            if (runs%falls(i) .neqv. runs%falls(i + 1)) exit
+         end do
+      else
+         do i = 1, n - 1
+            if (runs%falls(i) .neqv. runs%falls(i + 1)) exit
+         end do
+      end if
+      first_change = i
+   end function first_change
+
+   !> Halve the first change till its neighbours are as near as was asked for
+   pure subroutine close_bracket(family, search, runs, critical)
+      !> The scenes
+      class(family_t), intent(in) :: family
+      !> What is searched
+      type(search_t), intent(in) :: search
+      !> What has been run; not all alike
+      type(runs_t), intent(inout) :: runs
+      !> Receives the bracket
+      type(critical_t), intent(inout) :: critical
+      real(wp) :: pair(2), width
+      integer :: answer, i, try
+
+      critical%verdict = verdict%undecided
+      try = 1
+      do
+         i = first_change(runs)
+         pair = runs%value(i:i + 1)
+         critical%falls = merge(pair(1), pair(2), runs%falls(i))
+         critical%stands = merge(pair(2), pair(1), runs%falls(i))
+         critical%half = (pair(2) - pair(1))/2.0_wp
+         width = (pair(2) - pair(1))/maxval(abs(pair))
+         if (width <= search%tolerance) exit
+         if (try > size(share) .or. critical%decisions >= max_runs) then
+            if (width > max(widest, search%tolerance)) return
+            exit
+         end if
+         call run_value(family, critical%falls + share(try)*(critical%stands - critical%falls), &
+            & runs, critical, answer)
+         try = merge(try + 1, 1, answer == verdict%undecided)
+      end do
+      critical%verdict = verdict%found
+   end subroutine close_bracket
+
+   !> Have the decisions of the two neighbours, which may be none of the last
+   pure subroutine keep_decisions(family, runs, critical)
+      !> The scenes
+      class(family_t), intent(in) :: family
+      !> What has been run
+      type(runs_t), intent(inout) :: runs
+      !> Receives the decisions
+      type(critical_t), intent(inout) :: critical
+      integer :: answer
+
+      if (abs(runs%kept(1) - critical%stands) > 0.0_wp) &
+         & call run_value(family, critical%stands, runs, critical, answer)
+      if (abs(runs%kept(2) - critical%falls) > 0.0_wp) &
+         & call run_value(family, critical%falls, runs, critical, answer)
+   end subroutine keep_decisions
+
+   !> Keep where else the answer changes
+   pure subroutine keep_changes(runs, critical)
+      !> What has been run
+      type(runs_t), intent(in) :: runs
+      !> Receives the neighbours of each other change
+      type(critical_t), intent(inout) :: critical
+      integer :: i, first
+
+      first = first_change(runs)
+      allocate (critical%other_change(2, 0))
+      do i = 1, runs%n - 1
+         if (i == first .or. (runs%falls(i) .eqv. runs%falls(i + 1))) cycle
+         critical%other_change = reshape([critical%other_change, runs%value(i:i + 1)], &
+            & [2, size(critical%other_change, 2) + 1])
+      end do
+   end subroutine keep_changes
+
+   !> Run one value
+   pure subroutine run_value(family, value, runs, critical, answer)
+      !> The scenes
+      class(family_t), intent(in) :: family
+      !> The value
+      real(wp), intent(in) :: value
+      !> Receives the answer
+      type(runs_t), intent(inout) :: runs
+      !> Receives the decision
+      type(critical_t), intent(inout) :: critical
+      !> Stable, collapsed or undecided
+      integer, intent(out) :: answer
+      type(decision_t), allocatable :: decision
+      type(error_t), allocatable :: error
+      type(scene_t) :: scene
+      integer :: i
+
+      answer = verdict%undecided
+      critical%decisions = critical%decisions + 1
+      critical%undecided_at = value
+      call family%build(value, scene, error)
+      if (allocated(error)) then
+         critical%reason = error%message
+         return
+      end if
+      allocate (decision)
+      call decide(scene%settings, scene%system, scene%contacts, decision)
+      associate (outcome => decision%outcome)
+         critical%steps = critical%steps + outcome%steps
+         critical%passes = critical%passes + outcome%passes
+         critical%factorisations = critical%factorisations + outcome%factorisations
+         answer = outcome%verdict
+         if (answer == verdict%completed) answer = verdict%stable
+         outcome%verdict = answer
+         if (allocated(outcome%reason)) critical%reason = outcome%reason
+      end associate
+      if (answer == verdict%undecided) return
+      if (answer == verdict%collapsed) then
+         call move_alloc(decision, critical%fallen)
+         critical%falls = value
+         runs%kept(2) = value
+      else
+         call move_alloc(decision, critical%standing)
+         critical%stands = value
+         runs%kept(1) = value
+      end if
+      i = count(runs%value(:runs%n) < value)
+      if (any(.not. abs(runs%value(:runs%n) - value) > 0.0_wp)) return
+      if (runs%n == size(runs%value)) return
+      runs%value(i + 2:runs%n + 1) = runs%value(i + 1:runs%n)
+      runs%falls(i + 2:runs%n + 1) = runs%falls(i + 1:runs%n)
+      runs%value(i + 1) = value
+      runs%falls(i + 1) = answer == verdict%collapsed
+      runs%n = runs%n + 1
+   end subroutine run_value
+end module dda_time_search

@@ -1,0 +1,363 @@
+!> Bars as springs between two points: stiffness s E E', coupling -s E G', tension on both ends
+!>
+!> E and G are the unit vector of the bar as the unknowns of its two blocks see it. A bar whose
+!> force is bounded by nothing and by its strength is elastic, slack or yielding; in time its mean
+!> force over a step acts, so that an elastic one keeps its energy.
+module dda_bar_springs
+   use dda_bar, only : bar_condition
+   use dda_bar_place, only : place_bar
+   use dda_block_system, only : block_system_t
+   use dda_kinds, only : wp
+   use dda_settings, only : settings_t
+   implicit none
+   private
+
+   public :: bar_springs_t, bar_motion, add_bars, bar_energies, couple_bars, follow_bars
+   public :: judge_bars, keep_bars, longest_give, new_bar_springs, push_bars
+
+   !> Springs of all bars in a step; the first of two rows is along a bar, the second across it
+   type :: bar_springs_t
+      !> Equations of the blocks at both ends, 0 for what cannot move: (2, n)
+      integer, allocatable :: equation(:, :)
+      !> Entry of the matrix that couples them, 0 if one cannot move: (n)
+      integer, allocatable :: entry(:)
+      !> Elongation and turn by the unknowns of both blocks: (n_dof, 2, 2, n)
+      real(wp), allocatable :: row(:, :, :, :)
+      !> Stiffness along and across: (2, n) [N/m]
+      real(wp), allocatable :: stiffness(:, :)
+      !> Force that the bar would have at the beginning of the step without bounds: (n) [N]
+      real(wp), allocatable :: trial(:)
+      !> Force at the beginning: (n) [N]
+      real(wp), allocatable :: start(:)
+      !> Least and largest force: (2, n) [N]
+      real(wp), allocatable :: bound(:, :)
+      !> One of bar_condition: (n)
+      integer, allocatable :: condition(:)
+      !> Share of the force at the end in that which acts: 1/2 in time, else 1
+      real(wp) :: share = 1.0_wp
+   end type bar_springs_t
+
+contains
+
+   !> Springs of all bars, not yet placed
+   pure function new_bar_springs(system, settings, n_dof) result(bars)
+      !> The blocks
+      type(block_system_t), intent(in) :: system
+      !> Settings of the run
+      type(settings_t), intent(in) :: settings
+      !> Unknowns of a block
+      integer, intent(in) :: n_dof
+      !> The springs
+      type(bar_springs_t) :: bars
+      integer :: i, n, side
+
+      n = 0
+      if (allocated(settings%boundary%bar)) n = size(settings%boundary%bar)
+      allocate (bars%equation(2, n), source=0)
+      allocate (bars%entry(n), bars%condition(n), source=0)
+      allocate (bars%row(n_dof, 2, 2, n), bars%stiffness(2, n), bars%bound(2, n), source=0.0_wp)
+      allocate (bars%trial(n), bars%start(n), source=0.0_wp)
+      do i = 1, n
+         do side = 1, 2
+            associate (b => settings%boundary%bar(i)%block(side))
+               if (b > 0) bars%equation(side, i) = system%equation(b)
+            end associate
+         end do
+      end do
+   end function new_bar_springs
+
+   !> Place the bars where the blocks are
+   pure subroutine follow_bars(system, settings, bars)
+      !> The blocks
+      type(block_system_t), intent(in) :: system
+      !> Settings of the run
+      type(settings_t), intent(in) :: settings
+      !> The springs
+      type(bar_springs_t), intent(inout) :: bars
+      real(wp) :: elongation
+      integer :: i
+
+      bars%share = merge(0.5_wp, 1.0_wp, settings%dynamic)
+      do i = 1, size(bars%trial)
+         associate (bar => settings%boundary%bar(i), state => system%bar(i))
+            call place_bar(system, settings%current, bar, bars%row(:, :, :, i), elongation, &
+               & bars%stiffness(2, i))
+            bars%stiffness(1, i) = bar%stiffness
+            bars%bound(:, i) = [0.0_wp, bar%strength]
+            if (settings%dynamic .and. bar%pushes) bars%bound(1, i) = -huge(1.0_wp)
+            if (state%condition == bar_condition%broken) bars%bound(:, i) = 0.0_wp
+            bars%trial(i) = bar%prestress + bar%stiffness*(elongation - state%plastic)
+            bars%start(i) = min(max(bars%trial(i), bars%bound(1, i)), bars%bound(2, i))
+            bars%stiffness(2, i) = max(0.0_wp, bars%start(i))*bars%stiffness(2, i)
+            bars%condition(i) = condition_of(bars%trial(i), bars%bound(:, i))
+         end associate
+      end do
+   end subroutine follow_bars
+
+   !> What a bar does at a trial force
+   pure integer function condition_of(trial, bound)
+      !> Force without bounds [N]
+      real(wp), intent(in) :: trial
+      !> Least and largest force: (2) [N]
+      real(wp), intent(in) :: bound(2)
+
+      condition_of = bar_condition%elastic
+      if (trial < bound(1)) condition_of = bar_condition%slack
+      if (trial > bound(2)) condition_of = bar_condition%yielding
+      if (.not. bound(2) > bound(1)) condition_of = bar_condition%slack
+   end function condition_of
+
+   !> Stiffness of a bar that acts in this step, along and across
+   pure function acting(bars, i) result(stiffness)
+      !> The springs
+      type(bar_springs_t), intent(in) :: bars
+      !> Number of the bar
+      integer, intent(in) :: i
+      !> (2) [N/m]
+      real(wp) :: stiffness(2)
+
+      stiffness = bars%share*bars%stiffness(:, i)
+      if (bars%condition(i) /= bar_condition%elastic) stiffness(1) = 0.0_wp
+   end function acting
+
+   !> Force of a bar that acts in this step before anything moves
+   pure real(wp) function acting_force(bars, i) result(force)
+      !> The springs
+      type(bar_springs_t), intent(in) :: bars
+      !> Number of the bar
+      integer, intent(in) :: i
+
+      select case (bars%condition(i))
+      case (bar_condition%elastic)
+         force = bars%trial(i)
+      case (bar_condition%slack)
+         force = max(bars%bound(1, i), min(0.0_wp, bars%bound(2, i)))
+      case default
+         force = bars%bound(2, i)
+      end select
+      force = bars%share*force + (1.0_wp - bars%share)*bars%start(i)
+   end function acting_force
+
+   !> Add the bars to matrix and load of the blocks, or take them away
+   pure subroutine add_bars(bars, sign, matrix, load)
+      !> The springs
+      type(bar_springs_t), intent(in) :: bars
+      !> 1 to add, -1 to take away
+      real(wp), intent(in) :: sign
+      !> Stiffness of the blocks: (n_dof, n_dof, n_equation)
+      real(wp), intent(inout) :: matrix(:, :, :)
+      !> Loads: (n_dof, n_equation)
+      real(wp), intent(inout) :: load(:, :)
+      real(wp) :: stiffness(2)
+      integer :: c, i, k, side
+
+      do i = 1, size(bars%trial)
+         stiffness = sign*acting(bars, i)
+         do side = 1, 2
+            associate (e => bars%equation(side, i), row => bars%row(:, :, side, i))
+               if (e == 0) cycle
+               do k = 1, 2
+                  do c = 1, size(row, 1)
+                     matrix(:, c, e) = matrix(:, c, e) + stiffness(k)*row(c, k)*row(:, k)
+                  end do
+               end do
+               load(:, e) = load(:, e) - sign*acting_force(bars, i)*row(:, 1)
+            end associate
+         end do
+      end do
+   end subroutine add_bars
+
+   !> Stiffness between the blocks of the bars
+   pure subroutine couple_bars(bars, pair, are_stiff, coupling)
+      !> The springs
+      type(bar_springs_t), intent(in) :: bars
+      !> Blocks of each entry of the matrix, in the order of its rows and columns: (2, n_entry)
+      integer, intent(in) :: pair(:, :)
+      !> Whether they are; otherwise they are taken away
+      logical, intent(in) :: are_stiff
+      !> Couplings: (n_dof, n_dof, n_entry)
+      real(wp), intent(inout) :: coupling(:, :, :)
+      real(wp) :: stiffness(2)
+      integer :: c, e, first, i, k
+
+      do i = 1, size(bars%trial)
+         e = bars%entry(i)
+         if (e == 0) cycle
+         coupling(:, :, e) = 0.0_wp
+         if (.not. are_stiff) cycle
+         first = merge(1, 2, pair(1, e) == bars%equation(1, i))
+         stiffness = acting(bars, i)
+         do k = 1, 2
+            do c = 1, size(coupling, 2)
+               coupling(:, c, e) = coupling(:, c, e) + stiffness(k) &
+                  & *bars%row(c, k, 3 - first, i)*bars%row(:, k, first, i)
+            end do
+         end do
+      end do
+   end subroutine couple_bars
+
+   !> What the couplings of the bars make of a motion
+   pure function bar_motion(bars, motion) result(force)
+      !> The springs
+      type(bar_springs_t), intent(in) :: bars
+      !> The motion: (n_dof, n_equation)
+      real(wp), intent(in) :: motion(:, :)
+      !> Coupling times motion: (n_dof, n_equation)
+      real(wp) :: force(size(motion, 1), size(motion, 2))
+      real(wp) :: stiffness(2)
+      integer :: i, k, side
+
+      force = 0.0_wp
+      do i = 1, size(bars%trial)
+         if (bars%entry(i) == 0) cycle
+         stiffness = acting(bars, i)
+         do side = 1, 2
+            associate (e => bars%equation(side, i), other => bars%equation(3 - side, i))
+               do k = 1, 2
+                  force(:, e) = force(:, e) + stiffness(k)*bars%row(:, k, side, i) &
+                     & *dot_product(bars%row(:, k, 3 - side, i), motion(:, other))
+               end do
+            end associate
+         end do
+      end do
+   end function bar_motion
+
+   !> Elongation of a bar by a motion
+   pure real(wp) function elongation_by(bars, motion, i)
+      !> The springs
+      type(bar_springs_t), intent(in) :: bars
+      !> The motion: (n_dof, n_equation)
+      real(wp), intent(in) :: motion(:, :)
+      !> Number of the bar
+      integer, intent(in) :: i
+      integer :: side
+
+      elongation_by = 0.0_wp
+      do side = 1, 2
+         if (bars%equation(side, i) > 0) elongation_by = elongation_by &
+            & + dot_product(bars%row(:, 1, side, i), motion(:, bars%equation(side, i)))
+      end do
+   end function elongation_by
+
+   !> Change the conditions of bars that a motion does not agree with
+   pure subroutine judge_bars(bars, motion, one_by_one, agreed)
+      !> The springs
+      type(bar_springs_t), intent(inout) :: bars
+      !> The motion: (n_dof, n_equation)
+      real(wp), intent(in) :: motion(:, :)
+      !> Whether only the bar that is farthest off changes
+      logical, intent(in) :: one_by_one
+      !> Whether all agreed
+      logical, intent(out) :: agreed
+      real(wp) :: off(size(bars%trial)), trial
+      integer :: i, wanted(size(bars%trial))
+
+      off = 0.0_wp
+      do i = 1, size(bars%trial)
+         trial = bars%trial(i) + bars%stiffness(1, i)*elongation_by(bars, motion, i)
+         wanted(i) = condition_of(trial, bars%bound(:, i))
+         if (wanted(i) /= bars%condition(i)) &
+            & off(i) = max(tiny(trial), min(abs(trial - bars%bound(1, i)), &
+            & abs(trial - bars%bound(2, i))))
+         ! what is off by rounding stays as it is
+         if (off(i) <= 1.0e-13_wp*(abs(bars%trial(i)) + abs(trial))) off(i) = 0.0_wp
+      end do
+      agreed = .not. any(off > 0.0_wp)
+      if (agreed) return
+      where (off > 0.0_wp .and. (.not. one_by_one .or. off >= maxval(off))) &
+         & bars%condition = wanted
+   end subroutine judge_bars
+
+   !> Forces of bars that have acted in a step, as loads
+   pure subroutine push_bars(bars, motion, load)
+      !> The springs
+      type(bar_springs_t), intent(in) :: bars
+      !> Motion of the step: (n_dof, n_equation)
+      real(wp), intent(in) :: motion(:, :)
+      !> Receives them: (n_dof, n_equation)
+      real(wp), intent(inout) :: load(:, :)
+      real(wp) :: force(2), stiffness(2), turn
+      integer :: i, side
+
+      do i = 1, size(bars%trial)
+         stiffness = acting(bars, i)
+         turn = 0.0_wp
+         do side = 1, 2
+            if (bars%equation(side, i) > 0) turn = turn &
+               & + dot_product(bars%row(:, 2, side, i), motion(:, bars%equation(side, i)))
+         end do
+         force = [acting_force(bars, i), 0.0_wp] &
+            & + stiffness*[elongation_by(bars, motion, i), turn]
+         do side = 1, 2
+            associate (e => bars%equation(side, i))
+               if (e > 0) load(:, e) = load(:, e) - matmul(bars%row(:, :, side, i), force)
+            end associate
+         end do
+      end do
+   end subroutine push_bars
+
+   !> What an accepted step leaves of the bars
+   pure subroutine keep_bars(bars, settings, motion, system)
+      !> The springs
+      type(bar_springs_t), intent(in) :: bars
+      !> Settings of the run
+      type(settings_t), intent(in) :: settings
+      !> Motion of the step: (n_dof, n_equation)
+      real(wp), intent(in) :: motion(:, :)
+      !> Receives forces and conditions
+      type(block_system_t), intent(inout) :: system
+      real(wp) :: trial
+      integer :: i
+
+      do i = 1, size(bars%trial)
+         associate (bar => settings%boundary%bar(i), state => system%bar(i))
+            if (state%condition == bar_condition%broken) cycle
+            trial = bars%trial(i) + bars%stiffness(1, i)*elongation_by(bars, motion, i)
+            state%force = min(max(trial, bars%bound(1, i)), bars%bound(2, i))
+            state%condition = bars%condition(i)
+            if (state%condition /= bar_condition%yielding) cycle
+            state%plastic = state%plastic + max(0.0_wp, trial - bar%strength)/bar%stiffness
+            if (.not. bar%breaks) cycle
+            state%condition = bar_condition%broken
+            state%force = 0.0_wp
+         end associate
+      end do
+   end subroutine keep_bars
+
+   !> How much the softest bar gives to a force
+   pure real(wp) function longest_give(bars, force)
+      !> The springs
+      type(bar_springs_t), intent(in) :: bars
+      !> The force [N]
+      real(wp), intent(in) :: force
+      integer :: i
+
+      longest_give = 0.0_wp
+      do i = 1, size(bars%trial)
+         if (bars%stiffness(1, i) > 0.0_wp) &
+            & longest_give = max(longest_give, force/bars%stiffness(1, i))
+      end do
+   end function longest_give
+
+   !> Energy that elastic bars take in during a step, and work that the forces of others do
+   pure function bar_energies(bars, motion) result(energy)
+      !> The springs
+      type(bar_springs_t), intent(in) :: bars
+      !> Motion of the step: (n_dof, n_equation)
+      real(wp), intent(in) :: motion(:, :)
+      !> Stored, spent: (2) [J/m]
+      real(wp) :: energy(2)
+      real(wp) :: longer, stiffness(2)
+      integer :: i
+
+      energy = 0.0_wp
+      do i = 1, size(bars%trial)
+         longer = elongation_by(bars, motion, i)
+         stiffness = acting(bars, i)
+         associate (place => energy(merge(1, 2, bars%condition(i) == bar_condition%elastic)))
+            place = place + longer*(acting_force(bars, i) + merge(1.0_wp, 0.5_wp, &
+               & bars%share < 1.0_wp)*stiffness(1)*longer)
+         end associate
+      end do
+   end function bar_energies
+end module dda_bar_springs

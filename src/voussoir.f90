@@ -1,0 +1,66 @@
+!> What a Fortran program may call: decks as the command dda reads them, and joints on a graph
+!>
+!>    call read_deck("arch.nml", deck, error)
+!>    call solve_case(deck, 1, row, joint, remark, error)
+!>
+!> All else is of the program's own, and may change.
+module voussoir
+   use couplet_heyman_discrete, only : discrete_critical_equal, discrete_solution_t
+   use dda_case, only : case_t, compute_case, prepare_case
+   use dda_case_rows, only : tell_case
+   use dda_deck, only : deck_t
+   use dda_deck_sweep, only : n_cases, turn_to_case
+   use dda_error, only : error_line, error_t, fatal_error
+   use dda_joint_graph, only : joint_graph_t, joint_kind
+   use dda_kinds, only : wp
+   use dda_limit_decision, only : decide_load, load_decision_t, load_state
+   use dda_limit_load, only : find_limit, limit_load_t, limit_state
+   use dda_read_deck, only : parse_deck, read_deck
+   use dda_text, only : to_text
+   use dda_write_blocks, only : told_blocks_t
+   use dda_write_results, only : joint_row_t, number_t, result_row_t
+   implicit none
+   private
+
+   public :: wp, error_t, error_line
+   public :: deck_t, read_deck, parse_deck, n_cases
+   public :: solve_case, result_row_t, joint_row_t, number_t
+   public :: joint_graph_t, joint_kind
+   public :: find_limit, limit_load_t, limit_state
+   public :: decide_load, load_decision_t, load_state
+   public :: discrete_critical_equal, discrete_solution_t
+
+contains
+
+   !> Compute one case of a deck. Not from two threads at a time: texts are made
+   subroutine solve_case(deck, number, row, joint, remark, error)
+      !> The deck with its sweeps
+      type(deck_t), intent(in) :: deck
+      !> Number of the case, from 1 to n_cases(deck)
+      integer, intent(in) :: number
+      !> Its row of results.csv
+      type(result_row_t), intent(out) :: row
+      !> Its rows of joints.csv: (n_joint), (0) where there are none
+      type(joint_row_t), allocatable, intent(out) :: joint(:)
+      !> What the log would say beside the row, the reason of `undecided` among it
+      character(len=:), allocatable, intent(out) :: remark
+      !> A number out of range, or a case that cannot be made
+      type(error_t), allocatable, intent(out) :: error
+      type(deck_t) :: case_of_deck
+      type(case_t) :: this
+      type(told_blocks_t) :: blocks
+
+      remark = ""
+      allocate (joint(0))
+      if (number < 1 .or. number > n_cases(deck)) then
+         call fatal_error(error, "number of the case: expected 1 to "//to_text(n_cases(deck)) &
+            & //", got "//to_text(number))
+         return
+      end if
+      call turn_to_case(deck, number, case_of_deck, error)
+      if (allocated(error)) return
+      call prepare_case(case_of_deck, this)
+      call compute_case(this)
+      call tell_case(this, row, joint, blocks, remark)
+   end subroutine solve_case
+end module voussoir

@@ -1,0 +1,116 @@
+"""Fill on arches: the ladder of a filled bridge by deck keys alone, backing, axles, what is refused."""
+
+from __future__ import annotations
+
+import csv
+import math
+from pathlib import Path
+
+import pytest
+from dda_command import run_dda
+from test_live_loads import SEARCH, rows
+
+#: Prestwood: kN/m at collapse, each exact for its model; about 60 were measured
+BRIDGE = (
+    "&arch shape = 'segmental', span = 6.55, rise = 1.428, thickness = 0.22, voussoirs = 40 /\n"
+    f"&joint friction_deg = {math.degrees(math.atan(0.6))!r} /\n&material unit_weight = 20e3 /\n"
+    "&vehicle axles = 1000, position = {}, length = 0.3 /\n" + SEARCH
+)
+FILL = "&fill height = 0.165, unit_weight = 20e3{} /\n"
+KP = (1.0 + math.sin(math.radians(37.0))) / (1.0 - math.sin(math.radians(37.0)))
+
+
+@pytest.mark.parametrize(
+    ("fill", "factor"),
+    [
+        (None, 11.95457844541439),
+        (", spread = 0", 29.000723977402455),
+        ("", 32.76079088187626),
+        (", passive_coefficient = 1", 43.61840212216162),
+        (", passive_coefficient = 1.3409333333333333", 46.489156198504915),
+        (", passive_coefficient = 4.0228", 62.994869861242684),
+    ],
+)
+def test_the_ladder_of_a_filled_bridge(tmp_path: Path, fill: str | None, factor: float) -> None:
+    deck = BRIDGE.format(-1.6375) + (FILL.format(fill) if fill is not None else "")
+    (row,) = rows(tmp_path, deck, head="")
+    assert float(row["critical"]) == pytest.approx(factor, rel=1e-6)
+    assert float(row["exact_high"]) == pytest.approx(factor, rel=1e-8)
+
+
+def test_a_mirrored_axle_is_carried_alike(tmp_path: Path) -> None:
+    deck = BRIDGE + FILL.format(", passive_coefficient = 1")
+    found = [float(rows(tmp_path, deck.format(x), head="")[0]["critical"]) for x in (-1.6375, 1.6375)]
+    assert found[0] == pytest.approx(found[1], rel=1e-7)
+
+
+def test_a_share_of_kp_is_its_coefficient(tmp_path: Path) -> None:
+    deck = BRIDGE.format(-1.6375)
+    (share,) = rows(tmp_path, deck + FILL.format(", friction_deg = 37, passive_share = 0.5"), head="")
+    (plain,) = rows(tmp_path, deck + FILL.format(f", passive_coefficient = {0.5 * KP!r}"), head="")
+    assert float(share["critical"]) == pytest.approx(float(plain["critical"]), rel=1e-9)
+
+
+def test_backing_carries_more_the_higher_it_is(tmp_path: Path) -> None:
+    deck = BRIDGE.format(-1.6375) + FILL.format(", backing_height = {}")
+    found = [float(rows(tmp_path, deck.format(h), head="")[0]["critical"]) for h in (0.0, 0.4, 0.8)]
+    bare = float(rows(tmp_path, BRIDGE.format(-1.6375) + FILL.format(""), head="")[0]["critical"])
+    assert found[0] == pytest.approx(bare, rel=1e-9)
+    assert found[0] < found[1] < found[2]
+
+
+def test_the_worst_position_is_no_better_than_any(tmp_path: Path) -> None:
+    fill = FILL.format(", passive_coefficient = 1")
+    flow = "&analysis flow = 'associated' /\n"
+    (worst,) = rows(tmp_path, BRIDGE.format("1").replace("position = 1", "worst = T") + fill + flow, head="")
+    sweep = "&sweep parameter = 'position', first = -3.2, last = 0, count = 17 /\n"
+    other = [float(row["critical"]) for row in rows(tmp_path, BRIDGE.format(0) + fill + flow + sweep, head="")]
+    assert float(worst["critical"]) <= min(other) * (1.0 + 1e-9)
+    assert float(worst["critical"]) == pytest.approx(min(other), rel=0.05)
+
+
+def test_weight_of_fill_is_on_the_springings(tmp_path: Path) -> None:
+    """What the springings carry is the weight of the arch and of the fill above its extrados."""
+    deck = (
+        "&arch shape = 'segmental', span = 4, rise = 1, thickness = 0.5, voussoirs = 9 /\n"
+        "&material unit_weight = 20e3 /\n&fill height = 0.4, unit_weight = 15e3 /\n"
+    )
+    (row,) = rows(tmp_path, deck, head="")
+    assert row["verdict"] == "stable"
+    inner = 2.5
+    outer, half = inner + 0.5, math.asin(2.0 / 2.5)
+    ends = [outer * math.sin(half * (2 * k / 9 - 1)) for k in range(10)]
+    heights = [outer * math.cos(half * (2 * k / 9 - 1)) for k in range(10)]
+    above = sum((b - a) * (outer + 0.4 - (u + v) / 2.0) for a, b, u, v in
+                zip(ends, ends[1:], heights, heights[1:]))
+    # an odd number of voussoirs: the highest chord lies below the crown of the circle
+    above -= (outer - max(heights)) * (ends[-1] - ends[0])
+    arch = 9 * math.sin(2 * half / 9) * (outer**2 - inner**2) / 2.0
+    up = 0.0
+    with (tmp_path / "x" / "joints.csv").open(newline="") as table:
+        for joint in csv.DictReader(table):
+            if max(int(joint["block_1"]), int(joint["block_2"])) > 9:
+                up += abs(float(joint["force_y"]))
+    assert up == pytest.approx(20e3 * arch + 15e3 * above, rel=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("fill", "words"),
+    [
+        ("&fill height = -0.1, unit_weight = 20e3 /", "from 0"),
+        ("&fill unit_weight = 20e3 /", "expected height and unit_weight"),
+        ("&fill height = 0.1, unit_weight = 1, passive_share = 0.5 /", "expected friction_deg"),
+        ("&fill height = 0.1, unit_weight = 1, passive_coefficient = 1 /\n&analysis geometry = 'current' /",
+         "bounded force"),
+        ("&fill height = 0.1, unit_weight = 1, passive_coefficient = 1 /\n&joint cohesion = 1 /", "bounded force"),
+        ("&fill height = 0.1, unit_weight = 1 /\n&vehicle axles = 1, position = 20 /", "none at position 20"),
+        ("&scene kind = 'blocks', geometry = 'x.blocks' /\n&fill height = 0.1, unit_weight = 1 /", "&fill"),
+    ],
+)
+def test_fill_that_cannot_be_is_refused(tmp_path: Path, fill: str, words: str) -> None:
+    (tmp_path / "x.blocks").write_text("block fixed\n0 0\n1 0\n0 1\n")
+    arch = "" if "&scene" in fill else "&arch radius = 5, half_angle_deg = 60 /\n"
+    (tmp_path / "bad.nml").write_text(arch + fill + "\n")
+    done = run_dda("run", "bad.nml", cwd=tmp_path)
+    assert done.returncode == 2, done.stdout
+    assert words in done.stderr

@@ -1,0 +1,257 @@
+"""The ground in time: records, pulses, their scale, and what of them is refused."""
+
+from __future__ import annotations
+
+import csv
+import math
+from pathlib import Path
+
+import pytest
+from dda_command import run_dda
+
+BLOCKS = "block fixed\n-9 -1\n9 -1\n9 0\n-9 0\nblock\n0 0\n1 0\n1 2\n0 2\nmeasure 0.5 1\n"
+RECORD = "Station 7, in g\ntime,\"East\",up\n0.0,0.2,0\n\n# later\n0.1, -0.5,0\n0.25, 0.3,0\n0.4,0.0,0\n"
+#: Gravity is off and the base far below in effect: the block flies, and goes back as the ground goes forth
+FREE = "&load gravity = 0 /\n&analysis mode = 'dynamic', geometry = 'current', duration = 0.6, steps = 100000{more} /\n"
+
+
+def rows(folder: Path, table: str) -> list[dict[str, str]]:
+    """Rows of a table."""
+    with (folder / "out" / f"{table}.csv").open(newline="") as lines:
+        return list(csv.DictReader(lines))
+
+
+def run(folder: Path, blocks: str, groups: str, *settings: str, command: str = "run") -> tuple[int, str]:
+    """Run a scene of blocks: status and messages."""
+    (folder / "x.blocks").write_text(blocks)
+    (folder / "x.nml").write_text(f"&scene kind = 'blocks', geometry = 'x.blocks' /\n{groups}")
+    out = ("--out", "out", "--quiet") if command == "run" else ()
+    done = run_dda(command, "x.nml", *out, *settings, cwd=folder)
+    return done.returncode, done.stderr
+
+
+def drift(times: list[float], accelerations: list[float], end: float) -> tuple[float, float]:
+    """Velocity and displacement of a ground that starts at rest, exact for lines between the times."""
+    velocity = place = 0.0
+    for t0, t1, a0, a1 in zip(times, times[1:], accelerations, accelerations[1:], strict=False):
+        h = t1 - t0
+        place += velocity * h + a0 * h**2 / 2 + (a1 - a0) * h**2 / 6
+        velocity += (a0 + a1) / 2 * h
+    return velocity, place + velocity * (end - times[-1])
+
+
+TIMES, SHARES = [0.0, 0.1, 0.25, 0.4], [0.2, -0.5, 0.3, 0.0]
+
+
+def test_a_record_moves_the_ground_second_order_in_the_step(tmp_path: Path) -> None:
+    """A free block goes as the record's double integral says; its error falls as the square of the step."""
+    (tmp_path / "Quake 1.csv").write_text(RECORD)
+    ground = "base_acceleration file 'Quake 1.csv' columns time east scale 9.81\n"
+    _, place = drift(TIMES, [9.81 * share for share in SHARES], 0.6)
+    errors = []
+    for step in (0.04, 0.02, 0.01):
+        status, message = run(tmp_path, BLOCKS + ground, FREE.format(more=f", time_step = {step}"))
+        assert status == 0, message
+        errors.append(abs(float(rows(tmp_path, "points")[-1]["u"]) + place))
+        print(f"{step:6.3f} {errors[-1]:.3e}")
+    assert errors[0] / errors[2] == pytest.approx(16.0, rel=0.25)
+    assert errors[2] < 1e-3 * abs(place)
+
+
+@pytest.mark.parametrize("step", [0.003, 0.05, 0.11])
+def test_no_step_loses_any_of_a_records_impulse(tmp_path: Path, step: float) -> None:
+    """The velocity after the record is its integral, to rounding, whatever the step."""
+    (tmp_path / "q.txt").write_text(RECORD.replace(",", " ").replace('"', ""))
+    status, message = run(
+        tmp_path, BLOCKS + "base_acceleration file 'q.txt' scale 9.81\n", FREE.format(more=f", time_step = {step}"))
+    assert status == 0, message
+    velocity, _ = drift(TIMES, [9.81 * share for share in SHARES], 0.6)
+    last, end = rows(tmp_path, "points")[-2:]
+    told = (float(end["u"]) - float(last["u"])) / (float(end["time"]) - float(last["time"]))
+    assert told == pytest.approx(-velocity, abs=1e-11)
+
+
+def test_quantities_and_both_homes_of_a_record_agree(tmp_path: Path) -> None:
+    """A ramp of velocity is a constant acceleration, and so is a parabola; in the file of blocks as in &ground."""
+    (tmp_path / "a.csv").write_text("0,1.5\n0.6,1.5\n")
+    (tmp_path / "v.csv").write_text("0 0\n0.6 0.9\n")
+    (tmp_path / "d.csv").write_text("".join(f"{t / 10},{0.75 * (t / 10) ** 2}\n" for t in range(7)))
+    ways = []
+    for word, name in (("acceleration", "a"), ("velocity", "v"), ("displacement", "d")):
+        status, message = run(
+            tmp_path, BLOCKS + f"base_{word} file '{name}.csv' scale 2\n", FREE.format(more=", time_step = 0.01"))
+        assert status == 0, message
+        ways.append(float(rows(tmp_path, "points")[-1]["u"]))
+        group = f"&ground record = '{name}.csv', quantity = '{word}', unit = 4.0, scale = 0.5 /\n"
+        status, message = run(tmp_path, BLOCKS, group + FREE.format(more=", time_step = 0.01"))
+        assert status == 0, message
+        ways.append(float(rows(tmp_path, "points")[-1]["u"]))
+    assert ways == pytest.approx([-3.0 * 0.6**2 / 2] * 6, rel=1e-9)
+
+
+def test_a_led_point_follows_its_record(tmp_path: Path) -> None:
+    (tmp_path / "p.csv").write_text("t,ux,uy\n0,0,0\n0.5,20,-8\n")
+    led = BLOCKS + "".join(f"displacement {x} 1 file 'p.csv' columns t ux uy scale 0.001\n" for x in (0.2, 0.8))
+    status, message = run(tmp_path, led.replace("block fixed\n-9 -1\n9 -1\n9 0\n-9 0\n", ""),
+                          FREE.format(more=", time_step = 0.05"))
+    assert status == 0, message
+    end = rows(tmp_path, "points")[-1]
+    assert (float(end["u"]), float(end["v"])) == pytest.approx((0.02, -0.008), abs=1e-9)
+
+
+def test_a_record_of_forces_brings_in_its_impulse(tmp_path: Path) -> None:
+    """A force that grows evenly to 960 N in 0.5 s gives 4480 kg a speed of 240/4480 m/s."""
+    (tmp_path / "f.csv").write_text("0,0\n0.5,960\n0.5000001,0\n")
+    load = "".join(f"load 0.5 {y} file 'f.csv' columns 1 2 0 scale 0.5\n" for y in (0.5, 1.5))
+    status, message = run(tmp_path, BLOCKS + load, FREE.format(more=", time_step = 0.03"))
+    assert status == 0, message
+    last, end = rows(tmp_path, "points")[-2:]
+    speed = (float(end["u"]) - float(last["u"])) / (float(end["time"]) - float(last["time"]))
+    assert speed == pytest.approx(240.0 / 4480.0, rel=1e-6)
+
+
+def test_a_pulse_in_the_deck_is_that_of_a_file(tmp_path: Path) -> None:
+    """A sine of one period comes to rest again, farther by a T^2/2 pi; a rectangle leaves a T behind."""
+    for pulse, far in (
+        ("'sine', frequency = 4.0", 2.0 * 0.25**2 / (2 * math.pi)),
+        ("'rectangular', duration = 0.13", 2.0 * 0.13**2 / 2 + 2.0 * 0.13 * (0.6 - 0.13)),
+    ):
+        group = f"&ground pulse = {pulse}, amplitude = 1.0, scale = 2.0, direction_deg = 180.0 /\n"
+        status, message = run(tmp_path, BLOCKS, group + FREE.format(more=", time_step = 0.001"))
+        assert status == 0, message
+        assert float(rows(tmp_path, "points")[-1]["u"]) == pytest.approx(far, rel=2e-4)
+
+
+def test_an_amplitude_brings_a_record_to_it(tmp_path: Path) -> None:
+    """Decks of one amplitude are equal whatever the record's unit, and are swept by record and amplitude."""
+    (tmp_path / "One.csv").write_text("0,0\n0.1,4\n0.2,-8\n0.3,0\n")
+    (tmp_path / "two.csv").write_text("0,0\n0.1,0.05\n0.2,-0.1\n0.3,0\n")
+    deck = FREE.format(more=", time_step = 0.01") + (
+        "&ground unit = 1.0, record = 'One.csv' /\n"
+        "&sweep parameter = 'record', texts = 'One.csv', 'two.csv' /\n"
+        "&sweep parameter = 'amplitude', values = 1, 3 /\n")
+    status, message = run(tmp_path, BLOCKS, deck)
+    assert status == 0, message
+    results = rows(tmp_path, "results")
+    assert [row["record"] for row in results] == ["One.csv"] * 2 + ["two.csv"] * 2
+    ends: dict[str, str] = {row["case"]: row["u"] for row in rows(tmp_path, "points")}
+    ways = [float(ends[case]) for case in "1234"]
+    assert ways[0] == pytest.approx(ways[2], rel=1e-12) and ways[1] == pytest.approx(3 * ways[0], rel=1e-12)
+
+
+def test_a_changed_record_is_another_deck(tmp_path: Path) -> None:
+    """--resume keeps what was done with the same record, and nothing of another one."""
+    (tmp_path / "q.csv").write_text(RECORD)
+    blocks = BLOCKS + "base_acceleration file 'q.csv'\n"
+    for text, words in ((RECORD, "1 of 1"), (RECORD.replace("0.3", "0.4"), "")):
+        run(tmp_path, blocks, FREE.format(more=", time_step = 0.1"))
+        (tmp_path / "q.csv").write_text(text)
+        done = run_dda("run", "x.nml", "--out", "out", "--resume", cwd=tmp_path)
+        assert done.returncode == 0
+        assert ("already" in done.stdout + done.stderr) == bool(words), done.stdout + done.stderr
+
+
+BAD_RECORDS = {
+    "empty": ("", "is empty"),
+    "words": ("time,a\nno numbers\n", "at least two rows"),
+    "one-row": ("0,1\n", "at least two rows"),
+    "backwards": ("t,a\n0,1\n0.2,1\n0.1,1\n", ":4: error: expected a time after 0.2 s, got 0.1"),
+    "twice": ("0,1\n0,1\n", ":2: error: expected a time after 0 s"),
+    "hole": ("0,1\n0.1,\n0.2,1\n", ":2: error: expected a number of at most 1e30 in column 2, got ''"),
+    "short": ("0 1\n0.1\n", ":2: error: expected a number"),
+    "text": ("0 1\n0.1 nought\n", "got 'nought'"),
+    "nan": ("0 1\n0.1 nan\n", "got 'nan'"),
+    "huge": ("0 1\n0.1 1e31\n", "at most 1e30"),
+    "late-header": ("0 1\n0.1 2\ntime a\n", ":3: error: expected a number"),
+    "binary": ("0 1\n0.1 \x01\n", ":2: error: expected plain text"),
+}
+
+
+@pytest.mark.parametrize("name", list(BAD_RECORDS))
+@pytest.mark.parametrize("home", ["blocks", "deck"])
+def test_a_bad_record_is_refused_with_its_line(tmp_path: Path, name: str, home: str) -> None:
+    text, words = BAD_RECORDS[name]
+    (tmp_path / "q.csv").write_text(text)
+    blocks = BLOCKS + ("base_acceleration file 'q.csv'\n" if home == "blocks" else "")
+    group = "&ground record = 'q.csv' /\n" if home == "deck" else ""
+    status, message = run(tmp_path, blocks, group + FREE.format(more=""), command="check")
+    assert status == 2 and words in message and message.count("\n") == 1, message
+    assert message.startswith("q.csv:") or "q.csv" in message
+
+
+@pytest.mark.parametrize(
+    ("line", "words"),
+    [
+        ("base_acceleration file quake.csv", "in quotes after 'file'"),
+        ("base_acceleration file", "in quotes after 'file'"),
+        ("base_acceleration file 'no.csv'", "there is no such file"),
+        ("base_acceleration file 'q.csv", "expected a second quote"),
+        ("base_acceleration file 'q.csv' 'q.csv'", "expected one text in quotes"),
+        ("base_acceleration file 'q.csv' columns 1", "two or three columns"),
+        ("base_acceleration file 'q.csv' columns 1 2 3 4", "two or three columns"),
+        ("base_acceleration file 'q.csv' columns 0 2", "expected column '0'"),
+        ("base_acceleration file 'q.csv' columns 1 north", "expected column 'north'"),
+        ("base_acceleration file 'q.csv' columns 1 9", "in column 9, got ''"),
+        ("base_acceleration file 'q.csv' scale", "1 numbers after 'scale'"),
+        ("base_acceleration file 'q.csv' scale 1 scale 2", "once each"),
+        ("base_acceleration file 'q.csv' speed 1", "expected columns or scale"),
+        ("base_acceleration file 'q.csv'\n0 1 1", "got both"),
+        ("base_acceleration 1 2 file 'q.csv'", "expected two components"),
+        ("fix 0.5 1 file 'q.csv'", "unknown word 'file'"),
+        ("block 'q.csv'", "got '''"),
+    ],
+)
+def test_a_line_that_names_a_record_badly_is_refused(tmp_path: Path, line: str, words: str) -> None:
+    (tmp_path / "q.csv").write_text(RECORD)
+    status, message = run(tmp_path, BLOCKS + line + "\n", FREE.format(more=""), command="check")
+    assert status == 2 and words in message and message.count("\n") == 1, message
+
+
+TIME = "&analysis mode = 'dynamic', geometry = 'current' /"
+
+
+@pytest.mark.parametrize(
+    ("groups", "line", "words"),
+    [
+        ("&ground pulse = 'sine', amplitude = 1,\n frequency = 2 /", 1, "needs mode = 'dynamic', got 'static'"),
+        (f"&ground scale = 2 /\n{TIME}", 1, "needs a pulse or a record, got none"),
+        (f"&ground pulse = 'sine', amplitude = 1 /\n{TIME}", 1, "needs frequency for a sine"),
+        (f"&ground pulse = 'rectangular', amplitude = 1 /\n{TIME}", 1, "needs duration for a rectangular pulse"),
+        (f"&ground pulse = 'rectangular', duration = 1,\n frequency = 1, amplitude = 2 /\n{TIME}", 2, "no effect"),
+        (f"&ground pulse = 'sine', amplitude = 1, frequency = 1,\nunit = 2 /\n{TIME}", 2, "ground%unit has no effect"),
+        (f"&ground pulse = 'sine',\nrecord = 'q.csv' /\n{TIME}", 2, "got both"),
+        (f"&ground record = 'q.csv',\ncolumns = '1' /\n{TIME}", 2, "two or three columns"),
+        (f"&ground\nrecord = 'no.csv' /\n{TIME}", 2, "there is no such file"),
+        (f"{TIME}\n&ground record = 'q.csv' /\n&sweep parameter = 'record',\ntexts = 'no.csv' /", 4, "no such file"),
+        ("&analysis\ncollapse_rotation_deg = 45 /", 2, "needs mode = 'dynamic' and geometry = 'current'"),
+        (f"{TIME[:-2]},\n collapse_point = 1 /", 2, "file of blocks with measured points"),
+        ("&analysis mode = 'dynamic' /\n&search parameter = 'radius', low = 1, high = 2 /", 2, "geometry = 'current'"),
+        (f"{TIME}\n&search parameter = 'radius', low = 1, high = 2 /", 2, "needs analysis%duration"),
+        (f"{TIME[:-2]}, duration = 1 /\n&search\nparameter = 'friction_deg' /", 3, "search%low and search%high"),
+        ("&search parameter = 'ground%amplitude', low = 1, high = 2 /", 1, "the ground moves in time"),
+        ("&search parameter = 'restitution', low = 0, high = 1 /", 1, "motion in time has them"),
+        (f"{TIME[:-2]}, duration = 1 /\n&search parameter = 'time_step', low = 1, high = 2 /", 2, "of the method"),
+    ],
+)
+def test_what_the_ground_cannot_be_is_refused(tmp_path: Path, groups: str, line: int, words: str) -> None:
+    (tmp_path / "q.csv").write_text(RECORD)
+    (tmp_path / "a.nml").write_text(groups + "\n")
+    done = run_dda("check", "a.nml", cwd=tmp_path)
+    assert done.returncode == 2
+    assert done.stderr.startswith(f"a.nml:{line}: error: ") and words in done.stderr, done.stderr
+
+
+@pytest.mark.parametrize(
+    ("more", "groups", "words"),
+    [
+        ("base_acceleration 1 0\n", "&ground pulse = 'sine', amplitude = 1, frequency = 1 /", "ground is at rest"),
+        ("", "&ground scale = 2 /", "moves the ground, got none"),
+        ("", "&analysis collapse_point = 2, collapse_displacement = 1 /", "from 1 to 1, got 2"),
+        ("", "&analysis collapse_point = 1 /", "needs collapse_displacement"),
+    ],
+)
+def test_what_a_file_of_blocks_contradicts_is_refused(tmp_path: Path, more: str, groups: str, words: str) -> None:
+    group = groups.replace("/", ", mode = 'dynamic', geometry = 'current' /") if "analysis" in groups else (
+        f"{groups}\n{TIME}")
+    status, message = run(tmp_path, BLOCKS + more, group + "\n", command="check")
+    assert status == 2 and words in message, message

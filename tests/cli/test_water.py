@@ -1,0 +1,129 @@
+"""Water on joints and faces, against closed forms."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+
+import pytest
+from block_scene import block, run_blocks
+from dda_command import run_dda
+
+HEIGHT = 30.0
+
+
+def dam(base: float, factor: float) -> str:
+    """A triangular dam with a full reservoir on its upright face."""
+    return (
+        block([(-20.0, -5.0), (40.0, -5.0), (40.0, 0.0), (-20.0, 0.0)], "fixed")
+        + block([(0.0, 0.0), (base, 0.0), (0.0, HEIGHT)])
+        + f"water -10 {HEIGHT} 0 {HEIGHT} {base!r} 0 unit_weight 9810 factor {factor}\n"
+    )
+
+
+@pytest.mark.parametrize("factor", [0.0, 0.4, 1.0])
+def test_a_dam_overturns_below_its_least_base(tmp_path: Path, factor: float) -> None:
+    least = math.sqrt(9.81 * HEIGHT**2 / (2.0 * (24.0 - factor * 9.81)))
+    if factor in (0.0, 1.0):
+        assert least == pytest.approx({0.0: 13.562355990018844, 1.0: 17.6380091209447}[factor])
+    deck = "&material unit_weight=24000 /\n&joint friction_deg=89.95 /\n"
+    for share, verdict in ((1 - 1e-6, "collapsed"), (1 + 1e-6, "stable")):
+        assert run_blocks(tmp_path, dam(least * share, factor), deck)["verdict"] == verdict
+
+
+@pytest.mark.parametrize(
+    ("factor", "base", "friction"),
+    [(0.0, 13.562355990018844, 42.11853327026098), (1.0, 17.6380091209447, 49.62095990058765)],
+)
+def test_a_dam_slides_below_its_least_friction(
+    tmp_path: Path, factor: float, base: float, friction: float
+) -> None:
+    row = run_blocks(
+        tmp_path,
+        dam(1.0000001 * base, factor),
+        "&material unit_weight=24000 /\n&search parameter='friction_deg' low=20 high=80 /\n",
+    )
+    assert float(row["critical"]) == pytest.approx(friction, rel=1e-6)
+
+
+def plane(water: str) -> str:
+    """The slope of Sau Mau Ping: 60 m high, a plane at 35 degrees, a tension crack."""
+    crack = 46.0 / math.tan(math.radians(35.0))
+    crest = 60.0 / math.tan(math.radians(50.0))
+    return (
+        block([(0.0, 0.0), (0.0, -20.0), (crack, -20.0), (crack, 46.0)], "fixed")
+        + block([(crack, -20.0), (120.0, -20.0), (120.0, 60.0), (crack, 60.0)], "fixed material 2")
+        + "material 2 density 2000\njoint 1 2 friction_deg 0 cohesion 0\n"
+        + block([(0.0, 0.0), (crack, 46.0), (crack, 60.0), (crest, 60.0)])
+        + water.format(crack=repr(crack))
+    )
+
+
+@pytest.mark.parametrize(
+    ("level", "safety"),
+    [(0.0, 1.5843310659876608), (7.0, 1.4164960580294252), (14.0, 1.2060325697984489)],
+)
+def test_a_slope_with_water_in_its_crack_has_its_safety(
+    tmp_path: Path, level: float, safety: float
+) -> None:
+    friction = math.degrees(math.atan(math.tan(math.radians(35.0)) / safety))
+    row = run_blocks(
+        tmp_path,
+        plane(f"water 0 0 {{crack}} {46.0 + level} unit_weight 9810\n" if level else ""),
+        f"&material unit_weight=26000 young=1e10 /\n&joint friction_deg={friction!r} /\n"
+        "&search parameter='cohesion' low=1e3 high=2e5 tolerance=1e-8 /\n",
+    )
+    assert float(row["critical"]) == pytest.approx(1e5 / safety, rel=1e-6)
+
+
+def wall() -> str:
+    """A block that water rises on from the left."""
+    return (
+        block([(-10.0, -2.0), (10.0, -2.0), (10.0, 0.0), (-10.0, 0.0)], "fixed")
+        + block([(0.0, 0.0), (3.0, 0.0), (3.0, 5.0), (0.0, 5.0)])
+    )
+
+
+def test_the_level_at_which_a_wall_falls_is_found(tmp_path: Path) -> None:
+    deck = "&material unit_weight=24000 /\n&joint friction_deg=80 /\n"
+    # it turns about its right corner: gw (12.5 level - 125/3) = W b/2
+    level = (24000.0 * 15.0 * 1.5 / 9810.0 + 125.0 / 3.0) / 12.5
+    assert level > 5.0
+    water = "water -10 0 0 0 factor 0\n"
+    row = run_blocks(
+        tmp_path, wall() + water, deck + "&search parameter='water_rise' low=0 high=9 /\n"
+    )
+    assert row["verdict"] == "found"
+    assert float(row["critical"]) == pytest.approx(level, rel=1e-6)
+
+
+BAD = {
+    "one point": ("water 0 1", "two points or more"),
+    "odd": ("water 0 1 2", "two points or more"),
+    "backwards": ("water 1 1 0 1", "from left to right"),
+    "word": ("water 0 1 1 1 salty", "got 'salty'"),
+    "factor": ("water 0 1 1 1 factor 2", "factor from 0 to 1"),
+    "times": ("water 0 1 1 1\n1 0\n0 1", "increasing times"),
+}
+
+
+@pytest.mark.parametrize("case", BAD)
+def test_bad_water_is_refused_with_its_line(case: str, tmp_path: Path) -> None:
+    line, message = BAD[case]
+    (tmp_path / "scene.blocks").write_text(wall() + line + "\n")
+    (tmp_path / "scene.nml").write_text("&scene kind='blocks' geometry='scene.blocks' /\n")
+    done = run_dda("check", "scene.nml", cwd=tmp_path)
+    assert done.returncode == 2
+    assert "scene.blocks:11: error: " in done.stderr and message in done.stderr
+
+
+def test_water_that_rises_in_time_brings_the_wall_down_at_its_level(tmp_path: Path) -> None:
+    level = (24000.0 * 15.0 * 1.5 / 9810.0 + 125.0 / 3.0) / 12.5
+    deck = "&material unit_weight=24000 /\n&joint friction_deg=80 /\n"
+    scene = wall() + "water -10 0 0 0 factor 0\n0 0\n10 10\n"
+    row = run_blocks(tmp_path, scene, deck)
+    assert row["verdict"] == "collapsed"
+    row = run_blocks(tmp_path, scene.replace("10 10\n", f"10 {level - 1e-4}\n"), deck)
+    assert row["verdict"] == "stable"
+    row = run_blocks(tmp_path, scene.replace("10 10\n", f"10 {level + 1e-4}\n"), deck)
+    assert row["verdict"] == "collapsed"

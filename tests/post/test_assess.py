@@ -1,0 +1,65 @@
+"""`voussoir assess`: one page that holds verdict, safety numbers, worst position, inputs and check sums."""
+
+from __future__ import annotations
+
+import hashlib
+import re
+from pathlib import Path
+
+import pytest
+
+pytest.importorskip("matplotlib")
+from voussoir import assess_command
+from voussoir.command_line import main
+
+BRIDGE = (
+    "&scene title = 'A bridge & its <axle>' /\n"
+    "&arch shape = 'segmental', span = 6.55, rise = 1.428, thickness = 0.44, voussoirs = 20 /\n"
+    "&joint friction_deg = 31 /\n&material unit_weight = 20e3 /\n"
+    "&fill height = 0.165, unit_weight = 20e3 /\n&vehicle axles = 40e3, worst = .true. /\n"
+)
+
+
+def test_the_page_holds_what_a_client_asks(tmp_path: Path) -> None:
+    deck = tmp_path / "bridge.nml"
+    deck.write_text(BRIDGE)
+    assert main(["assess", str(deck)]) == 0
+    page = (tmp_path / "bridge.html").read_text()
+    assert "The structure stands under the loads given. It falls when the live loads are multiplied by" in page
+    for words in ("Geometrical safety", "Load factor", "Range of thrust", "Worst position", "Position of the vehicle"):
+        assert words in page
+    assert page.count("<svg") == 4
+    assert "A bridge &amp; its &lt;axle&gt;" in page
+    assert hashlib.sha256(deck.read_bytes()).hexdigest() in page
+    assert float(re.search(r"Geometrical safety</th><td>([\d.]+):", page)[1]) > 1.0
+
+
+def test_an_arch_that_falls_is_said_to(tmp_path: Path) -> None:
+    deck = tmp_path / "thin.nml"
+    deck.write_text("&arch thickness_ratio = 0.05 /\n")
+    assert main(["assess", str(deck), "--out", str(tmp_path / "page.html")]) == 0
+    page = (tmp_path / "page.html").read_text()
+    assert "The structure does not stand under the loads given." in page
+    assert 'class="verdict falls"' in page
+
+
+@pytest.mark.parametrize(
+    ("text", "words"),
+    [
+        ("&arch /\n&sweep parameter = 'radius', values = 1, 2 /\n", "many.nml:2: error: expected one case"),
+        ("&scene kind = 'blocks', geometry = 'x' /\n", "many.nml:1: error: expected an arch"),
+        ("&arch shape = 'segmental', span = 1, rise = 0.7, thickness = 0.1 /\n", "many.nml:1: error: arch%rise"),
+    ],
+)
+def test_what_is_no_single_arch_is_refused(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], text: str, words: str
+) -> None:
+    deck = tmp_path / "many.nml"
+    deck.write_text(text)
+    assert main(["assess", str(deck)]) == 2
+    assert words in capsys.readouterr().err
+
+
+def test_groups_are_left_out_with_their_lines() -> None:
+    text = "&arch /\n&search\n parameter = 'x' /\n&joint /\n"
+    assert assess_command.without(text, "search") == "&arch /\n\n\n&joint /\n"

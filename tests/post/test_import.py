@@ -1,0 +1,116 @@
+"""`voussoir import` and `examples`: drawings and geometry become decks that reach a verdict."""
+
+from __future__ import annotations
+
+import json
+import math
+from pathlib import Path
+
+import pytest
+
+voussoir = pytest.importorskip("voussoir", reason="PYTHONPATH wants the build's python folder")
+pytest.importorskip("shapely")
+
+from voussoir.command_line import main  # noqa: E402
+
+GROUND = "POLYGON ((-1 -1, 4 -1, 4 0, -1 0, -1 -1))"
+
+
+def horizontal(deck: Path, **keys) -> float:
+    """The horizontal coefficient at which the blocks of a deck fall."""
+    run = voussoir.run(deck, search="horizontal_coefficient", friction_deg=80, **keys)
+    return float(run.cases["critical"][0])
+
+
+def test_wkt_with_a_hole_turns_about_its_foot(tmp_path: Path, capsys) -> None:
+    (tmp_path / "stone.wkt").write_text(
+        f"fixed; {GROUND}\nPOLYGON ((0 0, 1 0, 1 2, 0 2, 0 0), (0.25 1, 0.75 1, 0.75 1.5, 0.25 1.5, "
+        "0.25 1))\nLINESTRING (0 0, 1 1)\n"
+    )
+    deck = tmp_path / "stone.nml"
+    words = ["import", str(tmp_path / "stone.wkt"), "--out", str(deck), "--fixed", "fixed", "rock"]
+    assert main(words) == 0
+    printed = capsys.readouterr().out
+    assert "dropped: line 3: geometry 1, a LineString without area" in printed
+    assert "2 blocks, 1 of them fixed" in printed
+    height = (2.0 * 1.0 - 0.25 * 1.25) / 1.75
+    assert horizontal(deck) == pytest.approx(0.5 / height, rel=1e-7)
+
+
+def test_geojson_has_roles_and_a_scale(tmp_path: Path) -> None:
+    def feature(role: str, x: float, y: float, width: float, height: float) -> dict:
+        ring = [[x, y], [x + width, y], [x + width, y + height], [x, y + height], [x, y]]
+        shape = {"type": "Polygon", "coordinates": [ring]}
+        return {"type": "Feature", "properties": {"role": role}, "geometry": shape}
+
+    features = [feature("Support", -1000, -500, 4000, 500), feature("stone", 0, 0, 1000, 3000)]
+    file = tmp_path / "pier.geojson"
+    file.write_text(json.dumps({"type": "FeatureCollection", "features": features}))
+    deck = tmp_path / "pier.nml"
+    assert main(["import", str(file), "--scale", "1e-3", "--out", str(deck)]) == 0
+    assert horizontal(deck) == pytest.approx(1.0 / 3.0, rel=1e-7)
+    assert voussoir.run(deck).blocks_of(1)[1].corners.max() == 3.0
+
+
+def test_dxf_with_arcs_inserts_and_three_layers(tmp_path: Path, capsys) -> None:
+    ezdxf = pytest.importorskip("ezdxf")
+    drawing = ezdxf.new()
+    space = drawing.modelspace()
+    base = [(-1, -0.5), (4, -0.5), (4, 0), (-1, 0)]
+    space.add_lwpolyline(base, close=True, dxfattribs={"layer": "fixed"})
+    brick = drawing.blocks.new("brick")
+    brick.add_lwpolyline([(0, 0), (1, 0), (1, 0.5), (0, 0.5)], close=True)
+    for x in (0, 2):
+        space.add_blockref("brick", (x, 0), dxfattribs={"layer": "bricks"})
+    # a half disc on the left brick: bulge 1 is a half circle
+    space.add_lwpolyline(
+        [(0, 0.5, 0), (1, 0.5, 1)], format="xyb", close=True, dxfattribs={"layer": "dome"}
+    )
+    space.add_line((0, 0), (1, 1), dxfattribs={"layer": "axes"})
+    drawing.saveas(tmp_path / "yard.dxf")
+    deck = tmp_path / "yard.nml"
+    words = ["import", str(tmp_path / "yard.dxf"), "--out", str(deck), "--tolerance", "1e-4"]
+    assert main(words) == 0
+    printed = capsys.readouterr().out
+    assert "dropped: LINE on layer axes: not closed" in printed
+    assert "4 blocks, 1 of them fixed" in printed
+    text = deck.with_suffix(".blocks").read_text()
+    assert text.count("block") == 4 and text.count("material 2") == 2  # the dome, and its entry
+    run = voussoir.run(deck, friction_deg=80)
+    assert run.cases["verdict"].tolist() == ["stable"]
+    dome = run.blocks_of(1)[3].corners
+    x, y = dome.T
+    area = abs((x * y.take(range(1, len(y) + 1), mode="wrap")
+                - y * x.take(range(1, len(x) + 1), mode="wrap")).sum()) / 2.0
+    assert area == pytest.approx(math.pi / 8.0, rel=1e-3)
+
+
+def test_meshes_are_blocks(tmp_path: Path) -> None:
+    meshio = pytest.importorskip("meshio")
+    points = [(0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0)]
+    meshio.write_points_cells(tmp_path / "mesh.vtk", points, [("quad", [[0, 1, 2, 3]])])
+    deck = tmp_path / "mesh.nml"
+    assert main(["import", str(tmp_path / "mesh.vtk"), "--out", str(deck)]) == 0
+    assert deck.with_suffix(".blocks").read_text().count("block") == 1
+
+
+@pytest.mark.parametrize(
+    ("name", "text", "words"),
+    [
+        ("a.svg", "", "expected a file of .dxf, .geojson"),
+        ("a.wkt", "POLYGON ((0 0", "expected WKT in line 1"),
+        ("a.geojson", "{", "expected JSON"),
+        ("a.wkt", "POINT (0 0)\n", "expected closed outlines"),
+    ],
+)
+def test_what_is_no_geometry_is_refused(tmp_path: Path, capsys, name, text, words) -> None:
+    (tmp_path / name).write_text(text)
+    assert main(["import", str(tmp_path / name), "--out", str(tmp_path / "a.nml")]) == 2
+    assert words in capsys.readouterr().err
+
+
+def test_examples_are_listed_and_copied(tmp_path: Path, capsys) -> None:
+    assert main(["examples"]) == 0
+    assert "input/paper/table1.nml" in capsys.readouterr().out.splitlines()
+    assert main(["examples", "--copy", str(tmp_path)]) == 0
+    assert (tmp_path / "input/paper/table1.nml").is_file()
