@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 
 ROOT = Path(__file__).resolve().parents[2]
-REGISTRY = "".join((ROOT / f"src/io/dda_{name}_keys.f90").read_text(encoding="utf-8") for name in ("deck", "arch"))
+REGISTRY = "".join((ROOT / f"src/input/dda_{name}_keys.f90").read_text(encoding="utf-8") for name in ("deck", "arch"))
 DOC = (ROOT / "docs/input.md").read_text(encoding="utf-8")
 
 
