@@ -65,6 +65,12 @@ function(voussoir_link_package folder)
   file(GLOB_RECURSE files CONFIGURE_DEPENDS RELATIVE "${VOUSSOIR_SOURCE_ROOT}/post/voussoir"
     "${VOUSSOIR_SOURCE_ROOT}/post/voussoir/*")
   list(FILTER files EXCLUDE REGEX "(^|/)__pycache__/|\\.pyc$")
+  file(GLOB_RECURSE links "${folder}/*.py")
+  foreach(link IN LISTS links)  # of files that have moved: a module must not hide a package
+    if(IS_SYMLINK "${link}" AND NOT EXISTS "${link}")
+      file(REMOVE "${link}")
+    endif()
+  endforeach()
   foreach(file IN LISTS files)
     get_filename_component(subfolder "${folder}/${file}" DIRECTORY)
     file(MAKE_DIRECTORY "${subfolder}")

@@ -100,7 +100,7 @@ def of_voussoir(package: str) -> str:
     sys.path.insert(0, package)
     sys.dont_write_bytecode = True
     from voussoir import __version__
-    from voussoir.command_line import COMMANDS, build_parser
+    from voussoir.command.main import COMMANDS, build_parser
 
     parts = [("DESCRIPTION", build_parser().format_help()), ("COMMANDS", "")]
     for name in COMMANDS:

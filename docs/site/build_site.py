@@ -62,11 +62,11 @@ CHAPTERS = {
 LONG = 30
 #: Modules of the names that scripts import: those of the package itself, or all of a module
 PUBLIC = {
-    "running": ("run", "Deck"),
-    "models": ("Arch",),
-    "block_model": ("Blocks",),
-    "results": (),
-    "theory": (),
+    "deck/run": ("run", "Deck"),
+    "deck/arch": ("Arch",),
+    "deck/blocks": ("Blocks",),
+    "results/__init__": (),
+    "theory/__init__": (),
 }
 #: Packages that build the site
 PACKAGES = ("mkdocs", "ford", "latex2mathml")
@@ -198,7 +198,7 @@ def python_page() -> str:
     ]
     for module, names in PUBLIC.items():
         tree = ast.parse((ROOT / f"post/voussoir/{module}.py").read_text(encoding="utf-8"))
-        home = "voussoir" if names else f"voussoir.{module}"
+        home = "voussoir" if names else f"voussoir.{module.partition('/')[0]}"
         lines += [] if names else [f"## {home}", "", *block(ast.get_docstring(tree) or "")]
         for node in tree.body:
             if not isinstance(node, (ast.FunctionDef, ast.ClassDef)) or node.name.startswith("_"):

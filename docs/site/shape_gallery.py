@@ -8,9 +8,9 @@ import matplotlib.pyplot as plt
 from matplotlib.collections import PolyCollection
 
 import voussoir
-from voussoir.case_picture import draw_ring_thrust, draw_supports
-from voussoir.case_scene import scene_of
-from voussoir.figure_style import STONE, house_style
+from voussoir.plot.case_picture import draw_ring_thrust, draw_supports
+from voussoir.plot.case_scene import scene_of
+from voussoir.plot.figure_style import STONE, house_style
 
 SHAPES = {
     "segmental": "span = 6, rise = 1.5, thickness = 0.5, voussoirs = 21",

@@ -20,10 +20,10 @@ __all__ = ["Arch", "Blocks", "read", "results", "run", "theory"]
 
 #: Where the public names are; a module is loaded when its name is first used
 _HOMES = {
-    "Arch": "voussoir.models",
-    "Blocks": "voussoir.block_model",
+    "Arch": "voussoir.deck.arch",
+    "Blocks": "voussoir.deck.blocks",
     "read": "voussoir.results",
-    "run": "voussoir.running",
+    "run": "voussoir.deck.run",
 }
 
 

@@ -2,6 +2,6 @@
 
 import sys
 
-from voussoir.command_line import main
+from voussoir.command.main import main
 
 sys.exit(main())

@@ -10,7 +10,7 @@ import pytest
 @pytest.fixture(scope="session")
 def paper_folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """Results of the whole `voussoir paper`, run once."""
-    command_line = pytest.importorskip("voussoir.command_line", reason="PYTHONPATH wants python/")
+    command_line = pytest.importorskip("voussoir.command.main", reason="PYTHONPATH wants python/")
     out = tmp_path_factory.mktemp("paper")
     assert command_line.main(["paper", "--out", str(out), "--quiet"]) == 0
     return out

@@ -9,8 +9,8 @@ from pathlib import Path
 import pytest
 
 pytest.importorskip("matplotlib")
-from voussoir import assess_command
-from voussoir.command_line import main
+from voussoir.command import assess as assess_command
+from voussoir.command.main import main
 
 BRIDGE = (
     "&scene title = 'A bridge & its <axle>' /\n"

@@ -15,11 +15,11 @@ import pytest
 
 pytest.importorskip("voussoir", reason="PYTHONPATH wants the build's python folder")
 
-from voussoir import campaign_part  # noqa: E402
-from voussoir.campaign import share  # noqa: E402
-from voussoir.campaign_merge import TABLES, merge, slices_of  # noqa: E402
-from voussoir.campaign_part import finished_by, finished_in, ranges_of  # noqa: E402
-from voussoir.command_line import main  # noqa: E402
+from voussoir.campaign import part as campaign_part  # noqa: E402
+from voussoir.campaign.merge import TABLES, merge, slices_of  # noqa: E402
+from voussoir.campaign.part import finished_by, finished_in, ranges_of  # noqa: E402
+from voussoir.campaign.share import share  # noqa: E402
+from voussoir.command.main import main  # noqa: E402
 
 DDA = os.environ.get("DDA", "")
 pytestmark = pytest.mark.skipif(not DDA, reason="DDA wants the name of the program")
@@ -154,7 +154,7 @@ def test_bad_deck_is_told_as_by_the_program(tmp_path: Path, capsys) -> None:
     ],
 )
 def test_options_that_do_not_go_together_are_refused(tmp_path, words, message, capsys, monkeypatch):
-    monkeypatch.setattr("voussoir.campaign_dask.WAIT", 1.0)
+    monkeypatch.setattr("voussoir.campaign.dask.WAIT", 1.0)
     deck = str(write_deck(tmp_path))
     assert main(["campaign", deck, "--out", str(tmp_path / "out"), *words]) == 2
     assert message in capsys.readouterr().err

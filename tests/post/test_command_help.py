@@ -13,7 +13,7 @@ import pytest
 pytest.importorskip("voussoir", reason="PYTHONPATH wants the build's python folder")
 
 from voussoir import __version__  # noqa: E402
-from voussoir.command_line import COMMANDS, build_parser, main  # noqa: E402
+from voussoir.command.main import COMMANDS, build_parser, main  # noqa: E402
 
 TESTS = Path(__file__).parents[1]
 

@@ -16,7 +16,7 @@ pytest.importorskip("matplotlib", reason="matplotlib is not installed: skipped")
 
 from test_campaign_safety import damage  # noqa: E402
 
-from voussoir.command_line import main  # noqa: E402
+from voussoir.command.main import main  # noqa: E402
 
 DDA = os.environ.get("DDA", "")
 pytestmark = pytest.mark.skipif(not DDA, reason="DDA wants the name of the program")

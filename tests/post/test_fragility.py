@@ -12,9 +12,8 @@ import pytest
 pytest.importorskip("matplotlib")
 pytest.importorskip("voussoir", reason="PYTHONPATH wants the build's python folder")
 
-from voussoir.command_line import main  # noqa: E402
-from voussoir.fragility import Lognormal, fit_shares, fit_values  # noqa: E402
-
+from voussoir.command.main import main  # noqa: E402
+from voussoir.plot.fragility import Lognormal, fit_shares, fit_values  # noqa: E402
 
 DDA = os.environ.get("DDA", "")
 

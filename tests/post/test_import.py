@@ -11,7 +11,7 @@ import pytest
 voussoir = pytest.importorskip("voussoir", reason="PYTHONPATH wants the build's python folder")
 pytest.importorskip("shapely")
 
-from voussoir.command_line import main  # noqa: E402
+from voussoir.command.main import main  # noqa: E402
 
 GROUND = "POLYGON ((-1 -1, 4 -1, 4 0, -1 0, -1 -1))"
 

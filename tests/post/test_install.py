@@ -14,7 +14,7 @@ import pytest
 
 pytest.importorskip("voussoir", reason="PYTHONPATH wants the build's python folder")
 
-from voussoir.command_line import COMMANDS  # noqa: E402
+from voussoir.command.main import COMMANDS  # noqa: E402
 
 BUILD = os.environ.get("VOUSSOIR_BUILD", "")
 

@@ -13,14 +13,14 @@ pytest.importorskip("matplotlib", reason="figures want matplotlib")
 pytest.importorskip("voussoir", reason="PYTHONPATH wants the build's python folder")
 
 from voussoir import results  # noqa: E402
-from voussoir.case_picture import draw_case, roles_of, thrust_points  # noqa: E402
-from voussoir.case_scene import scene_of  # noqa: E402
-from voussoir.collapse_animation import FFMpegWriter  # noqa: E402
-from voussoir.collapse_picture import contacts_of, limits, pictures_of, shapes_of  # noqa: E402
-from voussoir.command_line import main  # noqa: E402
-from voussoir.design_chart import ChartError, draw_chart, swept_columns  # noqa: E402
-from voussoir.figure_style import house_style  # noqa: E402
-from voussoir.units import force_text, length_text, rounded  # noqa: E402
+from voussoir.command.main import main  # noqa: E402
+from voussoir.plot.case_picture import draw_case, roles_of, thrust_points  # noqa: E402
+from voussoir.plot.case_scene import scene_of  # noqa: E402
+from voussoir.plot.collapse_animation import FFMpegWriter  # noqa: E402
+from voussoir.plot.collapse_picture import contacts_of, limits, pictures_of, shapes_of  # noqa: E402
+from voussoir.plot.design_chart import ChartError, draw_chart, swept_columns  # noqa: E402
+from voussoir.plot.figure_style import house_style  # noqa: E402
+from voussoir.plot.units import force_text, length_text, rounded  # noqa: E402
 
 DDA = os.environ.get("DDA", "")
 BENCHMARKS = Path(__file__).resolve().parents[2] / "input" / "benchmarks"

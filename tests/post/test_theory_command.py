@@ -7,8 +7,9 @@ import pytest
 
 pytest.importorskip("voussoir", reason="PYTHONPATH wants the build's python folder")
 
-from voussoir import bench_theory, theory  # noqa: E402
-from voussoir.command_line import main  # noqa: E402
+from voussoir import theory  # noqa: E402
+from voussoir.bench import theory_times as bench_theory  # noqa: E402
+from voussoir.command.main import main  # noqa: E402
 
 
 def test_table_has_a_line_for_each_theory(capsys):

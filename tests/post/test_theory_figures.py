@@ -8,7 +8,8 @@ import pytest
 pytest.importorskip("voussoir", reason="PYTHONPATH wants the build's python folder")
 pytest.importorskip("matplotlib", reason="figures want matplotlib")
 
-from voussoir import arch_sketch, theory, theory_curve_figures, theory_figures  # noqa: E402
+from voussoir import theory  # noqa: E402
+from voussoir.theory import arch_sketch, curve_figures as theory_curve_figures, figures as theory_figures  # noqa: E402
 
 
 def test_seven_figures_in_two_formats_alike_at_every_run(tmp_path):

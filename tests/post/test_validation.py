@@ -13,15 +13,15 @@ import pytest
 pytest.importorskip("voussoir", reason="PYTHONPATH wants the build's python folder")
 pytest.importorskip("numpy")
 
-from voussoir.command_line import main  # noqa: E402
+from voussoir.bench.validation_assemblies import roof_wedge, snap_load  # noqa: E402
+from voussoir.bench.validation_impact import next_amplitude, quarter_period  # noqa: E402
+from voussoir.bench.validation_motion import stick_slip  # noqa: E402
+from voussoir.bench.validation_rest import ONSETS, foot_acceleration  # noqa: E402
+from voussoir.bench.validation_run import Line, all_scenes, run_scene  # noqa: E402
+from voussoir.bench.validation_scene import Check, Scene  # noqa: E402
+from voussoir.bench.validation_strain import chain_frequency  # noqa: E402
+from voussoir.command.main import main  # noqa: E402
 from voussoir.dda_program import find_input  # noqa: E402
-from voussoir.validation_assemblies import roof_wedge, snap_load  # noqa: E402
-from voussoir.validation_impact import next_amplitude, quarter_period  # noqa: E402
-from voussoir.validation_motion import stick_slip  # noqa: E402
-from voussoir.validation_rest import ONSETS, foot_acceleration  # noqa: E402
-from voussoir.validation_run import Line, all_scenes, run_scene  # noqa: E402
-from voussoir.validation_scene import Check, Scene  # noqa: E402
-from voussoir.validation_strain import chain_frequency  # noqa: E402
 
 REPOSITORY = Path(__file__).resolve().parents[2]
 DECKS = REPOSITORY / "input" / "benchmarks"
@@ -129,7 +129,7 @@ def test_miss_is_told_and_is_the_exit_status(tmp_path: Path, monkeypatch, capsys
     (scene,) = [scene for scene in SCENES if scene.name == "column"]
     wrong = dataclasses.replace(scene.checks[0], exact=0.25)
     false_scene = dataclasses.replace(scene, checks=(wrong,))
-    monkeypatch.setattr("voussoir.validation_command.all_scenes", lambda: (false_scene,))
+    monkeypatch.setattr("voussoir.command.validation.all_scenes", lambda: (false_scene,))
     words = ["validation", "--quiet", "--out", str(tmp_path), "--scenes", "column"]
     assert main(words) == 1
     assert "0.25 | 0.2 | 2.0e-01 | 2e-08 **MISSED** |" in (tmp_path / "validation.md").read_text()

@@ -14,7 +14,7 @@ import pytest
 pytest.importorskip("voussoir.verify_command", reason="PYTHONPATH wants python/")
 
 from voussoir import verify_command  # noqa: E402
-from voussoir.command_line import main  # noqa: E402
+from voussoir.command.main import main  # noqa: E402
 from voussoir.verify_deck import read_record  # noqa: E402
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "cli"))

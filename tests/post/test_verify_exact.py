@@ -15,7 +15,8 @@ import pytest
 pytest.importorskip("voussoir.verify_command", reason="PYTHONPATH wants python/")
 
 from test_verify import HEAD, rows_of, run_deck  # noqa: E402
-from voussoir.command_line import main  # noqa: E402
+
+from voussoir.command.main import main  # noqa: E402
 from voussoir.verify_rational import Factor, sine_cosine  # noqa: E402
 from voussoir.verify_simplex import Programme, find_best  # noqa: E402
 

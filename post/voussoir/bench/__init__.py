@@ -1,0 +1,1 @@
+"""Scenes whose answers are known: validation, stability, and error against run time."""

@@ -1,0 +1,46 @@
+"""The catalogue of stiff and extreme scenes."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from voussoir.bench.stability_arches import arches, random_arches
+from voussoir.bench.stability_blocks import block_scenes
+from voussoir.bench.stability_input import input_scenes
+from voussoir.bench.stability_motion import motion_scenes
+from voussoir.bench.stability_random import random_blocks
+from voussoir.bench.stability_scene import Scene
+
+
+def catalogue() -> Iterator[Scene]:
+    """All scenes but the random ones.
+
+    Yields
+    ------
+    Scene
+        One after the other.
+    """
+    yield from arches()
+    yield from block_scenes()
+    yield from motion_scenes()
+    yield from input_scenes()
+
+
+def random_scenes(count: int, seed: int) -> Iterator[Scene]:
+    """Scenes that nobody has listed.
+
+    Parameters
+    ----------
+    count : int
+        How many: two thirds arches, the rest blocks.
+    seed : int
+        Beginning of the random numbers; the same one makes the same scenes.
+
+    Yields
+    ------
+    Scene
+        One after the other.
+    """
+    blocks = count // 3
+    yield from random_arches(count - blocks, seed)
+    yield from random_blocks(blocks, seed)

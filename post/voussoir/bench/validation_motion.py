@@ -1,0 +1,309 @@
+"""Scenes of blocks that fly, slide and are shaken: sections 1.1 and 1.2."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from voussoir.bench.validation_scene import DENSITY, GRAVITY, Check, Outcome, Scene, verdict
+
+FLIGHT = "Blocks that fly"
+SLIDING = "Blocks that slide"
+
+#: Blocks of the deck `momentum`: width and height [m], velocity [m/s], spin [rad/s]
+_THROWN = (
+    ((1.0, 0.8), (2.0, 0.3), 0.5),
+    ((1.2, 1.0), (-1.0, 0.0), -0.3),
+    ((0.7, 0.9), (0.2, -1.5), 0.0),
+    ((0.8, 0.8), (0.0, 1.4), 1.0),
+)
+
+
+def slide(slope_deg: float, friction_deg: float, up: bool = False) -> float:
+    """Acceleration down a slope of a block that slides down, or up [m/s2]."""
+    slope, friction = math.radians(slope_deg), math.radians(friction_deg)
+    rub = math.cos(slope) * math.tan(friction)
+    return GRAVITY * (math.sin(slope) + (rub if up else -rub))
+
+
+def _along(slope_deg: float):
+    """Measure of the way of point 1 down a slope to the right."""
+    slope = math.radians(slope_deg)
+    return lambda outcome: float(outcome.end(1) @ (math.cos(slope), -math.sin(slope)))
+
+
+def _area_change(outcome: Outcome) -> float:
+    """Largest change of the area between points 2 to 5, over the area at the beginning."""
+    x, y = (np.array([outcome.track(point)[i] for point in range(2, 6)]) for i in (1, 2))
+    twice = (x * np.roll(y, -1, axis=0) - y * np.roll(x, -1, axis=0)).sum(axis=0)
+    return float(np.abs(twice / 4.0 - 1.0).max())
+
+
+def _radius_change(outcome: Outcome) -> float:
+    """Largest change of the distance of points 2 to 5 from point 1, over that at the beginning."""
+    centre = outcome.track(1)[1:3]
+    change = 0.0
+    for point in range(2, 6):
+        far = np.hypot(*(outcome.track(point)[1:3] - centre))
+        change = max(change, float(np.abs(far / far[0] - 1.0).max()))
+    return change
+
+
+def _rotation(outcome: Outcome) -> float:
+    """Largest angle that the line from point 2 to point 3 has turned [rad]."""
+    angle = outcome.direction(2, 3)
+    return float(np.abs(angle - angle[0]).max())
+
+
+def _moving(axis: int, point: int = 1):
+    """Measure of a displacement at the end."""
+    return lambda outcome: float(outcome.end(point)[axis])
+
+
+def _way_at(time: float):
+    """Measure of the way of point 1 along x at a time at which a step ends."""
+
+    def measure(outcome: Outcome) -> float:
+        track = outcome.track(1)
+        return float(np.interp(time, track[0], track[3]))
+
+    return measure
+
+
+def _turned(outcome: Outcome) -> float:
+    """Angle that the line from point 1 to point 2 has turned since it was that of the deck."""
+    tracks = outcome.track(1), outcome.track(2)
+    start = [track[1:3, 0] - track[3:, 0] for track in tracks]
+    apart = start[1] - start[0]
+    angles = outcome.direction(1, 2)
+    turns = round((angles[0] - math.atan2(apart[1], apart[0])) / (2.0 * math.pi))
+    return float(angles[-1] - math.atan2(apart[1], apart[0]) - 2.0 * math.pi * turns)
+
+
+def _momentum_gained(outcome: Outcome) -> np.ndarray:
+    """Momentum and its moment about the origin, last step less beginning: (3)."""
+    gained = np.zeros(3)
+    for i, (size, thrown, turning) in enumerate(_THROWN):
+        track = outcome.track(2 * i + 1)
+        time, place = track[0, -2:], track[1:3, -2:].mean(axis=1)
+        angle = outcome.direction(2 * i + 1, 2 * i + 2)[-2:]
+        spin = (angle[1] - angle[0]) / (time[1] - time[0])
+        gained += _share(size, outcome.velocity(2 * i + 1), spin, place)
+        gained -= _share(size, thrown, turning, track[1:3, 0] - track[3:, 0])
+    return gained
+
+
+def _gained(i: int):
+    """Measure of one component of the momentum gained."""
+    return lambda outcome: float(_momentum_gained(outcome)[i])
+
+
+def _share(size, velocity, spin: float, place) -> np.ndarray:
+    """Momentum of a rectangle and its moment about the origin: (3)."""
+    mass = DENSITY * size[0] * size[1]
+    inertia = mass * (size[0] ** 2 + size[1] ** 2) / 12.0
+    moment = inertia * spin + mass * (place[0] * velocity[1] - place[1] * velocity[0])
+    return np.array([mass * velocity[0], mass * velocity[1], moment])
+
+
+def _momentum_checks() -> tuple[Check, ...]:
+    """Checks that momentum and its moment stay, over the sum of their sizes at the beginning."""
+    scale = sum(DENSITY * w * h * math.hypot(*v) for (w, h), v, _ in _THROWN)
+    names = ("momentum along x", "momentum along y", "angular momentum")
+    return tuple(
+        Check(f"{name} gained", 0.0, _gained(i), 1e-9, scale=scale)
+        for i, name in enumerate(names)
+    )
+
+
+def _spins(*checks: Check) -> tuple[Scene, ...]:
+    """Scenes of a block that spins; the checks are those of a spin alone."""
+    return (
+        Scene(
+            FLIGHT,
+            "spin",
+            "angle w t, nothing else",
+            (
+                Check("angle after 10000 steps [rad]", 300.0, _turned, 1e-10),
+                Check("way of the centre [m]", 0.0, _moving(0), 1e-10, scale=1.0),
+                *checks,
+            ),
+            slow=True,
+        ),
+        Scene(
+            FLIGHT,
+            "spin_and_fall",
+            "both of them",
+            (
+                Check("v after 2 s [m]", 10.0 - 2.0 * GRAVITY, _moving(1), 1e-9),
+                Check("angle after 2 s [rad]", 0.5, _turned, 1e-9),
+            ),
+            rate=True,
+        ),
+    )
+
+
+def _flights() -> list[Scene]:
+    """Scenes without contact, and one in which blocks meet freely."""
+    thrown = 5.0 - GRAVITY / 2.0
+    terminal = -GRAVITY / 4.0 * (10.0 - (1.0 - math.exp(-40.0)) / 4.0)
+    kinetic = DENSITY * 2.0 * GRAVITY**2 / 2.0
+    fast = lambda outcome: float(outcome.energy("kinetic")[-1])  # noqa: E731
+    away = "largest change of a corner's distance from the centre, relative"
+    strain = Check(away, 0.0, _radius_change, 1e-12, scale=1.0)
+    area = Check("largest change of area, relative", 0.0, _area_change, 1e-12, scale=1.0)
+    return [
+        Scene(
+            FLIGHT,
+            "free_fall",
+            "-g tt/2; m (g t)^2/2",
+            (
+                Check("v after 1 s [m]", -GRAVITY / 2.0, _moving(1), 1e-10),
+                Check("kinetic energy [J/m]", kinetic, fast, 1e-10),
+            ),
+            rate=True,
+        ),
+        Scene(
+            FLIGHT,
+            "projectile",
+            "vx t, vy t - g tt/2",
+            (
+                Check("u after 1 s [m]", 3.0, _moving(0), 1e-10),
+                Check("v after 1 s [m]", thrown, _moving(1), 1e-10),
+                Check("largest rotation [rad]", 0.0, _rotation, 1e-10, scale=1.0),
+                strain,
+                area,
+            ),
+            rate=True,
+        ),
+        *_spins(strain, area),
+        Scene(
+            FLIGHT,
+            "damped_fall",
+            "-(g/c) (t - (1 - exp(-c t))/c)",
+            (Check("v after 10 s [m]", terminal, _moving(1), 1e-9),),
+            rate=True,
+        ),
+        Scene(FLIGHT, "momentum", "constant", _momentum_checks(), rate=True),
+    ]
+
+
+def _creep(outcome: Outcome) -> float:
+    """Distance of point 1 from where it was after 1000 steps [m]."""
+    track = outcome.track(1)
+    return float(np.hypot(*(track[3:, -1] - track[3:, 1000])))
+
+
+def _slides() -> list[Scene]:
+    """Scenes of one block on a slope."""
+    cases = ((30.0, 0.0), (30.0, 20.0), (20.0, 10.0), (28.0, 22.0))
+    s = "s(1 s), {:.0f} deg, friction {:.0f} deg [m]"
+    rows = tuple(
+        Check(s.format(*row), slide(*row) / 2.0, _way_at(1.0), 1e-3, case)
+        for case, row in enumerate(cases, 1)
+    ) + tuple(
+        Check(s.format(*row).replace("1 s", "2 s"), slide(*row) * 2.0, _way_at(2.0), 1e-3, case)
+        for case, row in enumerate(cases, 1)
+    )
+    stop = -4.0 / (2.0 * slide(20.0, 30.0, up=True))
+    top = 2.0 / slide(30.0, 15.0, up=True)
+    back = slide(30.0, 15.0) * (1.0 - top) ** 2 / 2.0 - top
+    two = (Check("s(2 s) [m]", 2.0 * slide(30.0, 20.0), _along(30.0), 1e-3),)
+    up = (Check("way [m]", stop, _along(20.0), 1e-2),)
+    down = (Check("s(1 s) [m]", back, _along(30.0), 1e-2),)
+    creep = (
+        Check("way in 100000 steps, strain and all [m]", 0.0, _along(30.0), 1e-6, scale=1.0),
+        Check("creep after the first 1000 steps [m]", 0.0, _creep, 1e-6, scale=1.0),
+    )
+    law = "g (sin a - cos a tan phi) tt/2"
+    states = tuple(
+        verdict("collapsed" if case < 3 else "stable", f"{phi}, {geometry} geometry", case)
+        for case, (phi, geometry) in enumerate(
+            ((phi, g) for phi in ("29.9 deg", "30.1 deg") for g in ("reference", "current")), 1
+        )
+    )
+    return [
+        Scene(SLIDING, "slope", "stands iff phi > a", states),
+        Scene(SLIDING, "slope_creep", "at rest", creep, slow=True),
+        Scene(SLIDING, "incline", law, rows, rate=True),
+        Scene(SLIDING, "incline_30", law, two, rate=True),
+        Scene(SLIDING, "upslope_stays", "vv/(2g (sin a + cos a tan phi))", up, rate=True),
+        Scene(SLIDING, "upslope_returns", "up, then down", down, rate=True),
+    ]
+
+
+def _shaken() -> list[Scene]:
+    """Scenes of Newmark's block; the ways were integrated by two methods at steps of 2e-6 s.
+
+    One ground is given by its acceleration, its velocity and its displacement.
+    """
+    way = "way down the slope at the end [m]"
+    rows = (
+        ("newmark_flat", 0.0, -0.007708, 0.235090),
+        ("newmark_periodic", 0.0, -0.007708, 0.235090),
+        ("newmark_slope", 20.0, 0.018257, 0.0),
+        ("newmark_velocity", 20.0, 0.018257, 0.0),
+        ("newmark_displacement", 20.0, 0.018257, 0.0),
+        ("newmark_fast", 20.0, 0.496482, 0.246839),
+        ("newmark_rough", 20.0, 0.023078, 0.0),
+    )
+    return [
+        Scene(
+            SLIDING,
+            deck,
+            "Newmark 1965, integrated",
+            (
+                Check(way, exact, _along(dip), 1e-2),
+                Check("speed at the end [m/s]", speed, _speed_along(dip), 1e-2, scale=0.24),
+            ),
+            rate=True,
+        )
+        for deck, dip, exact, speed in rows
+    ]
+
+
+def _speed_along(slope_deg: float):
+    """Measure of the speed of point 1 down a slope to the right."""
+    slope = math.radians(slope_deg)
+    return lambda outcome: float(outcome.speed(1) @ (math.cos(slope), -math.sin(slope)))
+
+
+def stick_slip(rub: float, push: float, end: float, steps: int = 400000) -> float:
+    """Way of a block on a table after a time, by small steps of a motion that sticks and slips [m].
+
+    Its acceleration is push cos t less that of friction (Potra et al. 2006 compare such a block).
+
+    Parameters
+    ----------
+    rub, push : float
+        Accelerations that friction and the force can give [m/s2].
+    end : float
+        The time [s].
+    steps : int
+        Number of steps.
+    """
+    step = end / steps
+    way = speed = 0.0
+    for i in range(steps):
+        force = push * math.cos((i + 0.5) * step)
+        direction = speed if speed != 0.0 else force
+        if speed == 0.0 and abs(force) <= rub:
+            continue
+        after = speed + step * (force - math.copysign(rub, direction))
+        if after * speed < 0.0:
+            after = 0.0
+        way += step * (speed + after) / 2.0
+        speed = after
+    return way
+
+
+def _sticking() -> Scene:
+    """A block that a periodic force moves to and fro."""
+    exact = stick_slip(5.0, 8.0, 10.0)
+    check = Check("way after 10 s [m]", exact, _moving(0), 1e-2)
+    return Scene(SLIDING, "stick_slip", "F cos t against friction, integrated", (check,), rate=True)
+
+
+#: Every scene of this module
+SCENES = (*_flights(), *_slides(), *_shaken(), _sticking())

@@ -1,0 +1,140 @@
+"""The table of the validation suite, as CSV and as a page."""
+
+from __future__ import annotations
+
+import csv
+import io
+from collections.abc import Sequence
+
+from voussoir.bench.validation_run import Line
+
+_COLUMNS = (
+    "section scene quantity source exact computed error accepted rate seconds verdict".split()
+)
+
+_HEAD = """# Validation
+
+Scenes with exact answers: what the answer is, what the program computes, and how far apart the
+two are. This page is written by `voussoir validation` from a run of the decks in
+`input/benchmarks`; do not edit it, run the command again.
+
+- *error*: over the exact value; where that is 0, or where a way or an angle is compared as it
+  stands, in the unit of the quantity or over what it names. Scenes that stand or fall have none.
+- *accepted*: the largest error that is accepted. A line that misses it says **MISSED**.
+- *rate*: order of the error in the time step, from runs with the deck's step, a half and a
+  quarter of it. A dash: not run in shorter steps, or round-off (below 1e-9).
+- *time*: wall time of the whole deck with its own step [s]. It depends on the machine.
+- A scene named with `current` is the deck with `--set analysis%geometry=current`: blocks that
+  move and strain.
+"""
+
+_TAIL = """
+## What the lines that miss show
+
+- **dry walls.** The limit is that of dilatant friction, an upper bound for Coulomb's. The answer
+  under Coulomb friction depends on the way of the loads; [limits.md](limits.md) says what was found.
+
+## What the rates show
+
+- Flight is exact at any step, and so are bounces with restitution: a step ends where blocks meet.
+- **rocking.** A block that turns about its corner in steps of constant acceleration loses a little
+  energy: first order. The decks take 1 ms and a restitution of 1e-9, with which steps end where
+  blocks meet. With 0 an impact falls somewhere within a step, and next amplitudes err by up to
+  2.1 %.
+- **upslope_returns.** The error is made in the step in which the block turns; where in the step
+  that is changes with its length.
+- A rate near 0 is an error that is not one of the step. On slopes it is the strain of the block
+  that settles when its weight comes on (1e-7 to 1e-6 m). Newmark's decks give the ground's motion
+  at points 4 or 5 ms apart; with points at every ms their errors are near 1e-4. In `toppling_onset`
+  above phi_c it is the strain of the block; ten thousand times as stiff it errs by 3e-6.
+
+## Not in the suite
+
+- **Newton's cradle.** Simultaneous impacts are not unique.
+- **The cantilever of one block.** A block has one strain and does not bend ([limits.md](limits.md)).
+- **Sliding of a flat arch** between walls that do not yield: its thrust may grow, so there is no
+  one coefficient of friction at which it slips.
+"""
+
+
+def csv_text(lines: Sequence[Line]) -> str:
+    """The table with every digit.
+
+    Parameters
+    ----------
+    lines : sequence of Line
+        What was compared.
+
+    Returns
+    -------
+    str
+        Comma-separated, with a head; columns error_2, error_4 hold the errors in shorter steps.
+    """
+    longest = max((len(line.errors) for line in lines), default=1)
+    shorter = [f"error_{2**k}" for k in range(1, longest)]
+    text = io.StringIO()
+    table = csv.writer(text, lineterminator="\n")
+    table.writerow([*_COLUMNS, *shorter])
+    for line in lines:
+        check = line.check
+        rate = "" if line.rate is None else f"{line.rate:.3f}"
+        row = [line.scene.section, line.scene.name, check.what, line.scene.source]
+        row += [check.exact, line.computed, *line.errors[:1], check.accept, rate]
+        table.writerow([*row, f"{line.seconds:.3f}", _verdict(line), *line.errors[1:]])
+    return text.getvalue()
+
+
+def page(lines: Sequence[Line], version: str) -> str:
+    """The page.
+
+    Parameters
+    ----------
+    lines : sequence of Line
+        What was compared, those of one section together.
+    version : str
+        What `dda --version` prints.
+
+    Returns
+    -------
+    str
+        Markdown.
+    """
+    missed = sum(not line.accepted for line in lines)
+    scenes = len({line.scene.name for line in lines})
+    count = f"{scenes} scenes, {len(lines)} values, **{missed} missed**; computed by {version}."
+    text = [_HEAD, count]
+    section = ""
+    for line in lines:
+        if line.scene.section != section:
+            section = line.scene.section
+            text += ["", f"## {section}", ""]
+            text += ["| scene | quantity | exact | computed | error | accepted | rate | time |"]
+            text += ["| --- | --- | --- | --- | --- | --- | --- | --- |"]
+        text.append(_row(line))
+    return "\n".join(text) + "\n" + _TAIL
+
+
+def told(line: Line) -> str:
+    """One line for the terminal."""
+    found = line.computed if isinstance(line.computed, str) else f"{line.computed:.8g}"
+    what = f"{line.scene.name}: {line.check.what}"
+    return f"{_verdict(line):6} {what}: {found}, error {line.errors[0]:.1e}"
+
+
+def _verdict(line: Line) -> str:
+    return "ok" if line.accepted else "MISSED"
+
+
+def _row(line: Line) -> str:
+    """A row of the page."""
+    check = line.check
+    if isinstance(check.exact, str):
+        cells = [check.exact, str(line.computed), "", ""]
+    else:
+        cells = [f"{check.exact:.8g}", f"{line.computed:.8g}"]
+        cells += [f"{line.errors[0]:.1e}", f"{check.accept:g}"]
+    if not line.accepted:
+        cells[3] = f"{cells[3]} **MISSED**".strip()
+    rate = "-" if line.rate is None else f"{round(line.rate, 1) + 0.0:.1f}"
+    name = f"`{line.scene.name}` ({line.scene.source})"
+    return "| " + " | ".join([name, check.what, *cells, rate, f"{line.seconds:.2f}"]) + " |"

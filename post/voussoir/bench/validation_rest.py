@@ -1,0 +1,123 @@
+"""Scenes of blocks that topple: section 1.3."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from voussoir.bench.validation_scene import (
+    GRAVITY,
+    MOVED,
+    Check,
+    Outcome,
+    Scene,
+    rigid_and_moving,
+    verdict,
+)
+
+TOPPLING = "Blocks that topple"
+
+DEGREE = math.pi / 180.0
+#: Decks of blocks that begin to topple: width, height [m], slope and the literature's angle [deg]
+ONSETS = (
+    ("toppling_onset", 0.25, 1.0, 30.0, 18.1268),
+    ("toppling_onset_40", 0.4, 1.0, 30.0, 23.8643),
+    ("toppling_onset_50", 0.5, 1.0, 30.0, 27.4248),
+    ("toppling_onset_stocky", 1.0, 1.2, 45.0, 41.1075),
+)
+
+
+def foot_acceleration(b: float, h: float, slope: float, friction: float) -> float:
+    """Acceleration of the foot down the slope of a block that begins to topple [m/s2].
+
+    Width b along the slope and height h; the foot slides where the ratio of the forces on a foot
+    that does not would be more than the friction, as in tan(phi_c) of Yagoda-Biran and Hatzor.
+
+    Parameters
+    ----------
+    b, h : float
+        Width and height [m].
+    slope, friction : float
+        Angle of the slope [rad] and coefficient of friction.
+    """
+    # unknowns: acceleration of the foot, acceleration of turn down the slope, normal force; mass 1
+    inertia = (b**2 + h**2) / 12.0
+    sine, cosine = GRAVITY * math.sin(slope), GRAVITY * math.cos(slope)
+    rolling = [
+        [1.0, h / 2.0, friction],
+        [0.0, b / 2.0, -1.0],
+        [0.0, inertia, b / 2.0 - friction * h / 2.0],
+    ]
+    found = np.linalg.solve(rolling, [sine, -cosine, 0.0])
+    if found[1] < 0.0:
+        # it does not topple
+        return max(0.0, sine - friction * cosine)
+    return max(0.0, float(found[0]))
+
+
+def _foot(slope_deg: float):
+    """Measure of the mean acceleration of point 1 from rest along its ground [m/s2]."""
+
+    def measure(outcome: Outcome) -> float:
+        way = outcome.end(1) @ (math.cos(slope_deg * DEGREE), -math.sin(slope_deg * DEGREE))
+        return float(way) * 2.0 / outcome.track(1)[0, -1] ** 2
+
+    return measure
+
+
+def _onset(deck: str, b: float, h: float, slope: float, limit: float) -> Scene:
+    """A block that begins to topple, friction a degree below and above what lets its foot slide."""
+    # the first deck has a slope, the others turn gravity
+    foot = _foot(slope if deck == "toppling_onset" else 0.0)
+    friction = [limit - 1.0, limit + 1.0]
+    exact = [foot_acceleration(b, h, slope * DEGREE, math.tan(phi * DEGREE)) for phi in friction]
+    what = "acceleration of the foot, friction {:.4f} deg [m/s2]"
+    checks = tuple(
+        Check(what.format(friction[k]), exact[k], foot, 1e-2, k + 1, scale=exact[0])
+        for k in range(2)
+    )
+    return Scene(TOPPLING, deck, f"phi_c {limit} deg; onset by Newton", checks, rate=True)
+
+
+def _overhangs() -> list[Scene]:
+    """Stacks that lean out a little less and a little more than they can."""
+    scenes = []
+    for deck, state, what in (
+        ("overhang_stands", "stable", "five blocks at 0.99 of L/2 sum 1/k"),
+        ("overhangs_stand", "stable", "one to four blocks at 0.99 of L/2 sum 1/k"),
+        ("overhang_of_one_falls", "collapsed", "one block at 1.01 of it"),
+        ("overhang_of_two_falls", "collapsed", "two blocks at 1.01 of it"),
+        ("overhang_of_three_falls", "collapsed", "three blocks at 1.01 of it"),
+        ("overhang_of_four_falls", "collapsed", "four blocks at 1.01 of it"),
+        ("overhang_falls", "collapsed", "five blocks at 1.01 of it"),
+    ):
+        checks = (verdict(state, what),)
+        scenes += [Scene(TOPPLING, deck, "harmonic", checks, more) for more in ((), MOVED)]
+    return scenes
+
+
+def _toppling() -> list[Scene]:
+    """Scenes of section 1.3."""
+    tilt = math.tan(math.atan(0.25) - 10 * DEGREE)
+    across = [("force across gravity over weight", tilt)]
+    column = [("horizontal force over weight", 0.2)]
+    push = [("horizontal force over weight, tan phi 0.7", 0.5), ("the same, tan phi 0.3", 0.3)]
+    scenes = [
+        *rigid_and_moving(TOPPLING, "toppling", "tan(atan(b/h) - a)", across, 1e-4),
+        *rigid_and_moving(TOPPLING, "push", "min(mu, b/h)", push, 1e-4),
+        *rigid_and_moving(TOPPLING, "column", "b/h", column, 1e-4),
+        *(_onset(*onset) for onset in ONSETS),
+        *_overhangs(),
+    ]
+    slope = (
+        verdict("stable", "40 deg", 1),
+        verdict("collapsed", "32.9 deg", 5),
+        verdict("collapsed", "30 deg", 6),
+    )
+    source = "Goodman and Bray 1976: 38.15; limit analysis: 33.4"
+    return scenes + [Scene(TOPPLING, "goodman_bray", source, slope, more) for more in ((), MOVED)]
+
+
+#: Every scene of this module
+SCENES = tuple(_toppling())

@@ -1,0 +1,149 @@
+"""Run the scenes of the validation suite and compare what they give."""
+
+from __future__ import annotations
+
+import math
+import re
+import subprocess
+import tempfile
+import time
+from dataclasses import dataclass
+from pathlib import Path
+
+from voussoir.bench import (
+    validation_arches,
+    validation_assemblies,
+    validation_impact,
+    validation_motion,
+    validation_rest,
+    validation_strain,
+)
+from voussoir.bench.validation_scene import Check, Outcome, Scene
+from voussoir.dda_program import DdaError, path_word, set_options
+
+#: Errors below this are round-off: they have no rate
+ROUND_OFF = 1e-9
+
+
+@dataclass(frozen=True)
+class Line:
+    """One line of the table.
+
+    Attributes
+    ----------
+    scene, check : Scene, Check
+        What was compared.
+    computed : float or str
+        What the deck as it stands gave.
+    errors : tuple of float
+        Errors with the deck's own step, half of it, and so on.
+    seconds : float
+        Wall time of the scene's run with the deck's own step.
+    """
+
+    scene: Scene
+    check: Check
+    computed: float | str
+    errors: tuple[float, ...]
+    seconds: float
+
+    @property
+    def accepted(self) -> bool:
+        """Whether the error is accepted; one that is not a number is not."""
+        return self.errors[0] <= self.check.accept
+
+    @property
+    def rate(self) -> float | None:
+        """Mean order of the error in the step, None where it is round-off or no step was halved."""
+        first, last = self.errors[0], self.errors[-1]
+        if len(self.errors) < 2 or not min(first, last) > ROUND_OFF or math.isinf(first + last):
+            return None
+        return math.log2(first / last) / (len(self.errors) - 1)
+
+
+def all_scenes() -> tuple[Scene, ...]:
+    """Every scene, those of one section together."""
+    scenes = (
+        *validation_motion.SCENES,
+        *validation_rest.SCENES,
+        *validation_impact.SCENES,
+        *validation_strain.SCENES,
+        *validation_assemblies.SCENES,
+        *validation_arches.SCENES,
+    )
+    sections = (
+        validation_motion.FLIGHT,
+        validation_motion.SLIDING,
+        validation_rest.TOPPLING,
+        validation_impact.ROCKING,
+        validation_impact.IMPACT,
+        validation_strain.STRAIN,
+        validation_assemblies.ASSEMBLIES,
+        validation_arches.ARCHES,
+    )
+    return tuple(sorted(scenes, key=lambda scene: sections.index(scene.section)))
+
+
+def run_scene(dda: Path, decks: Path, scene: Scene, halvings: int) -> list[Line]:
+    """Run a scene, in ever shorter steps where it has a rate.
+
+    Parameters
+    ----------
+    dda : Path
+        The program.
+    decks : Path
+        Folder of the decks.
+    scene : Scene
+        The scene.
+    halvings : int
+        How often the step is halved for the rate.
+
+    Returns
+    -------
+    list of Line
+        One a check.
+
+    Raises
+    ------
+    DdaError
+        If the program refused the deck or broke off: with its own message.
+    """
+    deck = decks / f"{scene.deck}.nml"
+    columns = []
+    for k in range(1 + (halvings if scene.rate else 0)):
+        settings = [*scene.settings, *_step(deck, k)]
+        with tempfile.TemporaryDirectory() as folder:
+            start = time.monotonic()
+            _run(dda, deck, settings, Path(folder))
+            columns.append((time.monotonic() - start, _measured(scene, Path(folder))))
+    lines = []
+    for i, check in enumerate(scene.checks):
+        errors = tuple(check.error(values[i]) for _, values in columns)
+        lines.append(Line(scene, check, columns[0][1][i], errors, columns[0][0]))
+    return lines
+
+
+def _measured(scene: Scene, folder: Path) -> list[float | str]:
+    """What each check of a scene measures in the results of a run."""
+    outcomes = {case: Outcome(folder, case) for case in {check.case for check in scene.checks}}
+    return [check.measure(outcomes[check.case]) for check in scene.checks]
+
+
+def _run(dda: Path, deck: Path, settings: list[str], folder: Path) -> None:
+    """Run a deck into a folder."""
+    words = [str(dda), "run", path_word(deck), "--out", str(folder), "--quiet"]
+    words += set_options(settings)
+    done = subprocess.run(words, capture_output=True, text=True)
+    if done.returncode != 0:
+        message = done.stderr.strip() or f"dda run ended with status {done.returncode}"
+        raise DdaError(message, done.returncode)
+
+
+def _step(deck: Path, halvings: int) -> list[str]:
+    """Setting that halves the step of a deck so often, none for the deck as it stands."""
+    if halvings == 0:
+        return []
+    step = re.search(r"time_step = ([-+.\de]+)", deck.read_text(encoding="utf-8"))
+    if not step:
+        raise DdaError(f"{deck}: expected a time_step to halve, got none; give one in &analysis")
+    return [f"analysis%time_step={float(step[1]) / 2**halvings!r}"]

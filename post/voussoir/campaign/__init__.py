@@ -1,0 +1,1 @@
+"""Many cases of one deck on many processes or machines, merged into one folder."""

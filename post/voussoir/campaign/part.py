@@ -1,0 +1,384 @@
+"""One part of a campaign: run by a worker, wherever that is.
+
+Everything here uses the standard library alone, so that a worker needs no more than Python, the
+program `dda` and the folder of the campaign. No two attempts write to the same file: each has a
+folder of its own, and what an attempt before it has finished is not computed again. So a worker
+may be killed at any moment, and its program may even go on without it.
+"""
+
+from __future__ import annotations
+
+import csv
+import hashlib
+import signal
+import subprocess
+import uuid
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass
+from pathlib import Path
+
+#: Digests of an attempt's tables, written when its program has ended
+SEAL = "tables.sha256"
+
+
+@dataclass(frozen=True)
+class Part:
+    """Some cases of a campaign."""
+
+    #: The program dda
+    dda: Path
+    #: The deck
+    deck: Path
+    #: Values of --set
+    settings: tuple[str, ...]
+    #: Folder of the campaign's parts
+    folder: Path
+    #: Numbers of the cases, rising
+    cases: tuple[int, ...]
+    #: Cases computed at the same time
+    jobs: int = 1
+    #: Text of deck.record that attempts must have; None for any
+    record: str | None = None
+    #: First lines of the tables by their names
+    headers: dict[str, str] | None = None
+
+
+def run_part(part: Part) -> tuple[int, str]:
+    """Compute the cases of a part that no attempt has finished yet.
+
+    A program that was killed is started again on the rest. Where it dies without having finished
+    anything, the case at which it died is left out, so that one case cannot hold up the others.
+
+    Parameters
+    ----------
+    part : Part
+        What to compute.
+
+    Returns
+    -------
+    tuple of int and str
+        Worst exit status of the program (0 or 3 if it was never refused), and its message.
+    """
+    left_out: set[int] = set()
+    while True:
+        done = finished_in(part.folder, part.cases, part.record, part.headers)
+        rest = [case for case in part.cases if case not in done and case not in left_out]
+        if not rest:
+            return 0, ""
+        status, message = run_attempt(part, rest)
+        if status in (2, 4):
+            return status, message
+        if -status in (signal.SIGINT, signal.SIGTERM):
+            return 3, "stopped before all cases were finished; call again to go on"
+        if not finished_in(part.folder, part.cases, part.record, part.headers) > done:
+            left_out.add(rest[0])
+
+
+def run_attempt(part: Part, cases: list[int]) -> tuple[int, str]:
+    """Run the program once, in a folder of its own.
+
+    Parameters
+    ----------
+    part : Part
+        The part.
+    cases : list of int
+        Which of its cases.
+
+    Returns
+    -------
+    tuple of int and str
+        Exit status and what it printed on standard error.
+    """
+    folder = part.folder / f"{cases[0]}-{cases[-1]}.{uuid.uuid4().hex}"
+    command = [str(part.dda), "run", str(part.deck), "--out", str(folder), "--quiet"]
+    command += ["--jobs", str(part.jobs), "--cases", ranges_of(cases)]
+    for setting in part.settings:
+        command += ["--set", setting]
+    done = subprocess.run(command, stdin=subprocess.DEVNULL, capture_output=True, text=True)
+    if done.returncode in (0, 3):
+        if part.record is not None and content_of(folder / "deck.record") != part.record.encode():
+            return 2, (
+                f"{part.deck}:1: error: expected the deck and its files as they were when the "
+                "campaign began, got changed ones; call again with --anew"
+            )
+        write_seal(folder)
+    return done.returncode, done.stderr.strip()
+
+
+def finished_in(
+    folder: Path,
+    cases: Iterable[int],
+    record: str | None = None,
+    headers: dict[str, str] | None = None,
+    problems: list[str] | None = None,
+) -> set[int]:
+    """Which cases some attempt has finished.
+
+    Parameters
+    ----------
+    folder : Path
+        Folder of the parts.
+    cases : iterable of int
+        Cases to look for.
+    record, headers, problems : optional
+        As of `finished_by`.
+
+    Returns
+    -------
+    set of int
+        Those that have whole rows.
+    """
+    wanted = set(cases)
+    if not wanted:
+        return set()
+    low, high = min(wanted), max(wanted)
+    found: set[int] = set()
+    for attempt in sorted(folder.iterdir()) if folder.is_dir() else ():
+        span = span_of(attempt)
+        if span and span[0] <= high and span[-1] >= low:
+            found |= finished_by(attempt, record, headers, problems) & wanted
+    return found
+
+
+def span_of(attempt: Path) -> range | None:
+    """Cases between the first and the last one that an attempt was made for, by its name."""
+    first, _, last = attempt.name.partition(".")[0].partition("-")
+    return range(int(first), int(last) + 1) if first.isdecimal() and last.isdecimal() else None
+
+
+def finished_by(
+    attempt: Path,
+    record: str | None = None,
+    headers: dict[str, str] | None = None,
+    problems: list[str] | None = None,
+) -> set[int]:
+    """Which cases an attempt has finished: a whole row of results.csv is written last.
+
+    Parameters
+    ----------
+    attempt : Path
+        Folder of the attempt.
+    record : str, optional
+        Text that its deck.record must have; with another one it has finished nothing.
+    headers : dict of str to str, optional
+        First lines of its tables; where one has another first line, or rows of other sizes than
+        sizes.record tells, nothing is taken from them.
+    problems : list of str, optional
+        Receives a line for each thing that is damaged, with file and line.
+
+    Returns
+    -------
+    set of int
+        Numbers of its cases.
+    """
+    said = [] if problems is None else problems
+    if not (attempt / "results.csv").exists():
+        return set()
+    try:
+        return _finished_by(attempt, record, headers or {}, said)
+    except (OSError, csv.Error) as error:
+        said.append(f"{attempt / 'results.csv'}:1: warning: expected a table, got: {error}")
+        return set()
+
+
+def _finished_by(
+    attempt: Path, record: str | None, headers: dict[str, str], said: list[str]
+) -> set[int]:
+    """Which cases an attempt has finished; failures are exceptions."""
+    if record is not None and content_of(attempt / "deck.record") != record.encode():
+        said.append(f"{attempt / 'deck.record'}:1: warning: expected the record of this campaign, "
+                    "got another one; nothing of this folder is taken")
+        return set()
+    for name, header in headers.items():
+        if content_of(attempt / name).partition(b"\n")[0] != header.encode():
+            said.append(f"{attempt / name}:1: warning: expected the first line '{header}', got "
+                        "another one; its cases are computed again")
+            return set()
+    broken = broken_seal(attempt)
+    if broken:
+        said.append(f"{attempt / broken}:1: warning: expected the table as it was written, got a "
+                    "damaged one; its cases are computed again")
+        return set()
+    cases = whole_rows(attempt, said)
+    sizes = bytes_of_cases(attempt, headers)
+    if sizes is None:
+        return cases
+    kept = set()
+    for case, told in sizes.items():
+        if case in cases and told[0] == told[1]:
+            kept.add(case)
+    for case in sorted(cases - kept)[:1]:
+        said.append(f"{attempt / 'sizes.record'}:1: warning: expected the bytes that case {case} has "
+                    "in the tables, got others; it is computed again")
+    return kept
+
+
+def whole_rows(attempt: Path, said: list[str]) -> set[int]:
+    """Cases with a whole row in results.csv."""
+    with (attempt / "results.csv").open("rb") as file:
+        text = file.read(trusted_length(attempt)).decode("utf-8", errors="replace")
+    header, *rows = text[: text.rfind("\n") + 1].split("\n")[:-1] or [""]
+    names = fields_of(header.encode(), ".csv")
+    span, found = span_of(attempt), set()
+    if "case" not in names:
+        said.append(f"{attempt / 'results.csv'}:1: warning: expected a column case, got none")
+        return found
+    for number, row in enumerate(rows, 2):
+        fields = fields_of(row.encode(), ".csv")
+        case = fields[names.index("case")] if len(fields) == len(names) else ""
+        if case.isdecimal() and case.isascii() and (span is None or int(case) in span):
+            found.add(int(case))
+        else:
+            said.append(f"{attempt / 'results.csv'}:{number}: warning: expected a row of "
+                        f"{len(names)} cells with its case, got another one; its case is "
+                        "computed again")
+    return found
+
+
+def bytes_of_cases(attempt: Path, headers: dict[str, str]) -> dict[int, tuple[int, int]] | None:
+    """Bytes of each case as sizes.record tells them, and as the tables have them; None without."""
+    if "sizes.record" not in headers:
+        return None
+    had: dict[int, int] = {}
+    for name in set(headers) - {"results.csv", "sizes.record"}:
+        for case, start, stop in slices_of(attempt / name):
+            had[case] = had.get(case, 0) + stop - start
+    told = {}
+    for line in content_of(attempt / "sizes.record").split(b"\n")[1:-1]:
+        case, _, size = line.partition(b",")
+        if case.isdigit() and size.isdigit():
+            told[int(case)] = (int(size), had.get(int(case), 0))
+    return told
+
+
+def write_seal(folder: Path) -> None:
+    """Write the digests of all tables beside them."""
+    lines = [f"{digest_of(path)} {path.name}\n" for path in sorted(folder.iterdir())
+             if path.suffix in (".csv", ".txt") or path.name == "sizes.record"]
+    (folder / SEAL).write_text("".join(lines), encoding="utf-8")
+
+
+def broken_seal(folder: Path) -> str:
+    """The first table that is not as it was sealed; empty if all are, or nothing was sealed."""
+    for line in content_of(folder / SEAL).decode("utf-8", errors="replace").splitlines():
+        digest, _, name = line.partition(" ")
+        if not name or "/" in name or digest_of(folder / name) != digest:
+            return name.replace("/", "") or SEAL
+    return ""
+
+
+def digest_of(file: Path) -> str:
+    """SHA-256 of a file; empty if there is none."""
+    return hashlib.sha256(file.read_bytes()).hexdigest() if file.is_file() else ""
+
+
+def content_of(file: Path) -> bytes:
+    """Bytes of a file; none if it is not there."""
+    return file.read_bytes() if file.is_file() else b""
+
+
+def slices_of(table: Path) -> Iterator[tuple[int, int, int]]:
+    """Where the rows of each case are; rows of one case that follow one another are one slice.
+
+    Parameters
+    ----------
+    table : Path
+        One of TABLES.
+
+    Yields
+    ------
+    tuple of int
+        Case, first byte, byte behind the last one. A row that was cut off is left out.
+    """
+    with table.open("rb") as file:
+        header = fields_of(file.readline(), table.suffix)
+        if "case" not in header:
+            return
+        column = header.index("case")
+        case, start, stop = 0, 0, file.tell()
+        for line in file:
+            fields = fields_of(line, table.suffix)
+            whole = line.endswith(b"\n") and (len(fields) == len(header) or table.suffix == ".txt")
+            number = fields[column] if whole else ""
+            this = int(number) if whole and number.isdecimal() else 0
+            if this != case:
+                if case:
+                    yield case, start, stop
+                case, start = this, stop
+            stop += len(line)
+        if case:
+            yield case, start, stop
+
+
+def fields_of(line: bytes, suffix: str) -> list[str]:
+    """Fields of a row: parted by commas, in the log by blanks.
+
+    Parameters
+    ----------
+    line : bytes
+        The row.
+    suffix : str
+        Ending of the file.
+
+    Returns
+    -------
+    list of str
+        The fields.
+    """
+    text = line.decode("utf-8", errors="replace").rstrip("\n")
+    if suffix == ".txt":
+        return text.split(" ")
+    return next(csv.reader([text.replace("\0", "?")]), [""]) if '"' in text else text.split(",")
+
+
+def trusted_length(attempt: Path) -> int:
+    """Up to where the rows of results.csv count.
+
+    Parameters
+    ----------
+    attempt : Path
+        Folder of the attempt.
+
+    Returns
+    -------
+    int
+        Bytes: -1 for all of them, unless disk.record tells of another machine, or of this one
+        before it was started anew: then what was on the disk for certain.
+    """
+    try:
+        length, _, start = (attempt / "disk.record").read_text(encoding="utf-8").partition(" ")
+    except FileNotFoundError:
+        return -1
+    if start.strip() == start_name():
+        return -1
+    return int(length) if length.isdigit() else 0
+
+
+def start_name() -> str:
+    """What the system calls the time since its start; a dash where it has no name for it."""
+    try:
+        return Path("/proc/sys/kernel/random/boot_id").read_text(encoding="utf-8").strip()
+    except OSError:
+        return "-"
+
+
+def ranges_of(cases: list[int]) -> str:
+    """Case numbers as --cases wants them.
+
+    Parameters
+    ----------
+    cases : list of int
+        Rising numbers.
+
+    Returns
+    -------
+    str
+        Such as "1-4,7".
+    """
+    ranges: list[list[int]] = []
+    for case in cases:
+        if ranges and case == ranges[-1][1] + 1:
+            ranges[-1][1] = case
+        else:
+            ranges.append([case, case])
+    return ",".join(str(low) if low == high else f"{low}-{high}" for low, high in ranges)

@@ -1,0 +1,334 @@
+"""Campaigns: the cases of one deck, computed by many processes, merged into one table."""
+
+from __future__ import annotations
+
+import hashlib
+import shutil
+import sys
+import time
+from collections.abc import Callable, Iterator
+from concurrent.futures import ThreadPoolExecutor, as_completed
+from dataclasses import dataclass
+from pathlib import Path
+from typing import BinaryIO
+
+from voussoir.campaign.merge import replace
+from voussoir.campaign.part import Part, content_of, finished_by, finished_in, run_part
+from voussoir.dda_program import Asked, DdaError, ask
+
+#: Most cases of a part: its command line stays short, and little is done twice after a kill
+LARGEST_PART = 2000
+#: Parts a worker, so that all end at about the same time
+PARTS_A_WORKER = 8
+
+#: Folders that this process has, with their open lock files
+_LOCKS: dict[Path, BinaryIO] = {}
+#: Status and message of a part
+Outcome = tuple[int, str]
+#: Computes parts and yields the outcome of each as it ends
+Engine = Callable[[list[Part]], Iterator[Outcome]]
+
+
+@dataclass(frozen=True)
+class Campaign:
+    """What is computed, and where its results go."""
+
+    #: The program dda
+    dda: Path
+    #: The deck
+    deck: Path
+    #: Values of --set
+    settings: tuple[str, ...]
+    #: Folder of the results
+    out: Path
+    #: Number of cases of the deck
+    total: int
+    #: What the deck asks for, as the program says it
+    asked: Asked
+
+    @property
+    def parts(self) -> Path:
+        """Folder of the parts."""
+        return self.out / "parts"
+
+
+def open_campaign(
+    dda: Path, deck: Path, settings: list[str], out: Path, anew: bool, shared: bool = False
+) -> Campaign:
+    """Begin a campaign, or go on with one.
+
+    Parameters
+    ----------
+    dda : Path
+        The program.
+    deck : Path
+        The deck.
+    settings : list of str
+        Values of --set.
+    out : Path
+        Folder of the results.
+    anew : bool
+        Whether what an earlier campaign has left in that folder is discarded.
+    shared : bool, optional
+        Whether others may work in the folder at the same time: shares of a job array.
+
+    Returns
+    -------
+    Campaign
+        The campaign; its folder exists and says what it is for.
+
+    Raises
+    ------
+    DdaError
+        If the deck is bad input, or the folder holds another campaign.
+    """
+    asked = ask(dda, deck, settings)
+    campaign = Campaign(dda, deck.resolve(), tuple(settings), out, asked.cases, asked)
+    out.mkdir(parents=True, exist_ok=True)
+    lock(out, shared)
+    file = out / "campaign.record"
+    digest = hashlib.sha256(asked.record.encode()).hexdigest()
+    text = f"{digest}\n{asked.record}"
+    if anew:
+        shutil.rmtree(campaign.parts, ignore_errors=True)
+        for name in ("campaign.record", "deck.record", "results.csv", "disk.record"):
+            (out / name).unlink(missing_ok=True)
+    campaign.parts.mkdir(parents=True, exist_ok=True)
+    known = content_of(file).decode(errors="replace")
+    first, _, record = known.partition("\n")
+    true = first == hashlib.sha256(record.encode(errors="replace")).hexdigest()
+    if true and record != asked.record:
+        raise DdaError(
+            f"{deck}:1: error: expected the campaign that {out} was begun for, got another one "
+            f"(other {changed_keys(record, asked.record)}); choose another --out, or discard what "
+            "is there with --anew"
+        )
+    if known != text:
+        if content_of(out / "deck.record") != asked.record.encode():
+            for name in ("results.csv", "disk.record"):  # of whatever was there before
+                (out / name).unlink(missing_ok=True)
+        replace(file, lambda opened: opened.write(text.encode()))
+    return campaign
+
+
+def changed_keys(old: str, new: str) -> str:
+    """What differs between two records, in words.
+
+    Parameters
+    ----------
+    old, new : str
+        Texts of deck.record.
+
+    Returns
+    -------
+    str
+        Names of keys, "program" for another build, "files" for files that the deck names.
+    """
+
+    def values(record: str) -> dict[str, list[str]]:
+        lines = record.splitlines() or [""]
+        found: dict[str, list[str]] = {"program": lines[:1]}
+        name = ""
+        for line in lines[1:]:
+            if line.startswith("files"):
+                found["files"] = [line]
+            elif line.startswith("  "):
+                found[name].append(line)
+            else:
+                name = line
+                found.setdefault(name, [])
+        return found
+
+    one, other = values(old), values(new)
+    return ", ".join(sorted(key for key in {*one, *other} if one.get(key) != other.get(key)))
+
+
+def lock(out: Path, shared: bool) -> None:
+    """Take a folder until this process ends, however it ends.
+
+    Parameters
+    ----------
+    out : Path
+        Folder of the results.
+    shared : bool
+        Whether others that share it may work there too: shares of a job array.
+
+    Raises
+    ------
+    DdaError
+        If another campaign or run has it: status 4.
+    """
+    import fcntl
+
+    file = (out / "run.lock").open("ab")
+    try:
+        fcntl.flock(file, (fcntl.LOCK_SH if shared else fcntl.LOCK_EX) | fcntl.LOCK_NB)
+    except BlockingIOError as error:
+        file.close()
+        raise DdaError(
+            f"{out / 'run.lock'}:1: error: expected a folder that no other run or campaign writes "
+            "to, got one in use; choose another folder with --out, or wait for that one to end",
+            4,
+        ) from error
+    except OSError as error:
+        sys.stderr.write(f"{out / 'run.lock'}:1: warning: this file system knows no locks "
+                         f"({error.strerror}): nothing keeps another campaign from {out}\n")
+    _LOCKS[out] = file
+
+
+def unlock(out: Path) -> None:
+    """Give a folder back.
+
+    Parameters
+    ----------
+    out : Path
+        Folder of the results.
+    """
+    if out in _LOCKS:
+        _LOCKS.pop(out).close()
+
+
+def finished(campaign: Campaign, cases: range, problems: list[str] | None = None) -> set[int]:
+    """Cases that need not be computed again.
+
+    Parameters
+    ----------
+    campaign : Campaign
+        The campaign.
+    cases : range
+        Cases that are wanted.
+    problems : list of str, optional
+        Receives a line for each thing that is damaged.
+
+    Returns
+    -------
+    set of int
+        Those of them whose rows are whole, in the folder of the campaign or in a part.
+    """
+    told = campaign.asked.record, campaign.asked.headers, problems
+    there = finished_by(campaign.out, *told) & set(cases)
+    return there | finished_in(campaign.parts, set(cases) - there, *told)
+
+
+def split(
+    campaign: Campaign,
+    cases: range,
+    workers: int,
+    jobs: int = 1,
+    problems: list[str] | None = None,
+) -> list[Part]:
+    """Cut cases that are not finished into parts of equal size.
+
+    Parameters
+    ----------
+    campaign : Campaign
+        The campaign.
+    cases : range
+        Cases that are wanted.
+    workers : int
+        How many will work.
+    jobs : int
+        Cases that each computes at the same time.
+    problems : list of str, optional
+        Receives a line for each thing that is damaged.
+
+    Returns
+    -------
+    list of Part
+        The parts, in the order of their cases.
+    """
+    done = finished(campaign, cases, problems)
+    rest = [case for case in cases if case not in done]
+    size = max(1, min(LARGEST_PART, -(-len(rest) // (PARTS_A_WORKER * workers))))
+    return [
+        Part(
+            campaign.dda,
+            campaign.deck,
+            campaign.settings,
+            campaign.parts,
+            tuple(rest[start : start + size]),
+            jobs,
+            campaign.asked.record,
+            campaign.asked.headers,
+        )
+        for start in range(0, len(rest), size)
+    ]
+
+
+def share(total: int, index: int, of: int) -> range:
+    """Cases of one member of a job array.
+
+    Parameters
+    ----------
+    total : int
+        Number of cases.
+    index : int
+        Number of the member, from 1.
+    of : int
+        How many members there are.
+
+    Returns
+    -------
+    range
+        Its cases; those of all members are all cases, each once.
+    """
+    return range((index - 1) * total // of + 1, index * total // of + 1)
+
+
+def local_engine(workers: int) -> Engine:
+    """Processes on this machine.
+
+    Parameters
+    ----------
+    workers : int
+        How many at the same time.
+
+    Returns
+    -------
+    Engine
+        Runs parts.
+    """
+
+    def run(parts: list[Part]) -> Iterator[Outcome]:
+        with ThreadPoolExecutor(workers) as pool:
+            futures = [pool.submit(run_part, part) for part in parts]
+            try:
+                for future in as_completed(futures):
+                    yield future.result()
+            finally:
+                pool.shutdown(cancel_futures=True)
+
+    return run
+
+
+def run_parts(parts: list[Part], engine: Engine, shown: bool) -> Outcome:
+    """Run all parts and tell how far they are.
+
+    Parameters
+    ----------
+    parts : list of Part
+        The parts.
+    engine : Engine
+        What runs them.
+    shown : bool
+        Whether progress is told, on standard error.
+
+    Returns
+    -------
+    Outcome
+        The worst status of the program, 4 before 2 before all others, and its message.
+    """
+    worst, message = 0, ""
+    start = time.monotonic()
+    for done, (status, text) in enumerate(engine(parts), start=1):
+        if status == 4 or status == 2 and worst != 4:
+            worst, message = status, text
+        if shown and done < len(parts):
+            left = (time.monotonic() - start) / done * (len(parts) - done)
+            sys.stderr.write(f"\rpart {done} of {len(parts)}, about {left:.0f} s left ")
+            sys.stderr.flush()
+        if worst:
+            break
+    if shown:
+        sys.stderr.write("\r" + 60 * " " + "\r")
+    return worst, message

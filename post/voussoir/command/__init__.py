@@ -1,0 +1,1 @@
+"""The command `voussoir`: one subcommand a module."""

@@ -1,0 +1,120 @@
+"""`voussoir animate`: the motion of cases as a GIF, an MP4 or pictures."""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from pathlib import Path
+from typing import Any
+
+from voussoir import results
+from voussoir.command.plot import magnification
+from voussoir.extras import advice
+
+#: Most cases that move side by side without being named
+MOST_CASES = 6
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Add the options of the subcommand.
+
+    Parameters
+    ----------
+    parser : argparse.ArgumentParser
+        Parser of the subcommand.
+    """
+    parser.description = (
+        "Animate cases of a folder that dda run has written, side by side: the frames of runs "
+        "with geometry = 'current' (arches and blocks, collapses and dynamic runs), else the "
+        "collapse mechanism as it grows."
+    )
+    parser.add_argument("folder", metavar="DIR", type=Path, help="folder of the results")
+    parser.add_argument(
+        "--case",
+        metavar="N",
+        type=int,
+        nargs="+",
+        help=f"cases to animate (default: the first {MOST_CASES} that move)",
+    )
+    parser.add_argument(
+        "--out",
+        metavar="FILE",
+        type=Path,
+        help="a .gif, an .mp4 (needs ffmpeg), or a .png for one numbered file a picture "
+        "(default: DIR/plots/motion.gif)",
+    )
+    parser.add_argument(
+        "--magnify",
+        metavar="M",
+        type=magnification,
+        default=1.0,
+        help="magnification of the displacements, stated in the title (default: 1, true scale)",
+    )
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Animate.
+
+    Parameters
+    ----------
+    arguments : argparse.Namespace
+        Parsed options.
+
+    Returns
+    -------
+    int
+        Exit status: 0, 2 for results that cannot be animated, 4 for a file that cannot be written.
+    """
+    try:
+        return _run(arguments)
+    except results.DamagedTable as error:
+        sys.stderr.write(f"{error}\n")
+        return 2
+    except (FileNotFoundError, KeyError, ValueError) as error:
+        words = error.args[0] if isinstance(error, KeyError) else error
+        sys.stderr.write(f"{arguments.folder}:1: error: {words}\n")
+        return 2
+    except ImportError as error:
+        sys.stderr.write(
+            f"voussoir:1: error: expected matplotlib, got none ({error}); {advice('matplotlib')}\n"
+        )
+        return 2
+    except OSError as error:
+        sys.stderr.write(
+            f"{error.filename or arguments.out}:1: error: the file cannot be written: "
+            f"{error.strerror}; choose another one with --out\n"
+        )
+        return 4
+
+
+def _run(arguments: argparse.Namespace) -> int:
+    """Animate; failures are exceptions."""
+    read = results.read(arguments.folder)
+    cases = arguments.case or [int(number) for number in read.cases["case"]]
+    for number in cases:
+        read.case(number)
+    from voussoir.plot.case_picture import title_of
+    from voussoir.plot.collapse_animation import animate, check_ending
+    from voussoir.plot.collapse_picture import pictures_of
+    from voussoir.plot.figure_style import house_style
+
+    moving = [number for number in cases if len(pictures_of(read, number)) > 1]
+    if not moving or arguments.case and len(moving) < len(cases):
+        still = next(number for number in cases if number not in moving)
+        raise ValueError(
+            f"expected frames of case {still}, got none; give the deck &analysis geometry = "
+            "'current' / and &output frames = 20 /"
+        )
+    file = arguments.out or arguments.folder / "plots" / "motion.gif"
+    check_ending(file)
+    file.parent.mkdir(parents=True, exist_ok=True)
+    shown = moving if arguments.case else moving[:MOST_CASES]
+    factor = arguments.magnify
+
+    def title(row: dict[str, Any]) -> str:
+        return title_of(row, read) + (f"\ndisplacements × {factor:g}" if factor != 1.0 else "")
+
+    with house_style():
+        width = 5.6 if len(shown) > 1 else 6.4
+        print(animate(read, shown, title, file, width=width, magnify=factor))
+    return 0

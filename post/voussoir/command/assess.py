@@ -1,0 +1,315 @@
+"""`voussoir assess`: one printable page that says whether an arch stands, with what safety, under which axle."""
+
+from __future__ import annotations
+
+import argparse
+import hashlib
+import html
+import math
+import platform
+import re
+import sys
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from voussoir import __version__
+from voussoir.dda_program import DdaError, find_dda
+from voussoir.deck.run import run as run_deck
+from voussoir.results import Results, Table
+
+#: Positions of the first axle in the diagram
+POSITIONS = 41
+#: How far the search for the critical thickness goes below the thickness
+THINNEST = 1e-3
+_TRUE = re.compile(r"\bworst\s*=\s*\.?t\w*\.?", re.IGNORECASE)
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Add the options of the subcommand.
+
+    Parameters
+    ----------
+    parser : argparse.ArgumentParser
+        Parser of the subcommand.
+    """
+    parser.description = (
+        "Assess an arch: does it stand, how thick is it against the critical thickness, which load factor does it "
+        "carry, where is the worst position of its vehicle. Writes one HTML page that prints."
+    )
+    parser.add_argument("deck", metavar="DECK", type=Path, help="deck of an arch, static, one case")
+    parser.add_argument("--out", metavar="FILE", type=Path, help="the page (default: DECK with the ending .html)")
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Write the page.
+
+    Parameters
+    ----------
+    arguments : argparse.Namespace
+        Parsed options.
+
+    Returns
+    -------
+    int
+        Exit status: 0, 2 for a deck that cannot be assessed, 4 for a page that cannot be written.
+    """
+    out = arguments.out or arguments.deck.with_suffix(".html")
+    try:
+        text = arguments.deck.read_text(encoding="utf-8")
+        check(text, arguments.deck)
+        written = assess(text, arguments.deck)
+    except (DdaError, ValueError) as error:
+        words = str(error).replace("deck.nml", arguments.deck.name)
+        sys.stderr.write(words + "\n")
+        return 2
+    except ImportError as error:
+        sys.stderr.write(f"voussoir:1: error: expected matplotlib, got none ({error}); install python3-matplotlib\n")
+        return 2
+    except OSError as error:
+        sys.stderr.write(f"{arguments.deck}:1: error: expected a deck that can be read: {error.strerror}\n")
+        return 2
+    try:
+        out.write_text(written, encoding="utf-8")
+    except OSError as error:
+        sys.stderr.write(f"{out}:1: error: expected a file that can be written: {error.strerror}\n")
+        return 4
+    print(out)
+    return 0
+
+
+def check(text: str, deck: Path) -> None:
+    """Refuse decks of many cases and of other things than arches.
+
+    Parameters
+    ----------
+    text : str
+        The deck.
+    deck : Path
+        Its file.
+    """
+    for number, line in enumerate(text.splitlines(), 1):
+        bare = line.split("!")[0].lower()
+        if "&sweep" in bare:
+            raise ValueError(f"{deck}:{number}: error: expected one case, got &sweep; remove it")
+        if re.search(r"kind\s*=\s*['\"](lines|blocks)", bare):
+            raise ValueError(f"{deck}:{number}: error: expected an arch, got another kind; assess a deck with &arch")
+
+
+def without(text: str, *groups: str) -> str:
+    """A deck without some of its groups.
+
+    Parameters
+    ----------
+    text : str
+        The deck, without slashes in the texts of these groups.
+    *groups : str
+        Their names.
+
+    Returns
+    -------
+    str
+        The rest; as many lines.
+    """
+    for group in groups:
+        text = re.sub(rf"&{group}\b[^/]*/", lambda match: "\n" * match[0].count("\n"), text, flags=re.IGNORECASE)
+    return text
+
+
+def load_search(text: str) -> tuple[Results | None, dict[str, Any] | None]:
+    """Search the load factor of a deck with live loads.
+
+    Parameters
+    ----------
+    text : str
+        The deck without its search.
+
+    Returns
+    -------
+    run : Results or None
+        The run; nothing without live loads.
+    row : dict or None
+        Its row.
+    """
+    if not re.search(r"^\s*&(live|vehicle)\b", text, re.IGNORECASE | re.MULTILINE):
+        return None, None
+    found = run_deck(text + "\n&search parameter = 'load_factor' /\n")
+    return found, found.case(1)
+
+
+def thickness_safety(text: str, own: dict[str, Any]) -> tuple[float, str]:
+    """Thickness over the least with which the arch stands under its dead load.
+
+    Parameters
+    ----------
+    text : str
+        The deck without its search.
+    own : dict
+        Row of the deck's own run.
+
+    Returns
+    -------
+    safety : float
+        The number, NaN where it is not known.
+    note : str
+        What it is, or why it is not known.
+    """
+    if not math.isnan(own.get("safety_thickness", math.nan)):
+        return own["safety_thickness"], "thickness over the exact critical thickness of the same voussoirs"
+    dead = without(text, "live", "vehicle")
+    bare = re.sub(r"!.*", "", dead)
+    for name in ("thickness_ratio", "thickness"):
+        match = re.search(rf"(?<![\w]){name}\s*=\s*([-+.\deEdD]+)", bare)
+        if match is None:
+            continue
+        value = float(match[1].lower().replace("d", "e"))
+        ends = f"low = {value * THINNEST!r}, high = {value!r}"
+        try:
+            row = run_deck(dead + f"\n&search parameter = '{name}', {ends} /\n").case(1)
+        except DdaError as error:
+            return math.nan, f"not found: {error}"
+        if row["verdict"] == "found":
+            return value / row["critical"], (
+                f"under dead load; the critical {name} lies between {row['critical_low']:.8g} "
+                f"and {row['critical_high']:.8g}"
+            )
+        return math.nan, f"under dead load {row['verdict']} at any smaller {name} down to a thousandth"
+    return math.nan, "not searched: the thickness is no single number"
+
+
+def verdict_of(own: dict[str, Any], factor: dict[str, Any] | None) -> tuple[str, bool]:
+    """The verdict in a sentence, and whether it is a bad one.
+
+    Parameters
+    ----------
+    own : dict
+        Row of the deck's own run.
+    factor : dict or None
+        Row of the search for the load factor.
+
+    Returns
+    -------
+    tuple
+        The sentence, and the answer.
+    """
+    words = {"stable": "The structure stands under the loads given.",
+             "collapsed": "The structure does not stand under the loads given."}
+    text = words.get(own["verdict"], f"The calculation is {own['verdict']}: no answer is given.")
+    if factor is not None and factor["verdict"] == "found":
+        text += f" It falls when the live loads are multiplied by {factor['critical']:.4g}."
+    elif factor is not None and factor["verdict"] == "stable":
+        text += " No multiple of the live loads brings it down."
+    elif factor is not None:
+        text += f" The search for the load factor is {factor['verdict']}."
+    return text, own["verdict"] != "stable"
+
+
+def assess(text: str, deck: Path) -> str:
+    """Compute what the page tells, and write it.
+
+    Parameters
+    ----------
+    text : str
+        The deck.
+    deck : Path
+        Its file.
+
+    Returns
+    -------
+    str
+        The page.
+    """
+    from voussoir.plot.assess_page import draw_positions, draw_scheme, figure_of, page, table_of
+    from voussoir.plot.case_picture import draw_case
+    from voussoir.plot.figure_style import house_style
+
+    bare = without(text, "search")
+    found, factor = load_search(bare)
+    place = math.nan if factor is None else factor.get("worst_position", math.nan)
+    fixed = _at_position(bare, place, deck)
+    own_run = run_deck(fixed)
+    own = own_run.case(1)
+    steps = [float(word) for word in own_run.settings("vehicle%spacings")]
+    start = float(own_run.setting("vehicle%position") or "nan")
+    placed = [
+        (start + sum(steps[:k]), float(weight)) for k, weight in enumerate(own_run.settings("vehicle%axles"))
+    ]
+    free = np.vstack([block.corners for block in own_run.blocks_of(1) if block.state != "fixed"])
+    height = own_run.setting("fill%height")
+    surface = None if height is None else float(free[:, 1].max()) + float(height)
+    with house_style():
+        scheme = draw_scheme(own_run, placed, surface)
+        parts = [
+            ("Drawing", figure_of(scheme, "Blocks, supports (hatched), overall dimensions, axles at their position.")),
+            ("Safety", table_of(_numbers(own, factor, thickness_safety(fixed, own)))),
+        ]
+        cases = _positions(fixed, free[:, 0], steps) if placed else None
+        if cases is not None:
+            chart = draw_positions(cases, None if math.isnan(place) else place)
+            parts.append(("Position of the vehicle", figure_of(chart, "Factor of the live loads that brings it down.")))
+        parts.append(("Thrust under the loads given", figure_of(draw_case(own_run, 1))))
+        if found is not None and factor is not None and factor["verdict"] == "found":
+            parts.append(("Collapse under the live loads multiplied", figure_of(draw_case(found, 1))))
+    parts.append(("Input", f"<pre>{html.escape(text)}</pre>"))
+    parts.append(("Origin", table_of(_origin(deck))))
+    sentence, falls = verdict_of(own, factor)
+    return page(own_run.setting("scene%title") or deck.stem, sentence, falls, parts)
+
+
+def _at_position(text: str, place: float, deck: Path) -> str:
+    """The deck with its vehicle at the worst position, where it asks for that."""
+    if not _TRUE.search(re.sub(r"!.*", "", text)):
+        return text
+    if math.isnan(place):
+        raise ValueError(f"{deck}:1: error: expected a worst position, got none; give vehicle%position")
+    return _TRUE.sub(f"position = {place!r}", text)
+
+
+def _positions(text: str, x: np.ndarray, steps: list[float]) -> Table | None:
+    """Load factors along the road; nothing where no position can be computed."""
+    low, high = float(x.min()) - sum(steps), float(x.max())
+    # axles that only the ground carries are refused: the ends are drawn in until all stand on the arch
+    for inset in (0.02, 0.05, 0.1):
+        reach = inset * (float(x.max()) - float(x.min()))
+        sweep = f"first = {low + reach!r}, last = {high - reach!r}, count = {POSITIONS}"
+        try:
+            return run_deck(
+                f"{text}\n&search parameter = 'load_factor' /\n&sweep parameter = 'position', {sweep} /\n"
+            ).cases
+        except DdaError:
+            continue
+    return None
+
+
+def _numbers(
+    own: dict[str, Any], factor: dict[str, Any] | None, geometrical: tuple[float, str]
+) -> list[tuple[str, str]]:
+    """The three safety numbers with their bounds."""
+    safety, note = geometrical
+    rows = [("Geometrical safety", f"{safety:.4g}: {note}" if not math.isnan(safety) else note)]
+    if factor is None:
+        rows.append(("Load factor", "no live loads"))
+    elif factor["verdict"] == "found":
+        rows.append(("Load factor", f"{factor['critical']:.6g}, between {factor['critical_low']:.8g} and "
+                     f"{factor['critical_high']:.8g}; limit analysis (associated): {factor['exact_low']:.8g} to "
+                     f"{factor['exact_high']:.8g}"))
+    else:
+        rows.append(("Load factor", f"{factor['verdict']}"))
+    if factor is not None and not math.isnan(factor.get("worst_position", math.nan)):
+        rows.append(("Worst position", f"first axle at {factor['worst_position']:.4f} m"))
+    least, most = own.get("thrust_min", math.nan), own.get("thrust_max", math.nan)
+    told = "not told" if math.isnan(least) or math.isnan(most) else f"{least:.6g} to {most:.6g} N/m at the crown"
+    rows.append(("Range of thrust", told))
+    return rows
+
+
+def _origin(deck: Path) -> list[tuple[str, str]]:
+    """Versions and check sums."""
+    program = find_dda()
+    return [
+        ("Deck", f"{deck.name}, SHA-256 {hashlib.sha256(deck.read_bytes()).hexdigest()}"),
+        ("Program", f"voussoir {__version__}, dda SHA-256 {hashlib.sha256(Path(program).read_bytes()).hexdigest()}"),
+        ("Python", f"{platform.python_version()} on {platform.system()}"),
+        ("Method", "limit analysis and loading path of rigid blocks with no tension; see docs/method.md"),
+    ]

@@ -1,0 +1,217 @@
+"""`voussoir campaign`: the cases of one deck on many processes or machines."""
+
+from __future__ import annotations
+
+import argparse
+import os
+import shutil
+import sys
+from pathlib import Path
+
+from voussoir.campaign.dask import dask_engine
+from voussoir.campaign.merge import Summary, merge, merged
+from voussoir.campaign.part import finished_by
+from voussoir.campaign.share import (
+    Campaign,
+    finished,
+    local_engine,
+    open_campaign,
+    run_parts,
+    share,
+    split,
+    unlock,
+)
+from voussoir.dda_program import DdaError, find_dda
+
+#: Of several exit statuses the first one counts
+_WORST_FIRST = (4, 2, 3, 0)
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Add the options of the subcommand.
+
+    Parameters
+    ----------
+    parser : argparse.ArgumentParser
+        Parser of the subcommand.
+    """
+    parser.description = (
+        "Compute the cases of one deck by many processes and merge them into DIR/results.csv, "
+        "joints.csv and log.txt, sorted by case. Killed and called again, it goes on where it was."
+    )
+    parser.add_argument("deck", metavar="DECK", type=Path, help="the deck, with its &sweep groups")
+    parser.add_argument(
+        "--out",
+        metavar="DIR",
+        type=Path,
+        help="folder of the results (default: named as the deck without its ending)",
+    )
+    parser.add_argument(
+        "--set",
+        metavar="group%key=value",
+        action="append",
+        default=[],
+        help="override the deck; may be repeated (default: the deck as it is)",
+    )
+    parser.add_argument(
+        "--workers",
+        metavar="N",
+        type=_positive,
+        default=os.cpu_count() or 1,
+        help="processes on this machine (default: one a processor, here %(default)s)",
+    )
+    parser.add_argument(
+        "--scheduler",
+        metavar="ADDRESS",
+        help="use the Dask cluster at this address, such as tcp://10.0.0.1:8786; its workers must "
+        "see the folders of the deck, of DIR and of dda (default: processes on this machine)",
+    )
+    parser.add_argument(
+        "--index",
+        metavar="I",
+        type=_positive,
+        help="compute only the I-th of N shares of the cases, for job arrays; the last one to "
+        "end merges (default: all cases)",
+    )
+    parser.add_argument(
+        "--of", metavar="N", type=_positive, help="number of shares (default: no shares)"
+    )
+    parser.add_argument(
+        "--merge", action="store_true", help="compute nothing, merge what is finished so far"
+    )
+    parser.add_argument(
+        "--anew", action="store_true", help="discard what an earlier campaign has finished"
+    )
+    parser.add_argument("--quiet", action="store_true", help="print nothing but errors")
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Run the campaign.
+
+    Parameters
+    ----------
+    arguments : argparse.Namespace
+        Parsed options.
+
+    Returns
+    -------
+    int
+        Exit status as of `dda run`.
+    """
+    try:
+        return _run(arguments)
+    except DdaError as error:
+        sys.stderr.write(f"{error}\n")
+        return error.status
+    except OSError as error:
+        name = error.filename or arguments.out or arguments.deck
+        sys.stderr.write(
+            f"{name}:1: error: files cannot be written: {error.strerror}; "
+            "what is finished stays safe in the folder parts\n"
+        )
+        return 4
+
+
+def _run(arguments: argparse.Namespace) -> int:
+    """The campaign; failures are exceptions."""
+    index, of = _share_of(arguments)
+    out = (arguments.out or Path(arguments.deck.stem)).resolve()
+    shared = arguments.index is not None
+    try:
+        campaign = open_campaign(
+            find_dda(), arguments.deck, arguments.set, out, arguments.anew, shared
+        )
+        return _compute(campaign, arguments, share(campaign.total, index, of))
+    finally:
+        unlock(out)
+
+
+def _compute(campaign: Campaign, arguments: argparse.Namespace, cases: range) -> int:
+    """Compute what is not finished, and merge."""
+    asked = campaign.asked
+    status, message, problems = 0, "", []
+    if len(finished_by(campaign.out, asked.record, asked.headers, problems)) == campaign.total:
+        shutil.rmtree(campaign.parts, ignore_errors=True)
+        return _report(campaign, arguments)
+    if not arguments.merge:
+        workers, engine = arguments.workers, local_engine(arguments.workers)
+        if arguments.scheduler:
+            engine, workers = dask_engine(arguments.scheduler)
+        parts = split(campaign, cases, workers, problems=problems)
+        _warn(problems, arguments)
+        found = len(cases) - sum(len(part.cases) for part in parts)
+        if found and not arguments.quiet:
+            print(f"{arguments.deck}: {found} of {len(cases)} cases were finished before")
+        shown = sys.stderr.isatty() and not arguments.quiet
+        status, message = run_parts(parts, engine, shown)
+    else:
+        finished(campaign, cases, problems)
+        _warn(problems, arguments)
+    if message:
+        sys.stderr.write(message + "\n")
+    return min((status, _finish(campaign, arguments)), key=_WORST_FIRST.index)
+
+
+def _warn(problems: list[str], arguments: argparse.Namespace) -> None:
+    """Say what is damaged, each thing once."""
+    if not arguments.quiet:
+        sys.stderr.writelines(f"{problem}\n" for problem in dict.fromkeys(problems))
+
+
+def _finish(campaign: Campaign, arguments: argparse.Namespace) -> int:
+    """Merge, unless other shares are still to come."""
+    if arguments.index is not None:
+        done = finished(campaign, range(1, campaign.total + 1))
+        if len(done) < campaign.total:
+            if not arguments.quiet:
+                left = campaign.total - len(done)
+                print(f"{arguments.deck}: this share has ended, {left} cases of others are left")
+            cases = share(campaign.total, arguments.index, arguments.of)
+            return 0 if done.issuperset(cases) else 3
+    merge(campaign.parts, campaign.out, campaign.asked.record, campaign.asked.headers)
+    if _summary(campaign).cases == campaign.total and arguments.index is None:
+        shutil.rmtree(campaign.parts, ignore_errors=True)
+    return _report(campaign, arguments)
+
+
+def _summary(campaign: Campaign) -> Summary:
+    """What the merged table holds."""
+    asked = campaign.asked
+    return merged(campaign.out, finished_by(campaign.out, asked.record, asked.headers))
+
+
+def _report(campaign: Campaign, arguments: argparse.Namespace) -> int:
+    """Say what there is: 0 if each case has a verdict, else 3."""
+    summary = _summary(campaign)
+    missing = campaign.total - summary.cases
+    if not arguments.quiet:
+        print(
+            f"{arguments.deck}: {summary.cases - summary.undecided} decided, "
+            f"{summary.undecided} undecided, {missing} not finished; "
+            f"results in {campaign.out / 'results.csv'}"
+        )
+    return 3 if summary.undecided or missing else 0
+
+
+def _share_of(arguments: argparse.Namespace) -> tuple[int, int]:
+    """Index and number of shares, checked."""
+    if (arguments.index is None) != (arguments.of is None):
+        raise DdaError("--index:1: error: expected --index and --of, got one of them; give both")
+    if arguments.index is None:
+        return 1, 1
+    if arguments.anew:
+        raise DdaError("--anew:1: error: expected no --anew with --index, got both; the shares "
+                       "would discard one another: remove the folder before they begin")
+    if arguments.index > arguments.of:
+        raise DdaError(
+            f"--index:1: error: expected an index from 1 to {arguments.of}, got "
+            f"{arguments.index}; number the shares from 1"
+        )
+    return arguments.index, arguments.of
+
+
+def _positive(word: str) -> int:
+    """A whole number from 1."""
+    if not word.isdigit() or int(word) < 1:
+        raise argparse.ArgumentTypeError(f"must be a whole number from 1, got '{word}'")
+    return int(word)

@@ -1,0 +1,108 @@
+"""The command `voussoir`: one subcommand a module."""
+
+from __future__ import annotations
+
+import argparse
+import importlib
+import os
+import sys
+from collections.abc import Sequence
+
+from voussoir import __version__
+
+#: Subcommand: its module, which has add_arguments(parser) and run(arguments) -> exit status,
+#: and one line of help
+COMMANDS = {
+    "animate": ("voussoir.command.animate", "the motion of cases as a GIF"),
+    "assess": ("voussoir.command.assess", "one page for a client: does the arch stand, and how safely"),
+    "campaign": (
+        "voussoir.command.campaign",
+        "the cases of one deck on many processes or machines",
+    ),
+    "lines": ("voussoir.command.lines", "a picture of what dda lines has drawn"),
+    "examples": ("voussoir.command.examples", "the decks that came with the program"),
+    "import": ("voussoir.command.import_file", "a drawing, GeoJSON, WKT or a mesh as a deck of blocks"),
+    "paper": ("voussoir.command.paper", "every table and figure of the paper, and the report"),
+    "plot": ("voussoir.command.plot", "pictures and charts of a folder of results"),
+    "theory": ("voussoir.command.theory", "the three analytic solutions at given half angles"),
+    "work-precision": ("voussoir.command.work_precision", "error against run time"),
+    "verify": ("voussoir.verify_command", "the proofs of a folder of results, recomputed"),
+    "stability": ("voussoir.command.stability", "stiff and extreme scenes, judged by exact answers"),
+    "validation": (
+        "voussoir.command.validation",
+        "scenes with exact answers beside what the program computes",
+    ),
+}
+
+
+EXIT_STATUS = (
+    "Exit status: 0 done; 1 a value of validation or stability is wrong; 2 bad input; "
+    "4 a result could not be written."
+)
+
+
+class Formatter(argparse.RawDescriptionHelpFormatter):
+    """Help that shows every default, unless the text says what holds without the option."""
+
+    def _get_help_string(self, action: argparse.Action) -> str:
+        text = action.help or ""
+        silent = isinstance(action, (argparse._HelpAction, argparse._VersionAction))
+        if not action.option_strings or action.required or silent or "default" in text:
+            return text
+        return text + (" (default: no)" if action.default is False else " (default: %(default)s)")
+
+
+def build_parser(chosen: str | None = None) -> argparse.ArgumentParser:
+    """The parser of the command line.
+
+    Parameters
+    ----------
+    chosen : str, optional
+        Subcommand whose options are wanted; the others' modules are not loaded.
+
+    Returns
+    -------
+    argparse.ArgumentParser
+        With a subparser for each subcommand.
+    """
+    parser = argparse.ArgumentParser(
+        prog="voussoir",
+        description="Masonry arches: theory, tables and figures.",
+        epilog="'voussoir help COMMAND' lists the options of one. " + EXIT_STATUS,
+    )
+    parser.add_argument("--version", action="version", version=f"voussoir {__version__}")
+    subparsers = parser.add_subparsers(dest="command", required=True, metavar="COMMAND")
+    for name, (module, summary) in COMMANDS.items():
+        subparser = subparsers.add_parser(
+            name,
+            help=summary,
+            description=summary[0].upper() + summary[1:] + ".",
+            epilog=EXIT_STATUS,
+            formatter_class=Formatter,
+        )
+        if name == chosen:
+            importlib.import_module(module).add_arguments(subparser)
+    subparsers.add_parser("help", help="this page, or the options of a subcommand")
+    return parser
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Run a subcommand.
+
+    Parameters
+    ----------
+    arguments : sequence of str, optional
+        Command line without the program's name; by default that of the process.
+
+    Returns
+    -------
+    int
+        Exit status: 0, 1 where a value of validation or stability is wrong, 2 for bad input, 4
+        where a result could not be written.
+    """
+    words = list(sys.argv[1:] if arguments is None else arguments)
+    if words[:1] in ([], ["help"]):
+        words = [*words[1:2], "--help"] if words[1:2] != ["help"] else ["--help"]
+    os.environ["MPLBACKEND"] = "Agg"  # pictures are files: no display is wanted
+    chosen = build_parser(words[0] if words else None).parse_args(words)
+    return importlib.import_module(COMMANDS[chosen.command][0]).run(chosen)

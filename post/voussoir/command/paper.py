@@ -1,0 +1,163 @@
+"""`voussoir paper`: every table and figure of the paper, and the report."""
+
+from __future__ import annotations
+
+import argparse
+import importlib.util
+import os
+import sys
+import time
+from concurrent.futures import ProcessPoolExecutor, as_completed
+from pathlib import Path
+
+from voussoir.dda_program import DdaError, find_dda, find_input
+from voussoir.extras import advice
+from voussoir.paper import tables
+from voussoir.paper.campaign import DRAWING, FIGURES, TOGETHER, Campaign, Clock, Timing, weights
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Add the options of the subcommand.
+
+    Parameters
+    ----------
+    parser : argparse.ArgumentParser
+        Parser of the subcommand.
+    """
+    parser.add_argument(
+        "--out",
+        metavar="DIR",
+        type=Path,
+        default=Path("paper"),
+        help="folder for results, tables, figures and index.html (default: paper)",
+    )
+    parser.add_argument(
+        "--jobs",
+        metavar="N",
+        type=_at_least_one,
+        default=os.cpu_count() or 1,
+        help="decks computed, and figures drawn, at the same time (default: one a processor)",
+    )
+    parser.add_argument(
+        "--resume", action="store_true", help="keep what an earlier run has finished"
+    )
+    parser.add_argument(
+        "--limerick",
+        action="store_true",
+        help="also run the decks of the original program's scheme, which take much longer",
+    )
+    parser.add_argument(
+        "--decks",
+        metavar="DIR",
+        type=Path,
+        help="folder of the decks (default: those that came with the program)",
+    )
+    parser.add_argument(
+        "--dda", metavar="FILE", type=Path, help="the program dda (default: the one beside `voussoir`)"
+    )
+    parser.add_argument("--quiet", action="store_true", help="print nothing but errors")
+
+
+def _at_least_one(word: str) -> int:
+    number = int(word)
+    if number < 1:
+        raise argparse.ArgumentTypeError(f"expected a number from 1, got {word}")
+    return number
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Run the decks, draw the figures, write tables and report.
+
+    Parameters
+    ----------
+    arguments : argparse.Namespace
+        Parsed options.
+
+    Returns
+    -------
+    int
+        Exit status: that of dda, or 2 if it or the decks are missing, 4 if nothing can be written.
+    """
+    try:
+        campaign = Campaign(arguments.decks or find_input("paper"), arguments.out)
+        dda = find_dda(arguments.dda)
+        decks = campaign.deck_files(arguments.limerick)
+    except (DdaError, FileNotFoundError) as problem:
+        print(f"voussoir: error: {problem}", file=sys.stderr)
+        return 2
+    try:
+        parts = [DRAWING + name for name in _drawings()]
+        return _make(campaign, arguments, dda, Clock(_teller(arguments), weights(decks, parts)))
+    except OSError as problem:
+        print(f"voussoir: error: {problem}", file=sys.stderr)
+        return 4
+
+
+def _teller(arguments: argparse.Namespace):
+    """What progress is told to."""
+    if arguments.quiet:
+        return lambda line: None
+    return lambda line: print(line, file=sys.stderr, flush=True)
+
+
+def _make(campaign: Campaign, arguments: argparse.Namespace, dda: Path, clock: Clock) -> int:
+    """The whole campaign."""
+    arguments.out.mkdir(parents=True, exist_ok=True)
+    status = campaign.run(
+        dda, clock, arguments.jobs, slow=arguments.limerick, resume=arguments.resume
+    )
+    clock.timings.append(Timing(TOGETHER, clock.elapsed, sum(t.computing for t in clock.timings)))
+    if status in (2, 4) or status not in (0, 3):
+        return status
+    folder = arguments.out
+    _draw(campaign, folder / "figures", clock, arguments.jobs)
+    start = time.monotonic()
+    tables.write_tables(list(campaign.tables.values()), folder / "tables")
+    from voussoir.paper import report
+
+    page = report.build(campaign, folder / "figures", clock.timings, dda)
+    took = f"{time.monotonic() - start:.2f}"
+    index = folder / "index.html"
+    index.write_text(page.replace(report.PAGE_TIME, took), encoding="utf-8")
+    if not arguments.quiet:
+        for table in campaign.tables.values():
+            print(f"\n{table.title}\n{tables.as_text(table)}")
+        print(f"\nTables as CSV and Markdown: {folder / 'tables'}")
+        print(f"Report: {index.resolve().as_uri()} (open it in a browser)")
+    return status
+
+
+def _drawings() -> list[str]:
+    """Names of what is drawn; none without matplotlib."""
+    if not importlib.util.find_spec("matplotlib"):
+        return []
+    from voussoir.paper import figures
+
+    return figures.names()
+
+
+def _draw(campaign: Campaign, folder: Path, clock: Clock, jobs: int) -> None:
+    """Draw all figures and animations, so many at the same time."""
+    names = _drawings()
+    if not names:
+        clock.tell(f"figures are left out: matplotlib is missing; {advice('matplotlib')}")
+        return
+    start = time.monotonic()
+    plain = Campaign(campaign.decks, campaign.out)
+    with ProcessPoolExecutor(min(jobs, len(names))) as workers:
+        running = {workers.submit(_draw_one, plain, folder, name): name for name in names}
+        for done in as_completed(running):
+            seconds = done.result()
+            clock.record(Timing(DRAWING + running[done], seconds, 0.0))
+    drawn = [timing for timing in clock.timings if timing.part.startswith(DRAWING)]
+    clock.timings[:] = [timing for timing in clock.timings if timing not in drawn]
+    clock.timings.append(Timing(FIGURES, time.monotonic() - start, 0.0))
+
+
+def _draw_one(campaign: Campaign, folder: Path, name: str) -> float:
+    """Draw one figure in a process of its own; gives its time [s]."""
+    from voussoir.paper import figures
+
+    start = time.monotonic()
+    figures.make(campaign, folder, name)
+    return time.monotonic() - start

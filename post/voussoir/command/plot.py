@@ -1,0 +1,175 @@
+"""`voussoir plot`: pictures of a folder of results."""
+
+from __future__ import annotations
+
+import argparse
+import math
+import sys
+from pathlib import Path
+
+from voussoir import results
+from voussoir.extras import advice
+
+#: Most cases that are drawn without being named
+MOST_CASES = 12
+_AUTO = "auto"
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Add the options of the subcommand.
+
+    Parameters
+    ----------
+    parser : argparse.ArgumentParser
+        Parser of the subcommand.
+    """
+    parser.description = (
+        "Draw the cases of a folder that dda run has written, arches and blocks alike: line of "
+        "thrust, hinges, slips, contact forces, displaced shape, ways of measured points; or "
+        "chart the critical values of a sweep."
+    )
+    parser.add_argument("folder", metavar="DIR", type=Path, help="folder of the results")
+    parser.add_argument(
+        "--case",
+        metavar="N",
+        type=int,
+        nargs="+",
+        help=f"cases to draw (default: the first {MOST_CASES}; none with --chart or --fragility)",
+    )
+    parser.add_argument(
+        "--chart",
+        metavar="COLUMN",
+        nargs="?",
+        const=_AUTO,
+        help="chart the critical values against this column, such as half_angle_deg; without a "
+        "name against the swept column with the most values (default: no chart)",
+    )
+    parser.add_argument(
+        "--fragility",
+        metavar="COLUMN",
+        nargs="?",
+        const=_AUTO,
+        help="draw the share of records that make the blocks collapse against this swept column, "
+        "amplitude or scale without a name; or, of searches, against the critical values",
+    )
+    parser.add_argument(
+        "--out", metavar="DIR", type=Path, help="where the pictures go (default: DIR/plots)"
+    )
+    parser.add_argument(
+        "--format",
+        metavar="ENDING",
+        nargs="+",
+        choices=("svg", "pdf", "png"),
+        default=("svg",),
+        help="of svg, pdf, png (default: svg)",
+    )
+    parser.add_argument(
+        "--magnify",
+        metavar="M",
+        type=magnification,
+        help="magnification of the displaced shape, 0 for none (default: chosen, and stated)",
+    )
+    parser.add_argument(
+        "--no-forces", action="store_true", help="leave the contact forces out"
+    )
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Draw.
+
+    Parameters
+    ----------
+    arguments : argparse.Namespace
+        Parsed options.
+
+    Returns
+    -------
+    int
+        Exit status: 0, 2 for results that cannot be drawn, 4 for files that cannot be written.
+    """
+    try:
+        return _run(arguments)
+    except results.DamagedTable as error:
+        sys.stderr.write(f"{error}\n")
+        return 2
+    except (FileNotFoundError, KeyError, ValueError) as error:
+        words = error.args[0] if isinstance(error, KeyError) else error
+        sys.stderr.write(f"{arguments.folder}:1: error: {words}\n")
+        return 2
+    except ImportError as error:
+        sys.stderr.write(
+            f"voussoir:1: error: expected matplotlib, got none ({error}); {advice('matplotlib')}\n"
+        )
+        return 2
+    except OSError as error:
+        sys.stderr.write(
+            f"{error.filename or arguments.out}:1: error: the file cannot be written: "
+            f"{error.strerror}; choose another folder with --out\n"
+        )
+        return 4
+
+
+def _run(arguments: argparse.Namespace) -> int:
+    """Draw; failures are exceptions."""
+    read = results.read(arguments.folder)
+    from voussoir.plot.case_picture import draw_case
+    from voussoir.plot.design_chart import draw_chart
+    from voussoir.plot.figure_style import house_style, save
+
+    out = arguments.out or arguments.folder / "plots"
+    paths: list[Path] = []
+    with house_style():
+        if arguments.chart:
+            column = None if arguments.chart == _AUTO else arguments.chart
+            name = "chart" if column is None else f"chart_{column}"
+            paths += save(draw_chart(read, column), out, name, tuple(arguments.format))
+        if arguments.fragility:
+            from voussoir.plot.fragility import draw_fragility
+
+            figure, fit = draw_fragility(read, None if arguments.fragility == _AUTO else arguments.fragility)
+            if fit:
+                print(f"lognormal fragility: median {fit.median:.6g}, dispersion {fit.dispersion:.4g}")
+            paths += save(figure, out, "fragility", tuple(arguments.format))
+        for number in _cases(arguments, read):
+            figure = draw_case(read, number, arguments.magnify, not arguments.no_forces)
+            paths += save(figure, out, f"case_{number}", tuple(arguments.format))
+    for path in paths:
+        print(path)
+    return 0
+
+
+def _cases(arguments: argparse.Namespace, read: results.Results) -> list[int]:
+    """Cases to draw."""
+    if arguments.case or arguments.chart or arguments.fragility:
+        return arguments.case or []
+    drawn = [int(number) for number in read.cases["case"][:MOST_CASES]]
+    if len(drawn) < len(read.cases):
+        print(f"the first {MOST_CASES} of {len(read.cases)} cases; --case N draws others")
+    return drawn
+
+
+def magnification(word: str) -> float:
+    """A finite number from 0.
+
+    Parameters
+    ----------
+    word : str
+        As given on the command line.
+
+    Returns
+    -------
+    float
+        The number.
+
+    Raises
+    ------
+    argparse.ArgumentTypeError
+        If it is none.
+    """
+    try:
+        number = float(word)
+    except ValueError:
+        number = math.nan
+    if not 0.0 <= number < math.inf:
+        raise argparse.ArgumentTypeError(f"must be a number from 0, got '{word}'")
+    return number

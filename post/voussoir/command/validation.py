@@ -1,0 +1,102 @@
+"""`voussoir validation`: scenes with exact answers beside what the program computes."""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from pathlib import Path
+
+from voussoir.bench.validation_page import csv_text, page, told
+from voussoir.bench.validation_run import Line, all_scenes, run_scene
+from voussoir.dda_program import DdaError, find_dda, find_input, version_of
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Add the options of the subcommand.
+
+    Parameters
+    ----------
+    parser : argparse.ArgumentParser
+        Parser of the subcommand.
+    """
+    parser.add_argument(
+        "--out",
+        metavar="DIR",
+        type=Path,
+        default=Path("validation"),
+        help="folder for validation.csv and validation.md (default: validation)",
+    )
+    parser.add_argument(
+        "--scenes", metavar="NAME", nargs="+", help="decks by name (default: all scenes)"
+    )
+    parser.add_argument(
+        "--halvings",
+        metavar="N",
+        type=_whole,
+        default=2,
+        help="how often the step is halved for the convergence rate",
+    )
+    parser.add_argument(
+        "--decks",
+        metavar="DIR",
+        type=Path,
+        help="folder of the decks (default: those that came with the program)",
+    )
+    parser.add_argument("--quiet", action="store_true", help="print nothing but errors")
+
+
+def _whole(word: str) -> int:
+    if not word.isdecimal():
+        raise argparse.ArgumentTypeError(f"expected a whole number from 0, got {word}")
+    return int(word)
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Run the scenes and write the table.
+
+    Parameters
+    ----------
+    arguments : argparse.Namespace
+        Parsed options.
+
+    Returns
+    -------
+    int
+        Exit status: 0, 1 if an error is larger than accepted, that of dda or 2 for bad input, 4 if
+        nothing can be written.
+    """
+    try:
+        dda = find_dda()
+        lines = _lines(arguments, dda)
+    except DdaError as problem:
+        print(f"voussoir: error: {problem}", file=sys.stderr)
+        return problem.status
+    try:
+        arguments.out.mkdir(parents=True, exist_ok=True)
+        (arguments.out / "validation.csv").write_text(csv_text(lines), encoding="utf-8")
+        text = page(lines, version_of(dda))
+        (arguments.out / "validation.md").write_text(text, encoding="utf-8")
+    except OSError as problem:
+        print(f"voussoir: error: {problem}", file=sys.stderr)
+        return 4
+    return 0 if all(line.accepted for line in lines) else 1
+
+
+def _lines(arguments: argparse.Namespace, dda: Path) -> list[Line]:
+    """Lines of all scenes that were asked for."""
+    scenes = all_scenes()
+    names = {scene.deck for scene in scenes}
+    unknown = [name for name in arguments.scenes or () if name not in names]
+    if unknown:
+        known = ", ".join(sorted(names))
+        raise DdaError(f"expected a scene, got '{unknown[0]}'; the scenes are {known}")
+    decks = arguments.decks or find_input("benchmarks")
+    lines = []
+    for scene in scenes:
+        if arguments.scenes and scene.deck not in arguments.scenes:
+            continue
+        for line in run_scene(dda, decks, scene, arguments.halvings):
+            lines.append(line)
+            if not arguments.quiet:
+                print(told(line), flush=True)
+    return lines

@@ -1,0 +1,127 @@
+"""`voussoir work-precision`: error against run time, all in one run on one machine."""
+
+from __future__ import annotations
+
+import argparse
+import platform
+import sys
+from pathlib import Path
+
+from voussoir.bench import limit_lp
+from voussoir.bench.work_precision_fronts import CLASSES, Panel, panels
+from voussoir.bench.work_precision_motion import MotionPoint, motion_points
+from voussoir.bench.work_precision_motion_page import motion_table, write_motion_csv
+from voussoir.bench.work_precision_page import draw, front_table, race_table, write_csv
+from voussoir.bench.work_precision_plan import cost_table, plan_costs
+from voussoir.bench.work_precision_runs import Arch, Race, race
+from voussoir.dda_program import DdaError, find_dda
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Add the options of the subcommand.
+
+    Parameters
+    ----------
+    parser : argparse.ArgumentParser
+        Parser of the subcommand.
+    """
+    parser.add_argument(
+        "--out", type=Path, default=Path("work_precision"), help="folder of tables and figure"
+    )
+    parser.add_argument(
+        "--angles",
+        type=float,
+        nargs="+",
+        default=[45.0, 90.0, 140.0],
+        metavar="DEG",
+        help="half angles of embrace, in degrees",
+    )
+    parser.add_argument(
+        "--voussoirs",
+        type=int,
+        nargs="+",
+        default=[36, 1000],
+        metavar="N",
+        help="numbers of voussoirs, even ones",
+    )
+    parser.add_argument("--repeats", type=int, default=5, help="runs of each setting")
+    parser.add_argument(
+        "--scenes", nargs="+", choices=CLASSES, default=list(CLASSES), metavar="CLASS",
+        help="classes of scenes in the diagram: " + ", ".join(CLASSES),
+    )
+    part = parser.add_mutually_exclusive_group()
+    part.add_argument(
+        "--race", action="store_true", help="only the times of one decision, no diagram"
+    )
+    part.add_argument(
+        "--motion", action="store_true", help="only blocks that move in time, no arches"
+    )
+    part.add_argument(
+        "--plan", action="store_true", help="only what parts of the scene plan cost if forced in"
+    )
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Measure, write tables and figure, print the table of ratios.
+
+    Parameters
+    ----------
+    arguments : argparse.Namespace
+        Parsed options.
+
+    Returns
+    -------
+    int
+        Exit status: 2 without the program, else 0.
+    """
+    try:
+        find_dda()
+    except DdaError as missing:
+        sys.stderr.write(f"voussoir: error: {missing}\n")
+        return missing.status
+    arches = [Arch(angle, count) for count in arguments.voussoirs for angle in arguments.angles]
+    arguments.out.mkdir(parents=True, exist_ok=True)
+    runs = arguments.out / "runs"
+    if arguments.plan:
+        costs = plan_costs(arguments.voussoirs, runs, arguments.repeats)
+        table = "\n".join(cost_table(list(costs))) + "\n"
+        (arguments.out / "plan_costs.md").write_text(table, encoding="utf-8")
+        sys.stdout.write(table)
+        return 0
+    races: list[Race] = []
+    drawn: list[Panel] = []
+    motion: list[MotionPoint] = []
+    if not arguments.motion:
+        races = [race(arch, runs, arguments.repeats) for arch in arches]
+    if not arguments.motion and not arguments.race:
+        drawn = list(panels(runs, arguments.repeats, arguments.scenes))
+        write_csv(drawn, arguments.out / "work_precision.csv")
+        draw(drawn, arguments.out)
+    if not arguments.race and "motion" in arguments.scenes:
+        motion = list(motion_points(runs, arguments.repeats))
+        write_motion_csv(motion, arguments.out / "work_precision_motion.csv")
+    text = "\n".join(_report(races, drawn, motion)) + "\n"
+    (arguments.out / "work_precision.md").write_text(text, encoding="utf-8")
+    sys.stdout.write(text)
+    return 0
+
+
+def _report(races: list[Race], drawn: list[Panel], motion: list[MotionPoint]) -> list[str]:
+    """Lines of the report."""
+    version = limit_lp.scipy_version()
+    peer = f"HiGHS of scipy {version}" if version else "scipy is missing: no linear programs"
+    lines = [
+        "# Error against run time",
+        "",
+        f"Python {platform.python_version()}; {peer}. Only ratios of times mean "
+        "anything. dda: the column seconds, wall time in the process, or the processor time of runs "
+        "that take longer than 20 ms a case. Linear programs: processor time (building, solving).",
+    ]
+    if drawn:
+        lines += ["", "Least time in which the best setting of a method reaches an error:", ""]
+        lines += front_table(drawn)
+    if races:
+        lines += ["", "One decision, and one search to 1e-8 (least times):", "", *race_table(races)]
+    if motion:
+        lines += ["", "Blocks that move in time:", "", *motion_table(motion)]
+    return lines

@@ -1,0 +1,235 @@
+"""Blocks as Python values: `voussoir.Blocks`."""
+
+from __future__ import annotations
+
+import warnings
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from typing import Any, Union
+
+import numpy.typing as npt
+
+from voussoir.dda_program import find_dda
+from voussoir.deck.run import Deck
+from voussoir.deck.text import groups_of
+
+#: Name of the file of blocks beside the deck
+BLOCKS_FILE = "deck.blocks"
+#: A joint that never opens nor slides: pieces of one polygon with holes
+BOND = "friction_deg 89.9 cohesion 1e15 tension 1e15"
+#: Keys of a material and of a joint's law in a file of blocks
+_MATERIAL = ("density", "unit_weight", "young", "poisson")
+_LAW = ("friction_deg", "cohesion", "tension")
+
+
+@dataclass(frozen=True)
+class BlockShape:
+    """One polygon as the file of blocks has it: its pieces, if it has holes.
+
+    Attributes
+    ----------
+    pieces : tuple of sequence of (float, float)
+        Corners of the polygon [m], or of the pieces that it was cut into.
+    fixed : bool
+        Whether it never moves.
+    material : int
+        Number of its material, from 1.
+    """
+
+    pieces: tuple[Sequence[tuple[float, float]], ...]
+    fixed: bool
+    material: int
+
+
+class Blocks(Deck):
+    """Polygons, what they are made of, and what acts on them.
+
+    Parameters
+    ----------
+    **keys
+        Keys of any group of a deck, as for `Arch`: Blocks(friction_deg=35, density=2400).
+
+    Examples
+    --------
+    >>> wall = Blocks(friction_deg=35)
+    >>> ground = wall.add([(-1, -1), (3, -1), (3, 0), (-1, 0)], fixed=True)
+    >>> stone = wall.add([(0, 0), (1, 0), (1, 2), (0, 2)])
+    >>> run = wall.run(search="horizontal_coefficient")
+    >>> round(float(run.cases["critical"][0]), 6)
+    0.5
+    """
+
+    def __init__(self, **keys: Any) -> None:
+        groups = groups_of(find_dda(), keys)
+        scene = {**groups.pop("scene", {}), "kind": "blocks", "geometry": BLOCKS_FILE}
+        super().__init__({"scene": scene, **groups})
+        self.shapes: list[BlockShape] = []
+        self.entries: list[str] = []
+        self.dropped: list[str] = []
+        self._laws: dict[tuple[int, int], str] = {}
+        self._materials: dict[int, str] = {}
+
+    @property
+    def files(self) -> dict[str, str]:
+        """The file of blocks by its name."""
+        return {BLOCKS_FILE: self.block_text()}
+
+    @files.setter
+    def files(self, given: dict[str, str]) -> None:
+        """Files follow from the blocks: none can be given."""
+
+    @classmethod
+    def from_shapely(
+        cls,
+        polygons: Any,
+        fixed: Any = (),
+        material: Union[int, Sequence[int]] = 1,
+        **keys: Any,
+    ) -> Blocks:
+        """Blocks from polygons of shapely.
+
+        Parameters
+        ----------
+        polygons : geometry or iterable of geometries
+            Polygons that can move; collections give their parts. A polygon with holes is cut into
+            pieces that no force parts.
+        fixed : likewise, optional
+            Polygons that never move.
+        material : int or sequence of int, optional
+            Number of their material, or of each.
+        **keys
+            As for `Blocks`.
+
+        Returns
+        -------
+        Blocks
+            The blocks; `dropped` names what has no area, with a warning.
+
+        Raises
+        ------
+        MissingPackage
+            If there is no shapely.
+        """
+        from voussoir.deck.shapely_blocks import polygons_of
+
+        blocks = cls(**keys)
+        for shapes, is_fixed, materials in ((fixed, True, 1), (polygons, False, material)):
+            found, dropped = polygons_of(shapes)
+            numbers = [materials] * len(found) if isinstance(materials, int) else list(materials)
+            if len(numbers) != len(found):
+                raise ValueError(
+                    f"expected {len(found)} materials, one a polygon, got {len(numbers)}"
+                )
+            for polygon, number in zip(found, numbers):
+                blocks.add_polygon(polygon, is_fixed, number)
+            blocks.dropped += dropped
+        if blocks.dropped:
+            warnings.warn("dropped: " + "; ".join(blocks.dropped), stacklevel=2)
+        return blocks
+
+    def add(
+        self, corners: npt.ArrayLike, fixed: bool = False, material: int = 1
+    ) -> int:
+        """Add a polygon.
+
+        Parameters
+        ----------
+        corners : array_like, (n, 2)
+            Its corners in either sense [m].
+        fixed : bool, optional
+            Whether it never moves.
+        material : int, optional
+            Number of its material.
+
+        Returns
+        -------
+        int
+            Its number, from 1.
+        """
+        self.shapes.append(BlockShape((_points(corners),), fixed, material))
+        return len(self.shapes)
+
+    def add_polygon(self, polygon: Any, fixed: bool = False, material: int = 1) -> int:
+        """Add a polygon of shapely; one with holes becomes pieces that no force parts."""
+        from voussoir.deck.shapely_blocks import pieces_of
+
+        pieces = tuple(_points(piece.exterior.coords[:-1]) for piece in pieces_of(polygon))
+        self.shapes.append(BlockShape(pieces, fixed, material))
+        return len(self.shapes)
+
+    def material(self, number: int, **properties: float) -> None:
+        """Say what a material from 2 on is: density, unit_weight, young, poisson."""
+        self._materials[number] = _words(properties, _MATERIAL)
+
+    def joint(self, first: int, second: int, **law: float) -> None:
+        """Say the law between two materials: friction_deg, cohesion, tension."""
+        self._laws[min(first, second), max(first, second)] = _words(law, _LAW)
+
+    def entry(self, text: str) -> None:
+        """Add a line of the file of blocks, such as "load 1 2 0 -1000" or "measure 1 2"."""
+        self.entries.append(text)
+
+    def block_text(self) -> str:
+        """The file of blocks."""
+        own = _Materials(max([1, *self._materials, *(shape.material for shape in self.shapes)]))
+        lines: list[str] = []
+        for shape in self.shapes:
+            for piece, number in zip(shape.pieces, own.of(shape)):
+                lines.append("block fixed" if shape.fixed else "block")
+                lines[-1] += f" material {number}" if number != 1 else ""
+                lines += [f"  {x!r} {y!r}" for x, y in piece]
+        numbers = {shape.material for shape in self.shapes} | set(self._materials) | set(own.origin)
+        for number in sorted(numbers - {1}):
+            words = self._materials.get(own.origin.get(number, number), "")
+            lines.append(f"material {number} {words}".rstrip())
+        for (first, second), law in self._laws.items():
+            for one in own.all_of(first):
+                lines += [f"joint {one} {two} {law}" for two in own.all_of(second)
+                          if (one, two) not in own.bonds and (first != second or one <= two)]
+        lines += [f"joint {one} {two} {BOND}" for one, two in own.bonds]
+        return "\n".join([*lines, *self.entries]) + "\n"
+
+
+class _Materials:
+    """Numbers of materials: pieces of a polygon with holes have one each, to bond them alone.
+
+    Attributes
+    ----------
+    origin : dict of int to int
+        Material that a further number stands for.
+    bonds : list of (int, int)
+        Numbers of pieces of one polygon.
+    """
+
+    def __init__(self, last: int) -> None:
+        self._last = last
+        self.origin: dict[int, int] = {}
+        self.bonds: list[tuple[int, int]] = []
+
+    def of(self, shape: BlockShape) -> list[int]:
+        """Numbers of the materials of the pieces of a polygon."""
+        if len(shape.pieces) == 1 or shape.fixed:
+            return [shape.material] * len(shape.pieces)
+        numbers = list(range(self._last + 1, self._last + 1 + len(shape.pieces)))
+        self._last = numbers[-1]
+        self.origin.update(dict.fromkeys(numbers, shape.material))
+        self.bonds += [(a, b) for a in numbers for b in numbers if a < b]
+        return numbers
+
+    def all_of(self, material: int) -> list[int]:
+        """A material and all numbers that stand for it."""
+        return [material, *(number for number, of in self.origin.items() if of == material)]
+
+
+def _points(corners: Iterable) -> list[tuple[float, float]]:
+    """Corners as pairs of floats."""
+    points = [(float(corner[0]), float(corner[1])) for corner in corners]
+    return points[:-1] if len(points) > 1 and points[0] == points[-1] else points
+
+
+def _words(given: dict[str, float], known: tuple[str, ...]) -> str:
+    """Keys and values as an entry of the file of blocks writes them."""
+    for name in given:
+        if name not in known:
+            raise ValueError(f"expected one of {', '.join(known)}, got '{name}'")
+    return " ".join(f"{name} {float(value)!r}" for name, value in given.items())

@@ -1,0 +1,159 @@
+"""A deck run from Python: `voussoir.run`, and decks made of Python values."""
+
+from __future__ import annotations
+
+import os
+import re
+import shutil
+import subprocess
+import tempfile
+import weakref
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any, Union
+
+from voussoir import results
+from voussoir.dda_program import DdaError, find_dda, path_word, set_options
+from voussoir.deck.text import Groups, deck_text, groups_of, merged, value_text
+
+#: Exit status of `dda run` that leaves results: all decided, or a case undecided
+_LEAVES_RESULTS = (0, 3)
+#: What the text of a deck has and the name of a file has not
+_GROUP = re.compile(r"^\s*&\w+", re.MULTILINE)
+
+
+@dataclass
+class Deck:
+    """A deck made of Python values, and the files beside it.
+
+    Attributes
+    ----------
+    groups : dict
+        Keys and values by group, as in a deck.
+    files : dict of str to str
+        Texts of the files that the deck names, by their names.
+    """
+
+    groups: dict[str, Any] = field(default_factory=dict)
+    files: dict[str, str] = field(default_factory=dict)
+
+    def text(self) -> str:
+        """The deck as text."""
+        return deck_text(self.groups)
+
+    def write(self, file: Union[str, Path]) -> Path:
+        """Write the deck, and its files beside it.
+
+        Parameters
+        ----------
+        file : str or Path
+            The deck's name; its folder is made if missing.
+
+        Returns
+        -------
+        Path
+            The deck.
+        """
+        file = Path(file)
+        file.parent.mkdir(parents=True, exist_ok=True)
+        for name, text in self.files.items():
+            (file.parent / name).write_text(text, encoding="utf-8")
+        file.write_text(self.text(), encoding="utf-8")
+        return file
+
+    def run(self, out: Union[str, Path, None] = None, jobs: int = 1, **set: Any) -> results.Results:
+        """Run it: see `voussoir.run`."""
+        return run(self, out, jobs, **set)
+
+
+#: What `run` takes: a file, the text of a deck, its groups, or a Deck
+Runnable = Union[str, Path, Groups, Deck]
+
+
+def run(
+    deck: Runnable, out: Union[str, Path, None] = None, jobs: int = 1, **set: Any
+) -> results.Results:
+    """Run a deck and read what it leaves.
+
+    Parameters
+    ----------
+    deck : str, Path, mapping or Deck
+        A deck's file; the text of one; its groups, such as {"arch": {"voussoirs": 36},
+        "search": {"parameter": "thickness_ratio"}}; or an Arch or Blocks.
+    out : str or Path, optional
+        Folder of the results. Without it they vanish with the object that is given back; a deck
+        that is no file is written there, too, as deck.nml.
+    jobs : int, optional
+        Cases computed at the same time.
+    **set
+        Keys as in decks, by their names (friction_deg=40), with the group where several have one
+        (**{"arch%radius": 5.0}), or a group at a time (search={"parameter": "friction_deg"}, for
+        which search="friction_deg" will do). sweep wants a dict or a list of them, and a deck that
+        is no file.
+
+    Returns
+    -------
+    Results
+        What `voussoir.results.read` gives. A case may be undecided.
+
+    Raises
+    ------
+    DdaError
+        If the program refuses the deck: its message, with file and line.
+    ValueError
+        If a key is not known, or the deck is neither a file nor text.
+    """
+    dda = find_dda()
+    changes = groups_of(dda, set)
+    place = Path(tempfile.mkdtemp(prefix="voussoir-")) if out is None else Path(out)
+    try:
+        file, settings = _as_file(deck, place, changes)
+        words = [str(dda), "run", path_word(file), "--out", path_word(place), "--quiet"]
+        done = subprocess.run(
+            [*words, "--jobs", str(jobs), *set_options(settings)],
+            env={**os.environ, "OPENBLAS_NUM_THREADS": "1"},
+            capture_output=True,
+            text=True,
+            errors="surrogateescape",
+        )
+        if done.returncode not in _LEAVES_RESULTS:
+            words_of = done.stderr.strip() or f"dda run ended with status {done.returncode}"
+            raise DdaError(words_of, done.returncode)
+        found = results.read(place)
+    except BaseException:
+        if out is None:
+            shutil.rmtree(place, ignore_errors=True)
+        raise
+    if out is None:
+        weakref.finalize(found, shutil.rmtree, place, ignore_errors=True)
+    return found
+
+
+def _as_file(deck: Runnable, place: Path, changes: Groups) -> tuple[Path, list[str]]:
+    """The deck's file, and what is left to set."""
+    if isinstance(deck, Mapping):
+        deck = Deck(dict(deck))
+    if isinstance(deck, Deck):
+        return Deck(merged(deck.groups, changes), deck.files).write(place / "deck.nml"), []
+    if isinstance(deck, str) and _GROUP.search(deck):
+        sweeps = {name: keys for name, keys in changes.items() if name == "sweep"}
+        place.mkdir(parents=True, exist_ok=True)
+        file = place / "deck.nml"
+        file.write_text(deck + "\n" + deck_text(sweeps), encoding="utf-8")
+        return file, _settings({name: changes[name] for name in changes if name != "sweep"})
+    if not isinstance(deck, (str, Path)):
+        raise ValueError(f"expected a deck's file, text or groups, got {deck!r}")
+    if "sweep" in changes:
+        raise ValueError(f"expected &sweep in {deck}, got it as an argument; sweep a dict or a text")
+    return Path(deck), _settings(changes)
+
+
+def _settings(changes: Groups) -> list[str]:
+    """Values of --set."""
+    given = []
+    for group, keys in changes.items():
+        if group == "search" and not keys:  # nothing of a search is set: its first key starts one
+            keys = {"parameter": "thickness_ratio"}
+        given += [f"{group}%{key}={value_text(value)}" for key, value in keys.items()]
+    return given

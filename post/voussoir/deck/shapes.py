@@ -1,0 +1,166 @@
+"""Outlines of drawings and files of geometry as polygons of shapely, with their layers."""
+
+from __future__ import annotations
+
+import json
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from voussoir.deck.shapely_blocks import polygons_of
+from voussoir.extras import load
+
+
+@dataclass(frozen=True)
+class ImportedShape:
+    """An outline.
+
+    Attributes
+    ----------
+    polygon : Polygon
+        Of shapely, in metres.
+    layer : str
+        Its layer, or its property role, layer or name; empty if it has none.
+    """
+
+    polygon: Any
+    layer: str
+
+
+def read_shapes(
+    file: Path, scale: float, tolerance: float
+) -> tuple[list[ImportedShape], list[str]]:
+    """Outlines of a file.
+
+    Parameters
+    ----------
+    file : Path
+        Its ending says how it is read: see `READERS`.
+    scale : float
+        Metres a unit.
+    tolerance : float
+        How far a chord may be from its arc [m].
+
+    Returns
+    -------
+    tuple
+        The outlines, and in words what was dropped.
+
+    Raises
+    ------
+    ValueError
+        If the ending is not known, or the file is none of its kind.
+    MissingPackage
+        If a package is missing.
+    """
+    if file.suffix.lower() not in READERS:
+        raise ValueError(f"expected a file of {', '.join(READERS)}, got '{file.suffix}'")
+    affinity = load("shapely.affinity", "an outline")
+    shapes, dropped = [], []
+    for words, geometry, layer in READERS[file.suffix.lower()](file, tolerance / scale):
+        if geometry is None:
+            dropped.append(words)
+            continue
+        found, lost = polygons_of(geometry)
+        dropped += [f"{words}: {what}" for what in lost]
+        for polygon in found:
+            if not polygon.is_valid:
+                dropped.append(f"{words}: an outline that crosses itself")
+                continue
+            scaled = affinity.scale(polygon, scale, scale, origin=(0.0, 0.0))
+            shapes.append(ImportedShape(scaled, layer))
+    return shapes, dropped
+
+
+#: What a reader gives: words for messages, a geometry or None where there is none, the layer
+Found = Iterator[tuple[str, Any, str]]
+
+
+def read_wkt(file: Path, tolerance: float) -> Found:
+    """Geometries in well-known text, one a line; a layer may stand before it, with a semicolon."""
+    wkt = load("shapely.wkt", "WKT")
+    for number, line in enumerate(file.read_text(encoding="utf-8").splitlines(), 1):
+        layer, _, text = line.rpartition(";")
+        if not text.strip():
+            continue
+        try:
+            yield f"line {number}", wkt.loads(text), layer.strip()
+        except Exception as problem:  # shapely's errors differ by version
+            raise ValueError(f"expected WKT in line {number}, got: {problem}") from problem
+
+
+def read_geojson(file: Path, tolerance: float) -> Found:
+    """Features, or a geometry; the property role, layer or name is the layer."""
+    geometry = load("shapely.geometry", "GeoJSON")
+    try:
+        content = json.loads(file.read_text(encoding="utf-8"))
+    except json.JSONDecodeError as problem:
+        raise ValueError(f"expected JSON, got: {problem}") from problem
+    for number, feature in enumerate(content.get("features", [content]), 1):
+        shape = feature.get("geometry", feature) if feature.get("type") == "Feature" else feature
+        known = feature.get("properties") or {}
+        layer = next((str(known[key]) for key in ("role", "layer", "name") if known.get(key)), "")
+        yield f"feature {number}", geometry.shape(shape) if shape else None, layer
+
+
+def read_dxf(file: Path, tolerance: float) -> Found:
+    """Closed polylines, circles, ellipses and splines; inserted blocks are taken apart."""
+    ezdxf = load("ezdxf", "a DXF drawing")
+    path = load("ezdxf.path", "a DXF drawing")
+    geometry = load("shapely.geometry", "a DXF drawing")
+    try:
+        drawing = ezdxf.readfile(file)
+    except ezdxf.DXFStructureError as problem:
+        raise ValueError(f"expected a DXF drawing, got: {problem}") from problem
+    for entity in _taken_apart(drawing.modelspace()):
+        words = f"{entity.dxftype()} on layer {entity.dxf.layer}"
+        try:
+            outline = path.make_path(entity)
+        except TypeError:
+            yield f"{words}: no outline", None, ""
+            continue
+        points = [(point.x, point.y) for point in outline.flattening(tolerance)]
+        if len(points) < 4 or math.dist(points[0], points[-1]) > tolerance:
+            yield f"{words}: not closed", None, ""
+            continue
+        yield words, geometry.Polygon(points[:-1]), entity.dxf.layer
+
+
+def _taken_apart(entities: Any) -> Iterator[Any]:
+    """Entities, those of inserted blocks in their places."""
+    for entity in entities:
+        if entity.dxftype() != "INSERT":
+            yield entity
+            continue
+        for inner in _taken_apart(entity.virtual_entities()):
+            if inner.dxf.layer == "0":  # of the layer of its insert
+                inner.dxf.layer = entity.dxf.layer
+            yield inner
+
+
+def read_mesh(file: Path, tolerance: float) -> Found:
+    """Polygons of a mesh, by meshio; the place of their kind is no layer."""
+    meshio = load("meshio", "a mesh")
+    geometry = load("shapely.geometry", "a mesh")
+    mesh = meshio.read(file)
+    for cells in mesh.cells:
+        for number, cell in enumerate(cells.data, 1):
+            words = f"{cells.type} {number}"
+            if len(cell) < 3 or cells.type not in ("triangle", "quad", "polygon"):
+                yield f"{words}: no polygon", None, ""
+                continue
+            yield words, geometry.Polygon(mesh.points[cell][:, :2]), ""
+
+
+#: How a file is read, by its ending
+READERS = {
+    ".dxf": read_dxf,
+    ".geojson": read_geojson,
+    ".json": read_geojson,
+    ".wkt": read_wkt,
+    ".msh": read_mesh,
+    ".vtk": read_mesh,
+    ".vtu": read_mesh,
+}

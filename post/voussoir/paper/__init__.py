@@ -1,0 +1,1 @@
+"""The paper, section 3: its decks, tables, figures, and the report that compares them."""

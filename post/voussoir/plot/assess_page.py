@@ -1,0 +1,188 @@
+"""The page of an assessment: drawings, verdict, safety numbers, inputs, on one printable sheet of HTML."""
+
+from __future__ import annotations
+
+import html
+import io
+from collections.abc import Sequence
+
+import numpy as np
+from matplotlib.figure import Figure
+
+from voussoir.plot.case_picture import draw_blocks, draw_supports, new_figure
+from voussoir.plot.case_scene import scene_of, view
+from voussoir.plot.figure_style import INK
+from voussoir.plot.units import force_text
+from voussoir.results import Results, Table
+
+STYLE = """
+body{font:16px/1.45 Georgia,serif;color:#222;max-width:62rem;margin:1.5rem auto;padding:0 1rem}
+h1{font-size:1.6rem;margin:0 0 .3rem}h2{font-size:1.15rem;margin:1.4rem 0 .4rem;border-bottom:1px solid #bbb}
+.verdict{font-size:1.15rem;padding:.6rem .9rem;border-left:5px solid #1b5e8c;background:#eef3f7}
+.falls{border-color:#a3262a;background:#f8eeee}
+table{border-collapse:collapse;width:100%}td,th{text-align:left;padding:.2rem .6rem .2rem 0;vertical-align:top}
+tr{border-bottom:1px solid #ddd}td{overflow-wrap:anywhere}th{white-space:nowrap}
+@media(max-width:40rem){td,th{display:block;padding-bottom:0}}
+figure{margin:.6rem 0;break-inside:avoid}svg{width:100%;height:auto}figcaption{font-size:.9rem;color:#555}
+pre{white-space:pre-wrap;overflow-wrap:anywhere;background:#f5f5f2;padding:.7rem;font-size:.85rem}
+.note{font-size:.9rem;color:#555}@media print{body{margin:0;font-size:11pt;max-width:none}h2{break-after:avoid}}
+"""
+
+
+def svg_of(figure: Figure) -> str:
+    """A figure as SVG that stands in a page.
+
+    Parameters
+    ----------
+    figure : Figure
+        The figure.
+
+    Returns
+    -------
+    str
+        The element.
+    """
+    text = io.StringIO()
+    figure.savefig(text, format="svg", bbox_inches="tight")
+    drawn = text.getvalue()
+    return drawn[drawn.index("<svg") :]
+
+
+def figure_of(figure: Figure, caption: str = "") -> str:
+    """A figure with its caption, for a page.
+
+    Parameters
+    ----------
+    figure : Figure
+        The figure.
+    caption : str, optional
+        What stands below it.
+
+    Returns
+    -------
+    str
+        The element.
+    """
+    below = f"<figcaption>{html.escape(caption)}</figcaption>" if caption else ""
+    return f"<figure>{svg_of(figure)}{below}</figure>"
+
+
+def draw_scheme(run: Results, axles: Sequence[tuple[float, float]], surface: float | None) -> Figure:
+    """The blocks with their dimensions, supports, the surface of the fill and the axles.
+
+    Parameters
+    ----------
+    run : Results
+        A run of the deck.
+    axles : sequence of tuple
+        Place and weight of each axle [m, N/m].
+    surface : float or None
+        Height of the surface of the fill [m].
+
+    Returns
+    -------
+    Figure
+        The figure.
+    """
+    scene = scene_of(run, 1)
+    shapes = scene.shapes(0.0)
+    corners = np.vstack(shapes)
+    low, high = corners.min(axis=0), corners.max(axis=0)
+    size = float((high - low).max())
+    road = surface if surface is not None else float(high[1])
+    box_low, box_high = view(shapes, [block.corners for block in scene.supports])
+    figure, axes = new_figure(
+        np.minimum(box_low, low - 0.16 * size), np.maximum(box_high, [high[0] + 0.2 * size, road + 0.2 * size])
+    )
+    draw_supports(axes, [block.corners for block in scene.supports])
+    draw_blocks(axes, scene, shapes)
+    if surface is not None:
+        axes.plot([low[0], high[0]], [surface, surface], color=INK[3], linewidth=1.0)
+        axes.annotate("surface of the fill", (low[0], surface), xytext=(0, 3), textcoords="offset points", fontsize=8)
+    line = {"arrowstyle": "<->", "color": INK[0], "linewidth": 0.8}
+    below, beside = low[1] - 0.08 * size, high[0] + 0.08 * size
+    axes.annotate("", (low[0], below), (high[0], below), arrowprops=line)
+    middle = (low + high) / 2
+    axes.text(middle[0], below - 0.01 * size, f"{high[0] - low[0]:.3f} m", ha="center", va="top", fontsize=9)
+    axes.annotate("", (beside, low[1]), (beside, high[1]), arrowprops=line)
+    axes.text(beside + 0.015 * size, middle[1], f"{high[1] - low[1]:.3f} m", va="center", fontsize=9)
+    for place, weight in axles:
+        tip = {"arrowstyle": "-|>", "color": INK[2], "linewidth": 1.6}
+        axes.annotate("", (place, road), (place, road + 0.13 * size), arrowprops=tip)
+        axes.text(place, road + 0.14 * size, f"{force_text(weight)}", ha="center", fontsize=8, color=INK[2])
+    return figure
+
+
+def draw_positions(cases: Table, worst: float | None) -> Figure:
+    """The load factor against the position of the first axle.
+
+    Parameters
+    ----------
+    cases : Table
+        Rows of a sweep of positions.
+    worst : float or None
+        The worst position [m].
+
+    Returns
+    -------
+    Figure
+        The figure.
+    """
+    import matplotlib.pyplot as plt
+
+    figure, axes = plt.subplots(figsize=(8.0, 3.0), layout="constrained")
+    axes.plot(cases["position"], cases["critical"], color=INK[1], marker=".", linewidth=1.4)
+    if worst is not None:
+        axes.axvline(worst, color=INK[2], linewidth=1.0, linestyle="--")
+        axes.annotate(f"worst: {worst:.3f} m", (worst, 0.97), xycoords=("data", "axes fraction"),
+                      xytext=(4, -8), textcoords="offset points", color=INK[2], fontsize=9)
+    least = float(np.nanmin(cases["critical"]))
+    axes.set_ylim(0.0, 6.0 * least)
+    axes.set_xlabel("position of the first axle [m]")
+    axes.set_ylabel("load factor")
+    return figure
+
+
+def table_of(rows: Sequence[tuple[str, str]]) -> str:
+    """A table of two columns.
+
+    Parameters
+    ----------
+    rows : sequence of tuple
+        Names and what stands beside them.
+
+    Returns
+    -------
+    str
+        The element.
+    """
+    cells = (f"<tr><th>{html.escape(name)}</th><td>{html.escape(value)}</td></tr>" for name, value in rows)
+    return "<table>" + "".join(cells) + "</table>"
+
+
+def page(title: str, verdict: str, falls: bool, parts: Sequence[tuple[str, str]]) -> str:
+    """The whole page.
+
+    Parameters
+    ----------
+    title : str
+        What is assessed.
+    verdict : str
+        The answer in a sentence.
+    falls : bool
+        Whether it is a bad one.
+    parts : sequence of tuple
+        Headings and the HTML below them.
+
+    Returns
+    -------
+    str
+        The page.
+    """
+    body = "".join(f"<section><h2>{html.escape(name)}</h2>{text}</section>" for name, text in parts)
+    return (
+        '<!doctype html><html lang="en"><head><meta charset="utf-8">'
+        '<meta name="viewport" content="width=device-width,initial-scale=1">'
+        f"<title>{html.escape(title)}</title><style>{STYLE}</style></head><body><h1>{html.escape(title)}</h1>"
+        f'<p class="verdict{" falls" if falls else ""}">{html.escape(verdict)}</p>{body}</body></html>\n'
+    )

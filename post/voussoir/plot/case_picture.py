@@ -1,0 +1,387 @@
+"""The picture of one case: blocks and supports, thrust, forces, hinges, slips, displaced shape."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+from matplotlib.artist import Artist
+from matplotlib.axes import Axes
+from matplotlib.collections import PolyCollection
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+from matplotlib.patches import Patch
+
+from voussoir.plot.case_scene import CaseScene, scene_of, view
+from voussoir.plot.collapse_picture import MARKS, MEANINGS
+from voussoir.plot.figure_style import INK, STONE, Picture
+from voussoir.plot.shape_rings import ring_joints
+from voussoir.plot.units import force_text, length_text, rounded
+from voussoir.results import Results, Table
+
+#: Longest force, largest displacement and length of slip marks in the picture, over its size
+FORCE_LENGTH, DISPLACED_LENGTH, SLIP_LENGTH = 0.10, 0.04, 0.03
+#: Displacements above this share of the picture's size are seen without magnification
+SEEN = 0.02
+#: Width of a figure, and its least and greatest height [inch]
+WIDTH, LEAST_HEIGHT, MOST_HEIGHT = 8.0, 2.4, 7.5
+
+#: What the marks mean where nothing collapses
+TOUCHES = {
+    "intrados": "touches at the intrados only",
+    "extrados": "touches at the extrados only",
+    "hinge": "touches at this corner only",
+    "open": "open joint",
+}
+
+Row = dict[str, Any]
+
+
+def draw_case(
+    run: Results, number: int, magnify: float | None = None, with_forces: bool = True
+) -> Figure:
+    """Draw one case of any scene.
+
+    Parameters
+    ----------
+    run : Results
+        The results of the deck.
+    number : int
+        Number of the case.
+    magnify : float, optional
+        Magnification of the displaced shape, 0 for none; chosen and stated if not given.
+    with_forces : bool, optional
+        Whether the forces of the joints are drawn.
+
+    Returns
+    -------
+    Figure
+        The figure.
+
+    Raises
+    ------
+    KeyError
+        If there is no such case, or its blocks were not written.
+    """
+    row, scene = run.case(number), scene_of(run, number)
+    joints = run.joints_of(number) if run.joints is not None else None
+    ways = run.points_of(number)
+    shapes = scene.shapes(1.0 if scene.moves else 0.0)
+    beginning = scene.shapes(0.0)
+    supports = [block.corners for block in scene.supports]
+    seen = beginning + shapes + ([way_of(way) for way in ways] if scene.moves else [])
+    low, high = view(seen, supports)
+    size = float((high - low).max())
+    figure, axes = new_figure(low, high)
+    entries = draw_supports(axes, supports)
+    if scene.moves and scene.largest > SEEN * size:
+        entries += draw_beginning(axes, beginning, scene.largest)
+    entries += draw_blocks(axes, scene, shapes)
+    factor = factor_of(scene, magnify, size)
+    if factor > 0.0:
+        entries += draw_displaced(axes, scene, factor)
+    entries += draw_ways(axes, scene, ways, factor)
+    if joints is not None:
+        entries += draw_joints(axes, scene, joints, size, with_forces)
+    draw_scale(axes, low, high)
+    axes.set_title(title_of(row, run), fontsize=11)
+    figure.legend(
+        handles=entries, loc="upper center", bbox_to_anchor=(0.5, -0.02), ncols=2, fontsize=9
+    )
+    return figure
+
+
+def new_figure(low: np.ndarray, high: np.ndarray) -> tuple[Figure, Axes]:
+    """A figure whose shape is that of a piece of plane, and its bare axes."""
+    wide, tall = high - low
+    height = min(max(WIDTH * tall / wide, LEAST_HEIGHT), MOST_HEIGHT) + 0.5
+    figure = Picture(figsize=(WIDTH, height), layout="constrained")
+    axes = figure.subplots()
+    axes.set_aspect("equal")
+    axes.set_axis_off()
+    axes.set_xlim(low[0], high[0])
+    axes.set_ylim(low[1], high[1])
+    return figure, axes
+
+
+def title_of(row: Row, run: Results | None = None) -> str:
+    """What the case is and how it ended.
+
+    Parameters
+    ----------
+    row : dict
+        Its row of results.csv.
+    run : Results, optional
+        The results of the deck, for what was searched.
+
+    Returns
+    -------
+    str
+        One or two lines.
+    """
+    given = [f"{row['blocks']} block" + ("" if row["blocks"] == 1 else "s")]
+    for name, words in (
+        ("half_angle_deg", "half angle {:g}°"),
+        ("thickness_ratio", "t/r = {:g}"),
+        ("friction_deg", "friction {:g}°"),
+    ):
+        if not math.isnan(row[name]):
+            given.append(words.format(row[name]))
+    names = list(row)
+    own = names[names.index("case") + 1 : names.index("blocks")]
+    given += [
+        f"{name} = {row[name]:g}" if isinstance(row[name], float) else f"{name} = {row[name]}"
+        for name in own
+        if name != "voussoirs"
+    ]
+    end = f"{row['verdict']}"
+    if row["verdict"] == "found":
+        what = run.searched if run is not None and run.searched else "value"
+        end += f": critical {what} {row['critical']:.6g}"
+        if not math.isnan(row["exact"]):
+            end += f", exact {row['exact']:.6g}"
+    if row["verdict"] == "stable":
+        end += safety_of(row)
+    if row["collapse_mode"] != "none":
+        end += f", {row['collapse_mode']} collapse"
+    return f"Case {row['case']}: " + ", ".join(given) + "\n" + end
+
+
+def safety_of(row: Row) -> str:
+    """The safety numbers of what stands, as far as they are told."""
+    words = ""
+    for name, text in (
+        ("safety_thickness", ", thickness {:.3g} × critical"),
+        ("exact_low", ", load factor {:.4g}"),
+    ):
+        if not math.isnan(row.get(name, math.nan)):
+            words += text.format(row[name])
+    ends = [row.get(name, math.nan) for name in ("thrust_min", "thrust_max")]
+    if not any(map(math.isnan, ends)):
+        words += f", thrust {force_text(ends[0])} to {force_text(ends[1])}"
+    return words
+
+
+def draw_supports(axes: Axes, supports: list[np.ndarray]) -> list[Artist]:
+    """Draw what cannot move; gives the entries of the legend."""
+    if not supports:
+        return []
+    style = {"facecolor": "white", "edgecolor": INK[3], "linewidth": 0.6, "hatch": "////"}
+    axes.add_collection(PolyCollection(supports, **style, zorder=0))
+    return [Patch(**style, label="fixed")]
+
+
+def draw_beginning(axes: Axes, shapes: list[np.ndarray], largest: float) -> list[Artist]:
+    """Draw where blocks that have moved were; gives the entries of the legend."""
+    axes.add_collection(
+        PolyCollection(
+            shapes, facecolors="none", edgecolors=INK[3], linewidths=0.7, linestyles="--", zorder=1
+        )
+    )
+    words = f"at the beginning; true scale, largest displacement {length_text(largest)}"
+    return [_line(words, linestyle="--", color=INK[3], linewidth=0.9)]
+
+
+def draw_blocks(axes: Axes, scene: CaseScene, shapes: list[np.ndarray]) -> list[Artist]:
+    """Draw the blocks that can move, where their joints are told; gives the entries."""
+    held = np.array([block.state == "held" for block in scene.blocks], dtype=bool)
+    entries: list[Artist] = []
+    for mask, words, hatch in ((~held, "blocks", None), (held, "blocks held by points", "...")):
+        if not mask.any():
+            continue
+        style = {"facecolor": STONE, "edgecolor": "#777777", "linewidth": 0.7, "hatch": hatch}
+        chosen = [shape for shape, wanted in zip(shapes, mask) if wanted]
+        axes.add_collection(PolyCollection(chosen, **style, zorder=1.5))
+        entries.append(Patch(**style, label=words))
+    return entries
+
+
+def factor_of(scene: CaseScene, magnify: float | None, size: float) -> float:
+    """Magnification of the displaced shape; 0 where none is wanted, known or needed."""
+    largest = scene.largest
+    if not largest > 0.0 or magnify == 0.0:
+        return 0.0
+    if magnify is not None:
+        return magnify
+    if scene.moves and largest > SEEN * size:
+        return 0.0
+    return rounded(DISPLACED_LENGTH * size / largest)
+
+
+def draw_displaced(axes: Axes, scene: CaseScene, factor: float) -> list[Artist]:
+    """Draw the displaced shape or the mechanism; gives the entries of the legend."""
+    axes.add_collection(
+        PolyCollection(
+            scene.shapes(factor), facecolors="none", edgecolors=INK[0], linewidths=0.8, zorder=2
+        )
+    )
+    words = f"displaced shape, displacements × {factor:g} (largest {length_text(scene.largest)})"
+    if scene.falls:
+        words = f"collapse mechanism, drawn with a largest displacement of {length_text(factor)}"
+    return [_line(words, linestyle="-", color=INK[0], linewidth=0.8)]
+
+
+def way_of(way: Table) -> np.ndarray:
+    """Where a measured point was after each step: (n, 2) [m]."""
+    return np.column_stack((way["x"], way["y"]))
+
+
+def draw_ways(axes: Axes, scene: CaseScene, ways: list[Table], factor: float) -> list[Artist]:
+    """Draw the ways of the measured points as the blocks are drawn; gives the entries."""
+    for way in ways:
+        motion = np.column_stack((way["u"], way["v"]))
+        start = way_of(way)[0] - motion[0]
+        points = start + motion * (1.0 if scene.moves and factor == 0.0 else factor)
+        axes.plot(*points.T, color=INK[1], linewidth=1.1, linestyle=(0, (4, 1.5)), zorder=5)
+        axes.plot(*points[-1], marker="D", color=INK[1], markersize=4, zorder=6)
+        axes.annotate(
+            str(way["point"][0]), points[-1], xytext=(5, 3), textcoords="offset points",
+            fontsize=8, color=INK[1], zorder=8,
+        )
+    if not ways:
+        return []
+    return [
+        _line("measured points and their ways", linestyle=(0, (4, 1.5)), color=INK[1],
+              marker="D", markersize=4, linewidth=1.1)
+    ]
+
+
+def draw_joints(
+    axes: Axes, scene: CaseScene, joints: Table, size: float, with_forces: bool
+) -> list[Artist]:
+    """Draw thrust, forces, hinges and slips; gives the entries of the legend."""
+    entries = draw_thrust(axes, joints) if scene.is_arch else []
+    if scene.voussoirs:
+        entries = draw_ring_thrust(axes, scene, joints)
+    if with_forces:
+        entries += draw_forces(axes, scene, joints, size)
+    return entries + draw_hinges(axes, scene, joints) + draw_slips(axes, scene, joints, size)
+
+
+def thrust_points(joints: Table) -> np.ndarray:
+    """Where the forces act: (n, 2) [m]; NaN where a joint carries nothing."""
+    points = np.column_stack((joints["x"], joints["y"]))
+    points[~(joints["normal_force"] > 0.0)] = np.nan
+    return points
+
+
+def draw_thrust(axes: Axes, joints: Table) -> list[Artist]:
+    """Draw the line of thrust of an arch; gives the entries of the legend."""
+    axes.plot(*thrust_points(joints).T, color=INK[1], linewidth=2.6, zorder=4)
+    return [_line("line of thrust", linestyle="-", color=INK[1])]
+
+
+def draw_ring_thrust(axes: Axes, scene: CaseScene, joints: Table) -> list[Artist]:
+    """Draw the line of thrust through the voussoirs of each ring; gives the entries of the legend."""
+    points = thrust_points(joints)
+    for pair in ring_joints(joints["block_1"], joints["block_2"], scene.count, scene.voussoirs):
+        axes.plot(*points[list(pair)].T, color=INK[1], linewidth=2.6, solid_capstyle="round", zorder=4)
+    return [_line("line of thrust", linestyle="-", color=INK[1])]
+
+
+def draw_forces(axes: Axes, scene: CaseScene, joints: Table, size: float) -> list[Artist]:
+    """Draw the force of each joint on its second block, or on the one of its two that can move.
+
+    Gives the entries of the legend.
+    """
+    vectors = np.column_stack((joints["force_x"], joints["force_y"]))
+    vectors[np.isin(joints["block_2"], [block.number for block in scene.supports])] *= -1.0
+    largest = float(np.hypot(*vectors.T).max(initial=0.0))
+    if not largest > 0.0:
+        return []
+    arrows = vectors * (FORCE_LENGTH * size / largest)
+    axes.quiver(
+        *thrust_points(joints).T, *arrows.T, angles="xy", scale_units="xy", scale=1.0,
+        color=INK[2], width=0.002, headwidth=4.5, zorder=4.5,
+    )
+    words = f"contact forces, longest {force_text(largest)}"
+    return [_line(words, linestyle="-", color=INK[2], linewidth=1.2)]
+
+
+def roles_of(joints: Table) -> np.ndarray:
+    """What each joint does: in the collapse if there is one, else at the end of the run."""
+    mechanism = joints["mechanism"]
+    return mechanism if np.any(mechanism != "none") else joints["state"]
+
+
+def draw_hinges(axes: Axes, scene: CaseScene, joints: Table) -> list[Artist]:
+    """Draw hinges and open joints; gives the entries of the legend.
+
+    A joint of one corner turns about it always: it is marked in a collapse only.
+    """
+    entries: list[Artist] = []
+    role = roles_of(joints)
+    collapses = role is joints["mechanism"]
+    two = np.hypot(
+        joints["x_extrados"] - joints["x_intrados"], joints["y_extrados"] - joints["y_intrados"]
+    ) > 0.0
+    two |= joints["mechanism"] != "none"
+    places = {
+        "intrados": (role == "hinge_intrados", "x_intrados", "y_intrados"),
+        "extrados": (role == "hinge_extrados", "x_extrados", "y_extrados"),
+        "open": (role == "open", "x", "y"),
+    }
+    seen = set()
+    for kind, (mask, x, y) in places.items():
+        mask = mask & two
+        mark = "hinge" if kind != "open" and not scene.is_arch else kind
+        if not mask.any():
+            continue
+        axes.plot(
+            joints[x][mask], joints[y][mask], linestyle="none", markersize=6.5, zorder=6,
+            **MARKS[mark],
+        )
+        if mark not in seen:
+            words = MEANINGS[mark] if collapses else TOUCHES[mark]
+            entries.append(_line(words, **MARKS[mark]))
+        seen.add(mark)
+    return entries
+
+
+def draw_slips(axes: Axes, scene: CaseScene, joints: Table, size: float) -> list[Artist]:
+    """Draw which way the sides of sliding joints move; gives the entries of the legend."""
+    slides = np.flatnonzero(np.isfinite(joints["slides_x"]))
+    centre = {
+        block.number: block.corners.mean(axis=0) for block in scene.blocks + scene.supports
+    }
+    length = SLIP_LENGTH * size
+    for joint in slides:
+        way = np.array([joints["slides_x"][joint], joints["slides_y"][joint]])
+        normal = np.array([-way[1], way[0]])
+        first, second = (centre[int(joints[f"block_{side}"][joint])] for side in (1, 2))
+        if (second - first) @ normal < 0.0:
+            normal = -normal
+        middle = 0.5 * np.array(
+            [joints[f"{axis}_intrados"][joint] + joints[f"{axis}_extrados"][joint] for axis in "xy"]
+        )
+        for side in (1.0, -1.0):
+            start = middle + side * (0.3 * length * normal - 0.5 * length * way)
+            axes.annotate(
+                "", start + side * length * way, start, zorder=7,
+                arrowprops={"arrowstyle": "->", "color": INK[0], "linewidth": 1.3,
+                            "shrinkA": 0, "shrinkB": 0},
+            )
+    if not len(slides):
+        return []
+    return [
+        _line("sliding joint: which way its sides move", marker=r"$\rightleftarrows$",
+              markerfacecolor=INK[0], markeredgecolor=INK[0], markersize=11)
+    ]
+
+
+def draw_scale(axes: Axes, low: np.ndarray, high: np.ndarray) -> None:
+    """Draw a bar of a round length below the picture."""
+    length = rounded(0.2 * float(high[0] - low[0]))
+    room = 0.035 * float((high - low).max())
+    start, level = low[0] + room, low[1] - room
+    axes.plot([start, start + length], [level, level], color=INK[0], linewidth=2.0,
+              solid_capstyle="butt", clip_on=False, zorder=9)
+    axes.annotate(
+        length_text(length), (start + length, level), xytext=(5, 0), textcoords="offset points",
+        va="center", fontsize=9, annotation_clip=False,
+    )
+
+
+def _line(label: str, **style) -> Line2D:
+    return Line2D([], [], **({"linestyle": "none", "label": label} | style))

@@ -1,0 +1,184 @@
+"""Design charts: the critical value of a sweep against what was swept."""
+
+from __future__ import annotations
+
+import numpy as np
+from matplotlib.cm import ScalarMappable
+from matplotlib.colors import Normalize
+from matplotlib.figure import Figure
+
+from voussoir.plot.figure_style import INK, Picture
+from voussoir.results import Results, Table
+
+#: What columns mean, for the axes
+MEANINGS = {
+    "half_angle_deg": "half angle $\\alpha$ [°]",
+    "friction_deg": "friction angle $\\varphi$ [°]",
+    "blocks": "number of voussoirs",
+    "voussoirs": "number of voussoirs",
+    "thickness_ratio": "thickness over radius $t/r$",
+    "radius": "radius $r$ [m]",
+    "horizontal_coefficient": "horizontal force over weight",
+    "penetration_ratio": "penetration over half size $g_3$",
+}
+#: Columns that a sweep may run over although they are not its own
+_SHARED = ("half_angle_deg", "blocks", "friction_deg", "thickness_ratio", "geometry")
+#: First and last column that every table has; swept parameters stand between
+_BEFORE, _BEHIND = "case", "blocks"
+_MARKERS = "osD^vP*X"
+#: Most curves that can be told apart
+MOST_CURVES = 8
+
+
+class ChartError(ValueError):
+    """No chart can be drawn: why, and what to do."""
+
+
+def swept_columns(cases: Table) -> list[str]:
+    """Columns that were swept and vary.
+
+    Parameters
+    ----------
+    cases : Table
+        results.csv.
+
+    Returns
+    -------
+    list of str
+        Their names; `blocks` only where no other column explains it.
+    """
+    names = list(cases.columns)
+    own = names[names.index(_BEFORE) + 1 : names.index(_BEHIND)]
+    shared = [name for name in _SHARED if not (name == "blocks" and "voussoirs" in own)]
+    return [name for name in own + shared if len(_values(cases, name)) > 1]
+
+
+def draw_chart(run: Results, column: str | None = None) -> Figure:
+    """Draw the critical value against one swept column, a curve for each value of the others.
+
+    Parameters
+    ----------
+    run : Results
+        The results of a deck with &search and &sweep.
+    column : str, optional
+        The abscissa; by default the numeric column with the most values.
+
+    Returns
+    -------
+    Figure
+        The figure: brackets' middles as points, exact values of the same polygons as crosses;
+        nothing is joined by lines that are not computed.
+
+    Raises
+    ------
+    ChartError
+        If nothing was found, nothing was swept, or the curves are too many.
+    """
+    found = run.cases.take(run.cases["verdict"] == "found")
+    swept = swept_columns(run.cases)
+    numeric = [name for name in swept if found[name].dtype.kind in "if"]
+    if column is None:
+        if not numeric:
+            raise ChartError("expected a swept number, got none; name a case instead: --case 1")
+        column = max(numeric, key=lambda name: len(_values(found, name)))
+    if column not in numeric:
+        raise ChartError(
+            f"expected one of {', '.join(numeric) or 'no columns'} to chart, got '{column}'; "
+            "choose a number that was swept"
+        )
+    if len(found) < 2:
+        raise ChartError("expected two critical values or more, got fewer; give the deck &search")
+    others = [name for name in swept if name != column and not _follows(found, name, column)]
+    groups = _groups(found, others)
+    if len(groups) <= MOST_CURVES:
+        figure = _draw(run, groups, column)
+    elif len(others) == 1 and others[0] in numeric:
+        figure = _draw_by_colour(run, groups, column, others[0])
+    else:
+        raise ChartError(
+            f"expected at most {MOST_CURVES} curves or one number beside {column}, got "
+            f"{len(groups)} curves of {', '.join(others)}; sweep fewer values, or fewer keys"
+        )
+    missing = len(run.cases) - len(found)
+    if missing:
+        figure.axes[0].set_title(
+            f"{missing} of {len(run.cases)} cases have no critical value", fontsize=9, color="#555555"
+        )
+    return figure
+
+
+def _draw(run: Results, groups: list[tuple[str, Table]], column: str) -> Figure:
+    figure = Picture(figsize=(6.4, 4.4), layout="constrained")
+    axes = figure.subplots()
+    exact = False
+    for number, (label, rows) in enumerate(groups):
+        rows = rows.take(np.argsort(rows[column], kind="stable"))
+        color = INK[number % 3]
+        known = ~np.isnan(rows["exact"])
+        exact |= bool(known.any())
+        axes.plot(
+            rows[column], rows["critical"], linestyle="none", color=color, markersize=6,
+            marker=_MARKERS[number], markerfacecolor="white", label=label or "DDA",
+        )
+        axes.plot(
+            rows[column][known], rows["exact"][known], linestyle="none", color=color,
+            marker="+", markersize=9, markeredgewidth=0.9,
+        )
+    axes.set_xlabel(MEANINGS.get(column, column))
+    axes.set_ylabel(_searched(run))
+    if exact:
+        axes.plot([], [], color=INK[0], linestyle="none", marker="+", markersize=9,
+                  markeredgewidth=0.9, label="limit analysis, same polygons")
+    axes.legend()
+    return figure
+
+
+def _draw_by_colour(
+    run: Results, groups: list[tuple[str, Table]], column: str, other: str
+) -> Figure:
+    """Curves too many for marks: their colour tells the second parameter."""
+    figure = Picture(figsize=(6.8, 4.4), layout="constrained")
+    axes = figure.subplots()
+    values = [float(rows[other][0]) for _, rows in groups]
+    scale = ScalarMappable(Normalize(min(values), max(values)), "viridis")
+    for value, (_, rows) in zip(values, groups):
+        rows = rows.take(np.argsort(rows[column], kind="stable"))
+        axes.plot(
+            rows[column], rows["critical"], color=scale.to_rgba(value), linestyle="none",
+            marker=".", markersize=5,
+        )
+    axes.set_xlabel(MEANINGS.get(column, column))
+    axes.set_ylabel(_searched(run))
+    figure.colorbar(scale, ax=axes, label=MEANINGS.get(other, other))
+    return figure
+
+
+def _searched(run: Results) -> str:
+    """What was searched."""
+    name = run.searched or "thickness_ratio"
+    return "critical " + MEANINGS.get(name, name)
+
+
+def _values(cases: Table, name: str) -> set:
+    column = cases[name]
+    return set(column[~np.isnan(column)] if column.dtype.kind == "f" else column)
+
+
+def _follows(cases: Table, name: str, column: str) -> bool:
+    """Whether a column is a function of the abscissa, as in a linked sweep."""
+    pairs = set(zip(cases[column].tolist(), cases[name].tolist()))
+    return len(pairs) == len(set(cases[column].tolist()))
+
+
+def _groups(cases: Table, others: list[str]) -> list[tuple[str, Table]]:
+    keys = sorted(set(zip(*(cases[name].tolist() for name in others)))) if others else [()]
+    groups = []
+    for key in keys:
+        rows = cases.where(**dict(zip(others, key)))
+        label = ", ".join(
+            f"{MEANINGS.get(name, name)}: {value:g}" if isinstance(value, float)
+            else f"{MEANINGS.get(name, name)}: {value}"
+            for name, value in zip(others, key)
+        )
+        groups.append((label, rows))
+    return groups

@@ -1,0 +1,415 @@
+"""Read what `dda run` has written.
+
+from voussoir import results
+run = results.read("table1")
+run.cases["critical"]            # a column as an array, cases in order
+run.cases.where(geometry="current")["relative_error"]
+run.cases.to_pandas()
+run.plot(1)
+for frame in run.frames_of(1): frame.blocks
+"""
+
+from __future__ import annotations
+
+from collections.abc import ItemsView, Iterator, KeysView, Mapping, ValuesView
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from voussoir.extras import advice
+from voussoir.plot.shape_rings import is_shape
+from voussoir.results import _table_view
+from voussoir.results._tables import DamagedTable, read_columns
+
+if TYPE_CHECKING:
+    import pandas
+
+    from voussoir.plot.figure_style import Picture
+
+__all__ = ["Block", "DamagedTable", "Frame", "Results", "Table", "read"]
+
+
+class Table(Mapping):
+    """Columns of equal length by their names.
+
+    As of a data frame, `len` is the number of rows, and iteration gives the names of the columns.
+
+    Parameters
+    ----------
+    columns : dict of str to ndarray
+        Whole numbers, floats (NaN where a cell is empty), texts, or objects (tuples of floats for
+        the hinge angles).
+    """
+
+    def __init__(self, columns: dict[str, np.ndarray]) -> None:
+        self.columns = columns
+
+    def __getitem__(self, name: str) -> np.ndarray:
+        """A column."""
+        return self.columns[name]
+
+    def __iter__(self) -> Iterator[str]:
+        """Names of the columns."""
+        return iter(self.columns)
+
+    def __len__(self) -> int:
+        """Number of rows."""
+        return len(next(iter(self.columns.values()), ()))
+
+    def __eq__(self, other: object) -> bool:
+        """Whether another table has the same columns and cells; NaN equals NaN."""
+        if not isinstance(other, Table) or list(self) != list(other):
+            return False
+        return all(map(_equal, self.values(), other.values()))
+
+    __hash__ = None
+
+    def __repr__(self) -> str:
+        return _table_view.as_text(self.columns, len(self))
+
+    def _repr_html_(self) -> str:
+        return _table_view.as_html(self.columns, len(self))
+
+    def keys(self) -> KeysView:
+        """Names of the columns."""
+        return self.columns.keys()
+
+    def values(self) -> ValuesView:
+        """The columns."""
+        return self.columns.values()
+
+    def items(self) -> ItemsView:
+        """Names and columns."""
+        return self.columns.items()
+
+    def to_pandas(self) -> pandas.DataFrame:
+        """The table as a data frame of pandas.
+
+        Raises
+        ------
+        ImportError
+            If there is no pandas.
+        """
+        try:
+            import pandas
+        except ImportError as missing:
+            raise ImportError(f"expected pandas, got none ({missing}); {advice('pandas')}") from missing
+        return pandas.DataFrame(dict(self.columns))
+
+    def rows(self) -> Iterator[dict[str, Any]]:
+        """Rows one by one."""
+        for row in range(len(self)):
+            yield {name: column[row] for name, column in self.columns.items()}
+
+    def where(self, **wanted: Any) -> Table:
+        """Rows whose columns have the wanted values.
+
+        Parameters
+        ----------
+        **wanted
+            Value of each column by its name.
+
+        Returns
+        -------
+        Table
+            The rows, in the same order.
+        """
+        kept = np.ones(len(self), dtype=bool)
+        for name, value in wanted.items():
+            kept &= self.columns[name] == value
+        return self.take(kept)
+
+    def take(self, rows: np.ndarray) -> Table:
+        """Some of the rows, by a mask or by their places."""
+        return Table({name: column[rows] for name, column in self.columns.items()})
+
+
+@dataclass(frozen=True)
+class Frame:
+    """One picture of a run.
+
+    Attributes
+    ----------
+    number, step : int
+        Number of the picture and of the time step before it.
+    time : float
+        Sum of the time steps before it [s].
+    blocks : list of ndarray
+        Corners of each block, (n, 2) [m].
+    joints : Table
+        Contact points, force and states of each joint: the rows of frame_joints.csv.
+    """
+
+    number: int
+    step: int
+    time: float
+    blocks: list[np.ndarray]
+    joints: Table
+
+
+@dataclass(frozen=True)
+class Block:
+    """One block of a case.
+
+    Attributes
+    ----------
+    number : int
+        Its number, from 1.
+    state : str
+        "fixed", "held" (by points) or "free".
+    corners : ndarray
+        Where its corners are at the beginning, anticlockwise: (n, 2) [m].
+    displacement : ndarray
+        Displacements of the corners: (n, 2) [m]; NaN where none are known.
+    """
+
+    number: int
+    state: str
+    corners: np.ndarray
+    displacement: np.ndarray
+
+
+@dataclass(frozen=True, repr=False)
+class Results:
+    """The results of one deck.
+
+    Attributes
+    ----------
+    folder : Path
+        Where they were read.
+    cases : Table
+        results.csv, in the order of the cases.
+    joints : Table or None
+        joints.csv, likewise; None if the deck did not want it.
+    frames, frame_joints : Table or None
+        frames.csv and frame_joints.csv, likewise.
+    blocks, points, reactions : Table or None
+        blocks.csv, points.csv and reactions.csv, likewise.
+    """
+
+    folder: Path
+    cases: Table
+    joints: Table | None
+    frames: Table | None
+    frame_joints: Table | None
+    blocks: Table | None = None
+    points: Table | None = None
+    reactions: Table | None = None
+
+    def __repr__(self) -> str:
+        return _table_view.summary(self)
+
+    def _repr_html_(self) -> str:
+        return f"<p>{_table_view.summary(self, as_html=True)}</p>{self.cases._repr_html_()}"
+
+    def plot(self, case: int = 1, **options: Any) -> Picture:
+        """Draw a case as `voussoir plot` does.
+
+        Parameters
+        ----------
+        case : int, optional
+            Its number.
+        **options
+            Those of `case_picture.draw_case`: magnify, with_forces and so on.
+
+        Returns
+        -------
+        Picture
+            A figure of matplotlib that notebooks show; `savefig` writes it.
+        """
+        from voussoir.plot.case_picture import draw_case
+
+        return _drawn(draw_case, self, case, **options)
+
+    def chart(self, column: str | None = None) -> Picture:
+        """Draw the critical values of a sweep against one of its columns, as `voussoir plot --chart`.
+
+        Parameters
+        ----------
+        column : str, optional
+            The abscissa; by default the swept number with the most values.
+
+        Returns
+        -------
+        Picture
+            As of `plot`.
+        """
+        from voussoir.plot.design_chart import draw_chart
+
+        return _drawn(draw_chart, self, column)
+
+    def setting(self, name: str) -> str | None:
+        """What the deck says of a key such as "arch%radius"; None if it leaves it out."""
+        lines = self._record()
+        return lines[lines.index(name) + 1].strip() if name in lines else None
+
+    def settings(self, name: str) -> list[str]:
+        """All that the deck says of a key with a list, such as "vehicle%axles"; empty if it leaves it out."""
+        lines, found = self._record(), []
+        for line in lines[lines.index(name) + 1 :] if name in lines else []:
+            if not line.startswith("  "):
+                break
+            found.append(line.strip())
+        return found
+
+    @property
+    def kind(self) -> str:
+        """Kind of the scene: "arch", "shape" for arches that are no circular ring, "lines" or "blocks"."""
+        kind = self.setting("scene%kind") or "arch"
+        return "shape" if kind == "arch" and is_shape(self._record(), self.searched) else kind
+
+    @property
+    def searched(self) -> str | None:
+        """Parameter that was searched, None if none was."""
+        if "&search" not in self._record():
+            return None
+        return self.setting("search%parameter") or "thickness_ratio"
+
+    def _record(self) -> list[str]:
+        """Lines of deck.record: what the deck asks for."""
+        record = self.folder / "deck.record"
+        return record.read_text(encoding="utf-8").splitlines() if record.is_file() else []
+
+    def case(self, number: int) -> dict[str, Any]:
+        """Row of one case.
+
+        Raises
+        ------
+        KeyError
+            If there is no such case.
+        """
+        for row in self.cases.where(case=number).rows():
+            return row
+        raise KeyError(f"no case {number} in {self.folder}")
+
+    def joints_of(self, number: int) -> Table:
+        """Joints of one case.
+
+        Raises
+        ------
+        KeyError
+            If no joints were written.
+        """
+        if self.joints is None:
+            raise KeyError(
+                f"no joints.csv in {self.folder}: run the deck again with "
+                f"--set output%joints=.true. --cases {number}"
+            )
+        return self.joints.where(case=number)
+
+    def blocks_of(self, number: int) -> list[Block]:
+        """Blocks of one case.
+
+        Raises
+        ------
+        KeyError
+            If they were not written.
+        """
+        rows = None if self.blocks is None else self.blocks.where(case=number)
+        if not rows:
+            raise KeyError(
+                f"no blocks of case {number} in {self.folder}: run the deck again with "
+                f"--set output%blocks=.true. --set output%joints=.true. --cases {number}"
+            )
+        corners = np.column_stack((rows["x"], rows["y"]))
+        moves = np.column_stack((rows["u"], rows["v"]))
+        starts = np.flatnonzero(np.diff(rows["block"])) + 1
+        return [
+            Block(int(rows["block"][first]), str(rows["state"][first]), shape, motion)
+            for first, shape, motion in zip(
+                [0, *starts], np.split(corners, starts), np.split(moves, starts)
+            )
+        ]
+
+    def points_of(self, number: int) -> list[Table]:
+        """Ways of the measured points of one case, a table each; none where none were written."""
+        if self.points is None:
+            return []
+        rows = self.points.where(case=number)
+        return [rows.where(point=point) for point in np.unique(rows["point"])]
+
+    def frames_of(self, number: int) -> list[Frame]:
+        """Pictures of one case in their order; none where none were written."""
+        if self.frames is None or self.frame_joints is None:
+            return []
+        corners = self.frames.where(case=number)
+        joints = self.frame_joints.where(case=number)
+        pictures = []
+        for frame in np.unique(corners["frame"]):
+            of_frame = corners.where(frame=frame)
+            points = np.column_stack((of_frame["x"], of_frame["y"]))
+            starts = np.flatnonzero(np.diff(of_frame["block"])) + 1
+            pictures.append(
+                Frame(
+                    number=int(frame),
+                    step=int(of_frame["step"][0]),
+                    time=float(of_frame["time"][0]),
+                    blocks=np.split(points, starts),
+                    joints=joints.where(frame=frame),
+                )
+            )
+        return pictures
+
+    def pvd(self, number: int) -> Path | None:
+        """The file to open in ParaView for one case, None if there is none."""
+        file = self.folder / "frames" / f"case_{number}.pvd"
+        return file if file.is_file() else None
+
+
+def read(folder: str | Path) -> Results:
+    """Read the results of one deck.
+
+    Parameters
+    ----------
+    folder : str or Path
+        Where `dda run` has written them.
+
+    Returns
+    -------
+    Results
+        The tables with their types, cases in order whatever the order in which they ended.
+
+    Raises
+    ------
+    FileNotFoundError
+        If there is no results.csv in the folder.
+    DamagedTable
+        If a table holds what `dda` does not write.
+    """
+    folder = Path(folder)
+    cases = _read_table(folder / "results.csv")
+    if cases is None:
+        raise FileNotFoundError(f"no results.csv in {folder}: not a folder written by 'dda run'")
+    return Results(
+        folder=folder,
+        cases=cases,
+        joints=_read_table(folder / "joints.csv"),
+        frames=_read_table(folder / "frames.csv"),
+        frame_joints=_read_table(folder / "frame_joints.csv"),
+        blocks=_read_table(folder / "blocks.csv"),
+        points=_read_table(folder / "points.csv"),
+        reactions=_read_table(folder / "reactions.csv"),
+    )
+
+
+def _drawn(draw: Any, *arguments: Any, **options: Any) -> Picture:
+    """A picture in the style of all figures."""
+    from voussoir.plot.figure_style import house_style
+
+    with house_style():
+        return draw(*arguments, **options)
+
+
+def _equal(left: np.ndarray, right: np.ndarray) -> bool:
+    """Whether two columns are the same, NaN where NaN is."""
+    return np.array_equal(left, right, equal_nan=left.dtype.kind == right.dtype.kind == "f")
+
+
+def _read_table(file: Path) -> Table | None:
+    """A table with typed columns in the order of its cases, None if there is no such file."""
+    if not file.is_file():
+        return None
+    table = Table(read_columns(file))
+    return table.take(np.argsort(table["case"], kind="stable"))
