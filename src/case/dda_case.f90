@@ -27,7 +27,7 @@ module dda_case
    use dda_kinds, only : wp
    use dda_load_clock, only : has_path, load_clock_t, new_load_clock
    use dda_limerick_decision, only : decide_limerick
-   use dda_limerick_search, only : find_limerick_critical
+   use dda_limerick_search, only : find_limerick_critical, repeat_with_pictures
    use dda_mechanism, only : follow_collapse
    use dda_scene, only : scene_t
    use dda_scene_plan, only : plan_scene, scene_plan_t
@@ -150,13 +150,14 @@ contains
          & .and. .not. allocated(this%critical%fallen) .and. allocated(this%critical%standing)) &
          & call this%family%build(this%critical%stands, this%scene, error)
       if (this%plan%shared_forces) call share_told_forces(this)
-      if (this%searches .and. integer_of(this%deck, "output", "frames") > 0) &
-         & call take_pictures(this)
+      if (this%searches .and. integer_of(this%deck, "output", "frames") > 0) then
+         if (this%limerick) call repeat_with_pictures(this%family, this%critical, this%album)
+         if (.not. this%limerick) call take_pictures(this)
+      end if
       call system_clock(finish)
       this%seconds = real(finish - start, wp)/real(rate, wp)
       if (this%proves .and. .not. (this%limerick .or. this%plan%velocities &
-         & .or. allocated(this%error))) &
-         & call prove_case(this)
+         & .or. allocated(this%error))) call prove_case(this)
    end subroutine compute_case
 
    !> Put the vehicle where the least load factor is carried
@@ -342,8 +343,7 @@ contains
          scene_size = sqrt(sum(system%area, mask=system%equation > 0) &
             & /real(max(1, count(system%equation > 0)), wp))
       end associate
-      if (scene_kind(this%deck) == "arch") &
-         & scene_size = real_of(this%deck, "arch", "radius")
+      if (scene_kind(this%deck) == "arch") scene_size = real_of(this%deck, "arch", "radius")
       if (allocated(this%deck%cut)) scene_size = this%deck%cut%scale%size
    end function scene_size
 

@@ -4,13 +4,15 @@ module dda_limerick_decision
    use dda_contact_detection, only : contacts_t
    use dda_contact_types, only : place_joint
    use dda_decision, only : decision_t
-   use dda_deck, only : deck_t, word_of
+   use dda_deck, only : deck_t, integer_of, word_of
    use dda_deck_scene, only : deck_scene
-   use dda_frames, only : album_t
+   use dda_frames, only : album_t, frame_is_due, keep_frame
    use dda_kinds, only : wp
    use dda_limerick_contact, only : limerick_contact_t
-   use dda_limerick_model, only : contact_law, finite_law, limerick_model_t
-   use dda_limerick_run, only : limerick_outcome_t, limerick_verdict, run_limerick
+   use dda_limerick_model, only : contact_law, finite_law, limerick_constants_t, &
+      & limerick_model_t
+   use dda_limerick_run, only : begin_outcome, begin_run, limerick_outcome_t, limerick_verdict, &
+      & next_step, run_limerick
    use dda_limerick_scene, only : limerick_scene
    use dda_limerick_state, only : contact_state
    use dda_limerick_step, only : limerick_run_t
@@ -40,16 +42,13 @@ contains
       call deck_scene(deck, scene)
       call limerick_scene(deck, scene, model)
       if (present(album)) then
-         call run_limerick(model, run, outcome, size(album%point))
+         call plan_pictures(integer_of(deck, "output", "frames"), model%constants, album)
+         call run_with_pictures(deck, scene, model, run, outcome, album)
          call keep_ways(outcome, album)
       else
          call run_limerick(model, run, outcome)
       end if
-      decision%system = scene%system
-      if (allocated(decision%system%bar)) decision%system%bar%force = run%blocks%bolt_force
-      decision%contacts = scene%contacts
-      call place_corners(word_of(deck, "scene", "kind"), run, decision%system)
-      call tell_joints(scene, model, run, decision%system%moved, decision%contacts)
+      call report_state(deck, scene, model, run, decision%system, decision%contacts)
       associate (told => decision%outcome)
          told%steps = outcome%steps
          told%passes = outcome%passes
@@ -61,6 +60,89 @@ contains
          if (outcome%still_moving) told%reason = "step limit reached while still moving"
       end associate
    end subroutine decide_limerick
+
+   !> When pictures are due: evenly in the steps of a dynamic run, in displacement in a static one
+   pure subroutine plan_pictures(frames, constants, album)
+      !> How many are asked for
+      integer, intent(in) :: frames
+      !> Constants of the scheme
+      type(limerick_constants_t), intent(in) :: constants
+      !> The album
+      type(album_t), intent(inout) :: album
+
+      album%interval = 0.0_wp
+      if (frames == 0) return
+      if (constants%dynamic) then
+         album%every = max(1, constants%max_steps/frames)
+      else
+         album%spacing = constants%collapse_displacement/real(frames, wp)
+      end if
+   end subroutine plan_pictures
+
+   !> Run a model and keep its pictures
+   pure subroutine run_with_pictures(deck, scene, model, run, outcome, album)
+      !> The deck
+      type(deck_t), intent(in) :: deck
+      !> Its scene
+      type(scene_t), intent(in) :: scene
+      !> The model
+      type(limerick_model_t), intent(in) :: model
+      !> The run as it ended
+      type(limerick_run_t), intent(out) :: run
+      !> How it ended
+      type(limerick_outcome_t), intent(out) :: outcome
+      !> Receives the pictures
+      type(album_t), intent(inout) :: album
+      type(block_system_t) :: system
+      type(contacts_t) :: contacts
+      real(wp) :: farthest
+      logical :: ended
+
+      call begin_run(model, run)
+      call begin_outcome(model, run, size(album%point), outcome)
+      ended = .false.
+      do
+         associate (march => run%march)
+            if (frame_is_due(march%steps, march%time, outcome%displacement, ended, album)) then
+               call report_state(deck, scene, model, run, system, contacts)
+               farthest = march%displacement_ratio*march%half_size &
+                  & *model%constants%max_displacement_ratio
+               call keep_frame(system, contacts, march%steps, march%time, outcome%displacement, &
+                  & farthest, ended, album)
+            end if
+         end associate
+         if (ended) exit
+         call next_step(model, run, outcome, ended)
+      end do
+   end subroutine run_with_pictures
+
+   !> The scene's blocks and joints as a run has left them
+   pure subroutine report_state(deck, scene, model, run, system, contacts)
+      !> The deck
+      type(deck_t), intent(in) :: deck
+      !> Its scene
+      type(scene_t), intent(in) :: scene
+      !> The model
+      type(limerick_model_t), intent(in) :: model
+      !> The run
+      type(limerick_run_t), intent(in) :: run
+      !> The blocks
+      type(block_system_t), intent(out) :: system
+      !> Their joints
+      type(contacts_t), intent(out) :: contacts
+      integer :: n
+
+      system = scene%system
+      if (allocated(system%bar)) system%bar%force = run%blocks%bolt_force
+      contacts = scene%contacts
+      call place_corners(word_of(deck, "scene", "kind"), run, system)
+      call tell_joints(scene, model, run, system%moved, contacts)
+      ! blocks of the scheme are those of the scene, in their order
+      n = min(size(system%area), size(run%blocks%area))
+      system%stress(:, :n) = run%blocks%stress(:, :n)
+      system%motion(1:2, :n) = run%blocks%centroid(:, :n) - scene%system%centroid(:, :n)
+      system%motion(3, :n) = run%blocks%rotation(:n)
+   end subroutine report_state
 
    !> Keep the ways of the measured points
    pure subroutine keep_ways(outcome, album)

@@ -5,6 +5,7 @@ module dda_limerick_search
    use dda_deck_scene, only : deck_family_t
    use dda_deck_set, only : number_fits, put_number
    use dda_error, only : error_t
+   use dda_frames, only : album_t
    use dda_kinds, only : wp
    use dda_limerick_decision, only : decide_limerick
    use dda_search, only : critical_t, search_t
@@ -12,7 +13,7 @@ module dda_limerick_search
    implicit none
    private
 
-   public :: find_limerick_critical
+   public :: find_limerick_critical, repeat_with_pictures
 
    !> First step away from the start, over the start; the steps double
    real(wp), parameter :: first_stride = 0.02_wp
@@ -50,6 +51,31 @@ contains
       if (answer == verdict%undecided .or. both_sides(critical)) return
       critical%verdict = merge(verdict%collapsed, verdict%stable, allocated(critical%fallen))
    end subroutine find_limerick_critical
+
+   !> Pictures of the run nearest to critical that was found to fall, else to stand
+   pure subroutine repeat_with_pictures(family, critical, album)
+      !> The deck and its parameter
+      type(deck_family_t), intent(in) :: family
+      !> What was found
+      type(critical_t), intent(in) :: critical
+      !> Receives the pictures
+      type(album_t), intent(inout) :: album
+      type(decision_t) :: decision
+      type(error_t), allocatable :: error
+      type(deck_t) :: deck
+
+      deck = family%deck
+      if (allocated(critical%fallen)) then
+         call put_number(deck, family%parameter, critical%falls, &
+            & deck%value(family%parameter%key)%place, error)
+      else if (allocated(critical%standing)) then
+         call put_number(deck, family%parameter, critical%stands, &
+            & deck%value(family%parameter%key)%place, error)
+      else
+         return
+      end if
+      if (.not. allocated(error)) call decide_limerick(deck, decision, album)
+   end subroutine repeat_with_pictures
 
    !> Whether a value stands and another falls
    pure logical function both_sides(critical)

@@ -11,7 +11,6 @@ module dda_scene_check
    use dda_error, only : error_t, fatal_error
    use dda_kinds, only : wp
    use dda_limerick_blocks, only : check_limerick_blocks
-   use dda_limerick_lines, only : check_limerick_lines
    use dda_line_scene, only : check_line_scene
    use dda_live_loads, only : bears_live, check_live_points
    use dda_read_deck, only : geometry_file
@@ -189,11 +188,7 @@ contains
             & searched, problem)
          call check_model(deck, searched, error)
          if (allocated(error)) return
-         if (word_of(deck, "analysis", "mode") == "limerick") then
-            call check_limerick_lines(deck, error)
-         else
-            call check_line_scene(deck, error)
-         end if
+         if (word_of(deck, "analysis", "mode") /= "limerick") call check_line_scene(deck, error)
       case ("blocks")
          if (word_of(deck, "analysis", "mode") == "limerick") call check_limerick_blocks( &
             & deck%plan, geometry_file(deck), keeps_velocities(deck), error)

@@ -1,7 +1,7 @@
 !> Analysis files in DDAML, the XML form
 module dda_ddaml_analysis
+   use dda_ddaml_attributes, only : choose, read_number, read_whole
    use dda_ddaml_form, only : analysis_form, check_form, find_part
-   use dda_ddaml_geometry, only : attribute_words
    use dda_ddaml_material, only : read_history, read_joint, read_material
    use dda_error, only : error_t, fatal_error
    use dda_kinds, only : wp
@@ -18,8 +18,8 @@ module dda_ddaml_analysis
 
    public :: read_ddaml_analysis
 
-   !> Most steps
-   integer, parameter :: most_steps = 1000000000
+   !> Most steps of that phase where the file does not say it
+   integer, parameter :: usual_gravity_steps = 5000
 
 contains
 
@@ -109,7 +109,7 @@ contains
       type(warnings_t), intent(inout) :: warnings
       !> What is wrong
       type(error_t), allocatable, intent(out) :: error
-      logical :: unused
+      logical :: turned_on
 
       select case (tree%element(at)%name)
       case ("Analysistype")
@@ -118,10 +118,8 @@ contains
          call choose(tree, at, "type", "exact secondorder", "linear", analysis%exact_rotation, &
             & error)
       case ("Gravity")
-         call choose(tree, at, "flag", "yes", "no", unused, error)
-         if (.not. allocated(error) .and. unused) call add_warning(warnings, &
-            & "the phase that turns gravity on has no effect: weight acts from the first step", &
-            & tree%file, tree%element(at)%row)
+         call choose(tree, at, "flag", "yes", "no", turned_on, error)
+         if (turned_on .and. .not. allocated(error)) call read_gravity(tree, at, analysis, error)
       case ("Autotimestep")
          call choose(tree, at, "flag", "yes", "no", analysis%auto_time_step, error)
       case ("Planestrain")
@@ -137,6 +135,29 @@ contains
          end if
       end select
    end subroutine read_switch
+
+   !> Read the phase that turns gravity on
+   pure subroutine read_gravity(tree, at, analysis, error)
+      !> The file's elements
+      type(xml_tree_t), intent(in) :: tree
+      !> Place of the element
+      integer, intent(in) :: at
+      !> Receives its steps and tolerances
+      type(limerick_analysis_t), intent(inout) :: analysis
+      !> What is wrong
+      type(error_t), allocatable, intent(out) :: error
+      character(len=*), parameter :: tolerance(2) = ["Normaltolerance", "Sheartolerance "]
+      integer :: child, i
+
+      analysis%gravity_steps = usual_gravity_steps
+      child = find_child(tree, at, "Gravitysteplimit")
+      if (child > 0) call read_whole(tree, child, "val", 1, analysis%gravity_steps, error)
+      do i = 1, 2
+         child = find_child(tree, at, trim(tolerance(i)))
+         if (child > 0 .and. .not. allocated(error)) &
+            & call read_number(tree, child, "val", 0.0_wp, analysis%gravity_tolerance(i), error)
+      end do
+   end subroutine read_gravity
 
    !> Read the materials of blocks and joints
    pure subroutine read_properties(tree, part, analysis, warnings, error)
@@ -282,78 +303,6 @@ contains
          child = next_sibling(tree, child)
       end do
    end subroutine read_constants
-
-   !> Read an attribute that chooses between two meanings
-   pure subroutine choose(tree, at, name, words_for_yes, word_for_no, yes, error)
-      !> The file's elements
-      type(xml_tree_t), intent(in) :: tree
-      !> Place of the element
-      integer, intent(in) :: at
-      !> Name of the attribute
-      character(len=*), intent(in) :: name
-      !> Words that mean yes, parted by blanks
-      character(len=*), intent(in) :: words_for_yes
-      !> The word that means no
-      character(len=*), intent(in) :: word_for_no
-      !> The choice
-      logical, intent(out) :: yes
-      !> Another word, or none
-      type(error_t), allocatable, intent(out) :: error
-      character(len=:), allocatable :: word
-
-      word = attribute_of(tree, at, name)
-      yes = len(word) > 0 .and. index(" "//words_for_yes//" ", " "//word//" ") > 0
-      if (.not. yes .and. word /= word_for_no) call fatal_error(error, "the attribute "//name &
-         & //" of "//quoted(tree%element(at)%name)//" must be one of "//words_for_yes//" " &
-         & //word_for_no//", got "//quoted(word)//"; choose one", tree%file, tree%element(at)%row)
-   end subroutine choose
-
-   !> Read an attribute that is a number
-   pure subroutine read_number(tree, at, name, low, value, error)
-      !> The file's elements
-      type(xml_tree_t), intent(in) :: tree
-      !> Place of the element
-      integer, intent(in) :: at
-      !> Name of the attribute
-      character(len=*), intent(in) :: name
-      !> Smallest value
-      real(wp), intent(in) :: low
-      !> The number
-      real(wp), intent(inout) :: value
-      !> What is wrong
-      type(error_t), allocatable, intent(out) :: error
-      type(word_list_t) :: words
-      real(wp) :: number(1)
-
-      call attribute_words(tree, at, name, words, error)
-      if (.not. allocated(error)) &
-         & call take_numbers(words, "the attribute "//name, largest_value, number, error)
-      if (allocated(error)) return
-      value = number(1)
-      if (value < low) call fatal_error(error, "the attribute "//name//" must be "//to_text(low) &
-         & //" or more, got "//to_text(value)//"; correct it", tree%file, tree%element(at)%row)
-   end subroutine read_number
-
-   !> Read an attribute that is a whole number
-   pure subroutine read_whole(tree, at, name, low, value, error)
-      !> The file's elements
-      type(xml_tree_t), intent(in) :: tree
-      !> Place of the element
-      integer, intent(in) :: at
-      !> Name of the attribute
-      character(len=*), intent(in) :: name
-      !> Smallest value
-      integer, intent(in) :: low
-      !> The number
-      integer, intent(inout) :: value
-      !> What is wrong
-      type(error_t), allocatable, intent(out) :: error
-      type(word_list_t) :: words
-
-      call attribute_words(tree, at, name, words, error)
-      if (.not. allocated(error)) &
-         & call take_whole(words, "the attribute "//name, low, most_steps, value, error)
-   end subroutine read_whole
 
    !> Whether all is there that an analysis needs
    pure subroutine check_complete(tree, part, analysis, warnings, error)

@@ -49,6 +49,9 @@ module dda_ddaml_form
       & form_t("Analysis", " Analysistype ", " type ", no, no), &
       & form_t("Analysis", " Rotation ", " type ", no, no), &
       & form_t("Analysis", " Gravity ", " flag ", no, no), &
+      & form_t("Gravity", " Gravitysteplimit ", " val ", no, no), &
+      & form_t("Gravity", " Normaltolerance ", " val ", no, no), &
+      & form_t("Gravity", " Sheartolerance ", " val ", no, no), &
       & form_t("Analysis", " Gravaccel ", " value ", no, no), &
       & form_t("Analysis", " Autotimestep ", " flag ", no, no), &
       & form_t("Analysis", " Autopenalty ", " flag pfactor ", no, no), &

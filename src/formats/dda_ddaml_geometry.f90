@@ -1,5 +1,6 @@
 !> Geometry files in DDAML, the XML form
 module dda_ddaml_geometry
+   use dda_ddaml_attributes, only : attribute_words
    use dda_ddaml_form, only : check_form, find_part, geometry_form
    use dda_error, only : error_t, fatal_error
    use dda_kinds, only : wp
@@ -13,7 +14,7 @@ module dda_ddaml_geometry
    implicit none
    private
 
-   public :: read_ddaml_geometry, attribute_words
+   public :: read_ddaml_geometry
 
    !> What the type of an entity of a list says
    type :: type_enum
@@ -128,28 +129,6 @@ contains
          & "the edge-node distance must be from 0 to 0.5, got "//to_text(ratio)//"; correct it", &
          & tree%file, tree%element(at)%row)
    end subroutine read_ratio
-
-   !> The words of an attribute that must be there
-   pure subroutine attribute_words(tree, at, name, words, error)
-      !> The file's elements
-      type(xml_tree_t), intent(in) :: tree
-      !> Place of the element
-      integer, intent(in) :: at
-      !> Name of the attribute
-      character(len=*), intent(in) :: name
-      !> Its words
-      type(word_list_t), intent(out) :: words
-      !> It is not there
-      type(error_t), allocatable, intent(out) :: error
-
-      associate (element => tree%element(at))
-         call split_words(attribute_of(tree, at, name), tree%file, element%row, words)
-         words%row = element%row
-         if (words%n /= 1) call fatal_error(error, "expected the attribute "//name &
-            & //" with one value in "//quoted(element%name)//", got " &
-            & //quoted(attribute_of(tree, at, name))//"; write one value", tree%file, element%row)
-      end associate
-   end subroutine attribute_words
 
    !> Read the elements of a list
    pure subroutine read_entities(tree, list, type, entities, warnings, error)

@@ -1,6 +1,6 @@
 !> Materials and loads of an analysis file in DDAML
 module dda_ddaml_material
-   use dda_ddaml_geometry, only : attribute_words
+   use dda_ddaml_attributes, only : attribute_words
    use dda_error, only : error_t, fatal_error
    use dda_kinds, only : wp
    use dda_limerick_analysis, only : limerick_joint_t, limerick_material_t, load_history_t

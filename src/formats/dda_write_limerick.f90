@@ -264,8 +264,7 @@ contains
 
       text = empty("Analysistype", "type", trim(merge("dynamic", "static ", analysis%dynamic))) &
          & //empty("Rotation", "type", trim(merge("exact ", "linear", analysis%exact_rotation))) &
-         & //empty("Gravity", "flag", "no")//empty("Gravaccel", "value", &
-         & to_text(analysis%gravity)) &
+         & //gravity_phase(analysis)//empty("Gravaccel", "value", to_text(analysis%gravity)) &
          & //empty("Autotimestep", "flag", yes_no(analysis%auto_time_step)) &
          & //empty("Autopenalty", "flag", yes_no(analysis%auto_penalty), &
          & ' pfactor="'//to_text(analysis%penalty_factor)//'"') &
@@ -278,6 +277,24 @@ contains
          & //empty("Saveinterval", "step", to_text(analysis%save_interval)) &
          & //empty("ContactDamping", "value", to_text(analysis%contact_damping))
    end function switches
+
+   !> The phase that turns gravity on
+   pure function gravity_phase(analysis) result(text)
+      !> The analysis
+      type(limerick_analysis_t), intent(in) :: analysis
+      !> Its element
+      character(len=:), allocatable :: text
+
+      if (analysis%gravity_steps == 0) then
+         text = empty("Gravity", "flag", "no")
+      else
+         text = '<Gravity flag="yes">'//lf &
+            & //empty("Gravitysteplimit", "val", to_text(analysis%gravity_steps)) &
+            & //empty("Normaltolerance", "val", to_text(analysis%gravity_tolerance(1))) &
+            & //empty("Sheartolerance", "val", to_text(analysis%gravity_tolerance(2))) &
+            & //"</Gravity>"//lf
+      end if
+   end function gravity_phase
 
    !> The constants of the scheme
    pure function constants(analysis) result(text)

@@ -121,16 +121,14 @@ contains
          key = key_index("analysis", "unknowns")
          problem = "analysis%unknowns needs another mode than 'limerick', whose blocks "// &
             "have 6; remove it"
-      else if (integer_of(deck, "output", "frames") > 0 .and. mode == "limerick") then
-         key = key_index("output", "frames")
-         problem = "output%frames needs another mode than 'limerick', which keeps no frames"
       else if (flag_of(deck, "output", "energy") .and. mode == "limerick") then
          key = key_index("output", "energy")
          problem = "output%energy needs mode = 'dynamic', got 'limerick'; remove one of the two"
       else if (flag_of(deck, "output", "restart") .and. mode == "limerick") then
          key = key_index("output", "restart")
          problem = "output%restart needs mode = 'dynamic', got 'limerick'; remove one of the two"
-      else if (integer_of(deck, "output", "frames") > 0 .and. .not. moves) then
+      else if (integer_of(deck, "output", "frames") > 0 .and. .not. (moves &
+         .or. mode == "limerick")) then
          key = key_index("output", "frames")
          problem = "output%frames needs geometry = 'current': in reference geometry no block "// &
             "moves; change one of the two"

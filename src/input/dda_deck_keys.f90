@@ -223,7 +223,13 @@ module dda_deck_keys
             meaning="h2: normal over shear stiffness of a contact."), &
       key_t(group="limerick", name="rotation", kind=key_kind%word, default="'linear'", &
             words="linear exact", &
-            meaning="Whether vertices turn along the tangent or by sine and cosine.")]
+            meaning="Whether vertices turn along the tangent or by sine and cosine."), &
+      key_t(group="limerick", name="contact_damping", unit="Ns/m2", default="0.0", &
+            at_least=0.0_wp, at_most=1.0e30_wp, &
+            meaning="Force of a closed contact over the speed of approach, with dynamic."), &
+      key_t(group="limerick", name="gravity_steps", kind=key_kind%whole, default="0", &
+            at_least=0.0_wp, at_most=1.0e6_wp, &
+            meaning="Most steps of the phase that turns gravity on; 0 for none.")]
 
    !> Keys of &search
    type(key_t), parameter :: search_keys(*) = [ &

@@ -198,8 +198,12 @@ contains
       logical, intent(in) :: first_pass
       !> The equations; matrix and motion are set
       type(limerick_equations_t), intent(inout) :: equations
+      real(wp) :: damper
       integer :: c
 
+      ! a damper resists the mean speed of the step; static steps begin and end at rest
+      damper = 0.0_wp
+      if (model%constants%dynamic) damper = model%constants%contact_damping/march%time_step
       equations%matrix%diagonal = equations%base
       equations%matrix%coupling = 0.0_wp
       do c = 1, size(equations%bolt_entry)
@@ -213,17 +217,17 @@ contains
             case (contact_state%open)
                cycle
             case (contact_state%second_line)
-               call add_spring(contact, spring(c), march%penalty, spring(c)%normal(:, :, 2), &
-                  & spring(c)%gap(2), equations)
+               call add_spring(contact, spring(c), march%penalty, damper, &
+                  & spring(c)%normal(:, :, 2), spring(c)%gap(2), equations)
             case default
-               call add_spring(contact, spring(c), march%penalty, spring(c)%normal(:, :, 1), &
-                  & spring(c)%gap(1), equations)
+               call add_spring(contact, spring(c), march%penalty, damper, &
+                  & spring(c)%normal(:, :, 1), spring(c)%gap(1), equations)
             end select
             if (contact%corner) cycle
             if (contact%state == contact_state%locked) then
                call add_spring(contact, spring(c), &
-                  & march%penalty/model%constants%stiffness_ratio, spring(c)%along, &
-                  & spring(c)%shear, equations)
+                  & march%penalty/model%constants%stiffness_ratio, damper, &
+                  & spring(c)%along, spring(c)%shear, equations)
             else if (first_pass .or. contact%before /= contact_state%open) then
                call add_friction(model, contact, spring(c), march%used_penalty, &
                   & equations%motion)
@@ -232,28 +236,32 @@ contains
       end do
    end subroutine add_contacts
 
-   !> One spring between two blocks
-   pure subroutine add_spring(contact, spring, stiffness, row, start, equations)
+   !> One spring between two blocks, and a damper beside it (Ke 1995)
+   pure subroutine add_spring(contact, spring, stiffness, damper, row, start, equations)
       !> The contact
       type(limerick_contact_t), intent(in) :: contact
       !> Where it stands in the matrix
       type(contact_spring_t), intent(in) :: spring
       !> Stiffness [N/m2]
       real(wp), intent(in) :: stiffness
+      !> Force of the damper over its elongation in the step [N/m2]
+      real(wp), intent(in) :: damper
       !> Length of the spring per unknown: (6, 2)
       real(wp), intent(in) :: row(:, :)
       !> Its length at the beginning of the step [m]
       real(wp), intent(in) :: start
       !> The equations
       type(limerick_equations_t), intent(inout) :: equations
+      real(wp) :: both
 
+      both = stiffness + damper
       associate (a => contact%block(1), b => contact%block(2), matrix => equations%matrix)
-         call add_outer(stiffness, row(:, 1), row(:, 1), matrix%diagonal(:, :, a))
-         call add_outer(stiffness, row(:, 2), row(:, 2), matrix%diagonal(:, :, b))
+         call add_outer(both, row(:, 1), row(:, 1), matrix%diagonal(:, :, a))
+         call add_outer(both, row(:, 2), row(:, 2), matrix%diagonal(:, :, b))
          if (spring%first_is_row) then
-            call add_outer(stiffness, row(:, 1), row(:, 2), matrix%coupling(:, :, spring%entry))
+            call add_outer(both, row(:, 1), row(:, 2), matrix%coupling(:, :, spring%entry))
          else
-            call add_outer(stiffness, row(:, 2), row(:, 1), matrix%coupling(:, :, spring%entry))
+            call add_outer(both, row(:, 2), row(:, 1), matrix%coupling(:, :, spring%entry))
          end if
          equations%motion(:, a) = equations%motion(:, a) - stiffness*start*row(:, 1)
          equations%motion(:, b) = equations%motion(:, b) - stiffness*start*row(:, 2)

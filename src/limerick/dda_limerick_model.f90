@@ -41,6 +41,12 @@ module dda_limerick_model
       !> Whether vertices turn by sine and cosine; otherwise along the tangent, which lets blocks
       !> grow
       logical :: exact_rotation = .false.
+      !> Force of a closed contact over the speed of approach, in a dynamic run [N s/m2]
+      real(wp) :: contact_damping = 0.0_wp
+      !> Most steps of the phase that turns gravity on; 0 for none
+      integer :: gravity_steps = 0
+      !> Relative change of normal and shear forces in a step at which that phase ends: (2)
+      real(wp) :: gravity_tolerance(2) = 0.01_wp
       !> Motion of a vertex that ends a static run as collapse [m]
       real(wp) :: collapse_displacement = 0.5_wp
    end type limerick_constants_t

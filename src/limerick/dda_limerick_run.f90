@@ -4,13 +4,14 @@ module dda_limerick_run
    use dda_error, only : error_t
    use dda_kinds, only : wp
    use dda_limerick_model, only : limerick_model_t, loads_end
-   use dda_limerick_state, only : new_blocks, new_march
+   use dda_limerick_state, only : contact_state, new_blocks, new_march
    use dda_limerick_step, only : advance, limerick_run_t
+   use dda_material, only : friction_coefficient
    implicit none
    private
 
    public :: limerick_outcome_t, limerick_verdict, limerick_verdict_enum
-   public :: begin_run, run_limerick, largest_displacement
+   public :: begin_outcome, begin_run, next_step, run_limerick, largest_displacement
 
    !> How a run can end
    type :: limerick_verdict_enum
@@ -45,12 +46,18 @@ module dda_limerick_run
       real(wp), allocatable :: time(:)
       !> Where the first of the measured points are then: (2, n_point, :) [m]
       real(wp), allocatable :: track(:, :, :)
+      !> Largest displacement when rest was judged before [m]
+      real(wp) :: displacement_before = -huge(1.0_wp)
    end type limerick_outcome_t
 
    !> Steps over which rest is judged
    integer, parameter :: rest_steps = 1000
    !> Change of the largest displacement in that many steps, over the half size, that counts as rest
    real(wp), parameter :: rest_share = 1.0e-7_wp
+   !> Friction angle of all joints while gravity is turned on [deg]
+   real(wp), parameter :: turning_on_deg = 89.0_wp
+   !> Cohesion of all joints then, in the units of the file, as in the original
+   real(wp), parameter :: turning_on_cohesion = 1.0e4_wp
 
 contains
 
@@ -82,45 +89,157 @@ contains
       type(limerick_outcome_t), intent(out) :: outcome
       !> Of how many measured points the way is kept; none if it is not given
       integer, intent(in), optional :: n_track
+      logical :: ended
+
+      ended = .false.
+      call begin_run(model, run)
+      if (present(n_track)) then
+         call begin_outcome(model, run, n_track, outcome)
+      else
+         call begin_outcome(model, run, 0, outcome)
+      end if
+      do while (.not. ended)
+         call next_step(model, run, outcome, ended)
+      end do
+   end subroutine run_limerick
+
+   !> What is known before the first step; gravity is turned on where the model asks for it
+   pure subroutine begin_outcome(model, run, n_track, outcome)
+      !> The model
+      type(limerick_model_t), intent(in) :: model
+      !> The run, begun
+      type(limerick_run_t), intent(inout) :: run
+      !> Of how many measured points the way is kept
+      integer, intent(in) :: n_track
+      !> The outcome
+      type(limerick_outcome_t), intent(out) :: outcome
       type(error_t), allocatable :: error
-      real(wp) :: last, end
+
+      allocate (outcome%time(64), outcome%track(2, n_track, 64))
+      call turn_gravity_on(model, run, error)
+      if (allocated(error)) outcome%reason = "turning gravity on: "//error%message
+      call keep_track(run, outcome)
+   end subroutine begin_outcome
+
+   !> One step of a run, or its end
+   pure subroutine next_step(model, run, outcome, ended)
+      !> The model
+      type(limerick_model_t), intent(in) :: model
+      !> The run
+      type(limerick_run_t), intent(inout) :: run
+      !> What is known of it; complete at the end
+      type(limerick_outcome_t), intent(inout) :: outcome
+      !> Whether the run has ended: by its verdict, an error, or with its last step
+      logical, intent(out) :: ended
+      type(error_t), allocatable :: error
+      real(wp) :: end
       logical :: rests
 
-      call begin_run(model, run)
-      allocate (outcome%time(64))
-      if (present(n_track)) then
-         allocate (outcome%track(2, n_track, 64))
-      else
-         allocate (outcome%track(2, 0, 64))
-      end if
-      call keep_track(run, outcome)
-      last = -huge(last)
       end = loads_end(model)
-      do while (run%march%steps < model%constants%max_steps)
+      ended = allocated(outcome%reason) .or. run%march%steps >= model%constants%max_steps
+      if (.not. ended) then
          call advance(model, run, error)
-         if (allocated(error)) exit
-         call keep_track(run, outcome)
-         outcome%displacement = largest_displacement(model, run)
-         if (model%constants%dynamic) cycle
-         if (outcome%displacement > model%constants%collapse_displacement) &
-            & outcome%verdict = limerick_verdict%collapsed
-         if (mod(run%march%steps, rest_steps) == 0 .and. .not. run%march%time < end) then
-            rests = abs(outcome%displacement - last) < rest_share*run%march%half_size
-            if (rests) outcome%verdict = limerick_verdict%stable
-            last = outcome%displacement
+         if (allocated(error)) then
+            outcome%reason = error%message
+            ended = .true.
          end if
-         if (outcome%verdict /= limerick_verdict%undecided) exit
-      end do
-      outcome%steps = run%march%steps
-      outcome%passes = run%march%passes
-      if (allocated(error)) then
-         outcome%reason = error%message
+      else if (allocated(outcome%reason)) then
+         continue
       else if (model%constants%dynamic) then
          outcome%verdict = limerick_verdict%completed
-      else if (outcome%verdict == limerick_verdict%undecided) then
+      else
          call spend_steps(run%march%time, end, outcome)
       end if
-   end subroutine run_limerick
+      outcome%steps = run%march%steps
+      outcome%passes = run%march%passes
+      if (ended) return
+      call keep_track(run, outcome)
+      outcome%displacement = largest_displacement(model, run)
+      if (model%constants%dynamic) return
+      if (outcome%displacement > model%constants%collapse_displacement) &
+         & outcome%verdict = limerick_verdict%collapsed
+      if (mod(run%march%steps, rest_steps) == 0 .and. .not. run%march%time < end) then
+         rests = abs(outcome%displacement - outcome%displacement_before) &
+            & < rest_share*run%march%half_size
+         if (rests) outcome%verdict = limerick_verdict%stable
+         outcome%displacement_before = outcome%displacement
+      end if
+      ended = outcome%verdict /= limerick_verdict%undecided
+   end subroutine next_step
+
+   !> The phase that turns gravity on: steps from rest, in joints that cannot slide, until contact
+   !> forces change no more; time begins after it (MacLaughlin 1997)
+   pure subroutine turn_gravity_on(model, run, error)
+      !> The model
+      type(limerick_model_t), intent(in) :: model
+      !> The run, begun
+      type(limerick_run_t), intent(inout) :: run
+      !> Allocated if a step fails
+      type(error_t), allocatable, intent(out) :: error
+      type(limerick_model_t) :: phase
+      real(wp), allocatable :: before(:, :), now(:, :)
+      integer :: b, step
+      logical :: steady
+
+      if (model%constants%gravity_steps == 0) return
+      phase = model
+      phase%constants%dynamic = .false.
+      phase%law%friction = max(phase%law%friction, friction_coefficient(turning_on_deg))
+      phase%law%cohesion = max(phase%law%cohesion, turning_on_cohesion)
+      allocate (before(2, 0))
+      do step = 1, model%constants%gravity_steps
+         call advance(phase, run, error)
+         if (allocated(error)) return
+         now = contact_forces(model, run)
+         steady = size(now) == size(before) .and. falls_no_more(model, run)
+         if (steady) steady = all(maxval(abs(now - before), dim=2) &
+            & <= model%constants%gravity_tolerance*maxval(abs(now), dim=2))
+         if (steady) exit
+         call move_alloc(now, before)
+      end do
+      run%march%steps = 0
+      run%march%time = 0.0_wp
+      run%march%time_step = model%constants%time_step
+      run%blocks%velocity = 0.0_wp
+      do b = 1, size(run%blocks%area)
+         run%blocks%velocity(1:3, b) = model%material(model%block_material(b))%velocity
+      end do
+   end subroutine turn_gravity_on
+
+   !> Whether the last step went no farther than a small part of a free fall from rest: blocks that
+   !> have not met their neighbours yet have no forces that could change
+   pure logical function falls_no_more(model, run)
+      !> The model
+      type(limerick_model_t), intent(in) :: model
+      !> The run
+      type(limerick_run_t), intent(in) :: run
+      real(wp) :: fall
+
+      associate (march => run%march)
+         fall = norm2(model%load_direction)*maxval(model%material%unit_weight &
+            & /model%material%density)*march%time_step**2/2.0_wp
+         falls_no_more = march%displacement_ratio*march%half_size &
+            & *model%constants%max_displacement_ratio &
+            & <= maxval(model%constants%gravity_tolerance)*fall
+      end associate
+   end function falls_no_more
+
+   !> Normal and shear forces of the contacts
+   pure function contact_forces(model, run) result(force)
+      !> The model
+      type(limerick_model_t), intent(in) :: model
+      !> The run
+      type(limerick_run_t), intent(in) :: run
+      !> The forces, zero where a contact is open or slides: (2, n_contact) [N/m]
+      real(wp), allocatable :: force(:, :)
+
+      associate (contact => run%contacts%item(:run%contacts%n), penalty => run%march%used_penalty)
+         allocate (force(2, size(contact)), source=0.0_wp)
+         where (contact%state /= contact_state%open) force(1, :) = -penalty*contact%gap
+         where (contact%state == contact_state%locked) force(2, :) = penalty*contact%shear &
+            & /model%constants%stiffness_ratio
+      end associate
+   end function contact_forces
 
    !> What still moves when the steps are spent is called stable, as a user of the original would
    !> have said; but not before all loads have come

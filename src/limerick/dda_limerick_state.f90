@@ -45,6 +45,8 @@ module dda_limerick_state
       real(wp), allocatable :: second(:, :)
       !> Stress sx, sy, txy: (3, n_block) [Pa]
       real(wp), allocatable :: stress(:, :)
+      !> Rotation since the beginning: (n_block) [rad]
+      real(wp), allocatable :: rotation(:)
       !> Rates of the unknowns: (n_unknown, n_block)
       real(wp), allocatable :: velocity(:, :)
       !> Fixed points: (2, n_fixed) [m]
@@ -124,6 +126,7 @@ contains
       allocate (blocks%owner(nv), blocks%next(nv), blocks%previous(nv))
       allocate (blocks%area(n), blocks%centroid(2, n), blocks%second(3, n), blocks%stress(3, n))
       allocate (blocks%velocity(n_unknown, n), source=0.0_wp)
+      allocate (blocks%rotation(n), source=0.0_wp)
       call measure_blocks(blocks)
       do b = 1, n
          first = model%first_vertex(b)

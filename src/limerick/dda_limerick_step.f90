@@ -101,7 +101,7 @@ contains
       run%before%n = run%contacts%n
       call find_contacts(run%blocks, run%march%reach, model%constants%overlap_deg, run%order, &
          & run%contacts)
-      if (run%march%steps == 0) then
+      if (run%march%passes == 0) then
          call begin_contacts(run%blocks, model%constants%dynamic, &
             & model%constants%close_ratio*run%march%reach, run%contacts)
       else

@@ -116,6 +116,7 @@ contains
             & model%material(model%block_material(b))%material_t), motion(4:6, b))
          blocks%velocity(:, b) = 2.0_wp/march%time_step*motion(:, b) - blocks%velocity(:, b)
       end do
+      blocks%rotation = blocks%rotation + motion(3, :)
       call move_alloc(blocks%vertex, before)
       call move_alloc(moved, blocks%vertex)
       call move_alloc(before, moved)

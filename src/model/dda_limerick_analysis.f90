@@ -82,8 +82,12 @@ module dda_limerick_analysis
       real(wp) :: overlap_deg = 3.0_wp
       !> Shi's h2: stiffness of normal over shear springs
       real(wp) :: shear_ratio = 2.5_wp
-      !> Damping of contacts
+      !> Damping of contacts: force over speed of approach
       real(wp) :: contact_damping = 0.0_wp
+      !> Most steps of the phase that turns gravity on; 0 for none
+      integer :: gravity_steps = 0
+      !> Relative change of normal and shear forces in a step at which that phase ends: (2)
+      real(wp) :: gravity_tolerance(2) = 0.01_wp
       !> Materials of blocks: (n)
       type(limerick_material_t), allocatable :: material(:)
       !> Materials of joints: (n)

@@ -250,6 +250,8 @@ contains
       analysis%steps = constants%max_steps
       analysis%dynamic = constants%dynamic .or. word_of(deck, "analysis", "mode") == "dynamic"
       analysis%exact_rotation = constants%exact_rotation
+      analysis%contact_damping = constants%contact_damping
+      analysis%gravity_steps = constants%gravity_steps
       if (word_of(deck, "analysis", "mode") /= "limerick") return
       ! in the other modes these keys mean something else
       analysis%auto_time_step = constants%auto_time_step

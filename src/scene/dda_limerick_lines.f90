@@ -2,19 +2,16 @@
 module dda_limerick_lines
    use dda_boundary, only : boundary_t, constant_history, history_t, measured_point_t
    use dda_cut_model, only : point_kind
-   use dda_deck, only : deck_error, deck_t
-   use dda_deck_keys, only : key_index
-   use dda_error, only : error_t
+   use dda_deck, only : deck_t
    use dda_kinds, only : wp
    use dda_limerick_analysis, only : limerick_analysis_t
    use dda_limerick_model, only : finite_law, limerick_constants_t, limerick_model_t
    use dda_line_scene, only : law_of_joint
    use dda_scene, only : scene_t
-   use dda_text, only : to_text
    implicit none
    private
 
-   public :: lines_model, take_constants, check_limerick_lines
+   public :: lines_model, take_constants
 
 contains
 
@@ -148,19 +145,8 @@ contains
       constants%max_steps = analysis%steps
       constants%dynamic = analysis%dynamic
       constants%exact_rotation = analysis%exact_rotation
+      constants%contact_damping = analysis%contact_damping
+      constants%gravity_steps = analysis%gravity_steps
+      constants%gravity_tolerance = analysis%gravity_tolerance
    end subroutine take_constants
-
-   !> Whether the original's scheme, as it is here, can run the files of a deck
-   pure subroutine check_limerick_lines(deck, error)
-      !> The deck of a case
-      type(deck_t), intent(in) :: deck
-      !> What it cannot do
-      type(error_t), allocatable, intent(out) :: error
-
-      if (.not. allocated(deck%analysis)) return
-      if (abs(deck%analysis%contact_damping) > 0.0_wp) call deck_error(error, &
-         & "scene%analysis: expected contacts without damping, got damping of " &
-         & //to_text(deck%analysis%contact_damping)//"; remove it", deck, &
-         & deck%value(key_index("scene", "analysis"))%place)
-   end subroutine check_limerick_lines
 end module dda_limerick_lines

@@ -152,6 +152,7 @@ contains
       call take("limerick", "penetration_ratio", constants%penetration_ratio)
       call take("limerick", "overlap_deg", constants%overlap_deg)
       call take("limerick", "stiffness_ratio", constants%stiffness_ratio)
+      call take("limerick", "contact_damping", constants%contact_damping)
       call take("analysis", "penalty_ratio", constants%penalty_factor)
       call take("analysis", "max_displacement_ratio", constants%max_displacement_ratio)
       call take("analysis", "collapse_displacement", constants%collapse_displacement)
@@ -159,6 +160,8 @@ contains
       if (is_given(deck, "analysis", "time_step")) constants%auto_time_step = .false.
       if (is_given(deck, "analysis", "steps")) &
          & constants%max_steps = integer_of(deck, "analysis", "steps")
+      if (is_given(deck, "limerick", "gravity_steps")) &
+         & constants%gravity_steps = integer_of(deck, "limerick", "gravity_steps")
       if (is_given(deck, "limerick", "auto_penalty")) &
          & constants%auto_penalty = flag_of(deck, "limerick", "auto_penalty")
       if (is_given(deck, "limerick", "dynamic")) &

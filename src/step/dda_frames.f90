@@ -14,7 +14,7 @@ module dda_frames
    implicit none
    private
 
-   public :: frame_t, album_t, blank_album, keep_frame, keep_pictures
+   public :: frame_t, album_t, blank_album, frame_is_due, keep_frame, keep_pictures
 
    !> One picture
    type :: frame_t
@@ -128,6 +128,43 @@ contains
       if (.not. last) call keep_track(system, settings%current, march%steps, march%time, album)
    end subroutine keep_pictures
 
+   !> Whether a picture is due
+   pure logical function frame_is_due(step, time, displacement, last, album) result(is_due)
+      !> Accepted steps so far
+      integer, intent(in) :: step
+      !> Sum of their lengths [s]
+      real(wp), intent(in) :: time
+      !> Farthest that a corner has moved [m]
+      real(wp), intent(in) :: displacement
+      !> Whether the run ends here, so that a picture is due anyway
+      logical, intent(in) :: last
+      !> The album
+      type(album_t), intent(in) :: album
+
+      is_due = .false.
+      if (.not. (max(album%spacing, album%interval) > 0.0_wp .or. album%every > 0)) return
+      is_due = progress(time, displacement, album) >= album%due*almost
+      if (album%every > 0) is_due = modulo(step, album%every) == 0
+      ! on the path of a static run blocks fall while its clock stands still
+      if (album%interval > 0.0_wp .and. album%spacing > 0.0_wp .and. album%n > 0) is_due = is_due &
+         & .or. displacement >= album%frame(album%n)%displacement + album%spacing
+      if (last .and. album%n > 0) is_due = album%frame(album%n)%step < step
+      is_due = is_due .or. last .and. album%n == 0
+   end function frame_is_due
+
+   !> What pictures are counted by: time where they have an interval, else displacement [s or m]
+   pure real(wp) function progress(time, displacement, album)
+      !> Sum of the lengths of the steps [s]
+      real(wp), intent(in) :: time
+      !> Farthest that a corner has moved [m]
+      real(wp), intent(in) :: displacement
+      !> The album
+      type(album_t), intent(in) :: album
+
+      progress = displacement
+      if (album%interval > 0.0_wp) progress = time - album%begin
+   end function progress
+
    !> Keep a picture if one is due
    pure subroutine keep_frame(system, contacts, step, time, displacement, farthest, last, album)
       !> The blocks
@@ -147,23 +184,10 @@ contains
       !> Receives the picture
       type(album_t), intent(inout) :: album
       type(frame_t), allocatable :: longer(:)
-      real(wp) :: spacing, way
-      logical :: is_due
+      real(wp) :: spacing
 
-      way = displacement
-      spacing = album%spacing
-      if (album%interval > 0.0_wp) then
-         way = time - album%begin
-         spacing = album%interval
-      end if
-      if (.not. (spacing > 0.0_wp .or. album%every > 0)) return
-      is_due = way >= album%due*almost
-      if (album%every > 0) is_due = modulo(step, album%every) == 0
-      ! on the path of a static run blocks fall while its clock stands still
-      if (album%interval > 0.0_wp .and. album%spacing > 0.0_wp .and. album%n > 0) is_due = is_due &
-         & .or. displacement >= album%frame(album%n)%displacement + album%spacing
-      if (last .and. album%n > 0) is_due = album%frame(album%n)%step < step
-      if (.not. (is_due .or. last .and. album%n == 0)) return
+      if (.not. frame_is_due(step, time, displacement, last, album)) return
+      spacing = merge(album%interval, album%spacing, album%interval > 0.0_wp)
       if (.not. allocated(album%frame)) allocate (album%frame(8))
       if (album%n == size(album%frame)) then
          allocate (longer(2*album%n))
@@ -171,7 +195,8 @@ contains
          call move_alloc(longer, album%frame)
       end if
       album%n = album%n + 1
-      if (spacing > 0.0_wp) album%due = (aint(way/(spacing*almost)) + 1.0_wp)*spacing
+      if (spacing > 0.0_wp) album%due = (aint(progress(time, displacement, album) &
+         & /(spacing*almost)) + 1.0_wp)*spacing
       associate (frame => album%frame(album%n))
          frame%step = step
          frame%time = time

@@ -168,14 +168,13 @@ def test_dynamic_run_is_completed(tmp_path: Path) -> None:
     "text, message",
     [
         ("&analysis mode = 'limerick', geometry = 'reference' /", "blocks always move"),
-        ("&analysis mode = 'limerick' /\n&output frames = 5 /", "keeps no frames"),
         (
             "&analysis mode = 'limerick' /\n&limerick dynamic = T /\n&search /",
             "neither stable nor collapsed",
         ),
         ("&analysis mode = 'limerick' /\n&limerick overlap_deg = 60 /", "overlap_deg"),
     ],
-    ids=["geometry", "frames", "dynamic search", "range"],
+    ids=["geometry", "dynamic search", "range"],
 )
 def test_bad_decks_are_refused(tmp_path: Path, text: str, message: str) -> None:
     (tmp_path / "deck.nml").write_text(text + "\n")
@@ -263,13 +262,54 @@ def test_friction_of_a_file_is_searched(tmp_path: Path) -> None:
 
 
 @pytest.mark.skipif(not HAS_XML, reason="the program was built without libxml2")
-def test_contact_damping_is_refused(tmp_path: Path) -> None:
-    scene = block_on_slope(tmp_path, 30.0)
-    (tmp_path / "slope.ana").write_text(DAMPED)
-    (tmp_path / "deck.nml").write_text(scene + "&analysis mode = 'limerick' /\n")
-    done = run_dda("run", "deck.nml", cwd=tmp_path)
-    assert done.returncode == 2
-    assert "damping" in done.stderr
+def test_contact_damping_of_a_file_is_that_of_the_deck(tmp_path: Path) -> None:
+    scene = block_on_slope(tmp_path, 10.0)
+    mode = "&analysis mode = 'limerick', steps = 40 /\n"
+    fast = "&limerick dynamic = .true., contact_damping = {} /\n"
+    (tmp_path / "slope.ana").write_text(DAMPED.replace("<Analysis>", '<Analysis><Analysistype type="dynamic"/>'))
+    rows = {}
+    for name, text in {"file": mode, "same": mode + fast.format(5), "none": mode + fast.format(0)}.items():
+        results_of(tmp_path, scene + text + "&output blocks = .true. /\n")
+        rows[name] = (tmp_path / "out" / "blocks.csv").read_text()
+    assert rows["file"] == rows["same"] != rows["none"]
+
+
+@pytest.mark.skipif(not HAS_XML, reason="the program was built without libxml2")
+def test_gravity_of_a_file_is_turned_on_first(tmp_path: Path) -> None:
+    scene = block_on_slope(tmp_path, 10.0)
+    turned_on = (
+        '<Gravity flag="yes"><Gravitysteplimit val="300"/><Normaltolerance val="1e-3"/>'
+        '<Sheartolerance val="1e-3"/></Gravity>'
+    )
+    text = DAMPED.replace("<Analysis>", f'<Analysis><Analysistype type="dynamic"/>{turned_on}')
+    (tmp_path / "slope.ana").write_text(text.replace('value="5"', 'value="0"'))
+    mode = "&analysis mode = 'limerick', steps = 40 /\n"
+    results_of(tmp_path, scene + mode)
+    settled = (tmp_path / "out" / "blocks.csv").read_text()
+    results_of(tmp_path, scene + mode + "&limerick gravity_steps = 0 /\n")
+    assert settled != (tmp_path / "out" / "blocks.csv").read_text()
+
+
+@pytest.mark.parametrize("search", [False, True])
+def test_pictures_of_a_static_run_go_evenly_to_the_collapse(tmp_path: Path, search: bool) -> None:
+    arch = "&arch voussoirs = 12, thickness_ratio = 0.09 /\n&output frames = 5 /\n"
+    results_of(tmp_path, arch + MODE + ("&search low = 0.09, high = 0.13, tolerance = 0.02 /\n" if search else ""))
+    frames = read_rows(tmp_path / "out" / "frames.csv")
+    numbers = sorted({int(row["frame"]) for row in frames})
+    assert numbers == list(range(len(numbers)))
+    assert 5 <= len(numbers) <= 7
+    first = {(row["block"], row["vertex"]): row for row in frames if row["frame"] == "0"}
+    way = [
+        max(
+            math.dist(*((float(r["x"]), float(r["y"])) for r in (row, first[row["block"], row["vertex"]])))
+            for row in frames
+            if int(row["frame"]) == number
+        )
+        for number in numbers
+    ]
+    assert way[0] == 0.0
+    assert way[-1] > 0.5
+    assert [round(value / 0.1) for value in way[:5]] == [0, 1, 2, 3, 4]
 
 
 ARCHES = HELD / "arches"
