@@ -121,8 +121,10 @@ function(voussoir_add_python)
   # Before the system's: Debian's own NumPy headers would shadow those of a newer NumPy.
   target_include_directories(_theory BEFORE PRIVATE ${Python3_NumPy_INCLUDE_DIRS} "${f2py_include}")
   target_compile_definitions(_theory PRIVATE NPY_NO_DEPRECATED_API=NPY_1_7_API_VERSION)
+  # Calls run side by side: local variables are on the stack
+  set(fortran -O3 -ffp-contract=off -fno-tree-loop-vectorize -frecursive)
   target_compile_options(_theory PRIVATE
-    "$<$<COMPILE_LANG_AND_ID:Fortran,GNU>:-O3;-ffp-contract=off;-fno-tree-loop-vectorize>" "$<$<COMPILE_LANGUAGE:C>:-w>")
+    "$<$<COMPILE_LANG_AND_ID:Fortran,GNU>:${fortran}>" "$<$<COMPILE_LANGUAGE:C>:-w>")
   set_target_properties(_theory PROPERTIES
     Fortran_MODULE_DIRECTORY "${generated}/mod"
     POSITION_INDEPENDENT_CODE ON)

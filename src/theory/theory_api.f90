@@ -20,6 +20,7 @@ contains
 
    !> Critical solution by the stable kernels
    subroutine critical(n, alpha, which, beta, eta, h, fault)
+      !f2py threadsafe
       !> Number of elements
       integer, intent(in) :: n
       !> Half angle of embrace, (0, alpha_limit]: (n) [rad]
@@ -42,6 +43,7 @@ contains
 
    !> Critical solution by eqs. (1), (23), (24) and (16) or (14) as printed
    subroutine critical_as_printed(n, alpha, which, beta, eta, h, fault)
+      !f2py threadsafe
       !> Number of elements
       integer, intent(in) :: n
       !> Half angle of embrace, (0, alpha_limit]: (n) [rad]
@@ -64,6 +66,7 @@ contains
 
    !> Critical solution by its power series at small half angles
    subroutine critical_small(n, alpha, which, beta, eta, h, fault)
+      !f2py threadsafe
       !> Number of elements
       integer, intent(in) :: n
       !> Half angle of embrace, (0, alpha_limit]: (n) [rad]
@@ -86,6 +89,7 @@ contains
 
    !> Leading terms of the critical solution next to the limit of validity
    subroutine critical_near_limit(n, distance, which, beta, eta, h, fault)
+      !f2py threadsafe
       !> Number of elements
       integer, intent(in) :: n
       !> alpha_limit - alpha, [0, alpha_limit): (n) [rad]
@@ -111,6 +115,7 @@ contains
 
    !> Eqs. (14) and (16): the equilibrium curve
    subroutine curve(n, beta, alpha, which, eta, fault)
+      !f2py threadsafe
       !> Number of elements
       integer, intent(in) :: n
       !> Inner hinge, [0, alpha]: (n) [rad]
@@ -132,6 +137,7 @@ contains
 
    !> Eq. (26): start of the equilibrium curve at the crown
    subroutine curve_start(n, alpha, which, eta, fault)
+      !f2py threadsafe
       !> Number of elements
       integer, intent(in) :: n
       !> Half angle of embrace, (0, alpha_limit]: (n) [rad]
@@ -150,6 +156,7 @@ contains
 
    !> Eq. (19): slope of the equilibrium curve
    subroutine slope(n, beta, alpha, which, rate, fault)
+      !f2py threadsafe
       !> Number of elements
       integer, intent(in) :: n
       !> Inner hinge, [0, alpha]: (n) [rad]
@@ -171,6 +178,7 @@ contains
 
    !> Eq. (11): the line of thrust through the extrados of crown and springing
    subroutine line(n, beta, alpha, eta, which, ratio, fault)
+      !f2py threadsafe
       !> Number of elements
       integer, intent(in) :: n
       !> Angle of the joint, [0, alpha]: (n) [rad]
@@ -197,6 +205,7 @@ contains
 
    !> Limits of validity
    subroutine limit_values(which, values)
+      !f2py threadsafe
       !> Theory
       integer, intent(in) :: which
       !> alpha, A, eta, beta, h at the limit; greatest beta and alpha, A, eta, h there; alpha where

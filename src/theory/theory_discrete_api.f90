@@ -14,6 +14,7 @@ contains
 
    !> Friction coefficients at which the mode of collapse changes
    subroutine friction_range(n, alpha, which, rotational, mixed, h, slip, springing, fault)
+      !f2py threadsafe
       !> Number of elements
       integer, intent(in) :: n
       !> Half angle of embrace, (0, alpha_limit]: (n) [rad]
@@ -51,6 +52,7 @@ contains
 
    !> Least thickness at a friction coefficient
    subroutine friction_states(n, mu, alpha, which, beta, eta, h, fault)
+      !f2py threadsafe
       !> Number of elements
       integer, intent(in) :: n
       !> Friction coefficient, [mu_mixed, infinity]: (n)
@@ -78,6 +80,7 @@ contains
    !> Exact critical thickness of arches of equal polygon voussoirs
    subroutine discrete_equal(n, voussoirs, alpha, facet, friction, no_slip, &
                              status, eta, h, joint, role, fault)
+      !f2py threadsafe
       !> Number of arches
       integer, intent(in) :: n
       !> Number of voussoirs of the whole arch, 1 to 10 000 000: (n)
@@ -124,6 +127,7 @@ contains
    !> Exact critical thickness of one arch of polygon voussoirs, given by the joints of one half
    subroutine discrete_joints(n, joints, facet, friction, no_slip, &
                               status, eta, h, joint, role, fault)
+      !f2py threadsafe
       !> Number of joints
       integer, intent(in) :: n
       !> Joints from the crown, strictly increasing, in [0, pi): (n) [rad]

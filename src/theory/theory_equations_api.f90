@@ -13,6 +13,7 @@ contains
 
    !> Eq. (10): eccentricity of the thrust at a joint
    subroutine joint_eccentricity(n, beta, alpha, eta, h, which, ratio, fault)
+      !f2py threadsafe
       !> Number of elements
       integer, intent(in) :: n
       !> Angle of the joint, [0, alpha]: (n) [rad]
@@ -40,6 +41,7 @@ contains
 
    !> Eq. (9): the group A
    subroutine group_a(n, alpha, a, fault)
+      !f2py threadsafe
       !> Number of elements
       integer, intent(in) :: n
       !> Half angle of embrace, (0, pi): (n) [rad]
@@ -56,6 +58,7 @@ contains
 
    !> Eqs. (6) and (7): thrust through the crown's extrados and a point of a joint
    subroutine thrust_at_joint(n, beta, ratio, eta, which, h, fault)
+      !f2py threadsafe
       !> Number of elements
       integer, intent(in) :: n
       !> Angle of the joint, (0, pi): (n) [rad]
@@ -80,6 +83,7 @@ contains
 
    !> Eq. (8): thrust through the extrados of crown and springing
    subroutine thrust_at_springing(n, alpha, eta, which, h, fault)
+      !f2py threadsafe
       !> Number of elements
       integer, intent(in) :: n
       !> Half angle of embrace, (0, pi): (n) [rad]
@@ -101,6 +105,7 @@ contains
 
    !> Eqs. (12) and (3): thrust that touches the intrados at a joint
    subroutine thrust_at_tangent(n, beta, eta, which, h, fault)
+      !f2py threadsafe
       !> Number of elements
       integer, intent(in) :: n
       !> Angle of the joint, (0, pi): (n) [rad]

@@ -1,6 +1,10 @@
 """The wrapper of the theory: shapes, broadcasting, refusals."""
 
 import math
+import os
+import re
+from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -245,3 +249,63 @@ def test_empty_arrays_of_arches_are_empty():
     assert theory.discrete_critical(12, alpha=[]).shape == (0,)
     assert theory.discrete_critical([0.0, 0.5, 1.0], friction=[]).shape == (0,)
     assert theory.friction_thickness([], "ccr").shape == (0,)
+
+
+@pytest.mark.parametrize("name", [name for name in CALLS if name != "discrete_critical angle"])
+def test_masked_elements_are_refused_and_never_computed(name):
+    """NumPy would hand over what lies under the mask."""
+    masked = np.ma.masked_array([0.5, 0.6], mask=[False, True])
+    with pytest.raises(ValueError, match="masked"):
+        CALLS[name](masked)
+
+
+def test_array_that_masks_nothing_is_an_array():
+    plain = np.array([0.5, 0.6])
+    for found, exact in zip(theory.critical(np.ma.masked_array(plain), "ccr"), theory.critical(plain, "ccr")):
+        assert np.array_equal(found, exact)
+
+
+@pytest.mark.parametrize("theory_name", THEORIES)
+def test_a_number_is_an_array_of_one(theory_name):
+    """Numbers go to Fortran as they are; results and messages are those of arrays."""
+    for one, many in zip(theory.critical(0.7, theory_name), theory.critical(np.array([0.7]), theory_name)):
+        assert isinstance(one, np.float64) and one == many[0]
+    messages = []
+    for bad in (9.0, np.float64(9.0), np.array([9.0])):
+        with pytest.raises(ValueError) as error:
+            theory.critical(bad, theory_name)
+        messages.append(str(error.value))
+    assert len(set(messages)) == 1 and f"for {theory_name}" in messages[0] and "got 9.0" in messages[0]
+
+
+def test_thickness_without_a_thrust_is_refused():
+    """An arch of half angle 3 rad and 0.1 thick has no thrust through its springing's extrados."""
+    assert theory.springing_thrust(3.0, 0.1, "ccr") < 0.0
+    with pytest.raises(ValueError, match="eta must be a thickness ratio in .* with a thrust, got 0.1"):
+        theory.thrust_line(0.3, 3.0, 0.1, "ccr")
+
+
+@pytest.mark.parametrize("eta", [0.0, 2.0])
+def test_thickness_ratio_leaves_out_both_limits(eta):
+    with pytest.raises(ValueError, match="eta must be"):
+        theory.eccentricity(0.5, 1.0, eta, 0.5, "ccr")
+    assert math.isfinite(theory.eccentricity(0.5, 1.0, abs(eta - 1e-9), 0.5, "ccr"))
+
+
+def test_calls_in_threads_give_the_same_numbers():
+    angles = np.linspace(0.1, 1.5, 20_000)
+    alone = theory.friction_critical(0.5, "ccr", angles)
+    with ThreadPoolExecutor(4) as pool:
+        calls = [pool.submit(theory.friction_critical, 0.5, "ccr", angles) for _ in range(8)]
+    for call in calls:
+        assert all(np.array_equal(a, b) for a, b in zip(alone, call.result()))
+
+
+def test_every_routine_lets_python_go_on_while_it_computes():
+    """In the wrapper that f2py has written, each call gives back the interpreter's lock."""
+    wrapper = Path(os.environ.get("VOUSSOIR_BUILD", "")) / "f2py" / "_theorymodule.c"
+    if not wrapper.exists():
+        pytest.skip("VOUSSOIR_BUILD names no build folder")
+    text = wrapper.read_text()
+    routines = len(re.findall(r"^static PyObject \*f2py_rout_", text, re.MULTILINE))
+    assert routines > 10 and text.count("Py_BEGIN_ALLOW_THREADS") == routines

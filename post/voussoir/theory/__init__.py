@@ -18,6 +18,7 @@ Examples
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 
 import numpy.typing as npt
 
@@ -269,10 +270,14 @@ def thrust_line(
     return evaluate(theory_api.line, arguments, ranges, theory_number(theory))[0]
 
 
-def _embraced(theory: str) -> str:
-    """What a theory wants of a half angle, in words."""
-    limit = limits(theory)["alpha_limit"]
-    return f"an angle in (0, {limit!r}] rad ({math.degrees(limit):.3f} deg) for {theory}"
+def _embraced(theory: str) -> Callable[[], str]:
+    """What says what a theory wants of a half angle: only an error needs the words."""
+
+    def words() -> str:
+        limit = limits(theory)["alpha_limit"]
+        return f"an angle in (0, {limit!r}] rad ({math.degrees(limit):.3f} deg) for {theory}"
+
+    return words
 
 
 def _critical(solve, alpha: npt.ArrayLike, theory: str) -> tuple[Value, Value, Value]:

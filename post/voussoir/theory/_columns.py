@@ -11,10 +11,15 @@ import numpy.typing as npt
 Column = npt.NDArray[np.float64]
 Value = Union[np.float64, Column]
 
+#: What Fortran takes for one element as it is
+_FLOATS = (float, np.float64)
+
 #: Numbers of the theories, as in couplet_heyman_theories.f90
 THEORIES = {"heyman": 1, "ccr": 2, "milankovitch": 3}
 
-#: What arguments want, in words
+#: What an argument wants, in words, or what makes the words when they are needed
+Range = Union[str, Callable[[], str]]
+
 THICKNESS = "a thickness ratio in (0, 2)"
 HALF_ANGLE = "an angle in (0, pi) rad"
 JOINT = "an angle in [0, alpha] rad"
@@ -61,8 +66,10 @@ def real_array(name: str, value: npt.ArrayLike) -> Column:
     Raises
     ------
     ValueError
-        If the argument is no array of real numbers.
+        If the argument is no array of real numbers, or some of them are masked.
     """
+    if isinstance(value, np.ma.MaskedArray) and np.ma.is_masked(value):
+        raise ValueError(f"{name} must be real numbers, got masked ones; pass .compressed() instead")
     array = np.asarray(value)
     if array.dtype.kind not in "iuf" and array.size > 0:
         raise ValueError(f"{name} must be real numbers, got {value!r}")
@@ -115,7 +122,7 @@ def shaped(shape: tuple[int, ...], column: npt.NDArray) -> Value:
 def evaluate(
     routine: Callable,
     arguments: Mapping[str, npt.ArrayLike],
-    ranges: Sequence[str],
+    ranges: Sequence[Range],
     *numbers: int,
     results: int = 1,
 ) -> tuple[Value, ...]:
@@ -127,8 +134,8 @@ def evaluate(
         Takes the arguments as columns, then the numbers; returns columns and its fault.
     arguments : mapping of str to array_like
         The arguments by name, in the order of the call.
-    ranges : sequence of str
-        What each of them wants.
+    ranges : sequence of str or callable
+        What each of them wants, or what says it.
     *numbers : int
         What follows them in the call.
     results : int, optional
@@ -144,6 +151,10 @@ def evaluate(
     ValueError
         If an argument is not numeric, the shapes do not fit, or a value is out of range.
     """
+    if all(type(value) in _FLOATS for value in arguments.values()):
+        *found, fault = routine(*arguments.values(), *numbers)
+        if fault[0] == 0:
+            return tuple(column[0] for column in found)
     shape, flat = columns(**arguments)
     if flat[0].size == 0:
         return tuple(np.empty(shape) for _ in range(results))
@@ -153,7 +164,7 @@ def evaluate(
 
 
 def refuse(
-    fault: Sequence[int], names: Sequence[str], flat: Sequence[npt.NDArray], ranges: Sequence[str]
+    fault: Sequence[int], names: Sequence[str], flat: Sequence[npt.NDArray], ranges: Sequence[Range]
 ) -> None:
     """Raise the exception that a fault of the Fortran layer stands for.
 
@@ -165,8 +176,8 @@ def refuse(
         Names of the arguments in the order of the Fortran call.
     flat : sequence of ndarray
         Their values, one rank.
-    ranges : sequence of str
-        What each of them wants.
+    ranges : sequence of str or callable
+        What each of them wants, or what says it.
 
     Raises
     ------
@@ -178,4 +189,6 @@ def refuse(
         return
     value = flat[argument - 1][element - 1].item()
     where = f" at element {element - 1}" if flat[argument - 1].size > 1 else ""
-    raise ValueError(f"{names[argument - 1]} must be {ranges[argument - 1]}, got {value!r}{where}")
+    wanted = ranges[argument - 1]
+    words = wanted if isinstance(wanted, str) else wanted()
+    raise ValueError(f"{names[argument - 1]} must be {words}, got {value!r}{where}")
