@@ -9,6 +9,7 @@ from pathlib import Path
 import numpy as np
 
 from voussoir.verify_deck import Deck, VerifyError
+from voussoir.verify_water import Water
 
 Point = tuple[float, float]
 
@@ -33,6 +34,14 @@ class Held:
 
 
 @dataclass
+class Bar:
+    """A bar that pulls its ends together, up to its strength."""
+
+    ends: np.ndarray
+    strength: float | None
+
+
+@dataclass
 class Law:
     """Friction angle, cohesion and tensile strength of a joint."""
 
@@ -53,6 +62,8 @@ class Source:
     forces: list[PointForce] = field(default_factory=list)
     held: list[Held] = field(default_factory=list)
     shaking: Point = (0, 0)
+    bars: list[Bar] = field(default_factory=list)
+    water: list[Water] = field(default_factory=list)
     lines: list[tuple[np.ndarray, Law]] = field(default_factory=list)
 
 
@@ -117,8 +128,25 @@ def _take(entry: list[str], rows: list[list[float]], source: Source, deck: Deck)
         source.shaking = (-ax, -ay)
     elif entry[0] in ("base_velocity", "base_displacement"):
         raise VerifyError(f"{entry[0]} is not verified: only base_acceleration is")
+    elif entry[0] == "bar":
+        ends = [deck.read(word.replace("d", "e")) for word in entry[1:5]]
+        strength = deck.read(keys["strength"].replace("d", "e")) if "strength" in keys else None
+        source.bars.append(Bar(np.array(ends).reshape(2, 2), strength))
+    elif entry[0] == "water":
+        source.water.append(_water(entry, keys, rows, deck))
     elif entry[0] in ("load", "live", "fix", "displacement", "fix_line"):
         _take_point(entry, rows, source, deck)
+
+
+def _water(entry: list[str], keys: dict[str, str], rows: list[list[float]], deck: Deck) -> Water:
+    """A line of heads, at the end of its history."""
+    places = []
+    for word in entry[1:]:
+        if word in ("unit_weight", "factor"):
+            break
+        places.append(deck.read(word.replace("d", "e")))
+    weight, factor = (deck.read(keys.get(name, usual)) for name, usual in (("unit_weight", "9810"), ("factor", "1")))
+    return Water(list(zip(places[::2], places[1::2])), rows[-1][1] if rows else 0, weight, factor)
 
 
 def _take_point(entry: list[str], rows: list[list[float]], source: Source, deck: Deck) -> None:

@@ -175,6 +175,34 @@ def _edges_together(first: Block, a: int, second: Block, b: int, reach: float) -
     return Joint(first.number, second.number, np.array(ends), normal, False, _corners_of(first, a))
 
 
+def depth(block: Block, point: np.ndarray) -> float:
+    """How deep a point lies in a block, negative outside.
+
+    Parameters
+    ----------
+    block : Block
+        The block.
+    point : ndarray
+        The point.
+
+    Returns
+    -------
+    float
+        Its distance from the outline, with a sign.
+    """
+    start, point = block.corners.astype(float), np.asarray(point, dtype=float)
+    end = np.roll(start, -1, axis=0)
+    along = end - start
+    share = np.clip(((point - start) * along).sum(axis=1) / (along * along).sum(axis=1), 0.0, 1.0)
+    distance = float(np.linalg.norm(start + share[:, None] * along - point, axis=1).min())
+    y, x = point[1], point[0]
+    crosses = (start[:, 1] > y) != (end[:, 1] > y)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        at = start[:, 0] + (y - start[:, 1]) / along[:, 1] * along[:, 0]
+    inside = int((crosses & (x < at)).sum()) % 2 == 1
+    return distance if inside else -distance
+
+
 def numbers_of(joints: list[Joint]) -> dict[tuple[int, int], list[Joint]]:
     """Joints by their two blocks, the smaller number first.
 

@@ -29,6 +29,13 @@ DEFAULTS: dict[str, str] = {
     "load%horizontal_coefficient": "0",
     "load%load_factor": "1",
     "load%live_horizontal": ".false.",
+    "load%water_rise": "0",
+    "arch%rings": "1",
+    "arch%spans": "1",
+    "fill%height": "0",
+    "fill%unit_weight": "0",
+    "fill%spread": "0.5",
+    "fill%passive_coefficient": "0",
     "vehicle%length": "0.3",
 }
 #: Keys without a default
@@ -45,6 +52,15 @@ OTHERS = (
     "vehicle%axles",
     "vehicle%spacings",
     "vehicle%position",
+    "fill%friction_deg",
+    "fill%passive_share",
+    "fill%backing_height",
+    "fill%backing_unit_weight",
+    "tie%strength",
+    "tie%x1",
+    "tie%y1",
+    "tie%x2",
+    "tie%y2",
     "search%parameter",
 )
 
@@ -107,14 +123,8 @@ class Deck:
         """Whether it is an arch of any shape: blocks that are taken as blocks.csv has them."""
         given = [key for key in SHAPES if self.gives(key) and self.text(key).lower() != "circular"]
         searched = (self.searched or "").split("%")[-1]
+        given += [key for key in self.values if key.startswith(("&fill", "fill%", "&tie", "tie%"))]
         return self.text("scene%kind") == "arch" and (bool(given) or f"arch%{searched}" in SHAPES)
-
-    def refuse_unknown(self) -> None:
-        """Refuse what acts on blocks in ways that are not recomputed."""
-        if any(key.startswith("fill%") or key == "&fill" for key in self.values):
-            raise VerifyError("decks with &fill are not verified: its weight and pressure are not recomputed")
-        if self.gives("arch%lune_deg"):
-            raise VerifyError("decks with lune_deg are not verified: the weight of wedges is not recomputed")
 
     def with_value(self, name: str, value: str) -> Deck:
         """A deck with another value of a parameter, such as friction_deg, arch%radius or x(2)."""

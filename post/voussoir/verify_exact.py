@@ -19,7 +19,7 @@ from voussoir.verify_deck import Deck, VerifyError
 from voussoir.verify_lines import read_lines
 from voussoir.verify_loads import loads_on
 from voussoir.verify_proofs import Finding, Row, Scene, held_points
-from voussoir.verify_rational import Column
+from voussoir.verify_rational import Column, square_root
 from voussoir.verify_simplex import Programme, find_best
 
 #: Most joints that are computed exactly
@@ -62,7 +62,6 @@ def exact_scene(deck: Deck, rows: list[Row], files: list[Path]) -> ExactScene:
     ExactScene
         The scene.
     """
-    deck.refuse_unknown()
     deck, source = replace(deck, exact=True), Source()
     fixed = {int(row["block"]): row["state"] == "fixed" for row in rows}
     if deck.text("scene%kind") == "blocks":
@@ -116,7 +115,32 @@ def _columns(exact: ExactScene, nudge: Fraction, number: dict[int, int], origin:
                 for way in (1, -1) if along[k] else ():
                     vector = np.array([way * (1 - k), way * k])
                     columns.append(_effect(vector, point - origin, (0, block.number), number))
+    row = 3 * len(number)
+    for pull in scene.pulls:
+        # a unit of a bar's force is as long as the bar
+        unit = pull.points[0] - pull.points[1] if pull.kind == "bar" else pull.direction
+        column: Column = {}
+        for block, point, way in zip(pull.blocks, pull.points, (-1, 1)):
+            for i, value in _effect(way * unit, point - origin, (0, block), number).items():
+                column[i] = column.get(i, Fraction(0)) + value
+        if pull.most is not None:
+            # a row of its own says that the force and what is left of the bound are the bound
+            column[row] = Fraction(1)
+            columns.append({row: Fraction(1)})
+            row += 1
+        columns.append(column)
     return columns
+
+
+def _bounds(exact: ExactScene, nudge: Fraction) -> list[Fraction]:
+    """Bounds of the forces of bars and fill, in the units of their columns."""
+    bounds = []
+    for pull in exact.scene.pulls:
+        if pull.most is not None:
+            along = pull.points[0] - pull.points[1]
+            length = square_root(along @ along) if pull.kind == "bar" else Fraction(1)
+            bounds.append(Fraction(pull.most) / length * (1 + nudge))
+    return bounds
 
 
 def _effect(vector: np.ndarray, arm: np.ndarray, joint: Joint | tuple[int, int], number: dict[int, int]) -> Column:
@@ -161,8 +185,9 @@ def proves(exact: ExactScene, carried: bool) -> bool:
         The answer.
     """
     number, origin = _numbers(exact), exact.corners[0][0]
-    right = [-value for value in _load(exact, number, origin)]
-    columns = _columns(exact, -NUDGE if carried else NUDGE, number, origin)
+    nudge = -NUDGE if carried else NUDGE
+    right = [-value for value in _load(exact, number, origin)] + _bounds(exact, nudge)
+    columns = _columns(exact, nudge, number, origin)
     # equal forces and one of the last column are a beginning; the least of that column is the share that is not carried
     rest, equal = dict(enumerate(right)), max(abs(value) for value in right)
     for column in columns:
@@ -201,7 +226,8 @@ def limit(exact: ExactScene, name: str, way: int) -> tuple[Fraction, Fraction] |
     found = []
     for nudge in (-NUDGE, NUDGE):
         columns = _columns(exact, nudge, number, origin)
-        vertex = find_best(Programme([*columns, live], [-value for value in dead], 1))
+        right = [-value for value in dead] + _bounds(exact, nudge)
+        vertex = find_best(Programme([*columns, live], right, 1))
         if vertex is None:
             return None
         found.append(way * vertex.value)

@@ -6,9 +6,20 @@ import math
 
 import numpy as np
 
-from voussoir.verify_blocks import Law, PointForce, Source
-from voussoir.verify_contacts import TOUCH, Block, Joint
+from voussoir.verify_blocks import Bar, Law, PointForce, Source
+from voussoir.verify_contacts import TOUCH, Block, Joint, depth
 from voussoir.verify_deck import Deck, VerifyError
+from voussoir.verify_fill import (
+    Pull,
+    chords_of,
+    fill_weights,
+    has_fill,
+    lowest_below,
+    pressures,
+    surface_of,
+)
+from voussoir.verify_rational import PI
+from voussoir.verify_water import water_loads
 
 #: Friction angles of files of blocks count up to this one [deg]
 MOST_FRICTION_DEG = "89.9"
@@ -39,23 +50,113 @@ def loads_on(deck: Deck, source: Source, blocks: list[Block]) -> np.ndarray:
         mass = source.densities.get(material, deck.number("material%density")) * block.area
         load[i, 0] = weight * (direction[0] + push) + mass * source.shaking[0]
         load[i, 1] = weight * direction[1] + mass * source.shaking[1]
+        if deck.gives("arch%lune_deg"):
+            load[i] *= 0
+            if not block.fixed:
+                _add(_wedge(deck, block, weight / block.area), 1, blocks, load)
     factor = deck.number("load%load_factor")
-    for force in source.forces:
+    for force in [*source.forces, *live_of(deck, blocks)]:
         _add(force, factor if force.live else 1, blocks, load)
-    for force in _live_of_deck(deck):
-        _add(force, factor, [b for b in blocks if not b.fixed], load)
-    for force in _axles_of_deck(deck, blocks):
-        _add(force, factor, blocks, load)
+    for water in source.water:
+        for number, place, vector in water_loads(water, deck.number("load%water_rise"), blocks):
+            _add(PointForce(number, tuple(place), tuple(vector), False), 1, blocks, load)
+    for number, x, weight in fill_weights(deck, blocks) if has_fill(deck) else ():
+        _add(PointForce(number, (x, blocks[number - 1].centre[1]), (0, -weight), False), 1, blocks, load)
     return load
+
+
+def live_of(deck: Deck, blocks: list[Block]) -> list[PointForce]:
+    """Live loads of a deck.
+
+    Parameters
+    ----------
+    deck : Deck
+        The deck of the case.
+    blocks : list of Block
+        The blocks.
+
+    Returns
+    -------
+    list of PointForce
+        Forces of &live and of the axles of &vehicle.
+    """
+    free = [block for block in blocks if not block.fixed]
+    forces = []
+    for force in _live_of_deck(deck):
+        number = max(free, key=lambda block: depth(block, np.array(force.point))).number
+        forces.append(PointForce(number, force.point, force.force, True))
+    return forces + _axles_of_deck(deck, blocks)
+
+
+def pulls_of(deck: Deck, source: Source, blocks: list[Block]) -> list[Pull]:
+    """Forces of any size up to a bound: bars that pull, fill that presses.
+
+    Parameters
+    ----------
+    deck : Deck
+        The deck of the case.
+    source : Source
+        Its file of blocks, or nothing.
+    blocks : list of Block
+        The blocks.
+
+    Returns
+    -------
+    list of Pull
+        The forces.
+    """
+    pulls = []
+    for bar in [*source.bars, *_ties_of_deck(deck)]:
+        numbers = []
+        for end in bar.ends:
+            block = max(blocks, key=lambda block: depth(block, end))
+            numbers.append(block.number if depth(block, end) >= -TOUCH * block.size else 0)
+        along = (bar.ends[0] - bar.ends[1]).astype(float)
+        pulls.append(Pull("bar", (numbers[0], numbers[1]), bar.ends, along / np.linalg.norm(along), bar.strength))
+    if has_fill(deck):
+        live = [(np.array(force.point), np.array(force.force)) for force in live_of(deck, blocks)]
+        pulls += pressures(deck, blocks, live)
+    return pulls
+
+
+def _ties_of_deck(deck: Deck) -> list[Bar]:
+    """Bars of &tie."""
+    ends = [deck.numbers(f"tie%{name}") for name in ("x1", "y1", "x2", "y2")]
+    strength = deck.numbers("tie%strength") or [None] * len(ends[0])
+    return [Bar(np.array(place).reshape(2, 2), most) for *place, most in zip(*ends, strength)]
+
+
+def _wedge(deck: Deck, block: Block, weight: float) -> PointForce:
+    """Weight of a block of a lune, whose depth is the angle times the distance from x = 0, where it acts."""
+    sums = np.array([0, 0, 0], dtype=object)
+    for way in (1, -1):
+        corners = []
+        for start, end in zip(block.corners, np.roll(block.corners, -1, axis=0)):
+            if way * start[0] >= 0:
+                corners.append(start)
+            if start[0] * end[0] < 0:
+                corners.append(start + start[0] / (start[0] - end[0]) * (end - start))
+        for a, b, c in ((corners[0], p, q) for p, q in zip(corners[1:], corners[2:])):
+            area = ((b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])) / 2
+            # a parabola over a triangle is the mean of the middles of its sides
+            middles = [(a + b) / 2, (b + c) / 2, (c + a) / 2]
+            sums = sums + np.array([way * area / 3 * sum(m[0] * f for m, f in zip(middles, column))
+                                    for column in ([1, 1, 1], [m[0] for m in middles], [m[1] for m in middles])])
+    angle = deck.number("arch%lune_deg") * (PI if deck.exact else math.pi) / 180
+    return PointForce(block.number, (sums[1] / sums[0], sums[2] / sums[0]), (0, -weight * angle * sums[0]), False)
 
 
 def _axles_of_deck(deck: Deck, blocks: list[Block]) -> list[PointForce]:
     """Axles of a vehicle, in pieces between the corners below them."""
     place = deck.number("vehicle%position") if deck.gives("vehicle%position") else 0
-    half = deck.number("vehicle%length") / 2
     forces = []
+    spread = deck.number("fill%spread") if has_fill(deck) else 0
+    surface = surface_of(deck, chords_of(deck, blocks)) if spread > 0 else 0
     for k, weight in enumerate(deck.numbers("vehicle%axles")):
         middle = place + sum(deck.numbers("vehicle%spacings")[:k])
+        half = deck.number("vehicle%length") / 2
+        if spread > 0:
+            half += spread * max(0, surface - lowest_below(blocks, middle))
         corners = [x for block in blocks for x in block.corners[:, 0] if abs(x - middle) < half]
         cuts = sorted([middle - half, *corners, middle + half])
         for left, right in zip(cuts, cuts[1:]):
@@ -98,34 +199,6 @@ def _add(force: PointForce, factor: float, blocks: list[Block], load: np.ndarray
     block = next(block for block in blocks if block.number == number)
     vector, arm = factor * np.array(force.force), np.array(force.point) - block.centre
     load[number - 1] += [*vector, arm[0] * vector[1] - arm[1] * vector[0]]
-
-
-def depth(block: Block, point: np.ndarray) -> float:
-    """How deep a point lies in a block, negative outside.
-
-    Parameters
-    ----------
-    block : Block
-        The block.
-    point : ndarray
-        The point.
-
-    Returns
-    -------
-    float
-        Its distance from the outline, with a sign.
-    """
-    start, point = block.corners.astype(float), np.asarray(point, dtype=float)
-    end = np.roll(start, -1, axis=0)
-    along = end - start
-    share = np.clip(((point - start) * along).sum(axis=1) / (along * along).sum(axis=1), 0.0, 1.0)
-    distance = float(np.linalg.norm(start + share[:, None] * along - point, axis=1).min())
-    y, x = point[1], point[0]
-    crosses = (start[:, 1] > y) != (end[:, 1] > y)
-    with np.errstate(divide="ignore", invalid="ignore"):
-        at = start[:, 0] + (y - start[:, 1]) / along[:, 1] * along[:, 0]
-    inside = int((crosses & (x < at)).sum()) % 2 == 1
-    return distance if inside else -distance
 
 
 def friction_of(deck: Deck, source: Source, joint: Joint, springing: bool) -> float:

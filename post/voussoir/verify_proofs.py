@@ -4,17 +4,21 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, field
+from functools import cached_property
 
 import numpy as np
 
 from voussoir.verify_blocks import Source
-from voussoir.verify_contacts import TOUCH, Block, Joint, numbers_of
+from voussoir.verify_contacts import TOUCH, Block, Joint, depth, numbers_of
 from voussoir.verify_deck import Deck
-from voussoir.verify_loads import depth, friction_of, loads_on, may_hold
+from voussoir.verify_fill import Pull
+from voussoir.verify_loads import friction_of, loads_on, may_hold, pulls_of
 
 Row = dict[str, str]
 #: Largest figure of a proof that holds
 TOLERANCE = 1e-8
+#: Points nearer than this share of a block's size are one
+SAME_POINT = 1e-8
 
 
 @dataclass
@@ -54,6 +58,11 @@ class Scene:
         lengths = [np.linalg.norm(joint.ends[1] - joint.ends[0]) for joint in self.joints if not joint.single]
         return float(np.mean(lengths)) / 2.0 if lengths else 1.0
 
+    @cached_property
+    def pulls(self) -> list[Pull]:
+        """Bars, and what fill presses with."""
+        return pulls_of(self.deck, self.source, self.blocks)
+
     def friction(self, joint: Joint) -> float:
         """Coefficient of friction of a joint."""
         springing = self.blocks[joint.first - 1].fixed or self.blocks[joint.second - 1].fixed
@@ -77,14 +86,18 @@ def check_forces(scene: Scene, rows: list[Row], finding: Finding) -> None:
     largest = largest_of(left[free], scene.length)
     pairs = numbers_of(scene.joints)
     used: set[int] = set()
+    spent: set[int] = set()
     for row in rows:
-        force = np.array([float(row[name]) for name in ("normal_1", "normal_2", "shear")])
+        force = np.array([float(row[name] or 0) for name in ("normal_1", "normal_2", "shear")])
         points = np.array([[float(row["x_1"]), float(row["y_1"])], [float(row["x_2"]), float(row["y_2"])]])
         if row["kind"] == "held":
             block = scene.blocks[int(row["block_2"]) - 1]
             if not may_hold(scene.source, block, points[0], force[:2]):
                 finding.faults.append(f"nothing holds block {block.number} at {tuple(points[0])}")
             push(left, block, points[0], force[:2])
+            continue
+        if row["kind"] in ("bar", "bounded"):
+            _check_pull(scene, row, points, spent, left, largest, finding)
             continue
         pair = int(row["block_1"]), int(row["block_2"])
         joint, ends = _match(pairs.get((min(pair), max(pair)), []), points, scene.blocks[pair[0] - 1])
@@ -100,6 +113,31 @@ def check_forces(scene: Scene, rows: list[Row], finding: Finding) -> None:
             push(left, scene.blocks[pair[1] - 1], at, vector)
             push(left, scene.blocks[pair[0] - 1], at, -vector)
     finding.keep("imbalance", largest_of(left[free], scene.length) / largest)
+
+
+def _check_pull(
+    scene: Scene, row: Row, points: np.ndarray, spent: set[int], left: np.ndarray, largest: float, finding: Finding
+) -> None:
+    """Check the force of a bar or of fill, and add it to what is left on the blocks."""
+    blocks = int(row["block_1"]), int(row["block_2"])
+    vector = np.array([float(row["normal_1"]), float(row["normal_2"] or 0)])
+    for k, pull in enumerate(scene.pulls):
+        size = max(scene.blocks[b - 1].size for b in pull.blocks if b > 0)
+        if k in spent or pull.kind != row["kind"] or pull.blocks != blocks:
+            continue
+        if np.abs(pull.points - points).max() > SAME_POINT * size:
+            continue
+        spent.add(k)
+        value = vector[0] if pull.kind == "bar" else float(vector @ pull.direction)
+        if pull.kind == "bounded":
+            finding.keep("law of forces", float(np.abs(vector - value * pull.direction).max()) / largest)
+        most = value if pull.most is None else pull.most
+        finding.keep("law of forces", max(0.0, -value, value - most) / largest)
+        for number, at, way in ((blocks[0], pull.points[0], -1.0), (blocks[1], pull.points[1], 1.0)):
+            if number > 0:
+                push(left, scene.blocks[number - 1], at, way * value * pull.direction)
+        return
+    finding.faults.append(f"no force of the kind {row['kind']} acts between blocks {blocks} at {tuple(points[0])}")
 
 
 def _law(force: np.ndarray, joint: Joint, friction: float, largest: float, finding: Finding) -> None:
@@ -174,7 +212,7 @@ def check_motion(scene: Scene, rows: list[Row], finding: Finding) -> float:
     Returns
     -------
     float
-        Power of the loads over what they could do at most.
+        Power of the loads, less what bars and fill take at most, over what the loads could do.
     """
     velocity = np.zeros((len(scene.blocks), 3))
     for row in rows:
@@ -201,10 +239,19 @@ def check_motion(scene: Scene, rows: list[Row], finding: Finding) -> float:
             rate = velocity_at(scene, velocity, block.number, point)
             moved = max((abs(float(rate[k])) for k in range(2) if along[k]), default=0.0)
             finding.keep("law of velocities", moved / fastest)
+    power = 0.0
+    for pull in scene.pulls:
+        rates = [velocity_at(scene, velocity, number, at) if number > 0 else np.zeros(2)
+                 for number, at in zip(pull.blocks, pull.points)]
+        along = float((rates[1] - rates[0]) @ pull.direction)
+        if pull.most is None:
+            finding.keep("law of velocities", max(0.0, -along) / fastest)
+        else:
+            power += pull.most * min(0.0, along)
     load = loads_on(scene.deck, scene.source, scene.blocks)
     most = float((np.linalg.norm(load[:, :2], axis=1) * np.linalg.norm(velocity[:, :2], axis=1)
                   + np.abs(load[:, 2] * velocity[:, 2])).sum())
-    return float((load * velocity).sum()) / max(most, 1e-300)
+    return (float((load * velocity).sum()) + power) / max(most, 1e-300)
 
 
 def held_points(scene: Scene, block: Block) -> list[tuple[np.ndarray, tuple[bool, bool]]]:

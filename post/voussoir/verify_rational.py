@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from fractions import Fraction
 from functools import lru_cache
+from math import isqrt
 
 #: Pi, cut after fifty decimals
 PI = Fraction("3.14159265358979323846264338327950288419716939937510")
@@ -37,6 +38,24 @@ def sine_cosine(degrees: Fraction) -> tuple[Fraction, Fraction]:
     cosine, sine = (Fraction(round(Fraction(value * PARTS, FINE)), PARTS) for value in sums)
     turns = [(sine, cosine), (cosine, -sine), (-sine, -cosine), (-cosine, sine)]
     return turns[quarters % 4]
+
+
+def square_root(value: Fraction) -> Fraction:
+    """Square root of a number that is not negative, to forty digits.
+
+    Parameters
+    ----------
+    value : Fraction
+        The number.
+
+    Returns
+    -------
+    Fraction
+        Its root.
+    """
+    # digits of the root are counted from its first one on
+    scale = 10 ** (40 + max(0, len(str(value.denominator)) - len(str(value.numerator))))
+    return Fraction(isqrt(value.numerator * value.denominator * scale**2), value.denominator * scale)
 
 
 class Factor:

@@ -6,18 +6,25 @@ import math
 
 import numpy as np
 
-from voussoir.verify_contacts import TOUCH, Joint, numbers_of
+from voussoir.verify_contacts import TOUCH, Block, Joint, numbers_of
+from voussoir.verify_fill import Pull
 from voussoir.verify_loads import loads_on
 from voussoir.verify_proofs import Finding, Row, Scene, largest_of, push
 
 #: What told forces may leave of a load: those of a search are of the bracket's end that stands
 TOLD = 1e-7
+#: How far the told forces of what falls may be beyond a law: they are those of the last step
+FALLING = 1e-5
 #: What rounding leaves between columns that say the same
 SAME = 1e-9
+#: Less than this is no force along a direction
+NONE = 1e-12
 
 
-def check_joints(scene: Scene, rows: list[Row], finding: Finding, allowed: float = 0.0) -> None:
-    """Check that told joint forces balance the loads and keep the law of every joint.
+def check_joints(
+    scene: Scene, rows: list[Row], bars: list[float] | None, finding: Finding, allowed: float = 0.0
+) -> None:
+    """Check that told joint forces keep the law of every joint, and balance the loads of what stands.
 
     Parameters
     ----------
@@ -25,6 +32,8 @@ def check_joints(scene: Scene, rows: list[Row], finding: Finding, allowed: float
         The case, at a value that stands.
     rows : list of dict
         Rows of joints.csv.
+    bars : list of float or None
+        Told forces of the bars; None where nothing stands and forces need not balance.
     finding : Finding
         Receives the figures.
     allowed : float
@@ -34,6 +43,12 @@ def check_joints(scene: Scene, rows: list[Row], finding: Finding, allowed: float
     free = np.array([not block.fixed and not _is_held(scene, block.number) for block in scene.blocks])
     largest = largest_of(left[free], scene.length) if free.any() else 1.0
     pairs = numbers_of(scene.joints)
+    for pull, force in zip([pull for pull in scene.pulls if pull.kind == "bar"], bars or []):
+        beyond = max(-force, 0.0 if pull.most is None else force - float(pull.most), 0.0)
+        finding.keep("law of told forces", beyond / largest, TOLD)
+        for number, at, way in zip(pull.blocks, pull.points, (-1.0, 1.0)):
+            if number > 0:
+                push(left, scene.blocks[number - 1], at, way * force * pull.direction)
     for row in rows:
         number, first, second = (int(row[name]) for name in ("joint", "block_1", "block_2"))
         ends = np.array([[float(row[f"{axis}_{side}"]) for axis in "xy"] for side in ("intrados", "extrados")])
@@ -52,12 +67,36 @@ def check_joints(scene: Scene, rows: list[Row], finding: Finding, allowed: float
         beyond = max(0.0, -normal)
         if math.isfinite(friction):
             beyond = max(beyond, (abs(shear) - friction * normal) / max(1.0, friction))
-        finding.keep("law of told forces", beyond / largest, TOLD)
+        finding.keep("law of told forces", beyond / largest, TOLD if bars is not None else FALLING)
         # the shear force acts halfway, where its moment is that of anywhere along the joint
         push(left, scene.blocks[second - 1], at, vector)
         push(left, scene.blocks[first - 1], at, -vector)
+    if bars is None:
+        return
+    for block in scene.blocks:
+        if free[block.number - 1]:
+            _lean(left, block, [pull for pull in scene.pulls if pull.kind == "bounded"], scene.length)
     if free.any():
         finding.keep("balance of told forces", largest_of(left[free], scene.length) / largest, TOLD + allowed)
+
+
+def _lean(left: np.ndarray, block: Block, pulls: list[Pull], length: float) -> None:
+    """Take from what is left on a block what the fill that it leans against can carry."""
+    own = [pull for pull in pulls if pull.blocks[1] == block.number]
+    if not own:
+        return
+    # level forces of given places, each from nothing to its bound, add up to a force and a moment: all of a polygon
+    rays = np.array([[pull.direction[0], -(pull.points[1][1] - block.centre[1]) * pull.direction[0] / length]
+                     for pull in own], dtype=float)
+    most = np.array([np.inf if pull.most is None else float(pull.most) for pull in own])
+    wanted = -np.array([left[block.number - 1, 0], left[block.number - 1, 2] / length])
+    beyond = 0.0
+    for way in [np.array([ray[1], -ray[0]]) for ray in rays] + list(rays):
+        for normal in (way, -way):
+            share = rays @ normal
+            reach = (most[share > NONE] * share[share > NONE]).sum()
+            beyond = max(beyond, (normal @ wanted - reach) / np.linalg.norm(normal))
+    left[block.number - 1] = [beyond, left[block.number - 1, 1], 0.0]
 
 
 def _is_held(scene: Scene, number: int) -> bool:
@@ -88,7 +127,7 @@ def _check_place(row: Row, joint: Joint, at: np.ndarray, normal: float, finding:
 
 
 def check_rigid(scene: Scene, rows: list[Row], finding: Finding, strain: float = 0.0) -> None:
-    """Check that told velocities of a mechanism are those of rigid blocks, or of blocks that strain alike throughout.
+    """Check that told motions are those of rigid blocks, or of blocks that strain alike throughout.
 
     Parameters
     ----------
@@ -99,7 +138,7 @@ def check_rigid(scene: Scene, rows: list[Row], finding: Finding, strain: float =
     finding : Finding
         Receives the figures.
     strain : float
-        How far blocks may be from rigid, over the largest velocity.
+        How far blocks may be from rigid, over the largest velocity; infinite where they need not be.
     """
     told: dict[int, list[list[float]]] = {}
     for row in rows:
@@ -109,12 +148,13 @@ def check_rigid(scene: Scene, rows: list[Row], finding: Finding, strain: float =
     for number, corners in told.items():
         x, y, u, v = np.array(corners).T
         if scene.blocks[number - 1].fixed:
-            finding.keep("motion of fixed blocks", float(np.abs([u, v]).max()))
+            finding.keep("motion of fixed blocks", float(np.abs([u, v]).max()) / max(largest, 1e-300), SAME)
             continue
         arm_x, arm_y = x - x.mean(), y - y.mean()
         spin = float((arm_x * v - arm_y * u).sum() / (arm_x**2 + arm_y**2).sum())
         off = max(np.abs(u - u.mean() + spin * arm_y).max(), np.abs(v - v.mean() - spin * arm_x).max())
-        finding.keep("rigid motion", float(off) / max(largest, 1e-300), SAME + strain)
+        if math.isfinite(strain):
+            finding.keep("rigid motion", float(off) / max(largest, 1e-300), SAME + strain)
         linear = np.array([np.ones_like(x), arm_x, arm_y]).T
         left = np.array([u, v]).T - linear @ np.linalg.lstsq(linear, np.array([u, v]).T, rcond=None)[0]
         finding.keep("linear motion", float(np.abs(left).max()) / max(largest, 1e-300), SAME)

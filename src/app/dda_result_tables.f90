@@ -145,7 +145,7 @@ contains
       call name_table(tables%at(table%proof_motion), "/proof_motion.csv", proof_motion_header())
       tables%at([table%proof_forces, table%proof_motion])%wanted = flag_of(deck, "output", "proof")
       call name_table(tables%at(table%bars), "/bars.csv", bars_header())
-      tables%at(table%bars)%wanted = allocated(deck%plan%boundary%bar)
+      tables%at(table%bars)%wanted = allocated(deck%plan%boundary%bar) .or. has_group(deck, "tie")
       if (allocated(deck%cut)) tables%at(table%bars)%wanted = size(deck%cut%bolt) > 0
       tables%at([table%frames, table%frame_joints])%wanted = &
          & integer_of(deck, "output", "frames") > 0

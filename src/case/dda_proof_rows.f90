@@ -1,5 +1,6 @@
 !> Proofs of a case as rows of proof_forces.csv and proof_motion.csv
 module dda_proof_rows
+   use dda_bar_joints, only : bar_joint
    use dda_case_proof, only : proof_t
    use dda_growing_text, only : add_line, growing_text_t, lines_of
    use dda_kinds, only : wp
@@ -56,6 +57,7 @@ contains
       end do
       call add_held(start, proof, n, rows)
       call add_bounded(start, proof, n, rows)
+      call add_bars(start, proof, rows)
       lines = lines_of(rows)
    end function proof_forces_lines
 
@@ -117,6 +119,29 @@ contains
          call add_line(rows, line)
       end do
    end subroutine add_bounded
+
+   !> Rows of bars: the force that pulls their ends together
+   pure subroutine add_bars(start, proof, rows)
+      !> First fields of a row
+      character(len=*), intent(in) :: start
+      !> The proof
+      type(proof_t), intent(in) :: proof
+      !> Receives the rows
+      type(growing_text_t), intent(inout) :: rows
+      integer :: i, j
+
+      associate (scene => proof%scene)
+         if (.not. allocated(scene%settings%boundary%bar)) return
+         do i = 1, size(scene%settings%boundary%bar)
+            j = bar_joint(scene%settings, size(proof%force, 2), i)
+            associate (bar => scene%settings%boundary%bar(i))
+               call add_line(rows, start//"bar,"//to_text(bar%block(1))//"," &
+                  & //to_text(bar%block(2))//","//numbers([bar%point(:, 1) + scene%origin, &
+                  & bar%point(:, 2) + scene%origin, proof%force(1, j)])//",,")
+            end associate
+         end do
+      end associate
+   end subroutine add_bars
 
    !> Velocities of the mechanism: of the centres of blocks that move, and their spins
    pure function proof_motion_lines(number, value, proof) result(lines)

@@ -5,7 +5,7 @@ module dda_arch_keys
    implicit none
    private
 
-   public :: arch_keys, fill_keys, shape_keys
+   public :: arch_keys, fill_keys, shape_keys, tie_keys
 
    !> Keys of &arch
    type(key_t), parameter :: arch_keys(*) = [ &
@@ -109,4 +109,26 @@ module dda_arch_keys
             meaning="Height of rigid masonry behind the arch above its left springing."), &
       key_t(group="fill", name="backing_unit_weight", unit="N/m3", without="that of &material", &
             at_least=0.0_wp, at_most=1.0e30_wp, meaning="Weight per volume of the backing.")]
+
+   !> Keys of &tie
+   type(key_t), parameter :: tie_keys(*) = [ &
+      key_t(group="tie", name="x1", kind=key_kind%numbers, unit="m", without="no tie", &
+            at_least=-1.0e15_wp, at_most=1.0e15_wp, &
+            meaning="Where ties begin, in a block: one number a tie."), &
+      key_t(group="tie", name="y1", kind=key_kind%numbers, unit="m", without="no tie", &
+            at_least=-1.0e15_wp, at_most=1.0e15_wp, meaning="Likewise, upwards."), &
+      key_t(group="tie", name="x2", kind=key_kind%numbers, unit="m", without="no tie", &
+            at_least=-1.0e15_wp, at_most=1.0e15_wp, &
+            meaning="Where they end, in another block."), &
+      key_t(group="tie", name="y2", kind=key_kind%numbers, unit="m", without="no tie", &
+            at_least=-1.0e15_wp, at_most=1.0e15_wp, meaning="Likewise, upwards."), &
+      key_t(group="tie", name="ea", kind=key_kind%numbers, unit="N", without="must be given", &
+            above=0.0_wp, at_most=1.0e30_wp, &
+            meaning="Force over strain of each tie, per metre of depth as all forces."), &
+      key_t(group="tie", name="strength", kind=key_kind%numbers, unit="N", &
+            without="ties that do not yield", at_least=0.0_wp, at_most=1.0e30_wp, &
+            meaning="Force at which each tie yields."), &
+      key_t(group="tie", name="prestress", kind=key_kind%numbers, unit="N", without="none", &
+            at_least=0.0_wp, at_most=1.0e30_wp, &
+            meaning="Force of each tie at the beginning.")]
 end module dda_arch_keys

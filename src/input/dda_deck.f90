@@ -302,7 +302,7 @@ contains
       first = key_index("arch", "shape")
       last = key_index("arch", "lune_deg")
       shaped = any(deck%value(first + 1:last)%given) .or. has_group(deck, "fill") &
-         .or. word_of(deck, "arch", "shape") /= "circular"
+         .or. has_group(deck, "tie") .or. word_of(deck, "arch", "shape") /= "circular"
       if (.not. shaped .and. has_group(deck, "search")) then
          ! of fixed length, as in word_of
          name = lower_case(word_of(deck, "search", "parameter"))

@@ -55,6 +55,10 @@ contains
       else if (kind /= "arch" .and. has_group(deck, "fill")) then
          call deck_error(error, "&fill needs an arch, got scene%kind = '"//kind// &
             "'; remove one of the two", deck, deck%group(group_index("fill")))
+      else if (kind /= "arch" .and. has_group(deck, "tie")) then
+         call deck_error(error, "&tie needs an arch, got scene%kind = '"//kind// &
+            "'; remove it, and add bar lines to a file of blocks", deck, &
+            deck%group(group_index("tie")))
       end if
       do i = 1, 2
          if (allocated(error) .or. .not. is_given(deck, "scene", file_key(i))) cycle

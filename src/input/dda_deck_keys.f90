@@ -3,7 +3,7 @@
 !> A new key is one entry here and its paragraph in docs/input.md. Reading, range checks, --set,
 !> sweeps, searches and the printed help follow from the entry.
 module dda_deck_keys
-   use dda_arch_keys, only : arch_keys, fill_keys
+   use dda_arch_keys, only : arch_keys, fill_keys, tie_keys
    use dda_deck_key, only : group_t, key_kind, key_t
    use dda_kinds, only : wp
    implicit none
@@ -21,6 +21,7 @@ module dda_deck_keys
       group_t("live", "forces on points that the load factor multiplies"), &
       group_t("vehicle", "axles above the blocks, multiplied by the load factor, too"), &
       group_t("fill", "what lies on an arch, up to a level surface"), &
+      group_t("tie", "bars between two points of the blocks of an arch"), &
       group_t("ground", "how the ground moves, with mode = 'dynamic' only"), &
       group_t("analysis", "how a single case is computed"), &
       group_t("limerick", "the original's scheme: with mode = 'limerick' only"), &
@@ -308,7 +309,7 @@ module dda_deck_keys
 
    !> All keys, group by group
    type(key_t), parameter :: deck_key(*) = [scene_keys, arch_keys, material_keys, joint_keys, &
-      load_keys, live_keys, vehicle_keys, fill_keys, ground_keys, analysis_keys, &
+      load_keys, live_keys, vehicle_keys, fill_keys, tie_keys, ground_keys, analysis_keys, &
       limerick_keys, &
       search_keys, sweep_keys, output_keys]
 

@@ -23,6 +23,7 @@ module dda_deck_scene
    use dda_settings, only : load_direction, settings_t
    use dda_shape_scene, only : add_lune_weights, find_crown_joint, shape_assembly, &
       & shape_form
+   use dda_tie_bars, only : add_ties
    implicit none
    private
 
@@ -165,6 +166,7 @@ contains
 
       call shape_assembly(deck, assembly, problem)
       if (len_trim(problem%text) > 0) return
+      if (has_group(deck, "tie")) call add_ties(deck, assembly%plan)
       call file_scene(deck, assembly%plan, scene)
       call find_crown_joint(assembly, scene)
       if (is_given(deck, "arch", "lune_deg")) &

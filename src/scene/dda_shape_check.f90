@@ -13,6 +13,7 @@ module dda_shape_check
    use dda_kinds, only : wp
    use dda_shape_scene, only : shape_assembly
    use dda_text, only : to_text
+   use dda_tie_bars, only : check_ties
    implicit none
    private
 
@@ -56,6 +57,8 @@ contains
       if (allocated(error)) return
       if (has_group(deck, "search")) &
          & call find_parameter(text_of(deck, "search", "parameter"), searched, problem)
+      if (has_group(deck, "tie")) call check_ties(deck, searched, error)
+      if (allocated(error)) return
       if (all(deck_key(max(1, searched%key))%group /= ["arch", "fill"])) then
          call check_form(deck, error)
          return

@@ -2,6 +2,7 @@
 module dda_shape_text
    use dda_arch_assembly, only : arch_assembly_t
    use dda_arch_form, only : form_problem_t
+   use dda_bar, only : bar_t
    use dda_block_input, only : block_plan_t
    use dda_boundary, only : loaded_point_t
    use dda_deck, only : deck_t, is_given, has_group
@@ -43,6 +44,11 @@ contains
             call add_load(scene%settings%boundary%loaded(i), scene%origin, lines)
          end do
       end if
+      if (allocated(scene%settings%boundary%bar)) then
+         do i = 1, size(scene%settings%boundary%bar)
+            call add_bar(scene%settings%boundary%bar(i), scene%origin, lines)
+         end do
+      end if
       text = lines_of(lines)
    end function shape_text
 
@@ -76,6 +82,22 @@ contains
          & //to_text(loaded%block)//" "//pair(loaded%point + origin)//" " &
          & //pair(loaded%force%value(:, 1)))
    end subroutine add_load
+
+   !> Add a tie
+   pure subroutine add_bar(bar, origin, lines)
+      !> The tie
+      type(bar_t), intent(in) :: bar
+      !> Where the origin of its coordinates is: (2) [m]
+      real(wp), intent(in) :: origin(2)
+      !> Receives the line
+      type(growing_text_t), intent(inout) :: lines
+      character(len=:), allocatable :: text
+
+      text = "bar "//pair(bar%point(:, 1) + origin)//" "//pair(bar%point(:, 2) + origin) &
+         & //" stiffness "//to_text(bar%stiffness)//" prestress "//to_text(bar%prestress)//" slack"
+      if (bar%strength < huge(bar%strength)) text = text//" strength "//to_text(bar%strength)
+      call add_line(lines, text)
+   end subroutine add_bar
 
    !> Two numbers
    pure function pair(vector) result(text)

@@ -199,17 +199,20 @@ contains
       type(proof_t), intent(inout) :: proof
       type(load_decision_t) :: decision
       real(wp) :: load(3, graph%n_block)
+      integer :: b
 
       load = full_loads(scene%settings, scene, graph)
       call decide_load(graph, load, decision)
       proof%scene = scene
+      ! beside what acts on blocks, without nodes of bars and carriers of bounded forces
+      b = maxval(scene%system%equation)
       if (decision%state == load_state%stands .and. wanted == verdict%stable) then
          proof%imbalance = decision%imbalance
          proof%law_violation = decision%violation
          call move_alloc(decision%force, proof%force)
       else if (decision%state == load_state%falls .and. wanted == verdict%collapsed) then
          proof%law_violation = decision%violation
-         proof%power = decision%power/most_power(load, decision%velocity)
+         proof%power = decision%power/most_power(load(:, :b), decision%velocity(:, :b))
          call move_alloc(decision%velocity, proof%velocity)
       end if
    end subroutine prove_state

@@ -3,6 +3,7 @@
 !> The joints of a collapse, frozen, tell where it would stop; two decisions close around that value
 !> prove it. Where the joints tell nothing, the bracket is halved.
 module dda_critical
+   use dda_bar, only : bar_state_t
    use dda_block_system, only : block_system_t
    use dda_chain, only : chain_t
    use dda_chain_decision, only : decide_chain
@@ -239,13 +240,16 @@ contains
       critical%standing = decision
    end subroutine share_forces
 
-   !> Give back what a search does not ask a kept decision for: its blocks and springs, which the
-   !> family makes anew at any value
+   !> Give back what a search does not ask a kept decision for: its springs, and its blocks but for
+   !> their bars, which the family makes anew at any value
    pure subroutine shed(decision)
       !> The decision
       type(decision_t), intent(inout) :: decision
+      type(bar_state_t), allocatable :: bar(:)
 
+      if (allocated(decision%system%bar)) allocate (bar, source=decision%system%bar)
       decision%system = block_system_t()
+      if (allocated(bar)) call move_alloc(bar, decision%system%bar)
       decision%contacts%springs = joint_springs_t()
       if (decision%outcome%verdict == verdict%stable .and. allocated(decision%outcome%motion)) &
          & deallocate (decision%outcome%motion)

@@ -32,6 +32,21 @@ CHANGED = [
     ("blocks", ("u", "v")),
 ]
 BLOCKS = "block fixed\n-5 -1\n5 -1\n5 0\n-5 0\nblock\n0 0\n1 0\n1 2\n0 2\n"
+#: An arch below fill, a lune, a tied arch on buttresses; a dam, blocks on bolts to the ground and to one another
+FILLED = (
+    "&arch shape = 'segmental', span = 6.55, rise = 1.428, thickness = 0.22, voussoirs = 14 /\n"
+    "&joint friction_deg = 31 /\n&vehicle axles = 1000, position = -1.6 /\n"
+    "&fill height = 0.165, unit_weight = 20e3, {} /\n"
+)
+LUNE = "&arch shape = 'circular', thickness_ratio = {}, lune_deg = 10, voussoirs = 21 /\n"
+TIED = (
+    "&arch shape = 'circular', radius = 1, thickness = 0.15, voussoirs = 12, buttress_width = 0.2, "
+    "buttress_height = 1.0 /\n&tie x1 = -0.925, y1 = -0.1, x2 = 0.925, y2 = -0.1, ea = 1e6, strength = {} /\n"
+)
+DAM = ("block fixed\n-20 -5\n40 -5\n40 0\n-20 0\nblock\n0 0\n16 0\n12 8\n0 30\n"
+       "water -10 24 0 24 5 20 16 0 factor {}\n0 0\n1 6\n")
+BOLTED = ("block fixed\n-5 -1\n5 -1\n5 0\n-5 0\nblock\n0 0\n1 0\n1 1\n0 1\nblock\n0.2 1\n1 1\n1 2\n0.2 2\n"
+          "bar 0.5 1.5 -2 -0.5 stiffness 1e8 {0}\nbar 0.5 0.5 0.6 1.4 ea 1e8 {0}\nbar 0.8 1.2 9 9 stiffness 1e7 {0}\n")
 #: Decks that leave proofs of every kind
 DECKS = {
     "arch": "&arch thickness_ratio = 0.12 /\n",
@@ -48,7 +63,35 @@ DECKS = {
     "an axle": "&arch half_angle_deg = 60, voussoirs = 15 /\n&vehicle axles = 2e4, length = 0, position = 2.0 /\n",
     "live": HEAD + "&load load_factor = 3.0 /\n",
     "falls": HEAD + "&load load_factor = 30.0, horizontal_coefficient = 0.05 /\n",
+    "fill": FILLED.format("passive_coefficient = 1.3") + SEARCH,
+    "fill and backing": FILLED.format("friction_deg = 35, passive_share = 0.5, backing_height = 0.7")
+                        + "&load load_factor = 20 /\n",
+    "spans in fill": FILLED.format("passive_coefficient = 1").replace(
+        "&arch", "&arch spans = 2, pier_width = 1, pier_height = 2, ") + SEARCH,
+    "too much on fill": FILLED.format("passive_coefficient = 1") + "&load load_factor = 80 /\n",
+    "rings and a rise on one side": "&arch shape = 'elliptic', span = 5, rise = 2, right_rise = 1.4, thickness = 0.5, "
+        "rings = 2, voussoirs = 13 /\n&fill height = 0.2, unit_weight = 18e3, passive_coefficient = 0.6 /\n"
+        "&vehicle axles = 3e4, 2e4, spacings = 1.1, worst = .true. /\n" + SEARCH,
+    "a lune": LUNE.format(0.06),
+    "a lune that falls": LUNE.format(0.03),
+    "thickness of a lune": "&arch shape = 'circular', lune_deg = 10, voussoirs = 21, facet_deg = 2 /\n"
+                           "&search parameter = 'thickness_ratio', low = 0.01, high = 0.2 /\n",
+    "a tie": TIED.format(1e5) + "&output thrust_bar = 1 /\n",
+    "a weak tie": TIED.format(100),
+    "strength of a tie": TIED.format(1e5) + "&search parameter = 'strength(1)', low = 0, high = 1e5 /\n",
+    "live load on a tied arch": TIED.format(2e4) + "&live x = 0, y = 1, fy = -1e3 /\n" + SEARCH,
     "friction": HEAD + "&load load_factor = 5.0 /\n&search parameter = 'friction_deg' /\n",
+}
+#: Files of blocks with bars and water, each with a deck
+SCENES = {
+    "a dam": (DAM.format("0.3"), "&material unit_weight = 24e3 /\n"),
+    "a dam with uplift": (DAM.format("1"), "&material unit_weight = 24e3 /\n"),
+    "level behind a dam": (DAM.format("0.3"), "&material unit_weight = 24e3 /\n"
+                           "&search parameter = 'water_rise', low = -20, high = 10 /\n"),
+    "bolts": (BOLTED.format("strength 1e4"), "&search parameter = 'horizontal_coefficient' /\n"),
+    "a bolt without strength": (BOLTED.format(""), "&search parameter = 'horizontal_coefficient' /\n"),
+    "a slope that bolts hold": (BOLTED.format("strength 1e4"), "&load gravity_direction_deg = -60 /\n"),
+    "a slope that they do not": (BOLTED.format("strength 1e2"), "&load gravity_direction_deg = -30 /\n"),
 }
 #: What the file of blocks has beside its blocks
 ACTING = (
@@ -79,6 +122,15 @@ def test_proofs_of_the_program_hold(tmp_path: Path, deck: str, capsys: pytest.Ca
     assert main(["verify", str(folder)]) == 0, capsys.readouterr().out
     cases = len(rows_of(folder / "results.csv"))
     assert f"{cases} of {cases} cases have proofs, 0 fail" in capsys.readouterr().out
+
+
+@pytest.mark.parametrize("scene", SCENES.values(), ids=SCENES)
+def test_proofs_of_bars_and_water_hold(
+    tmp_path: Path, scene: tuple[str, str], capsys: pytest.CaptureFixture[str]
+) -> None:
+    folder = run_deck(tmp_path, HEAD + scene[1], scene[0])
+    assert main(["verify", str(folder)]) == 0, capsys.readouterr().out
+    assert "1 of 1 cases have proofs, 0 fail" in capsys.readouterr().out
 
 
 @pytest.mark.parametrize("name", ["dry_wall_2x4", "four_corners", "jammed", "goodman_bray", "wedge_in_notch"])

@@ -9,7 +9,7 @@ import numpy as np
 from voussoir.verify_deck import SHAPES
 
 #: Groups and keys that make an arch a shape besides those of &arch
-OTHERS = ("&fill",)
+OTHERS = ("&fill", "&tie")
 
 
 def is_shape(record: Sequence[str], searched: str | None) -> bool:
@@ -29,7 +29,7 @@ def is_shape(record: Sequence[str], searched: str | None) -> bool:
     """
     words = [line.strip() for line in record]
     for number, word in enumerate(words):
-        if word in OTHERS or word.startswith("fill%"):
+        if word in OTHERS or word.startswith(("fill%", "tie%")):
             return True
         if word in SHAPES and not (word == "arch%shape" and words[number + 1 : number + 2] == ["circular"]):
             return True

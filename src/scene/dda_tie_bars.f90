@@ -1,0 +1,168 @@
+!> Ties of an arch: bars of a deck between two points of its blocks
+module dda_tie_bars
+   use dda_arch_assembly, only : arch_assembly_t
+   use dda_arch_form, only : form_problem_t
+   use dda_bar, only : bar_t
+   use dda_block_input, only : block_plan_t
+   use dda_block_sites, only : block_at, site_t, survey
+   use dda_deck, only : deck_error, deck_t, is_given, list_of, parameter_t, place_of
+   use dda_deck_keys, only : deck_key, group_index, key_index
+   use dda_error, only : error_t
+   use dda_kinds, only : wp
+   use dda_shape_scene, only : shape_assembly
+   use dda_text, only : to_text
+   implicit none
+   private
+
+   public :: add_ties, check_ties
+
+contains
+
+   !> Put the bars of &tie between the blocks that hold their ends
+   pure subroutine add_ties(deck, plan)
+      !> The deck of the case, with &tie, checked
+      type(deck_t), intent(in) :: deck
+      !> The blocks; receives the bars
+      type(block_plan_t), intent(inout) :: plan
+      type(bar_t), allocatable :: bar(:)
+      type(site_t) :: site
+      real(wp), allocatable :: ends(:, :)
+      integer :: i, side
+
+      call tie_ends(deck, ends)
+      allocate (bar(size(ends, 2)))
+      call survey(plan, site)
+      do i = 1, size(bar)
+         bar(i)%point = reshape(ends(:, i), [2, 2]) - spread(plan%origin, 2, 2)
+         do side = 1, 2
+            bar(i)%block(side) = block_at(plan, site, bar(i)%point(:, side))
+         end do
+         bar(i)%pushes = .false.
+         bar(i)%stiffness = item("ea", i, 0.0_wp)/norm2(ends(3:4, i) - ends(1:2, i))
+         bar(i)%strength = item("strength", i, huge(1.0_wp))
+         bar(i)%prestress = item("prestress", i, 0.0_wp)
+      end do
+      call move_alloc(bar, plan%boundary%bar)
+
+   contains
+
+      !> One number of a list, or what stands for it
+      pure real(wp) function item(name, i, usual)
+         !> The key
+         character(len=*), intent(in) :: name
+         !> Number of the tie
+         integer, intent(in) :: i
+         !> What holds without the key
+         real(wp), intent(in) :: usual
+         real(wp), allocatable :: list(:)
+
+         item = usual
+         if (.not. is_given(deck, "tie", name)) return
+         allocate (list, source=list_of(deck, "tie", name))
+         item = list(i)
+      end function item
+   end subroutine add_ties
+
+   !> Ends of all ties
+   pure subroutine tie_ends(deck, ends)
+      !> The deck of the case
+      type(deck_t), intent(in) :: deck
+      !> x and y of the one end, then of the other: (4, n) [m]
+      real(wp), allocatable, intent(out) :: ends(:, :)
+      character(len=2), parameter :: name(4) = ["x1", "y1", "x2", "y2"]
+      integer :: k
+
+      allocate (ends(4, size(list_of(deck, "tie", "x1"))))
+      do k = 1, 4
+         ends(k, :) = list_of(deck, "tie", name(k))
+      end do
+   end subroutine tie_ends
+
+   !> Check the ties of a case
+   pure subroutine check_ties(deck, searched, error)
+      !> The deck of the case, with &tie
+      type(deck_t), intent(in) :: deck
+      !> What is searched; key 0 if nothing is
+      type(parameter_t), intent(in) :: searched
+      !> Lists that do not go together, or an end in no block
+      type(error_t), allocatable, intent(out) :: error
+      character(len=9), parameter :: name(7) = [character(len=9) :: "x1", "y1", "x2", "y2", "ea", &
+         & "strength", "prestress"]
+      integer :: i, n
+
+      n = size(list_of(deck, "tie", "x1"))
+      if (n == 0) then
+         call deck_error(error, "&tie needs x1, y1, x2 and y2, the ends of each tie, got none; "// &
+            & "give them", deck, deck%group(group_index("tie")))
+         return
+      end if
+      do i = 2, size(name)
+         if (i > 5 .and. .not. is_given(deck, "tie", trim(name(i)))) cycle
+         if (size(list_of(deck, "tie", trim(name(i)))) == n) cycle
+         call deck_error(error, "tie%"//trim(name(i))//" needs as many numbers as tie%x1, " &
+            & //to_text(n)//", got "//to_text(size(list_of(deck, "tie", trim(name(i))))) &
+            & //"; give one per tie", deck, place_of(deck, key_index("tie", trim(name(i)))))
+         return
+      end do
+      if (deck_key(max(1, searched%key))%group == "arch" .and. searched%key > 0) then
+         call deck_error(error, "&tie needs an arch that keeps its shape, but the search "// &
+            & "changes it, and its ends stay; sweep the shape, with the ends linked", deck, &
+            & place_of(deck, key_index("search", "parameter")))
+         return
+      end if
+      call check_ends(deck, error)
+   end subroutine check_ties
+
+   !> Check that ties lie between blocks
+   pure subroutine check_ends(deck, error)
+      !> The deck of the case, its lists checked
+      type(deck_t), intent(in) :: deck
+      !> An end in no block, or both in one
+      type(error_t), allocatable, intent(out) :: error
+      character(len=2), parameter :: name(2) = ["x1", "x2"]
+      character(len=:), allocatable :: problem
+      type(arch_assembly_t) :: assembly
+      type(form_problem_t) :: no_form
+      real(wp), allocatable :: ends(:, :)
+      integer :: i, k, side
+
+      call tie_ends(deck, ends)
+      call shape_assembly(deck, assembly, no_form)
+      if (len_trim(no_form%text) > 0) return
+      do i = 1, size(ends, 2)
+         if (norm2(ends(3:4, i) - ends(1:2, i)) > 0.0_wp) cycle
+         call deck_error(error, "&tie needs ends that are apart, got tie "//to_text(i)// &
+            & " between equal points; move one", deck, place_of(deck, key_index("tie", "x1")))
+         return
+      end do
+      call add_ties(deck, assembly%plan)
+      problem = ""
+      do i = 1, size(ends, 2)
+         associate (bar => assembly%plan%boundary%bar(i))
+            side = findloc(bar%block, 0, dim=1)
+            if (side > 0) then
+               problem = "&tie needs ends in blocks, got ("//to_text(ends(2*side - 1, i))//", " &
+                  & //to_text(ends(2*side, i))//") of tie "//to_text(i)//", which lies in none; " &
+                  & //"move it"
+            else if (bar%block(1) == bar%block(2)) then
+               side = 1
+               problem = "&tie needs ends in two blocks, got both of tie "//to_text(i) &
+                  & //" in block "//to_text(bar%block(1))//"; move one"
+            else if (all(assembly%plan%fixed(bar%block))) then
+               side = 1
+               problem = "&tie needs a block that moves, got tie "//to_text(i) &
+                  & //" between two that are fixed; move one end, or remove the tie"
+            else if (bar%prestress > bar%strength) then
+               call deck_error(error, "tie%prestress must be at most tie%strength, got " &
+                  & //to_text(bar%prestress)//" for tie "//to_text(i)//"; lower it", deck, &
+                  & place_of(deck, key_index("tie", "prestress")))
+               return
+            end if
+         end associate
+         if (len(problem) == 0) cycle
+         k = key_index("tie", name(side))
+         call deck_error(error, problem, deck, place_of(deck, k))
+         return
+      end do
+   end subroutine check_ends
+end module dda_tie_bars
