@@ -186,3 +186,15 @@ def test_digits_of_the_paper_are_kept_and_columns_that_repeat_are_dropped(paper_
 def test_a_picture_stands_at_the_top_and_animations_beside_their_figures(paper_page: str) -> None:
     assert 0 < paper_page.index('<figure id="top">') < paper_page.index('id="glance"')
     assert paper_page.count('<div class="pair">') == 4
+
+
+def test_captions_have_the_paper_s_value_beside_ours(paper_page: str) -> None:
+    for words in (
+        "12 blocks: 0.10884 (0.10486), 90 blocks: 0.12540 (0.10745)",  # Fig. 11
+        "54.5&deg;: 0.1123 (0.1075)",  # Fig. 13
+        "59.0&deg;: 0.63585 (0.63487)",  # Fig. 16
+        "45&deg;: 0.01680 (0.00749), 60&deg;: 0.03077 (0.02283)",  # Fig. 18
+        "120&deg;: 65, 130&deg;: 65",  # Fig. 19
+    ):
+        assert words in paper_page
+    assert paper_page.count('<span class="paper">') == 14

@@ -12,7 +12,7 @@ from matplotlib.figure import Figure
 from voussoir import theory
 from voussoir.paper.campaign import Campaign
 from voussoir.paper.tables import THEORIES, PaperTable, Row
-from voussoir.plot.figure_style import DASHES, INK
+from voussoir.plot.figure_style import DASHES, INK, closer
 
 #: How the points of a column look; columns that join later take the last one
 POINTS = {
@@ -176,45 +176,51 @@ def numbers_of_blocks(campaign: Campaign) -> Figure:
 
 def imposed_at_90(campaign: Campaign) -> Figure:
     """Figure 14: four blocks, half angle 90 degrees."""
-    return _imposed(campaign.tables["table2"], 90.0)
+    return _imposed(campaign.tables["table2"], 90.0, (0.44, 0.07, 0.33, 0.50), (52.0, 61.0), (0.1035, 0.1135))
 
 
 def imposed_at_140(campaign: Campaign) -> Figure:
     """Figure 17: four blocks, half angle 140 degrees."""
-    return _imposed(campaign.tables["table3"], 140.0)
+    return _imposed(campaign.tables["table3"], 140.0, (0.26, 0.13, 0.42, 0.55), (56.0, 65.0), (0.618, 0.642))
 
 
-def _imposed(table: PaperTable, alpha_deg: float) -> Figure:
-    alpha = math.radians(alpha_deg)
+def _imposed(table: PaperTable, alpha_deg: float, place: tuple, near: tuple, high: tuple) -> Figure:
+    """A table of imposed joints; the piece near the top is drawn larger where there is room."""
     figure, (curve, error) = plt.subplots(
         2, 1, figsize=(6.8, 7.2), sharex=True, height_ratios=(3, 2)
     )
-    beta = np.linspace(1e-6, alpha * (1.0 - 1e-9), 600)
-    for name in ("milankovitch", "ccr"):
-        color, dashes = CURVES[name]
-        label = {"ccr": "CCR and Heyman"}.get(name, THEORIES[name])
-        eta = theory.equilibrium_thickness(beta, alpha, name)
-        curve.plot(np.degrees(beta), eta, color=color, linestyle=dashes, label=label)
-    for name, marker in zip(THEORIES, ("+", "x", "*")):
-        top, eta, _ = theory.critical(alpha, name)
-        curve.plot(
-            math.degrees(top),
-            eta,
-            marker=marker,
-            color=INK[0],
-            markersize=10,
-            linestyle="none",
-            zorder=6,
-            label=f"critical, {THEORIES[name]}: {math.degrees(top):.2f}°, {float(eta):.6f}",
-        )
-    draw_points(curve, table, "joint")
+    _draw_imposed(curve, table, math.radians(alpha_deg))
     curve.set_ylim(bottom=0.0)
     curve.set_xlim(0.0, alpha_deg)
+    _draw_imposed(closer(curve, place, near, high), table, math.radians(alpha_deg))
     curve.set_ylabel(r"thickness ratio $\eta$ [-]")
     _draw_errors(error, table, "joint")
     error.set_xlabel(r"imposed joint $\beta$ [deg]")
     legend_below(figure, curve)
     return figure
+
+
+def _draw_imposed(axes: Axes, table: PaperTable, alpha: float) -> None:
+    """Curves of the theories, their tops, and what was computed."""
+    beta = np.linspace(1e-6, alpha * (1.0 - 1e-9), 600)
+    for name in ("milankovitch", "ccr"):
+        color, dashes = CURVES[name]
+        label = {"ccr": "CCR and Heyman"}.get(name, THEORIES[name])
+        eta = theory.equilibrium_thickness(beta, alpha, name)
+        axes.plot(np.degrees(beta), eta, color=color, linestyle=dashes, label=label)
+    for name, marker in zip(THEORIES, ("+", "x", "*")):
+        top, eta, _ = theory.critical(alpha, name)
+        axes.plot(
+            math.degrees(top),
+            eta,
+            marker=marker,
+            color=INK[0],
+            markersize=9,
+            linestyle="none",
+            zorder=6,
+            label=f"critical, {THEORIES[name]}: {math.degrees(top):.2f}°, {float(eta):.6f}",
+        )
+    draw_points(axes, table, "joint")
 
 
 def half_angles(campaign: Campaign) -> Figure:

@@ -107,16 +107,15 @@ def half_angles(campaign: Campaign) -> Figure:
         linestyle=DASHES[3],
         label=r"small arches, $\beta = \alpha/\sqrt{2}$",
     )
-    styles = {name: dict(POINTS[name]) for name in POINTS}
-    styles["paper DDA"]["markersize"], styles["ours, rigid"]["markersize"] = 10, 4
-    styles["ours, elastic"]["markersize"] = 13
-    for column in ("ours, elastic", "paper DDA", "ours, rigid"):
+    for column, aside in zip(POINTS, (-1.7, 0.0, 1.7)):
         points = [
-            (float(row.half_angle), float(beta))
+            (float(row.half_angle) + aside, float(beta))
             for row in table.rows
             for beta in row.values[column].hinge.split(";")
         ]
-        axes.plot(*zip(*points), linestyle="none", label=column, **styles[column])
+        axes.plot(*zip(*points), linestyle="none", label=column, **{**POINTS[column], "markersize": 6})
+    for row in table.rows:  # the half angle to which three marks side by side belong
+        axes.axvspan(float(row.half_angle) - 3.0, float(row.half_angle) + 3.0, color="#f4f4f1", zorder=0, linewidth=0)
     axes.set_yticks(range(0, 95, 5), minor=True)
     axes.grid(True, which="minor", axis="y", linewidth=0.3)
     axes.set_xlim(0.0, 155.0)

@@ -7,7 +7,8 @@ from collections.abc import Callable
 from typing import Any
 
 import matplotlib.pyplot as plt
-from matplotlib.figure import Figure
+import numpy as np
+from matplotlib.figure import Figure, SubFigure
 
 from voussoir.paper.campaign import Campaign
 from voussoir.plot.collapse_picture import draw_frame, limits, mark_legend, set_limits
@@ -37,17 +38,22 @@ def short_friction_title(row: Row) -> str:
 
 
 def block_numbers(campaign: Campaign) -> Figure:
-    """Figure 9: collapse against the number of blocks, for two thicknesses."""
+    """Figure 9: collapse against the number of blocks, a grid for each of two thicknesses."""
     run = campaign.results("figure9")
-    figure = gallery(run, list(run.cases["case"]), 3, _blocks_title, size=3.5)
+    ratios = list(dict.fromkeys(run.cases["thickness_ratio"].tolist()))
+    groups = [run.cases.where(thickness_ratio=ratio)["case"].tolist() for ratio in ratios]
+    figure = plt.figure(figsize=(9.0, 5.6 * len(groups)), layout="constrained")
+    parts = figure.subfigures(len(groups), 1, hspace=0.03)
+    for part, ratio, numbers, word in zip(parts, ratios, groups, ("Heyman's", "that of CCR")):
+        gallery(run, numbers, 3, _blocks_title, size=3.5, into=part)
+        part.suptitle(f"$\\eta$ = {ratio:g}, {word}", fontsize=12, x=0.01, ha="left")
     return mark_legend(figure)
 
 
 def _blocks_title(row: Row) -> str:
-    head = f"{row['blocks']} blocks, $\\eta$ = {row['thickness_ratio']:g}"
     if row["verdict"] != "collapsed":
-        return f"{head}: {row['verdict']}"
-    return f"{head}: $\\beta$ = {_angles(row['intrados_hinge_deg'])}"
+        return f"{row['blocks']} blocks: {row['verdict']}"
+    return f"{row['blocks']} blocks: $\\beta$ = {_angles(row['intrados_hinge_deg'])}"
 
 
 def imposed_at_90(campaign: Campaign) -> Figure:
@@ -93,13 +99,13 @@ def _sample(run: Results, beta: float) -> Figure:
 def half_angles(campaign: Campaign) -> Figure:
     """Figure 18: blocks of 5 degrees, half angles from 45 to 145 degrees."""
     run = campaign.results("figure18")
-    figure = gallery(run, list(run.cases["case"]), 3, _half_angle_title, size=3.5)
+    figure = gallery(run, list(run.cases["case"]), 5, _half_angle_title, size=3.0, width=10.5)
     return mark_legend(figure)
 
 
 def _half_angle_title(row: Row) -> str:
     return (
-        f"$\\alpha$ = {row['half_angle_deg']:g}°: $\\beta$ = {_angles(row['intrados_hinge_deg'])}, "
+        f"$\\alpha$ = {row['half_angle_deg']:g}°: $\\beta$ = {_angles(row['intrados_hinge_deg'])},\n"
         f"$\\eta$ = {row['critical']:.5f}"
     )
 
@@ -123,8 +129,9 @@ def gallery(
     size: float,
     width: float = 9.0,
     together: bool = False,
+    into: SubFigure | None = None,
 ) -> Figure:
-    """Last pictures of some cases side by side.
+    """Last pictures of some cases side by side; those of one row are of one shape, so that they stand in line.
 
     Parameters
     ----------
@@ -142,6 +149,8 @@ def gallery(
         Of the figure [inch].
     together : bool, optional
         Whether all pictures show the same piece of the plane.
+    into : SubFigure, optional
+        Part of a figure that receives them; without it a new figure.
 
     Returns
     -------
@@ -150,22 +159,16 @@ def gallery(
     """
     boxes = [limits(run, numbers if together else [number]) for number in numbers]
     shapes = [(high[1] - low[1]) / (high[0] - low[0]) for low, high in boxes]
-    heights = [
-        width / columns * max(shapes[first : first + columns]) + 0.3
-        for first in range(0, len(numbers), columns)
-    ]
-    figure, grid = plt.subplots(
-        len(heights),
-        columns,
-        figsize=(width, sum(heights)),
-        height_ratios=heights,
-        layout="constrained",
-        squeeze=False,
-    )
+    rows = [slice(first, first + columns) for first in range(0, len(numbers), columns)]
+    tallest = [max(shapes[row]) for row in rows]
+    heights = [width / columns * shape + 0.3 for shape in tallest]
+    figure = into or plt.figure(figsize=(width, sum(heights)), layout="constrained")
+    grid = figure.subplots(len(rows), columns, height_ratios=heights, squeeze=False)
     for axes in grid.flat[len(numbers) :]:
         axes.set_axis_off()
-    for axes, number, box in zip(grid.flat, numbers, boxes):
+    for place, (axes, number, (low, high)) in enumerate(zip(grid.flat, numbers, boxes)):
         draw_frame(axes, run, number, run.frames_of(number)[-1], size)
-        set_limits(axes, box)
+        top = low[1] + tallest[place // columns] * (high[0] - low[0])
+        set_limits(axes, (low, np.array([high[0], top])))
         axes.set_title(title(run.case(number)), fontsize=9.5)
     return figure

@@ -23,6 +23,7 @@ nav li { break-inside: avoid; }
 a { color: #174a82; }
 figure { margin: 1.5rem 0; }
 figcaption, .caption { font-size: .95rem; max-width: 46rem; margin: 0; padding: .4rem 0; }
+.paper { color: #555; }
 .table { margin: 1.5rem 0; }
 .wide { overflow-x: auto; }
 .wide:focus { outline: 2px solid #1f5fa8; }

@@ -14,7 +14,7 @@ import voussoir
 from voussoir import theory
 from voussoir.paper import findings, tables
 from voussoir.paper.campaign import FIGURES, TOGETHER, Campaign, Timing
-from voussoir.paper.contents import ANIMATIONS, CAPTIONS, SECTIONS, THEORY_CAPTIONS
+from voussoir.paper.contents import ANIMATIONS, CAPTIONS, SECTIONS, THEORY_CAPTIONS, caption
 from voussoir.paper.page import Page, escape
 from voussoir.paper.tables import THEORIES, PaperTable, Row, percent, thickness
 
@@ -99,19 +99,19 @@ def _add(page: Page, campaign: Campaign, figures: Path, part: str) -> None:
         _thicknesses(page, campaign.tables[part])
     elif part in CAPTIONS:
         svg = figures / f"{part}.svg"
-        name, caption = ANIMATIONS.get(part, ("", ""))
+        name, words = ANIMATIONS.get(part, ("", ""))
         gif = figures / f"{name}.gif"
         moves = bool(name) and gif.is_file()
         if moves:
             page.begin_pair()
         if svg.is_file():
-            page.figure(svg, CAPTIONS[part], part)
+            page.figure(svg, caption(part, campaign), part)
         else:
             page.text(
                 f'<span id="{part}">{CAPTIONS[part]} (left out: matplotlib is missing)</span>'
             )
         if moves:
-            page.picture(gif, caption, name)
+            page.picture(gif, words, name)
             page.end_pair()
     else:
         {

@@ -7,6 +7,7 @@ from contextlib import contextmanager
 from pathlib import Path
 
 import matplotlib.pyplot as plt
+from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 #: Dark to light in greyscale as well: black, blue, vermilion, grey
@@ -15,6 +16,8 @@ INK = ("#000000", "#1f5fa8", "#d1632a", "#9a9a9a")
 DASHES = ("-", (0, (6, 2)), (0, (5, 1.5, 1, 1.5)), (0, (1.2, 1.2)))
 #: Fill of masonry
 STONE = "#ececec"
+#: Fill of masonry by its material, that of the deck first
+TINTS = (STONE, "#d9c9ac", "#bccfdd", "#dbbfb6", "#c8d8bd", "#b9b9b9")
 
 _SETTINGS = {
     "figure.dpi": 100,
@@ -42,6 +45,35 @@ class Picture(Figure):
         stream = io.BytesIO()
         self.savefig(stream, format="png", dpi=110, bbox_inches="tight")
         return stream.getvalue()
+
+
+def closer(
+    axes: Axes, place: tuple[float, float, float, float], x: tuple[float, float], y: tuple[float, float]
+) -> Axes:
+    """Axes within others for a piece of them, framed there.
+
+    Parameters
+    ----------
+    axes : Axes
+        The others, drawn already.
+    place : tuple of float
+        Left and lower end, width and height, as shares of them.
+    x, y : tuple of float
+        The piece.
+
+    Returns
+    -------
+    Axes
+        What is to be drawn into; its limits are those of the piece.
+    """
+    limits = axes.axis()  # the frame of the piece must not change them
+    inner = axes.inset_axes(place, xlim=x, ylim=y, zorder=8)
+    inner.set_autoscale_on(False)
+    inner.tick_params(labelsize=8)
+    inner.spines[["top", "right"]].set_visible(True)
+    axes.indicate_inset_zoom(inner, edgecolor=INK[0], linewidth=0.7)
+    axes.axis(limits)
+    return inner
 
 
 @contextmanager

@@ -10,7 +10,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from voussoir import theory
-from voussoir.plot.figure_style import DASHES, INK
+from voussoir.plot.figure_style import DASHES, INK, closer
 
 _NAMES = {"ccr": "CCR", "milankovitch": "Milankovitch", "heyman": "Heyman"}
 
@@ -33,12 +33,14 @@ def curve_of_the_semicircle(alpha_deg: float = 90.0) -> Figure:
     figure, axes = plt.subplots(figsize=(6.4, 4.2))
     draw_curve(axes, alpha, "ccr", color=INK[0])
     for share, word in (
-        (1.2, "super-critical: no hinge"),
-        (1.0, "critical: one hinge"),
-        (0.7, "sub-critical: two hinges"),
+        (1.2, "super-critical:\nno hinge"),
+        (1.0, "critical:\none hinge"),
+        (0.7, "sub-critical:\ntwo hinges"),
     ):
         axes.axhline(share * eta, color=INK[1], linewidth=0.9, linestyle=DASHES[1])
-        axes.text(1.0, share * eta, word, va="bottom", fontsize=9)
+        axes.text(
+            1.02, share * eta, word, va="center", fontsize=9, color=INK[1], transform=axes.get_yaxis_transform()
+        )
     axes.plot(math.degrees(beta), eta, marker="o", color=INK[2], markersize=7, zorder=5)
     axes.annotate(
         f"$\\beta$ = {math.degrees(beta):.4f}°\n$\\eta$ = {eta:.6f}",
@@ -139,6 +141,22 @@ def compared_curves(alpha_deg: float) -> Figure:
     """
     alpha = math.radians(alpha_deg)
     figure, axes = plt.subplots(figsize=(6.4, 4.4))
+    _compare(axes, alpha)
+    axes.set_xlim(0, alpha_deg)
+    axes.set_ylim(bottom=0)
+    tops = [theory.critical(alpha, name) for name in ("ccr", "milankovitch")]
+    if math.degrees(abs(tops[0][0] - tops[1][0])) < 1.0:  # as one mark
+        x, y = math.degrees(tops[0][0]), float(tops[0][1])
+        inner = closer(axes, (0.42, 0.08, 0.30, 0.34), (x - 0.4, x + 0.4), (y - 1e-4, y + 1.2e-4))
+        _compare(inner, alpha)
+        inner.set(xlabel="", ylabel="")
+    axes.legend(loc="upper center", bbox_to_anchor=(0.5, -0.15), ncols=2, fontsize=9)
+    axes.set_title(f"$\\alpha$ = {alpha_deg:g}°", fontsize=10, loc="left")
+    return figure
+
+
+def _compare(axes: Axes, alpha: float) -> None:
+    """Draw both curves and the three tops."""
     draw_curve(axes, alpha, "ccr", color=INK[0], label="CCR and Heyman")
     draw_curve(axes, alpha, "milankovitch", color=INK[1], linestyle=DASHES[1], label="Milankovitch")
     marks = {"ccr": ("o", INK[0]), "milankovitch": ("s", INK[1]), "heyman": ("^", INK[2])}
@@ -146,20 +164,9 @@ def compared_curves(alpha_deg: float) -> Figure:
         beta, eta, _ = theory.critical(alpha, name)
         label = f"{_NAMES[name]}: {math.degrees(beta):.4f}°, {eta:.6f}"
         axes.plot(
-            math.degrees(beta),
-            eta,
-            marker=marker,
-            color=color,
-            linestyle="",
-            markersize=7,
-            label=label,
-            zorder=5,
+            math.degrees(beta), eta, marker=marker, color=color, markerfacecolor="white", linestyle="",
+            markersize=7, markeredgewidth=1.5, label=label, zorder=5,
         )
-    axes.set_xlim(0, alpha_deg)
-    axes.set_ylim(bottom=0)
-    axes.legend(loc="lower center")
-    axes.set_title(f"$\\alpha$ = {alpha_deg:g}°", fontsize=10, loc="left")
-    return figure
 
 
 def draw_curve(axes: Axes, alpha: float, name: str, **style) -> Axes:
