@@ -16,11 +16,12 @@ from voussoir import results  # noqa: E402
 from voussoir.command.main import main  # noqa: E402
 from voussoir.plot.case_picture import draw_case, roles_of, thrust_points  # noqa: E402
 from voussoir.plot.case_scene import scene_of  # noqa: E402
+from voussoir.plot.case_title import title_of  # noqa: E402
 from voussoir.plot.collapse_animation import FFMpegWriter  # noqa: E402
 from voussoir.plot.collapse_picture import contacts_of, limits, pictures_of, shapes_of  # noqa: E402
 from voussoir.plot.design_chart import ChartError, draw_chart, swept_columns  # noqa: E402
 from voussoir.plot.figure_style import house_style  # noqa: E402
-from voussoir.plot.units import force_text, length_text, rounded  # noqa: E402
+from voussoir.plot.units import axis_label, force_text, length_text, rounded  # noqa: E402
 
 DDA = os.environ.get("DDA", "")
 BENCHMARKS = Path(__file__).resolve().parents[2] / "input" / "benchmarks"
@@ -141,7 +142,7 @@ def test_joints_that_slide_in_the_collapse_are_marked(searches: results.Results)
         ("post_and_lintel", (), ("fixed", "collapse mechanism", "hinge", "contact forces")),
         ("dry_wall_2x4", (), ("hinge", "open joint")),
         ("slope", (), ("sliding joint: which way its sides move",)),
-        ("four_corners", (), ("displaced shape, displacements × ", "touches at this corner only")),
+        ("four_corners", (), ("touches at this corner only",)),
         ("momentum", (), ("at the beginning; true scale", "measured points and their ways")),
         ("projectile", (), ("measured points and their ways",)),
     ],
@@ -183,7 +184,7 @@ def test_scenes_of_lines_and_of_the_original_scheme_are_drawn(tmp_path: Path) ->
     [
         ("&search low = 0.2, high = 0.5 /", "line of thrust"),  # stands at both ends
         ("&search low = 0.02, high = 0.05 /", "collapse mechanism"),  # falls at both
-        ("&analysis geometry = 'current', steps = 1 /", "displaced shape"),  # is undecided
+        ("&analysis geometry = 'current', steps = 1 /", "line of thrust"),  # is undecided
         ("&analysis geometry = 'current' /\n&search /", "collapse mechanism"),
         ("&analysis mode = 'limerick' /\n&search /", "collapse mechanism"),
     ],
@@ -239,14 +240,83 @@ def test_magnification_is_stated_and_forces_may_be_left_out(arches, tmp_path: Pa
     with house_style():
         texts = {
             magnify: legend_of(draw_case(arches, 2, magnify, with_forces))
-            for magnify, with_forces in ((None, True), (30.0, False), (0.0, False))
+            for magnify, with_forces in ((None, True), ("auto", True), (30.0, False), (0.0, False))
         }
     assert "contact forces, longest 548.1 kN/m" in texts[None]
-    assert "displacements × 500 (largest 1.09 mm)" in texts[None]
+    assert "displaced" not in texts[None]  # what stands is drawn as it stands
+    assert "displacements × 500 (largest 1.09 mm)" in texts["auto"]
     assert "displacements × 30 (" in texts[30.0] and "forces" not in texts[30.0]
     assert "displaced" not in texts[0.0]
     words = ["plot", str(arches.folder), "--out", str(tmp_path), "--magnify", "2", "--no-forces"]
     assert main(words) == 0
+    assert main(["plot", str(arches.folder), "--out", str(tmp_path), "--numbers", "--coordinates", "--magnify"]) == 0
+
+
+def test_title_has_the_deck_s_own_and_the_swept_values_in_words(tmp_path: Path) -> None:
+    run = compute(
+        tmp_path,
+        "&scene title = 'Costs $5' /\n&search /\n"
+        "&sweep parameter = 'radius', values = 5 /\n&sweep parameter = 'half_angle_deg', values = 60, 90 /\n",
+    )
+    lines = title_of(run.case(2), run).splitlines()
+    assert lines[:2] == [
+        "Costs \\$5", "Case 2 of 2: radius 5 m, half angle 90°, friction angle 50°, 36 blocks"
+    ]
+    assert lines[2].startswith("Critical thickness over radius: 0.107424, exact 0.107424")
+    assert axis_label("analysis%time_step") == "time step [s]" and axis_label("young") == "Young's modulus [Pa]"
+
+
+LOADED = """block fixed
+-1 -1
+2 -1
+2 0
+-1 0
+block material 2
+0 0
+1 0
+1 1
+0 1
+block
+0 1
+1 1
+1 2
+0 2
+material 2 density 2500
+load block 3 0.5 2 300 -400   ! 500 N/m, its tip at the top
+live 0.5 2 0 -250
+fix block 2 0 0 x
+measure 1 2
+"""
+
+
+def test_loads_held_points_materials_and_numbers_are_drawn_where_they_are(tmp_path: Path) -> None:
+    (tmp_path / "two.blocks").write_text(LOADED)
+    run = compute(tmp_path, "&scene kind = 'blocks', geometry = 'two.blocks' /\n")
+    with house_style():
+        figure = draw_case(run, 1, numbers=True, coordinates=True)
+    axes, legend = figure.axes[0], legend_of(figure)
+    for words in ("load | ", "live load, before its factor", "point held along x",
+                  "blocks of material 2 held by points"):
+        assert words in legend
+    texts = {text.get_text(): text for text in axes.texts}
+    assert {"500 N/m", "250 N/m", "1", "2", "3"} <= set(texts)
+    assert texts["3"].get_position() == pytest.approx((0.5, 1.5))
+    arrows = [text for text in axes.texts if getattr(text, "arrow_patch", None) and not text.get_text()]
+    assert [arrow.xy for arrow in arrows] == [pytest.approx((0.5, 2.0))] * 2
+    first, second = (np.subtract(arrow.xy, arrow.get_position()) for arrow in arrows)
+    assert first[0] / first[1] == pytest.approx(300 / -400)  # along the force,
+    assert np.hypot(*second) == pytest.approx(np.hypot(*first) / 2)  # as long as it is large
+    assert axes.get_xlabel() == "x [m]" and axes.axison
+    tints = {tuple(part.get_facecolor()[0]) for part in axes.collections[1:3]}
+    assert len(tints) == 2
+
+
+def test_file_of_blocks_that_is_not_there_is_told(tmp_path: Path) -> None:
+    (tmp_path / "two.blocks").write_text(LOADED)
+    run = compute(tmp_path, "&scene kind = 'blocks', geometry = 'two.blocks' /\n")
+    (tmp_path / "two.blocks").unlink()
+    with house_style():
+        assert "not drawn: loads and held points of two.blocks" in legend_of(draw_case(run, 1))
 
 
 def test_chart_shows_critical_and_exact_values(searches, tmp_path: Path) -> None:

@@ -93,7 +93,7 @@ def _run(arguments: argparse.Namespace) -> int:
     cases = arguments.case or [int(number) for number in read.cases["case"]]
     for number in cases:
         read.case(number)
-    from voussoir.plot.case_picture import title_of
+    from voussoir.plot.case_title import title_of
     from voussoir.plot.collapse_animation import animate, check_ending
     from voussoir.plot.collapse_picture import pictures_of
     from voussoir.plot.figure_style import house_style

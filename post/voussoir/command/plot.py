@@ -25,7 +25,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     """
     parser.description = (
         "Draw the cases of a folder that dda run has written, arches and blocks alike: line of "
-        "thrust, hinges, slips, contact forces, displaced shape, ways of measured points; or "
+        "thrust, hinges, slips, contact forces, loads, held points, ways of measured points; or "
         "chart the critical values of a sweep."
     )
     parser.add_argument("folder", metavar="DIR", type=Path, help="folder of the results")
@@ -66,9 +66,14 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--magnify",
         metavar="M",
-        type=magnification,
-        help="magnification of the displaced shape, 0 for none (default: chosen, and stated)",
+        nargs="?",
+        const=_AUTO,
+        type=lambda word: word if word == _AUTO else magnification(word),
+        help="draw the displaced shape, magnified; without a number that is chosen, and stated (default: what "
+        "stands is drawn as it stands, a collapse mechanism so that it is seen)",
     )
+    parser.add_argument("--numbers", action="store_true", help="write the blocks' numbers on them")
+    parser.add_argument("--coordinates", action="store_true", help="draw the axes, in metres")
     parser.add_argument(
         "--no-forces", action="store_true", help="leave the contact forces out"
     )
@@ -131,7 +136,9 @@ def _run(arguments: argparse.Namespace) -> int:
                 print(f"lognormal fragility: median {fit.median:.6g}, dispersion {fit.dispersion:.4g}")
             paths += save(figure, out, "fragility", tuple(arguments.format))
         for number in _cases(arguments, read):
-            figure = draw_case(read, number, arguments.magnify, not arguments.no_forces)
+            figure = draw_case(
+                read, number, arguments.magnify, not arguments.no_forces, arguments.numbers, arguments.coordinates
+            )
             paths += save(figure, out, f"case_{number}", tuple(arguments.format))
     for path in paths:
         print(path)

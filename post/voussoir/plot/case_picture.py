@@ -2,21 +2,29 @@
 
 from __future__ import annotations
 
-import math
-from typing import Any
+from collections.abc import Sequence
 
 import numpy as np
 from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.collections import PolyCollection
 from matplotlib.figure import Figure
-from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
+from voussoir.plot.case_marks import (
+    draw_held,
+    draw_loads,
+    draw_numbers,
+    entry,
+    load_arrows,
+    show_coordinates,
+)
 from voussoir.plot.case_scene import CaseScene, scene_of, view
+from voussoir.plot.case_title import title_of
 from voussoir.plot.collapse_picture import MARKS, MEANINGS
-from voussoir.plot.figure_style import INK, STONE, Picture
+from voussoir.plot.figure_style import INK, TINTS, Picture
 from voussoir.plot.shape_rings import ring_joints
+from voussoir.plot.source_file import source_of
 from voussoir.plot.units import force_text, length_text, rounded
 from voussoir.results import Results, Table
 
@@ -35,11 +43,10 @@ TOUCHES = {
     "open": "open joint",
 }
 
-Row = dict[str, Any]
-
 
 def draw_case(
-    run: Results, number: int, magnify: float | None = None, with_forces: bool = True
+    run: Results, number: int, magnify: float | str | None = None, with_forces: bool = True,
+    numbers: bool = False, coordinates: bool = False,
 ) -> Figure:
     """Draw one case of any scene.
 
@@ -49,10 +56,15 @@ def draw_case(
         The results of the deck.
     number : int
         Number of the case.
-    magnify : float, optional
-        Magnification of the displaced shape, 0 for none; chosen and stated if not given.
+    magnify : float or "auto", optional
+        Magnification of the displaced shape, chosen and stated with "auto". Without it what stands
+        is drawn as it stands, and a collapse mechanism, which has no size, as large as can be seen.
     with_forces : bool, optional
         Whether the forces of the joints are drawn.
+    numbers : bool, optional
+        Whether blocks have their numbers on them.
+    coordinates : bool, optional
+        Whether the axes are drawn [m].
 
     Returns
     -------
@@ -64,28 +76,34 @@ def draw_case(
     KeyError
         If there is no such case, or its blocks were not written.
     """
-    row, scene = run.case(number), scene_of(run, number)
+    title = title_of(run.case(number), run)
+    scene, source = scene_of(run, number), source_of(run)
     joints = run.joints_of(number) if run.joints is not None else None
     ways = run.points_of(number)
-    shapes = scene.shapes(1.0 if scene.moves else 0.0)
-    beginning = scene.shapes(0.0)
+    shapes, beginning = (scene.shapes(1.0 if now and scene.moves else 0.0) for now in (True, False))
     supports = [block.corners for block in scene.supports]
     seen = beginning + shapes + ([way_of(way) for way in ways] if scene.moves else [])
-    low, high = view(seen, supports)
-    size = float((high - low).max())
+    size = float(np.subtract(*view(seen, supports)[::-1]).max())
+    low, high = view([*seen, *load_arrows(source, size)], supports)
     figure, axes = new_figure(low, high)
     entries = draw_supports(axes, supports)
     if scene.moves and scene.largest > SEEN * size:
         entries += draw_beginning(axes, beginning, scene.largest)
-    entries += draw_blocks(axes, scene, shapes)
+    entries += draw_blocks(axes, scene, shapes, source.materials)
     factor = factor_of(scene, magnify, size)
     if factor > 0.0:
         entries += draw_displaced(axes, scene, factor)
     entries += draw_ways(axes, scene, ways, factor)
     if joints is not None:
         entries += draw_joints(axes, scene, joints, size, with_forces)
-    draw_scale(axes, low, high)
-    axes.set_title(title_of(row, run), fontsize=11)
+    entries += draw_loads(axes, source, size) + draw_held(axes, source)
+    if numbers:
+        draw_numbers(axes, scene, shapes)
+    if coordinates:
+        show_coordinates(axes)
+    else:
+        draw_scale(axes, low, high)
+    axes.set_title(title, fontsize=10.5)
     figure.legend(
         handles=entries, loc="upper center", bbox_to_anchor=(0.5, -0.02), ncols=2, fontsize=9
     )
@@ -105,64 +123,6 @@ def new_figure(low: np.ndarray, high: np.ndarray) -> tuple[Figure, Axes]:
     return figure, axes
 
 
-def title_of(row: Row, run: Results | None = None) -> str:
-    """What the case is and how it ended.
-
-    Parameters
-    ----------
-    row : dict
-        Its row of results.csv.
-    run : Results, optional
-        The results of the deck, for what was searched.
-
-    Returns
-    -------
-    str
-        One or two lines.
-    """
-    given = [f"{row['blocks']} block" + ("" if row["blocks"] == 1 else "s")]
-    for name, words in (
-        ("half_angle_deg", "half angle {:g}°"),
-        ("thickness_ratio", "t/r = {:g}"),
-        ("friction_deg", "friction {:g}°"),
-    ):
-        if not math.isnan(row[name]):
-            given.append(words.format(row[name]))
-    names = list(row)
-    own = names[names.index("case") + 1 : names.index("blocks")]
-    given += [
-        f"{name} = {row[name]:g}" if isinstance(row[name], float) else f"{name} = {row[name]}"
-        for name in own
-        if name != "voussoirs"
-    ]
-    end = f"{row['verdict']}"
-    if row["verdict"] == "found":
-        what = run.searched if run is not None and run.searched else "value"
-        end += f": critical {what} {row['critical']:.6g}"
-        if not math.isnan(row["exact"]):
-            end += f", exact {row['exact']:.6g}"
-    if row["verdict"] == "stable":
-        end += safety_of(row)
-    if row["collapse_mode"] != "none":
-        end += f", {row['collapse_mode']} collapse"
-    return f"Case {row['case']}: " + ", ".join(given) + "\n" + end
-
-
-def safety_of(row: Row) -> str:
-    """The safety numbers of what stands, as far as they are told."""
-    words = ""
-    for name, text in (
-        ("safety_thickness", ", thickness {:.3g} × critical"),
-        ("exact_low", ", load factor {:.4g}"),
-    ):
-        if not math.isnan(row.get(name, math.nan)):
-            words += text.format(row[name])
-    ends = [row.get(name, math.nan) for name in ("thrust_min", "thrust_max")]
-    if not any(map(math.isnan, ends)):
-        words += f", thrust {force_text(ends[0])} to {force_text(ends[1])}"
-    return words
-
-
 def draw_supports(axes: Axes, supports: list[np.ndarray]) -> list[Artist]:
     """Draw what cannot move; gives the entries of the legend."""
     if not supports:
@@ -180,31 +140,39 @@ def draw_beginning(axes: Axes, shapes: list[np.ndarray], largest: float) -> list
         )
     )
     words = f"at the beginning; true scale, largest displacement {length_text(largest)}"
-    return [_line(words, linestyle="--", color=INK[3], linewidth=0.9)]
+    return [entry(words, linestyle="--", color=INK[3], linewidth=0.9)]
 
 
-def draw_blocks(axes: Axes, scene: CaseScene, shapes: list[np.ndarray]) -> list[Artist]:
-    """Draw the blocks that can move, where their joints are told; gives the entries."""
-    held = np.array([block.state == "held" for block in scene.blocks], dtype=bool)
+def draw_blocks(
+    axes: Axes, scene: CaseScene, shapes: list[np.ndarray], materials: Sequence[int] = ()
+) -> list[Artist]:
+    """Draw the blocks that can move, where their joints are told, by materials; gives the entries."""
+    known = len(materials) >= max((block.number for block in scene.blocks), default=0)
+    groups: dict[tuple[int, bool], list[np.ndarray]] = {}
+    for block, shape in zip(scene.blocks, shapes):
+        material = materials[block.number - 1] if known else 1
+        groups.setdefault((material, block.state == "held"), []).append(shape)
+    several = len({material for material, _ in groups}) > 1
     entries: list[Artist] = []
-    for mask, words, hatch in ((~held, "blocks", None), (held, "blocks held by points", "...")):
-        if not mask.any():
-            continue
-        style = {"facecolor": STONE, "edgecolor": "#777777", "linewidth": 0.7, "hatch": hatch}
-        chosen = [shape for shape, wanted in zip(shapes, mask) if wanted]
+    for (material, held), chosen in sorted(groups.items()):
+        style = {
+            "facecolor": TINTS[(material - 1) % len(TINTS)], "edgecolor": "#777777", "linewidth": 0.7,
+            "hatch": "..." if held else None,
+        }
         axes.add_collection(PolyCollection(chosen, **style, zorder=1.5))
-        entries.append(Patch(**style, label=words))
+        words = f"blocks of material {material}" if several else "blocks"
+        entries.append(Patch(**style, label=words + (" held by points" if held else "")))
     return entries
 
 
-def factor_of(scene: CaseScene, magnify: float | None, size: float) -> float:
-    """Magnification of the displaced shape; 0 where none is wanted, known or needed."""
+def factor_of(scene: CaseScene, magnify: float | str | None, size: float) -> float:
+    """Magnification of the displaced shape; 0 where none is asked for, known or needed."""
     largest = scene.largest
-    if not largest > 0.0 or magnify == 0.0:
+    if not largest > 0.0:
         return 0.0
-    if magnify is not None:
-        return magnify
-    if scene.moves and largest > SEEN * size:
+    if isinstance(magnify, (int, float)):
+        return float(magnify)
+    if not scene.falls and magnify is None or scene.moves and largest > SEEN * size:
         return 0.0
     return rounded(DISPLACED_LENGTH * size / largest)
 
@@ -219,7 +187,7 @@ def draw_displaced(axes: Axes, scene: CaseScene, factor: float) -> list[Artist]:
     words = f"displaced shape, displacements × {factor:g} (largest {length_text(scene.largest)})"
     if scene.falls:
         words = f"collapse mechanism, drawn with a largest displacement of {length_text(factor)}"
-    return [_line(words, linestyle="-", color=INK[0], linewidth=0.8)]
+    return [entry(words, linestyle="-", color=INK[0], linewidth=0.8)]
 
 
 def way_of(way: Table) -> np.ndarray:
@@ -241,8 +209,9 @@ def draw_ways(axes: Axes, scene: CaseScene, ways: list[Table], factor: float) ->
         )
     if not ways:
         return []
+    words = "measured points and their ways" if scene.moves or factor > 0.0 else "measured points"
     return [
-        _line("measured points and their ways", linestyle=(0, (4, 1.5)), color=INK[1],
+        entry(words, linestyle=(0, (4, 1.5)), color=INK[1],
               marker="D", markersize=4, linewidth=1.1)
     ]
 
@@ -269,7 +238,7 @@ def thrust_points(joints: Table) -> np.ndarray:
 def draw_thrust(axes: Axes, joints: Table) -> list[Artist]:
     """Draw the line of thrust of an arch; gives the entries of the legend."""
     axes.plot(*thrust_points(joints).T, color=INK[1], linewidth=2.6, zorder=4)
-    return [_line("line of thrust", linestyle="-", color=INK[1])]
+    return [entry("line of thrust", linestyle="-", color=INK[1])]
 
 
 def draw_ring_thrust(axes: Axes, scene: CaseScene, joints: Table) -> list[Artist]:
@@ -277,7 +246,7 @@ def draw_ring_thrust(axes: Axes, scene: CaseScene, joints: Table) -> list[Artist
     points = thrust_points(joints)
     for pair in ring_joints(joints["block_1"], joints["block_2"], scene.count, scene.voussoirs):
         axes.plot(*points[list(pair)].T, color=INK[1], linewidth=2.6, solid_capstyle="round", zorder=4)
-    return [_line("line of thrust", linestyle="-", color=INK[1])]
+    return [entry("line of thrust", linestyle="-", color=INK[1])]
 
 
 def draw_forces(axes: Axes, scene: CaseScene, joints: Table, size: float) -> list[Artist]:
@@ -296,7 +265,7 @@ def draw_forces(axes: Axes, scene: CaseScene, joints: Table, size: float) -> lis
         color=INK[2], width=0.002, headwidth=4.5, zorder=4.5,
     )
     words = f"contact forces, longest {force_text(largest)}"
-    return [_line(words, linestyle="-", color=INK[2], linewidth=1.2)]
+    return [entry(words, linestyle="-", color=INK[2], linewidth=1.2)]
 
 
 def roles_of(joints: Table) -> np.ndarray:
@@ -334,7 +303,7 @@ def draw_hinges(axes: Axes, scene: CaseScene, joints: Table) -> list[Artist]:
         )
         if mark not in seen:
             words = MEANINGS[mark] if collapses else TOUCHES[mark]
-            entries.append(_line(words, **MARKS[mark]))
+            entries.append(entry(words, **MARKS[mark]))
         seen.add(mark)
     return entries
 
@@ -365,7 +334,7 @@ def draw_slips(axes: Axes, scene: CaseScene, joints: Table, size: float) -> list
     if not len(slides):
         return []
     return [
-        _line("sliding joint: which way its sides move", marker=r"$\rightleftarrows$",
+        entry("sliding joint: which way its sides move", marker=r"$\rightleftarrows$",
               markerfacecolor=INK[0], markeredgecolor=INK[0], markersize=11)
     ]
 
@@ -381,7 +350,3 @@ def draw_scale(axes: Axes, low: np.ndarray, high: np.ndarray) -> None:
         length_text(length), (start + length, level), xytext=(5, 0), textcoords="offset points",
         va="center", fontsize=9, annotation_clip=False,
     )
-
-
-def _line(label: str, **style) -> Line2D:
-    return Line2D([], [], **({"linestyle": "none", "label": label} | style))

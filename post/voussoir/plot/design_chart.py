@@ -8,19 +8,9 @@ from matplotlib.colors import Normalize
 from matplotlib.figure import Figure
 
 from voussoir.plot.figure_style import INK, Picture
+from voussoir.plot.units import axis_label, value_label
 from voussoir.results import Results, Table
 
-#: What columns mean, for the axes
-MEANINGS = {
-    "half_angle_deg": "half angle $\\alpha$ [°]",
-    "friction_deg": "friction angle $\\varphi$ [°]",
-    "blocks": "number of voussoirs",
-    "voussoirs": "number of voussoirs",
-    "thickness_ratio": "thickness over radius $t/r$",
-    "radius": "radius $r$ [m]",
-    "horizontal_coefficient": "horizontal force over weight",
-    "penetration_ratio": "penetration over half size $g_3$",
-}
 #: Columns that a sweep may run over although they are not its own
 _SHARED = ("half_angle_deg", "blocks", "friction_deg", "thickness_ratio", "geometry")
 #: First and last column that every table has; swept parameters stand between
@@ -124,7 +114,7 @@ def _draw(run: Results, groups: list[tuple[str, Table]], column: str) -> Figure:
             rows[column][known], rows["exact"][known], linestyle="none", color=color,
             marker="+", markersize=9, markeredgewidth=0.9,
         )
-    axes.set_xlabel(MEANINGS.get(column, column))
+    axes.set_xlabel(axis_label(column))
     axes.set_ylabel(_searched(run))
     if exact:
         axes.plot([], [], color=INK[0], linestyle="none", marker="+", markersize=9,
@@ -147,16 +137,16 @@ def _draw_by_colour(
             rows[column], rows["critical"], color=scale.to_rgba(value), linestyle="none",
             marker=".", markersize=5,
         )
-    axes.set_xlabel(MEANINGS.get(column, column))
+    axes.set_xlabel(axis_label(column))
     axes.set_ylabel(_searched(run))
-    figure.colorbar(scale, ax=axes, label=MEANINGS.get(other, other))
+    figure.colorbar(scale, ax=axes, label=axis_label(other))
     return figure
 
 
 def _searched(run: Results) -> str:
     """What was searched."""
     name = run.searched or "thickness_ratio"
-    return "critical " + MEANINGS.get(name, name)
+    return "critical " + axis_label(name)
 
 
 def _values(cases: Table, name: str) -> set:
@@ -175,10 +165,6 @@ def _groups(cases: Table, others: list[str]) -> list[tuple[str, Table]]:
     groups = []
     for key in keys:
         rows = cases.where(**dict(zip(others, key)))
-        label = ", ".join(
-            f"{MEANINGS.get(name, name)}: {value:g}" if isinstance(value, float)
-            else f"{MEANINGS.get(name, name)}: {value}"
-            for name, value in zip(others, key)
-        )
+        label = ", ".join(value_label(name, value) for name, value in zip(others, key))
         groups.append((label, rows))
     return groups

@@ -4,6 +4,72 @@ from __future__ import annotations
 
 import math
 
+#: Words and unit of numbers that are swept or searched; others are called by their keys
+PARAMETERS = {
+    "half_angle_deg": ("half angle", "°"),
+    "friction_deg": ("friction angle", "°"),
+    "blocks": ("number of voussoirs", ""),
+    "voussoirs": ("number of voussoirs", ""),
+    "thickness_ratio": ("thickness over radius", ""),
+    "radius": ("radius", "m"),
+    "span": ("span", "m"),
+    "rise": ("rise", "m"),
+    "right_rise": ("rise on the right", "m"),
+    "thickness": ("thickness", "m"),
+    "crown_thickness": ("thickness at the crown", "m"),
+    "springing_thickness": ("thickness at the springings", "m"),
+    "pier_width": ("width of the piers", "m"),
+    "pier_height": ("height of the piers", "m"),
+    "buttress_width": ("width of the buttresses", "m"),
+    "buttress_height": ("height of the buttresses", "m"),
+    "rings": ("number of rings", ""),
+    "spans": ("number of spans", ""),
+    "lune_deg": ("angle of the lune", "°"),
+    "density": ("density", "kg/m³"),
+    "unit_weight": ("unit weight", "N/m³"),
+    "young": ("Young's modulus", "Pa"),
+    "poisson": ("Poisson's ratio", ""),
+    "cohesion": ("cohesion", "Pa"),
+    "tension": ("tensile strength", "Pa"),
+    "gravity": ("gravity", "m/s²"),
+    "gravity_direction_deg": ("direction of gravity", "°"),
+    "horizontal_coefficient": ("horizontal force over weight", ""),
+    "load_factor": ("load factor", ""),
+    "displacement_factor": ("factor of prescribed displacements", ""),
+    "water_rise": ("rise of the water", "m"),
+    "position": ("position of the vehicle", "m"),
+    "depth": ("depth of the fill over the crown", "m"),
+    "amplitude": ("peak acceleration of the ground", "m/s²"),
+    "scale": ("scale of the ground's motion", ""),
+    "duration": ("duration", "s"),
+    "time_step": ("time step", "s"),
+    "restitution": ("restitution", ""),
+    "penetration_ratio": ("penetration over half size", ""),
+}
+
+
+def name_of(parameter: str) -> tuple[str, str]:
+    """Words and unit of a parameter such as "arch%radius" or "joints_deg(2)"."""
+    key = parameter.rpartition("%")[2]
+    known = PARAMETERS.get(key)
+    if known:
+        return known
+    stem = key.partition("(")[0]
+    return (key.replace("_deg", "").replace("_", " "), "°" if stem.endswith("_deg") else "")
+
+
+def axis_label(parameter: str) -> str:
+    """What an axis says of a parameter: words, and the unit in brackets."""
+    words, unit = name_of(parameter)
+    return f"{words} [{unit}]" if unit else words
+
+
+def value_label(parameter: str, value: object) -> str:
+    """A parameter with its value and unit, such as "half angle 90°"."""
+    words, unit = name_of(parameter)
+    number = f"{value:.6g}" if isinstance(value, float) else str(value)
+    return f"{words} {number}" + (unit if unit == "°" else f" {unit}" if unit else "")
+
 
 def length_text(metres: float) -> str:
     """A length with the unit that suits it.

@@ -267,6 +267,11 @@ class Results:
             return None
         return self.setting("search%parameter") or "thickness_ratio"
 
+    @property
+    def swept(self) -> list[str]:
+        """Parameters that were swept, in the order of the deck."""
+        return [line.split()[1] for line in self._record() if line.startswith("&sweep ")]
+
     def _record(self) -> list[str]:
         """Lines of deck.record: what the deck asks for."""
         record = self.folder / "deck.record"

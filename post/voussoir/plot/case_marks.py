@@ -1,0 +1,90 @@
+"""What acts on the blocks of a case, as its picture shows it: loads, held points, bars, numbers, coordinates."""
+
+from __future__ import annotations
+
+import numpy as np
+from matplotlib.artist import Artist
+from matplotlib.axes import Axes
+from matplotlib.lines import Line2D
+from matplotlib.patheffects import withStroke
+
+from voussoir.plot.case_scene import CaseScene
+from voussoir.plot.figure_style import INK
+from voussoir.plot.source_file import Source
+from voussoir.plot.units import force_text
+
+#: Longest load in the picture, over its size; most loads that have their value beside them
+LOAD_LENGTH, MOST_VALUES = 0.12, 12
+#: Marks of points that are held along both directions, x or y
+_HELD = {
+    "": ({"marker": "^", "markerfacecolor": INK[0]}, "held point"),
+    "x": ({"marker": ">", "markerfacecolor": "white"}, "point held along x"),
+    "y": ({"marker": "^", "markerfacecolor": "white"}, "point held along y"),
+}
+
+
+def entry(label: str, **style) -> Line2D:
+    """An entry of a legend."""
+    return Line2D([], [], **({"linestyle": "none", "label": label} | style))
+
+
+def load_arrows(source: Source, size: float) -> tuple[np.ndarray, np.ndarray]:
+    """Tails and tips of the loads, the longest of a fixed share of the picture: (n, 2) each [m]."""
+    tips = np.array([point for point, _, _ in source.loads]).reshape(-1, 2)
+    forces = np.array([force for _, force, _ in source.loads]).reshape(-1, 2)
+    largest = float(np.hypot(*forces.T).max(initial=0.0))
+    return tips - forces * (LOAD_LENGTH * size / (largest or 1.0)), tips
+
+
+def draw_loads(axes: Axes, source: Source, size: float) -> list[Artist]:
+    """Draw the forces that the deck puts on points; gives the entries of the legend."""
+    tails, tips = load_arrows(source, size)
+    entries = []
+    for live, color, words in ((False, INK[0], "load"), (True, INK[1], "live load, before its factor")):
+        chosen = [number for number, load in enumerate(source.loads) if load[2] == live and any(load[1])]
+        for number in chosen:
+            arrow = {"arrowstyle": "-|>", "color": color, "linewidth": 1.6, "shrinkA": 0, "shrinkB": 0}
+            axes.annotate("", tips[number], tails[number], arrowprops=arrow, zorder=8)
+            if len(source.loads) <= MOST_VALUES:
+                value = force_text(float(np.hypot(*source.loads[number][1])))
+                axes.annotate(value, tails[number], xytext=(4, 3), textcoords="offset points", fontsize=8.5,
+                              color=color, zorder=9)
+        if chosen:
+            entries.append(entry(words, marker=r"$\downarrow$", markersize=10, color=color))
+    return entries
+
+
+def draw_held(axes: Axes, source: Source) -> list[Artist]:
+    """Draw points and lines that are held, and bars; gives the entries of the legend."""
+    entries = []
+    for along, (mark, words) in _HELD.items():
+        ends = [pair[:2] for pair in source.held if pair[2] == along]
+        for start, end in ends:
+            axes.plot(*zip(start, end), color=INK[0], linewidth=2.2, zorder=7, markersize=8,
+                      markeredgecolor=INK[0], **mark)
+        if ends:
+            entries.append(entry(words, markeredgecolor=INK[0], markersize=8, **mark))
+    for ends in source.bars:
+        axes.plot(*zip(*ends), color=INK[2], linewidth=1.8, marker="o", markersize=3, zorder=7)
+    if source.bars:
+        entries.append(entry("bar", linestyle="-", color=INK[2], marker="o", markersize=3))
+    if source.missing:
+        entries.append(entry(f"not drawn: loads and held points of {source.missing}, not beside the results"))
+    return entries
+
+
+def draw_numbers(axes: Axes, scene: CaseScene, shapes: list[np.ndarray]) -> None:
+    """Write each block's number on it."""
+    placed = [(block.number, shape) for block, shape in zip(scene.blocks, shapes)]
+    placed += [(block.number, block.corners) for block in scene.supports]
+    for number, shape in placed:
+        axes.text(*shape.mean(axis=0), str(number), fontsize=8, ha="center", va="center", zorder=10, clip_on=True,
+                  path_effects=[withStroke(linewidth=2.0, foreground="white")])
+
+
+def show_coordinates(axes: Axes) -> None:
+    """Give bare axes their ticks [m]."""
+    axes.set_axis_on()
+    axes.grid(False)
+    axes.set_xlabel("x [m]")
+    axes.set_ylabel("y [m]")

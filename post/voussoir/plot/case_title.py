@@ -1,0 +1,87 @@
+"""What stands above the picture of a case: the deck's title, what was swept, how it ended."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+from voussoir.plot.units import force_text, name_of, value_label
+from voussoir.results import Results
+
+Row = dict[str, Any]
+
+
+def title_of(row: Row, run: Results | None = None) -> str:
+    """What the case is and how it ended.
+
+    Parameters
+    ----------
+    row : dict
+        Its row of results.csv.
+    run : Results, optional
+        The results of the deck, for its title and for what was swept and searched.
+
+    Returns
+    -------
+    str
+        The deck's title if it has one, what tells the case from others, its verdict: a line each.
+    """
+    title = run.setting("scene%title") if run is not None else None
+    several = run is not None and len(run.cases) > 1
+    given = ", ".join(_given(row, run))
+    if several:
+        given = f"Case {row['case']} of {len(run.cases)}: {given}"
+    lines = [title, given, _ending(row, run)]
+    return "\n".join(_plain(line) for line in lines if line)
+
+
+def _plain(line: str) -> str:
+    """A line whose dollars are no formulas."""
+    line = line.replace("$", r"\$")
+    return line[0].upper() + line[1:]
+
+
+def _given(row: Row, run: Results | None) -> list[str]:
+    """What the case is made of, swept values first."""
+    names = list(row)
+    own = names[names.index("case") + 1 : names.index("blocks")]
+    swept = [name.rpartition("%")[2] for name in run.swept] if run is not None else []
+    first = [name for name in (*swept, *own) if name in row]
+    given = {name: value_label(name, row[name]) for name in first}
+    for name in ("half_angle_deg", "thickness_ratio", "friction_deg"):
+        if not math.isnan(row[name]):
+            given.setdefault(name, value_label(name, row[name]))
+    if not {"voussoirs", "blocks"} & set(given):
+        given["blocks"] = f"{row['blocks']} block" + ("" if row["blocks"] == 1 else "s")
+    return list(given.values())
+
+
+def _ending(row: Row, run: Results | None) -> str:
+    """The verdict and its numbers."""
+    end = str(row["verdict"])
+    if end == "found":
+        words, unit = name_of(run.searched if run is not None and run.searched else "value")
+        space = "" if unit == "°" else " "
+        end = f"critical {words}: {row['critical']:.6g}{space if unit else ''}{unit}"
+        if not math.isnan(row["exact"]):
+            end += f", exact {row['exact']:.6g}"
+    if end == "stable":
+        end += safety_of(row)
+    if row["collapse_mode"] != "none":
+        end += f", {row['collapse_mode']} collapse"
+    return end
+
+
+def safety_of(row: Row) -> str:
+    """The safety numbers of what stands, as far as they are told."""
+    words = ""
+    for name, text in (
+        ("safety_thickness", ", thickness {:.3g} × critical"),
+        ("exact_low", ", load factor {:.4g}"),
+    ):
+        if not math.isnan(row.get(name, math.nan)):
+            words += text.format(row[name])
+    ends = [row.get(name, math.nan) for name in ("thrust_min", "thrust_max")]
+    if not any(map(math.isnan, ends)):
+        words += f", thrust {force_text(ends[0])} to {force_text(ends[1])}"
+    return words

@@ -1,0 +1,99 @@
+"""What a file of blocks says of loads, held points, bars and materials: for pictures, no numbers are computed."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from voussoir.results import Results
+
+Point = tuple[float, float]
+
+
+@dataclass
+class Source:
+    """What acts on blocks, and what they are made of.
+
+    Attributes
+    ----------
+    materials : list of int
+        Material of each block of the file.
+    loads : list of (point, force, bool)
+        Where forces act [m], at the end of their histories [N/m], and whether they are live.
+    held : list of (point, point, str)
+        Points and lines that are held: both ends [m], and "x", "y" or "" for both directions.
+    bars : list of (point, point)
+        Ends of bolts, anchors and ties [m].
+    missing : str
+        Name of the file where it was not found, else empty.
+    """
+
+    materials: list[int] = field(default_factory=list)
+    loads: list[tuple[Point, Point, bool]] = field(default_factory=list)
+    held: list[tuple[Point, Point, str]] = field(default_factory=list)
+    bars: list[tuple[Point, Point]] = field(default_factory=list)
+    missing: str = ""
+
+
+def source_of(run: Results) -> Source:
+    """What the deck and its file of blocks say; the file is looked for beside the results and above them."""
+    source = Source()
+    points, forces = ([[float(value) for value in run.settings(f"live%{name}")] for name in pair]
+                      for pair in (("x", "y"), ("fx", "fy")))
+    for number, point in enumerate(zip(*points)):
+        force = tuple(part[number] if number < len(part) else 0.0 for part in forces)
+        source.loads.append((point, force, True))
+    name = run.setting("scene%geometry")
+    if run.kind != "blocks" or not name:
+        return source
+    files = [folder / name for folder in (run.folder, run.folder.absolute().parent)]
+    file = next(filter(Path.is_file, files), None)
+    if file is None:
+        source.missing = name
+        return source
+    _read(file.read_text(encoding="utf-8", errors="replace"), source)
+    return source
+
+
+def _read(text: str, source: Source) -> None:
+    """Take in the entries of a file of blocks."""
+    entry: list[str] = []
+    last: list[float] = []
+    for line in [*text.splitlines(), "end"]:
+        words = line.partition("!")[0].lower().split()
+        if words and words[0][0] in "0123456789+-.":
+            last = _numbers(words)
+        elif words:
+            if entry:
+                _take(entry, last, source)
+            entry, last = words, []
+
+
+def _numbers(words: list[str]) -> list[float]:
+    """Those that a row begins with."""
+    found = []
+    for word in words:
+        try:
+            found.append(float(word.replace("d", "e")))
+        except ValueError:
+            break
+    return found
+
+
+def _take(entry: list[str], last: list[float], source: Source) -> None:
+    """Take in one entry; `last` is the last row of its history."""
+    name, words = entry[0], entry[1:]
+    if name == "block":
+        source.materials.append(int(words[words.index("material") + 1]) if "material" in words else 1)
+        return
+    values = _numbers(words[2:] if words[:1] == ["block"] else words)
+    if name in ("load", "live") and len(values) >= 2:
+        force = values[2:4] if len(values) >= 4 else last[1:3]
+        if len(force) == 2:  # a record's forces are in another file
+            source.loads.append(((values[0], values[1]), (force[0], force[1]), name == "live"))
+    elif name in ("fix", "fix_line", "displacement") and len(values) >= 2:
+        ends = values[2:4] if name == "fix_line" else values[:2]
+        along = words[-1] if words[-1] in ("x", "y") else ""
+        source.held.append(((values[0], values[1]), (ends[0], ends[1]), along))
+    elif name == "bar" and len(values) >= 4:
+        source.bars.append(((values[0], values[1]), (values[2], values[3])))
