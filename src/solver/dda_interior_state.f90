@@ -5,7 +5,7 @@ module dda_interior_state
    private
 
    public :: no_limit, load_path_t, interior_point_t, interior_goal_t, interior_state
-   public :: set_path
+   public :: set_path, size_of_load
 
    !> A factor beyond all others
    real(wp), parameter :: no_limit = 1.0e200_wp
@@ -32,7 +32,7 @@ module dda_interior_state
    !> Names of these ends
    type(interior_state_enum), parameter :: interior_state = interior_state_enum()
 
-   !> Loads dead + factor*live in the units of the rays, the entries of live sum up to one; or a
+   !> Loads dead + factor*live in the units of the rays, the sizes of live sum up to one; or a
    !> dead load alone, and masses that it moves
    type :: load_path_t
       !> Loads at factor zero: (3, 0:n_block)
@@ -97,12 +97,20 @@ contains
 
       allocate (path%dead(3, 0:ubound(dead, 2)), path%live(3, 0:ubound(dead, 2)))
       allocate (path%mass(3, 0:ubound(dead, 2)), source=0.0_wp)
-      path%size = sum(abs(live))
+      path%size = size_of_load(live)
       if (.not. path%size > 0.0_wp) path%size = 1.0_wp
       path%dead = dead
       path%live = live/path%size
-      path%negligible = nothing*sum(abs(dead))
+      path%negligible = nothing*size_of_load(dead)
       path%largest_dead = maxval(abs(path%dead))
       path%largest_live = maxval(abs(path%live))
    end subroutine set_path
+
+   !> Sum of all forces and moments, the same whichever way the axes point
+   pure real(wp) function size_of_load(load) result(size)
+      !> The load: (3, 0:n_block)
+      real(wp), intent(in) :: load(:, 0:)
+
+      size = sum(hypot(load(1, :), load(2, :))) + sum(abs(load(3, :)))
+   end function size_of_load
 end module dda_interior_state

@@ -7,7 +7,7 @@
 module dda_limit_decision
    use dda_interior_point, only : solve_interior
    use dda_interior_state, only : interior_goal_t, interior_point_t, interior_state, &
-      & load_path_t, set_path
+      & load_path_t, set_path, size_of_load
    use dda_joint_graph, only : joint_graph_t
    use dda_joint_rays, only : add_ray_forces, joint_forces, joint_rays_t, scale_load, set_rays
    use dda_kinds, only : wp
@@ -103,7 +103,7 @@ contains
       real(wp) :: start(3, 0:rays%n_block), finish(3, 0:rays%n_block), force
 
       call scale_load(rays, load, unit_of_force(load), finish)
-      force = max(1.0_wp, sqrt(sum(abs(finish))))
+      force = max(1.0_wp, sqrt(size_of_load(finish)))
       point%x = force*rays%bounded
       start = 0.0_wp
       call add_ray_forces(rays, point%x, start)
