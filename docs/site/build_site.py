@@ -53,6 +53,7 @@ CHAPTERS = {
         "paper.md": "The paper",
         "validation.md": "Validation",
         "accuracy.md": "Accuracy",
+        "testing.md": "Testing",
         "performance.md": "Performance",
         "scaling.md": "Scaling",
     },

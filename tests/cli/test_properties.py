@@ -1,0 +1,20 @@
+"""What must hold of every assembly, asked of a few random ones; the target voussoir-properties asks 200 a property."""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+
+import pytest
+from properties import PROPERTIES, Bench
+
+#: Assemblies of three kinds: a wall, a ring, a slope
+SEEDS = (0, 8, 11)
+
+
+@pytest.mark.parametrize("seed", SEEDS)
+@pytest.mark.parametrize("name", PROPERTIES)
+def test_property_holds_of_random_assemblies(tmp_path: Path, name: str, seed: int) -> None:
+    if name == "proof":
+        pytest.importorskip("voussoir", reason="PYTHONPATH wants the build's python folder")
+    PROPERTIES[name](Bench(Path(os.environ["DDA"]), tmp_path), seed)

@@ -1,0 +1,214 @@
+#!/usr/bin/env python3
+"""Put single faults into src/, one after the other, and tell which test finds each.
+
+The tree is copied and built once; each fault is built incrementally in the copy. The unit tests of the fault's
+room run first, then those of the other rooms, then the physics, then, if asked, the command-line tests. The table
+has a row for each fault as soon as it is known.
+"""
+
+from __future__ import annotations
+
+import argparse
+import csv
+import os
+import re
+import shutil
+import subprocess
+import sys
+import time
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from faults import Fault, draw_faults
+
+PARTS = ("CMakeLists.txt", "CMakePresets.json", "cmake", "src", "tests", "post", "input", "docs", "pyproject.toml",
+         "README.md", "CITATION.cff", "LICENSE", "CHANGELOG.md")
+COLUMNS = ("number", "room", "file", "line", "kind", "before", "after", "result", "level", "found_by", "seconds")
+
+
+@dataclass
+class Copy:
+    """A copy of the tree, and what its tests take without a fault."""
+
+    root: Path
+    jobs: int
+    limit: float
+    usual: dict[str, float] = field(default_factory=dict)
+
+    @property
+    def build(self) -> Path:
+        """Its build folder."""
+        return self.root / "build"
+
+    def make(self, *targets: str) -> bool:
+        """Build some targets; whether they compile."""
+        command = ["cmake", "--build", str(self.build), "-j", str(self.jobs), "--target", *targets]
+        return subprocess.run(command, capture_output=True).returncode == 0
+
+    def run(self, program: str) -> tuple[str, float]:
+        """Run a test program: the test that failed, or nothing, and the seconds it took."""
+        command = [str(self.build / "tests" / "bin" / program)]
+        return self.finish(command, program, self.build / "tests")
+
+    def run_pytest(self, files: list[str]) -> tuple[str, float]:
+        """Run command-line tests until one fails."""
+        command = [sys.executable, "-m", "pytest", "-x", "-q", "-p", "no:cacheprovider", *files]
+        return self.finish(command, "pytest", self.root)
+
+    def finish(self, command: list[str], name: str, folder: Path) -> tuple[str, float]:
+        """Wait for a command, ten times as long as it takes without a fault at most."""
+        limit = max(20.0, 10.0 * self.usual[name]) if name in self.usual else self.limit
+        environment = {**os.environ, "DDA": str(self.build / "bin" / "dda"), "OMP_NUM_THREADS": "1",
+                       "VOUSSOIR_BUILD": str(self.build), "PYTHONPATH": str(self.build / "python")}
+        start = time.monotonic()
+        try:
+            done = subprocess.run(command, cwd=folder, env=environment, timeout=limit, text=True,
+                                  stdout=subprocess.PIPE, stderr=subprocess.STDOUT, errors="replace")
+        except subprocess.TimeoutExpired:
+            return f"{name}: time limit", time.monotonic() - start
+        taken = time.monotonic() - start
+        if done.returncode == 0:
+            return "", taken
+        failed = re.search(r"\w+_suite\.(\w+) FAILED|^FAILED (\S+)", done.stdout, re.MULTILINE)
+        if failed:
+            return failed.group(1) or failed.group(2), taken
+        begun = re.findall(r"_suite\.(\w+)", done.stdout)
+        return f"{begun[-1]} (crash)" if begun else f"{name} (crash)", taken
+
+
+def prepare(source: Path, copy: Copy, flags: str) -> None:
+    """Copy the tree and build all test programs without a fault."""
+    copy.root.mkdir(parents=True, exist_ok=True)
+    for part in PARTS:
+        if (source / part).is_dir():
+            ignore = shutil.ignore_patterns("__pycache__")
+            shutil.copytree(source / part, copy.root / part, dirs_exist_ok=True, ignore=ignore)
+        elif (source / part).exists():
+            shutil.copy2(source / part, copy.root / part)
+    subprocess.run(["cmake", "-S", str(copy.root), "-B", str(copy.build), "-G", "Ninja", "-DCMAKE_BUILD_TYPE=Release",
+                    f"-DCMAKE_Fortran_FLAGS_RELEASE={flags}"], check=True, stdout=subprocess.DEVNULL)
+    subprocess.run(["cmake", "--build", str(copy.build), "-j", str(copy.jobs)], check=True, stdout=subprocess.DEVNULL)
+
+
+def unit_programs(copy: Copy) -> list[str]:
+    """Unit test programs of the copy."""
+    found = re.findall(r"add_pfunit_ctest\((unit_\w+)", (copy.root / "tests" / "CMakeLists.txt").read_text())
+    return [name for name in found if (copy.build / "tests" / "bin" / name).exists()]
+
+
+def judge(fault: Fault, copy: Copy, units: list[str], cli: list[str]) -> dict[str, object]:
+    """What becomes of one fault that is in the copy."""
+    own = f"unit_{fault.path.parts[1]}"
+    start = time.monotonic()
+    levels = [("room", [own] if own in units else []), ("unit", [name for name in units if name != own]),
+              ("physics", ["physics"])]
+    for level, programs in levels:
+        if programs and not copy.make(*programs):
+            return {"result": "does not compile"}
+        start = time.monotonic() if level == "room" else start
+        for program in programs:
+            test, _ = copy.run(program)
+            if test:
+                return {"result": "found", "level": level, "found_by": f"{program}: {test}",
+                        "seconds": round(time.monotonic() - start, 1)}
+    if cli:
+        copy.make("dda", "_theory")
+        test, _ = copy.run_pytest(cli)
+        if test:
+            return {"result": "found", "level": "cli", "found_by": test,
+                    "seconds": round(time.monotonic() - start, 1)}
+    return {"result": "survived", "seconds": round(time.monotonic() - start, 1)}
+
+
+def read_faults(path: Path) -> list[Fault]:
+    """Faults of a table that was written before, those that were found left out."""
+    with path.open(newline="") as lines:
+        return [Fault(Path(row["file"]), int(row["line"]), row["kind"], row["before"], row["after"])
+                for row in csv.DictReader(lines) if row["result"] in ("", "survived")]
+
+
+def report(rows: list[dict[str, object]]) -> str:
+    """One line a room: how many faults, found where."""
+    lines = ["room          faults   room   unit  physics   cli  survived"]
+    for room in [*sorted({str(row["room"]) for row in rows}), "all"]:
+        mine = [row for row in rows if room in ("all", row["room"]) and row["result"] != "does not compile"]
+        count = [sum(row.get("level") == level for row in mine) for level in ("room", "unit", "physics", "cli")]
+        survived = sum(row["result"] == "survived" for row in mine)
+        lines.append(f"{room:12}{len(mine):8}{count[0]:7}{count[1]:7}{count[2]:9}{count[3]:6}{survived:10}")
+    return "\n".join(lines)
+
+
+def arguments() -> argparse.Namespace:
+    """What the command line asks for."""
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    root = Path(__file__).resolve().parents[2]
+    parser.add_argument("--source", type=Path, default=root, help="folder of the project")
+    parser.add_argument("--work", type=Path, required=True, help="folder of the copy and of the table")
+    parser.add_argument("--count", type=int, default=400, help="number of faults [400]")
+    parser.add_argument("--seed", type=int, default=1, help="where the random numbers begin [1]")
+    parser.add_argument("--rooms", nargs="*", help="folders of src/ [all but app and files]")
+    parser.add_argument("--again", type=Path, help="a table: judge those of its faults that survived")
+    parser.add_argument("--cli", nargs="*", default=[], help="files of tests/cli for what survives physics [none]")
+    parser.add_argument("--list", action="store_true", help="write the table of faults and stop")
+    parser.add_argument("--jobs", type=int, default=2, help="compilers at a time [2]")
+    parser.add_argument("--flags", default="-O1", help="flags of the compiler [-O1]")
+    return parser.parse_args()
+
+
+def main() -> int:
+    """Put in, build, test, take out; write the table."""
+    asked = arguments()
+    rooms = asked.rooms or sorted(path.name for path in (asked.source / "src").iterdir()
+                                  if path.is_dir() and path.name not in ("app", "files"))
+    faults = read_faults(asked.again) if asked.again else draw_faults(asked.source, rooms, asked.count, asked.seed)
+    asked.work.mkdir(parents=True, exist_ok=True)
+    table = asked.work / "mutants.csv"
+    copy = Copy((asked.work / "tree").resolve(), asked.jobs, 600.0)
+    units: list[str] = []
+    if not asked.list:
+        prepare(asked.source, copy, asked.flags)
+        units = unit_programs(copy)
+        for program in [*units, "physics"]:
+            test, copy.usual[program] = copy.run(program)
+            if test:
+                print(f"{program} fails without a fault: {test}", file=sys.stderr)
+                return 1
+    rows: list[dict[str, object]] = []
+    with table.open("w", newline="") as lines:
+        writer = csv.DictWriter(lines, COLUMNS, lineterminator="\n")
+        writer.writeheader()
+        for number, fault in enumerate(faults, 1):
+            row: dict[str, object] = {"number": number, "room": fault.path.parts[1], "file": fault.path.as_posix(),
+                                      "line": fault.line, "kind": fault.kind, "before": fault.before.strip(),
+                                      "after": fault.after.strip()}
+            if not asked.list:
+                row.update(with_fault(fault, copy, units, asked.cli))
+                print(f"{number:4} {row['result']:9} {fault.path}:{fault.line} {row.get('found_by', row['after'])}",
+                      flush=True)
+            rows.append(row)
+            writer.writerow(row)
+            lines.flush()
+    if not asked.list:
+        print(report(rows))
+    return 0
+
+
+def with_fault(fault: Fault, copy: Copy, units: list[str], cli: list[str]) -> dict[str, object]:
+    """Put one fault into the copy, judge it, and take it out again."""
+    path = copy.root / fault.path
+    sound = path.read_text()
+    lines = sound.splitlines(keepends=True)
+    place = fault.line - 1
+    indent = lines[place][:len(lines[place]) - len(lines[place].lstrip())]
+    if lines[place].strip() != fault.before.strip():
+        return {"result": "does not compile"}
+    lines[place] = indent + fault.after.strip() + "\n"
+    try:
+        path.write_text("".join(lines))
+        return judge(fault, copy, units, cli)
+    finally:
+        path.write_text(sound)
+
+
+if __name__ == "__main__":
+    sys.exit(main())
