@@ -132,6 +132,8 @@ def _take(entry: list[str], rows: list[list[float]], source: Source, deck: Deck)
         ends = [deck.read(word.replace("d", "e")) for word in entry[1:5]]
         strength = deck.read(keys["strength"].replace("d", "e")) if "strength" in keys else None
         source.bars.append(Bar(np.array(ends).reshape(2, 2), strength))
+    elif entry[0] in ("remove", "add"):
+        raise VerifyError("stages are not verified: blocks come and go")
     elif entry[0] == "water":
         source.water.append(_water(entry, keys, rows, deck))
     elif entry[0] in ("load", "live", "fix", "displacement", "fix_line"):

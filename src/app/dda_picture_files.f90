@@ -65,7 +65,7 @@ contains
                row(j)%contact = row(j)%contact + spread(origin, 2, 2)
             end do
             call append_line(frames, frame_lines(stamp, system%first_vertex, &
-               & frame%moved + spread(origin, 2, size(frame%moved, 2))), error)
+               & frame%moved + spread(origin, 2, size(frame%moved, 2)), frame%absent), error)
             if (.not. allocated(error)) &
                & call append_line(joints, frame_joint_lines(stamp, row), error)
             if (.not. allocated(error) .and. vtu) call write_picture(folder//"/frames/", &
@@ -142,9 +142,9 @@ contains
       real(wp), intent(in) :: time
       !> Allocated if something cannot be written
       type(error_t), allocatable, intent(out) :: error
-      type(field_t) :: of_corners(1), of_blocks(3), of_joints(3)
+      type(field_t) :: of_corners(1), of_blocks(4), of_joints(3)
       real(wp) :: place(2, size(row)), force(2, size(row))
-      integer :: states(2, size(row)), b, j
+      integer :: states(2, size(row)), there(size(system%area)), b, j
 
       do j = 1, size(row)
          place(:, j) = row(j)%point
@@ -155,6 +155,9 @@ contains
       of_blocks(1) = state_field("block", [(b, b=1, size(system%area))])
       of_blocks(2) = scalar_field("rotation", frame%motion(3, :))
       of_blocks(3) = tensor_field("stress", frame%stress)
+      there = 1
+      if (allocated(frame%absent)) there = merge(0, 1, frame%absent)
+      of_blocks(4) = state_field("present", there)
       of_joints(1) = vector_field("force", force)
       of_joints(2) = state_field("state_first", states(1, :))
       of_joints(3) = state_field("state_second", states(2, :))

@@ -10,7 +10,7 @@ module dda_case
    use dda_chain_unfold, only : unfold
    use dda_contact_detection, only : contacts_t
    use dda_critical, only : critical_t, find_critical, search_t
-   use dda_decision, only : decide, decision_t
+   use dda_decision, only : decision_t
    use dda_deck, only : deck_t, file_beside, flag_of, has_group, integer_of, is_given, &
       & parameter_t, real_of, scene_kind, text_of, word_of
    use dda_deck_check, only : search_bracket
@@ -33,6 +33,7 @@ module dda_case
    use dda_scene_plan, only : plan_scene, scene_plan_t
    use dda_settings, only : settings_t
    use dda_shared_forces, only : share_forces
+   use dda_stages, only : decide_in_stages
    use dda_verdict, only : verdict
    use dda_worst_position, only : find_worst_position
    implicit none
@@ -226,7 +227,7 @@ contains
       end if
       if (this%scene%settings%dynamic .and. flag_of(this%deck, "output", "reactions")) &
          & this%album%support = supports_of(system, this%scene%settings%boundary)
-      call decide(this%scene%settings, system, contacts, this%decision, this%album, this%onward)
+      call decide_in_stages(this%scene, system, contacts, this%decision, this%album, this%onward)
    end subroutine compute_decision
 
    !> Make the scene of a decision where a chain has done without it and it is wanted now: for
@@ -244,7 +245,6 @@ contains
       collapsed = decision%outcome%verdict == verdict%collapsed
       wanted = merge(this%tells_tables .or. integer_of(this%deck, "output", "frames") > 0, &
          & this%searches, this%family%decides_chains)
-      ! nothing is told of the joints of a chain that stands
       if (wanted .or. collapsed) call unfold(decision)
       if (collapsed) wanted = wanted .or. any(decision%contacts%face%slip /= 0)
       if (wanted .and. .not. allocated(this%scene%contacts%joint)) &

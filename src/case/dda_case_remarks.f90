@@ -33,6 +33,11 @@ contains
             remark = remark//" time "//to_text(outcome%path_time)
          end if
       end if
+      if (outcome%slid > 0) then
+         if (len(remark) > 0) remark = remark//"; "
+         remark = remark//"joints that slid between stages: "//to_text(outcome%slid) &
+            & //"; forces depend on the order of the stages"
+      end if
       if (outcome%jumps == 0) return
       if (len(remark) > 0) remark = remark//"; "
       remark = remark//"jumps on the loading path: "//to_text(outcome%jumps)//", the largest " &

@@ -1,8 +1,8 @@
 !> Checks of a deck that need its scene: whether its modes can run the blocks
 module dda_scene_check
    use dda_block_scene, only : floating_block
-   use dda_deck, only : deck_error, deck_place_t, deck_t, file_beside, has_group, is_given, &
-      & keeps_velocities, parameter_t, place_of, text_of, word_of
+   use dda_deck, only : deck_error, deck_place_t, deck_t, file_beside, flag_of, has_group, &
+      & is_given, keeps_velocities, parameter_t, place_of, text_of, word_of
    use dda_deck_check_case, only : check_model
    use dda_deck_keys, only : deck_key, key_index
    use dda_deck_parameter, only : find_parameter
@@ -193,6 +193,8 @@ contains
          if (word_of(deck, "analysis", "mode") == "limerick") call check_limerick_blocks( &
             & deck%plan, geometry_file(deck), keeps_velocities(deck), error)
          if (allocated(error)) return
+         if (allocated(deck%plan%boundary%change)) call check_stages(deck, error)
+         if (allocated(error)) return
          if (word_of(deck, "analysis", "mode") == "static") &
             & call check_support(deck, scene, error)
          if (word_of(deck, "analysis", "mode") == "static" .and. .not. allocated(error)) &
@@ -270,6 +272,33 @@ contains
          & "joints ties it to a fixed block, as mode = 'static' needs; add a joint or remove it", &
          & geometry_file(deck), deck%plan%line(b))
    end subroutine check_support
+
+   !> Check that a deck can be run in stages
+   pure subroutine check_stages(deck, error)
+      !> The deck of a case
+      type(deck_t), intent(in) :: deck
+      !> What knows no stages
+      type(error_t), allocatable, intent(out) :: error
+      character(len=:), allocatable :: problem
+
+      problem = ""
+      if (has_group(deck, "search")) then
+         problem = "a search needs blocks that stay"
+      else if (word_of(deck, "analysis", "mode") == "limerick") then
+         problem = "mode = 'limerick' knows no blocks that come or go"
+      else if (flag_of(deck, "output", "energy")) then
+         problem = "output%energy needs blocks that stay"
+      else if (is_given(deck, "output", "reactions") .and. flag_of(deck, "output", "reactions") &
+         & .and. word_of(deck, "analysis", "mode") == "dynamic") then
+         problem = "output%reactions of a dynamic run needs blocks that stay"
+      else if ((word_of(deck, "analysis", "mode") == "dynamic") &
+         & .neqv. word_of(deck, "analysis", "geometry") == "current") then
+         problem = "stages need mode = 'static' with geometry = 'reference', or mode = 'dynamic' " &
+            & //"with geometry = 'current'"
+      end if
+      if (len(problem) > 0) call fatal_error(error, problem//"; change it or remove this line", &
+         & geometry_file(deck), deck%plan%boundary%change(1)%line)
+   end subroutine check_stages
 
    !> Warn of blocks that will fall, and of units that are no metres
    pure subroutine doubt_scene(deck, scene, warnings)

@@ -33,6 +33,9 @@ contains
             end do
          end if
          where (system%equation == 0) blocks%state = "fixed"
+         if (allocated(system%absent)) then
+            where (system%absent) blocks%state = ""
+         end if
       end associate
    end subroutine tell_blocks
 

@@ -10,7 +10,7 @@ module dda_contact_detection
    implicit none
    private
 
-   public :: contacts_t, find_contacts, follow_contacts, set_joints, set_strength
+   public :: contacts_t, find_contacts, follow_contacts, keep_contacts, set_joints, set_strength
 
    !> Joints with their springs, states and forces
    type :: contacts_t
@@ -96,6 +96,40 @@ contains
       call new_joint_springs(system, motion, contacts%joint, penalty_ratio, n_dof, &
          & contacts%springs)
    end subroutine set_joints
+
+   !> Keep some of the joints with what they carry; blocks may have other numbers in the equations
+   pure subroutine keep_contacts(system, kept, penalty_ratio, n_dof, contacts)
+      !> The blocks
+      type(block_system_t), intent(in) :: system
+      !> Which: (n_joint)
+      logical, intent(in) :: kept(:)
+      !> Contact stiffness over the stiffness of the block across the joint
+      real(wp), intent(in) :: penalty_ratio
+      !> Unknowns of one block
+      integer, intent(in) :: n_dof
+      !> The contacts
+      type(contacts_t), intent(inout) :: contacts
+      type(contacts_t) :: old
+      type(joint_t), allocatable :: joint(:)
+      integer :: k(count(kept)), j
+
+      k = pack([(j, j=1, size(kept))], kept)
+      old = contacts
+      allocate (joint(size(k)))
+      do j = 1, size(k)
+         joint(j) = old%joint(k(j))
+      end do
+      call set_joints(system, system%motion, joint, penalty_ratio, n_dof, contacts)
+      contacts%face = old%face(k)
+      contacts%trial = old%trial(:, k)
+      contacts%force = old%force(:, k)
+      contacts%gap = old%gap(:, k)
+      contacts%increment = old%increment(:, k)
+      contacts%past_slip = old%past_slip(k)
+      contacts%broken = old%broken(:, k)
+      contacts%springs%cone = old%springs%cone(k)
+      contacts%springs%shift = old%springs%shift(:, k)
+   end subroutine keep_contacts
 
    !> Bounds of the forces by what is left of cohesion and tensile strength
    pure subroutine set_strength(contacts)

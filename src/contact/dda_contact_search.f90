@@ -14,7 +14,8 @@ module dda_contact_search
    implicit none
    private
 
-   public :: joint_search_t, new_joint_search, look_around, touching_joints, near_joints
+   public :: joint_search_t, new_joint_search, forget_pairs, look_around, touching_joints
+   public :: near_joints
 
    !> What a search needs of the scene, made once, and what it remembers
    type :: joint_search_t
@@ -24,6 +25,8 @@ module dda_contact_search
       type(joint_law_t), allocatable :: law(:, :)
       !> Where to look; joints do not depend on it
       type(edge_pairs_t) :: near
+      !> Blocks that are not there, so that nothing meets them; unallocated if all are: (n_block)
+      logical, allocatable :: absent(:)
    end type joint_search_t
 
    !> Gaps below this share of the smallest block's size, of the two and of those that lie between
@@ -44,6 +47,14 @@ contains
       search%outline = outline_of(system)
       allocate (search%law, source=law)
    end function new_joint_search
+
+   !> Look everywhere again: blocks have come or gone
+   pure subroutine forget_pairs(search)
+      !> The search
+      type(joint_search_t), intent(inout) :: search
+
+      search%near = edge_pairs_t()
+   end subroutine forget_pairs
 
    !> Joints of blocks that touch in the reference shape
    pure subroutine touching_joints(search, system, joint)
@@ -131,6 +142,20 @@ contains
       call find_joints(search, system, reach, near, joint)
    end subroutine near_joints
 
+   !> Drop the pairs of edges of blocks that are not there
+   pure subroutine drop_absent(search, block, pair)
+      !> The search
+      type(joint_search_t), intent(in) :: search
+      !> Block of each edge: (n_vertex)
+      integer, intent(in) :: block(:)
+      !> The pairs: (2, n_pair)
+      integer, allocatable, intent(inout) :: pair(:, :)
+      integer :: i
+
+      pair = pair(:, pack([(i, i=1, size(pair, 2))], &
+         & .not. (search%absent(block(pair(1, :))) .or. search%absent(block(pair(2, :))))))
+   end subroutine drop_absent
+
    !> Joints of all pairs of blocks whose edges come near one another
    pure subroutine find_joints(search, system, reach, near, joint, beside)
       !> The search
@@ -156,6 +181,7 @@ contains
       call measure_edges(near%vertex, near%outline)
       near%first_vertex = system%first_vertex
       call find_edge_pairs(search%near, search%outline, system%equation, near%vertex, reach, pair)
+      if (allocated(search%absent)) call drop_absent(search, near%outline%block, pair)
       first = 1
       do while (first <= size(pair, 2))
          block = near%outline%block(pair(:, first))

@@ -6,6 +6,7 @@ module dda_block_points
    use dda_block_records, only : take_record
    use dda_block_sites, only : site_t, add_held, block_at, blocks_along, close_held, &
       & holds_point, rivals_at
+   use dda_block_stages, only : close_changes, take_change
    use dda_boundary, only : boundary_t, held_point_t, history_t, measured_point_t
    use dda_deck_token, only : shown
    use dda_error, only : error_t, fatal_error
@@ -62,12 +63,15 @@ contains
             call take_bar(entry, plan, site, file, warnings, error)
          case ("water")
             call take_water(entry, plan, error)
+         case ("remove", "add")
+            call take_change(entry, plan, error)
          case default
             call take_point(entry, plan, site, file, warnings, error)
          end select
          if (allocated(error)) return
       end do
       call close_held(site%n_held, plan%boundary%held)
+      call close_changes(plan, error)
    end subroutine add_points
 
    !> Lists as long as the file says; lines may hold more points than these

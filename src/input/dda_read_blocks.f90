@@ -31,7 +31,7 @@ module dda_read_blocks
    !> Words that begin an entry
    character(len=*), parameter :: entries = "block, material, joint, fix, fix_line, "// &
       & "measure, load, live, displacement, base_acceleration, base_velocity, "// &
-      & "base_displacement, bar, water"
+      & "base_displacement, bar, water, remove, add"
 
    !> Lines between two that are reported to the watch
    integer, parameter :: told_lines = 10000
@@ -195,7 +195,7 @@ contains
 
       entry%head = line
       select case (line%word(1))
-      case ("block", "water")
+      case ("block", "water", "remove", "add")
          entry%n_column = 2
       case ("load", "live", "displacement", &
          & "base_acceleration", "base_velocity", "base_displacement")
@@ -222,7 +222,8 @@ contains
       case ("joint")
          call add_law(reading%entry%head, reading%growing, error)
       case ("fix", "fix_line", "measure", "load", "live", "displacement", &
-         & "base_acceleration", "base_velocity", "base_displacement", "bar", "water")
+         & "base_acceleration", "base_velocity", "base_displacement", "bar", "water", &
+         & "remove", "add")
          call keep_entry(reading%entry, reading%later, reading%n_later)
       end select
       reading%entry%head%n = 0

@@ -34,6 +34,11 @@ module dda_block_system
       type(material_t), allocatable :: materials(:)
       !> Number of the block in the equations; 0 for a block that cannot move: (n_block)
       integer, allocatable :: equation(:)
+      !> Blocks that cannot move wherever they are: (n_block)
+      logical, allocatable :: fixed(:)
+      !> Blocks that are not there: not built yet or taken away; unallocated where all are:
+      !> (n_block)
+      logical, allocatable :: absent(:)
       !> Corners where the blocks are now: (2, n_vertex) [m]
       real(wp), allocatable :: moved(:, :)
       !> Sum of all motions; strains in the frame that turns with the block where blocks move:
@@ -71,6 +76,7 @@ contains
       allocate (system%first_vertex, source=first_vertex)
       allocate (system%vertex, source=vertex)
       allocate (system%moved, source=vertex)
+      allocate (system%fixed, source=fixed)
       allocate (system%materials(1))
       system%materials(1) = material
       allocate (system%area(n), system%centroid(2, n), system%second(3, n))

@@ -6,6 +6,7 @@ module dda_boundary
    private
 
    public :: boundary_t, bounded_force_t, held_point_t, history_t, loaded_point_t, measured_point_t
+   public :: stage_change_t, stage_times, present_at
    public :: constant_history, led_displacement, mean_over, rate_at, records_before, value_at
 
    !> A vector given at some times, linear between them, constant before the first and after the
@@ -64,6 +65,18 @@ module dda_boundary
       real(wp) :: most = huge(1.0_wp)
    end type bounded_force_t
 
+   !> A block that is built or taken away
+   type :: stage_change_t
+      !> When [s]
+      real(wp) :: time = 0.0_wp
+      !> Number of the block
+      integer :: block = 0
+      !> Whether it is built; otherwise it is taken away
+      logical :: adds = .false.
+      !> Line of the file that says so
+      integer :: line = 0
+   end type stage_change_t
+
    !> All of a scene; an array that is not allocated has no points
    type :: boundary_t
       !> Held points
@@ -76,6 +89,8 @@ module dda_boundary
       type(bounded_force_t), allocatable :: bounded(:)
       !> Bars between points
       type(bar_t), allocatable :: bar(:)
+      !> Blocks that are built or taken away, in the order of their times
+      type(stage_change_t), allocatable :: change(:)
       !> Acceleration of the ground [m/s2]; motions are relative to the ground, so that all blocks
       !> feel its inertia
       type(history_t) :: base_acceleration
@@ -94,6 +109,45 @@ contains
       allocate (history%value(2, 1))
       history%value(:, 1) = value
    end function constant_history
+
+   !> Times at which blocks are built or taken away
+   pure function stage_times(boundary) result(time)
+      !> The boundary
+      type(boundary_t), intent(in) :: boundary
+      !> The times, ascending, each once: (n) [s]
+      real(wp), allocatable :: time(:)
+      integer :: i, n
+
+      allocate (time(0))
+      if (.not. allocated(boundary%change)) return
+      n = size(boundary%change)
+      time = pack(boundary%change%time, [(i == 1 .or. boundary%change(i)%time &
+         & > boundary%change(max(1, i - 1))%time, i=1, n)])
+   end function stage_times
+
+   !> Which blocks are there after the changes of a time
+   pure function present_at(boundary, n_block, time) result(present)
+      !> The boundary
+      type(boundary_t), intent(in) :: boundary
+      !> Number of blocks
+      integer, intent(in) :: n_block
+      !> The time [s]
+      real(wp), intent(in) :: time
+      !> Whether each is there: (n_block)
+      logical :: present(n_block)
+      integer :: i
+
+      present = .true.
+      if (.not. allocated(boundary%change)) return
+      do i = size(boundary%change), 1, -1
+         ! before its first change a block is what that changes
+         present(boundary%change(i)%block) = .not. boundary%change(i)%adds
+      end do
+      do i = 1, size(boundary%change)
+         if (boundary%change(i)%time <= time) &
+            & present(boundary%change(i)%block) = boundary%change(i)%adds
+      end do
+   end function present_at
 
    !> Value of a history at a time
    pure function value_at(history, time) result(value)

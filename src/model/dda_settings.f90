@@ -46,6 +46,10 @@ module dda_settings
       real(wp) :: damping = 0.0_wp
       !> Time at which a dynamic run ends; 0 to end with its last step [s]
       real(wp) :: duration = 0.0_wp
+      !> Time of the histories at which this stage of a run begins [s]
+      real(wp) :: from = 0.0_wp
+      !> Time at which it ends [s]
+      real(wp) :: until = huge(1.0_wp)
       !> Largest motion of a corner in a step over the size of the smallest block
       real(wp) :: max_displacement_ratio = 0.05_wp
       !> Motion of a corner that means collapse; 0 for a test without a length [m]

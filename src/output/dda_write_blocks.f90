@@ -44,6 +44,7 @@ contains
       integer :: b, v
 
       do b = 1, size(blocks%state)
+         if (blocks%state(b) == "") cycle
          common = to_text(number)//","//to_text(b)//","//trim(blocks%state(b))//","
          do v = blocks%first_vertex(b), blocks%first_vertex(b + 1) - 1
             if (allocated(blocks%displacement)) then

@@ -48,13 +48,15 @@ contains
    end function frames_header
 
    !> Rows of one frame in frames.csv
-   pure function frame_lines(stamp, first_vertex, point) result(lines)
+   pure function frame_lines(stamp, first_vertex, point, absent) result(lines)
       !> Case, frame, step and time
       type(frame_stamp_t), intent(in) :: stamp
       !> First corner of each block, and one beyond the last: (n_block + 1)
       integer, intent(in) :: first_vertex(:)
       !> Corners of all blocks: (2, n_vertex) [m]
       real(wp), intent(in) :: point(:, :)
+      !> Blocks that have no rows, as they are not there: (n_block)
+      logical, intent(in), optional :: absent(:)
       !> The rows, parted by line ends
       character(len=:), allocatable :: lines
       character(len=:), allocatable :: common
@@ -63,6 +65,9 @@ contains
 
       common = stamp_text(stamp)//","//to_text(stamp%step)//","//to_text(stamp%time)//","
       do block = 1, size(first_vertex) - 1
+         if (present(absent)) then
+            if (absent(block)) cycle
+         end if
          do vertex = first_vertex(block), first_vertex(block + 1) - 1
             call add_line(rows, common//to_text(block)//"," &
                & //to_text(vertex - first_vertex(block) + 1)//","//pair(point(:, vertex)))

@@ -10,8 +10,8 @@ module dda_decision
    use dda_contact_detection, only : contacts_t
    use dda_forward, only : outcome_t, run_to_verdict
    use dda_frames, only : album_t, blank_album, keep_pictures
-   use dda_graph_decision, only : decide_graph, decides_as_graph, graph_verdict_t, show_mechanism, &
-      & show_state
+   use dda_graph_decision, only : decide_graph, decides_as_graph, graph_verdict_t
+   use dda_graph_report, only : show_mechanism, show_state
    use dda_kinds, only : wp
    use dda_loading_path, only : path_end
    use dda_settings, only : flow_rule, settings_t

@@ -29,7 +29,7 @@ module dda_loading_path
 
    public :: loading_path_t, path_rate_t, path_result_t, coulomb_state_t, face, face_enum
    public :: path_end, path_end_enum, path_reason, path_reason_enum
-   public :: begin_path, follow_path, new_rate
+   public :: begin_path, follow_path, new_path, new_rate
 
    !> How a path ends
    type :: path_end_enum
@@ -137,6 +137,19 @@ contains
       rate%opening = 0.0_wp
    end subroutine new_rate
 
+   !> What is made once for an assembly
+   pure subroutine new_path(graph, load, path)
+      !> The joints
+      type(joint_graph_t), intent(in) :: graph
+      !> A load that it carries, for the scale of forces: (n_dof, n_block) [N/m, N/m, N ...]
+      real(wp), intent(in) :: load(:, :)
+      !> The path
+      type(loading_path_t), intent(out) :: path
+
+      call new_coulomb_joints(graph, load, path%joints)
+      call new_equations(path%joints, path%equations)
+   end subroutine new_path
+
    !> The state under the dead load
    pure subroutine begin_path(graph, dead_load, path, state, result)
       !> The joints
@@ -152,8 +165,7 @@ contains
       type(jump_t) :: jump
       integer :: end
 
-      call new_coulomb_joints(graph, dead_load, path%joints)
-      call new_equations(path%joints, path%equations)
+      call new_path(graph, dead_load, path)
       call load_at_once(path%joints, path%equations, in_units(path%joints, dead_load), state, &
          & jump, end)
       result%end = path_end%reached
@@ -184,7 +196,11 @@ contains
 
       path%equations%base%n_factorisation = 0
       if (.not. path%joints%has_weight) call set_force_unit(path%joints, rate%load)
-      call scale_state(path%joints, state)
+      state%motion = in_motion_units(path%joints, state%motion)
+      state%load = in_units(path%joints, state%load)
+      state%force = state%force/path%joints%force_unit
+      state%gap = state%gap/path%joints%motion_unit
+      state%slip = state%slip/path%joints%motion_unit
       way%load = in_units(path%joints, rate%load)
       way%opening = rate%opening/path%joints%motion_unit
       strength = max(maxval(abs(way%load)), &
@@ -377,18 +393,4 @@ contains
          state%slip = state%slip*joints%motion_unit
       end associate
    end subroutine finish
-
-   !> Bring a state to the units of the joints
-   pure subroutine scale_state(joints, state)
-      !> The joints
-      type(coulomb_joints_t), intent(in) :: joints
-      !> The state
-      type(coulomb_state_t), intent(inout) :: state
-
-      state%motion = in_motion_units(joints, state%motion)
-      state%load = in_units(joints, state%load)
-      state%force = state%force/joints%force_unit
-      state%gap = state%gap/joints%motion_unit
-      state%slip = state%slip/joints%motion_unit
-   end subroutine scale_state
 end module dda_loading_path

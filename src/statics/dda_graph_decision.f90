@@ -5,29 +5,25 @@
 !> dead loads at once, then what is live, from event to event, with slip remembered. The first load
 !> at which the blocks fall is the collapse, and all beyond it is collapsed.
 module dda_graph_decision
-   use dda_bar_joints, only : keep_bar_forces
-   use dda_block_strain, only : strain_blocks
    use dda_block_system, only : block_system_t
    use dda_boundary, only : value_at
    use dda_contact_detection, only : contacts_t
-   use dda_contact_types, only : joint_t
    use dda_coulomb_fall, only : find_coulomb_fall
    use dda_first_motion, only : find_first_motion
-   use dda_friction_cone, only : joint_face_t
-   use dda_joint_graph, only : joint_graph_t, joint_motion, rubs
+   use dda_joint_graph, only : joint_graph_t, rubs
    use dda_kinds, only : wp
    use dda_limit_decision, only : decide_load, load_decision_t, load_state
    use dda_limit_load, only : find_limit, limit_load_t, limit_state
    use dda_load_stations, only : last_history_time, load_stations, load_stations_t, loads_at
-   use dda_loading_path, only : begin_path, coulomb_state_t, face, follow_path, loading_path_t, &
-      & new_rate, path_end, path_rate_t, path_reason, path_result_t
+   use dda_loading_path, only : begin_path, coulomb_state_t, follow_path, loading_path_t, &
+      & new_path, new_rate, path_end, path_rate_t, path_reason, path_result_t
    use dda_scene_graph, only : has_pure_friction, scene_graph
    use dda_settings, only : factor_of, flow_rule, settings_t
    implicit none
    private
 
    public :: graph_verdict_t, decide_graph, decides_as_graph, follow_stations, has_friction
-   public :: see_fall, show_mechanism, show_state, slide_along
+   public :: see_fall, slide_along
 
    !> A verdict and its proof
    type :: graph_verdict_t
@@ -65,8 +61,6 @@ module dda_graph_decision
 
    !> Relative gap of the two proofs of a limit whose mechanism is asked for
    real(wp), parameter :: limit_gap = 1.0e-7_wp
-   !> Motions below this share of the largest are rounding
-   real(wp), parameter :: still = 1.0e-6_wp
 
 contains
 
@@ -83,7 +77,7 @@ contains
    end function decides_as_graph
 
    !> Decide a scene
-   pure subroutine decide_graph(settings, system, contacts, bare, verdict)
+   pure subroutine decide_graph(settings, system, contacts, bare, verdict, start)
       !> Settings of the run
       type(settings_t), intent(in) :: settings
       !> The blocks
@@ -94,6 +88,9 @@ contains
       logical, intent(in) :: bare
       !> The verdict
       type(graph_verdict_t), intent(out) :: verdict
+      !> The state in which a stage before has left these joints, with the load that they balance;
+      !> without it the blocks begin unloaded
+      type(coulomb_state_t), intent(in), optional :: start
       type(joint_graph_t) :: graph
       type(load_stations_t) :: stations
       type(load_decision_t) :: decision
@@ -104,7 +101,7 @@ contains
       call scene_graph(settings, system, contacts, graph)
       allocate (load(3, graph%n_block), opening(3, size(graph%kind)))
       stations = load_stations(settings, .true.)
-      if (abs(settings%tilt) > 0.0_wp) then
+      if (abs(settings%tilt) > 0.0_wp .and. .not. present(start)) then
          ! what does not stand upright was drawn for gravity as it is
          call loads_at(stations, 0, settings, system, graph, load, opening)
          call decide_load(graph, load, decision)
@@ -113,10 +110,7 @@ contains
       call loads_at(stations, ubound(stations%tilt, 1), settings, system, graph, load, opening)
       call decide_load(graph, load, decision)
       verdict%n_factorisation = decision%n_factorisation
-      if (decision%state == load_state%falls) then
-         if (.not. decision%power > settings%rest_tolerance*power_of_all(settings, system, &
-            & decision%velocity)) decision%state = load_state%undecided
-      end if
+      if (is_feigned(settings, system, decision)) decision%state = load_state%undecided
       if (decision%state == load_state%falls) then
          verdict%end = path_end%collapsed
          call move_alloc(decision%velocity, verdict%mechanism)
@@ -129,16 +123,30 @@ contains
          verdict%reason = "limit analysis proves neither equilibrium nor collapse beyond round-off"
          verdict%unproven = .true.
       end if
-      dead_alone = ubound(stations%tilt, 1) == 0
+      dead_alone = ubound(stations%tilt, 1) == 0 .and. .not. present(start)
       verdict%on_path = verdict%end == path_end%reached .and. .not. dead_alone
       if (settings%verdict_flow == flow_rule%associated .or. .not. has_friction(graph)) return
       if (verdict%end /= path_end%reached .and. dead_alone) return
-      call follow_stations(settings, system, graph, stations, path)
+      call follow_stations(settings, system, graph, stations, path, start)
       path%n_factorisation = path%n_factorisation + verdict%n_factorisation
       path%unproven = verdict%unproven .or. dead_alone
       if (dead_alone .and. path%end == path_end%collapsed) path%end = path_end%undecided
       verdict = path
    end subroutine decide_graph
+
+   !> Whether a collapse has no more power than rounded coordinates make
+   pure logical function is_feigned(settings, system, decision)
+      !> Settings of the run
+      type(settings_t), intent(in) :: settings
+      !> The blocks
+      type(block_system_t), intent(in) :: system
+      !> What limit analysis has found
+      type(load_decision_t), intent(in) :: decision
+
+      is_feigned = decision%state == load_state%falls
+      if (is_feigned) is_feigned = .not. decision%power > settings%rest_tolerance &
+         & *power_of_all(settings, system, decision%velocity)
+   end function is_feigned
 
    !> What all weights and forces could do if each went along with the motion: beside it, power that
    !> rounded coordinates make is nothing
@@ -249,7 +257,7 @@ contains
    end subroutine slide_along
 
    !> Follow the loading path from its dead loads to its end or its collapse
-   pure subroutine follow_stations(settings, system, graph, stations, verdict)
+   pure subroutine follow_stations(settings, system, graph, stations, verdict, start)
       !> Settings of the run
       type(settings_t), intent(in) :: settings
       !> The blocks
@@ -260,6 +268,8 @@ contains
       type(load_stations_t), intent(in) :: stations
       !> How it ended
       type(graph_verdict_t), intent(out) :: verdict
+      !> State that a stage before has left, with the load that it balances; the path begins there
+      type(coulomb_state_t), intent(in), optional :: start
       type(loading_path_t) :: path
       type(coulomb_state_t) :: state
       type(path_rate_t) :: rate
@@ -272,7 +282,16 @@ contains
       verdict%on_path = n > 0
       call new_rate(graph, rate)
       call loads_at(stations, 0, settings, system, graph, load, opening)
-      call begin_path(graph, load, path, state, result)
+      if (present(start)) then
+         ! what was taken away leaves its neighbours, and what was built gets its weight
+         state = start
+         call new_path(graph, load, path)
+         rate%load = load - state%load
+         call follow_path(path, state, rate, 1.0_wp, result)
+         verdict%on_path = .true.
+      else
+         call begin_path(graph, load, path, state, result)
+      end if
       call count_up(result, verdict)
       do i = 1, n
          if (result%end /= path_end%reached) exit
@@ -319,81 +338,4 @@ contains
 
       has_friction = any(rubs(graph%kind, graph%friction))
    end function has_friction
-
-   !> Openings, slips and faces of the joints in a mechanism. Under the associated rule a joint that
-   !> slides opens by its friction; what it opens beyond that is a hinge. A corner that has opened
-   !> on the loading path is open whatever it does in the end
-   pure subroutine show_mechanism(settings, system, verdict, contacts)
-      !> Settings of the run
-      type(settings_t), intent(in) :: settings
-      !> The blocks
-      type(block_system_t), intent(in) :: system
-      !> The verdict, a collapse
-      type(graph_verdict_t), intent(in) :: verdict
-      !> The contacts; their increments and faces are set
-      type(contacts_t), intent(inout) :: contacts
-      type(joint_graph_t) :: graph
-      real(wp), allocatable :: rate(:, :)
-      real(wp) :: dilatancy, least
-      integer :: j
-
-      call scene_graph(settings, system, contacts, graph)
-      allocate (rate(3, size(graph%kind)))
-      call joint_motion(graph, verdict%mechanism, rate)
-      contacts%increment = rate(:, :size(contacts%joint))
-      if (allocated(verdict%force)) contacts%force = verdict%force(:, :size(contacts%joint))
-      least = still*maxval(abs(rate))
-      do j = 1, size(contacts%joint)
-         dilatancy = 0.0_wp
-         if (verdict%flow == flow_rule%associated) dilatancy = graph%friction(j)*abs(rate(3, j))
-         contacts%face(j)%open = rate(1:2, j) - dilatancy > least
-         if (allocated(verdict%state)) contacts%face(j)%open = contacts%face(j)%open &
-            & .or. verdict%state%gap(:, j) > still*maxval(abs(verdict%state%motion(1:2, :)))
-         if (contacts%springs%cone(j)%single) contacts%face(j)%open(2) = .true.
-         contacts%face(j)%slip = 0
-         if (abs(rate(3, j)) > least .and. .not. all(contacts%face(j)%open)) &
-            & contacts%face(j)%slip = merge(-1, 1, rate(3, j) > 0.0_wp)
-         contacts%gap(:, j) = merge(rate(:, j), 0.0_wp, [contacts%face(j)%open, &
-            & contacts%face(j)%slip /= 0])
-         ! interior points leave a trace of force there
-         where (contacts%face(j)%open) contacts%force(1:2, j) = 0.0_wp
-      end do
-   end subroutine show_mechanism
-
-   !> Forces, openings and faces of the joints of what stands, and motion and strain of its blocks
-   pure subroutine show_state(settings, verdict, system, contacts)
-      !> Settings of the run
-      type(settings_t), intent(in) :: settings
-      !> The verdict of what stands
-      type(graph_verdict_t), intent(in) :: verdict
-      !> The blocks; their motions are set where they are known
-      type(block_system_t), intent(inout) :: system
-      !> The contacts; forces, gaps and faces are set
-      type(contacts_t), intent(inout) :: contacts
-      real(wp), allocatable :: force(:, :)
-      integer :: b, j, n
-
-      n = size(contacts%joint)
-      allocate (force(3, 0))
-      if (allocated(verdict%force)) force = verdict%force
-      if (allocated(verdict%state)) force = verdict%state%force
-      if (size(force) == 0) return
-      contacts%force = force(:, :n)
-      call keep_bar_forces(settings, force, system)
-      if (settings%n_dof == 6) call strain_blocks(settings, last_history_time(settings), &
-         & contacts%force, force(:, n + 1:), contacts, system)
-      if (.not. allocated(verdict%state)) return
-      associate (state => verdict%state)
-         contacts%gap(1:2, :) = state%gap(:, :n)
-         contacts%gap(3, :) = state%slip(:n)
-         do j = 1, n
-            contacts%face(j)%open = state%face(1:2, j) == face%open
-            contacts%face(j)%slip = 0
-            if (abs(state%face(3, j)) == face%slides) contacts%face(j)%slip = state%face(3, j)
-         end do
-         do b = 1, size(system%equation)
-            if (system%equation(b) > 0) system%motion(:3, b) = state%motion(:3, system%equation(b))
-         end do
-      end associate
-   end subroutine show_state
 end module dda_graph_decision

@@ -37,7 +37,7 @@ module dda_load_stations
 
 contains
 
-   !> Stations of a scene
+   !> Stations of a scene, or of a later stage of it: histories alone go on there
    pure function load_stations(settings, upright) result(stations)
       !> Settings of the run
       type(settings_t), intent(in) :: settings
@@ -47,18 +47,28 @@ contains
       type(load_stations_t) :: stations
       real(wp), allocatable :: time(:)
       integer :: at, n_led, n_live, n_push, n_tilt
+      logical :: later
 
+      later = settings%from > 0.0_wp
       allocate (time, source=history_times(settings))
       n_led = merge(1, 0, leads_at_once(settings))
       n_tilt = merge(ceiling(abs(settings%tilt)/longest_tilt), 0, upright)
       n_push = merge(1, 0, abs(settings%push) > 0.0_wp .and. .not. settings%live_push)
       n_live = merge(1, 0, bears_live_load(settings))
+      if (later) then
+         n_led = 0
+         n_tilt = 0
+         n_push = 0
+         n_live = 0
+      end if
       at = n_led + n_tilt + n_push + n_live
       allocate (stations%led(0:at + size(time)), source=1.0_wp)
       allocate (stations%tilt(0:at + size(time)), source=settings%tilt)
       allocate (stations%push(0:at + size(time)), source=full_push(settings))
       allocate (stations%live(0:at + size(time)), source=1.0_wp)
-      allocate (stations%time(0:at + size(time)), source=0.0_wp)
+      allocate (stations%time(0:at + size(time)), source=settings%from)
+      stations%time(at + 1:) = time
+      if (later) return
       stations%led(0) = 0.0_wp
       if (n_tilt > 0) stations%tilt(:n_led) = 0.0_wp
       stations%tilt(n_led:n_led + n_tilt) = shares(n_tilt)*settings%tilt
@@ -66,7 +76,6 @@ contains
       stations%live(:at - n_live) = 0.0_wp
       if (n_live == 0) stations%live = 1.0_wp
       if (settings%live_push) stations%push = stations%live*full_push(settings)
-      stations%time(at + 1:) = time
    end function load_stations
 
    !> Shares of a path in equal legs; all of it where there is none
@@ -242,8 +251,13 @@ contains
             call take_times(settings%boundary%loaded(i)%force, time, n)
          end do
       end if
+      if (settings%until < huge(1.0_wp)) then
+         time = [time, settings%until]
+         n = n + 1
+      end if
       time = time(sorted_order(spread(0, 1, n), time))
-      time = pack(time, time > [0.0_wp, time(:n - 1)])
+      time = pack(time, time > [settings%from, time(:n - 1)] .and. time > settings%from &
+         & .and. time <= settings%until)
    end function history_times
 
    !> Add the times of one history to a list
@@ -275,6 +289,6 @@ contains
       !> Settings of the run
       type(settings_t), intent(in) :: settings
 
-      last_history_time = maxval([0.0_wp, history_times(settings)])
+      last_history_time = maxval([settings%from, history_times(settings)])
    end function last_history_time
 end module dda_load_stations

@@ -50,6 +50,8 @@ module dda_forward
       integer :: jumps = 0
       !> The largest of these jumps [m]
       real(wp) :: largest_jump = 0.0_wp
+      !> Joints that have slid as blocks were built or taken away
+      integer :: slid = 0
       !> Accepted steps
       integer :: steps = 0
       !> Passes of the open-close loop

@@ -40,6 +40,8 @@ module dda_frames
       real(wp) :: farthest = 0.0_wp
       !> Faces that the forces lie on: (n_joint)
       type(joint_face_t), allocatable :: face(:)
+      !> Blocks that are not there; unallocated where all are: (n_block)
+      logical, allocatable :: absent(:)
       !> The bars: (n_bar)
       type(bar_state_t), allocatable :: bar(:)
    end type frame_t
@@ -204,6 +206,7 @@ contains
          frame%moved = system%moved
          frame%motion = system%motion
          frame%stress = system%stress
+         if (allocated(system%absent)) frame%absent = system%absent
          if (allocated(system%bar)) frame%bar = system%bar
          frame%joint = contacts%joint
          frame%force = contacts%force

@@ -34,6 +34,9 @@ contains
       n = 0
       do i = 1, size(system%equation)
          if (system%equation(i) > 0) cycle
+         if (allocated(system%absent)) then
+            if (system%absent(i)) cycle
+         end if
          n = n + 1
          support(:, n) = [i, 0]
       end do

@@ -1,0 +1,318 @@
+!> Stages: blocks that are built or taken away while the others stand or move
+!>
+!> A static run follows the loading path from stage to stage. What a block that is taken away has
+!> carried is a load on its neighbours at first, which then goes to nothing; a block that is built
+!> fits where it stands, without force, and then gets its weight. A dynamic run goes on with the
+!> velocities of the blocks that stay.
+module dda_stages
+   use dda_block_system, only : block_system_t
+   use dda_boundary, only : present_at, stage_times
+   use dda_contact_detection, only : contacts_t, keep_contacts
+   use dda_contact_search, only : forget_pairs
+   use dda_coulomb_joints, only : coulomb_joints_t, new_coulomb_joints
+   use dda_coulomb_law, only : coulomb_state_t, unloaded_state
+   use dda_decision, only : decide, decision_t, follow_coulomb, record_collapse, record_rest
+   use dda_forward, only : outcome_t
+   use dda_frames, only : album_t
+   use dda_graph_decision, only : decide_graph, decides_as_graph, graph_verdict_t
+   use dda_joint_graph, only : add_joint_forces, joint_graph_t
+   use dda_kinds, only : wp
+   use dda_loading_path, only : path_end
+   use dda_scene, only : scene_t
+   use dda_scene_graph, only : scene_graph
+   use dda_settings, only : settings_t
+   use dda_step_context, only : march_t
+   use dda_verdict, only : verdict
+   implicit none
+   private
+
+   public :: decide_in_stages
+
+   !> A joint has slid in a stage if its slip is more than this share of the largest motion, and it
+   !> presses with more than this share of the largest force
+   real(wp), parameter :: slip_share = 1.0e-9_wp
+
+contains
+
+   !> Decide a scene stage by stage, or at once where nothing is built or taken away: the first
+   !> stage that falls is the last
+   pure subroutine decide_in_stages(scene, system, contacts, decision, album, onward)
+      !> The scene; blocks and contacts become those of the last stage, where they were at the
+      !> beginning
+      type(scene_t), intent(inout) :: scene
+      !> Its blocks to begin with
+      type(block_system_t), intent(in) :: system
+      !> Their contacts
+      type(contacts_t), intent(in) :: contacts
+      !> The decision of the last stage; its counts are those of all
+      type(decision_t), intent(out) :: decision
+      !> Receives pictures
+      type(album_t), intent(inout) :: album
+      !> Where a dynamic run goes on and where it ended
+      type(march_t), intent(inout) :: onward
+      real(wp), allocatable :: time(:)
+      real(wp) :: last
+
+      associate (settings => scene%settings)
+         if (.not. allocated(settings%boundary%change)) then
+            call decide(settings, system, contacts, decision, album, onward)
+            return
+         end if
+         time = stage_times(settings%boundary)
+         time = [0.0_wp, pack(time, time > 0.0_wp), huge(1.0_wp)]
+         decision%system = system
+         decision%contacts = contacts
+         last = 0.0_wp
+         if (settings%dynamic .and. settings%current) then
+            call move_through(settings, time, decision, album, onward, last)
+         else if (decides_as_graph(settings, contacts)) then
+            call decide_at_rest(settings, time, decision, last)
+         else
+            decision%outcome%reason = "stages need friction alone and geometry = 'reference' " &
+               & //"in a static run, geometry = 'current' in a dynamic one"
+         end if
+         call enter_stage(settings, last, scene%system, scene%contacts)
+      end associate
+   end subroutine decide_in_stages
+
+   !> Move from stage to stage
+   pure subroutine move_through(settings, time, decision, album, onward, last)
+      !> Settings of the run
+      type(settings_t), intent(in) :: settings
+      !> Times at which stages begin, and the end: (n_stage + 1) [s]
+      real(wp), intent(in) :: time(:)
+      !> The decision; blocks and contacts at the beginning in, at the end out
+      type(decision_t), intent(inout) :: decision
+      !> Receives pictures
+      type(album_t), intent(inout) :: album
+      !> Where the run goes on and where it ended
+      type(march_t), intent(inout) :: onward
+      !> Time at which the last stage began [s]
+      real(wp), intent(inout) :: last
+      type(settings_t) :: stage
+      integer :: k
+
+      stage = settings
+      do k = 1, size(time) - 1
+         if (time(k + 1) <= onward%time) cycle
+         if (settings%duration > 0.0_wp .and. time(k) >= settings%duration) exit
+         last = time(k)
+         stage%duration = settings%duration
+         if (time(k + 1) < huge(1.0_wp) .and. .not. (settings%duration > 0.0_wp &
+            & .and. settings%duration < time(k + 1))) stage%duration = time(k + 1)
+         call enter_stage(settings, last, decision%system, decision%contacts)
+         if (allocated(onward%last_motion)) deallocate (onward%last_motion)
+         call move_on(stage, album, onward, decision)
+         if (decision%outcome%verdict /= verdict%completed) exit
+      end do
+   end subroutine move_through
+
+   !> Go on in time to the end of a stage
+   pure subroutine move_on(stage, album, onward, decision)
+      !> Settings of the stage
+      type(settings_t), intent(in) :: stage
+      !> Receives pictures
+      type(album_t), intent(inout) :: album
+      !> Where the run goes on and where it ended
+      type(march_t), intent(inout) :: onward
+      !> Blocks and contacts: at the beginning in, at the end out
+      type(decision_t), intent(inout) :: decision
+      type(block_system_t) :: system
+      type(contacts_t) :: contacts
+      type(outcome_t) :: begun
+
+      system = decision%system
+      contacts = decision%contacts
+      ! counts of a run that goes on are those since its beginning
+      decision%outcome = begun
+      call follow_coulomb(stage, system, contacts, decision, album, onward)
+   end subroutine move_on
+
+   !> Follow the loading path through all stages
+   pure subroutine decide_at_rest(settings, time, decision, last)
+      !> Settings of the run
+      type(settings_t), intent(in) :: settings
+      !> Times at which stages begin, and the end: (n_stage + 1) [s]
+      real(wp), intent(in) :: time(:)
+      !> The decision; blocks and contacts at the beginning in, those of the last stage out
+      type(decision_t), intent(inout) :: decision
+      !> Time at which the last stage began [s]
+      real(wp), intent(inout) :: last
+      type(settings_t) :: stage
+      type(block_system_t) :: system
+      type(contacts_t) :: all, contacts
+      type(graph_verdict_t) :: proof
+      type(coulomb_state_t), allocatable :: start
+      integer :: factorisations, k, slid, steps
+
+      system = decision%system
+      all = decision%contacts
+      contacts = all
+      stage = settings
+      slid = 0
+      steps = 0
+      factorisations = 0
+      do k = 1, size(time) - 1
+         last = time(k)
+         stage%from = time(k)
+         stage%until = time(k + 1)
+         if (k > 1) call hand_over(settings, time(k), system, contacts, all, proof, start)
+         contacts = all
+         call enter_stage(settings, time(k), system, contacts)
+         call decide_graph(stage, system, contacts, .false., proof, start)
+         if (allocated(start) .and. allocated(proof%state)) slid = slid + n_slid(start, proof%state)
+         steps = steps + proof%n_event + 1
+         factorisations = factorisations + proof%n_factorisation
+         if (proof%end /= path_end%reached) exit
+      end do
+      decision%outcome%slid = slid
+      if (proof%end == path_end%collapsed) then
+         call record_collapse(stage, system, contacts, proof, decision)
+      else if (proof%end == path_end%reached) then
+         call record_rest(stage, system, contacts, proof, decision)
+      else
+         decision%system = system
+         decision%contacts = contacts
+         decision%outcome%reason = proof%reason
+      end if
+      associate (outcome => decision%outcome)
+         outcome%steps = steps
+         outcome%factorisations = factorisations
+         outcome%has_path = .true.
+         outcome%path_time = last
+         if (.not. allocated(outcome%motion)) &
+            & allocate (outcome%motion(settings%n_dof, maxval(system%equation)), source=0.0_wp)
+      end associate
+   end subroutine decide_at_rest
+
+   !> Joints that have slid against friction between two states
+   pure integer function n_slid(before, after)
+      !> The state before
+      type(coulomb_state_t), intent(in) :: before
+      !> The state after
+      type(coulomb_state_t), intent(in) :: after
+
+      n_slid = count(abs(after%slip - before%slip) > slip_share*maxval(abs(after%motion)) &
+         & .and. sum(after%force(:2, :), dim=1) > slip_share*maxval(abs(after%force)))
+   end function n_slid
+
+   !> Which blocks and contacts there are from a time on
+   pure subroutine enter_stage(settings, time, system, contacts)
+      !> Settings of the run
+      type(settings_t), intent(in) :: settings
+      !> The time [s]
+      real(wp), intent(in) :: time
+      !> The blocks
+      type(block_system_t), intent(inout) :: system
+      !> Their contacts, those of the stage before or of all blocks
+      type(contacts_t), intent(inout) :: contacts
+      logical :: present(size(system%area)), kept(size(contacts%joint))
+      integer :: b, j, n
+
+      present = present_at(settings%boundary, size(present), time)
+      n = 0
+      do b = 1, size(present)
+         if (present(b) .and. .not. system%fixed(b)) n = n + 1
+         system%equation(b) = merge(n, 0, present(b) .and. .not. system%fixed(b))
+         if (.not. present(b)) system%velocity(:, b) = 0.0_wp
+      end do
+      system%absent = .not. present
+      contacts%search%absent = .not. present
+      call forget_pairs(contacts%search)
+      do j = 1, size(kept)
+         kept(j) = all(present(contacts%joint(j)%block))
+      end do
+      call keep_contacts(system, kept, settings%penalty_ratio, settings%n_dof, contacts)
+   end subroutine enter_stage
+
+   !> The state that the next stage begins with: joints of blocks that stay keep what they carry;
+   !> what the others carried is a load on those that stay
+   pure subroutine hand_over(settings, time, system, contacts, all, proof, start)
+      !> Settings of the run
+      type(settings_t), intent(in) :: settings
+      !> Time at which the next stage begins [s]
+      real(wp), intent(in) :: time
+      !> The blocks of the stage that has ended
+      type(block_system_t), intent(in) :: system
+      !> Its contacts
+      type(contacts_t), intent(in) :: contacts
+      !> The contacts of all blocks
+      type(contacts_t), intent(in) :: all
+      !> How it ended
+      type(graph_verdict_t), intent(in) :: proof
+      !> The state
+      type(coulomb_state_t), allocatable, intent(out) :: start
+      type(joint_graph_t) :: before, after
+      type(block_system_t) :: next
+      type(contacts_t) :: contacts_after
+      type(coulomb_joints_t) :: joints
+      real(wp), allocatable :: force(:, :), load(:, :)
+      integer, allocatable :: joint_of(:), label_before(:), label_after(:)
+      integer :: b, e, i, j
+
+      if (.not. allocated(proof%state)) return
+      next = system
+      contacts_after = all
+      call enter_stage(settings, time, next, contacts_after)
+      call scene_graph(settings, system, contacts, before)
+      call scene_graph(settings, next, contacts_after, after)
+      allocate (load(3, after%n_block), source=1.0_wp)
+      call new_coulomb_joints(after, load, joints)
+      start = unloaded_state(joints)
+      label_before = labels(settings, system, all, before)
+      label_after = labels(settings, next, all, after)
+      allocate (joint_of(max(maxval([0, label_before]), maxval([0, label_after]))), source=0)
+      joint_of(label_before) = [(j, j=1, size(label_before))]
+      force = proof%state%force
+      do i = 1, size(label_after)
+         j = joint_of(label_after(i))
+         if (j == 0) cycle
+         start%force(:, i) = proof%state%force(:, j)
+         start%gap(:, i) = proof%state%gap(:, j)
+         start%slip(i) = proof%state%slip(j)
+         start%face(:, i) = proof%state%face(:, j)
+         force(:, j) = 0.0_wp
+      end do
+      load = proof%state%load
+      call add_joint_forces(before, force, load)
+      do b = 1, size(system%equation)
+         e = next%equation(b)
+         if (e == 0 .or. system%equation(b) == 0) cycle
+         start%motion(:, e) = proof%state%motion(:, system%equation(b))
+         start%load(:, e) = load(:, system%equation(b))
+      end do
+      ! nodes of bars come last in both
+      i = after%n_block - maxval(next%equation)
+      start%motion(:, after%n_block - i + 1:) = proof%state%motion(:, before%n_block - i + 1:)
+      start%load(:, after%n_block - i + 1:) = load(:, before%n_block - i + 1:)
+   end subroutine hand_over
+   !> A number for each joint of a stage that is the same in all stages: that of the joint between
+   !> all blocks, then of the held point, then of the bar
+   pure function labels(settings, system, all, graph) result(label)
+      !> Settings of the run
+      type(settings_t), intent(in) :: settings
+      !> The blocks of the stage
+      type(block_system_t), intent(in) :: system
+      !> The contacts of all blocks
+      type(contacts_t), intent(in) :: all
+      !> The joints of the stage
+      type(joint_graph_t), intent(in) :: graph
+      !> The numbers: (n_joint)
+      integer, allocatable :: label(:)
+      logical :: there(size(all%joint))
+      integer :: i, j, n
+
+      do j = 1, size(there)
+         there(j) = .not. any(system%absent(all%joint(j)%block))
+      end do
+      label = pack([(j, j=1, size(there))], there)
+      n = size(there)
+      if (allocated(settings%boundary%held)) then
+         associate (held => settings%boundary%held)
+            label = [label, pack([(n + i, i=1, size(held))], system%equation(held%block) > 0)]
+            n = n + size(held)
+         end associate
+      end if
+      label = [label, [(n + i, i=1, size(graph%kind) - size(label))]]
+   end function labels
+end module dda_stages

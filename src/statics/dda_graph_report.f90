@@ -1,0 +1,102 @@
+!> Blocks and contacts as a verdict of the joint graph has them
+module dda_graph_report
+   use dda_bar_joints, only : keep_bar_forces
+   use dda_block_strain, only : strain_blocks
+   use dda_block_system, only : block_system_t
+   use dda_contact_detection, only : contacts_t
+   use dda_contact_types, only : joint_t
+   use dda_friction_cone, only : joint_face_t
+   use dda_graph_decision, only : graph_verdict_t
+   use dda_joint_graph, only : joint_graph_t, joint_motion
+   use dda_kinds, only : wp
+   use dda_load_stations, only : last_history_time
+   use dda_loading_path, only : face
+   use dda_scene_graph, only : scene_graph
+   use dda_settings, only : flow_rule, settings_t
+   implicit none
+   private
+
+   public :: show_mechanism, show_state
+
+   !> Motions below this share of the largest are rounding
+   real(wp), parameter :: still = 1.0e-6_wp
+
+contains
+
+   !> Openings, slips and faces of the joints in a mechanism. Under the associated rule a joint that
+   !> slides opens by its friction; what it opens beyond that is a hinge. A corner that has opened
+   !> on the loading path is open whatever it does in the end
+   pure subroutine show_mechanism(settings, system, verdict, contacts)
+      !> Settings of the run
+      type(settings_t), intent(in) :: settings
+      !> The blocks
+      type(block_system_t), intent(in) :: system
+      !> The verdict, a collapse
+      type(graph_verdict_t), intent(in) :: verdict
+      !> The contacts; their increments and faces are set
+      type(contacts_t), intent(inout) :: contacts
+      type(joint_graph_t) :: graph
+      real(wp), allocatable :: rate(:, :)
+      real(wp) :: dilatancy, least
+      integer :: j
+
+      call scene_graph(settings, system, contacts, graph)
+      allocate (rate(3, size(graph%kind)))
+      call joint_motion(graph, verdict%mechanism, rate)
+      contacts%increment = rate(:, :size(contacts%joint))
+      if (allocated(verdict%force)) contacts%force = verdict%force(:, :size(contacts%joint))
+      least = still*maxval(abs(rate))
+      do j = 1, size(contacts%joint)
+         dilatancy = 0.0_wp
+         if (verdict%flow == flow_rule%associated) dilatancy = graph%friction(j)*abs(rate(3, j))
+         contacts%face(j)%open = rate(1:2, j) - dilatancy > least
+         if (allocated(verdict%state)) contacts%face(j)%open = contacts%face(j)%open &
+            & .or. verdict%state%gap(:, j) > still*maxval(abs(verdict%state%motion(1:2, :)))
+         if (contacts%springs%cone(j)%single) contacts%face(j)%open(2) = .true.
+         contacts%face(j)%slip = 0
+         if (abs(rate(3, j)) > least .and. .not. all(contacts%face(j)%open)) &
+            & contacts%face(j)%slip = merge(-1, 1, rate(3, j) > 0.0_wp)
+         contacts%gap(:, j) = merge(rate(:, j), 0.0_wp, [contacts%face(j)%open, &
+            & contacts%face(j)%slip /= 0])
+         ! interior points leave a trace of force there
+         where (contacts%face(j)%open) contacts%force(1:2, j) = 0.0_wp
+      end do
+   end subroutine show_mechanism
+
+   !> Forces, openings and faces of the joints of what stands, and motion and strain of its blocks
+   pure subroutine show_state(settings, verdict, system, contacts)
+      !> Settings of the run
+      type(settings_t), intent(in) :: settings
+      !> The verdict of what stands
+      type(graph_verdict_t), intent(in) :: verdict
+      !> The blocks; their motions are set where they are known
+      type(block_system_t), intent(inout) :: system
+      !> The contacts; forces, gaps and faces are set
+      type(contacts_t), intent(inout) :: contacts
+      real(wp), allocatable :: force(:, :)
+      integer :: b, j, n
+
+      n = size(contacts%joint)
+      allocate (force(3, 0))
+      if (allocated(verdict%force)) force = verdict%force
+      if (allocated(verdict%state)) force = verdict%state%force
+      if (size(force) == 0) return
+      contacts%force = force(:, :n)
+      call keep_bar_forces(settings, force, system)
+      if (settings%n_dof == 6) call strain_blocks(settings, last_history_time(settings), &
+         & contacts%force, force(:, n + 1:), contacts, system)
+      if (.not. allocated(verdict%state)) return
+      associate (state => verdict%state)
+         contacts%gap(1:2, :) = state%gap(:, :n)
+         contacts%gap(3, :) = state%slip(:n)
+         do j = 1, n
+            contacts%face(j)%open = state%face(1:2, j) == face%open
+            contacts%face(j)%slip = 0
+            if (abs(state%face(3, j)) == face%slides) contacts%face(j)%slip = state%face(3, j)
+         end do
+         do b = 1, size(system%equation)
+            if (system%equation(b) > 0) system%motion(:3, b) = state%motion(:3, system%equation(b))
+         end do
+      end associate
+   end subroutine show_state
+end module dda_graph_report
