@@ -22,6 +22,7 @@ ROOT = Path(__file__).resolve().parents[2]
 #: Pages in the order of the menu, by chapter; others of docs/ follow
 CHAPTERS = {
     "Start": {
+        "gallery.md": "Gallery",
         "index.md": "Overview",
         "getting-started.md": "Getting started",
         "installation.md": "Installation",

@@ -113,9 +113,12 @@ def check_messages(block: Block, folder: Path) -> None:
 def run_block(block: Block, folder: Path, shell: dict[str, str]) -> None:
     """Run a block as its label wants it."""
     if block.label == "fortran":
-        named = re.search(r"`([\w.-]+\.nml)`:?$", block.before)
+        named = re.search(r"`([\w./-]+\.nml)`:?$", block.before)
         name = named[1] if named else f"line{block.line}.nml"
-        (folder / name).write_text(block.text)
+        if name.startswith("input/"):  # a deck that is there already, with the files that it names
+            assert (ROOT / name).read_text(encoding="utf-8").endswith(block.text)
+        else:
+            (folder / name).write_text(block.text)
         done = run_dda("check", name, cwd=folder)
         assert done.returncode == 0, done.stderr
     elif block.label == "python":

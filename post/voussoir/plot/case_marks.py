@@ -68,8 +68,7 @@ def draw_held(axes: Axes, source: Source) -> list[Artist]:
         axes.plot(*zip(*ends), color=INK[2], linewidth=1.8, marker="o", markersize=3, zorder=7)
     if source.bars:
         entries.append(entry("bar", linestyle="-", color=INK[2], marker="o", markersize=3))
-    if source.missing:
-        entries.append(entry(f"not drawn: loads and held points of {source.missing}, not beside the results"))
+    entries += [entry(f"not drawn: {what}") for what in source.missing]
     return entries
 
 

@@ -30,6 +30,8 @@ from voussoir.results import Results, Table
 
 #: Longest force, largest displacement and length of slip marks in the picture, over its size
 FORCE_LENGTH, DISPLACED_LENGTH, SLIP_LENGTH = 0.10, 0.04, 0.03
+#: More joints than these have smaller marks
+MANY = 100
 #: Displacements above this share of the picture's size are seen without magnification
 SEEN = 0.02
 #: Width of a figure, and its least and greatest height [inch]
@@ -298,7 +300,8 @@ def draw_hinges(axes: Axes, scene: CaseScene, joints: Table) -> list[Artist]:
         if not mask.any():
             continue
         axes.plot(
-            joints[x][mask], joints[y][mask], linestyle="none", markersize=6.5, zorder=6,
+            joints[x][mask], joints[y][mask], linestyle="none", zorder=6,
+            markersize=6.5 if len(joints) <= MANY else 4.0,
             **MARKS[mark],
         )
         if mark not in seen:
@@ -311,10 +314,13 @@ def draw_hinges(axes: Axes, scene: CaseScene, joints: Table) -> list[Artist]:
 def draw_slips(axes: Axes, scene: CaseScene, joints: Table, size: float) -> list[Artist]:
     """Draw which way the sides of sliding joints move; gives the entries of the legend."""
     slides = np.flatnonzero(np.isfinite(joints["slides_x"]))
+    falls = scene.falls or scene.moves
     centre = {
         block.number: block.corners.mean(axis=0) for block in scene.blocks + scene.supports
     }
-    length = SLIP_LENGTH * size
+    long = np.hypot(*(joints[f"{axis}_extrados"] - joints[f"{axis}_intrados"] for axis in "xy"))
+    usual = np.median(long[long > 0.0]) if np.any(long > 0.0) else size
+    length = min(SLIP_LENGTH * size, 0.5 * float(usual))
     for joint in slides:
         way = np.array([joints["slides_x"][joint], joints["slides_y"][joint]])
         normal = np.array([-way[1], way[0]])
@@ -333,9 +339,9 @@ def draw_slips(axes: Axes, scene: CaseScene, joints: Table, size: float) -> list
             )
     if not len(slides):
         return []
+    words = "sliding joint: which way its sides move" if falls else "joint at its friction limit"
     return [
-        entry("sliding joint: which way its sides move", marker=r"$\rightleftarrows$",
-              markerfacecolor=INK[0], markeredgecolor=INK[0], markersize=11)
+        entry(words, marker=r"$\rightleftarrows$", markerfacecolor=INK[0], markeredgecolor=INK[0], markersize=11)
     ]
 
 

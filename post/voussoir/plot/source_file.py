@@ -1,4 +1,4 @@
-"""What a file of blocks says of loads, held points, bars and materials: for pictures, no numbers are computed."""
+"""What a file of blocks or lines says of loads, held points, bars and materials, for pictures."""
 
 from __future__ import annotations
 
@@ -24,15 +24,15 @@ class Source:
         Points and lines that are held: both ends [m], and "x", "y" or "" for both directions.
     bars : list of (point, point)
         Ends of bolts, anchors and ties [m].
-    missing : str
-        Name of the file where it was not found, else empty.
+    missing : list of str
+        What is not known, for its file is not there or not read.
     """
 
     materials: list[int] = field(default_factory=list)
     loads: list[tuple[Point, Point, bool]] = field(default_factory=list)
     held: list[tuple[Point, Point, str]] = field(default_factory=list)
     bars: list[tuple[Point, Point]] = field(default_factory=list)
-    missing: str = ""
+    missing: list[str] = field(default_factory=list)
 
 
 def source_of(run: Results) -> Source:
@@ -44,14 +44,21 @@ def source_of(run: Results) -> Source:
         force = tuple(part[number] if number < len(part) else 0.0 for part in forces)
         source.loads.append((point, force, True))
     name = run.setting("scene%geometry")
-    if run.kind != "blocks" or not name:
+    if run.kind not in ("blocks", "lines") or not name:
         return source
+    if run.setting("scene%analysis"):
+        source.missing.append(f"loads and held points of {run.setting('scene%analysis')}")
     files = [folder / name for folder in (run.folder, run.folder.absolute().parent)]
     file = next(filter(Path.is_file, files), None)
     if file is None:
-        source.missing = name
+        source.missing.append(f"{'bolts' if run.kind == 'lines' else 'loads and held points'} of {name}")
         return source
-    _read(file.read_text(encoding="utf-8", errors="replace"), source)
+    text = file.read_text(encoding="utf-8", errors="replace")
+    if run.kind == "blocks":
+        _read(text, source)
+    else:  # of a plain file of lines, rows of seven numbers are bolts
+        rows = [_numbers(line.split()) for line in text.splitlines()]
+        source.bars += [((row[0], row[1]), (row[2], row[3])) for row in rows if len(row) == 7]
     return source
 
 
