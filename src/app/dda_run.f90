@@ -23,7 +23,7 @@ module dda_run
    implicit none
    private
 
-   public :: run_decks, deck_stem
+   public :: run_decks
 
    !> Most cases at the same time
    integer, parameter :: max_jobs = 256

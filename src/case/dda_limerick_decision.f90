@@ -14,7 +14,7 @@ module dda_limerick_decision
    use dda_limerick_run, only : begin_outcome, begin_run, limerick_outcome_t, limerick_verdict, &
       & next_step, run_limerick
    use dda_limerick_scene, only : limerick_scene
-   use dda_limerick_state, only : contact_state
+   use dda_limerick_state, only : limerick_state
    use dda_limerick_step, only : limerick_run_t
    use dda_material, only : joint_law_t
    use dda_scene, only : scene_t
@@ -236,7 +236,7 @@ contains
       end do
       do c = 1, run%contacts%n
          associate (contact => run%contacts%item(c))
-            if (contact%state == contact_state%open) cycle
+            if (contact%state == limerick_state%open) cycle
             call find_corner(contacts, contact%block, &
                & run%blocks%vertex(:, contact%vertex(1, 1)), j, corner)
             if (j == 0) cycle
@@ -299,7 +299,7 @@ contains
       force(1) = -run%march%used_penalty*contact%gap
       force(2) = 0.0_wp
       if (contact%corner) return
-      if (contact%state == contact_state%locked) then
+      if (contact%state == limerick_state%locked) then
          force(2) = run%march%used_penalty*contact%shear/model%constants%stiffness_ratio
       else
          law = contact_law(model, contact%block(1), contact%vertex(3, 1))

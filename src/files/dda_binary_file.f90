@@ -10,7 +10,7 @@ module dda_binary_file
    private
 
    public :: binary_file_t, open_binary, open_descriptor, flush_binary, sync_binary, close_binary
-   public :: descriptor_of, go_to, place_of
+   public :: descriptor_of, go_to, position_of
    public :: append_text, append_reals, append_integers, append_length
 
    !> A file open for writing
@@ -204,13 +204,13 @@ contains
    end subroutine sync_binary
 
    !> Bytes written so far, 0 of a file that is not open
-   integer(int64) function place_of(file)
+   integer(int64) function position_of(file)
       !> The file
       type(binary_file_t), intent(in) :: file
 
-      place_of = 0
-      if (c_associated(file%handle)) place_of = int(c_ftell(file%handle), int64)
-   end function place_of
+      position_of = 0
+      if (c_associated(file%handle)) position_of = int(c_ftell(file%handle), int64)
+   end function position_of
 
    !> Close a file
    subroutine close_binary(file, error)

@@ -3,7 +3,7 @@ module dda_table_file
    use, intrinsic :: iso_c_binding, only : c_char, c_int, c_null_char
    use, intrinsic :: iso_fortran_env, only : int64
    use dda_binary_file, only : append_text, binary_file_t, close_binary, flush_binary, &
-      & open_binary, place_of, sync_binary
+      & open_binary, position_of, sync_binary
    use dda_error, only : error_t, fatal_error
    implicit none
    private
@@ -86,7 +86,7 @@ contains
       !> The table
       type(table_file_t), intent(in) :: table
 
-      length_of = place_of(table%file)
+      length_of = position_of(table%file)
    end function length_of
 
    !> Close a table

@@ -9,7 +9,7 @@ module dda_word_list
 
    public :: word_list_t, split_words, words_left, this_word, this_row, take_number, &
       & take_property, take_whole
-   public :: take_numbers, take_material, largest_coordinate, quoted
+   public :: take_word_numbers, take_material, largest_coordinate, quoted
 
    !> Largest coordinate, so that no square overflows
    real(wp), parameter :: largest_coordinate = 1.0e15_wp
@@ -142,7 +142,7 @@ contains
    end subroutine take_number
 
    !> Take numbers that belong together, all within a bound
-   pure subroutine take_numbers(words, what, bound, value, error)
+   pure subroutine take_word_numbers(words, what, bound, value, error)
       !> The words
       type(word_list_t), intent(inout) :: words
       !> What each of them is, for the message
@@ -166,7 +166,7 @@ contains
             & words%file, row)
          return
       end do
-   end subroutine take_numbers
+   end subroutine take_word_numbers
 
    !> Take a number from 0 to 1e30
    pure subroutine take_property(words, what, value, error)

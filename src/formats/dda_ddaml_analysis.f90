@@ -1,7 +1,7 @@
 !> Analysis files in DDAML, the XML form
 module dda_ddaml_analysis
-   use dda_ddaml_attributes, only : choose, read_number, read_whole
-   use dda_ddaml_form, only : analysis_form, check_form, find_part
+   use dda_ddaml_attributes, only : choose, number_attribute, whole_attribute
+   use dda_ddaml_form, only : analysis_form, check_elements, find_part
    use dda_ddaml_material, only : read_history, read_joint, read_material
    use dda_error, only : error_t, fatal_error
    use dda_kinds, only : wp
@@ -9,7 +9,7 @@ module dda_ddaml_analysis
    use dda_plain_analysis, only : check_steps, largest_value
    use dda_text, only : to_text
    use dda_warnings, only : add_warning, warnings_t
-   use dda_word_list, only : quoted, split_words, take_numbers, take_property, take_whole, &
+   use dda_word_list, only : quoted, split_words, take_word_numbers, take_property, take_whole, &
       & word_list_t
    use dda_xml_tree, only : attribute_of, attribute_place, count_children, find_child, &
       & first_child, next_sibling, xml_tree_t
@@ -40,11 +40,11 @@ contains
       analysis%auto_time_step = .false.
       analysis%auto_penalty = .false.
       call find_part(tree, "Analysis", part, error)
-      if (.not. allocated(error)) call check_form(tree, part, analysis_form, warnings, error)
+      if (.not. allocated(error)) call check_elements(tree, part, analysis_form, warnings, error)
       if (allocated(error)) return
       ! weights that are not given need the gravity
       at = find_child(tree, part, "Gravaccel")
-      if (at > 0) call read_number(tree, at, "value", 0.0_wp, analysis%gravity, error)
+      if (at > 0) call number_attribute(tree, at, "value", 0.0_wp, analysis%gravity, error)
       if (.not. allocated(error)) call read_properties(tree, part, analysis, warnings, error)
       if (.not. allocated(error)) call read_loads(tree, part, analysis, error)
       at = first_child(tree, part)
@@ -75,23 +75,23 @@ contains
          case ("AConstants")
             call read_constants(tree, at, analysis, error)
          case ("Numtimesteps")
-            call read_whole(tree, at, "timesteps", 1, analysis%steps, error)
+            call whole_attribute(tree, at, "timesteps", 1, analysis%steps, error)
          case ("Maxtimestep")
-            call read_number(tree, at, "maxtimestep", 0.0_wp, analysis%max_time_step, error)
+            call number_attribute(tree, at, "maxtimestep", 0.0_wp, analysis%max_time_step, error)
          case ("Mintimestep")
-            call read_number(tree, at, "mintimestep", 0.0_wp, analysis%min_time_step, error)
+            call number_attribute(tree, at, "mintimestep", 0.0_wp, analysis%min_time_step, error)
          case ("Maxdisplacement")
-            call read_number(tree, at, "maxdisplacement", 0.0_wp, analysis%displacement_ratio, &
-               & error)
+            call number_attribute(tree, at, "maxdisplacement", 0.0_wp, &
+               & analysis%displacement_ratio, error)
          case ("Opencloselimit", "OCLimit")
-            call read_whole(tree, at, "maxopenclose", 1, analysis%open_close_limit, error)
+            call whole_attribute(tree, at, "maxopenclose", 1, analysis%open_close_limit, error)
          case ("Saveinterval")
             analysis%save_interval = 10
             if (attribute_place(tree, at, "step") > 0) &
-               & call read_whole(tree, at, "step", 0, analysis%save_interval, error)
+               & call whole_attribute(tree, at, "step", 0, analysis%save_interval, error)
             if (analysis%save_interval == 0) analysis%save_interval = 10
          case ("Contactdamping", "ContactDamping")
-            call read_number(tree, at, "value", 0.0_wp, analysis%contact_damping, error)
+            call number_attribute(tree, at, "value", 0.0_wp, analysis%contact_damping, error)
          case ("Gravaccel", "Writevertices")
          end select
       end associate
@@ -128,7 +128,7 @@ contains
          call choose(tree, at, "flag", "yes", "no", analysis%auto_penalty, error)
          if (allocated(error)) return
          if (attribute_place(tree, at, "pfactor") > 0) then
-            call read_number(tree, at, "pfactor", 0.0_wp, analysis%penalty_factor, error)
+            call number_attribute(tree, at, "pfactor", 0.0_wp, analysis%penalty_factor, error)
          else
             call add_warning(warnings, "Autopenalty needs the attribute pfactor: using 50", &
                & tree%file, tree%element(at)%row)
@@ -151,11 +151,12 @@ contains
 
       analysis%gravity_steps = usual_gravity_steps
       child = find_child(tree, at, "Gravitysteplimit")
-      if (child > 0) call read_whole(tree, child, "val", 1, analysis%gravity_steps, error)
+      if (child > 0) call whole_attribute(tree, child, "val", 1, analysis%gravity_steps, error)
       do i = 1, 2
          child = find_child(tree, at, trim(tolerance(i)))
          if (child > 0 .and. .not. allocated(error)) &
-            & call read_number(tree, child, "val", 0.0_wp, analysis%gravity_tolerance(i), error)
+            & call number_attribute(tree, child, "val", 0.0_wp, analysis%gravity_tolerance(i), &
+            & error)
       end do
    end subroutine read_gravity
 
@@ -288,16 +289,16 @@ contains
          associate (element => tree%element(child))
             select case (element%name)
             case ("Openclose")
-               call read_number(tree, child, "value", 0.0_wp, analysis%close_limit, error)
+               call number_attribute(tree, child, "value", 0.0_wp, analysis%close_limit, error)
             case ("Opencriteria")
-               call read_number(tree, child, "value", 0.0_wp, analysis%open_limit, error)
+               call number_attribute(tree, child, "value", 0.0_wp, analysis%open_limit, error)
             case ("NormSpringPen")
-               call read_number(tree, child, "value", 1.0e-30_wp, analysis%spring_penetration, &
-                  & error)
+               call number_attribute(tree, child, "value", 1.0e-30_wp, &
+                  & analysis%spring_penetration, error)
             case ("AngleOverlap")
-               call read_number(tree, child, "value", 0.0_wp, analysis%overlap_deg, error)
+               call number_attribute(tree, child, "value", 0.0_wp, analysis%overlap_deg, error)
             case ("ShearNormRatio")
-               call read_number(tree, child, "value", 1.0e-30_wp, analysis%shear_ratio, error)
+               call number_attribute(tree, child, "value", 1.0e-30_wp, analysis%shear_ratio, error)
             end select
          end associate
          child = next_sibling(tree, child)

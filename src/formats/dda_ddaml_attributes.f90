@@ -4,12 +4,12 @@ module dda_ddaml_attributes
    use dda_kinds, only : wp
    use dda_plain_analysis, only : largest_value
    use dda_text, only : to_text
-   use dda_word_list, only : quoted, split_words, take_numbers, take_whole, word_list_t
+   use dda_word_list, only : quoted, split_words, take_word_numbers, take_whole, word_list_t
    use dda_xml_tree, only : attribute_of, xml_tree_t
    implicit none
    private
 
-   public :: attribute_words, choose, read_number, read_whole
+   public :: attribute_words, choose, number_attribute, whole_attribute
 
    !> Largest whole number
    integer, parameter :: largest_whole = 1000000000
@@ -64,7 +64,7 @@ contains
    end subroutine choose
 
    !> Read an attribute that is a number
-   pure subroutine read_number(tree, at, name, low, value, error)
+   pure subroutine number_attribute(tree, at, name, low, value, error)
       !> The file's elements
       type(xml_tree_t), intent(in) :: tree
       !> Place of the element
@@ -82,15 +82,15 @@ contains
 
       call attribute_words(tree, at, name, words, error)
       if (.not. allocated(error)) &
-         & call take_numbers(words, "the attribute "//name, largest_value, number, error)
+         & call take_word_numbers(words, "the attribute "//name, largest_value, number, error)
       if (allocated(error)) return
       value = number(1)
       if (value < low) call fatal_error(error, "the attribute "//name//" must be "//to_text(low) &
          & //" or more, got "//to_text(value)//"; correct it", tree%file, tree%element(at)%row)
-   end subroutine read_number
+   end subroutine number_attribute
 
    !> Read an attribute that is a whole number
-   pure subroutine read_whole(tree, at, name, low, value, error)
+   pure subroutine whole_attribute(tree, at, name, low, value, error)
       !> The file's elements
       type(xml_tree_t), intent(in) :: tree
       !> Place of the element
@@ -108,5 +108,5 @@ contains
       call attribute_words(tree, at, name, words, error)
       if (.not. allocated(error)) &
          & call take_whole(words, "the attribute "//name, low, largest_whole, value, error)
-   end subroutine read_whole
+   end subroutine whole_attribute
 end module dda_ddaml_attributes

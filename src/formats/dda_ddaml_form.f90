@@ -8,7 +8,7 @@ module dda_ddaml_form
    implicit none
    private
 
-   public :: form_t, geometry_form, analysis_form, find_part, check_form
+   public :: form_t, geometry_form, analysis_form, find_part, check_elements
 
    !> Elements of one meaning inside another element
    type :: form_t
@@ -108,7 +108,7 @@ contains
    end subroutine find_part
 
    !> Check every element of a file and mark those that are not read
-   pure subroutine check_form(tree, part, form, warnings, error)
+   pure subroutine check_elements(tree, part, form, warnings, error)
       !> The file's elements
       type(xml_tree_t), intent(inout) :: tree
       !> Place of the part that is read
@@ -151,7 +151,7 @@ contains
          end if
          if (allocated(error)) return
       end do
-   end subroutine check_form
+   end subroutine check_elements
 
    !> Entry of an element in a form: 0 for the part itself, -1 if it has none
    pure integer function entry_of(tree, at, part, form)

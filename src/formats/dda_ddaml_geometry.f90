@@ -1,7 +1,7 @@
 !> Geometry files in DDAML, the XML form
 module dda_ddaml_geometry
    use dda_ddaml_attributes, only : attribute_words
-   use dda_ddaml_form, only : check_form, find_part, geometry_form
+   use dda_ddaml_form, only : check_elements, find_part, geometry_form
    use dda_error, only : error_t, fatal_error
    use dda_kinds, only : wp
    use dda_line_model, only : add_bolt, add_entity, entities_t, line_model_t, new_entities, &
@@ -9,7 +9,7 @@ module dda_ddaml_geometry
    use dda_text, only : to_text
    use dda_warnings, only : add_warning, warnings_t
    use dda_word_list, only : quoted, largest_coordinate, split_words, take_material, take_number, &
-      & take_numbers, take_property, this_row, this_word, word_list_t, words_left
+      & take_word_numbers, take_property, this_row, this_word, word_list_t, words_left
    use dda_xml_tree, only : attribute_of, attribute_place, first_child, next_sibling, xml_tree_t
    implicit none
    private
@@ -45,7 +45,7 @@ contains
       integer :: part, at, i
 
       call find_part(tree, "Geometry", part, error)
-      if (.not. allocated(error)) call check_form(tree, part, geometry_form, warnings, error)
+      if (.not. allocated(error)) call check_elements(tree, part, geometry_form, warnings, error)
       if (allocated(error)) return
       call new_line_model(model)
       model%file = tree%file
@@ -218,11 +218,11 @@ contains
          end if
          call split_words(element%text, tree%file, element%text_row, words)
          if (element%name == "Point") then
-            call take_numbers(words, "a coordinate of "//element%name, largest_coordinate, &
+            call take_word_numbers(words, "a coordinate of "//element%name, largest_coordinate, &
                & place(:2), error)
             place(3:4) = place(1:2)
          else
-            call take_numbers(words, "a coordinate of "//element%name, largest_coordinate, &
+            call take_word_numbers(words, "a coordinate of "//element%name, largest_coordinate, &
                & place, error)
          end if
          if (allocated(error)) return

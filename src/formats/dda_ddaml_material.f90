@@ -3,12 +3,12 @@ module dda_ddaml_material
    use dda_ddaml_attributes, only : attribute_words
    use dda_error, only : error_t, fatal_error
    use dda_kinds, only : wp
-   use dda_limerick_analysis, only : limerick_joint_t, limerick_material_t, load_history_t
+   use dda_limerick_analysis, only : limerick_joint_t, analysis_material_t, load_history_t
    use dda_plain_analysis, only : check_joint, check_material, largest_value
    use dda_text, only : to_text
    use dda_warnings, only : add_warning, warnings_t
-   use dda_word_list, only : quoted, split_words, take_numbers, take_whole, this_row, this_word, &
-      & word_list_t, words_left
+   use dda_word_list, only : quoted, split_words, take_word_numbers, take_whole, this_row, &
+      & this_word, word_list_t, words_left
    use dda_xml_tree, only : find_child, xml_tree_t
    implicit none
    private
@@ -29,7 +29,7 @@ contains
       !> Acceleration of gravity, for a weight that is not given
       real(wp), intent(in) :: gravity
       !> The material
-      type(limerick_material_t), intent(out) :: material
+      type(analysis_material_t), intent(out) :: material
       !> Receives what the reader ignores
       type(warnings_t), intent(inout) :: warnings
       !> What is wrong
@@ -71,7 +71,7 @@ contains
       !> Acceleration of gravity
       real(wp), intent(in) :: gravity
       !> The material
-      type(limerick_material_t), intent(inout) :: material
+      type(analysis_material_t), intent(inout) :: material
       !> Receives a unit weight that is not taken
       type(warnings_t), intent(inout) :: warnings
       real(wp) :: weight
@@ -139,7 +139,7 @@ contains
          return
       end if
       call split_words(tree%element(child)%text, tree%file, tree%element(child)%text_row, words)
-      call take_numbers(words, "a number of "//name, largest_value, number, error)
+      call take_word_numbers(words, "a number of "//name, largest_value, number, error)
       value = number
       if (.not. allocated(error) .and. words_left(words) > 0) call add_warning(warnings, &
          & "trailing text ignored after the numbers of "//name//": "//quoted(this_word(words)), &
@@ -175,7 +175,7 @@ contains
       allocate (history%record(3, n))
       do i = 1, n
          row = this_row(words)
-         call take_numbers(words, "a number of record "//to_text(i), largest_value, &
+         call take_word_numbers(words, "a number of record "//to_text(i), largest_value, &
             & history%record(:, i), error)
          if (allocated(error)) return
          if (i == 1) cycle

@@ -2,11 +2,11 @@
 module dda_plain_analysis
    use dda_error, only : error_t, fatal_error
    use dda_kinds, only : wp
-   use dda_limerick_analysis, only : limerick_analysis_t, limerick_joint_t, limerick_material_t
+   use dda_limerick_analysis, only : limerick_analysis_t, limerick_joint_t, analysis_material_t
    use dda_text, only : to_text
    use dda_warnings, only : add_warning, warnings_t
-   use dda_word_list, only : quoted, split_words, take_numbers, take_whole, this_row, this_word, &
-      & word_list_t, words_left
+   use dda_word_list, only : quoted, split_words, take_word_numbers, take_whole, this_row, &
+      & this_word, word_list_t, words_left
    implicit none
    private
 
@@ -70,10 +70,10 @@ contains
       type(error_t), allocatable, intent(out) :: error
       real(wp) :: value(1)
 
-      call take_numbers(words, "the largest displacement ratio", largest_value, value, error)
+      call take_word_numbers(words, "the largest displacement ratio", largest_value, value, error)
       if (allocated(error)) return
       analysis%displacement_ratio = value(1)
-      call take_numbers(words, "the largest time step", largest_value, value, error)
+      call take_word_numbers(words, "the largest time step", largest_value, value, error)
       analysis%max_time_step = value(1)
    end subroutine read_steps
 
@@ -87,7 +87,7 @@ contains
       type(limerick_analysis_t), intent(inout) :: analysis
       !> What is wrong
       type(error_t), allocatable, intent(out) :: error
-      type(limerick_material_t), allocatable :: list(:)
+      type(analysis_material_t), allocatable :: list(:)
       real(wp) :: value(13)
       integer :: i, row
 
@@ -100,10 +100,10 @@ contains
       allocate (list(n))
       do i = 1, n
          row = this_row(words)
-         call take_numbers(words, "a number of block material "//to_text(i), largest_value, &
+         call take_word_numbers(words, "a number of block material "//to_text(i), largest_value, &
             & value, error)
          if (allocated(error)) return
-         list(i) = limerick_material_t(value(1), value(2), value(3), value(4), value(5:7), &
+         list(i) = analysis_material_t(value(1), value(2), value(3), value(4), value(5:7), &
             & value(8:10), value(11:13))
          call check_material(list(i), words%file, row, error)
          if (allocated(error)) return
@@ -134,7 +134,7 @@ contains
       allocate (list(n))
       do i = 1, n
          row = this_row(words)
-         call take_numbers(words, "a number of joint material "//to_text(i), largest_value, &
+         call take_word_numbers(words, "a number of joint material "//to_text(i), largest_value, &
             & value, error)
          if (allocated(error)) return
          list(i) = limerick_joint_t(value(1), value(2), value(3))
@@ -147,7 +147,7 @@ contains
    !> Whether a block material can exist
    pure subroutine check_material(material, file, row, error)
       !> The material
-      type(limerick_material_t), intent(in) :: material
+      type(analysis_material_t), intent(in) :: material
       !> Name of the file
       character(len=*), intent(in) :: file
       !> Line of the file

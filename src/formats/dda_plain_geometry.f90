@@ -7,7 +7,7 @@ module dda_plain_geometry
    use dda_text, only : to_text
    use dda_warnings, only : add_warning, warnings_t
    use dda_word_list, only : quoted, largest_coordinate, split_words, take_material, take_number, &
-      & take_numbers, take_property, take_whole, this_row, this_word, word_list_t, words_left
+      & take_word_numbers, take_property, take_whole, this_row, this_word, word_list_t, words_left
    implicit none
    private
 
@@ -124,7 +124,7 @@ contains
 
       do i = 1, n
          row = this_row(words)
-         call take_numbers(words, "a coordinate of bolt "//to_text(i)//" of "//to_text(n), &
+         call take_word_numbers(words, "a coordinate of bolt "//to_text(i)//" of "//to_text(n), &
             & largest_coordinate, place, error)
          do k = 1, 3
             if (.not. allocated(error)) call take_property(words, "the "//trim(what(k)) &
@@ -159,7 +159,7 @@ contains
       do i = 1, n
          row = this_row(words)
          name = what//" "//to_text(i)//" of "//to_text(n)
-         call take_numbers(words, "a coordinate of "//name, largest_coordinate, &
+         call take_word_numbers(words, "a coordinate of "//name, largest_coordinate, &
             & place(:n_number), error)
          if (n_number == 2) place(3:4) = place(1:2)
          material = 0

@@ -2,7 +2,7 @@
 module dda_write_limerick
    use dda_error, only : error_t
    use dda_kinds, only : wp
-   use dda_limerick_analysis, only : limerick_analysis_t, limerick_material_t
+   use dda_limerick_analysis, only : limerick_analysis_t, analysis_material_t
    use dda_line_model, only : entities_t, line_model_t
    use dda_table_file, only : append_line, close_table, open_table, table_file_t
    use dda_text, only : to_text
@@ -314,7 +314,7 @@ contains
    !> A block material
    pure function material_element(material, number) result(text)
       !> The material
-      type(limerick_material_t), intent(in) :: material
+      type(analysis_material_t), intent(in) :: material
       !> Its number
       integer, intent(in) :: number
       !> The element with its line end

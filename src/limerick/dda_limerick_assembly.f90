@@ -10,11 +10,11 @@ module dda_limerick_assembly
    use dda_limerick_contact, only : contact_list_t, contact_spring_t, generalised, &
       & limerick_contact_t
    use dda_limerick_model, only : contact_law, force_at, limerick_model_t
-   use dda_limerick_state, only : contact_state, limerick_blocks_t, limerick_march_t
+   use dda_limerick_state, only : limerick_state, limerick_blocks_t, limerick_march_t
    implicit none
    private
 
-   public :: limerick_equations_t, couple_blocks, assemble_blocks, add_contacts
+   public :: limerick_equations_t, couple_blocks, assemble_limerick, add_contacts
 
    !> Matrix, loads and unknowns of a step
    type :: limerick_equations_t
@@ -92,7 +92,7 @@ contains
    end subroutine couple_blocks
 
    !> Inertia, elasticity, stress, weight, fixed and loaded points
-   pure subroutine assemble_blocks(model, blocks, march, equations)
+   pure subroutine assemble_limerick(model, blocks, march, equations)
       !> The model
       type(limerick_model_t), intent(in) :: model
       !> The blocks
@@ -119,7 +119,7 @@ contains
       end do
       call add_points(model, blocks, march, equations)
       call add_bolts(model, blocks, equations)
-   end subroutine assemble_blocks
+   end subroutine assemble_limerick
 
    !> Springs at the fixed points, which pull back what has drifted, and forces at the load points
    pure subroutine add_points(model, blocks, march, equations)
@@ -214,9 +214,9 @@ contains
       do c = 1, contacts%n
          associate (contact => contacts%item(c))
             select case (contact%state)
-            case (contact_state%open)
+            case (limerick_state%open)
                cycle
-            case (contact_state%second_line)
+            case (limerick_state%second_line)
                call add_spring(contact, spring(c), march%penalty, damper, &
                   & spring(c)%normal(:, :, 2), spring(c)%gap(2), equations)
             case default
@@ -224,11 +224,11 @@ contains
                   & spring(c)%normal(:, :, 1), spring(c)%gap(1), equations)
             end select
             if (contact%corner) cycle
-            if (contact%state == contact_state%locked) then
+            if (contact%state == limerick_state%locked) then
                call add_spring(contact, spring(c), &
                   & march%penalty/model%constants%stiffness_ratio, damper, &
                   & spring(c)%along, spring(c)%shear, equations)
-            else if (first_pass .or. contact%before /= contact_state%open) then
+            else if (first_pass .or. contact%before /= limerick_state%open) then
                call add_friction(model, contact, spring(c), march%used_penalty, &
                   & equations%motion)
             end if

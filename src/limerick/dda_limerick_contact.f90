@@ -1,7 +1,7 @@
 !> Contacts of the original's scheme: a vertex against an edge, or two corners with two lines
 module dda_limerick_contact
    use dda_kinds, only : wp
-   use dda_limerick_state, only : contact_state, limerick_blocks_t
+   use dda_limerick_state, only : limerick_state, limerick_blocks_t
    use dda_vector, only : cross
    implicit none
    private
@@ -23,10 +23,10 @@ module dda_limerick_contact
       integer :: beside = 0
       !> Block of the first line's vertex, block of its edge: (2)
       integer :: block(2) = 0
-      !> One of contact_state
-      integer :: state = contact_state%open
+      !> One of limerick_state
+      integer :: state = limerick_state%open
       !> State before the last solution
-      integer :: before = contact_state%open
+      integer :: before = limerick_state%open
       !> Opening; negative is penetration [m]
       real(wp) :: gap = 0.0_wp
       !> Motion along the edge since the shear spring was set [m]

@@ -7,7 +7,7 @@ module dda_limerick_detection
    implicit none
    private
 
-   public :: find_contacts
+   public :: find_limerick_contacts
 
    !> Corners wider than this are concave [deg]
    real(wp), parameter :: straight = 180.0001_wp
@@ -15,7 +15,7 @@ module dda_limerick_detection
 contains
 
    !> All contacts of the blocks where they are now, open, pair of blocks by pair of blocks
-   pure subroutine find_contacts(blocks, reach, overlap_deg, order, list)
+   pure subroutine find_limerick_contacts(blocks, reach, overlap_deg, order, list)
       !> The blocks
       type(limerick_blocks_t), intent(in) :: blocks
       !> Distance within which contacts are sought [m]
@@ -49,7 +49,7 @@ contains
             call meet_blocks(blocks, corners, min(a, b), max(a, b), reach, overlap_deg, list)
          end do
       end do
-   end subroutine find_contacts
+   end subroutine find_limerick_contacts
 
    !> Put indices in the order of their keys; quick if they nearly are
    pure subroutine sort_by(key, order)

@@ -3,11 +3,11 @@ module dda_limerick_interval
    use dda_kinds, only : wp
    use dda_limerick_contact, only : contact_list_t
    use dda_limerick_model, only : force_at, limerick_model_t, next_record
-   use dda_limerick_state, only : contact_state, limerick_march_t
+   use dda_limerick_state, only : limerick_state, limerick_march_t
    implicit none
    private
 
-   public :: choose_interval, judge_step
+   public :: choose_interval, judge_limerick_step
 
    !> What is left of the time step when contacts did not settle
    real(wp), parameter :: cut = 0.3_wp
@@ -104,7 +104,7 @@ contains
    end function largest_load
 
    !> Whether a step is accepted; if not, its length or the penalty is changed
-   pure subroutine judge_step(model, contacts, settled, march, accepted)
+   pure subroutine judge_limerick_step(model, contacts, settled, march, accepted)
       !> The model
       type(limerick_model_t), intent(in) :: model
       !> The contacts
@@ -131,7 +131,7 @@ contains
          accepted = march%penetration <= too_deep*model%constants%penetration_ratio
          if (.not. accepted) march%penalty = 10.0_wp*march%penalty
       end if
-   end subroutine judge_step
+   end subroutine judge_limerick_step
 
    !> The penalty goes, down to a third at the most, to where the penetration is what is aimed at
    !> (Shi: spri)
@@ -148,7 +148,7 @@ contains
       march%penetration = 0.0_wp
       opening = 0.0_wp
       do c = 1, contacts%n
-         if (contacts%item(c)%state == contact_state%open) cycle
+         if (contacts%item(c)%state == limerick_state%open) cycle
          march%penetration = max(march%penetration, -contacts%item(c)%gap/march%half_size)
          opening = max(opening, contacts%item(c)%gap/march%half_size)
       end do

@@ -6,13 +6,13 @@ module dda_limerick_open_close
    use dda_limerick_contact, only : contact_list_t, contact_spring_t, limerick_contact_t, &
       & place_shear_spring, projection
    use dda_limerick_model, only : contact_law, limerick_constants_t, limerick_model_t
-   use dda_limerick_state, only : contact_state, limerick_blocks_t, limerick_march_t
+   use dda_limerick_state, only : limerick_state, limerick_blocks_t, limerick_march_t
    use dda_deformation, only : displacement_matrix
    use dda_material, only : joint_law_t
    implicit none
    private
 
-   public :: iterate_open_close
+   public :: open_and_close
 
    !> Most passes of one attempt
    integer, parameter :: max_passes = 8
@@ -24,7 +24,7 @@ module dda_limerick_open_close
 contains
 
    !> Solve and judge until no contact opens or closes
-   pure subroutine iterate_open_close(model, blocks, contacts, spring, march, first_pass, &
+   pure subroutine open_and_close(model, blocks, contacts, spring, march, first_pass, &
       & equations, settled)
       !> The model
       type(limerick_model_t), intent(in) :: model
@@ -57,14 +57,14 @@ contains
          do c = 1, contacts%n
             associate (contact => contacts%item(c))
                call judge_contact(model, blocks, equations%motion, march, contact, spring(c))
-               if ((contact%state == contact_state%open) &
-                  & .neqv. (contact%before == contact_state%open)) settled = .false.
+               if ((contact%state == limerick_state%open) &
+                  & .neqv. (contact%before == limerick_state%open)) settled = .false.
             end associate
          end do
          march%used_penalty = march%penalty
          if (settled) return
       end do
-   end subroutine iterate_open_close
+   end subroutine open_and_close
 
    !> The state of one contact after a solution
    pure subroutine judge_contact(model, blocks, motion, march, contact, spring)
@@ -90,8 +90,8 @@ contains
          if (contact%corner) gap(2) = spring%gap(2) + dot(spring%normal(:, 1, 2), a) &
             & + dot(spring%normal(:, 2, 2), b)
          call judge_opening(model%constants, law, march, gap, contact)
-         if (contact%corner .or. contact%state == contact_state%open) return
-         if (contact%before == contact_state%open) &
+         if (contact%corner .or. contact%state == limerick_state%open) return
+         if (contact%before == limerick_state%open) &
             & call set_shear_spring(blocks, motion, march%half_size, contact, spring)
          call judge_slip(model%constants, law, march, &
             & spring%shear + dot(spring%along(:, 1), a) + dot(spring%along(:, 2), b), contact)
@@ -113,19 +113,19 @@ contains
       real(wp) :: sprung, held
       logical :: opens
 
-      contact%state = merge(contact_state%sliding, contact_state%second_line, gap(1) >= gap(2))
+      contact%state = merge(limerick_state%sliding, limerick_state%second_line, gap(1) >= gap(2))
       contact%gap = maxval(gap)
-      if (contact%before == contact_state%open) then
+      if (contact%before == limerick_state%open) then
          opens = contact%gap > -constants%close_ratio*march%half_size
       else
          ! judged at the line that has the spring
-         sprung = gap(merge(2, 1, contact%before == contact_state%second_line))
+         sprung = gap(merge(2, 1, contact%before == limerick_state%second_line))
          held = 0.0_wp
          if (contact%bonded .and. .not. contact%corner) &
             & held = law%tension*contact%length/march%penalty
          opens = sprung > held + constants%open_ratio*march%half_size
       end if
-      if (opens) contact%state = contact_state%open
+      if (opens) contact%state = limerick_state%open
    end subroutine judge_opening
 
    !> Locked or sliding: by the strength of a contact that closes or was locked, by the direction of
@@ -147,9 +147,9 @@ contains
       last = contact%shear
       contact%shear = slip
       select case (contact%before)
-      case (contact_state%open)
+      case (limerick_state%open)
          locks = abs(slip) < abs(law%friction*contact%gap)
-      case (contact_state%locked)
+      case (limerick_state%locked)
          strength = max(0.0_wp, -contact%gap)*law%friction
          if (contact%bonded) strength = strength + law%cohesion*contact%length/march%penalty
          locks = strength > abs(slip)/constants%stiffness_ratio
@@ -157,7 +157,7 @@ contains
          locks = law%friction > slippery .and. abs(slip) > reversal*march%half_size &
             & .and. last*slip < 0.0_wp
       end select
-      contact%state = merge(contact_state%locked, contact_state%sliding, locks)
+      contact%state = merge(limerick_state%locked, limerick_state%sliding, locks)
    end subroutine judge_slip
 
    !> A contact that closes gets its shear spring where the vertex meets the edge

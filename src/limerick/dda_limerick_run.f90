@@ -4,14 +4,14 @@ module dda_limerick_run
    use dda_error, only : error_t
    use dda_kinds, only : wp
    use dda_limerick_model, only : limerick_model_t, loads_end
-   use dda_limerick_state, only : contact_state, new_blocks, new_march
-   use dda_limerick_step, only : advance, limerick_run_t
+   use dda_limerick_state, only : limerick_state, new_blocks, new_march
+   use dda_limerick_step, only : advance_limerick, limerick_run_t
    use dda_material, only : friction_coefficient
    implicit none
    private
 
    public :: limerick_outcome_t, limerick_verdict, limerick_verdict_enum
-   public :: begin_outcome, begin_run, next_step, run_limerick, largest_displacement
+   public :: begin_outcome, begin_run, next_step, run_limerick, farthest_vertex
 
    !> How a run can end
    type :: limerick_verdict_enum
@@ -138,7 +138,7 @@ contains
       end = loads_end(model)
       ended = allocated(outcome%reason) .or. run%march%steps >= model%constants%max_steps
       if (.not. ended) then
-         call advance(model, run, error)
+         call advance_limerick(model, run, error)
          if (allocated(error)) then
             outcome%reason = error%message
             ended = .true.
@@ -154,7 +154,7 @@ contains
       outcome%passes = run%march%passes
       if (ended) return
       call keep_track(run, outcome)
-      outcome%displacement = largest_displacement(model, run)
+      outcome%displacement = farthest_vertex(model, run)
       if (model%constants%dynamic) return
       if (outcome%displacement > model%constants%collapse_displacement) &
          & outcome%verdict = limerick_verdict%collapsed
@@ -188,7 +188,7 @@ contains
       phase%law%cohesion = max(phase%law%cohesion, turning_on_cohesion)
       allocate (before(2, 0))
       do step = 1, model%constants%gravity_steps
-         call advance(phase, run, error)
+         call advance_limerick(phase, run, error)
          if (allocated(error)) return
          now = contact_forces(model, run)
          steady = size(now) == size(before) .and. falls_no_more(model, run)
@@ -235,8 +235,8 @@ contains
 
       associate (contact => run%contacts%item(:run%contacts%n), penalty => run%march%used_penalty)
          allocate (force(2, size(contact)), source=0.0_wp)
-         where (contact%state /= contact_state%open) force(1, :) = -penalty*contact%gap
-         where (contact%state == contact_state%locked) force(2, :) = penalty*contact%shear &
+         where (contact%state /= limerick_state%open) force(1, :) = -penalty*contact%gap
+         where (contact%state == limerick_state%locked) force(2, :) = penalty*contact%shear &
             & /model%constants%stiffness_ratio
       end associate
    end function contact_forces
@@ -284,19 +284,19 @@ contains
    end subroutine keep_track
 
    !> Largest distance of a vertex from where it began [m]
-   pure real(wp) function largest_displacement(model, run)
+   pure real(wp) function farthest_vertex(model, run)
       !> The model
       type(limerick_model_t), intent(in) :: model
       !> The run
       type(limerick_run_t), intent(in) :: run
       integer :: v
 
-      largest_displacement = 0.0_wp
+      farthest_vertex = 0.0_wp
       do v = 1, size(model%vertex, 2)
-         largest_displacement = max(largest_displacement, &
+         farthest_vertex = max(farthest_vertex, &
             & (run%blocks%vertex(1, v) - model%vertex(1, v))**2 &
             & + (run%blocks%vertex(2, v) - model%vertex(2, v))**2)
       end do
-      largest_displacement = sqrt(largest_displacement)
-   end function largest_displacement
+      farthest_vertex = sqrt(farthest_vertex)
+   end function farthest_vertex
 end module dda_limerick_run

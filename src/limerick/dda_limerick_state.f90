@@ -7,11 +7,11 @@ module dda_limerick_state
    implicit none
    private
 
-   public :: limerick_blocks_t, limerick_march_t, contact_state, contact_state_enum
+   public :: limerick_blocks_t, limerick_march_t, limerick_state, limerick_state_enum
    public :: new_blocks, new_march, measure_blocks
 
    !> States of a contact
-   type :: contact_state_enum
+   type :: limerick_state_enum
       !> No spring
       integer :: open = 0
       !> A normal spring, and friction; of two corners: a normal spring at the first line
@@ -20,10 +20,10 @@ module dda_limerick_state
       integer :: locked = 2
       !> Of two corners: a normal spring at the second line
       integer :: second_line = 3
-   end type contact_state_enum
+   end type limerick_state_enum
 
    !> Names of the states
-   type(contact_state_enum), parameter :: contact_state = contact_state_enum()
+   type(limerick_state_enum), parameter :: limerick_state = limerick_state_enum()
 
    !> The blocks where they are now
    type :: limerick_blocks_t

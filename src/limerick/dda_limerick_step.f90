@@ -2,19 +2,19 @@
 module dda_limerick_step
    use dda_error, only : error_t, fatal_error
    use dda_kinds, only : wp
-   use dda_limerick_assembly, only : assemble_blocks, couple_blocks, limerick_equations_t
+   use dda_limerick_assembly, only : assemble_limerick, couple_blocks, limerick_equations_t
    use dda_limerick_contact, only : contact_list_t, contact_spring_t, place_springs
-   use dda_limerick_detection, only : find_contacts
-   use dda_limerick_interval, only : choose_interval, judge_step
+   use dda_limerick_detection, only : find_limerick_contacts
+   use dda_limerick_interval, only : choose_interval, judge_limerick_step
    use dda_limerick_model, only : limerick_model_t
-   use dda_limerick_open_close, only : iterate_open_close
-   use dda_limerick_state, only : contact_state, limerick_blocks_t, limerick_march_t
+   use dda_limerick_open_close, only : open_and_close
+   use dda_limerick_state, only : limerick_state, limerick_blocks_t, limerick_march_t
    use dda_limerick_transfer, only : begin_contacts, transfer_contacts
    use dda_limerick_update, only : move_vertices, update
    implicit none
    private
 
-   public :: limerick_run_t, advance
+   public :: limerick_run_t, advance_limerick
 
    !> Everything that a run carries from step to step
    type :: limerick_run_t
@@ -43,7 +43,7 @@ contains
 
    !> One step: blocks and contacts change only when it is accepted; the penalty changes at each
    !> attempt
-   pure subroutine advance(model, run, error)
+   pure subroutine advance_limerick(model, run, error)
       !> The model
       type(limerick_model_t), intent(in) :: model
       !> The run
@@ -57,16 +57,16 @@ contains
       call meet(model, run)
       first_pass = .true.
       do attempt = 1, max_attempts
-         call assemble_blocks(model, run%blocks, run%march, run%equations)
-         run%contacts%item(:run%contacts%n)%before = contact_state%open
-         call iterate_open_close(model, run%blocks, run%contacts, run%spring, run%march, &
+         call assemble_limerick(model, run%blocks, run%march, run%equations)
+         run%contacts%item(:run%contacts%n)%before = limerick_state%open
+         call open_and_close(model, run%blocks, run%contacts, run%spring, run%march, &
             & first_pass, run%equations, settled)
          if (.not. solved(run%equations)) then
             call fatal_error(error, "the equations of a step have no usable solution")
             return
          end if
          call move_vertices(model, run%blocks, run%equations%motion, run%march, run%moved)
-         call judge_step(model, run%contacts, settled, run%march, accepted)
+         call judge_limerick_step(model, run%contacts, settled, run%march, accepted)
          if (accepted) exit
       end do
       if (accepted) then
@@ -75,7 +75,7 @@ contains
          call fatal_error(error, "no convergence at one step in the attempts that are "// &
             & "allowed (the original loops forever)")
       end if
-   end subroutine advance
+   end subroutine advance_limerick
 
    !> Whether the equations gave a motion; one that is not finite is none
    pure logical function solved(equations)
@@ -99,8 +99,8 @@ contains
       call move_alloc(run%contacts%item, run%before%item)
       call move_alloc(swap%item, run%contacts%item)
       run%before%n = run%contacts%n
-      call find_contacts(run%blocks, run%march%reach, model%constants%overlap_deg, run%order, &
-         & run%contacts)
+      call find_limerick_contacts(run%blocks, run%march%reach, model%constants%overlap_deg, &
+         & run%order, run%contacts)
       if (run%march%passes == 0) then
          call begin_contacts(run%blocks, model%constants%dynamic, &
             & model%constants%close_ratio*run%march%reach, run%contacts)

@@ -2,7 +2,7 @@
 module dda_limerick_transfer
    use dda_kinds, only : wp
    use dda_limerick_contact, only : contact_list_t, limerick_contact_t, projection
-   use dda_limerick_state, only : contact_state, limerick_blocks_t
+   use dda_limerick_state, only : limerick_state, limerick_blocks_t
    use dda_vector, only : cross
    implicit none
    private
@@ -25,7 +25,7 @@ contains
 
       head = 0
       do p = before%n, 1, -1
-         if (before%item(p)%state == contact_state%open) cycle
+         if (before%item(p)%state == limerick_state%open) cycle
          b = minval(before%item(p)%block)
          following(p) = head(b)
          head(b) = p
@@ -52,24 +52,24 @@ contains
       logical, intent(inout) :: keeps_place
       integer :: i, k, closed_line, state
 
-      closed_line = merge(2, 1, from%state == contact_state%second_line)
-      state = merge(contact_state%sliding, from%state, from%state == contact_state%second_line)
+      closed_line = merge(2, 1, from%state == limerick_state%second_line)
+      state = merge(limerick_state%sliding, from%state, from%state == limerick_state%second_line)
       do k = 1, from%n_line
          do i = 1, to%n_line
             if (any(to%vertex(:, i) /= from%vertex(:, k))) cycle
             to%gap = from%gap
             to%shear = from%shear
             to%place = from%place
-            to%bonded = from%bonded .and. from%state == contact_state%locked
+            to%bonded = from%bonded .and. from%state == limerick_state%locked
             if (to%corner) then
-               if (k == closed_line) to%state = merge(contact_state%sliding, &
-                  & contact_state%second_line, i == 1)
+               if (k == closed_line) to%state = merge(limerick_state%sliding, &
+                  & limerick_state%second_line, i == 1)
             else
                if (k == closed_line) to%state = state
                ! the corners' spring was normal only; on an edge the contact begins locked
-               if (from%corner .and. to%state == contact_state%open) &
-                  & to%state = contact_state%locked
-               if (i == 1 .and. k == 1) keeps_place = from%state == contact_state%locked
+               if (from%corner .and. to%state == limerick_state%open) &
+                  & to%state = limerick_state%locked
+               if (i == 1 .and. k == 1) keeps_place = from%state == limerick_state%locked
             end if
          end do
       end do
@@ -124,9 +124,9 @@ contains
                end associate
             end do
             if (any(gap > touch)) cycle
-            contact%state = contact_state%locked
-            if (contact%corner) contact%state = merge(contact_state%sliding, &
-               & contact_state%second_line, gap(1) >= gap(2))
+            contact%state = limerick_state%locked
+            if (contact%corner) contact%state = merge(limerick_state%sliding, &
+               & limerick_state%second_line, gap(1) >= gap(2))
          end associate
       end do
    end subroutine begin_contacts

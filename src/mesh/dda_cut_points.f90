@@ -12,7 +12,7 @@ module dda_cut_points
    implicit none
    private
 
-   public :: boxes_t, block_boxes, block_at, place_bolts, place_points, give_materials
+   public :: boxes_t, block_boxes, block_around, place_bolts, place_points, give_materials
    public :: remove_holes
 
    !> How far inside its block the point of a fixed line lies, over the size of the model
@@ -50,7 +50,7 @@ contains
 
    !> The block that holds a point; if none does, the nearest one within the distance in which nodes
    !> may have been moved. 0 if there is none
-   pure integer function block_at(cut, boxes, point)
+   pure integer function block_around(cut, boxes, point)
       !> The blocks
       type(cut_model_t), intent(in) :: cut
       !> Their boxes
@@ -63,7 +63,7 @@ contains
       next_best = 0
       nearest = cut%scale%merge
       do b = 1, size(cut%area)
-         block_at = b
+         block_around = b
          if (any(point < boxes%low(:, b) - cut%scale%merge)) cycle
          if (any(point > boxes%high(:, b) + cut%scale%merge)) cycle
          associate (vertex => cut%vertex(:, cut%first_vertex(b):cut%first_vertex(b + 1) - 1))
@@ -74,8 +74,8 @@ contains
          nearest = here
          next_best = b
       end do
-      block_at = next_best
-   end function block_at
+      block_around = next_best
+   end function block_around
 
    !> Take out the blocks that hold hole points (Shi: dc11)
    pure subroutine remove_holes(model, cut, error)
@@ -94,7 +94,7 @@ contains
       boxes = block_boxes(cut)
       allocate (keep(size(cut%area)), source=.true.)
       do i = 1, model%hole%n
-         b = block_at(cut, boxes, model%hole%place(1:2, i) - cut%scale%origin)
+         b = block_around(cut, boxes, model%hole%place(1:2, i) - cut%scale%origin)
          if (b == 0) call no_block(error, "hole point", model, model%hole, i)
          if (b == 0) return
          keep(b) = .false.
@@ -191,7 +191,7 @@ contains
       integer :: b
 
       place = entities%place(1:2, i) - cut%scale%origin
-      b = block_at(cut, boxes, place)
+      b = block_around(cut, boxes, place)
       if (b == 0) then
          call no_block(error, what, model, entities, i)
       else
@@ -279,7 +279,7 @@ contains
          bolt(n)%property = model%bolt_property(:, i)
          bolt(n)%row = model%bolt%row(i)
          do side = 1, 2
-            bolt(n)%block(side) = block_at(cut, boxes, bolt(n)%place(2*side - 1:2*side))
+            bolt(n)%block(side) = block_around(cut, boxes, bolt(n)%place(2*side - 1:2*side))
          end do
          if (bolt(n)%block(1) /= bolt(n)%block(2)) cycle
          n = n - 1
@@ -309,7 +309,7 @@ contains
          call add_crossed(model%material_line%place(:, i), i, boxes, cut, point, n)
          cut%material(point(:n)%block) = model%material_line%material(i)
          if (n > 0) cycle
-         b = block_at(cut, boxes, model%material_line%place(1:2, i) - cut%scale%origin)
+         b = block_around(cut, boxes, model%material_line%place(1:2, i) - cut%scale%origin)
          if (b == 0) call no_block(error, "material line", model, model%material_line, i)
          if (b == 0) return
          cut%material(b) = model%material_line%material(i)

@@ -1,7 +1,7 @@
 !> The blocks fill what the lines enclose, once (Shi: dc16, dc17)
 module dda_mesh_check
    use dda_cut_model, only : cut_model_t
-   use dda_cut_points, only : block_at, block_boxes, boxes_t
+   use dda_cut_points, only : block_around, block_boxes, boxes_t
    use dda_error, only : error_t, fatal_error
    use dda_kinds, only : wp
    use dda_line_model, only : line_model_t
@@ -58,7 +58,7 @@ contains
       boxes = block_boxes(cut)
       allocate (hole(size(cut%area)), source=.false.)
       do i = 1, model%hole%n
-         b = block_at(cut, boxes, model%hole%place(1:2, i) - cut%scale%origin)
+         b = block_around(cut, boxes, model%hole%place(1:2, i) - cut%scale%origin)
          if (b > 0) hole(b) = .true.
       end do
       do k = 1, size(loops%area)

@@ -4,10 +4,10 @@ module dda_limerick_analysis
    implicit none
    private
 
-   public :: limerick_analysis_t, limerick_material_t, limerick_joint_t, load_history_t
+   public :: limerick_analysis_t, analysis_material_t, limerick_joint_t, load_history_t
 
    !> What blocks are made of, and their state at the beginning; any consistent units
-   type :: limerick_material_t
+   type :: analysis_material_t
       !> Mass per volume
       real(wp) :: density = 0.0_wp
       !> Weight per volume
@@ -24,7 +24,7 @@ module dda_limerick_analysis
       real(wp) :: velocity(3) = 0.0_wp
       !> Initial strain ex, ey, gxy
       real(wp) :: strain(3) = 0.0_wp
-   end type limerick_material_t
+   end type analysis_material_t
 
    !> Mohr-Coulomb law of a kind of joints
    type :: limerick_joint_t
@@ -89,7 +89,7 @@ module dda_limerick_analysis
       !> Relative change of normal and shear forces in a step at which that phase ends: (2)
       real(wp) :: gravity_tolerance(2) = 0.01_wp
       !> Materials of blocks: (n)
-      type(limerick_material_t), allocatable :: material(:)
+      type(analysis_material_t), allocatable :: material(:)
       !> Materials of joints: (n)
       type(limerick_joint_t), allocatable :: joint(:)
       !> Forces on the load points, in their order: (n)

@@ -7,7 +7,7 @@ module dda_arch_lines
    use dda_deck_keys, only : key_index
    use dda_error, only : error_t
    use dda_kinds, only : wp
-   use dda_limerick_analysis, only : limerick_analysis_t, limerick_joint_t, limerick_material_t
+   use dda_limerick_analysis, only : limerick_analysis_t, limerick_joint_t, analysis_material_t
    use dda_limerick_model, only : limerick_constants_t
    use dda_limerick_scene, only : abutment_sides, set_constants
    use dda_line_model, only : add_entity, line_model_t, new_line_model
@@ -209,7 +209,7 @@ contains
       type(deck_t), intent(in) :: deck
       !> The analysis
       type(limerick_analysis_t) :: analysis
-      type(limerick_material_t) :: stone
+      type(analysis_material_t) :: stone
       type(limerick_joint_t) :: joint
 
       analysis%file = deck%file

@@ -11,7 +11,7 @@ module dda_line_scene
    use dda_edge_split, only : split_edges
    use dda_error, only : error_t
    use dda_kinds, only : wp
-   use dda_limerick_analysis, only : limerick_joint_t, limerick_material_t
+   use dda_limerick_analysis, only : limerick_joint_t, analysis_material_t
    use dda_material, only : friction_coefficient, joint_law_t, material_t
    use dda_scene, only : scene_t
    use dda_text, only : to_text
@@ -166,7 +166,7 @@ contains
       !> The deck
       type(deck_t), intent(in) :: deck
       !> What the file says
-      type(limerick_material_t), intent(in) :: listed
+      type(analysis_material_t), intent(in) :: listed
       !> The material
       type(material_t) :: material
 

@@ -156,6 +156,28 @@ class Part:
     allocates: bool
 
 
+def names_twice(paths: Collection[Path]) -> dict[str, list[str]]:
+    """Public names that more than one module exports, with those modules.
+
+    Parameters
+    ----------
+    paths : collection of Path
+        Fortran sources; of two with one name the first counts.
+
+    Returns
+    -------
+    dict of list of str
+        The modules of each name.
+    """
+    exports: dict[str, list[str]] = {}
+    for path in {path.stem: path for path in reversed(list(paths))}.values():
+        text = re.sub(r"&\s*\n\s*&", "", path.read_text(encoding="utf-8"))
+        for line in re.findall(r"^\s*public\s*::\s*([^!\n]*)", text, re.MULTILINE):
+            for name in line.split(","):
+                exports.setdefault(name.strip().lower(), []).append(path.stem)
+    return {name: sorted(modules) for name, modules in exports.items() if len(modules) > 1}
+
+
 def lost_memory(paths: Collection[Path]) -> list[str]:
     """Constructors of types with allocatable components that gfortran gets wrong.
 
