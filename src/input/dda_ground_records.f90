@@ -95,7 +95,7 @@ contains
       end do
       if (n == 2 .or. n == 3) return
       call deck_error(error, "ground%columns needs two or three columns, of time, x and y, "// &
-         & "got '"//text_of(deck, "ground", "columns")//"'; write them as in '1 2'", deck, &
+         & "got '"//shown(text_of(deck, "ground", "columns"))//"'; write them as in '1 2'", deck, &
          & deck_place_t(max(1, line_of(deck, "ground", "columns")), &
          & deck%value(key_index("ground", "columns"))%place%from_command))
    end subroutine split_columns

@@ -62,6 +62,11 @@ load 1.5 0.5 file "record.csv" columns 1 2
 """,
     b"block fixed\n0 0\n4 0\n4 -1\n0 -1\nblock\n1 0\n2 0\n2 1\n1 1\nblock\n1 1\n2 1\n1.5 2\n"
     b"block velocity 0 -1 0.5\n2.5 0.5\n3.5 0.5\n3 1.5\ndisplacement 1.5 0.5 0 0.001\n",
+    b"block fixed\n0 0\n4 0\n4 -1\n0 -1\nblock\n1 0\n2 0\n2 1\n1 1\nblock\n1 1\n2 1\n1.5 2\nblock fixed\n"
+    b"2 0\n3 0\n3 1\n2 1\nremove block 2 4 at 0.002\nadd block 2 at 0.004\nremove polygon at 0.006\n1 1\n2 1\n2 2\n"
+    b"load 1.5 0.5\n0 0 0\n0.01 1e3 0\nbar 3 0.5 4.5 -0.5 stiffness 1e6\nremove block 4 at 0\nadd block 4 at 1\n",
+    b"block fixed\n0 0\n4 0\n4 -1\n0 -1\nblock\n1 0\n2 0\n2 1\n1 1\nblock\n1 1\n2 1\n2 2\n1 2\n"
+    b"add block 3 at 0.003\nremove block 3 at 0.006\nmeasure 1.5 0.5\n",
 ]
 GROUPS = [
     b"&analysis mode = 'dynamic', geometry = 'current', time_step = 0.001, steps = 9 /\n",
@@ -79,7 +84,7 @@ GROUPS = [
 ]
 RECORDS = [b"Station 1\ntime,east,up\n0.0,0.1,0\n\n0.005, -0.2,0.1\n0.01,0,0\n", b"0 1 2\n0.1\t2 3\n! end\n0.2 0 0\n"]
 WORDS = b"""block fixed material joint measure load fix displacement base_acceleration velocity stress
-density young x y friction_deg
+density young x y friction_deg remove add polygon at
 file columns scale 'record.csv' time 0 -1 1e300 1e-300 nan 2147483648 99999999999 1e15 0.5 ! & /""".split()
 #: Words of a run that keep it short
 SHORT = ["--cases", "1", "--quiet", "--set", "analysis%steps=6"]

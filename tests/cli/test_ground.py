@@ -255,3 +255,13 @@ def test_what_a_file_of_blocks_contradicts_is_refused(tmp_path: Path, more: str,
         f"{groups}\n{TIME}")
     status, message = run(tmp_path, BLOCKS + more, group + "\n", command="check")
     assert status == 2 and words in message, message
+
+
+def test_a_message_shows_no_byte_that_is_no_letter(tmp_path: Path) -> None:
+    (tmp_path / "q.csv").write_text(RECORD)
+    (tmp_path / "x.blocks").write_text(BLOCKS)
+    deck = b"&scene kind = 'blocks', geometry = 'x.blocks' /\n&ground record = 'q.csv', columns = '1\xffeast' /\n"
+    (tmp_path / "x.nml").write_bytes(deck + FREE.format(more="").encode())
+    done = run_dda("check", "x.nml", cwd=tmp_path)
+    assert done.returncode == 2
+    assert "got '1?east'" in done.stderr
