@@ -13,7 +13,7 @@ module dda_decision
    use dda_graph_decision, only : decide_graph, decides_as_graph, graph_verdict_t
    use dda_graph_report, only : show_mechanism, show_state
    use dda_kinds, only : wp
-   use dda_loading_path, only : path_end
+   use dda_loading_path, only : face, path_end
    use dda_settings, only : flow_rule, settings_t
    use dda_step_context, only : march_t
    use dda_verdict, only : verdict
@@ -93,7 +93,7 @@ contains
       if (proof%end == path_end%collapsed) then
          call record_collapse(settings, system, contacts, proof, decision, album)
       else if (proof%end == path_end%reached .and. (bare .or. proof%on_path &
-         & .or. .not. may_run(settings))) then
+         & .or. has_slid(proof) .or. .not. may_run(settings))) then
          call record_rest(settings, system, contacts, proof, decision)
       else if (proof%end == path_end%reached) then
          call share_forces(settings, system, contacts, proof, decision, album)
@@ -111,6 +111,16 @@ contains
             & allocate (outcome%motion(settings%n_dof, maxval(system%equation)), source=0.0_wp)
       end associate
    end subroutine decide_by_graph
+
+   !> Whether joints slide in the state that Coulomb's law has led to: no elastic sharing without
+   !> slip is looked for then
+   pure logical function has_slid(proof)
+      !> What stands
+      type(graph_verdict_t), intent(in) :: proof
+
+      has_slid = .false.
+      if (allocated(proof%state)) has_slid = any(abs(proof%state%face(3, :)) == face%slides)
+   end function has_slid
 
    !> Whether a run of steps can tell what the graph does not: steps know no bounded forces
    pure logical function may_run(settings)

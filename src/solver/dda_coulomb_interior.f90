@@ -21,7 +21,11 @@ module dda_coulomb_interior
    implicit none
    private
 
-   public :: interior_motion
+   public :: interior_t, interior_motion, enough, sharp
+
+   !> What may be left of the equations and of the work of the load: motions that are no better
+   !> are none, those that are so good cannot be bettered
+   real(wp), parameter :: enough = 1.0e-6_wp, sharp = 1.0e-10_wp
 
    !> An iterate, or a step from it
    type :: interior_t
@@ -50,7 +54,7 @@ module dda_coulomb_interior
 contains
 
    !> Motion under a load from rest without forces; false in settled if it was not found
-   pure subroutine interior_motion(joints, matrix, load, damping, tolerance, motion, settled)
+   pure subroutine interior_motion(joints, matrix, load, damping, tolerance, x, settled)
       !> The joints
       type(coulomb_joints_t), intent(in) :: joints
       !> Their matrix
@@ -59,15 +63,15 @@ contains
       real(wp), intent(in) :: load(:, :)
       !> Multiple of the mass
       real(wp), intent(in) :: damping
-      !> Of what is left of the equations and of the work of the load
+      !> Enough, sharp or between: the faces of joints that carry next to nothing depend on it
       real(wp), intent(in) :: tolerance
-      !> Motion: (n_dof, n_block)
-      real(wp), intent(out) :: motion(:, :)
+      !> The iterate; one that is there goes on
+      type(interior_t), intent(inout) :: x
       !> Whether it was found
       logical, intent(out) :: settled
-      integer, parameter :: max_iteration = 150, patience = 15
+      integer, parameter :: max_iteration = 150, patience = 15, few = 3
       real(wp), parameter :: shortfall = 0.995_wp, nothing = 1.0e-30_wp
-      type(interior_t) :: x, step
+      type(interior_t) :: step
       type(rest_t) :: rest
       real(wp) :: best, gap, length, mean, merit
       integer :: i, n_face, waited
@@ -75,11 +79,10 @@ contains
 
       call list_faces(joints, face)
       n_face = count(face)
-      call begin(joints, load, face, x)
+      if (.not. allocated(x%motion)) call begin(joints, load, face, x)
       step = x
       best = huge(1.0_wp)
       waited = 0
-      settled = .false.
       do i = 1, max_iteration
          call find_rest(joints, load, damping, face, x, rest)
          mean = sum(x%slack*x%flow, face)/real(max(1, n_face), wp)
@@ -87,10 +90,10 @@ contains
          merit = max(gap, max(maxval(abs(rest%balance)), &
             & maxval(abs(rest%slack)))/maxval(abs(load)), &
             & maxval(abs(rest%opening))/max(maxval(abs(x%motion)), nothing))
-         settled = merit < tolerance
          waited = merge(0, waited + 1, merit < 0.9_wp*best)
          best = min(best, merit)
-         if (settled .or. waited == patience .or. .not. merit <= huge(1.0_wp)) exit
+         if (merit < tolerance .or. waited >= merge(few, patience, best < enough) &
+            & .or. .not. merit <= huge(1.0_wp)) exit
          call factor_springs(joints, matrix, damping, face, x)
          if (.not. matrix%factor%usable) exit
          rest%product = -x%slack*x%flow
@@ -106,7 +109,7 @@ contains
          x%slack = x%slack + length*step%slack
          x%flow = x%flow + length*step%flow
       end do
-      motion = x%motion
+      settled = merit < enough
    end subroutine interior_motion
 
    !> Which faces the forces of each joint have

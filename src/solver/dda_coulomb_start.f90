@@ -6,7 +6,7 @@
 !> damping has the last word.
 module dda_coulomb_start
    use dda_coulomb_equations, only : coulomb_equations_t, solve_equations, use_faces
-   use dda_coulomb_interior, only : interior_motion
+   use dda_coulomb_interior, only : enough, interior_motion, interior_t, sharp
    use dda_coulomb_joints, only : coulomb_joints_t
    use dda_coulomb_law, only : apply_law, change_faces, coulomb_state_t, imbalance, unloaded_state
    use dda_joint_graph, only : joint_motion
@@ -89,15 +89,16 @@ contains
       !> Whether its forces balance the load
       logical, intent(out) :: stands
       integer, parameter :: most_passes = 12
-      real(wp), parameter :: least = 1.0e-13_wp, tolerance = 1.0e-6_wp, sharper = 1.0e-7_wp
+      real(wp), parameter :: least = 1.0e-13_wp
       type(coulomb_state_t) :: unloaded
+      type(interior_t) :: inner
       real(wp) :: damping, left, last
       integer :: passes, rounds
       logical :: settled
 
       unloaded = unloaded_state(joints)
       state = unloaded
-      call take_interior(joints, equations, load, first, tolerance, unloaded, state, settled)
+      call take_interior(joints, equations, load, first, enough, unloaded, inner, state, settled)
       stands = .false.
       if (.not. settled) return
       damping = first
@@ -106,12 +107,12 @@ contains
       do while (damping >= 0.5_wp*least)
          call settle_faces(joints, equations, load, damping, most_passes, unloaded, state, &
             & left, passes)
-         if (passes == 0 .and. damping < 0.5_wp*first) then
-            call take_interior(joints, equations, load, damping, sharper, unloaded, state, &
+         if (passes == 0) then
+            if (damping < first) inner = interior_t()
+            call take_interior(joints, equations, load, damping, sharp, unloaded, inner, state, &
                & settled)
             if (settled) call settle_faces(joints, equations, load, damping, most_passes, &
-               & unloaded, &
-               & state, left, passes)
+               & unloaded, state, left, passes)
          end if
          if (passes == 0) return
          rounds = rounds + 1
@@ -174,8 +175,8 @@ contains
    end subroutine settle_faces
 
    !> Faces by interior springs
-   pure subroutine take_interior(joints, equations, load, damping, tolerance, unloaded, state, &
-      & settled)
+   pure subroutine take_interior(joints, equations, load, damping, tolerance, unloaded, inner, &
+      & state, settled)
       !> The joints
       type(coulomb_joints_t), intent(in) :: joints
       !> Their equations
@@ -188,6 +189,8 @@ contains
       real(wp), intent(in) :: tolerance
       !> Joints that carry nothing
       type(coulomb_state_t), intent(in) :: unloaded
+      !> The iterate, from which it goes on
+      type(interior_t), intent(inout) :: inner
       !> Receives motion, forces and faces
       type(coulomb_state_t), intent(inout) :: state
       !> Whether the interior springs have settled
@@ -195,7 +198,8 @@ contains
       real(wp) :: opening(3, size(unloaded%slip))
 
       equations%usable = .false.
-      call interior_motion(joints, equations%base, load, damping, tolerance, state%motion, settled)
+      call interior_motion(joints, equations%base, load, damping, tolerance, inner, settled)
+      state%motion = inner%motion
       call joint_motion(joints%graph, state%motion, opening)
       call apply_law(joints, unloaded, opening, state)
    end subroutine take_interior

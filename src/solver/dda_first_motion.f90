@@ -19,7 +19,7 @@ module dda_first_motion
    public :: find_first_motion
 
    !> What may be left of equations and products, and what is aimed at
-   real(wp), parameter :: accepted = 1.0e-7_wp, aim = 1.0e-10_wp
+   real(wp), parameter :: accepted = 1.0e-7_wp, aim = 1.0e-8_wp
 
 contains
 

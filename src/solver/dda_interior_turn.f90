@@ -74,17 +74,38 @@ contains
       power = maxval(abs(point%v))
       against = max(maxval(-turn%rate*rays%bounded), maxval(abs(turn%rate*rays%free)))
       point%violation = against/max(power, tiny(power))
-      against = max(against, 0.0_wp) + epsilon(power)*power
       turn%barrier = sum(point%x*point%s*rays%bounded)/real(max(1, rays%n_bounded), wp)
       power = sum(path%live*point%v)
       turn%lack_of_power = 1.0_wp - power
       point%upper = no_limit
-      if (power > 0.0_wp) point%upper = (against*sum(abs(point%x)) - sum(path%dead*point%v))/power
+      if (power > 0.0_wp) point%upper = (power_against(rays, point, turn%rate) &
+         & - sum(path%dead*point%v))/power
       point%gap = abs(point%upper - point%factor) &
          & /max(abs(point%factor), abs(point%upper), turn%least_factor, tiny(power))
       if (path%moves) point%gap = sum(point%x*abs(turn%rate)*rays%bounded) &
          & /max(abs(sum(path%dead*point%v)), tiny(power))
    end subroutine see_residuals
+
+   !> Power that forces put into rates that they forbid, each with the rounding of its own blocks:
+   !> forces that hold one another may be large where nothing moves
+   pure real(wp) function power_against(rays, point, rate) result(power)
+      !> The rays
+      type(joint_rays_t), intent(in) :: rays
+      !> The point
+      type(interior_point_t), intent(in) :: point
+      !> Rates along the rays: (n_side, n_joint)
+      real(wp), intent(in) :: rate(:, :)
+      real(wp) :: rounding
+      integer :: j
+
+      power = 0.0_wp
+      do j = 1, size(rate, 2)
+         rounding = epsilon(rounding)*max(maxval(abs(point%v(:, rays%block(1, j)))), &
+            & maxval(abs(point%v(:, rays%block(2, j)))))
+         power = power + sum(abs(point%x(:, j))*(rounding + max(-rate(:, j)*rays%bounded(:, j), &
+            & abs(rate(:, j)*rays%free(:, j)))))
+      end do
+   end function power_against
 
    !> Factor the springs and find the direction to x*s = 0
    pure subroutine predict(rays, path, springs, point, turn)

@@ -148,6 +148,14 @@ def test_a_joint_as_short_as_blocks_may_be_apart_has_two_ends(tmp_path: Path) ->
     assert main(["verify", str(folder), "--exact"]) == 0
 
 
+def test_a_limit_that_the_loading_path_all_but_reaches_tells_forces_that_carry_it(tmp_path: Path) -> None:
+    """The path ends one part in ten millions below the limit, whose load is a thousand times a block's weight."""
+    blocks, friction = random_assembly(95)
+    head = HEAD + f"&material unit_weight = 1 /\n&joint friction_deg = {friction!r} /\n"
+    folder = run_deck(tmp_path, head + SEARCH, blocks)
+    assert main(["verify", str(folder)]) == 0
+
+
 @pytest.mark.parametrize("seed", range(12))
 def test_random_assemblies_are_proven_on_both_sides_of_their_programme(tmp_path: Path, seed: int) -> None:
     pytest.importorskip("scipy", reason="the linear programme wants scipy")
