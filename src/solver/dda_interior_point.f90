@@ -137,7 +137,7 @@ contains
       point%state = interior_state%running
       if (point%imbalance < certain .and. point%factor >= goal%target) then
          point%state = interior_state%reached
-      else if (point%violation < certain .and. point%upper < goal%target &
+      else if (point%violation < certain .and. point%upper + point%margin < goal%target &
          & .and. goal%target < no_limit) then
          point%state = interior_state%blocked
       else if (worst(point) < goal%tolerance) then

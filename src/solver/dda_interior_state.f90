@@ -76,6 +76,8 @@ module dda_interior_state
       real(wp) :: factor = 0.0_wp
       !> Factor that the velocities do not let pass
       real(wp) :: upper = no_limit
+      !> How much higher that factor may be if the violation is not where forces are small
+      real(wp) :: margin = 0.0_wp
       !> Relative gap, imbalance, and violation of the flow rule
       real(wp) :: gap = huge(1.0_wp), imbalance = huge(1.0_wp), violation = huge(1.0_wp)
       !> How the iteration has ended, one of interior_state

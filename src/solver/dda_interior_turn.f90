@@ -78,8 +78,12 @@ contains
       power = sum(path%live*point%v)
       turn%lack_of_power = 1.0_wp - power
       point%upper = no_limit
-      if (power > 0.0_wp) point%upper = (power_against(rays, point, turn%rate) &
-         & - sum(path%dead*point%v))/power
+      if (power > 0.0_wp) then
+         point%upper = (power_against(rays, point, turn%rate) - sum(path%dead*point%v))/power
+         ! forces that carry more may be larger where joints are violated
+         point%margin = (max(against, 0.0_wp) + epsilon(power)*maxval(abs(point%v))) &
+            & *sum(abs(point%x))/power
+      end if
       point%gap = abs(point%upper - point%factor) &
          & /max(abs(point%factor), abs(point%upper), turn%least_factor, tiny(power))
       if (path%moves) point%gap = sum(point%x*abs(turn%rate)*rays%bounded) &
