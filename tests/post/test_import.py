@@ -85,6 +85,26 @@ def test_dxf_with_arcs_inserts_and_three_layers(tmp_path: Path, capsys) -> None:
     assert area == pytest.approx(math.pi / 8.0, rel=1e-3)
 
 
+def test_assembly_of_compas_falls_where_it_must(tmp_path: Path) -> None:
+    compas = pytest.importorskip("compas")
+    assembly_of = pytest.importorskip("compas_assembly.datastructures")
+    geometry = pytest.importorskip("compas.geometry")
+    assembly = assembly_of.Assembly()
+    for x, z, width, height, support in ((0.0, -0.5, 6.0, 1.0, True), (0.0, 1.5, 1.0, 3.0, False)):
+        frame = geometry.Frame([x, 0.0, z], [1, 0, 0], [0, 1, 0])
+        block = assembly_of.Block.from_shape(geometry.Box(width, 0.7, height, frame=frame))
+        node = assembly.add_block(block)
+        assembly.graph.node_attribute(node, "is_support", support)
+    compas.json_dump(assembly, tmp_path / "pier.json")
+    deck = tmp_path / "pier.nml"
+    assert main(["import", str(tmp_path / "pier.json"), "--out", str(deck)]) == 0
+    assert horizontal(deck) == pytest.approx(1.0 / 3.0, rel=1e-7)  # a pier of 1 x 3 m on its support
+    polygon = geometry.Polygon([[0, 0, 0], [1, 0, 0], [1, 0, 2], [0, 0, 2]])  # z is up
+    compas.json_dump([polygon], tmp_path / "stone.json")
+    assert main(["import", str(tmp_path / "stone.json"), "--out", str(tmp_path / "stone.nml")]) == 0
+    assert "0.0 2.0" in (tmp_path / "stone.blocks").read_text()
+
+
 def test_meshes_are_blocks(tmp_path: Path) -> None:
     meshio = pytest.importorskip("meshio")
     points = [(0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0)]
@@ -92,6 +112,58 @@ def test_meshes_are_blocks(tmp_path: Path) -> None:
     deck = tmp_path / "mesh.nml"
     assert main(["import", str(tmp_path / "mesh.vtk"), "--out", str(deck)]) == 0
     assert deck.with_suffix(".blocks").read_text().count("block") == 1
+
+
+@pytest.mark.parametrize(("ending", "package"), [
+    ("geojson", "json"), ("wkt", "json"), ("dxf", "ezdxf"), ("vtu", "meshio"), ("vtk", "meshio"),
+])
+def test_what_is_exported_is_read_back_and_falls_as_before(tmp_path: Path, capsys, ending: str, package: str) -> None:
+    pytest.importorskip(package)
+    deck = {"arch": {"voussoirs": 9, "thickness": 0.6, "shape": "segmental", "span": 6, "rise": 2}}
+    first = voussoir.run(deck, out=tmp_path / "arch", search="horizontal_coefficient", friction_deg=80)
+    file = tmp_path / f"arch.{ending}"
+    assert main(["export", str(tmp_path / "arch"), str(file), "--case", "1"]) == 0
+    printed = capsys.readouterr().out
+    assert "11 blocks, 2 of them fixed" in printed
+    assert ("cannot hold layers" in printed) == (package == "meshio")
+    again = tmp_path / "again.nml"
+    assert main(["import", str(file), "--out", str(again)]) == 0
+    blocks = [block.corners for block in first.blocks_of(1)]
+    if package == "meshio":  # what is fixed is lost, and said
+        assert "nothing is fixed" in capsys.readouterr().out
+        assert again.with_suffix(".blocks").read_text().count("block") == len(blocks)
+        return
+    assert horizontal(again) == pytest.approx(float(first.cases["critical"][0]), rel=1e-7)
+
+
+def test_displaced_blocks_and_materials_are_exported(tmp_path: Path) -> None:
+    (tmp_path / "two.blocks").write_text(
+        "block fixed\n-1 -1\n2 -1\n2 0\n-1 0\nblock material 2\n0 0\n1 0\n1 2\n0 2\nmaterial 2 density 2500\n"
+    )
+    (tmp_path / "two.nml").write_text("&scene kind = 'blocks', geometry = 'two.blocks' /\n&search parameter = "
+                                      "'horizontal_coefficient' /\n")
+    run = voussoir.run(tmp_path / "two.nml", out=tmp_path / "two")
+    file = tmp_path / "two.geojson"
+    assert main(["export", str(tmp_path / "two"), str(file), "--magnify", "0.5"]) == 0
+    ground, stone = json.loads(file.read_text())["features"]
+    assert [part["properties"]["role"] for part in (ground, stone)] == ["fixed", "material 2"]
+    block = run.blocks_of(1)[1]
+    moved = block.corners + 0.5 * block.displacement
+    ring = [number for corner in stone["geometry"]["coordinates"][0][:-1] for number in corner]
+    assert ring == pytest.approx(moved.ravel().tolist(), abs=1e-12)
+
+
+@pytest.mark.parametrize(("words", "message", "status"), [
+    (["nowhere", "a.wkt"], "no results.csv", 2),
+    (["two", "a.svg"], "expected a file of .dxf", 2),
+    (["two", "a.wkt", "--case", "7"], "no blocks of case 7", 2),
+    (["two", "two/results.csv/a.wkt"], "expected a file that can be written", 4),
+])
+def test_what_cannot_be_exported_is_told(tmp_path: Path, capsys, monkeypatch, words, message, status) -> None:
+    monkeypatch.chdir(tmp_path)
+    voussoir.run("&arch voussoirs = 4 /", out=tmp_path / "two")
+    assert main(["export", *words]) == status
+    assert message in capsys.readouterr().err
 
 
 @pytest.mark.parametrize(

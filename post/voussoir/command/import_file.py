@@ -24,7 +24,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     """
     parser.description = (
         "Make a deck and its file of blocks from closed outlines: DXF (closed polylines, circles, "
-        "blocks that are inserted; arcs become chords), GeoJSON, WKT, meshes."
+        "blocks that are inserted; arcs become chords), GeoJSON, WKT, meshes, assemblies of COMPAS (json)."
     )
     parser.add_argument("file", metavar="FILE", type=Path, help=f"of {', '.join(READERS)}")
     parser.add_argument(

@@ -21,6 +21,7 @@ COMMANDS = {
     ),
     "lines": ("voussoir.command.lines", "a picture of what dda lines has drawn"),
     "examples": ("voussoir.command.examples", "the decks that came with the program"),
+    "export": ("voussoir.command.export_file", "the blocks of a case as a drawing, GeoJSON, WKT or a mesh"),
     "import": ("voussoir.command.import_file", "a drawing, GeoJSON, WKT or a mesh as a deck of blocks"),
     "paper": ("voussoir.command.paper", "every table and figure of the paper, and the report"),
     "plot": ("voussoir.command.plot", "pictures and charts of a folder of results"),

@@ -98,6 +98,9 @@ def read_geojson(file: Path, tolerance: float) -> Found:
         content = json.loads(file.read_text(encoding="utf-8"))
     except json.JSONDecodeError as problem:
         raise ValueError(f"expected JSON, got: {problem}") from problem
+    if isinstance(content, list) or "dtype" in content:
+        yield from read_compas(file)
+        return
     for number, feature in enumerate(content.get("features", [content]), 1):
         shape = feature.get("geometry", feature) if feature.get("type") == "Feature" else feature
         known = feature.get("properties") or {}
@@ -138,6 +141,52 @@ def _taken_apart(entities: Any) -> Iterator[Any]:
             if inner.dxf.layer == "0":  # of the layer of its insert
                 inner.dxf.layer = entity.dxf.layer
             yield inner
+
+
+def read_compas(file: Path) -> Found:
+    """Blocks of an assembly, meshes or polygons of COMPAS: their faces at one end of the depth; supports are fixed."""
+    compas = load("compas", "a file of COMPAS")
+    content = compas.json_load(file)
+    parts = content if isinstance(content, list) else [content]
+    found: list[tuple[Any, str]] = []
+    for part in parts:
+        if hasattr(part, "graph"):
+            nodes = [part.graph.node_attributes(node) for node in part.graph.nodes()]
+            found += [(node["block"], "fixed" if node.get("is_support") else "") for node in nodes]
+        else:
+            found.append((part, ""))
+    axis = _depth([_faces(part) for part, _ in found])
+    for number, (part, layer) in enumerate(found, 1):
+        words, faces = f"{type(part).__name__} {number}", _faces(part)
+        if axis is None or not faces:
+            yield f"{words}: no outline of one depth", None, ""
+        else:
+            yield words, _end_face(faces, axis), layer
+
+
+def _faces(part: Any) -> list[list[list[float]]]:
+    """Faces of a mesh of COMPAS, or the one that a polygon is; none of what is neither."""
+    if hasattr(part, "face_coordinates"):
+        return [part.face_coordinates(face) for face in part.faces()]
+    return [[list(point) for point in part.points]] if hasattr(part, "points") else []
+
+
+def _depth(bodies: list[list[list[list[float]]]]) -> int | None:
+    """The axis along which all bodies have one depth or two ends: y where z is up, else z or x."""
+    for axis in (1, 2, 0):
+        ends = [{round(point[axis], 9) for face in faces for point in face} for faces in bodies]
+        if bodies and all(len(values) <= 2 for values in ends):
+            return axis
+    return None
+
+
+def _end_face(faces: list[list[list[float]]], axis: int) -> Any:
+    """The outline that a body has at the lower end of its depth."""
+    shape, join = load("shapely.geometry", "a file of COMPAS"), load("shapely.ops", "a file of COMPAS")
+    low = min(point[axis] for face in faces for point in face)
+    first, second = (place for place in range(3) if place != axis)
+    ends = [face for face in faces if all(abs(point[axis] - low) < 1e-9 for point in face)]
+    return join.unary_union([shape.Polygon([(point[first], point[second]) for point in face]) for face in ends])
 
 
 def read_mesh(file: Path, tolerance: float) -> Found:
