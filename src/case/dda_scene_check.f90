@@ -200,6 +200,10 @@ contains
          if (word_of(deck, "analysis", "mode") == "static" .and. .not. allocated(error)) &
             & call check_loads(deck, scene, error)
          if (warns .and. .not. allocated(error)) call doubt_scene(deck, scene, warnings)
+         if (allocated(deck%plan%boundary%absorbing) .and. .not. allocated(error) &
+            & .and. word_of(deck, "analysis", "mode") == "static") call add_warning(warnings, &
+            & "absorb has no effect: mode = 'static' has no time", geometry_file(deck), &
+            & deck%plan%boundary%absorbing(1)%line)
       end select
    end subroutine check_mode
 

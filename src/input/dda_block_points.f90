@@ -1,5 +1,6 @@
 !> Points of a file of blocks, and what acts on them in time
 module dda_block_points
+   use dda_absorb_entries, only : take_absorbing
    use dda_bar_entries, only : take_bar, take_water
    use dda_block_input, only : block_plan_t
    use dda_block_lines, only : entry_t, take_entry, take_numbers, waiting_entry_t
@@ -63,6 +64,8 @@ contains
             call take_bar(entry, plan, site, file, warnings, error)
          case ("water")
             call take_water(entry, plan, error)
+         case ("absorb")
+            call take_absorbing(entry, plan, site, error)
          case ("remove", "add")
             call take_change(entry, plan, error)
          case default

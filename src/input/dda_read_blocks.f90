@@ -31,7 +31,7 @@ module dda_read_blocks
    !> Words that begin an entry
    character(len=*), parameter :: entries = "block, material, joint, fix, fix_line, "// &
       & "measure, load, live, displacement, base_acceleration, base_velocity, "// &
-      & "base_displacement, bar, water, remove, add"
+      & "base_displacement, bar, water, absorb, remove, add"
 
    !> Lines between two that are reported to the watch
    integer, parameter :: told_lines = 10000
@@ -223,7 +223,7 @@ contains
          call add_law(reading%entry%head, reading%growing, error)
       case ("fix", "fix_line", "measure", "load", "live", "displacement", &
          & "base_acceleration", "base_velocity", "base_displacement", "bar", "water", &
-         & "remove", "add")
+         & "absorb", "remove", "add")
          call keep_entry(reading%entry, reading%later, reading%n_later)
       end select
       reading%entry%head%n = 0

@@ -5,7 +5,7 @@ module dda_boundary
    implicit none
    private
 
-   public :: boundary_t, bounded_force_t, held_point_t, history_t, loaded_point_t, measured_point_t
+   public :: absorbing_point_t, boundary_t, bounded_force_t, held_point_t, history_t, loaded_point_t, measured_point_t
    public :: stage_change_t, stage_times, present_at
    public :: constant_history, led_displacement, mean_over, rate_at, records_before, value_at
 
@@ -65,6 +65,25 @@ module dda_boundary
       real(wp) :: most = huge(1.0_wp)
    end type bounded_force_t
 
+   !> A point of a face that lets waves out: a dashpot across the face and one along it
+   type :: absorbing_point_t
+      !> Number of the block
+      integer :: block = 0
+      !> Where the point is in the reference shape: (2) [m]
+      real(wp) :: point(2) = 0.0_wp
+      !> Unit vector along the face: (2)
+      real(wp) :: tangent(2) = 0.0_wp
+      !> Length of the face that it stands for [m]
+      real(wp) :: length = 0.0_wp
+      !> Speed of waves across the face and along it; 0 for those of the block's material:
+      !> (2) [m/s]
+      real(wp) :: speed(2) = 0.0_wp
+      !> Whether it absorbs along x and along y: (2)
+      logical :: along(2) = .true.
+      !> Line of the file
+      integer :: line = 0
+   end type absorbing_point_t
+
    !> A block that is built or taken away
    type :: stage_change_t
       !> When [s]
@@ -89,6 +108,8 @@ module dda_boundary
       type(bounded_force_t), allocatable :: bounded(:)
       !> Bars between points
       type(bar_t), allocatable :: bar(:)
+      !> Points of faces that let waves out
+      type(absorbing_point_t), allocatable :: absorbing(:)
       !> Blocks that are built or taken away, in the order of their times
       type(stage_change_t), allocatable :: change(:)
       !> Acceleration of the ground [m/s2]; motions are relative to the ground, so that all blocks

@@ -115,6 +115,11 @@ contains
             & //"choose mode = 'dynamic'", file, plan%ground_line)
          return
       end if
+      if (allocated(plan%boundary%absorbing)) then
+         call fatal_error(error, "mode = 'limerick' knows no absorbing faces; remove this line or " &
+            & //"choose mode = 'dynamic'", file, plan%boundary%absorbing(1)%line)
+         return
+      end if
       do b = 1, size(plan%fixed)
          if (dynamic .or. .not. any(abs(plan%velocity(:, b)) > 0.0_wp)) cycle
          call fatal_error(error, "mode = 'limerick' begins every static step at rest, but block " &

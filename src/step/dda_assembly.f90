@@ -7,6 +7,7 @@ module dda_assembly
    use dda_block_matrix, only : block_matrix_t, set_pattern
    use dda_block_system, only : block_system_t
    use dda_boundary, only : held_point_t
+   use dda_dashpots, only : dashpot_matrices
    use dda_elasticity, only : elastic_matrix
    use dda_fixed_points, only : fixed_points_t, new_fixed_points
    use dda_friction_cone, only : cone_t, is_stuck, joint_face_t
@@ -41,6 +42,9 @@ module dda_assembly
       real(wp), allocatable :: mass(:, :, :)
       !> Elastic stiffness of the blocks: (n_dof, n_dof, n_equation)
       real(wp), allocatable :: elastic(:, :, :)
+      !> Forces of absorbing faces per rate, without entries if there are none:
+      !> (n_dof, n_dof, n_equation or 0)
+      real(wp), allocatable :: dashpot(:, :, :)
       !> Matrix of the blocks without springs: elastic + 2*mass/dt**2: (n_dof, n_dof, n_equation)
       real(wp), allocatable :: base(:, :, :)
       !> Weight of the blocks: (n_dof, n_equation)
@@ -96,6 +100,7 @@ contains
       allocate (equations%glued(nd, nd, n), equations%weight(nd, n), equations%outer(nd, n))
       allocate (equations%load(nd, n), equations%felt(nd, n), equations%changed(n))
       equations%bars = new_bar_springs(system, settings, nd)
+      equations%dashpot = dashpot_matrices(system, settings%boundary, nd)
       call new_springs(springs, nd, n, equations)
       do b = 1, size(system%equation)
          e = system%equation(b)

@@ -47,6 +47,8 @@ contains
       if (present(time)) start = time
       damping = damping_rate(settings, dt)
       equations%base = equations%elastic + (2.0_wp/dt**2 + damping/dt)*equations%mass
+      if (settings%dynamic .and. size(equations%dashpot) > 0) &
+         & equations%base = equations%base + equations%dashpot/dt
       call outer_loads(system, settings, start, dt, equations%weight, equations%outer, &
          & equations%felt)
       equations%force_scale = sum(equations%felt(1:2, :))

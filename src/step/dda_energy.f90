@@ -103,6 +103,10 @@ contains
             energy%damping = energy%damping + damping_rate(settings, step%dt)/step%dt &
                & *dot_product(motion(:, e), matmul(equations%mass(:, :, e), motion(:, e)))
          end do
+         do e = 1, size(equations%dashpot, 3)
+            energy%damping = energy%damping + dot_product(motion(:, e), &
+               & matmul(equations%dashpot(:, :, e), motion(:, e)))/step%dt
+         end do
       end associate
       energy%friction = energy%friction - sum(step%state%force(3, :)*step%state%increment(3, :), &
          & mask=step%state%face%slip /= 0)

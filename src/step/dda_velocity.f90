@@ -207,11 +207,15 @@ contains
       nd = size(equations%load, 1)
       share = damping_rate(settings, step%dt)*step%dt/2.0_wp
       equations%base = (1.0_wp + share)/step%dt**2*equations%mass
+      if (size(equations%dashpot) > 0) &
+         & equations%base = equations%base + equations%dashpot/(2.0_wp*step%dt)
       do b = 1, size(system%equation)
          e = system%equation(b)
          if (e == 0) cycle
          equations%load(:, e) = equations%outer(:, e) + (1.0_wp - share)/step%dt &
             & *matmul(equations%mass(:, :, e), system%velocity(:nd, b))
+         if (size(equations%dashpot) > 0) equations%load(:, e) = equations%load(:, e) &
+            & - matmul(equations%dashpot(:, :, e), system%velocity(:nd, b))/2.0_wp
          if (nd < 6) cycle
          if (follows(b)) then
             equations%base(4:, :3, e) = 0.0_wp
