@@ -5,8 +5,8 @@ module dda_boundary
    implicit none
    private
 
-   public :: absorbing_point_t, boundary_t, bounded_force_t, held_point_t, history_t, loaded_point_t, measured_point_t
-   public :: stage_change_t, stage_times, present_at
+   public :: absorbing_point_t, boundary_t, bounded_force_t, held_point_t, history_t
+   public :: loaded_point_t, measured_point_t, stage_change_t, stage_times, present_at
    public :: constant_history, led_displacement, mean_over, rate_at, records_before, value_at
 
    !> A vector given at some times, linear between them, constant before the first and after the

@@ -116,8 +116,8 @@ contains
          return
       end if
       if (allocated(plan%boundary%absorbing)) then
-         call fatal_error(error, "mode = 'limerick' knows no absorbing faces; remove this line or " &
-            & //"choose mode = 'dynamic'", file, plan%boundary%absorbing(1)%line)
+         call fatal_error(error, "mode = 'limerick' knows no absorbing faces; remove this line " &
+            & //"or choose mode = 'dynamic'", file, plan%boundary%absorbing(1)%line)
          return
       end if
       do b = 1, size(plan%fixed)

@@ -21,14 +21,14 @@ module dda_coulomb_interior
    implicit none
    private
 
-   public :: interior_t, interior_motion, enough, sharp
+   public :: coulomb_interior_t, interior_motion, enough, sharp
 
    !> What may be left of the equations and of the work of the load: motions that are no better
    !> are none, those that are so good cannot be bettered
    real(wp), parameter :: enough = 1.0e-6_wp, sharp = 1.0e-10_wp
 
    !> An iterate, or a step from it
-   type :: interior_t
+   type :: coulomb_interior_t
       !> Motion: (n_dof, n_block)
       real(wp), allocatable :: motion(:, :)
       !> N1, N2, T: (3, n_joint)
@@ -37,7 +37,7 @@ module dda_coulomb_interior
       real(wp), allocatable :: slack(:, :)
       !> Opening or slip at each face: (4, n_joint)
       real(wp), allocatable :: flow(:, :)
-   end type interior_t
+   end type coulomb_interior_t
 
    !> What an iterate leaves of the equations, and what a step is to change of the products
    type :: rest_t
@@ -66,12 +66,12 @@ contains
       !> Enough, sharp or between: the faces of joints that carry next to nothing depend on it
       real(wp), intent(in) :: tolerance
       !> The iterate; one that is there goes on
-      type(interior_t), intent(inout) :: x
+      type(coulomb_interior_t), intent(inout) :: x
       !> Whether it was found
       logical, intent(out) :: settled
       integer, parameter :: max_iteration = 150, patience = 15, few = 3
       real(wp), parameter :: shortfall = 0.995_wp, nothing = 1.0e-30_wp
-      type(interior_t) :: step
+      type(coulomb_interior_t) :: step
       type(rest_t) :: rest
       real(wp) :: best, gap, length, mean, merit
       integer :: i, n_face, waited
@@ -133,7 +133,7 @@ contains
       !> Whether there is a face: (4, n_joint)
       logical, intent(in) :: face(:, :)
       !> The iterate
-      type(interior_t), intent(out) :: x
+      type(coulomb_interior_t), intent(out) :: x
       real(wp) :: push
       integer :: n_joint
 
@@ -178,7 +178,7 @@ contains
       !> Whether there is a face: (4, n_joint)
       logical, intent(in) :: face(:, :)
       !> The iterate
-      type(interior_t), intent(in) :: x
+      type(coulomb_interior_t), intent(in) :: x
       !> What is left
       type(rest_t), intent(inout) :: rest
       integer :: n_joint
@@ -210,7 +210,7 @@ contains
       !> Whether there is a face: (4, n_joint)
       logical, intent(in) :: face(:, :)
       !> The iterate
-      type(interior_t), intent(in) :: x
+      type(coulomb_interior_t), intent(in) :: x
       real(wp) :: ratio(4), spring(3, 3, size(face, 2))
       integer :: i, j
 
@@ -242,14 +242,14 @@ contains
       !> Whether there is a face: (4, n_joint)
       logical, intent(in) :: face(:, :)
       !> The iterate
-      type(interior_t), intent(in) :: x
+      type(coulomb_interior_t), intent(in) :: x
       !> What is left of the equations
       type(rest_t), intent(in) :: rest
       !> The step
-      type(interior_t), intent(inout) :: step
+      type(coulomb_interior_t), intent(inout) :: step
       integer, parameter :: max_correction = 3
       real(wp), parameter :: rounding = 1.0e-15_wp
-      type(interior_t) :: part
+      type(coulomb_interior_t) :: part
       real(wp) :: drive(3, size(face, 2)), left(size(step%motion, 1), size(step%motion, 2))
       real(wp) :: last, ratio(4, size(face, 2)), source(4, size(face, 2))
       integer :: turn
@@ -296,7 +296,7 @@ contains
       !> What the springs are pressed together by: (3, n_joint)
       real(wp), intent(in) :: drive(:, :)
       !> Receives forces and slacks
-      type(interior_t), intent(inout) :: part
+      type(coulomb_interior_t), intent(inout) :: part
       real(wp) :: bound, spring
       integer :: i, j
 
@@ -325,9 +325,9 @@ contains
       !> Whether there is a face: (4, n_joint)
       logical, intent(in) :: face(:, :)
       !> The iterate
-      type(interior_t), intent(in) :: x
+      type(coulomb_interior_t), intent(in) :: x
       !> The step
-      type(interior_t), intent(in) :: step
+      type(coulomb_interior_t), intent(in) :: step
       !> How much of the way to the first zero is gone
       real(wp), intent(in) :: share
       integer :: i, j

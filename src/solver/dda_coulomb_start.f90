@@ -6,7 +6,7 @@
 !> damping has the last word.
 module dda_coulomb_start
    use dda_coulomb_equations, only : coulomb_equations_t, solve_equations, use_faces
-   use dda_coulomb_interior, only : enough, interior_motion, interior_t, sharp
+   use dda_coulomb_interior, only : enough, interior_motion, coulomb_interior_t, sharp
    use dda_coulomb_joints, only : coulomb_joints_t
    use dda_coulomb_law, only : apply_law, change_faces, coulomb_state_t, imbalance, unloaded_state
    use dda_joint_graph, only : joint_motion
@@ -91,7 +91,7 @@ contains
       integer, parameter :: most_passes = 12
       real(wp), parameter :: least = 1.0e-13_wp
       type(coulomb_state_t) :: unloaded
-      type(interior_t) :: inner
+      type(coulomb_interior_t) :: inner
       real(wp) :: damping, left, last
       integer :: passes, rounds
       logical :: settled
@@ -108,7 +108,7 @@ contains
          call settle_faces(joints, equations, load, damping, most_passes, unloaded, state, &
             & left, passes)
          if (passes == 0) then
-            if (damping < first) inner = interior_t()
+            if (damping < first) inner = coulomb_interior_t()
             call take_interior(joints, equations, load, damping, sharp, unloaded, inner, state, &
                & settled)
             if (settled) call settle_faces(joints, equations, load, damping, most_passes, &
@@ -190,7 +190,7 @@ contains
       !> Joints that carry nothing
       type(coulomb_state_t), intent(in) :: unloaded
       !> The iterate, from which it goes on
-      type(interior_t), intent(inout) :: inner
+      type(coulomb_interior_t), intent(inout) :: inner
       !> Receives motion, forces and faces
       type(coulomb_state_t), intent(inout) :: state
       !> Whether the interior springs have settled
