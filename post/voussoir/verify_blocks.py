@@ -58,6 +58,7 @@ class Source:
     material: list[int] = field(default_factory=list)
     weights: dict[int, float] = field(default_factory=dict)
     densities: dict[int, float] = field(default_factory=dict)
+    strengths: dict[int, float] = field(default_factory=dict)
     friction_deg: dict[tuple[int, int], float] = field(default_factory=dict)
     forces: list[PointForce] = field(default_factory=list)
     held: list[Held] = field(default_factory=list)
@@ -117,6 +118,8 @@ def _take(entry: list[str], rows: list[list[float]], source: Source, deck: Deck)
             source.weights[number] = source.densities[number] * deck.number("load%gravity")
         if "unit_weight" in keys:
             source.weights[number] = deck.read(keys["unit_weight"])
+        if "compressive_strength" in keys:
+            source.strengths[number] = deck.read(keys["compressive_strength"].replace("d", "e"))
     elif entry[0] == "joint":
         if any(float(keys.get(name, "0")) > 0.0 for name in ("cohesion", "tension")):
             raise VerifyError("joints with cohesion or tension have no proof")

@@ -44,6 +44,7 @@ OTHERS = (
     "analysis%geometry",
     "arch%joints_deg",
     "material%unit_weight",
+    "material%compressive_strength",
     "scene%analysis",
     "live%x",
     "live%y",
@@ -123,8 +124,10 @@ class Deck:
         """Whether it is an arch of any shape: blocks that are taken as blocks.csv has them."""
         given = [key for key in SHAPES if self.gives(key) and self.text(key).lower() != "circular"]
         searched = (self.searched or "").split("%")[-1]
-        given += [key for key in self.values if key.startswith(("&fill", "fill%", "&tie", "tie%"))]
-        return self.text("scene%kind") == "arch" and (bool(given) or f"arch%{searched}" in SHAPES)
+        more = ("&fill", "fill%", "&tie", "tie%", "material%compressive_strength")
+        given += [key for key in self.values if key.startswith(more)]
+        given += [key for key in (f"arch%{searched}", searched) if key in (*SHAPES, "compressive_strength")]
+        return self.text("scene%kind") == "arch" and bool(given)
 
     def with_value(self, name: str, value: str) -> Deck:
         """A deck with another value of a parameter, such as friction_deg, arch%radius or x(2)."""

@@ -239,6 +239,29 @@ def friction_of(deck: Deck, source: Source, joint: Joint, springing: bool) -> fl
     return sine / cosine
 
 
+def strength_of(deck: Deck, source: Source, joint: Joint) -> float | None:
+    """Compressive strength of the weaker of the two blocks of a joint; None where neither is crushed.
+
+    Parameters
+    ----------
+    deck : Deck
+        The deck of the case.
+    source : Source
+        Its file of blocks, or nothing.
+    joint : Joint
+        The joint.
+
+    Returns
+    -------
+    float or None
+        The strength.
+    """
+    own = deck.number("material%compressive_strength") if deck.gives("material%compressive_strength") else None
+    materials = [source.material[number - 1] if source.material else 1 for number in (joint.first, joint.second)]
+    found = [source.strengths.get(material, own) for material in materials]
+    return min((value for value in found if value is not None), default=None)
+
+
 def _distance(line: np.ndarray, edge: np.ndarray) -> float:
     """How far the middle and the ends of an edge lie from a line at most."""
     along = line[1] - line[0]

@@ -12,13 +12,15 @@ from voussoir.verify_blocks import Source
 from voussoir.verify_contacts import TOUCH, Block, Joint, depth, numbers_of
 from voussoir.verify_deck import Deck
 from voussoir.verify_fill import Pull
-from voussoir.verify_loads import friction_of, loads_on, may_hold, pulls_of
+from voussoir.verify_loads import friction_of, loads_on, may_hold, pulls_of, strength_of
 
 Row = dict[str, str]
 #: Largest figure of a proof that holds
 TOLERANCE = 1e-8
 #: Points nearer than this share of a block's size are one
 SAME_POINT = 1e-8
+#: What closes more slowly than this share of the fastest velocity does so by rounding
+STILL = 1e-12
 
 
 @dataclass
@@ -69,6 +71,14 @@ class Scene:
         return friction_of(self.deck, self.source, joint, springing)
 
 
+    def crush(self, joint: Joint) -> float:
+        """Strength of a joint over its whole length; infinite where it is not crushed."""
+        strength = strength_of(self.deck, self.source, joint)
+        if strength is None:
+            return math.inf
+        return float(strength) * float(np.linalg.norm((joint.ends[1] - joint.ends[0]).astype(float)))
+
+
 def check_forces(scene: Scene, rows: list[Row], finding: Finding) -> None:
     """Check that forces at joints and held points carry the load.
 
@@ -107,7 +117,7 @@ def check_forces(scene: Scene, rows: list[Row], finding: Finding) -> None:
             continue
         used.add(id(joint))
         way = 1.0 if joint.first == pair[0] else -1.0
-        _law(force, joint, scene.friction(joint), largest, finding)
+        _law(force, joint, scene, largest, finding)
         for vector, at in ((force[0] * way * joint.normal, ends[0]), (force[1] * way * joint.normal, ends[1]),
                            (force[2] * way * joint.tangent, ends.mean(axis=0))):
             push(left, scene.blocks[pair[1] - 1], at, vector)
@@ -140,9 +150,13 @@ def _check_pull(
     finding.faults.append(f"no force of the kind {row['kind']} acts between blocks {blocks} at {tuple(points[0])}")
 
 
-def _law(force: np.ndarray, joint: Joint, friction: float, largest: float, finding: Finding) -> None:
+def _law(force: np.ndarray, joint: Joint, scene: Scene, largest: float, finding: Finding) -> None:
     """Check the law of a joint."""
+    friction, crush = scene.friction(joint), scene.crush(joint)
     beyond = max(0.0, -force[0], -force[1])
+    if math.isfinite(crush):
+        # the strip that bears the force is as far from either end as its moment says
+        beyond = max(beyond, (force[0] + force[1]) ** 2 / crush / 2.0 - min(force[0], force[1]))
     if joint.single:
         beyond = max(beyond, abs(force[1]))
     if math.isfinite(friction):
@@ -225,12 +239,23 @@ def check_motion(scene: Scene, rows: list[Row], finding: Finding) -> float:
         finding.keep("place of centres", float(np.linalg.norm(off)) / block.size)
         velocity[block.number - 1] = [u - spin * off[1], v + spin * off[0], spin]
     fastest = max(float(np.abs(velocity[:, :2]).max()), scene.length * float(np.abs(velocity[:, 2]).max()), 1e-300)
+    power = 0.0
     for joint in scene.joints:
         apart = [velocity_at(scene, velocity, joint.second, end) - velocity_at(scene, velocity, joint.first, end)
                  for end in joint.ends]
         friction, slip = scene.friction(joint), abs(float((apart[0] + apart[1]) @ joint.tangent)) / 2.0
-        opening = min(float(rate @ joint.normal) for rate in apart)
+        opens = [float(rate @ joint.normal) for rate in apart]
+        opening, crush = min(opens), scene.crush(joint)
         beyond = max(-opening, slip)
+        if math.isfinite(crush):
+            if not math.isfinite(friction):
+                finding.keep("law of velocities", slip / fastest)
+            closing = sorted((friction * slip if math.isfinite(friction) else 0.0) - rate for rate in opens)
+            if closing[1] > STILL * fastest:
+                # fibres that close take the strength, and their rates lie on a line
+                rate = sum(closing) if closing[0] >= 0.0 else closing[1] ** 2 / (closing[1] - closing[0])
+                power -= crush * rate / 2.0
+            continue
         if math.isfinite(friction):
             beyond = (friction * slip - opening) / max(1.0, friction)
         finding.keep("law of velocities", max(0.0, beyond) / fastest)
@@ -239,7 +264,6 @@ def check_motion(scene: Scene, rows: list[Row], finding: Finding) -> float:
             rate = velocity_at(scene, velocity, block.number, point)
             moved = max((abs(float(rate[k])) for k in range(2) if along[k]), default=0.0)
             finding.keep("law of velocities", moved / fastest)
-    power = 0.0
     for pull in scene.pulls:
         rates = [velocity_at(scene, velocity, number, at) if number > 0 else np.zeros(2)
                  for number, at in zip(pull.blocks, pull.points)]

@@ -62,7 +62,7 @@ def check_joints(
         normal, shear = float(row["normal_force"]), float(row["shear_force"])
         apart = max(abs(way * float(vector @ joint.normal) - normal), abs(way * float(vector @ joint.tangent) - shear))
         finding.keep("columns of a joint", apart / largest, SAME)
-        _check_place(row, joint, at, normal, finding)
+        _check_place(row, joint, at, normal, scene.crush(joint) if bars is not None else math.inf, finding)
         friction = scene.friction(joint)
         beyond = max(0.0, -normal)
         if math.isfinite(friction):
@@ -113,12 +113,12 @@ def _near(joints: list[Joint], ends: np.ndarray, scene: Scene, first: int) -> Jo
     return None
 
 
-def _check_place(row: Row, joint: Joint, at: np.ndarray, normal: float, finding: Finding) -> None:
-    """The force acts between the ends of its joint, where its eccentricity says."""
+def _check_place(row: Row, joint: Joint, at: np.ndarray, normal: float, crush: float, finding: Finding) -> None:
+    """The force acts between the ends of its joint, which has room for the strip that bears it, where it is told."""
     middle, length = joint.ends.mean(axis=0), float(np.linalg.norm(joint.ends[1] - joint.ends[0]))
     if joint.single or not normal > 0.0:
         return
-    beyond = max(0.0, float(np.linalg.norm(at - middle)) / length - 0.5)
+    beyond = max(0.0, float(np.linalg.norm(at - middle)) / length + normal / crush / 2.0 - 0.5)
     finding.keep("place of a force", beyond, TOLD)
     finding.keep("place off its joint", abs(float((at - middle) @ joint.normal)) / length)
     if row["eccentricity_ratio"]:

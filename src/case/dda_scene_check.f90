@@ -197,6 +197,7 @@ contains
          if (allocated(error)) return
          if (word_of(deck, "analysis", "mode") == "static") &
             & call check_support(deck, scene, error)
+         if (.not. allocated(error)) call check_widths(deck, scene, error)
          if (word_of(deck, "analysis", "mode") == "static" .and. .not. allocated(error)) &
             & call check_loads(deck, scene, error)
          if (warns .and. .not. allocated(error)) call doubt_scene(deck, scene, warnings)
@@ -303,6 +304,28 @@ contains
       if (len(problem) > 0) call fatal_error(error, problem//"; change it or remove this line", &
          & geometry_file(deck), deck%plan%boundary%change(1)%line)
    end subroutine check_stages
+
+   !> Check that what may be crushed does not stand on corners, which bear nothing then
+   pure subroutine check_widths(deck, scene, error)
+      !> The deck of a case
+      type(deck_t), intent(in) :: deck
+      !> Its scene
+      type(scene_t), intent(in) :: scene
+      !> Allocated if a joint has no width
+      type(error_t), allocatable, intent(out) :: error
+      integer :: j
+
+      do j = 1, size(scene%contacts%joint)
+         associate (joint => scene%contacts%joint(j))
+            if (.not. (joint%law%strength < huge(1.0_wp) .and. joint%n_contact == 1)) cycle
+            call fatal_error(error, "compressive_strength needs joints with a width, got a "// &
+               & "corner of blocks "//to_text(joint%block(1))//" and "//to_text(joint%block(2)) &
+               & //" on an edge, which any force crushes; cut the corner off, or remove "// &
+               & "compressive_strength", geometry_file(deck), deck%plan%line(joint%block(1)))
+            return
+         end associate
+      end do
+   end subroutine check_widths
 
    !> Warn of blocks that will fall, and of units that are no metres
    pure subroutine doubt_scene(deck, scene, warnings)

@@ -302,12 +302,13 @@ contains
       first = key_index("arch", "shape")
       last = key_index("arch", "lune_deg")
       shaped = any(deck%value(first + 1:last)%given) .or. has_group(deck, "fill") &
-         .or. has_group(deck, "tie") .or. word_of(deck, "arch", "shape") /= "circular"
+         & .or. has_group(deck, "tie") .or. is_given(deck, "material", "compressive_strength") &
+         & .or. word_of(deck, "arch", "shape") /= "circular"
       if (.not. shaped .and. has_group(deck, "search")) then
          ! of fixed length, as in word_of
          name = lower_case(word_of(deck, "search", "parameter"))
          name = name(index(name, "%") + 1:)
-         shaped = any(name == shape_keys)
+         shaped = any(name == shape_keys) .or. name == "compressive_strength"
       end if
       if (shaped) kind = "shape"
    end function scene_kind

@@ -8,6 +8,7 @@ module dda_deck_check_case
       integer_of, keeps_velocities, real_of, scene_kind, word_of, is_given, place_of
    use dda_deck_check_ground, only : check_ground
    use dda_deck_check_live, only : check_live
+   use dda_deck_check_strength, only : check_strength
    use dda_deck_parameter, only : parameter_name
    use dda_deck_set, only : put_number, number_problem
    use dda_deck_words, only : full_name
@@ -35,6 +36,7 @@ contains
       if (.not. allocated(error)) call check_use(deck, error)
       if (.not. allocated(error)) call check_live(deck, searched, error)
       if (.not. allocated(error)) call check_ground(deck, searched, error)
+      if (.not. allocated(error)) call check_strength(deck, searched, error)
       if (allocated(error)) return
       ! files of blocks have loads of their own
       if (.not. keeps_velocities(deck) .and. .not. (real_of(deck, "load", "gravity") > 0.0_wp .or. &

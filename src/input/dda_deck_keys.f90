@@ -53,6 +53,9 @@ module dda_deck_keys
             at_least=1.0e-12_wp, at_most=1.0e30_wp, meaning="Young's modulus of the blocks."), &
       key_t(group="material", name="poisson", default="0.2", above=-1.0_wp, below=0.5_wp, &
             meaning="Poisson's ratio of the blocks."), &
+      key_t(group="material", name="compressive_strength", unit="Pa", &
+            without="blocks that are never crushed", at_least=1.0e-12_wp, at_most=1.0e30_wp, &
+            meaning="Pressure that joints carry at most, on the strip that bears it."), &
       key_t(group="material", name="plane", kind=key_kind%word, default="'stress'", &
             words="stress strain", meaning="Plane stress or plane strain.")]
 

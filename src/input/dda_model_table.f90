@@ -57,7 +57,7 @@ module dda_model_table
       model_t("limerick", "current", of_original, "dda export writes such arches as blocks")]
 
    !> All keys that have real values
-   type(search_t), parameter :: search(17) = [ &
+   type(search_t), parameter :: search(18) = [ &
       search_t("arch", "abutment_size abutment_overhang", "", "", "arch", &
          "abutments are blocks with mode = 'limerick' alone"), &
       search_t("arch", "span rise right_rise thickness crown_thickness springing_thickness "// &
@@ -66,6 +66,8 @@ module dda_model_table
       search_t("arch", "", "arch shape", "arch", "arch", "there is no generated arch"), &
       search_t("fill", "", "shape", "", "", "there is no arch that it lies on"), &
       search_t("tie", "", "shape", "", "", "there is no arch that it holds"), &
+      search_t("material", "compressive_strength", "shape blocks", "", "", &
+         "limit analysis of arches and blocks alone knows it"), &
       search_t("material", "", all_kinds, of_original, of_original), &
       search_t("joint", "cohesion tension", all_kinds, of_original, "", &
          "joints of the original begin open: bonds are lost"), &

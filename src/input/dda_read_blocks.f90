@@ -21,8 +21,8 @@ module dda_read_blocks
    public :: parse_blocks
 
    !> Keys that a material may have
-   character(len=word_size), parameter :: material_key(4) = [character(len=word_size) :: &
-      & "density", "unit_weight", "young", "poisson"]
+   character(len=word_size), parameter :: material_key(5) = [character(len=word_size) :: &
+      & "density", "unit_weight", "young", "poisson", "compressive_strength"]
    !> Keys that a joint may have
    character(len=word_size), parameter :: law_key(3) = [character(len=word_size) :: &
       & "friction_deg", "cohesion", "tension"]
@@ -289,7 +289,8 @@ contains
       end associate
    end subroutine close_block
 
-   !> Take in a material: material N [density d] [unit_weight w] [young e] [poisson p]
+   !> Take in a material:
+   !> material N [density d] [unit_weight w] [young e] [poisson p] [compressive_strength s]
    pure subroutine add_material(line, plan, error)
       !> The line
       type(line_t), intent(in) :: line
@@ -320,6 +321,9 @@ contains
       else if (material%given(4) .and. .not. abs(material%value(4) + 0.25_wp) < 0.75_wp) then
          call fatal_error(error, "poisson must be a number between -1 and 0.5, got " &
             & //to_text(material%value(4)), line=line%number)
+      else if (material%given(5) .and. .not. material%value(5) >= least_property) then
+         call fatal_error(error, "compressive_strength must be a number from 1e-12 to 1e30, got " &
+            & //to_text(material%value(5)), line=line%number)
       else
          plan%materials = [plan%materials, material]
       end if

@@ -15,10 +15,11 @@ module dda_block_input
    type :: material_plan_t
       !> Number of the material, from 2; 1 is that of the deck
       integer :: number = 0
-      !> Density, unit weight, Young's modulus, Poisson's ratio: (4) [kg/m3, N/m3, Pa, -]
-      real(wp) :: value(4) = 0.0_wp
-      !> Which of them are given: (4)
-      logical :: given(4) = .false.
+      !> Density, unit weight, Young's modulus, Poisson's ratio, compressive strength: (5)
+      !> [kg/m3, N/m3, Pa, -, Pa]
+      real(wp) :: value(5) = 0.0_wp
+      !> Which of them are given: (5)
+      logical :: given(5) = .false.
    end type material_plan_t
 
    !> What a file says of the joints between two materials

@@ -14,7 +14,7 @@ module dda_joint_graph
    private
 
    public :: joint_graph_t, joint_kind, joint_kind_enum
-   public :: joint_motion, add_joint_forces, keep_joints, rubs
+   public :: joint_motion, add_joint_forces, crushes, keep_joints, rubs
 
    !> What a joint can carry
    type :: joint_kind_enum
@@ -52,6 +52,9 @@ module dda_joint_graph
       real(wp), allocatable :: friction(:)
       !> Length of the joint: (n_joint) [m]
       real(wp), allocatable :: length(:)
+      !> Compressive strength times length; huge where the joint does not crush; unallocated where
+      !> none does: (n_joint) [N/m]
+      real(wp), allocatable :: crush(:)
       !> Displacement by unit force at corner 1, corner 2 and along the joint: (3, n_joint) [m2/N]
       real(wp), allocatable :: compliance(:, :)
       !> Opening of the corners where nothing has moved: (2, n_joint) [m]
@@ -81,6 +84,15 @@ contains
          & .and. friction > 0.0_wp .and. friction < rough
    end function rubs
 
+   !> Whether a joint may be crushed
+   pure logical function crushes(graph)
+      !> The joints
+      type(joint_graph_t), intent(in) :: graph
+
+      crushes = allocated(graph%crush)
+      if (crushes) crushes = any(graph%crush < huge(1.0_wp))
+   end function crushes
+
    !> Keep some of the joints
    pure subroutine keep_joints(kept, graph)
       !> Which: (n_joint)
@@ -97,6 +109,7 @@ contains
       graph%length = graph%length(k)
       graph%compliance = graph%compliance(:, k)
       graph%gap = graph%gap(:, k)
+      if (allocated(graph%crush)) graph%crush = graph%crush(k)
    end subroutine keep_joints
 
    !> Opening at both corners and slip of every joint

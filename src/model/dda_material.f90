@@ -15,6 +15,8 @@ module dda_material
       real(wp) :: young = 5.0e9_wp
       !> Poisson's ratio
       real(wp) :: poisson = 0.2_wp
+      !> Compressive strength; huge where it is never crushed [Pa]
+      real(wp) :: strength = huge(1.0_wp)
       !> Plane strain instead of plane stress
       logical :: plane_strain = .false.
    end type material_t
@@ -29,6 +31,8 @@ module dda_material
       real(wp) :: cohesion = 0.0_wp
       !> Tensile strength [Pa]
       real(wp) :: tension = 0.0_wp
+      !> Compressive strength of the weaker of the two blocks; huge where none is crushed [Pa]
+      real(wp) :: strength = huge(1.0_wp)
    end type joint_law_t
 
 contains

@@ -92,6 +92,8 @@ contains
       material%density = real_of(deck, "material", "density")
       material%young = real_of(deck, "material", "young")
       material%poisson = real_of(deck, "material", "poisson")
+      if (is_given(deck, "material", "compressive_strength")) &
+         & material%strength = real_of(deck, "material", "compressive_strength")
       material%plane_strain = word_of(deck, "material", "plane") == "strain"
    end function material_of
 

@@ -48,6 +48,9 @@ contains
 
       call materials_of(plan, base, material, unit_weight)
       allocate (law, source=laws_of(plan, base, size(material)))
+      do b = 1, size(material)
+         law(:, b)%strength = min(material%strength, material(b)%strength)
+      end do
       scene%settings%boundary = plan%boundary
       scene%origin = plan%origin
       call add_water_loads(plan, base%water_rise, scene%settings%boundary)
@@ -126,6 +129,7 @@ contains
             if (own%given(2)) unit_weight(m) = own%value(2)
             if (own%given(3)) material(m)%young = own%value(3)
             if (own%given(4)) material(m)%poisson = own%value(4)
+            if (own%given(5)) material(m)%strength = own%value(5)
          end associate
       end do
    end subroutine materials_of

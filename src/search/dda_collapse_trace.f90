@@ -80,6 +80,10 @@ contains
 
       proposal%half = least_half(search, critical)*max(abs(critical%falls), tiny(1.0_wp))
       if (critical%fallen%flow /= flow_rule%associated) return
+      ! what is crushed takes power that the loads alone do not tell
+      if (allocated(critical%fallen%contacts%joint)) then
+         if (any(critical%fallen%contacts%joint%law%strength < huge(1.0_wp))) return
+      end if
       mechanism = frozen(family, critical)
       x(1) = critical%falls
       call power_at(family, mechanism, x(1), critical, power(1), noise, usable)

@@ -93,11 +93,11 @@ contains
       if (proof%end == path_end%collapsed) then
          call record_collapse(settings, system, contacts, proof, decision, album)
       else if (proof%end == path_end%reached .and. (bare .or. proof%on_path &
-         & .or. has_slid(proof) .or. .not. may_run(settings))) then
+         & .or. has_slid(proof) .or. .not. may_run(settings, contacts))) then
          call record_rest(settings, system, contacts, proof, decision)
       else if (proof%end == path_end%reached) then
          call share_forces(settings, system, contacts, proof, decision, album)
-      else if (proof%unproven .and. may_run(settings)) then
+      else if (proof%unproven .and. may_run(settings, contacts)) then
          call decide_by_steps(settings, system, contacts, decision, album)
       else
          decision%system = system
@@ -122,12 +122,16 @@ contains
       if (allocated(proof%state)) has_slid = any(abs(proof%state%face(3, :)) == face%slides)
    end function has_slid
 
-   !> Whether a run of steps can tell what the graph does not: steps know no bounded forces
-   pure logical function may_run(settings)
+   !> Whether a run of steps can tell what the graph does not: steps know neither bounded forces nor
+   !> strength
+   pure logical function may_run(settings, contacts)
       !> Settings of the run
       type(settings_t), intent(in) :: settings
+      !> The contacts
+      type(contacts_t), intent(in) :: contacts
 
-      may_run = .not. allocated(settings%boundary%bounded)
+      may_run = .not. (allocated(settings%boundary%bounded) &
+         & .or. any(contacts%joint%law%strength < huge(1.0_wp)))
    end function may_run
 
    !> How the blocks of what stands share out the forces: as elastic blocks do, or where joints
@@ -222,7 +226,8 @@ contains
       decision%flow = proof%flow
       decision%system = system
       decision%contacts = contacts
-      if (proof%flow == flow_rule%associated .and. .not. proof%is_told .and. may_run(settings)) then
+      if (proof%flow == flow_rule%associated .and. .not. proof%is_told &
+         & .and. may_run(settings, contacts)) then
          convex = settings
          convex%flow = flow_rule%associated
          call run_to_verdict(convex, decision%system, decision%contacts, decision%outcome, album)

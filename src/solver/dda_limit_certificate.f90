@@ -4,14 +4,19 @@
 !> velocities that no joint resists, on which the load has power, that it cannot. Moments are
 !> compared with forces, and spins with velocities, by half the mean length of a joint.
 module dda_limit_certificate
-   use dda_joint_graph, only : add_joint_forces, joint_graph_t, joint_kind, joint_motion
    use dda_interior_state, only : no_limit
+   use dda_joint_graph, only : add_joint_forces, crushes, joint_graph_t, joint_kind, joint_motion
+   use dda_joint_layers, only : beyond_parabola
    use dda_kinds, only : wp
    implicit none
    private
 
    public :: unit_of_length, check_forces, check_velocities, carried_factor, stopping_factor
-   public :: balance_margin, flow_margin
+   public :: balance_margin, crushing_power, flow_margin
+
+   !> Fibres that close at less than this share of the fastest rate do so by rounding, which great
+   !> strengths must not multiply
+   real(wp), parameter :: still = 1.0e-12_wp
 
 contains
 
@@ -88,6 +93,8 @@ contains
       do j = 1, size(force, 2)
          violation = max(violation, beyond_law(graph%kind(j), graph%friction(j), force(:, j)))
       end do
+      if (crushes(graph)) violation = max(violation, maxval(beyond_parabola(graph%crush, &
+         & force(1, :), force(2, :))))
       violation = violation/max(largest, tiny(largest))
    end subroutine check_forces
 
@@ -120,13 +127,23 @@ contains
       real(wp), intent(in) :: force(:, :)
       !> Velocities: (n_dof, n_block) [m/s, m/s, 1/s ...]
       real(wp), intent(in) :: velocity(:, :)
-      real(wp) :: rate(3, size(graph%kind)), slip
+      real(wp) :: rate(3, size(graph%kind)), fastest, slip
       integer :: j, k
 
       call joint_motion(graph, velocity, rate)
+      fastest = maxval(abs(rate))
       margin = 0.0_wp
       do j = 1, size(rate, 2)
          slip = abs(rate(3, j))
+         if (is_crushed(graph, j)) then
+            margin = margin + 0.5_wp*abs(rate(1, j) - rate(2, j)) &
+               & *beyond_parabola(graph%crush(j), force(1, j), force(2, j)) &
+               & + sum(max(0.0_wp, force(1:2, j))*max(0.0_wp, min(still*fastest, &
+               & merge(graph%friction(j), 0.0_wp, graph%kind(j) == joint_kind%contact)*slip &
+               & - rate(1:2, j))))
+            if (graph%kind(j) == joint_kind%no_slip) margin = margin + abs(force(3, j))*slip
+            cycle
+         end if
          select case (graph%kind(j))
          case (joint_kind%contact, joint_kind%corner)
             do k = 1, 2
@@ -141,6 +158,46 @@ contains
          end select
       end do
    end function flow_margin
+
+   !> Whether a joint has a strength
+   pure logical function is_crushed(graph, joint)
+      !> The joints
+      type(joint_graph_t), intent(in) :: graph
+      !> Number of the joint
+      integer, intent(in) :: joint
+
+      is_crushed = allocated(graph%crush)
+      if (is_crushed) is_crushed = graph%crush(joint) < huge(1.0_wp)
+   end function is_crushed
+
+   !> Power that joints take up at most as velocities crush them: their strength times the rate at
+   !> which fibres along them close, as far as they do; sliding opens a joint by its friction
+   pure real(wp) function crushing_power(graph, velocity) result(power)
+      !> The joints
+      type(joint_graph_t), intent(in) :: graph
+      !> Velocities: (n_dof, n_block) [m/s, m/s, 1/s ...]
+      real(wp), intent(in) :: velocity(:, :)
+      real(wp) :: rate(3, size(graph%kind)), close(2), least
+      integer :: j
+
+      power = 0.0_wp
+      if (.not. crushes(graph)) return
+      call joint_motion(graph, velocity, rate)
+      least = still*maxval(abs(rate))
+      do j = 1, size(rate, 2)
+         if (.not. is_crushed(graph, j)) cycle
+         close = -rate(1:2, j)
+         if (graph%kind(j) == joint_kind%contact) close = close + graph%friction(j)*abs(rate(3, j))
+         if (all(close <= least)) cycle
+         if (any(close < 0.0_wp)) then
+            ! the fibres beyond the one that keeps its length open
+            power = power + graph%crush(j)*0.5_wp*maxval(close) &
+               & *(maxval(close)/(maxval(close) - minval(close)))
+         else
+            power = power + graph%crush(j)*0.5_wp*sum(close)
+         end if
+      end do
+   end function crushing_power
 
    !> Largest force or moment on a block that moves as a rigid body
    pure real(wp) function larger_load(graph, load) result(largest)
@@ -201,7 +258,11 @@ contains
       call joint_motion(graph, velocity, rate)
       violation = 0.0_wp
       do j = 1, size(rate, 2)
-         violation = max(violation, beyond_flow(graph%kind(j), graph%friction(j), rate(:, j)))
+         if (is_crushed(graph, j)) then
+            if (graph%kind(j) == joint_kind%no_slip) violation = max(violation, abs(rate(3, j)))
+         else
+            violation = max(violation, beyond_flow(graph%kind(j), graph%friction(j), rate(:, j)))
+         end if
       end do
       largest = maxval(abs(velocity(1:2, :)))
       largest = max(largest, unit_of_length(graph)*maxval(abs(velocity(3, :))))

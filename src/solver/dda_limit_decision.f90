@@ -8,10 +8,11 @@ module dda_limit_decision
    use dda_interior_point, only : solve_interior
    use dda_interior_state, only : interior_goal_t, interior_point_t, interior_state, &
       & load_path_t, set_path, size_of_load
-   use dda_joint_graph, only : joint_graph_t
+   use dda_joint_graph, only : crushes, joint_graph_t
+   use dda_joint_layers, only : add_layers, joint_layers_t, touch_parabola
    use dda_joint_rays, only : add_ray_forces, joint_forces, joint_rays_t, scale_load, set_rays
    use dda_kinds, only : wp
-   use dda_limit_certificate, only : check_forces, check_velocities
+   use dda_limit_certificate, only : check_forces, check_velocities, crushing_power
    use dda_ray_matrix, only : plan_matrix, ray_matrix_t
    implicit none
    private
@@ -19,6 +20,7 @@ module dda_limit_decision
    public :: load_decision_t, load_state
    public :: decide_load
    public :: go_to_load, state_at_end, unit_of_force, keep_velocities, resolution
+   public :: crush_tolerance, most_rounds
 
    !> Whether a load can be carried
    type :: load_state_enum
@@ -55,6 +57,12 @@ module dda_limit_decision
    !> Gap at which a decision that is not made ends
    real(wp), parameter :: resolution = 1.0e-12_wp
 
+   !> How far forces may lie beyond the parabola of a joint that crushes, over the largest force
+   real(wp), parameter :: crush_tolerance = 1.0e-12_wp
+
+   !> Rounds of tangents
+   integer, parameter :: most_rounds = 60
+
    !> A mechanism whose power is less than this share of what the loads could do has none but by
    !> rounded coordinates
    real(wp), parameter :: rounding = 1.0e-13_wp
@@ -63,6 +71,64 @@ contains
 
    !> Whether a load can be carried
    pure subroutine decide_load(graph, load, decision)
+      !> The joints
+      type(joint_graph_t), intent(in) :: graph
+      !> Loads: (n_dof, n_block) [N/m, N/m, N ...]
+      real(wp), intent(in) :: load(:, :)
+      !> The decision
+      type(load_decision_t), intent(out) :: decision
+
+      if (crushes(graph)) then
+         call decide_crushing(graph, load, decision)
+      else
+         call decide_cones(graph, load, decision)
+      end if
+   end subroutine decide_load
+
+   !> Whether joints that crush can carry a load: tangents of their parabolas are added until forces
+   !> keep them, or none reach the load
+   pure subroutine decide_crushing(graph, load, decision)
+      !> The joints
+      type(joint_graph_t), intent(in) :: graph
+      !> Loads: (3, n_block) [N/m, N/m, N]
+      real(wp), intent(in) :: load(:, :)
+      !> The decision
+      type(load_decision_t), intent(out) :: decision
+      type(joint_graph_t) :: layered
+      type(joint_layers_t) :: layers
+      real(wp), allocatable :: apex(:, :)
+      real(wp) :: beyond_cone, power
+      integer :: k, n
+      logical :: touched
+
+      allocate (layers%joint(0), layers%side(0), layers%share(0))
+      n = 0
+      do k = 1, most_rounds
+         call add_layers(graph, layers, layered, apex)
+         apex(:, :graph%n_block) = apex(:, :graph%n_block) + load(1:3, :)
+         call decide_cones(layered, apex, decision)
+         n = n + decision%n_factorisation
+         decision%n_factorisation = n
+         decision%force = decision%force(:, :size(graph%kind))
+         decision%velocity = decision%velocity(:, :graph%n_block)
+         if (decision%state /= load_state%stands) exit
+         call touch_parabola(graph, decision%force, crush_tolerance &
+            & *max(maxval(abs(decision%force(1:2, :))), maxval(abs(load))), layers, touched)
+         if (.not. touched) exit
+         if (k == most_rounds) decision%state = load_state%undecided
+      end do
+      if (decision%state == load_state%stands) then
+         call check_forces(graph, load, decision%force, decision%imbalance, decision%violation)
+      else if (decision%state == load_state%falls) then
+         call check_velocities(graph, load, decision%velocity, beyond_cone, power)
+         decision%violation = beyond_cone
+         decision%power = power - crushing_power(graph, decision%velocity)
+         if (.not. decision%power > 0.0_wp) decision%state = load_state%undecided
+      end if
+   end subroutine decide_crushing
+
+   !> Whether joints that do not crush can carry a load
+   pure subroutine decide_cones(graph, load, decision)
       !> The joints
       type(joint_graph_t), intent(in) :: graph
       !> Loads: (n_dof, n_block) [N/m, N/m, N ...]
@@ -86,7 +152,7 @@ contains
       call joint_forces(rays, point%x, unit_of_force(load), decision%force)
       call keep_velocities(rays, point%v, decision%velocity)
       call conclude(graph, load, point, decision)
-   end subroutine decide_load
+   end subroutine decide_cones
 
    !> Follow the path from a load that strictly admissible forces carry to a given one
    pure subroutine go_to_load(rays, load, springs, point)

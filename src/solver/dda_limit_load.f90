@@ -8,13 +8,14 @@ module dda_limit_load
    use dda_interior_point, only : solve_interior, start_by_springs
    use dda_interior_state, only : interior_goal_t, interior_point_t, interior_state, &
       & load_path_t, no_limit, set_path
-   use dda_joint_graph, only : joint_graph_t
+   use dda_joint_graph, only : crushes, joint_graph_t
+   use dda_joint_layers, only : add_layers, bound_all, joint_layers_t, touch_parabola
    use dda_joint_rays, only : joint_forces, joint_rays_t, scale_load, set_rays
    use dda_kinds, only : wp
    use dda_limit_certificate, only : balance_margin, carried_factor, check_forces, &
-      & check_velocities, flow_margin, stopping_factor
-   use dda_limit_decision, only : go_to_load, keep_velocities, load_state, &
-      & state_at_end, unit_of_force
+      & check_velocities, crushing_power, flow_margin, stopping_factor
+   use dda_limit_decision, only : crush_tolerance, decide_load, go_to_load, keep_velocities, &
+      & load_decision_t, load_state, most_rounds, state_at_end, unit_of_force
    use dda_ray_matrix, only : plan_matrix, ray_matrix_t
    implicit none
    private
@@ -66,6 +67,9 @@ module dda_limit_load
    !> large has none
    real(wp), parameter :: many = 1.0e3_wp, beyond = 1.0e9_wp
 
+   !> Two factors of joints that crush that are farther apart than this do not agree
+   real(wp), parameter :: widest = 1.0e-8_wp
+
 contains
 
    !> The limit load
@@ -82,18 +86,134 @@ contains
       type(limit_load_t), intent(out) :: limit
       !> Whether the dead load is taken to stand
       logical, intent(in), optional :: stands
+      logical :: decided
+
+      decided = .false.
+      if (present(stands)) decided = stands
+      if (crushes(graph)) then
+         call limit_crushing(graph, dead, live, tolerance, decided, limit)
+      else
+         call limit_cones(graph, dead, live, tolerance, decided, limit)
+      end if
+   end subroutine find_limit
+
+   !> The limit load of joints that crush: tangents of their parabolas are added until the forces
+   !> keep them
+   pure subroutine limit_crushing(graph, dead, live, tolerance, decided, limit)
+      !> The joints
+      type(joint_graph_t), intent(in) :: graph
+      !> Loads at factor zero: (3, n_block) [N/m, N/m, N]
+      real(wp), intent(in) :: dead(:, :)
+      !> What a factor of one adds: (3, n_block) [N/m, N/m, N]
+      real(wp), intent(in) :: live(:, :)
+      !> Relative gap of the two factors
+      real(wp), intent(in) :: tolerance
+      !> Whether the dead load is taken to stand
+      logical, intent(in) :: decided
+      !> The limit
+      type(limit_load_t), intent(out) :: limit
+      type(load_decision_t) :: decision
+      type(joint_layers_t) :: layers
+      integer :: k, n
+      logical :: bounded, touched
+
+      if (.not. decided) then
+         call decide_load(graph, dead, decision)
+         if (decision%state /= load_state%stands) then
+            if (decision%state == load_state%falls) limit%state = limit_state%no_dead_equilibrium
+            limit%force = decision%force
+            limit%velocity = decision%velocity
+            limit%n_factorisation = decision%n_factorisation
+            call certify(graph, dead, live, limit)
+            return
+         end if
+      end if
+      allocate (layers%joint(0), layers%side(0), layers%share(0))
+      bounded = .false.
+      n = 0
+      do k = 1, most_rounds
+         call limit_layers(graph, layers, dead, live, tolerance, limit)
+         n = n + limit%n_factorisation
+         limit%n_factorisation = n
+         if (limit%state == limit_state%unbounded .and. .not. bounded) then
+            bounded = .true.
+            call bound_all(graph, layers)
+            cycle
+         end if
+         if (limit%state /= limit_state%found) exit
+         call certify(graph, dead, live, limit)
+         if (agree(limit, tolerance, crush_tolerance)) return
+         call touch_parabola(graph, limit%force, crush_tolerance*maxval(abs(limit%force(1:2, :))), &
+            & layers, touched)
+         if (.not. touched) exit
+      end do
+      call certify(graph, dead, live, limit)
+      if (limit%state == limit_state%found .and. .not. agree(limit, max(tolerance, widest), &
+         & widest)) limit%state = limit_state%not_converged
+   end subroutine limit_crushing
+
+   !> The limit load of joints with layers for the parabolas of those that crush
+   pure subroutine limit_layers(graph, layers, dead, live, tolerance, limit)
+      !> The joints
+      type(joint_graph_t), intent(in) :: graph
+      !> Tangents of their parabolas
+      type(joint_layers_t), intent(in) :: layers
+      !> Loads at factor zero: (3, n_block) [N/m, N/m, N]
+      real(wp), intent(in) :: dead(:, :)
+      !> What a factor of one adds: (3, n_block) [N/m, N/m, N]
+      real(wp), intent(in) :: live(:, :)
+      !> Relative gap of the two factors
+      real(wp), intent(in) :: tolerance
+      !> The limit, forces and velocities of joints and blocks alone
+      type(limit_load_t), intent(out) :: limit
+      type(joint_graph_t) :: layered
+      real(wp), allocatable :: load(:, :), more(:, :)
+
+      call add_layers(graph, layers, layered, load)
+      load(:, :graph%n_block) = load(:, :graph%n_block) + dead(1:3, :)
+      allocate (more(3, layered%n_block), source=0.0_wp)
+      more(:, :graph%n_block) = live(1:3, :)
+      call limit_cones(layered, load, more, tolerance, .true., limit)
+      limit%force = limit%force(:, :size(graph%kind))
+      limit%velocity = limit%velocity(:, :graph%n_block)
+   end subroutine limit_layers
+
+   !> Whether two factors agree, and the forces keep the law of joints that crush
+   pure logical function agree(limit, gap, violation)
+      !> The limit
+      type(limit_load_t), intent(in) :: limit
+      !> Relative gap
+      real(wp), intent(in) :: gap
+      !> How far forces may be beyond a law, over the largest load
+      real(wp), intent(in) :: violation
+
+      agree = limit%upper - limit%lower <= gap*max(abs(limit%lower), abs(limit%upper)) &
+         & .and. limit%cone_violation <= violation
+   end function agree
+
+   !> The limit load of joints that do not crush
+   pure subroutine limit_cones(graph, dead, live, tolerance, stands, limit)
+      !> The joints
+      type(joint_graph_t), intent(in) :: graph
+      !> Loads at factor zero: (n_dof, n_block) [N/m, N/m, N ...]
+      real(wp), intent(in) :: dead(:, :)
+      !> What a factor of one adds: (n_dof, n_block) [N/m, N/m, N ...]
+      real(wp), intent(in) :: live(:, :)
+      !> Relative gap of the two factors
+      real(wp), intent(in) :: tolerance
+      !> Whether the dead load is taken to stand
+      logical, intent(in) :: stands
+      !> The limit
+      type(limit_load_t), intent(out) :: limit
       type(joint_rays_t) :: rays
       type(ray_matrix_t) :: springs
       type(interior_point_t) :: point
       real(wp) :: unit
-      logical :: decided
 
       call set_rays(graph, rays)
       call plan_matrix(rays, springs)
       unit = unit_of_force(dead)
-      decided = .false.
-      if (present(stands)) decided = stands
-      if (.not. decided) call go_to_load(rays, dead, springs, point)
+      if (.not. stands) call go_to_load(rays, dead, springs, point)
       if (state_at_end(point) == load_state%falls) then
          limit%state = limit_state%no_dead_equilibrium
       else
@@ -112,7 +232,7 @@ contains
       call keep_velocities(rays, point%v, limit%velocity)
       call certify(graph, dead, live, limit)
       limit%n_factorisation = springs%n_factorisation
-   end subroutine find_limit
+   end subroutine limit_cones
 
    !> Raise the live load beside a dead load that stands
    pure subroutine raise_live_load(rays, dead, live, tolerance, ceiling, springs, point)
@@ -193,6 +313,8 @@ contains
       case default
          limit%lower = carried_factor(graph, dead, live, limit%force)
          limit%upper = stopping_factor(dead, live, limit%velocity)
+         if (crushes(graph)) limit%upper = limit%upper + crushing_power(graph, limit%velocity) &
+            & /max(sum(live(1:3, :)*limit%velocity(1:3, :)), tiny(1.0_wp))
          call check_forces(graph, dead + limit%lower*live, limit%force, limit%imbalance, &
             & limit%cone_violation)
          call check_velocities(graph, live, limit%velocity, limit%flow_violation, limit%power)

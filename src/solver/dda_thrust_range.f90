@@ -84,6 +84,7 @@ contains
       split%row(:, :, :, :n) = graph%row(1:3, :, :, :)
       split%friction(:n) = graph%friction
       split%length(:n) = graph%length
+      if (allocated(graph%crush)) split%crush = [graph%crush, huge(1.0_wp)]
       split%block(side, joint) = split%n_block
       split%kind(n + 1) = joint_kind%pin
       split%block(:, n + 1) = [graph%block(side, joint), split%n_block]

@@ -10,7 +10,7 @@ module dda_graph_decision
    use dda_contact_detection, only : contacts_t
    use dda_coulomb_fall, only : find_coulomb_fall
    use dda_first_motion, only : find_first_motion
-   use dda_joint_graph, only : joint_graph_t, rubs
+   use dda_joint_graph, only : crushes, joint_graph_t, rubs
    use dda_kinds, only : wp
    use dda_limit_decision, only : decide_load, load_decision_t, load_state
    use dda_limit_load, only : find_limit, limit_load_t, limit_state
@@ -225,6 +225,9 @@ contains
       real(wp) :: force(3, size(graph%kind)), motion(3, graph%n_block)
       integer :: n
 
+      ! accelerations know nothing of strength: the mechanism of limit analysis is all there is
+      verdict%is_told = crushes(graph)
+      if (verdict%is_told) return
       call find_first_motion(graph, load, motion, force, verdict%is_told, n)
       verdict%n_factorisation = verdict%n_factorisation + n
       if (.not. verdict%is_told) return

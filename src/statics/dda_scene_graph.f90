@@ -55,6 +55,8 @@ contains
             graph%row(:, :, :, j) = contacts%springs%row(:n_rigid, :, :, j)
             graph%length(j) = contacts%joint(j)%length
             graph%friction(j) = law%friction
+            if (law%strength < huge(1.0_wp)) &
+               & graph%crush(j) = law%strength*contacts%joint(j)%length
             graph%compliance(:, j) = block_compliance(system, contacts%joint(j))
             if (law%no_slip) then
                graph%kind(j) = merge(joint_kind%corner_no_slip, joint_kind%no_slip, cone%single)
@@ -234,6 +236,7 @@ contains
       allocate (graph%block(2, n), graph%kind(n))
       allocate (graph%row(n_rigid, 3, 2, n), source=0.0_wp)
       allocate (graph%friction(n), graph%length(n), source=0.0_wp)
+      allocate (graph%crush(n), source=huge(1.0_wp))
       allocate (graph%compliance(3, n), source=1.0_wp)
       allocate (graph%gap(2, n), source=0.0_wp)
    end subroutine allocate_joints

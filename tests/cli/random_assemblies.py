@@ -59,13 +59,15 @@ def random_assembly(seed: int) -> tuple[str, float]:
     return text, math.degrees(math.atan(source.uniform(0.35, 0.9)))
 
 
-def programme(scene) -> float | None:
+def programme(scene, tangents: int = 0) -> float | None:
     """Largest load factor of a scene of voussoir.verify by HiGHS, its load being that of a factor of one.
 
     Parameters
     ----------
     scene
         Blocks, joints, deck and file of blocks, of voussoir.verify_proofs.
+    tangents
+        Tangents of the parabola of a joint that crushes, on either side.
     """
     from scipy.optimize import linprog
     from voussoir.verify_loads import loads_on
@@ -75,9 +77,11 @@ def programme(scene) -> float | None:
     # of many, lest rounding of the weights be in it
     live = (loads_on(scene.deck.with_value("load_factor", repr(MANY)), scene.source, scene.blocks) - dead) / MANY
     free = [block.number - 1 for block in scene.blocks if not block.fixed]
-    columns = []
+    columns, pressed = [], []
     for joint in scene.joints:
         friction = scene.friction(joint)
+        if tangents:
+            pressed.append((len(columns), scene.crush(joint)))
         for k in (0,) if joint.single else (0, 1):
             for sign in (1.0, -1.0):
                 effect = np.zeros((len(scene.blocks), 3))
@@ -87,8 +91,18 @@ def programme(scene) -> float | None:
                 columns.append(effect[free].ravel())
     unit = np.abs(dead).max()
     matrix = np.array([*columns, live[free].ravel() / unit]).T
+    cuts, most = np.zeros((2 * tangents * len(pressed), matrix.shape[1])), []
+    for first, crush in pressed:
+        # as far apart as the force is large where they touch
+        for share in ((np.arange(tangents) + 0.5) / tangents) ** 2:
+            for way in (1.0, -1.0):
+                # more at one corner than at the other: at most as much as the tangent has
+                cut = cuts[len(most)]
+                cut[first:first + 2], cut[first + 2:first + 4] = way - (1 - 2 * share), -way - (1 - 2 * share)
+                most.append(share**2 * crush / unit)
     cost = np.zeros(matrix.shape[1])
     cost[-1] = -1.0
     found = linprog(cost, A_eq=matrix, b_eq=-dead[free].ravel() / unit, bounds=(0.0, None), method="highs-ds",
+                    A_ub=cuts if tangents else None, b_ub=most if tangents else None,
                     options={"primal_feasibility_tolerance": 1e-10, "dual_feasibility_tolerance": 1e-10})
     return -found.fun if found.status == 0 else None

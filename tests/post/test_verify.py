@@ -38,6 +38,11 @@ FILLED = (
     "&joint friction_deg = 31 /\n&vehicle axles = 1000, position = -1.6 /\n"
     "&fill height = 0.165, unit_weight = 20e3, {} /\n"
 )
+CRUSHED = (
+    "&arch shape = 'segmental', span = 10, rise = 2.5, thickness = 0.6, voussoirs = 16 /\n"
+    "&material unit_weight = 2e4, compressive_strength = {} /\n&joint friction_deg = 38 /\n"
+    "&vehicle axles = 1000, position = -2.4 /\n&analysis flow = 'associated' /\n"
+)
 LUNE = "&arch shape = 'circular', thickness_ratio = {}, lune_deg = 10, voussoirs = 21 /\n"
 TIED = (
     "&arch shape = 'circular', radius = 1, thickness = 0.15, voussoirs = 12, buttress_width = 0.2, "
@@ -80,6 +85,15 @@ DECKS = {
     "a weak tie": TIED.format(100),
     "strength of a tie": TIED.format(1e5) + "&search parameter = 'strength(1)', low = 0, high = 1e5 /\n",
     "live load on a tied arch": TIED.format(2e4) + "&live x = 0, y = 1, fy = -1e3 /\n" + SEARCH,
+    "an arch that crushes": CRUSHED.format(1e6) + SEARCH,
+    "an arch that is crushed": CRUSHED.format(1e6) + "&load load_factor = 80 /\n",
+    "an arch that is not": CRUSHED.format(1e6) + "&load load_factor = 30 /\n",
+    "thickness of what crushes": CRUSHED.format(8e5).replace("thickness = 0.6, ", "").split("&vehicle")[0]
+        + "&analysis flow = 'associated' /\n&search parameter = 'thickness', low = 0.1, high = 2 /\n",
+    "strength": CRUSHED.format(1e6) + "&load load_factor = 30 /\n"
+        + "&search parameter = 'compressive_strength', low = 1e4, high = 1e9 /\n",
+    "a push on what crushes": CRUSHED.format(1e6).split("&vehicle")[0] + "&analysis flow = 'associated' /\n"
+        + "&search parameter = 'horizontal_coefficient' /\n",
     "friction": HEAD + "&load load_factor = 5.0 /\n&search parameter = 'friction_deg' /\n",
 }
 #: Files of blocks with bars and water, each with a deck

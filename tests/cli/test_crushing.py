@@ -1,0 +1,134 @@
+"""Joints that crush bear their force on a strip: closed forms, linear programmes of tangents, what is refused."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+
+import pytest
+from dda_command import run_dda
+from test_live_loads import SEARCH, rows
+
+ASSOCIATED = "&analysis flow = 'associated' /\n"
+BLOCK = "block fixed\n-1 -1\n2 -1\n2 0\n-1 0\nblock\n0 0\n1 0\n1 2\n0 2\n"
+BRIDGE = (
+    "&arch shape = '{shape}', span = 10, rise = {rise}, thickness = 0.6, voussoirs = 24 /\n"
+    "&joint friction_deg = 40 /\n&vehicle axles = 1000, position = -2.4 /\n" + ASSOCIATED + SEARCH
+)
+
+
+def material(strength: float, weight: float = 1.0) -> str:
+    """Blocks of a weight and a strength."""
+    return f"&material unit_weight = {weight!r}, compressive_strength = {strength!r} /\n"
+
+
+def limit(tmp_path: Path, live: str, strength: float, own: str = "") -> tuple[float, float]:
+    """The proven interval of the load factor of a block of weight 2 and width 1."""
+    deck = "&joint friction_deg = 85 /\n" + ASSOCIATED + SEARCH
+    deck += f"&material unit_weight = 1{own and f', compressive_strength = {strength!r}'} /\n"
+    (row,) = rows(tmp_path, deck, BLOCK + f"live {live}\n")
+    assert row["verdict"] == "found"
+    return float(row["exact_low"]), float(row["exact_high"])
+
+
+@pytest.mark.parametrize("strength", [2.01, 2.5, 3.0, 3.9999, 4.0, 4.0001, 5.0, 20.0, 1e3, 1e6])
+def test_a_block_turns_over_about_the_strip_that_bears_it(tmp_path: Path, strength: float) -> None:
+    """Pushed half way up: the moment is the weight times half of what is left of the width."""
+    low, high = limit(tmp_path, "0 1.5 1 0", strength, "own")
+    exact = 2.0 * (1.0 - 2.0 / strength) / 2.0 / 1.5
+    assert low <= exact * (1 + 1e-12) and exact * (1 - 1e-12) <= high
+    assert high - low <= 1e-10 * exact + 1e-11
+
+
+@pytest.mark.parametrize("place", [0.5, 0.6, 0.7, 0.9])
+@pytest.mark.parametrize("strength", [3.0, 5.0, 50.0])
+def test_a_column_bears_up_to_its_strength(tmp_path: Path, place: float, strength: float) -> None:
+    """N (1 - N/S)/2 = P e with N = 2 + P."""
+    low, high = limit(tmp_path, f"{place!r} 2 0 -1", strength, "own")
+    slope = 4.0 / strength - 1.0 + 2.0 * (place - 0.5)
+    most = (-slope + math.sqrt(slope**2 + 4.0 / strength * (2.0 - 4.0 / strength))) / (2.0 / strength)
+    assert low <= most * (1 + 1e-12) and most * (1 - 1e-12) <= high
+    assert high - low <= 1e-10 * most
+
+
+def test_the_weaker_material_counts(tmp_path: Path) -> None:
+    blocks = BLOCK.replace("block\n0 0", "block material 2\n0 0") + "live 0 1.5 1 0\n"
+    deck = "&joint friction_deg = 85 /\n" + ASSOCIATED + SEARCH
+    found = []
+    for own, other in ((5.0, 4.0), (4.0, 5.0)):
+        text = blocks + f"material 2 compressive_strength {other!r}\n"
+        found.append(float(rows(tmp_path, deck + material(own), text)[0]["critical"]))
+    assert found == pytest.approx([1.0 / 3.0, 1.0 / 3.0], rel=1e-9)
+    text = blocks + "material 2 compressive_strength 4\n"
+    (row,) = rows(tmp_path, deck + "&material unit_weight = 1 /\n", text)
+    assert float(row["critical"]) == pytest.approx(1.0 / 3.0, rel=1e-9)
+
+
+@pytest.mark.parametrize(("share", "verdict"), [(1 - 1e-6, "stable"), (1 + 1e-6, "collapsed")])
+def test_a_column_is_decided_near_its_strength(tmp_path: Path, share: float, verdict: str) -> None:
+    blocks = BLOCK + f"load 0.5 2 0 {-3.0 * share!r}\n"
+    (row,) = rows(tmp_path, material(5.0) + ASSOCIATED, blocks)
+    assert row["verdict"] == verdict
+    assert float(row["law_violation"]) <= 1e-11
+
+
+def test_the_least_strength_is_found(tmp_path: Path) -> None:
+    blocks = BLOCK + "load 0 1.5 0.4 0\n"
+    deck = "&joint friction_deg = 85 /\n&material unit_weight = 1 /\n" + ASSOCIATED
+    deck += "&search parameter = 'compressive_strength', low = 2.1, high = 100 /\n"
+    (row,) = rows(tmp_path, deck, blocks)
+    assert float(row["critical"]) == pytest.approx(5.0, rel=1e-7)
+
+
+@pytest.mark.parametrize(("shape", "rise"), [("segmental", 2.5), ("parabolic", 3.5), ("segmental", 1.8)])
+@pytest.mark.parametrize("strength", [4e5, 1.3e6, 1e7])
+def test_an_arch_carries_what_a_programme_of_tangents_has(
+    tmp_path: Path, shape: str, rise: float, strength: float
+) -> None:
+    pytest.importorskip("scipy", reason="the linear programme wants scipy")
+    verify = pytest.importorskip("voussoir.verify_command", reason="PYTHONPATH wants python/")
+    from random_assemblies import programme
+    from voussoir.verify_deck import read_record
+
+    (row,) = rows(tmp_path, BRIDGE.format(shape=shape, rise=rise) + material(strength, 2e4), head="")
+    (folder,) = {path.parent for path in tmp_path.rglob("results.csv")}
+    blocks = verify.read_table(folder / "blocks.csv")[1]
+    scene = verify.scene_of(read_record(folder).with_value("load_factor", "1"), blocks, [tmp_path], verify.Finding())
+    assert float(row["critical"]) == pytest.approx(programme(scene, 200), rel=1e-4)
+    assert float(row["exact_low"]) <= programme(scene, 200) * (1 + 1e-9)
+
+
+def test_great_strengths_are_none(tmp_path: Path) -> None:
+    bridge = BRIDGE.format(shape="segmental", rise=2.5)
+    (bare,) = rows(tmp_path, bridge + "&material unit_weight = 2e4 /\n", head="")
+    for strength in (1e16, 1e18, 1e24, 1e30):
+        (row,) = rows(tmp_path, bridge + material(strength, 2e4), head="")
+        assert float(row["critical"]) == pytest.approx(float(bare["critical"]), rel=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("more", "message"),
+    [
+        ("", "needs flow = 'associated', got 'coulomb'"),
+        ("&analysis flow = 'associated', geometry = 'current' /\n", "needs mode = 'static' and geometry = 'reference'"),
+        ("&analysis mode = 'dynamic', duration = 1 /\n", "needs mode = 'static' and geometry = 'reference'"),
+        (ASSOCIATED + "&joint cohesion = 1e3 /\n", "needs joints without cohesion and tension"),
+        (ASSOCIATED + "&search parameter = 'gravity_direction_deg', low = -90, high = -60 /\n",
+         "search horizontal_coefficient"),
+    ],
+)
+def test_what_knows_no_strength_is_refused(tmp_path: Path, more: str, message: str) -> None:
+    (tmp_path / "x.blocks").write_text(BLOCK)
+    (tmp_path / "x.nml").write_text("&scene kind = 'blocks', geometry = 'x.blocks' /\n" + material(5.0) + more)
+    done = run_dda("check", "x.nml", cwd=tmp_path)
+    assert done.returncode == 2
+    assert message in done.stderr and done.stderr.startswith("x.nml:")
+
+
+def test_corners_on_edges_are_refused(tmp_path: Path) -> None:
+    (tmp_path / "x.blocks").write_text(BLOCK + "block\n0.5 2\n1 3\n0 3\n")
+    deck = "&scene kind = 'blocks', geometry = 'x.blocks' /\n" + material(5.0) + ASSOCIATED
+    (tmp_path / "x.nml").write_text(deck)
+    done = run_dda("check", "x.nml", cwd=tmp_path)
+    assert done.returncode == 2
+    assert "x.blocks:6: error: compressive_strength needs joints with a width" in done.stderr
