@@ -15,7 +15,9 @@ import pytest
 
 pytest.importorskip("voussoir", reason="PYTHONPATH wants the build's python folder")
 
+from voussoir import results  # noqa: E402
 from voussoir.campaign import part as campaign_part  # noqa: E402
+from voussoir.campaign.case_set import CaseSet  # noqa: E402
 from voussoir.campaign.merge import TABLES, merge, slices_of  # noqa: E402
 from voussoir.campaign.part import finished_by, finished_in, ranges_of  # noqa: E402
 from voussoir.campaign.share import share  # noqa: E402
@@ -295,3 +297,32 @@ def test_dask_cluster_gives_the_same_table_though_a_worker_is_killed(tmp_path: P
         assert 20 <= len(before) < 600
         assert process.wait(timeout=300) == 0
     assert tables(out) == tables(tmp_path / "one")
+
+
+def test_parquet_has_the_cells_of_the_table(tmp_path: Path, monkeypatch) -> None:
+    parquet = pytest.importorskip("pyarrow.parquet", reason="pyarrow is not installed: skipped")
+    monkeypatch.setattr("voussoir.campaign.parquet.BATCH", 7)  # several groups of rows
+    out = tmp_path / "out"
+    assert main(["campaign", str(write_deck(tmp_path)), "--out", str(out), "--parquet", "--quiet"]) == 0
+    table, cases = parquet.read_table(out / "results.parquet"), results.read(out).cases
+    assert parquet.ParquetFile(out / "results.parquet").num_row_groups == 5
+    assert table.column_names == list(cases)
+    assert table["critical"].to_numpy() == pytest.approx(cases["critical"], nan_ok=True, rel=0, abs=0)
+    assert table["verdict"].to_pylist() == cases["verdict"].tolist()
+    assert [tuple(row) for row in table["intrados_hinge_deg"].to_pylist()] == cases["intrados_hinge_deg"].tolist()
+
+
+def test_parquet_without_its_package_is_told_before_anything_is_computed(tmp_path: Path, monkeypatch, capsys) -> None:
+    monkeypatch.setitem(sys.modules, "pyarrow", None)
+    assert main(["campaign", str(write_deck(tmp_path)), "--out", str(tmp_path / "out"), "--parquet"]) == 2
+    assert "Parquet needs pyarrow, got none" in capsys.readouterr().err
+    assert not (tmp_path / "out").exists()
+
+
+def test_sets_of_cases_are_sets() -> None:
+    numbers = CaseSet([5, 3, 900, 3])
+    assert list(numbers) == [3, 5, 900] and len(numbers) == 3
+    assert 3 in numbers and 4 not in numbers and -1 not in numbers
+    assert numbers == {3, 5, 900} and numbers - {5} == {3, 900} and {5, 6} & numbers == {5} and numbers > {3}
+    numbers.discard(3)
+    assert list(numbers) == [5, 900] and not CaseSet()

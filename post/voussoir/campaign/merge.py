@@ -11,10 +11,13 @@ import os
 import re
 import shutil
 import uuid
-from collections.abc import Callable
+from array import array
+from collections.abc import Callable, Set
 from dataclasses import dataclass
 from pathlib import Path
 from typing import BinaryIO
+
+import numpy as np
 
 from voussoir.campaign.part import SEAL, finished_by, slices_of, write_seal
 
@@ -36,6 +39,10 @@ TABLES = (
 )
 
 
+#: Where the rows of a case are: number of the table, first byte, byte behind the last
+_PLACE = np.dtype([("case", "i8"), ("number", "i4"), ("start", "i8"), ("stop", "i8")])
+
+
 @dataclass(frozen=True)
 class Summary:
     """What a merged table holds."""
@@ -44,6 +51,30 @@ class Summary:
     cases: int
     #: Those of them that are undecided
     undecided: int
+
+
+class Owner:
+    """The attempt that each case is taken from: the first that has it."""
+
+    def __init__(self) -> None:
+        #: Attempts that have a case, in the order in which they came
+        self.attempts: list[Path] = []
+        self._place = array("i")
+
+    def take(self, case: int, attempt: Path) -> None:
+        """Give a case to an attempt, unless another one has it."""
+        if case >= len(self._place):
+            self._place.extend([-1] * (case + 1 - len(self._place)))
+        if self._place[case] >= 0:
+            return
+        if self.attempts[-1:] != [attempt]:
+            self.attempts.append(attempt)
+        self._place[case] = len(self.attempts) - 1
+
+    def get(self, case: int) -> Path | None:
+        """The attempt of a case."""
+        place = self._place[case] if case < len(self._place) else -1
+        return self.attempts[place] if place >= 0 else None
 
 
 def merge(
@@ -62,14 +93,12 @@ def merge(
     record, headers : optional
         As of `finished_by`.
     """
-    owner: dict[int, Path] = {}
     candidates = [*([out] if record else []), *(sorted(parts.iterdir()) if parts.is_dir() else ())]
+    owner = Owner()
     for attempt in candidates:
         for case in finished_by(attempt, record, headers):
-            owner.setdefault(case, attempt)
-    attempts = [path for path in candidates if path in set(owner.values())]
-    if not attempts:
-        attempts = [path for path in candidates if (path / "results.csv").exists()][:1]
+            owner.take(case, attempt)
+    attempts = owner.attempts or [path for path in candidates if (path / "results.csv").exists()][:1]
     (out / SEAL).unlink(missing_ok=True)
     (out / "disk.record").unlink(missing_ok=True)  # of another run: these tables are written whole
     for name in TABLES:
@@ -86,7 +115,7 @@ def merge(
 def merge_table(
     name: str,
     attempts: list[Path],
-    owner: dict[int, Path],
+    owner: Owner,
     out: Path,
     headers: dict[str, str] | None = None,
 ) -> None:
@@ -98,7 +127,7 @@ def merge_table(
         Name of its file.
     attempts : list of Path
         Folders of the attempts.
-    owner : dict of int to Path
+    owner : Owner
         For each case the attempt that it is taken from.
     out : Path
         Folder of the campaign; the table is left out where no attempt has one.
@@ -112,20 +141,22 @@ def merge_table(
         header = first.readline()
     if headers is not None:
         header = headers[name].encode() + b"\n"
-    places = [
+    found = (
         (case, number, start, stop)
         for number, source in enumerate(sources)
         for case, start, stop in slices_of(source)
         if owner.get(case) == source.parent
-    ]
+    )
+    places = np.fromiter(found, dtype=_PLACE)
     if name in ("results.csv", "log.txt", "sizes.record"):  # a row a case, however often it was written
-        places = list({place[0]: place for place in reversed(places)}.values())
-    places.sort()
+        places = places[np.unique(places["case"], return_index=True)[1]]
+    places.sort(order=("case", "number", "start"))
 
     def write(file: BinaryIO) -> None:
         file.write(header)
         opened, at = None, -1
-        for _, number, start, stop in places:
+        for place in places:
+            number, start, stop = int(place["number"]), int(place["start"]), int(place["stop"])
             if number != at:
                 if opened:
                     opened.close()
@@ -138,14 +169,14 @@ def merge_table(
     replace(out / name, write)
 
 
-def copy_pictures(attempts: list[Path], owner: dict[int, Path], out: Path) -> None:
+def copy_pictures(attempts: list[Path], owner: Owner, out: Path) -> None:
     """Move the files of single cases into the folder of the campaign.
 
     Parameters
     ----------
     attempts : list of Path
         Folders of the attempts.
-    owner : dict of int to Path
+    owner : Owner
         For each case the attempt that it is taken from.
     out : Path
         Folder of the campaign.
@@ -159,7 +190,7 @@ def copy_pictures(attempts: list[Path], owner: dict[int, Path], out: Path) -> No
                 shutil.copy2(path, copy)
 
 
-def merged(out: Path, cases: set[int]) -> Summary:
+def merged(out: Path, cases: Set[int]) -> Summary:
     """Count what a merged table holds.
 
     Parameters
@@ -178,7 +209,7 @@ def merged(out: Path, cases: set[int]) -> Summary:
         return Summary(0, 0)
     with (out / "results.csv").open(newline="", encoding="utf-8", errors="replace") as file:
         rows = csv.DictReader(file)
-        return Summary(len(cases), [row["verdict"] for row in rows].count("undecided"))
+        return Summary(len(cases), sum(row["verdict"] == "undecided" for row in rows))
 
 
 def replace(path: Path, write: Callable[[BinaryIO], object]) -> None:

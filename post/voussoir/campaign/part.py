@@ -1,9 +1,9 @@
 """One part of a campaign: run by a worker, wherever that is.
 
-Everything here uses the standard library alone, so that a worker needs no more than Python, the
-program `dda` and the folder of the campaign. No two attempts write to the same file: each has a
-folder of its own, and what an attempt before it has finished is not computed again. So a worker
-may be killed at any moment, and its program may even go on without it.
+Everything here and in case_set uses the standard library alone, so that a worker, which receives both modules,
+needs no more than Python, the program `dda` and the folder of the campaign. No two attempts write to the same
+file: each has a folder of its own, and what an attempt before it has finished is not computed again. So a worker
+may be killed at any moment, and its program may even go on without it. Tables are read line by line.
 """
 
 from __future__ import annotations
@@ -13,9 +13,12 @@ import hashlib
 import signal
 import subprocess
 import uuid
-from collections.abc import Iterable, Iterator
+from array import array
+from collections.abc import Iterable, Iterator, Sequence, Set
 from dataclasses import dataclass
 from pathlib import Path
+
+from voussoir.campaign.case_set import CaseSet
 
 #: Digests of an attempt's tables, written when its program has ended
 SEAL = "tables.sha256"
@@ -33,8 +36,8 @@ class Part:
     settings: tuple[str, ...]
     #: Folder of the campaign's parts
     folder: Path
-    #: Numbers of the cases, rising
-    cases: tuple[int, ...]
+    #: Numbers of the cases, ascending
+    cases: Sequence[int]
     #: Cases computed at the same time
     jobs: int = 1
     #: Text of deck.record that attempts must have; None for any
@@ -111,7 +114,7 @@ def finished_in(
     record: str | None = None,
     headers: dict[str, str] | None = None,
     problems: list[str] | None = None,
-) -> set[int]:
+) -> Set[int]:
     """Which cases some attempt has finished.
 
     Parameters
@@ -128,15 +131,17 @@ def finished_in(
     set of int
         Those that have whole rows.
     """
-    wanted = set(cases)
+    wanted = CaseSet(cases)
     if not wanted:
-        return set()
-    low, high = min(wanted), max(wanted)
-    found: set[int] = set()
+        return wanted
+    low, high = next(iter(wanted)), max(wanted)
+    found = CaseSet()
     for attempt in sorted(folder.iterdir()) if folder.is_dir() else ():
         span = span_of(attempt)
         if span and span[0] <= high and span[-1] >= low:
-            found |= finished_by(attempt, record, headers, problems) & wanted
+            for case in finished_by(attempt, record, headers, problems):
+                if case in wanted:
+                    found.add(case)
     return found
 
 
@@ -151,7 +156,7 @@ def finished_by(
     record: str | None = None,
     headers: dict[str, str] | None = None,
     problems: list[str] | None = None,
-) -> set[int]:
+) -> Set[int]:
     """Which cases an attempt has finished: a whole row of results.csv is written last.
 
     Parameters
@@ -173,82 +178,90 @@ def finished_by(
     """
     said = [] if problems is None else problems
     if not (attempt / "results.csv").exists():
-        return set()
+        return CaseSet()
     try:
         return _finished_by(attempt, record, headers or {}, said)
     except (OSError, csv.Error) as error:
         said.append(f"{attempt / 'results.csv'}:1: warning: expected a table, got: {error}")
-        return set()
+        return CaseSet()
 
 
 def _finished_by(
     attempt: Path, record: str | None, headers: dict[str, str], said: list[str]
-) -> set[int]:
+) -> Set[int]:
     """Which cases an attempt has finished; failures are exceptions."""
     if record is not None and content_of(attempt / "deck.record") != record.encode():
         said.append(f"{attempt / 'deck.record'}:1: warning: expected the record of this campaign, "
                     "got another one; nothing of this folder is taken")
-        return set()
+        return CaseSet()
     for name, header in headers.items():
-        if content_of(attempt / name).partition(b"\n")[0] != header.encode():
+        if first_line(attempt / name) != header.encode():
             said.append(f"{attempt / name}:1: warning: expected the first line '{header}', got "
                         "another one; its cases are computed again")
-            return set()
+            return CaseSet()
     broken = broken_seal(attempt)
     if broken:
         said.append(f"{attempt / broken}:1: warning: expected the table as it was written, got a "
                     "damaged one; its cases are computed again")
-        return set()
+        return CaseSet()
     cases = whole_rows(attempt, said)
-    sizes = bytes_of_cases(attempt, headers)
-    if sizes is None:
+    if "sizes.record" not in headers or not cases:
         return cases
-    kept = set()
-    for case, told in sizes.items():
-        if case in cases and told[0] == told[1]:
+    had = bytes_of_cases(attempt, headers, max(cases))
+    kept = CaseSet()
+    for case, size in told_sizes(attempt):
+        if case in cases and size == had[case]:
             kept.add(case)
-    for case in sorted(cases - kept)[:1]:
-        said.append(f"{attempt / 'sizes.record'}:1: warning: expected the bytes that case {case} has "
+    lost = next((case for case in cases if case not in kept), None)
+    if lost is not None:
+        said.append(f"{attempt / 'sizes.record'}:1: warning: expected the bytes that case {lost} has "
                     "in the tables, got others; it is computed again")
     return kept
 
 
-def whole_rows(attempt: Path, said: list[str]) -> set[int]:
+def whole_rows(attempt: Path, said: list[str]) -> CaseSet:
     """Cases with a whole row in results.csv."""
+    span, found, trusted = span_of(attempt), CaseSet(), trusted_length(attempt)
     with (attempt / "results.csv").open("rb") as file:
-        text = file.read(trusted_length(attempt)).decode("utf-8", errors="replace")
-    header, *rows = text[: text.rfind("\n") + 1].split("\n")[:-1] or [""]
-    names = fields_of(header.encode(), ".csv")
-    span, found = span_of(attempt), set()
-    if "case" not in names:
-        said.append(f"{attempt / 'results.csv'}:1: warning: expected a column case, got none")
-        return found
-    for number, row in enumerate(rows, 2):
-        fields = fields_of(row.encode(), ".csv")
-        case = fields[names.index("case")] if len(fields) == len(names) else ""
-        if case.isdecimal() and case.isascii() and (span is None or int(case) in span):
-            found.add(int(case))
-        else:
-            said.append(f"{attempt / 'results.csv'}:{number}: warning: expected a row of "
-                        f"{len(names)} cells with its case, got another one; its case is "
-                        "computed again")
+        header = file.readline()
+        names = fields_of(header, ".csv") if header.endswith(b"\n") else []
+        if "case" not in names:
+            said.append(f"{attempt / 'results.csv'}:1: warning: expected a column case, got none")
+            return found
+        place, read = names.index("case"), len(header)
+        for number, line in enumerate(file, 2):
+            read += len(line)
+            if not line.endswith(b"\n") or 0 <= trusted < read:
+                break
+            fields = fields_of(line, ".csv")
+            case = fields[place] if len(fields) == len(names) else ""
+            if case.isdecimal() and case.isascii() and (span is None or int(case) in span):
+                found.add(int(case))
+            else:
+                said.append(f"{attempt / 'results.csv'}:{number}: warning: expected a row of "
+                            f"{len(names)} cells with its case, got another one; its case is "
+                            "computed again")
     return found
 
 
-def bytes_of_cases(attempt: Path, headers: dict[str, str]) -> dict[int, tuple[int, int]] | None:
-    """Bytes of each case as sizes.record tells them, and as the tables have them; None without."""
-    if "sizes.record" not in headers:
-        return None
-    had: dict[int, int] = {}
+def bytes_of_cases(attempt: Path, headers: dict[str, str], last: int) -> array[int]:
+    """Bytes that each case up to the last one has in the tables."""
+    had = array("q", bytes(8 * (last + 1)))
     for name in set(headers) - {"results.csv", "sizes.record"}:
         for case, start, stop in slices_of(attempt / name):
-            had[case] = had.get(case, 0) + stop - start
-    told = {}
-    for line in content_of(attempt / "sizes.record").split(b"\n")[1:-1]:
-        case, _, size = line.partition(b",")
-        if case.isdigit() and size.isdigit():
-            told[int(case)] = (int(size), had.get(int(case), 0))
-    return told
+            if case <= last:
+                had[case] += stop - start
+    return had
+
+
+def told_sizes(attempt: Path) -> Iterator[tuple[int, int]]:
+    """Cases with their bytes as sizes.record tells them."""
+    with (attempt / "sizes.record").open("rb") as file:
+        file.readline()
+        for line in file:
+            case, _, size = line.rstrip(b"\n").partition(b",")
+            if line.endswith(b"\n") and case.isdigit() and size.isdigit():
+                yield int(case), int(size)
 
 
 def write_seal(folder: Path) -> None:
@@ -269,7 +282,21 @@ def broken_seal(folder: Path) -> str:
 
 def digest_of(file: Path) -> str:
     """SHA-256 of a file; empty if there is none."""
-    return hashlib.sha256(file.read_bytes()).hexdigest() if file.is_file() else ""
+    if not file.is_file():
+        return ""
+    digest = hashlib.sha256()
+    with file.open("rb") as stream:
+        while piece := stream.read(1 << 20):
+            digest.update(piece)
+    return digest.hexdigest()
+
+
+def first_line(file: Path) -> bytes:
+    """The first line of a file without its end; empty if there is none."""
+    if not file.is_file():
+        return b""
+    with file.open("rb") as stream:
+        return stream.readline().rstrip(b"\n")
 
 
 def content_of(file: Path) -> bytes:

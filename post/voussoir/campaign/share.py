@@ -6,12 +6,14 @@ import hashlib
 import shutil
 import sys
 import time
+from array import array
 from collections.abc import Callable, Iterator
 from concurrent.futures import ThreadPoolExecutor, as_completed
 from dataclasses import dataclass
 from pathlib import Path
 from typing import BinaryIO
 
+from voussoir.campaign.case_set import CaseSet
 from voussoir.campaign.merge import replace
 from voussoir.campaign.part import Part, content_of, finished_by, finished_in, run_part
 from voussoir.dda_program import Asked, DdaError, ask
@@ -188,7 +190,7 @@ def unlock(out: Path) -> None:
         _LOCKS.pop(out).close()
 
 
-def finished(campaign: Campaign, cases: range, problems: list[str] | None = None) -> set[int]:
+def finished(campaign: Campaign, cases: range, problems: list[str] | None = None) -> CaseSet:
     """Cases that need not be computed again.
 
     Parameters
@@ -206,8 +208,11 @@ def finished(campaign: Campaign, cases: range, problems: list[str] | None = None
         Those of them whose rows are whole, in the folder of the campaign or in a part.
     """
     told = campaign.asked.record, campaign.asked.headers, problems
-    there = finished_by(campaign.out, *told) & set(cases)
-    return there | finished_in(campaign.parts, set(cases) - there, *told)
+    found = CaseSet(case for case in finished_by(campaign.out, *told) if case in cases)
+    rest = [case for case in cases if case not in found] if found else cases
+    for case in finished_in(campaign.parts, rest, *told):
+        found.add(case)
+    return found
 
 
 def split(
@@ -238,7 +243,7 @@ def split(
         The parts, in the order of their cases.
     """
     done = finished(campaign, cases, problems)
-    rest = [case for case in cases if case not in done]
+    rest = array("q", (case for case in cases if case not in done)) if done else cases
     size = max(1, min(LARGEST_PART, -(-len(rest) // (PARTS_A_WORKER * workers))))
     return [
         Part(
@@ -246,7 +251,7 @@ def split(
             campaign.deck,
             campaign.settings,
             campaign.parts,
-            tuple(rest[start : start + size]),
+            rest[start : start + size],
             jobs,
             campaign.asked.record,
             campaign.asked.headers,

@@ -10,6 +10,7 @@ from pathlib import Path
 
 from voussoir.campaign.dask import dask_engine
 from voussoir.campaign.merge import Summary, merge, merged
+from voussoir.campaign.parquet import write_parquet
 from voussoir.campaign.part import finished_by
 from voussoir.campaign.share import (
     Campaign,
@@ -22,6 +23,7 @@ from voussoir.campaign.share import (
     unlock,
 )
 from voussoir.dda_program import DdaError, find_dda
+from voussoir.extras import MissingPackage, load
 
 #: Of several exit statuses the first one counts
 _WORST_FIRST = (4, 2, 3, 0)
@@ -82,6 +84,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--anew", action="store_true", help="discard what an earlier campaign has finished"
     )
+    parser.add_argument(
+        "--parquet", action="store_true", help="write results.csv as results.parquet, too; needs pyarrow"
+    )
     parser.add_argument("--quiet", action="store_true", help="print nothing but errors")
 
 
@@ -99,7 +104,12 @@ def run(arguments: argparse.Namespace) -> int:
         Exit status as of `dda run`.
     """
     try:
+        if arguments.parquet:  # before hours are spent
+            load("pyarrow", "Parquet")
         return _run(arguments)
+    except MissingPackage as error:
+        sys.stderr.write(f"--parquet:1: error: {error}\n")
+        return 2
     except DdaError as error:
         sys.stderr.write(f"{error}\n")
         return error.status
@@ -167,7 +177,7 @@ def _finish(campaign: Campaign, arguments: argparse.Namespace) -> int:
                 left = campaign.total - len(done)
                 print(f"{arguments.deck}: this share has ended, {left} cases of others are left")
             cases = share(campaign.total, arguments.index, arguments.of)
-            return 0 if done.issuperset(cases) else 3
+            return 0 if all(case in done for case in cases) else 3
     merge(campaign.parts, campaign.out, campaign.asked.record, campaign.asked.headers)
     if _summary(campaign).cases == campaign.total and arguments.index is None:
         shutil.rmtree(campaign.parts, ignore_errors=True)
@@ -190,6 +200,8 @@ def _report(campaign: Campaign, arguments: argparse.Namespace) -> int:
             f"{summary.undecided} undecided, {missing} not finished; "
             f"results in {campaign.out / 'results.csv'}"
         )
+    if arguments.parquet and summary.cases:
+        write_parquet(campaign.out / "results.csv")
     return 3 if summary.undecided or missing else 0
 
 

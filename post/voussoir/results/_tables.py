@@ -116,12 +116,12 @@ def _spoilt_line(file: Path) -> int:
 def _typed(file: Path, lines: list[int], name: str, cells: tuple[str, ...]) -> np.ndarray:
     """A column with its type."""
     try:
-        return _column(name, cells)
+        return column_of(name, cells)
     except (ValueError, OverflowError):
         pass
     for line, cell in zip(lines, cells):
         try:
-            _column(name, (cell,))
+            column_of(name, (cell,))
         except (ValueError, OverflowError):
             raise DamagedTable(f"{file}:{line}: error: expected {name} as dda writes it, got "
                                f"'{cell[:40]}'; " + _AGAIN) from None
@@ -129,7 +129,7 @@ def _typed(file: Path, lines: list[int], name: str, cells: tuple[str, ...]) -> n
                        + _AGAIN)
 
 
-def _column(name: str, cells: tuple[str, ...]) -> np.ndarray:
+def column_of(name: str, cells: tuple[str, ...]) -> np.ndarray:
     """A column with its type; ValueError or OverflowError where a cell has another one."""
     if name in _LISTS:
         column = np.empty(len(cells), dtype=object)

@@ -1,0 +1,72 @@
+"""Tables of results as Parquet, a batch of rows after the other: memory does not grow with the table."""
+
+from __future__ import annotations
+
+import csv
+from collections.abc import Iterator
+from itertools import islice
+from pathlib import Path
+from typing import Any
+
+from voussoir.campaign.merge import replace
+from voussoir.extras import load
+from voussoir.results._tables import column_of
+
+#: Rows that are held at the same time, and in one group of the file
+BATCH = 50000
+
+
+def write_parquet(table: Path) -> Path:
+    """Write a table beside itself, with the types that `voussoir.results` gives its columns.
+
+    Parameters
+    ----------
+    table : Path
+        A CSV file of `dda run`.
+
+    Returns
+    -------
+    Path
+        The file, which ends in .parquet.
+
+    Raises
+    ------
+    MissingPackage
+        If there is no pyarrow.
+    ValueError
+        If a cell has another type than its column.
+    """
+    arrow, parquet = load("pyarrow", "Parquet"), load("pyarrow.parquet", "Parquet")
+    target = table.with_suffix(".parquet")
+
+    def write(file: Any) -> None:
+        writer = None
+        try:
+            for batch in _batches(table, arrow):
+                writer = writer or parquet.ParquetWriter(file, batch.schema)
+                writer.write_table(batch)
+        finally:
+            if writer:
+                writer.close()
+
+    replace(target, write)
+    return target
+
+
+def _batches(table: Path, arrow: Any) -> Iterator[Any]:
+    """Rows of a table, so many at a time; one without rows where it has none."""
+    with table.open(newline="", encoding="utf-8") as lines:
+        reader = csv.reader(lines)
+        names = next(reader, [])
+        rows = list(islice(reader, BATCH))
+        while True:
+            cells = list(zip(*rows)) or [()] * len(names)
+            columns = [column_of(name, column) for name, column in zip(names, cells)]
+            yield arrow.table({
+                name: arrow.array(column.tolist(), arrow.list_(arrow.float64())) if column.dtype == object
+                else arrow.array(column)
+                for name, column in zip(names, columns)
+            })
+            rows = list(islice(reader, BATCH))
+            if not rows:
+                return
