@@ -54,11 +54,6 @@ def find_dda(named: Path | None = None) -> Path:
 def find_input(name: str) -> Path:
     """Find a folder of decks that belongs to this package.
 
-    Parameters
-    ----------
-    name : str
-        Its name: "paper" or "benchmarks".
-
     Returns
     -------
     Path
@@ -80,11 +75,6 @@ def find_input(name: str) -> Path:
 
 def version_of(dda: Path) -> str:
     """What `dda --version` prints.
-
-    Parameters
-    ----------
-    dda : Path
-        The program.
 
     Returns
     -------
@@ -108,20 +98,6 @@ class Asked:
 
 def ask(dda: Path, deck: Path, settings: list[str]) -> Asked:
     """Check a deck.
-
-    Parameters
-    ----------
-    dda : Path
-        The program.
-    deck : Path
-        The deck.
-    settings : list of str
-        Values of --set.
-
-    Returns
-    -------
-    Asked
-        What it asks for.
 
     Raises
     ------
@@ -163,10 +139,5 @@ def set_options(settings: list[str]) -> list[str]:
     ----------
     settings : list of str
         Such as "arch%radius=5.0".
-
-    Returns
-    -------
-    list of str
-        Each with "--set" before it.
     """
     return [word for setting in settings for word in ("--set", setting)]

@@ -27,11 +27,6 @@ class MissingPackage(ImportError):
 def advice(package: str) -> str:
     """How to install a package for this interpreter.
 
-    Parameters
-    ----------
-    package : str
-        Its name on the package index.
-
     Returns
     -------
     str
@@ -57,15 +52,8 @@ def load(package: str, purpose: str) -> ModuleType:
 
     Parameters
     ----------
-    package : str
-        Its name, that of a module.
     purpose : str
         What wants it, such as "a DXF drawing".
-
-    Returns
-    -------
-    module
-        The package.
 
     Raises
     ------

@@ -57,21 +57,12 @@ def run_deck(
 
     Parameters
     ----------
-    deck : str or bytes
-        Text of the deck.
     folder : Path
         Where deck.nml and the folder of its results go; made if missing.
     timeout : float, optional
         Longest time that it may take [s].
-    jobs : int, optional
-        Cases computed at the same time.
     files : mapping, optional
         Names and texts of the files beside the deck.
-
-    Returns
-    -------
-    Finished
-        What it left.
     """
     folder.mkdir(parents=True, exist_ok=True)
     shutil.rmtree(folder / "out", ignore_errors=True)

@@ -38,12 +38,8 @@ def stands_by_general(
     ----------
     half_angle : float
         Half angle of embrace [rad].
-    voussoirs : int
-        Number of equal voussoirs.
     ratio : float
         Thickness over radius.
-    friction : float
-        Coefficient of friction.
     method : str, optional
         "highs-ds" (simplex), "highs-ipm" (interior points), or "highs", which chooses.
     tolerance : float, optional

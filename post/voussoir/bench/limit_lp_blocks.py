@@ -56,11 +56,6 @@ def assembly_of(run: Results, push: tuple[int, np.ndarray, np.ndarray] | None = 
     push : (int, ndarray, ndarray), optional
         Block, point and force of a live load over the weight per area; without it the weights
         act towards +x as well.
-
-    Returns
-    -------
-    Assembly
-        The blocks.
     """
     blocks, joints = run.blocks_of(1), run.joints_of(1)
     free = [block for block in blocks if block.state != "fixed"]
@@ -94,19 +89,10 @@ def limit_factor(assembly: Assembly, friction: float, method: str, tolerance: fl
 
     Parameters
     ----------
-    assembly : Assembly
-        The blocks.
-    friction : float
-        Coefficient of friction of all joints.
     method : str
         "highs-ds" (simplex) or "highs-ipm" (interior points).
     tolerance : float
         By how much HiGHS may violate rows.
-
-    Returns
-    -------
-    float
-        The factor.
 
     Raises
     ------

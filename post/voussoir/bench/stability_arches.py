@@ -27,8 +27,6 @@ def exact_thickness(arch: dict[str, Any], friction_deg: float = 50.0) -> float |
 
     Parameters
     ----------
-    arch : dict
-        Keys of &arch.
     friction_deg : float, optional
         Friction angle of the joints [deg].
 
@@ -64,16 +62,10 @@ def searched(
 
     Parameters
     ----------
-    group, name, guard
-        As in Scene.
-    arch : dict, optional
-        Keys of &arch.
     friction_deg : float, optional
         Friction angle [deg].
     current : bool, optional
         Whether blocks move; the answer may then differ by what elasticity explains.
-    **others
-        Keys of further groups.
 
     Returns
     -------
@@ -93,13 +85,7 @@ def searched(
 
 
 def arches() -> Iterator[Scene]:
-    """All arches but the random ones.
-
-    Yields
-    ------
-    Scene
-        One after the other.
-    """
+    """All arches but the random ones."""
     yield from _stiffness()
     yield from _friction()
     yield from _near_critical()
@@ -301,8 +287,6 @@ def random_arches(count: int, seed: int) -> Iterator[Scene]:
 
     Parameters
     ----------
-    count : int
-        How many.
     seed : int
         Beginning of the random numbers; the same one makes the same arches.
 

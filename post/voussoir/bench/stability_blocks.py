@@ -18,13 +18,7 @@ BASE = written_block(rectangle(-10.0, -1.0, 20.0, 1.0), "fixed")
 
 
 def block_scenes() -> Iterator[Scene]:
-    """All scenes of blocks at rest but the random ones.
-
-    Yields
-    ------
-    Scene
-        One after the other.
-    """
+    """All scenes of blocks at rest but the random ones."""
     yield from _contrasts()
     yield from _stacks()
     yield from _slopes()

@@ -23,13 +23,7 @@ _GUARD = "input is checked before anything is computed"
 
 
 def input_scenes() -> Iterator[Scene]:
-    """All scenes of doubtful input.
-
-    Yields
-    ------
-    Scene
-        One after the other.
-    """
+    """All scenes of doubtful input."""
     yield from _polygons()
     yield from _overlaps()
     yield from _supports()

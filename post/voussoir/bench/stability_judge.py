@@ -258,13 +258,6 @@ def _figure(value: float | str) -> str:
 def judge(expectation: Expectation, finished: Finished) -> Judgement:
     """Judge a finished run.
 
-    Parameters
-    ----------
-    expectation : Expectation
-        What the scene must answer.
-    finished : Finished
-        What its run left.
-
     Returns
     -------
     Judgement

@@ -20,13 +20,7 @@ _FINE = verdict("completed", "verdict")
 
 
 def motion_scenes() -> Iterator[Scene]:
-    """All scenes of blocks that move in time but the random ones.
-
-    Yields
-    ------
-    Scene
-        One after the other.
-    """
+    """All scenes of blocks that move in time but the random ones."""
     yield from _steps()
     yield from _flights()
     yield from _projectiles()

@@ -88,11 +88,6 @@ _HEADS = ("kind", "scenes", "worst error", "undecided", "WRONG", "median time [m
 def kinds(lines: Sequence[Line]) -> list[Kind]:
     """What came of each kind of scene, all of them last.
 
-    Parameters
-    ----------
-    lines : sequence of Line
-        The table.
-
     Returns
     -------
     list of Kind
@@ -114,11 +109,6 @@ def kinds(lines: Sequence[Line]) -> list[Kind]:
 def headline(lines: Sequence[Line]) -> str:
     """The count that matters, in one sentence.
 
-    Parameters
-    ----------
-    lines : sequence of Line
-        The table.
-
     Returns
     -------
     str
@@ -133,15 +123,7 @@ def headline(lines: Sequence[Line]) -> str:
 
 
 def write_csv(lines: Sequence[Line], file: Path) -> None:
-    """Write the table as CSV.
-
-    Parameters
-    ----------
-    lines : sequence of Line
-        The table.
-    file : Path
-        Where.
-    """
+    """Write the table as CSV."""
     with file.open("w", newline="", encoding="utf-8") as stream:
         writer = csv.DictWriter(stream, [field.name for field in fields(Line)], lineterminator="\n")
         writer.writeheader()
@@ -149,15 +131,7 @@ def write_csv(lines: Sequence[Line], file: Path) -> None:
 
 
 def write_markdown(lines: Sequence[Line], file: Path) -> None:
-    """Write a table by kind, and every scene that is not right, as Markdown.
-
-    Parameters
-    ----------
-    lines : sequence of Line
-        The table.
-    file : Path
-        Where.
-    """
+    """Write a table by kind, and every scene that is not right, as Markdown."""
     text = [f"# Stiff and extreme scenes\n\n**{headline(lines)}**\n"]
     text.append("| " + " | ".join(_HEADS) + " |\n| --- |" + " ---: |" * (len(_HEADS) - 1))
     text += ["| " + " | ".join(kind.cells()) + " |" for kind in kinds(lines)]
@@ -181,15 +155,7 @@ def _is_number(text: str) -> bool:
 
 
 def write_page(lines: Sequence[Line], file: Path) -> None:
-    """Write a page: the kinds, what is not right, then every scene by kind, folded.
-
-    Parameters
-    ----------
-    lines : sequence of Line
-        The table.
-    file : Path
-        Where.
-    """
+    """Write a page: the kinds, what is not right, then every scene by kind, folded."""
     bad = " class='bad'" if any(line.result == WRONG for line in lines) else ""
     doubtful = [line for line in lines if line.result != RIGHT]
     text = [

@@ -22,8 +22,6 @@ def random_blocks(count: int, seed: int) -> Iterator[Scene]:
 
     Parameters
     ----------
-    count : int
-        How many.
     seed : int
         Beginning of the random numbers; the same one makes the same blocks.
 
@@ -105,8 +103,6 @@ def tower_push(
     ----------
     left, widths, heights : ndarray
         Left ends, widths and heights of the blocks, from the lowest on: (n) [m].
-    friction : float
-        Coefficient of friction of all joints.
 
     Returns
     -------

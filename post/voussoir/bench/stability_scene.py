@@ -100,21 +100,6 @@ def block_scene(
     expectation: Expectation,
     **groups: dict[str, Any],
 ) -> Scene:
-    """A scene of a file of blocks.
-
-    Parameters
-    ----------
-    group, name, guard, expectation
-        As in Scene.
-    blocks : str
-        Text of the file of blocks.
-    **groups
-        Keys of the deck's groups.
-
-    Returns
-    -------
-    Scene
-        The scene.
-    """
+    """A scene of a file of blocks."""
     deck = {"scene": {"kind": "blocks", "geometry": BLOCKS}, **groups}
     return Scene(group, name, deck, expectation, guard, {BLOCKS: blocks})

@@ -13,13 +13,7 @@ from voussoir.bench.stability_scene import Scene
 
 
 def catalogue() -> Iterator[Scene]:
-    """All scenes but the random ones.
-
-    Yields
-    ------
-    Scene
-        One after the other.
-    """
+    """All scenes but the random ones."""
     yield from arches()
     yield from block_scenes()
     yield from motion_scenes()
@@ -35,11 +29,6 @@ def random_scenes(count: int, seed: int) -> Iterator[Scene]:
         How many: two thirds arches, the rest blocks.
     seed : int
         Beginning of the random numbers; the same one makes the same scenes.
-
-    Yields
-    ------
-    Scene
-        One after the other.
     """
     blocks = count // 3
     yield from random_arches(count - blocks, seed)

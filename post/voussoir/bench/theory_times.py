@@ -49,17 +49,10 @@ def compare(name: str, angles: np.ndarray, few: np.ndarray) -> str:
 
     Parameters
     ----------
-    name : str
-        Theory.
     angles : ndarray
         Half angles for Fortran and NumPy [rad].
     few : ndarray
         Half angles for brentq [rad].
-
-    Returns
-    -------
-    str
-        A line of the table.
     """
     fortran = rate(lambda: theory.critical(angles, name), angles.size)
     vectorised = rate(lambda: numpy_critical(angles, name), angles.size)
@@ -73,22 +66,7 @@ def compare(name: str, angles: np.ndarray, few: np.ndarray) -> str:
 
 
 def rate(work: Callable[[], object], count: int, repeats: int = 3) -> float:
-    """Elements a second, the best of some runs.
-
-    Parameters
-    ----------
-    work : callable
-        What is timed.
-    count : int
-        Elements it computes.
-    repeats : int, optional
-        Number of runs.
-
-    Returns
-    -------
-    float
-        Elements a second.
-    """
+    """Elements a second, the best of some runs."""
     best = math.inf
     for _ in range(repeats):
         start = time.perf_counter()
@@ -106,8 +84,6 @@ def numpy_critical(
     ----------
     alpha : ndarray
         Half angles [rad].
-    name : str
-        Name of the theory.
     steps : int, optional
         Newton steps from the first guess.
 
@@ -146,8 +122,6 @@ def brentq_critical(alpha: float, name: str) -> tuple[float, float, float]:
     ----------
     alpha : float
         Half angle [rad].
-    name : str
-        Name of the theory.
 
     Returns
     -------

@@ -280,8 +280,6 @@ def stick_slip(rub: float, push: float, end: float, steps: int = 400000) -> floa
         Accelerations that friction and the force can give [m/s2].
     end : float
         The time [s].
-    steps : int
-        Number of steps.
     """
     step = end / steps
     way = speed = 0.0

@@ -60,11 +60,6 @@ _TAIL = """
 def csv_text(lines: Sequence[Line]) -> str:
     """The table with every digit.
 
-    Parameters
-    ----------
-    lines : sequence of Line
-        What was compared.
-
     Returns
     -------
     str
@@ -93,11 +88,6 @@ def page(lines: Sequence[Line], version: str) -> str:
         What was compared, those of one section together.
     version : str
         What `dda --version` prints.
-
-    Returns
-    -------
-    str
-        Markdown.
     """
     missed = sum(not line.accepted for line in lines)
     scenes = len({line.scene.name for line in lines})

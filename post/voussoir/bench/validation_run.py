@@ -89,19 +89,8 @@ def run_scene(dda: Path, decks: Path, scene: Scene, halvings: int) -> list[Line]
 
     Parameters
     ----------
-    dda : Path
-        The program.
-    decks : Path
-        Folder of the decks.
-    scene : Scene
-        The scene.
     halvings : int
         How often the step is halved for the rate.
-
-    Returns
-    -------
-    list of Line
-        One a check.
 
     Raises
     ------

@@ -187,8 +187,6 @@ def rigid_and_moving(
 
     Parameters
     ----------
-    section, deck, source : str
-        As of a scene.
     checks : sequence of (str, float)
         Quantity and exact value of each case.
     moved : float

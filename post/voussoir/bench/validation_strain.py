@@ -50,8 +50,6 @@ def chain_frequency(n: int, length: float) -> float:
 
     Parameters
     ----------
-    n : int
-        Number of blocks.
     length : float
         Length of all of them [m].
     """

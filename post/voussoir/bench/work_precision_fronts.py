@@ -94,17 +94,10 @@ def panels(folder: Path, repeats: int, classes: Sequence[str] = CLASSES) -> Iter
 
     Parameters
     ----------
-    folder : Path
-        Where decks and results go.
     repeats : int
         Runs of each setting; the median counts.
     classes : sequence of str, optional
         Which ones, of `CLASSES`.
-
-    Yields
-    ------
-    Panel
-        One a class.
     """
     made = {
         "arch": lambda: _arch_panel(scenes.arch(), folder, repeats),

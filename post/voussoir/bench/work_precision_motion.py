@@ -113,8 +113,6 @@ def motion_points(folder: Path, repeats: int) -> Iterator[MotionPoint]:
 
     Parameters
     ----------
-    folder : Path
-        Where decks and results go.
     repeats : int
         Runs of each; the median time counts.
 
@@ -137,11 +135,6 @@ def motion_points(folder: Path, repeats: int) -> Iterator[MotionPoint]:
 
 def order(points: list[MotionPoint]) -> float | None:
     """Order of convergence: slope of the logarithm of the error by that of the step.
-
-    Parameters
-    ----------
-    points : list of MotionPoint
-        Points of one scene.
 
     Returns
     -------

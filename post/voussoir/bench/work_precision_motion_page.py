@@ -13,15 +13,7 @@ GOALS = (1e-2, 1e-3, 1e-4, 1e-6)
 
 
 def write_motion_csv(points: Sequence[MotionPoint], file: Path) -> None:
-    """Write all points.
-
-    Parameters
-    ----------
-    points : sequence of MotionPoint
-        The points.
-    file : Path
-        Where.
-    """
+    """Write all points."""
     with file.open("w", newline="", encoding="utf-8") as stream:
         writer = csv.writer(stream, lineterminator="\n")
         writer.writerow(["scene", "step", "error", "seconds", "steps"])
@@ -32,18 +24,7 @@ def write_motion_csv(points: Sequence[MotionPoint], file: Path) -> None:
 
 
 def motion_table(points: Sequence[MotionPoint]) -> list[str]:
-    """Markdown lines: order of convergence, and the longest step that reaches each accuracy.
-
-    Parameters
-    ----------
-    points : sequence of MotionPoint
-        The points.
-
-    Returns
-    -------
-    list of str
-        The table.
-    """
+    """Markdown lines: order of convergence, and the longest step that reaches each accuracy."""
     lines = [
         "| scene | order | largest error | least error "
         + "".join(f"| error <= {goal:.0e} " for goal in GOALS)

@@ -26,15 +26,7 @@ _LOOKS = {
 
 
 def write_csv(panels: Sequence[Panel], file: Path) -> None:
-    """Write all points, those behind the fronts too.
-
-    Parameters
-    ----------
-    panels : sequence of Panel
-        The classes of scenes.
-    file : Path
-        Where.
-    """
+    """Write all points, those behind the fronts too."""
     with file.open("w", newline="", encoding="utf-8") as stream:
         writer = csv.writer(stream, lineterminator="\n")
         writer.writerow(["scene", "method", "setting", "answer", "error", "seconds", "on_front"])
@@ -57,11 +49,6 @@ def by_method(panel: Panel) -> dict[str, list[Point]]:
 def front_table(panels: Sequence[Panel]) -> list[str]:
     """Markdown lines: the least time in which a method reaches an error.
 
-    Parameters
-    ----------
-    panels : sequence of Panel
-        The classes of scenes.
-
     Returns
     -------
     list of str
@@ -82,18 +69,7 @@ def front_table(panels: Sequence[Panel]) -> list[str]:
 
 
 def race_table(races: Sequence[Race]) -> list[str]:
-    """Markdown lines of the decisions' times and their ratios.
-
-    Parameters
-    ----------
-    races : sequence of Race
-        The times.
-
-    Returns
-    -------
-    list of str
-        The table.
-    """
+    """Markdown lines of the decisions' times and their ratios."""
     lines = [
         "| half angle | voussoirs | decision us | right | search us | general LP us | right "
         "| compact LP us | right | general / decision | compact / decision | search / compact |",
@@ -121,15 +97,8 @@ def draw(panels: Sequence[Panel], folder: Path) -> list[Path]:
 
     Parameters
     ----------
-    panels : sequence of Panel
-        The classes of scenes.
     folder : Path
         Where work_precision.svg and work_precision_arch.svg go, and .png of both.
-
-    Returns
-    -------
-    list of Path
-        The files.
     """
     from voussoir.plot.figure_style import Picture, house_style, save
 

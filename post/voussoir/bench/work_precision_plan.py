@@ -65,15 +65,6 @@ class Cost:
 def plan_costs(counts: Sequence[int], folder: Path, repeats: int) -> Iterator[Cost]:
     """Run a semicircle with every part forced in.
 
-    Parameters
-    ----------
-    counts : sequence of int
-        Numbers of voussoirs.
-    folder : Path
-        Where decks and results go.
-    repeats : int
-        Runs of each.
-
     Yields
     ------
     Cost
@@ -166,18 +157,7 @@ def _polygons(arch: Arch, ratio: float) -> str:
 
 
 def cost_table(costs: Sequence[Cost]) -> list[str]:
-    """Markdown lines: what each part costs over the plan.
-
-    Parameters
-    ----------
-    costs : sequence of Cost
-        The costs.
-
-    Returns
-    -------
-    list of str
-        The table.
-    """
+    """Markdown lines: what each part costs over the plan."""
     lines = [
         "| voussoirs | forced in | decision ms | times | MB | search ms | times | MB | answer |",
         "| ---: | --- | ---: | ---: | ---: | ---: | ---: | ---: | --- |",

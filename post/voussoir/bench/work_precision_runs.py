@@ -91,10 +91,6 @@ def race(arch: Arch, folder: Path, repeats: int) -> Race:
     ----------
     arch : Arch
         What is decided, at four distances from critical.
-    folder : Path
-        Where decks and results go.
-    repeats : int
-        Rounds.
 
     Returns
     -------

@@ -86,10 +86,6 @@ def merge(
 
     Parameters
     ----------
-    parts : Path
-        Folder of the parts.
-    out : Path
-        Folder of the campaign.
     record, headers : optional
         As of `finished_by`.
     """
@@ -123,16 +119,10 @@ def merge_table(
 
     Parameters
     ----------
-    name : str
-        Name of its file.
-    attempts : list of Path
-        Folders of the attempts.
     owner : Owner
         For each case the attempt that it is taken from.
     out : Path
         Folder of the campaign; the table is left out where no attempt has one.
-    headers : dict of str to str, optional
-        First lines of the tables.
     """
     sources = [attempt / name for attempt in attempts if (attempt / name).exists()]
     if not sources:
@@ -174,12 +164,8 @@ def copy_pictures(attempts: list[Path], owner: Owner, out: Path) -> None:
 
     Parameters
     ----------
-    attempts : list of Path
-        Folders of the attempts.
     owner : Owner
         For each case the attempt that it is taken from.
-    out : Path
-        Folder of the campaign.
     """
     for attempt in attempts:
         for path in [*attempt.glob("*/case_*"), *attempt.glob("case_*")]:
@@ -192,13 +178,6 @@ def copy_pictures(attempts: list[Path], owner: Owner, out: Path) -> None:
 
 def merged(out: Path, cases: Set[int]) -> Summary:
     """Count what a merged table holds.
-
-    Parameters
-    ----------
-    out : Path
-        Folder of the campaign.
-    cases : set of int
-        Cases of it that are whole.
 
     Returns
     -------
@@ -213,15 +192,7 @@ def merged(out: Path, cases: Set[int]) -> Summary:
 
 
 def replace(path: Path, write: Callable[[BinaryIO], object]) -> None:
-    """Write a file under another name, then give it its own: it is never there by halves.
-
-    Parameters
-    ----------
-    path : Path
-        Name of the file.
-    write : callable
-        Takes the open file.
-    """
+    """Write a file under another name, then give it its own: it is never there by halves."""
     part = path.with_name(f"{path.name}.{uuid.uuid4().hex}.part")
     try:
         with part.open("wb") as file:

@@ -52,11 +52,6 @@ def run_part(part: Part) -> tuple[int, str]:
     A program that was killed is started again on the rest. Where it dies without having finished
     anything, the case at which it died is left out, so that one case cannot hold up the others.
 
-    Parameters
-    ----------
-    part : Part
-        What to compute.
-
     Returns
     -------
     tuple of int and str
@@ -79,13 +74,6 @@ def run_part(part: Part) -> tuple[int, str]:
 
 def run_attempt(part: Part, cases: list[int]) -> tuple[int, str]:
     """Run the program once, in a folder of its own.
-
-    Parameters
-    ----------
-    part : Part
-        The part.
-    cases : list of int
-        Which of its cases.
 
     Returns
     -------
@@ -119,17 +107,8 @@ def finished_in(
 
     Parameters
     ----------
-    folder : Path
-        Folder of the parts.
-    cases : iterable of int
-        Cases to look for.
     record, headers, problems : optional
         As of `finished_by`.
-
-    Returns
-    -------
-    set of int
-        Those that have whole rows.
     """
     wanted = CaseSet(cases)
     if not wanted:
@@ -161,8 +140,6 @@ def finished_by(
 
     Parameters
     ----------
-    attempt : Path
-        Folder of the attempt.
     record : str, optional
         Text that its deck.record must have; with another one it has finished nothing.
     headers : dict of str to str, optional
@@ -170,11 +147,6 @@ def finished_by(
         sizes.record tells, nothing is taken from them.
     problems : list of str, optional
         Receives a line for each thing that is damaged, with file and line.
-
-    Returns
-    -------
-    set of int
-        Numbers of its cases.
     """
     said = [] if problems is None else problems
     if not (attempt / "results.csv").exists():
@@ -307,11 +279,6 @@ def content_of(file: Path) -> bytes:
 def slices_of(table: Path) -> Iterator[tuple[int, int, int]]:
     """Where the rows of each case are; rows of one case that follow one another are one slice.
 
-    Parameters
-    ----------
-    table : Path
-        One of TABLES.
-
     Yields
     ------
     tuple of int
@@ -338,20 +305,7 @@ def slices_of(table: Path) -> Iterator[tuple[int, int, int]]:
 
 
 def fields_of(line: bytes, suffix: str) -> list[str]:
-    """Fields of a row: parted by commas, in the log by blanks.
-
-    Parameters
-    ----------
-    line : bytes
-        The row.
-    suffix : str
-        Ending of the file.
-
-    Returns
-    -------
-    list of str
-        The fields.
-    """
+    """Fields of a row: parted by commas, in the log by blanks."""
     text = line.decode("utf-8", errors="replace").rstrip("\n")
     if suffix == ".txt":
         return text.split(" ")
@@ -360,11 +314,6 @@ def fields_of(line: bytes, suffix: str) -> list[str]:
 
 def trusted_length(attempt: Path) -> int:
     """Up to where the rows of results.csv count.
-
-    Parameters
-    ----------
-    attempt : Path
-        Folder of the attempt.
 
     Returns
     -------
@@ -391,11 +340,6 @@ def start_name() -> str:
 
 def ranges_of(cases: list[int]) -> str:
     """Case numbers as --cases wants them.
-
-    Parameters
-    ----------
-    cases : list of int
-        Rising numbers.
 
     Returns
     -------

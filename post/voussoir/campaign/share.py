@@ -61,14 +61,6 @@ def open_campaign(
 
     Parameters
     ----------
-    dda : Path
-        The program.
-    deck : Path
-        The deck.
-    settings : list of str
-        Values of --set.
-    out : Path
-        Folder of the results.
     anew : bool
         Whether what an earlier campaign has left in that folder is discarded.
     shared : bool, optional
@@ -116,11 +108,6 @@ def open_campaign(
 def changed_keys(old: str, new: str) -> str:
     """What differs between two records, in words.
 
-    Parameters
-    ----------
-    old, new : str
-        Texts of deck.record.
-
     Returns
     -------
     str
@@ -150,8 +137,6 @@ def lock(out: Path, shared: bool) -> None:
 
     Parameters
     ----------
-    out : Path
-        Folder of the results.
     shared : bool
         Whether others that share it may work there too: shares of a job array.
 
@@ -179,13 +164,7 @@ def lock(out: Path, shared: bool) -> None:
 
 
 def unlock(out: Path) -> None:
-    """Give a folder back.
-
-    Parameters
-    ----------
-    out : Path
-        Folder of the results.
-    """
+    """Give a folder back."""
     if out in _LOCKS:
         _LOCKS.pop(out).close()
 
@@ -195,10 +174,6 @@ def finished(campaign: Campaign, cases: range, problems: list[str] | None = None
 
     Parameters
     ----------
-    campaign : Campaign
-        The campaign.
-    cases : range
-        Cases that are wanted.
     problems : list of str, optional
         Receives a line for each thing that is damaged.
 
@@ -226,12 +201,6 @@ def split(
 
     Parameters
     ----------
-    campaign : Campaign
-        The campaign.
-    cases : range
-        Cases that are wanted.
-    workers : int
-        How many will work.
     jobs : int
         Cases that each computes at the same time.
     problems : list of str, optional
@@ -265,12 +234,8 @@ def share(total: int, index: int, of: int) -> range:
 
     Parameters
     ----------
-    total : int
-        Number of cases.
     index : int
         Number of the member, from 1.
-    of : int
-        How many members there are.
 
     Returns
     -------
@@ -281,18 +246,7 @@ def share(total: int, index: int, of: int) -> range:
 
 
 def local_engine(workers: int) -> Engine:
-    """Processes on this machine.
-
-    Parameters
-    ----------
-    workers : int
-        How many at the same time.
-
-    Returns
-    -------
-    Engine
-        Runs parts.
-    """
+    """Processes on this machine."""
 
     def run(parts: list[Part]) -> Iterator[Outcome]:
         with ThreadPoolExecutor(workers) as pool:
@@ -311,10 +265,6 @@ def run_parts(parts: list[Part], engine: Engine, shown: bool) -> Outcome:
 
     Parameters
     ----------
-    parts : list of Part
-        The parts.
-    engine : Engine
-        What runs them.
     shown : bool
         Whether progress is told, on standard error.
 

@@ -16,13 +16,7 @@ MOST_CASES = 6
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """Add the options of the subcommand.
-
-    Parameters
-    ----------
-    parser : argparse.ArgumentParser
-        Parser of the subcommand.
-    """
+    """Add the options of the subcommand."""
     parser.description = (
         "Animate cases of a folder that dda run has written, side by side: the frames of runs "
         "with geometry = 'current' (arches and blocks, collapses and dynamic runs), else the "
@@ -55,15 +49,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(arguments: argparse.Namespace) -> int:
     """Animate.
 
-    Parameters
-    ----------
-    arguments : argparse.Namespace
-        Parsed options.
-
-    Returns
-    -------
-    int
-        Exit status: 0, 2 for results that cannot be animated, 4 for a file that cannot be written.
+    Exit status: 0, 2 for results that cannot be animated, 4 for a file that cannot be written.
     """
     try:
         return _run(arguments)

@@ -27,13 +27,7 @@ _TRUE = re.compile(r"\bworst\s*=\s*\.?t\w*\.?", re.IGNORECASE)
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """Add the options of the subcommand.
-
-    Parameters
-    ----------
-    parser : argparse.ArgumentParser
-        Parser of the subcommand.
-    """
+    """Add the options of the subcommand."""
     parser.description = (
         "Assess an arch: does it stand, how thick is it against the critical thickness, which load factor does it "
         "carry, where is the worst position of its vehicle. Writes one HTML page that prints."
@@ -45,15 +39,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(arguments: argparse.Namespace) -> int:
     """Write the page.
 
-    Parameters
-    ----------
-    arguments : argparse.Namespace
-        Parsed options.
-
-    Returns
-    -------
-    int
-        Exit status: 0, 2 for a deck that cannot be assessed, 4 for a page that cannot be written.
+    Exit status: 0, 2 for a deck that cannot be assessed, 4 for a page that cannot be written.
     """
     out = arguments.out or arguments.deck.with_suffix(".html")
     try:
@@ -80,15 +66,7 @@ def run(arguments: argparse.Namespace) -> int:
 
 
 def check(text: str, deck: Path) -> None:
-    """Refuse decks of many cases and of other things than arches.
-
-    Parameters
-    ----------
-    text : str
-        The deck.
-    deck : Path
-        Its file.
-    """
+    """Refuse decks of many cases and of other things than arches."""
     for number, line in enumerate(text.splitlines(), 1):
         bare = line.split("!")[0].lower()
         if "&sweep" in bare:
@@ -104,13 +82,6 @@ def without(text: str, *groups: str) -> str:
     ----------
     text : str
         The deck, without slashes in the texts of these groups.
-    *groups : str
-        Their names.
-
-    Returns
-    -------
-    str
-        The rest; as many lines.
     """
     for group in groups:
         text = re.sub(rf"&{group}\b[^/]*/", lambda match: "\n" * match[0].count("\n"), text, flags=re.IGNORECASE)
@@ -119,11 +90,6 @@ def without(text: str, *groups: str) -> str:
 
 def load_search(text: str) -> tuple[Results | None, dict[str, Any] | None]:
     """Search the load factor of a deck with live loads.
-
-    Parameters
-    ----------
-    text : str
-        The deck without its search.
 
     Returns
     -------
@@ -140,13 +106,6 @@ def load_search(text: str) -> tuple[Results | None, dict[str, Any] | None]:
 
 def thickness_safety(text: str, own: dict[str, Any]) -> tuple[float, str]:
     """Thickness over the least with which the arch stands under its dead load.
-
-    Parameters
-    ----------
-    text : str
-        The deck without its search.
-    own : dict
-        Row of the deck's own run.
 
     Returns
     -------
@@ -183,15 +142,8 @@ def verdict_of(own: dict[str, Any], factor: dict[str, Any] | None) -> tuple[str,
 
     Parameters
     ----------
-    own : dict
-        Row of the deck's own run.
     factor : dict or None
         Row of the search for the load factor.
-
-    Returns
-    -------
-    tuple
-        The sentence, and the answer.
     """
     words = {"stable": "The structure stands under the loads given.",
              "collapsed": "The structure does not stand under the loads given."}
@@ -206,20 +158,7 @@ def verdict_of(own: dict[str, Any], factor: dict[str, Any] | None) -> tuple[str,
 
 
 def assess(text: str, deck: Path) -> str:
-    """Compute what the page tells, and write it.
-
-    Parameters
-    ----------
-    text : str
-        The deck.
-    deck : Path
-        Its file.
-
-    Returns
-    -------
-    str
-        The page.
-    """
+    """Compute what the page tells, and write it."""
     from voussoir.plot.assess_page import draw_positions, draw_scheme, figure_of, page, table_of
     from voussoir.plot.case_picture import draw_case
     from voussoir.plot.figure_style import house_style

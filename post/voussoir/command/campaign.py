@@ -30,13 +30,7 @@ _WORST_FIRST = (4, 2, 3, 0)
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """Add the options of the subcommand.
-
-    Parameters
-    ----------
-    parser : argparse.ArgumentParser
-        Parser of the subcommand.
-    """
+    """Add the options of the subcommand."""
     parser.description = (
         "Compute the cases of one deck by many processes and merge them into DIR/results.csv, "
         "joints.csv and log.txt, sorted by case. Killed and called again, it goes on where it was."
@@ -93,15 +87,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(arguments: argparse.Namespace) -> int:
     """Run the campaign.
 
-    Parameters
-    ----------
-    arguments : argparse.Namespace
-        Parsed options.
-
-    Returns
-    -------
-    int
-        Exit status as of `dda run`.
+    Exit status as of `dda run`.
     """
     try:
         if arguments.parquet:  # before hours are spent

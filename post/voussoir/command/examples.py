@@ -11,13 +11,7 @@ from voussoir.dda_program import DdaError, find_input
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """Add the options of the subcommand.
-
-    Parameters
-    ----------
-    parser : argparse.ArgumentParser
-        Parser of the subcommand.
-    """
+    """Add the options of the subcommand."""
     parser.add_argument(
         "--copy", metavar="DIR", type=Path, help="copy them to DIR/input (default: list them)"
     )
@@ -26,15 +20,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(arguments: argparse.Namespace) -> int:
     """List the decks, or copy them.
 
-    Parameters
-    ----------
-    arguments : argparse.Namespace
-        Parsed options.
-
-    Returns
-    -------
-    int
-        Exit status: 0, 2 without decks, 4 where they cannot be copied.
+    Exit status: 0, 2 without decks, 4 where they cannot be copied.
     """
     try:
         folder = find_input("paper").parent

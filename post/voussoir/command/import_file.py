@@ -15,13 +15,7 @@ FIXED = ("fixed", "ground", "support", "abutment")
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """Add the options of the subcommand.
-
-    Parameters
-    ----------
-    parser : argparse.ArgumentParser
-        Parser of the subcommand.
-    """
+    """Add the options of the subcommand."""
     parser.description = (
         "Make a deck and its file of blocks from closed outlines: DXF (closed polylines, circles, "
         "blocks that are inserted; arcs become chords), GeoJSON, WKT, meshes, assemblies of COMPAS (json)."
@@ -46,16 +40,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(arguments: argparse.Namespace) -> int:
     """Read, write, and say what was dropped.
 
-    Parameters
-    ----------
-    arguments : argparse.Namespace
-        Parsed options.
-
-    Returns
-    -------
-    int
-        Exit status: 0, 2 for a file that cannot be read or holds no outline, 4 for one that cannot
-        be written.
+    Exit status: 0, 2 for a file that cannot be read or holds no outline, 4 for one that cannot be written.
     """
     try:
         shapes, dropped = read_shapes(arguments.file, arguments.scale, arguments.tolerance)
@@ -93,15 +78,8 @@ def blocks_of(shapes: list[ImportedShape], fixed: tuple[str, ...]) -> Blocks:
 
     Parameters
     ----------
-    shapes : list of ImportedShape
-        Outlines with their layers.
     fixed : tuple of str
         Layers of what does not move, in small letters.
-
-    Returns
-    -------
-    Blocks
-        The blocks.
     """
     blocks = Blocks()
     moving = dict.fromkeys(shape.layer for shape in shapes if shape.layer.lower() not in fixed)

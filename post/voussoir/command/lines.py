@@ -19,13 +19,7 @@ _POINTS = (
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """Add the options of the subcommand.
-
-    Parameters
-    ----------
-    parser : argparse.ArgumentParser
-        Parser of the subcommand.
-    """
+    """Add the options of the subcommand."""
     parser.description = "Draw the lines, bolts and points that dda lines has written."
     parser.add_argument(
         "table", metavar="TABLE", type=Path, help="table of dda lines, NAME_lines.csv"
@@ -41,15 +35,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(arguments: argparse.Namespace) -> int:
     """Draw.
 
-    Parameters
-    ----------
-    arguments : argparse.Namespace
-        Parsed options.
-
-    Returns
-    -------
-    int
-        Exit status: 0, 2 for a table that cannot be drawn, 4 for a file that cannot be written.
+    Exit status: 0, 2 for a table that cannot be drawn, 4 for a file that cannot be written.
     """
     picture = arguments.out or arguments.table.with_suffix(".png")
     if picture.suffix not in (".png", ".svg", ".pdf"):
@@ -71,11 +57,6 @@ def run(arguments: argparse.Namespace) -> int:
 
 def read_lines(table: Path) -> dict[str, list[tuple[float, ...]]]:
     """Ends of all lines by their role.
-
-    Parameters
-    ----------
-    table : Path
-        The table.
 
     Returns
     -------
@@ -99,8 +80,6 @@ def draw(lines: dict[str, list[tuple[float, ...]]], picture: Path) -> None:
     ----------
     lines : dict
         Role: x1, y1, x2, y2 of each line.
-    picture : Path
-        The file.
     """
     import matplotlib.pyplot as plt
     from matplotlib.collections import LineCollection

@@ -17,13 +17,7 @@ from voussoir.paper.campaign import DRAWING, FIGURES, TOGETHER, Campaign, Clock,
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """Add the options of the subcommand.
-
-    Parameters
-    ----------
-    parser : argparse.ArgumentParser
-        Parser of the subcommand.
-    """
+    """Add the options of the subcommand."""
     parser.add_argument(
         "--out",
         metavar="DIR",
@@ -68,15 +62,7 @@ def _at_least_one(word: str) -> int:
 def run(arguments: argparse.Namespace) -> int:
     """Run the decks, draw the figures, write tables and report.
 
-    Parameters
-    ----------
-    arguments : argparse.Namespace
-        Parsed options.
-
-    Returns
-    -------
-    int
-        Exit status: that of dda, or 2 if it or the decks are missing, 4 if nothing can be written.
+    Exit status: that of dda, or 2 if it or the decks are missing, 4 if nothing can be written.
     """
     try:
         campaign = Campaign(arguments.decks or find_input("paper"), arguments.out)

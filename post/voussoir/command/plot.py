@@ -16,13 +16,7 @@ _AUTO = "auto"
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """Add the options of the subcommand.
-
-    Parameters
-    ----------
-    parser : argparse.ArgumentParser
-        Parser of the subcommand.
-    """
+    """Add the options of the subcommand."""
     parser.description = (
         "Draw the cases of a folder that dda run has written, arches and blocks alike: line of "
         "thrust, hinges, slips, contact forces, loads, held points, ways of measured points; or "
@@ -82,15 +76,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(arguments: argparse.Namespace) -> int:
     """Draw.
 
-    Parameters
-    ----------
-    arguments : argparse.Namespace
-        Parsed options.
-
-    Returns
-    -------
-    int
-        Exit status: 0, 2 for results that cannot be drawn, 4 for files that cannot be written.
+    Exit status: 0, 2 for results that cannot be drawn, 4 for files that cannot be written.
     """
     try:
         return _run(arguments)
@@ -157,16 +143,6 @@ def _cases(arguments: argparse.Namespace, read: results.Results) -> list[int]:
 
 def magnification(word: str) -> float:
     """A finite number from 0.
-
-    Parameters
-    ----------
-    word : str
-        As given on the command line.
-
-    Returns
-    -------
-    float
-        The number.
 
     Raises
     ------

@@ -22,13 +22,7 @@ _SEVERITY = (RIGHT, UNDECIDED, WRONG)
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """Add the options of the subcommand.
-
-    Parameters
-    ----------
-    parser : argparse.ArgumentParser
-        Parser of the subcommand.
-    """
+    """Add the options of the subcommand."""
     parser.add_argument(
         "--out", type=Path, default=Path("stability"), help="folder of the tables"
     )
@@ -48,15 +42,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(arguments: argparse.Namespace) -> int:
     """Run the scenes and write the tables.
 
-    Parameters
-    ----------
-    arguments : argparse.Namespace
-        Parsed options.
-
-    Returns
-    -------
-    int
-        Exit status: 1 if a scene is WRONG, 2 without the program, else 0.
+    Exit status: 1 if a scene is WRONG, 2 without the program, else 0.
     """
     scenes = [
         scene
@@ -84,12 +70,8 @@ def run_scenes(scenes: Iterable[Scene], folder: Path, jobs: int, timeout: float)
 
     Parameters
     ----------
-    scenes : iterable of Scene
-        The scenes.
     folder : Path
         Where their decks and results go, each in a folder of its own.
-    jobs : int
-        Scenes run at the same time.
     timeout : float
         Longest time of one scene [s].
 

@@ -12,13 +12,7 @@ _COLUMNS = ("alpha_deg", "theory", "beta_deg", "beta_rad", "eta", "h")
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """Add the options of the subcommand.
-
-    Parameters
-    ----------
-    parser : argparse.ArgumentParser
-        Parser of the subcommand.
-    """
+    """Add the options of the subcommand."""
     parser.add_argument(
         "--alpha",
         metavar="DEG",
@@ -41,15 +35,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(arguments: argparse.Namespace) -> int:
     """Print the table.
 
-    Parameters
-    ----------
-    arguments : argparse.Namespace
-        Parsed options.
-
-    Returns
-    -------
-    int
-        Exit status, 0.
+    Exit status, 0.
     """
     rows = [_row(alpha, name) for alpha in arguments.alpha for name in arguments.theory]
     lines = _csv(rows) if arguments.csv else _table(rows)

@@ -12,13 +12,7 @@ from voussoir.dda_program import DdaError, find_dda, find_input, version_of
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """Add the options of the subcommand.
-
-    Parameters
-    ----------
-    parser : argparse.ArgumentParser
-        Parser of the subcommand.
-    """
+    """Add the options of the subcommand."""
     parser.add_argument(
         "--out",
         metavar="DIR",
@@ -54,16 +48,8 @@ def _whole(word: str) -> int:
 def run(arguments: argparse.Namespace) -> int:
     """Run the scenes and write the table.
 
-    Parameters
-    ----------
-    arguments : argparse.Namespace
-        Parsed options.
-
-    Returns
-    -------
-    int
-        Exit status: 0, 1 if an error is larger than accepted, that of dda or 2 for bad input, 4 if
-        nothing can be written.
+    Exit status: 0, 1 if an error is larger than accepted, that of dda or 2 for bad input, 4 if nothing can be
+    written.
     """
     try:
         dda = find_dda()

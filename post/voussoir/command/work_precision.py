@@ -18,13 +18,7 @@ from voussoir.dda_program import DdaError, find_dda
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """Add the options of the subcommand.
-
-    Parameters
-    ----------
-    parser : argparse.ArgumentParser
-        Parser of the subcommand.
-    """
+    """Add the options of the subcommand."""
     parser.add_argument(
         "--out", type=Path, default=Path("work_precision"), help="folder of tables and figure"
     )
@@ -64,15 +58,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(arguments: argparse.Namespace) -> int:
     """Measure, write tables and figure, print the table of ratios.
 
-    Parameters
-    ----------
-    arguments : argparse.Namespace
-        Parsed options.
-
-    Returns
-    -------
-    int
-        Exit status: 2 without the program, else 0.
+    Exit status: 2 without the program, else 0.
     """
     try:
         find_dda()

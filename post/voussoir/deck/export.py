@@ -28,10 +28,6 @@ def outlines_of(run: Results, case: int, magnify: float = 0.0) -> list[Outline]:
 
     Parameters
     ----------
-    run : Results
-        The results of the deck.
-    case : int
-        Number of the case.
     magnify : float, optional
         How many times their displacements they have moved.
 

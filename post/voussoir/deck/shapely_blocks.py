@@ -13,11 +13,6 @@ _PURPOSE = "polygons"
 def polygons_of(shapes: Any) -> tuple[list, list[str]]:
     """Polygons of a geometry, or of several.
 
-    Parameters
-    ----------
-    shapes : geometry or iterable of geometries
-        Polygons, or collections of them.
-
     Returns
     -------
     tuple of list
@@ -49,11 +44,6 @@ def polygons_of(shapes: Any) -> tuple[list, list[str]]:
 
 def pieces_of(polygon: Any) -> list:
     """A polygon as polygons without holes.
-
-    Parameters
-    ----------
-    polygon : Polygon
-        With holes or without.
 
     Returns
     -------

@@ -38,8 +38,6 @@ def read_shapes(
     ----------
     file : Path
         Its ending says how it is read: see `READERS`.
-    scale : float
-        Metres a unit.
     tolerance : float
         How far a chord may be from its arc [m].
 

@@ -19,11 +19,6 @@ _MEANT = {"geometry": "analysis", "friction_deg": "joint", "unit_weight": "mater
 def value_text(value: Any) -> str:
     """A value as a deck writes it.
 
-    Parameters
-    ----------
-    value : bool, number, str, Path, or a sequence or array of these
-        A Python or NumPy value.
-
     Returns
     -------
     str
@@ -76,11 +71,6 @@ def merged(groups: Groups, more: Groups) -> dict[str, Any]:
     ----------
     groups, more : mapping
         As for `deck_text`; keys of `more` win, its sweeps are added.
-
-    Returns
-    -------
-    dict
-        The groups of both.
     """
     joint: dict[str, Any] = dict(groups)
     for group, keys in more.items():
@@ -100,11 +90,6 @@ def _as_list(keys: Any) -> list:
 @lru_cache(maxsize=4)
 def groups_of_keys(dda: Path) -> dict[str, tuple[str, ...]]:
     """Which groups have a key of that name, as the program says it.
-
-    Parameters
-    ----------
-    dda : Path
-        The program.
 
     Returns
     -------
@@ -128,8 +113,6 @@ def groups_of(dda: Path, keys: Mapping[str, Any]) -> dict[str, Any]:
 
     Parameters
     ----------
-    dda : Path
-        The program, which knows the keys.
     keys : mapping
         By bare name ("friction_deg"), with the group ("arch%radius"), or a group as a mapping
         ("search" to {"parameter": "friction_deg"}); the name of a parameter will do for "search".

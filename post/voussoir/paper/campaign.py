@@ -82,13 +82,6 @@ class Clock:
 def run_program(part: str, command: list[str | Path]) -> tuple[int, Timing]:
     """Run a program and measure it.
 
-    Parameters
-    ----------
-    part : str
-        Name of what it does.
-    command : list
-        The program and its arguments.
-
     Returns
     -------
     tuple
@@ -128,11 +121,6 @@ class Campaign:
         slow : bool, optional
             Whether those that are run on demand only belong to them.
 
-        Returns
-        -------
-        list of Path
-            Their files.
-
         Raises
         ------
         FileNotFoundError
@@ -156,12 +144,6 @@ class Campaign:
 
         Parameters
         ----------
-        dda : Path
-            The program.
-        clock : Clock
-            Is told of each deck.
-        jobs : int
-            Decks computed at the same time.
         slow : bool
             Whether to run those decks too that are run on demand only.
         resume : bool

@@ -97,20 +97,7 @@ _SAMPLES = {"figure13": 54.5, "figure16": 59.0}
 
 
 def caption(part: str, campaign: Campaign) -> str:
-    """What a figure shows, and the paper's value beside ours.
-
-    Parameters
-    ----------
-    part : str
-        Name of the figure.
-    campaign : Campaign
-        The results.
-
-    Returns
-    -------
-    str
-        HTML.
-    """
+    """What a figure shows, and the paper's value beside ours."""
     words = _IN_WORDS.get(part) or _beside(part, campaign)
     return f'{CAPTIONS[part]} <span class="paper">{words}</span>'
 

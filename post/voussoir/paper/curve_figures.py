@@ -36,19 +36,10 @@ def draw_points(axes: Axes, table: PaperTable, x: str, error: bool = False) -> A
 
     Parameters
     ----------
-    axes : Axes
-        Where.
-    table : PaperTable
-        The table.
     x : str
         Field of a row that is the abscissa.
     error : bool, optional
         Whether to draw the magnitude of the error in percent instead of the thickness.
-
-    Returns
-    -------
-    Axes
-        The same.
     """
     columns = [column for column in table.columns if column not in THEORIES.values()]
     for column in reversed(columns):

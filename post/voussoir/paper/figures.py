@@ -51,17 +51,8 @@ def make(campaign: Campaign, folder: Path, name: str) -> list[Path]:
 
     Parameters
     ----------
-    campaign : Campaign
-        The results.
-    folder : Path
-        Where the files go.
     name : str
         Of `names`.
-
-    Returns
-    -------
-    list of Path
-        The files.
     """
     folder.mkdir(parents=True, exist_ok=True)
     with house_style():

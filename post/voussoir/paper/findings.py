@@ -238,8 +238,6 @@ def least_friction(joints: Any, **arch: float) -> float:
     ----------
     joints
         As for `theory.discrete_solution`.
-    **arch
-        Its alpha or facet.
 
     Returns
     -------

@@ -135,12 +135,6 @@ def gallery(
 
     Parameters
     ----------
-    run : Results
-        The results of the deck.
-    numbers : list of int
-        Numbers of the cases.
-    columns : int
-        Pictures in a row.
     title : callable
         From the row of a case to the words above its picture.
     size : float
@@ -151,11 +145,6 @@ def gallery(
         Whether all pictures show the same piece of the plane.
     into : SubFigure, optional
         Part of a figure that receives them; without it a new figure.
-
-    Returns
-    -------
-    Figure
-        The figure.
     """
     boxes = [limits(run, numbers if together else [number]) for number in numbers]
     shapes = [(high[1] - low[1]) / (high[0] - low[0]) for low, high in boxes]

@@ -95,14 +95,8 @@ class Page:
 
         Parameters
         ----------
-        caption : str
-            What it shows; may hold HTML.
         head : sequence of str
             Headings of the columns; may hold HTML.
-        rows : iterable of sequences of str
-            The cells; may hold HTML.
-        anchor : str, optional
-            Name for links.
         words : bool, optional
             Whether the cells hold words rather than numbers.
         """
@@ -116,17 +110,7 @@ class Page:
         )
 
     def figure(self, svg: Path, caption: str, anchor: str) -> None:
-        """Add a figure from an SVG file.
-
-        Parameters
-        ----------
-        svg : Path
-            The file.
-        caption : str
-            What it shows; may hold HTML.
-        anchor : str
-            Name for links.
-        """
+        """Add a figure from an SVG file."""
         self._figures += 1
         drawing = inline_svg(svg.read_text(encoding="utf-8"), f"f{self._figures}-", caption)
         self._body.append(
@@ -180,8 +164,6 @@ def inline_svg(text: str, prefix: str, label: str) -> str:
 
     Parameters
     ----------
-    text : str
-        The file.
     prefix : str
         Put before all its names, which otherwise meet those of other figures of the page.
     label : str

@@ -31,14 +31,10 @@ def build(campaign: Campaign, figures: Path, timings: list[Timing], dda: Path) -
 
     Parameters
     ----------
-    campaign : Campaign
-        The results.
     figures : Path
         Folder of the figures; those that are not there are named as left out.
     timings : list of Timing
         How long the parts took so far.
-    dda : Path
-        The program, which tells its version.
 
     Returns
     -------

@@ -137,8 +137,6 @@ def join(rows: list[Row], results: Iterator[Cells]) -> list[str]:
     ----------
     rows
         Rows of the paper; receive the values.
-    results
-        Rows of results.csv.
 
     Returns
     -------
@@ -199,15 +197,8 @@ def build_table(name: str, results: Path, paper: Path, theory: Any = None) -> Pa
         table1 to table4.
     results
         Folder that holds the results of the decks, each in a folder of its name.
-    paper
-        The paper's values, paper_tables.csv.
     theory
         The module `voussoir.theory`; without it the analytic solutions are left out.
-
-    Returns
-    -------
-    PaperTable
-        The table.
     """
     rows = read_paper(paper, name)
     columns = ["paper DDA", *join(rows, results_of(results, name))]
@@ -292,13 +283,7 @@ def write_csv(table: PaperTable, file: Path) -> None:
 
 
 def write_tables(tables: list[PaperTable], folder: Path) -> list[Path]:
-    """Write each table as CSV and all of them as Markdown.
-
-    Returns
-    -------
-    list of Path
-        The files.
-    """
+    """Write each table as CSV and all of them as Markdown."""
     folder.mkdir(parents=True, exist_ok=True)
     files = []
     for table in tables:

@@ -30,18 +30,7 @@ pre{white-space:pre-wrap;overflow-wrap:anywhere;background:#f5f5f2;padding:.7rem
 
 
 def svg_of(figure: Figure) -> str:
-    """A figure as SVG that stands in a page.
-
-    Parameters
-    ----------
-    figure : Figure
-        The figure.
-
-    Returns
-    -------
-    str
-        The element.
-    """
+    """A figure as SVG that stands in a page."""
     text = io.StringIO()
     figure.savefig(text, format="svg", bbox_inches="tight")
     drawn = text.getvalue()
@@ -49,20 +38,7 @@ def svg_of(figure: Figure) -> str:
 
 
 def figure_of(figure: Figure, caption: str = "") -> str:
-    """A figure with its caption, for a page.
-
-    Parameters
-    ----------
-    figure : Figure
-        The figure.
-    caption : str, optional
-        What stands below it.
-
-    Returns
-    -------
-    str
-        The element.
-    """
+    """A figure with its caption, for a page."""
     below = f"<figcaption>{html.escape(caption)}</figcaption>" if caption else ""
     return f"<figure>{svg_of(figure)}{below}</figure>"
 
@@ -72,17 +48,10 @@ def draw_scheme(run: Results, axles: Sequence[tuple[float, float]], surface: flo
 
     Parameters
     ----------
-    run : Results
-        A run of the deck.
     axles : sequence of tuple
         Place and weight of each axle [m, N/m].
     surface : float or None
         Height of the surface of the fill [m].
-
-    Returns
-    -------
-    Figure
-        The figure.
     """
     scene = scene_of(run, 1)
     shapes = scene.shapes(0.0)
@@ -118,15 +87,8 @@ def draw_positions(cases: Table, worst: float | None) -> Figure:
 
     Parameters
     ----------
-    cases : Table
-        Rows of a sweep of positions.
     worst : float or None
         The worst position [m].
-
-    Returns
-    -------
-    Figure
-        The figure.
     """
     import matplotlib.pyplot as plt
 
@@ -144,18 +106,7 @@ def draw_positions(cases: Table, worst: float | None) -> Figure:
 
 
 def table_of(rows: Sequence[tuple[str, str]]) -> str:
-    """A table of two columns.
-
-    Parameters
-    ----------
-    rows : sequence of tuple
-        Names and what stands beside them.
-
-    Returns
-    -------
-    str
-        The element.
-    """
+    """A table of two columns."""
     cells = (f"<tr><th>{html.escape(name)}</th><td>{html.escape(value)}</td></tr>" for name, value in rows)
     return "<table>" + "".join(cells) + "</table>"
 
@@ -165,19 +116,8 @@ def page(title: str, verdict: str, falls: bool, parts: Sequence[tuple[str, str]]
 
     Parameters
     ----------
-    title : str
-        What is assessed.
-    verdict : str
-        The answer in a sentence.
     falls : bool
         Whether it is a bad one.
-    parts : sequence of tuple
-        Headings and the HTML below them.
-
-    Returns
-    -------
-    str
-        The page.
     """
     body = "".join(f"<section><h2>{html.escape(name)}</h2>{text}</section>" for name, text in parts)
     return (

@@ -54,10 +54,6 @@ def draw_case(
 
     Parameters
     ----------
-    run : Results
-        The results of the deck.
-    number : int
-        Number of the case.
     magnify : float or "auto", optional
         Magnification of the displaced shape, chosen and stated with "auto". Without it what stands
         is drawn as it stands, and a collapse mechanism, which has no size, as large as can be seen.
@@ -67,11 +63,6 @@ def draw_case(
         Whether blocks have their numbers on them.
     coordinates : bool, optional
         Whether the axes are drawn [m].
-
-    Returns
-    -------
-    Figure
-        The figure.
 
     Raises
     ------

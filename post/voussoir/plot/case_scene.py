@@ -62,18 +62,6 @@ class CaseScene:
 def scene_of(run: Results, number: int) -> CaseScene:
     """The shapes of one case.
 
-    Parameters
-    ----------
-    run : Results
-        The results of the deck.
-    number : int
-        Number of the case.
-
-    Returns
-    -------
-    CaseScene
-        The shapes.
-
     Raises
     ------
     KeyError
@@ -104,8 +92,6 @@ def shortened(support: Block, free: list[Block]) -> Block:
 
     Parameters
     ----------
-    support : Block
-        The support.
     free : list of Block
         The blocks of the arch; the support shares two corners with one of them.
 
@@ -132,8 +118,6 @@ def view(shapes: list[np.ndarray], supports: list[np.ndarray]) -> tuple[np.ndarr
     ----------
     shapes : list of ndarray
         Points that must be seen: (n, 2) each [m].
-    supports : list of ndarray
-        Corners of the supports.
 
     Returns
     -------

@@ -16,8 +16,6 @@ def title_of(row: Row, run: Results | None = None) -> str:
 
     Parameters
     ----------
-    row : dict
-        Its row of results.csv.
     run : Results, optional
         The results of the deck, for its title and for what was swept and searched.
 

@@ -27,11 +27,6 @@ class WriterError(ValueError):
 def check_ending(file: Path) -> None:
     """Check that an animation of this name can be written.
 
-    Parameters
-    ----------
-    file : Path
-        Its name.
-
     Raises
     ------
     WriterError
@@ -57,8 +52,6 @@ def animate(
 
     Parameters
     ----------
-    run : Results
-        The results of the deck.
     numbers : list of int
         Numbers of the cases; the pictures of shorter motions wait at their end.
     title : callable
@@ -69,8 +62,6 @@ def animate(
         Pictures in a row, at most as many as cases.
     width : float, optional
         Of the animation [inch], at 100 dots an inch.
-    magnify : float, optional
-        Magnification of the displacements.
 
     Returns
     -------

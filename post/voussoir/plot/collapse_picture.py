@@ -38,13 +38,6 @@ MEANINGS = {
 def pictures_of(run: Results, number: int) -> list[Frame]:
     """Pictures of the motion of a case: its frames, or its collapse mechanism as it grows.
 
-    Parameters
-    ----------
-    run : Results
-        The results of the deck.
-    number : int
-        Number of the case.
-
     Returns
     -------
     list of Frame
@@ -76,23 +69,10 @@ def draw_frame(
 
     Parameters
     ----------
-    axes : Axes
-        Where; loses its ticks.
-    run : Results
-        The results of the deck.
-    number : int
-        Number of the case.
-    frame : Frame
-        The picture.
     size : float, optional
         Size of the marks [points].
     magnify : float, optional
         Magnification of the displacements; marks are drawn at true scale only.
-
-    Returns
-    -------
-    Axes
-        The same.
     """
     first = pictures_of(run, number)[0]
     scene = scene_of(run, number)
@@ -187,15 +167,6 @@ def limits(
     run: Results, numbers: list[int], magnify: float = 1.0
 ) -> tuple[np.ndarray, np.ndarray]:
     """The piece of plane that shows all pictures of some cases [m].
-
-    Parameters
-    ----------
-    run : Results
-        The results of the deck.
-    numbers : list of int
-        Numbers of the cases.
-    magnify : float, optional
-        Magnification of the displacements.
 
     Returns
     -------

@@ -27,11 +27,6 @@ class ChartError(ValueError):
 def swept_columns(cases: Table) -> list[str]:
     """Columns that were swept and vary.
 
-    Parameters
-    ----------
-    cases : Table
-        results.csv.
-
     Returns
     -------
     list of str

@@ -54,12 +54,8 @@ def closer(
 
     Parameters
     ----------
-    axes : Axes
-        The others, drawn already.
     place : tuple of float
         Left and lower end, width and height, as shares of them.
-    x, y : tuple of float
-        The piece.
 
     Returns
     -------
@@ -94,19 +90,10 @@ def save(
 
     Parameters
     ----------
-    figure : Figure
-        What to write.
     folder : Path
         Where; made if missing.
-    name : str
-        File name without ending.
     formats : tuple of str, optional
         Endings without the dot, of svg, pdf and png.
-
-    Returns
-    -------
-    list of Path
-        The files.
     """
     folder.mkdir(parents=True, exist_ok=True)
     paths = [folder / f"{name}.{ending}" for ending in formats]

@@ -98,8 +98,6 @@ def draw_fragility(run: Results, column: str | None = None) -> tuple[Figure, Log
 
     Parameters
     ----------
-    run : Results
-        The results.
     column : str, optional
         Swept column that is the strength; by default amplitude or scale.
 

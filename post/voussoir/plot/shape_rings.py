@@ -13,20 +13,7 @@ OTHERS = ("&fill", "&tie")
 
 
 def is_shape(record: Sequence[str], searched: str | None) -> bool:
-    """Whether a record is of an arch that is more than a circular ring of voussoirs.
-
-    Parameters
-    ----------
-    record : sequence of str
-        Lines of deck.record.
-    searched : str or None
-        The searched parameter.
-
-    Returns
-    -------
-    bool
-        The answer.
-    """
+    """Whether a record is of an arch that is more than a circular ring of voussoirs."""
     words = [line.strip() for line in record]
     for number, word in enumerate(words):
         if word in OTHERS or word.startswith(("fill%", "tie%")):
@@ -42,17 +29,8 @@ def ring_joints(first: np.ndarray, second: np.ndarray, count: int, voussoirs: in
 
     Parameters
     ----------
-    first, second : ndarray
-        Blocks of each joint.
     count : int
         Number of voussoirs; they are numbered first, ring by ring, from left to right.
-    voussoirs : int
-        Number of them in a ring.
-
-    Returns
-    -------
-    list of tuple of int
-        Places of the two joints.
     """
     sides: dict[int, list[int]] = {}
     for joint, pair in enumerate(zip(first, second)):

@@ -61,11 +61,6 @@ class DamagedTable(ValueError):
 def read_columns(file: Path) -> dict[str, np.ndarray]:
     """Read a table.
 
-    Parameters
-    ----------
-    file : Path
-        Its file.
-
     Returns
     -------
     dict of str to ndarray

@@ -17,13 +17,6 @@ def cell_field(path: Path, name: str) -> np.ndarray:
     ----------
     path : Path
         The file, as the program writes it: 64 bits, little-endian.
-    name : str
-        Name of the field.
-
-    Returns
-    -------
-    numpy.ndarray
-        One row a cell.
     """
     whole = path.read_bytes()
     head, _, data = whole.partition(_DATA)

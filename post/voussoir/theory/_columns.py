@@ -28,11 +28,6 @@ JOINT = "an angle in [0, alpha] rad"
 def theory_number(name: str) -> int:
     """Number of a theory.
 
-    Parameters
-    ----------
-    name : str
-        "heyman", "ccr" or "milankovitch".
-
     Returns
     -------
     int
@@ -55,8 +50,6 @@ def real_array(name: str, value: npt.ArrayLike) -> Column:
     ----------
     name : str
         Name of the argument, for the message.
-    value : array_like
-        Integers or reals of any shape.
 
     Returns
     -------
@@ -79,11 +72,6 @@ def real_array(name: str, value: npt.ArrayLike) -> Column:
 def columns(**arguments: npt.ArrayLike) -> tuple[tuple[int, ...], list[Column]]:
     """Broadcast arguments against one another and flatten them.
 
-    Parameters
-    ----------
-    **arguments : array_like
-        The arguments by name.
-
     Returns
     -------
     shape : tuple of int
@@ -102,20 +90,7 @@ def columns(**arguments: npt.ArrayLike) -> tuple[tuple[int, ...], list[Column]]:
 
 
 def shaped(shape: tuple[int, ...], column: npt.NDArray) -> Value:
-    """A result in the shape of the arguments; a number where they were numbers.
-
-    Parameters
-    ----------
-    shape : tuple of int
-        Shape of the arguments.
-    column : ndarray
-        Result, one rank.
-
-    Returns
-    -------
-    ndarray or scalar
-        The result.
-    """
+    """A result in the shape of the arguments; a number where they were numbers."""
     return column.reshape(shape)[()]
 
 
@@ -136,10 +111,6 @@ def evaluate(
         The arguments by name, in the order of the call.
     ranges : sequence of str or callable
         What each of them wants, or what says it.
-    *numbers : int
-        What follows them in the call.
-    results : int, optional
-        How many columns come back.
 
     Returns
     -------
@@ -174,8 +145,6 @@ def refuse(
         Place of the argument and of its element, from 1; zeros where all is well.
     names : sequence of str
         Names of the arguments in the order of the Fortran call.
-    flat : sequence of ndarray
-        Their values, one rank.
     ranges : sequence of str or callable
         What each of them wants, or what says it.
 

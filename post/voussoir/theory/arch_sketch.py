@@ -55,19 +55,10 @@ def draw_arch(axes: Axes, alpha: float, eta: float, **style) -> Axes:
 
     Parameters
     ----------
-    axes : Axes
-        Where.
     alpha : float
         Half angle of embrace [rad].
     eta : float
         Thickness ratio.
-    **style
-        Of the polygon.
-
-    Returns
-    -------
-    Axes
-        The same.
     """
     options = {"facecolor": STONE, "edgecolor": INK[0], "linewidth": 0.9, "zorder": 1} | style
     axes.fill(*chunk(-alpha, alpha, eta), **options)
@@ -81,21 +72,10 @@ def draw_thrust(axes: Axes, alpha: float, eta: float, name: str, **style) -> Axe
 
     Parameters
     ----------
-    axes : Axes
-        Where.
     alpha : float
         Half angle of embrace [rad].
     eta : float
         Thickness ratio.
-    name : str
-        Theory.
-    **style
-        Of the line.
-
-    Returns
-    -------
-    Axes
-        The same.
     """
     angle = np.linspace(0.0, alpha, STATIONS)
     ratio = theory.thrust_line(angle, alpha, eta, name)
@@ -113,17 +93,8 @@ def draw_hinges(axes: Axes, points: np.ndarray, **style) -> Axes:
 
     Parameters
     ----------
-    axes : Axes
-        Where.
     points : ndarray
         x >= 0 and y: (2, n).
-    **style
-        Of the marks.
-
-    Returns
-    -------
-    Axes
-        The same.
     """
     options = {
         "marker": "o",
@@ -197,19 +168,12 @@ def draw_mechanism(axes: Axes, alpha: float, beta: float, eta: float, turn: floa
 
     Parameters
     ----------
-    axes : Axes
-        Where.
     alpha, beta : float
         Half angle of embrace and inner hinge [rad].
     eta : float
         Thickness ratio.
     turn : float
         Turn of the lower chunk [rad].
-
-    Returns
-    -------
-    Axes
-        The same.
     """
     chunks, hinges = collapsed_half(alpha, beta, eta, turn)
     for outline in chunks:

@@ -22,11 +22,6 @@ def curve_of_the_semicircle(alpha_deg: float = 90.0) -> Figure:
     ----------
     alpha_deg : float, optional
         Half angle of embrace [deg].
-
-    Returns
-    -------
-    Figure
-        The figure.
     """
     alpha = math.radians(alpha_deg)
     beta, eta, _ = theory.critical(alpha, "ccr")
@@ -56,13 +51,7 @@ def curve_of_the_semicircle(alpha_deg: float = 90.0) -> Figure:
 
 
 def curves() -> Figure:
-    """Figure 5: eta(beta) of CCR for arches from shallow to the limit, and the line of their tops.
-
-    Returns
-    -------
-    Figure
-        The figure.
-    """
+    """Figure 5: eta(beta) of CCR for arches from shallow to the limit, and the line of their tops."""
     limits = theory.limits("ccr")
     marked = {
         limits["alpha_unit_A"]: "$A = 1$",
@@ -105,24 +94,12 @@ def curves() -> Figure:
 
 
 def curves_at_90() -> Figure:
-    """Figure 6: eta(beta) at a half angle of 90 degrees in both theories, with Heyman's point.
-
-    Returns
-    -------
-    Figure
-        The figure.
-    """
+    """Figure 6: eta(beta) at a half angle of 90 degrees in both theories, with Heyman's point."""
     return compared_curves(90.0)
 
 
 def curves_at_140() -> Figure:
-    """Figure 7: the same at 140 degrees.
-
-    Returns
-    -------
-    Figure
-        The figure.
-    """
+    """Figure 7: the same at 140 degrees."""
     return compared_curves(140.0)
 
 
@@ -133,11 +110,6 @@ def compared_curves(alpha_deg: float) -> Figure:
     ----------
     alpha_deg : float
         Half angle of embrace [deg].
-
-    Returns
-    -------
-    Figure
-        The figure.
     """
     alpha = math.radians(alpha_deg)
     figure, axes = plt.subplots(figsize=(6.4, 4.4))
@@ -174,19 +146,8 @@ def draw_curve(axes: Axes, alpha: float, name: str, **style) -> Axes:
 
     Parameters
     ----------
-    axes : Axes
-        Where.
     alpha : float
         Half angle of embrace [rad].
-    name : str
-        Theory.
-    **style
-        Of the line.
-
-    Returns
-    -------
-    Axes
-        The same.
     """
     beta = np.linspace(0.0, alpha, 801)
     axes.plot(np.degrees(beta), theory.equilibrium_thickness(beta, alpha, name), **style)

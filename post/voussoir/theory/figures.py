@@ -33,11 +33,6 @@ FIGURES = (
 def main(arguments: list[str] | None = None) -> int:
     """Draw all seven figures.
 
-    Parameters
-    ----------
-    arguments : list of str, optional
-        Command line without the program's name.
-
     Returns
     -------
     int
@@ -59,18 +54,7 @@ def main(arguments: list[str] | None = None) -> int:
 
 
 def draw_all(folder: Path) -> list[Path]:
-    """Write figures 1 to 7 as SVG and PNG.
-
-    Parameters
-    ----------
-    folder : Path
-        Where.
-
-    Returns
-    -------
-    list of Path
-        The files.
-    """
+    """Write figures 1 to 7 as SVG and PNG."""
     paths = []
     with house_style():
         for number, draw in enumerate(FIGURES, 1):

@@ -32,11 +32,6 @@ def collapse_mode(alpha_deg: float = 120.0) -> Figure:
     ----------
     alpha_deg : float, optional
         Half angle of embrace [deg].
-
-    Returns
-    -------
-    Figure
-        The figure.
     """
     alpha = math.radians(alpha_deg)
     beta, eta, h = theory.critical(alpha, "ccr")
@@ -70,11 +65,6 @@ def notation(alpha_deg: float = 120.0, beta_deg: float = 58.0, eta: float = 0.4)
         Half angle of embrace and angle of the joint [deg].
     eta : float, optional
         Thickness ratio, large for the eye.
-
-    Returns
-    -------
-    Figure
-        The figure.
     """
     alpha, beta = math.radians(alpha_deg), math.radians(beta_deg)
     h = float(theory.springing_thrust(alpha, eta, "ccr"))
@@ -124,17 +114,10 @@ def label_lengths(axes: Axes, figure: Figure, eta: float, ratio: float, beta: fl
 
     Parameters
     ----------
-    axes, figure : Axes, Figure
-        Where.
     eta, ratio : float
         Thickness ratio and 2e/t.
     beta : float
         Angle of the joint [rad].
-
-    Returns
-    -------
-    Figure
-        The same.
     """
     axes.text(*(on_circle(1.0, -0.5) + (0.03, -0.02)), "$t$", fontsize=12)
     axes.text(*(on_circle(0.55, beta) + (0.03, -0.07)), "$r$", fontsize=12)
@@ -165,11 +148,6 @@ def lines_of_thrust(alpha_deg: float = 90.0, shares: tuple[float, ...] = (1.6, 1
         Half angle of embrace [deg].
     shares : tuple of float, optional
         Thickness over the critical one.
-
-    Returns
-    -------
-    Figure
-        The figure.
     """
     alpha = math.radians(alpha_deg)
     beta, critical, _ = theory.critical(alpha, "ccr")
@@ -192,19 +170,8 @@ def draw_angle(axes: Axes, angle: float, radius: float, label: str) -> Axes:
 
     Parameters
     ----------
-    axes : Axes
-        Where.
     angle : float
         The angle [rad].
-    radius : float
-        Of its arc.
-    label : str
-        Its name.
-
-    Returns
-    -------
-    Axes
-        The same.
     """
     axes.plot(*on_circle(radius, np.linspace(0.0, angle, 100)), color=INK[0], linewidth=0.7)
     for end in (0.0, angle):
@@ -224,19 +191,10 @@ def arrow(
 
     Parameters
     ----------
-    axes : Axes
-        Where.
     start, end : ndarray
         Tail and tip: (2).
-    label : str
-        Its name.
     shift : tuple of float
         Of the name from the tail.
-
-    Returns
-    -------
-    Axes
-        The same.
     """
     axes.annotate("", end, start, arrowprops=_ARROW, zorder=6)
     axes.text(*(np.asarray(start) + shift), label, fontsize=12, zorder=7)
