@@ -45,9 +45,7 @@ def find_dda(named: Path | None = None) -> Path:
     found = [shutil.which(wish)] if wish else [shutil.which("dda", path=path) for path in places]
     if not any(found):
         wanted = f"got '{wish}', which is no program" if wish else "got none"
-        raise DdaError(
-            f"expected the program dda, {wanted}; put it on the path, or name it with VOUSSOIR_DDA"
-        )
+        raise DdaError(f"expected the program dda, {wanted}; put it on the path, or name it with VOUSSOIR_DDA")
     return Path(next(filter(None, found))).resolve()
 
 

@@ -63,6 +63,4 @@ def load(package: str, purpose: str) -> ModuleType:
     try:
         return importlib.import_module(package)
     except ImportError as missing:
-        raise MissingPackage(
-            f"{purpose} needs {package}, got none ({missing}); {advice(package)}"
-        ) from missing
+        raise MissingPackage(f"{purpose} needs {package}, got none ({missing}); {advice(package)}") from missing

@@ -47,11 +47,7 @@ class Finished:
 
 
 def run_deck(
-    deck: str | bytes,
-    folder: Path,
-    timeout: float = 600.0,
-    jobs: int = 1,
-    files: Mapping[str, str] | None = None,
+    deck: str | bytes, folder: Path, timeout: float = 600.0, jobs: int = 1, files: Mapping[str, str] | None = None
 ) -> Finished:
     """Write a deck and the files beside it, run it, read its results.
 

@@ -25,12 +25,7 @@ def scipy_version() -> str | None:
 
 
 def stands_by_general(
-    half_angle: float,
-    voussoirs: int,
-    ratio: float,
-    friction: float,
-    method: str = "highs",
-    tolerance: float = 1e-7,
+    half_angle: float, voussoirs: int, ratio: float, friction: float, method: str = "highs", tolerance: float = 1e-7
 ) -> bool:
     """Whether an arch stands, by the general program.
 

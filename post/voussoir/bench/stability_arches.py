@@ -137,9 +137,7 @@ def _friction() -> Iterator[Scene]:
     """Friction angles."""
     angles = (0.0, 1e-3, 1.0, 5.0, 10.0, 17.0, 17.5, 18.0, 20.0, 21.0, 21.5, 21.6, 22.0, 30.0, 45.0)
     for angle in (*angles, 60.0, 75.0, 85.0, 88.0, 89.0, 89.5, 89.89, 89.9, 89.99):
-        yield searched(
-            "friction", f"{angle:g} deg", "convex cone first, then Coulomb", friction_deg=angle
-        )
+        yield searched("friction", f"{angle:g} deg", "convex cone first, then Coulomb", friction_deg=angle)
     for half_angle in (135.0, 140.0, 145.0):
         arch = {"half_angle_deg": half_angle, "voussoirs": round(half_angle * 0.4)}
         for angle in range(55, 90, 5):
@@ -220,12 +218,8 @@ def _scales() -> Iterator[Scene]:
         radius = {**arch, "radius": 10.0**exponent}
         yield searched("scale", f"radius 1e{exponent} m", guard, radius)
     for exponent in (-12, -6, 0, 9, 18, 30):
-        yield searched(
-            "scale", f"density 1e{exponent} kg/m3", guard, material={"density": 10.0**exponent}
-        )
-        yield searched(
-            "scale", f"weight 1e{exponent} N/m3", guard, material={"unit_weight": 10.0**exponent}
-        )
+        yield searched("scale", f"density 1e{exponent} kg/m3", guard, material={"density": 10.0**exponent})
+        yield searched("scale", f"weight 1e{exponent} N/m3", guard, material={"unit_weight": 10.0**exponent})
     for exponent in (-12, -6, 6, 12):
         load = {"gravity": 10.0**exponent}
         yield searched("scale", f"gravity 1e{exponent} m/s2", guard, load=load)

@@ -62,10 +62,7 @@ def tower(widths: Sequence[float], height: float = 1.0, words: Sequence[str] = (
 
 def weights(forces: Sequence[float], accept: float = 1e-8) -> Measured:
     """The scene stands, and the normal forces of its joints are the weights above them."""
-    checks = [
-        Check(f"N of joint {i} [N/m]", force, normal_force(i), accept)
-        for i, force in enumerate(forces, 1)
-    ]
+    checks = [Check(f"N of joint {i} [N/m]", force, normal_force(i), accept) for i, force in enumerate(forces, 1)]
     return Measured((verdict("stable", "verdict"), *checks))
 
 
@@ -98,10 +95,7 @@ def _mass_contrasts() -> Iterator[Scene]:
     """Feathers, anvils and pebbles."""
     guard = "forces balance to a share of what bears on the block itself"
     for geometry, young in GEOMETRIES:
-        deck = {
-            "analysis": {"geometry": geometry},
-            "material": {"unit_weight": 1.0, "young": young},
-        }
+        deck = {"analysis": {"geometry": geometry}, "material": {"unit_weight": 1.0, "young": young}}
         for ratio in (1e3, 1e6, 1e9):
             heavy = f"material 2 unit_weight {ratio!r} density {ratio!r}\n"
             for name, words, forces in (
@@ -236,9 +230,7 @@ def _slopes() -> Iterator[Scene]:
                 f"flat, friction {friction:g} deg, {geometry}",
                 "no force, no motion",
                 BASE + block + "measure 0.5 0.2\n",
-                Measured(
-                    (verdict("stable", "verdict"), Check("drift [m]", 0.0, _aside, 1e-9, scale=1.0))
-                ),
+                Measured((verdict("stable", "verdict"), Check("drift [m]", 0.0, _aside, 1e-9, scale=1.0))),
                 joint={"friction_deg": friction},
                 material={"young": young},
                 analysis={"geometry": geometry},
@@ -262,9 +254,7 @@ def _corners() -> Iterator[Scene]:
     for geometry, young in GEOMETRIES:
         more = {"analysis": {"geometry": geometry}, "material": {"young": young}}
         text = BASE + "".join(map(written_block, four))
-        yield block_scene(
-            "corners", f"four at one point, {geometry}", guard, text, Verdict("stable"), **more
-        )
+        yield block_scene("corners", f"four at one point, {geometry}", guard, text, Verdict("stable"), **more)
         post = BASE + written_block(rectangle(0.0, 0.0, 1.0, 1.0))
         over = written_block(rectangle(1.0, 1.0, 1.0, 1.0))
         yield block_scene(
@@ -315,10 +305,7 @@ def wall(courses: int, bricks: int, length: float, height: float) -> tuple[list[
     for course in range(courses):
         odd = course % 2
         ends = [0.0, *((i + 0.5 * odd) * length for i in range(1 - odd, bricks)), bricks * length]
-        found += [
-            rectangle(left, course * height, right - left, height)
-            for left, right in zip(ends, ends[1:])
-        ]
+        found += [rectangle(left, course * height, right - left, height) for left, right in zip(ends, ends[1:])]
     return found, bricks
 
 
@@ -328,10 +315,7 @@ def _indeterminate() -> Iterator[Scene]:
     fine = verdict("stable", "verdict")
     no_pull = Check("tension in a joint [N/m]", 0.0, pull, 0.0, scale=1.0)
     for geometry, young in GEOMETRIES:
-        more = {
-            "analysis": {"geometry": geometry},
-            "material": {"unit_weight": WEIGHT, "young": young, "poisson": 0.0},
-        }
+        more = {"analysis": {"geometry": geometry}, "material": {"unit_weight": WEIGHT, "young": young, "poisson": 0.0}}
         for courses, bricks in ((20, 1), (4, 4), (10, 5)):
             text = BASE + "".join(map(written_block, wall(courses, bricks, 0.5, 0.25)[0]))
             whole = WEIGHT * courses * bricks * 0.5 * 0.25

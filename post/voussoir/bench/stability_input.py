@@ -13,9 +13,7 @@ from voussoir.bench.validation_scene import GRAVITY, Check, verdict
 _SQUARE = rectangle(0.0, 0.0, 1.0, 1.0)
 _BLOCK = written_block(_SQUARE)
 _FALLS = {"mode": "dynamic", "geometry": "current", "time_step": 0.01, "duration": 1.0}
-_STANDS = Measured(
-    (verdict("stable", "verdict"), Check("N [N/m]", WEIGHT, normal_force(1), 1e-6))
-)
+_STANDS = Measured((verdict("stable", "verdict"), Check("N [N/m]", WEIGHT, normal_force(1), 1e-6)))
 #: Four lines that enclose a block, as a file of lines
 _LINES = ("0 0 1 0 1", "1 0 1 1 1", "1 1 0 1 1", "0 1 0 0 1")
 _GROUP = "bad input"

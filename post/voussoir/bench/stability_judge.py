@@ -159,9 +159,7 @@ class Same:
         values = [float(row["critical"]) for row in rows]
         spread = (max(values) - min(values)) / abs(values[0])
         same = spread <= self.tolerance
-        return Judgement(
-            RIGHT if same else WRONG, rows[0]["critical"], f"{spread:.1e}", "" if same else "differ"
-        )
+        return Judgement(RIGHT if same else WRONG, rows[0]["critical"], f"{spread:.1e}", "" if same else "differ")
 
 
 @dataclass(frozen=True)

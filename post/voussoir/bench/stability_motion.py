@@ -56,9 +56,7 @@ def moving(
     output = {"joints": False, "condition": False, "energy": True}
     rise = Check("rise of energy over the speed's", 0.0, _rise, 1e-6, scale=1.0)
     expectation = Measured((_FINE, *checks, rise))
-    return block_scene(
-        group, name, guard, blocks, expectation, analysis=analysis, output=output, **groups
-    )
+    return block_scene(group, name, guard, blocks, expectation, analysis=analysis, output=output, **groups)
 
 
 def _rise(outcome: Outcome) -> float:
@@ -189,13 +187,7 @@ def _bounces() -> Iterator[Scene]:
             fall = math.sqrt(2.0 / GRAVITY)
             time = fall * (1.0 + restitution) if restitution else 1.0
             height = restitution**2
-            top = Check(
-                "height [m]",
-                height,
-                lambda outcome: 1.0 + float(outcome.end(1)[1]),
-                1e-5,
-                scale=1.0,
-            )
+            top = Check("height [m]", height, lambda outcome: 1.0 + float(outcome.end(1)[1]), 1e-5, scale=1.0)
             yield moving(
                 f"restitution {restitution:g}, steps of {step:g} s",
                 guard,
@@ -293,10 +285,7 @@ def _stiff_motion() -> Iterator[Scene]:
     rub = math.cos(math.pi / 6.0) * math.tan(math.radians(20.0))
     slide = GRAVITY * (math.sin(math.pi / 6.0) - rub) / 2.0
     way = (Check("way in a second [m]", slide, end(0), 1e-3),)
-    more: dict[str, Any] = {
-        "joint": {"friction_deg": 20.0},
-        "load": {"gravity_direction_deg": -60.0},
-    }
+    more: dict[str, Any] = {"joint": {"friction_deg": 20.0}, "load": {"gravity_direction_deg": -60.0}}
     for exponent in (8, 10, 12, 14, 16, 18):
         name = f"slope, E = 1e{exponent} Pa"
         material = {"young": 10.0**exponent}

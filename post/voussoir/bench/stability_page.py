@@ -96,9 +96,7 @@ def kinds(lines: Sequence[Line]) -> list[Kind]:
     groups = {line.group: [other for other in lines if other.group == line.group] for line in lines}
     found = []
     for name, own in {**groups, "all": list(lines)}.items():
-        errors = [
-            abs(float(line.error)) for line in own if line.result == RIGHT and _is_number(line.error)
-        ]
+        errors = [abs(float(line.error)) for line in own if line.result == RIGHT and _is_number(line.error)]
         times = [float(line.seconds) for line in own if line.seconds] or [0.0]
         count = Counter(line.result for line in own)
         worst = max(errors, default=None)
@@ -137,8 +135,7 @@ def write_markdown(lines: Sequence[Line], file: Path) -> None:
     text += ["| " + " | ".join(kind.cells()) + " |" for kind in kinds(lines)]
     text.append("\n| scene | result | wanted | found | error | reason |\n" + "| --- " * 6 + "|")
     text += [
-        f"| {line.group}: {line.scene} | {line.result} | {line.wanted} | {line.found} "
-        f"| {line.error} | {line.reason} |"
+        f"| {line.group}: {line.scene} | {line.result} | {line.wanted} | {line.found} | {line.error} | {line.reason} |"
         for line in lines
         if line.result != RIGHT
     ]
@@ -198,8 +195,7 @@ def _scene_table(lines: Sequence[Line], names: Sequence[str]) -> list[str]:
     for line in lines:
         row = asdict(line)
         cells = "".join(
-            f"<td class='{row[name] if name == 'result' else _class(name, row[name])}'>"
-            f"{html.escape(row[name])}</td>"
+            f"<td class='{row[name] if name == 'result' else _class(name, row[name])}'>{html.escape(row[name])}</td>"
             for name in names
         )
         text.append(f"<tr>{cells}</tr>")

@@ -94,9 +94,7 @@ def _tower(number: int, chance: np.random.Generator) -> Scene:
     )
 
 
-def tower_push(
-    left: np.ndarray, widths: np.ndarray, heights: np.ndarray, friction: float
-) -> float:
+def tower_push(left: np.ndarray, widths: np.ndarray, heights: np.ndarray, friction: float) -> float:
     """Force to the right over the weight at which a tower slides or tips.
 
     Parameters

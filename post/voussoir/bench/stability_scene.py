@@ -93,12 +93,7 @@ def written_block(corners: Corners, words: str = "") -> str:
 
 
 def block_scene(
-    group: str,
-    name: str,
-    guard: str,
-    blocks: str,
-    expectation: Expectation,
-    **groups: dict[str, Any],
+    group: str, name: str, guard: str, blocks: str, expectation: Expectation, **groups: dict[str, Any]
 ) -> Scene:
     """A scene of a file of blocks."""
     deck = {"scene": {"kind": "blocks", "geometry": BLOCKS}, **groups}

@@ -23,20 +23,13 @@ _SERIES_K = 1.0 / np.array([10, 28, 54, 88, 130, 180, 238, 304, 378, 460, 550])
 
 def main() -> None:
     """Measure and print the table."""
-    parser = argparse.ArgumentParser(
-        prog="python3 -m voussoir.bench.theory_times", description=__doc__.splitlines()[0]
-    )
-    parser.add_argument(
-        "--elements", type=int, default=1_000_000, help="half angles for Fortran and NumPy"
-    )
+    parser = argparse.ArgumentParser(prog="python3 -m voussoir.bench.theory_times", description=__doc__.splitlines()[0])
+    parser.add_argument("--elements", type=int, default=1_000_000, help="half angles for Fortran and NumPy")
     parser.add_argument("--scalar", type=int, default=2000, help="half angles for brentq")
     options = parser.parse_args()
     angles = np.linspace(0.01, 2.2, options.elements)
     few = np.linspace(0.01, 2.2, options.scalar)
-    print(
-        f"{'theory':<14}{'Fortran':>12}{'NumPy':>12}{'brentq':>12}"
-        "   solutions/s, ratios, largest difference in eta"
-    )
+    print(f"{'theory':<14}{'Fortran':>12}{'NumPy':>12}{'brentq':>12}   solutions/s, ratios, largest difference in eta")
     for name in theory.THEORIES:
         print(compare(name, angles, few))
     voussoirs = 36
@@ -75,9 +68,7 @@ def rate(work: Callable[[], object], count: int, repeats: int = 3) -> float:
     return count / best
 
 
-def numpy_critical(
-    alpha: np.ndarray, name: str, steps: int = 6
-) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+def numpy_critical(alpha: np.ndarray, name: str, steps: int = 6) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """The algorithm of couplet_heyman_critical on whole arrays, for half angles up to 2.2.
 
     Parameters
@@ -102,14 +93,10 @@ def numpy_critical(
         if name == "heyman":
             eta = 2.0 * _arc_excess(beta) / beta * np.tan(beta / 2) ** 2
             growth = eta * (q / _arc_excess(beta) - 1.0 / beta + 2.0 / sine)
-            change = (deficit - ratio - eta / (2.0 + eta)) / (
-                rate_of_ratio + 2.0 * growth / (2.0 + eta) ** 2
-            )
+            change = (deficit - ratio - eta / (2.0 + eta)) / (rate_of_ratio + 2.0 * growth / (2.0 + eta) ** 2)
         else:
             eta = _curve(alpha, beta, deficit, flag)
-            change = (
-                deficit - ratio - 4.0 * eta * (1.0 + flag * eta**2 / 12) / (4.0 - eta**2)
-            ) / rate_of_ratio
+            change = (deficit - ratio - 4.0 * eta * (1.0 + flag * eta**2 / 12) / (4.0 - eta**2)) / rate_of_ratio
         beta = beta + change
     h = 1.0 - deficit + eta * (1.0 - flag * eta / 6) / (2.0 + eta)
     return beta, eta, h
@@ -143,9 +130,7 @@ def brentq_critical(alpha: float, name: str) -> tuple[float, float, float]:
         cubic = s**2 * (3 * g - 2 * s) * a**3 + 3 * (1 - c) * (b - s) * g * s * a**2
         return cubic - 3 * (s + b * c) * g**2 * a + 2 * g**3
 
-    beta = brentq(
-        mismatch, 0.55 * alpha if name == "heyman" else 0.4 * alpha, min(alpha, 1.57), xtol=1e-15
-    )
+    beta = brentq(mismatch, 0.55 * alpha if name == "heyman" else 0.4 * alpha, min(alpha, 1.57), xtol=1e-15)
     s, c = math.sin(beta), math.cos(beta)
     if name == "heyman":
         return beta, 2 * (beta - s) * (1 - c) / (beta * (1 + c)), beta * c / s
@@ -172,9 +157,7 @@ def _arc_excess(x: np.ndarray) -> np.ndarray:
 
 def _arm_excess(x: np.ndarray) -> np.ndarray:
     """sin x - x cos x."""
-    return np.where(
-        np.abs(x) < 1.5, x**3 / 3 * _nested(x * x, _SERIES_K), np.sin(x) - x * np.cos(x)
-    )
+    return np.where(np.abs(x) < 1.5, x**3 / 3 * _nested(x * x, _SERIES_K), np.sin(x) - x * np.cos(x))
 
 
 def _curve(alpha: np.ndarray, beta: np.ndarray, deficit: np.ndarray, flag: float) -> np.ndarray:

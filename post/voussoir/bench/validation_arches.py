@@ -57,15 +57,11 @@ def _lateral() -> list[Scene]:
     """The lateral push by the number of voussoirs and by friction."""
     more = tuple(
         (f"force over weight, {n} voussoirs", exact, case)
-        for case, (n, exact) in enumerate(
-            ((14, 0.359609), (15, 0.356745), (21, 0.356026), (50, 0.353657)), 1
-        )
+        for case, (n, exact) in enumerate(((14, 0.359609), (15, 0.356745), (21, 0.356026), (50, 0.353657)), 1)
     )
     rubbed = tuple(
         (f"force over weight, friction {mu}", exact, case)
-        for case, (mu, exact) in enumerate(
-            ((0.6, 0.373612), (0.5, 0.367966), (0.4, 0.257000), (0.3, 0.138946)), 1
-        )
+        for case, (mu, exact) in enumerate(((0.6, 0.373612), (0.5, 0.367966), (0.4, 0.257000), (0.3, 0.138946)), 1)
     )
     source = "limit analysis, six digits"
     scenes = []
@@ -119,8 +115,7 @@ def _sliding() -> Scene:
         for n, exact in zip((15, 27, 50), row, strict=True)
     ]
     checks = tuple(
-        Check(what, exact, _critical, accept, case, scale=1.0)
-        for case, (what, exact, accept) in enumerate(rows, 1)
+        Check(what, exact, _critical, accept, case, scale=1.0) for case, (what, exact, accept) in enumerate(rows, 1)
     )
     return Scene(ARCHES, "arch_sliding", "limit analysis, four digits", checks)
 

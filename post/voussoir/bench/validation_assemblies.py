@@ -4,16 +4,7 @@ from __future__ import annotations
 
 import math
 
-from voussoir.bench.validation_scene import (
-    MOVED,
-    YOUNG,
-    Check,
-    Outcome,
-    Scene,
-    critical,
-    rigid_and_moving,
-    verdict,
-)
+from voussoir.bench.validation_scene import MOVED, YOUNG, Check, Outcome, Scene, critical, rigid_and_moving, verdict
 
 ASSEMBLIES = "Assemblies"
 
@@ -28,9 +19,7 @@ def _assemblies() -> list[Scene]:
     wedges = 250.0 * math.tan(15 * DEGREE) / math.tan(20 * DEGREE)
     lintel = [("horizontal force over weight", 1.0 / 3.0)]
     force = "normal force of joint {} [N/m]"
-    stack = tuple(
-        Check(force.format(k + 1), _WEIGHT * (10 - k), _normal(k), 1e-8) for k in (0, 4, 9)
-    )
+    stack = tuple(Check(force.format(k + 1), _WEIGHT * (10 - k), _normal(k), 1e-8) for k in (0, 4, 9))
     notch = tuple(
         Check(f"{force.format(k + 1)[:-6]}, friction {phi} deg [N/m]", exact, _normal(k), 1e-8, case)
         for case, (phi, exact) in enumerate(((phi, _in_notch(phi)) for phi in (0, 10, 20)), 1)
@@ -125,10 +114,7 @@ def _pressed() -> list[Scene]:
     pull = roof_wedge(20.0, 40.0, spring, 1e-3) / half
     bar = snap_load(4.0, 0.4, YOUNG * 0.1) / (0.1 * math.hypot(4.0, 0.4))
     thrust = 25000.0 * 0.5 * 4.0**2 / (8.0 * 0.5)
-    beam = tuple(
-        Check(f"thrust at joint {k + 1} [N/m]", thrust, _normal(k), 1e-8, scale=thrust)
-        for k in range(3)
-    )
+    beam = tuple(Check(f"thrust at joint {k + 1} [N/m]", thrust, _normal(k), 1e-8, scale=thrust) for k in range(3))
     sagging = Check("thrust of the sagging beam over w LL/(8 (h - z))", 1.0, _sagging, 1e-4)
     roof = "unit weight of the wedge [N/m3]"
     scenes = []
@@ -142,10 +128,7 @@ def _pressed() -> list[Scene]:
         Scene(ASSEMBLIES, "voussoir_beam", "w LL/(8h)", beam),
         Scene(ASSEMBLIES, "voussoir_beam", "w LL/(8 (h - z))", (sagging,), MOVED),
         Scene(
-            ASSEMBLIES,
-            "snap_through",
-            "most of 2 EA (z/l) (l0 - l)/l0",
-            (critical("unit weight [N/m3]", bar, 1e-4),),
+            ASSEMBLIES, "snap_through", "most of 2 EA (z/l) (l0 - l)/l0", (critical("unit weight [N/m3]", bar, 1e-4),)
         ),
     ]
 

@@ -69,9 +69,7 @@ def _upright(block: int):
 
 def _swing(block: int, angle: float):
     """Measure of the largest tilt to the other side over the block's angle."""
-    return lambda outcome: float(
-        -(outcome.direction(2 * block - 1, 2 * block) - math.pi / 2.0).min() / angle
-    )
+    return lambda outcome: float(-(outcome.direction(2 * block - 1, 2 * block) - math.pi / 2.0).min() / angle)
 
 
 def largest_rise(outcome: Outcome) -> float:
@@ -82,11 +80,7 @@ def largest_rise(outcome: Outcome) -> float:
 def _rocking() -> list[Scene]:
     """Three blocks, each let go at three tilts."""
     scenes = []
-    for deck, b, h in (
-        ("rocking_stocky", 0.25, 0.5),
-        ("rocking_slender", 0.2, 1.0),
-        ("rocking_tall", 0.25, 1.0),
-    ):
+    for deck, b, h in (("rocking_stocky", 0.25, 0.5), ("rocking_slender", 0.2, 1.0), ("rocking_tall", 0.25, 1.0)):
         checks = []
         for block, share in enumerate((0.25, 0.5, 0.75), 1):
             start = f"from {share} of its angle"
@@ -162,8 +156,7 @@ def _bounces() -> list[Scene]:
     fall = DENSITY * GRAVITY
     rise = "largest rise of energy in a step, e = {}, over the fall's"
     rises = tuple(
-        Check(rise.format(e), 0.0, largest_rise, 1e-9, case, fall)
-        for case, e in enumerate((0.0, 0.5, 0.8, 1.0), 1)
+        Check(rise.format(e), 0.0, largest_rise, 1e-9, case, fall) for case, e in enumerate((0.0, 0.5, 0.8, 1.0), 1)
     )
     met = []
     for case, e in enumerate((0.0, 0.5, 1.0), 1):

@@ -111,10 +111,7 @@ def _momentum_checks() -> tuple[Check, ...]:
     """Checks that momentum and its moment stay, over the sum of their sizes at the beginning."""
     scale = sum(DENSITY * w * h * math.hypot(*v) for (w, h), v, _ in _THROWN)
     names = ("momentum along x", "momentum along y", "angular momentum")
-    return tuple(
-        Check(f"{name} gained", 0.0, _gained(i), 1e-9, scale=scale)
-        for i, name in enumerate(names)
-    )
+    return tuple(Check(f"{name} gained", 0.0, _gained(i), 1e-9, scale=scale) for i, name in enumerate(names))
 
 
 def _spins(*checks: Check) -> tuple[Scene, ...]:
@@ -200,8 +197,7 @@ def _slides() -> list[Scene]:
     cases = ((30.0, 0.0), (30.0, 20.0), (20.0, 10.0), (28.0, 22.0))
     s = "s(1 s), {:.0f} deg, friction {:.0f} deg [m]"
     rows = tuple(
-        Check(s.format(*row), slide(*row) / 2.0, _way_at(1.0), 1e-3, case)
-        for case, row in enumerate(cases, 1)
+        Check(s.format(*row), slide(*row) / 2.0, _way_at(1.0), 1e-3, case) for case, row in enumerate(cases, 1)
     ) + tuple(
         Check(s.format(*row).replace("1 s", "2 s"), slide(*row) * 2.0, _way_at(2.0), 1e-3, case)
         for case, row in enumerate(cases, 1)

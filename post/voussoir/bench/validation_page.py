@@ -8,9 +8,7 @@ from collections.abc import Sequence
 
 from voussoir.bench.validation_run import Line
 
-_COLUMNS = (
-    "section scene quantity source exact computed error accepted rate seconds verdict".split()
-)
+_COLUMNS = "section scene quantity source exact computed error accepted rate seconds verdict".split()
 
 _HEAD = """# Validation
 

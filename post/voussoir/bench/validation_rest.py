@@ -6,15 +6,7 @@ import math
 
 import numpy as np
 
-from voussoir.bench.validation_scene import (
-    GRAVITY,
-    MOVED,
-    Check,
-    Outcome,
-    Scene,
-    rigid_and_moving,
-    verdict,
-)
+from voussoir.bench.validation_scene import GRAVITY, MOVED, Check, Outcome, Scene, rigid_and_moving, verdict
 
 TOPPLING = "Blocks that topple"
 
@@ -44,11 +36,7 @@ def foot_acceleration(b: float, h: float, slope: float, friction: float) -> floa
     # unknowns: acceleration of the foot, acceleration of turn down the slope, normal force; mass 1
     inertia = (b**2 + h**2) / 12.0
     sine, cosine = GRAVITY * math.sin(slope), GRAVITY * math.cos(slope)
-    rolling = [
-        [1.0, h / 2.0, friction],
-        [0.0, b / 2.0, -1.0],
-        [0.0, inertia, b / 2.0 - friction * h / 2.0],
-    ]
+    rolling = [[1.0, h / 2.0, friction], [0.0, b / 2.0, -1.0], [0.0, inertia, b / 2.0 - friction * h / 2.0]]
     found = np.linalg.solve(rolling, [sine, -cosine, 0.0])
     if found[1] < 0.0:
         # it does not topple
@@ -73,10 +61,7 @@ def _onset(deck: str, b: float, h: float, slope: float, limit: float) -> Scene:
     friction = [limit - 1.0, limit + 1.0]
     exact = [foot_acceleration(b, h, slope * DEGREE, math.tan(phi * DEGREE)) for phi in friction]
     what = "acceleration of the foot, friction {:.4f} deg [m/s2]"
-    checks = tuple(
-        Check(what.format(friction[k]), exact[k], foot, 1e-2, k + 1, scale=exact[0])
-        for k in range(2)
-    )
+    checks = tuple(Check(what.format(friction[k]), exact[k], foot, 1e-2, k + 1, scale=exact[0]) for k in range(2))
     return Scene(TOPPLING, deck, f"phi_c {limit} deg; onset by Newton", checks, rate=True)
 
 
@@ -110,11 +95,7 @@ def _toppling() -> list[Scene]:
         *(_onset(*onset) for onset in ONSETS),
         *_overhangs(),
     ]
-    slope = (
-        verdict("stable", "40 deg", 1),
-        verdict("collapsed", "32.9 deg", 5),
-        verdict("collapsed", "30 deg", 6),
-    )
+    slope = (verdict("stable", "40 deg", 1), verdict("collapsed", "32.9 deg", 5), verdict("collapsed", "30 deg", 6))
     source = "Goodman and Bray 1976: 38.15; limit analysis: 33.4"
     return scenes + [Scene(TOPPLING, "goodman_bray", source, slope, more) for more in ((), MOVED)]
 

@@ -124,9 +124,7 @@ def _lost_amplitude(outcome: Outcome) -> float:
     swing = outcome.track(1)[4] + 2500.0 * GRAVITY * 4.0 / (2.0 * YOUNG)
     inner = swing[1:-1]
     k = 1 + np.flatnonzero((inner >= swing[:-2]) & (inner > swing[2:]) & (inner > 0.0))
-    tops = swing[k] + (swing[k + 1] - swing[k - 1]) ** 2 / (
-        8.0 * (2.0 * swing[k] - swing[k - 1] - swing[k + 1])
-    )
+    tops = swing[k] + (swing[k + 1] - swing[k - 1]) ** 2 / (8.0 * (2.0 * swing[k] - swing[k - 1] - swing[k + 1]))
     return float(1.0 - (tops[-1] / tops[0]) ** (1.0 / (len(tops) - 1)))
 
 

@@ -104,9 +104,7 @@ def panels(folder: Path, repeats: int, classes: Sequence[str] = CLASSES) -> Iter
         "wall": lambda: _block_panel(scenes.wall(), folder, repeats),
         "three rings": lambda: _block_panel(scenes.three_rings(), folder, repeats),
         "moving arch": lambda: _arch_panel(scenes.moving_arch(), folder, repeats),
-        "motion": lambda: Panel(
-            "Motion in time: quarter period, rocking block", tuple(_motion(folder, repeats))
-        ),
+        "motion": lambda: Panel("Motion in time: quarter period, rocking block", tuple(_motion(folder, repeats))),
     }
     for name in classes:
         yield made[name]()
@@ -128,9 +126,7 @@ def _block_panel(scene: scenes.Scene, folder: Path, repeats: int) -> Panel:
     coulomb = float(row["critical"])
     associated = (float(row["exact_low"]) + float(row["exact_high"])) / 2.0
     of_flow = {scenes.ASSOCIATED: associated}
-    points = list(
-        _dda_points(scene, lambda method: of_flow.get(method, coulomb), folder, repeats)
-    )
+    points = list(_dda_points(scene, lambda method: of_flow.get(method, coulomb), folder, repeats))
     if limit_lp.scipy_version() is not None:
         told = {"output": {"joints": True, "blocks": True}}
         told_run = results.read(_run(scene, told, folder, 1).folder)
@@ -143,9 +139,7 @@ def _block_panel(scene: scenes.Scene, folder: Path, repeats: int) -> Panel:
     return Panel(scene.title, tuple(points), associated / coulomb - 1.0)
 
 
-def _dda_points(
-    scene: scenes.Scene, exact: Callable[[str], float], folder: Path, repeats: int
-) -> Iterator[Point]:
+def _dda_points(scene: scenes.Scene, exact: Callable[[str], float], folder: Path, repeats: int) -> Iterator[Point]:
     """All settings of the methods of dda."""
     for method, settings in scene.methods.items():
         for setting in settings:
@@ -165,9 +159,7 @@ def _words(setting: Mapping[str, Any]) -> str:
     )
 
 
-def _run(
-    scene: scenes.Scene, setting: Mapping[str, Any], folder: Path, repeats: int
-) -> Finished:
+def _run(scene: scenes.Scene, setting: Mapping[str, Any], folder: Path, repeats: int) -> Finished:
     """Run one setting so many times within one process."""
     groups = merged(scene.groups, setting)
     penalty = groups.get("analysis", {}).pop("penalty_ratio", None)
@@ -212,9 +204,7 @@ def _bisected(scene: scenes.Scene, arch: Arch, repeats: int) -> Iterator[Point]:
     exact = arch.exact()
     for method, solver in ((scenes.SIMPLEX, "highs-ds"), (scenes.INTERIOR, "highs-ipm")):
         for goal in (1e-1, 1e-2, 1e-3, 1e-5, 1e-7, 1e-9):
-            stands = functools.partial(
-                limit_lp.stands_by_general, method=solver, tolerance=max(1e-10, min(1e-7, goal))
-            )
+            stands = functools.partial(limit_lp.stands_by_general, method=solver, tolerance=max(1e-10, min(1e-7, goal)))
             solve = functools.partial(_bisect, arch, stands, exact, goal)
             answer, seconds = _median_time(solve, repeats)
             error = abs(answer / exact - 1.0)
@@ -230,9 +220,7 @@ def _bisect(arch: Arch, stands: Callable[..., bool], exact: float, goal: float) 
     return (low + high) / 2.0
 
 
-def _programs(
-    scene: scenes.Scene, assembly: Assembly, exact: float, repeats: int
-) -> Iterator[Point]:
+def _programs(scene: scenes.Scene, assembly: Assembly, exact: float, repeats: int) -> Iterator[Point]:
     """The associated limit by linear programs."""
     friction = math.tan(math.radians(scene.friction_deg))
     for method, solver in ((scenes.SIMPLEX, "highs-ds"), (scenes.INTERIOR, "highs-ipm")):

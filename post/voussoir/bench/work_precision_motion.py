@@ -25,10 +25,7 @@ MOTION_METHODS: dict[str, Groups] = {
     ELASTIC: {},
     RIGID: {"analysis": {"unknowns": 3}},
     ORIGINAL: {
-        "analysis": {
-            "mode": "limerick", "restitution": None, "duration": None,
-            "max_displacement_ratio": 0.01,
-        },
+        "analysis": {"mode": "limerick", "restitution": None, "duration": None, "max_displacement_ratio": 0.01},
         "limerick": {"dynamic": True},
     },
 }
@@ -75,8 +72,12 @@ class Motion:
     def deck(self, step: float, repeats: int, more: Groups) -> str:
         """The deck for one length of the step; further groups go before its own."""
         analysis = {
-            "mode": "dynamic", "geometry": "current", "max_displacement_ratio": 1.0,
-            "steps": 100000000, "time_step": step, "duration": self.duration,
+            "mode": "dynamic",
+            "geometry": "current",
+            "max_displacement_ratio": 1.0,
+            "steps": 100000000,
+            "time_step": step,
+            "duration": self.duration,
             "restitution": self.restitution,
         }
         groups = {
@@ -153,11 +154,7 @@ def _slide() -> Motion:
     text = written_block(rectangle(-2.0, -1.0, 16.0, 1.0), "fixed")
     text += written_block(rectangle(0.0, 0.0, 2.0, 0.5)) + "measure 1.0 0.25\n"
     way: Callable[[Outcome], float] = lambda outcome: float(outcome.end(1)[0])  # noqa: E731
-    groups = {
-        "joint": {"friction_deg": 20.0},
-        "load": {"gravity_direction_deg": -60.0},
-        "material": {"young": 5e12},
-    }
+    groups = {"joint": {"friction_deg": 20.0}, "load": {"gravity_direction_deg": -60.0}, "material": {"young": 5e12}}
     return Motion(text, groups, 1.0, 0.04, (("incline: way", slide(30.0, 20.0) / 2.0, way),))
 
 
@@ -206,10 +203,7 @@ def _pendulum() -> Motion:
         return float(-angle(outcome).min())
 
     exact = pendulum_quarter(amplitude, frequency)
-    checks = (
-        ("pendulum: quarter period", exact, quarter),
-        ("pendulum: next amplitude", amplitude, swing),
-    )
+    checks = (("pendulum: quarter period", exact, quarter), ("pendulum: next amplitude", amplitude, swing))
     return Motion(text, {"material": {"young": 1e12}}, 1.2, 0.016, checks)
 
 
@@ -274,9 +268,7 @@ def _turned(corners: Corners, angle: float, centre: tuple[float, float]) -> Corn
     """Points turned anticlockwise about a centre."""
     c, s = math.cos(angle), math.sin(angle)
     x0, y0 = centre
-    return [
-        (x0 + c * (x - x0) - s * (y - y0), y0 + s * (x - x0) + c * (y - y0)) for x, y in corners
-    ]
+    return [(x0 + c * (x - x0) - s * (y - y0), y0 + s * (x - x0) + c * (y - y0)) for x, y in corners]
 
 
 def _measured(point: tuple[float, float]) -> str:

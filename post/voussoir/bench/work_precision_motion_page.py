@@ -18,17 +18,14 @@ def write_motion_csv(points: Sequence[MotionPoint], file: Path) -> None:
         writer = csv.writer(stream, lineterminator="\n")
         writer.writerow(["scene", "step", "error", "seconds", "steps"])
         writer.writerows(
-            [point.scene, repr(point.step), repr(point.error), repr(point.seconds), point.steps]
-            for point in points
+            [point.scene, repr(point.step), repr(point.error), repr(point.seconds), point.steps] for point in points
         )
 
 
 def motion_table(points: Sequence[MotionPoint]) -> list[str]:
     """Markdown lines: order of convergence, and the longest step that reaches each accuracy."""
     lines = [
-        "| scene | order | largest error | least error "
-        + "".join(f"| error <= {goal:.0e} " for goal in GOALS)
-        + "|",
+        "| scene | order | largest error | least error " + "".join(f"| error <= {goal:.0e} " for goal in GOALS) + "|",
         "| --- | ---: | ---: | ---: " + "| --- " * len(GOALS) + "|",
     ]
     for scene, own in _by_scene(points).items():
@@ -36,11 +33,7 @@ def motion_table(points: Sequence[MotionPoint]) -> list[str]:
         told = "rounding at any step" if slope is None else f"{slope:.1f}"
         errors = [point.error for point in own]
         cells = [_cheapest(own, goal) for goal in GOALS]
-        lines.append(
-            f"| {scene} | {told} | {max(errors):.1e} | {min(errors):.1e} | "
-            + " | ".join(cells)
-            + " |"
-        )
+        lines.append(f"| {scene} | {told} | {max(errors):.1e} | {min(errors):.1e} | " + " | ".join(cells) + " |")
     return lines
 
 

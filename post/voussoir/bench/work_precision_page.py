@@ -34,8 +34,9 @@ def write_csv(panels: Sequence[Panel], file: Path) -> None:
             best = {id(point) for own in by_method(panel).values() for point in front(own)}
             for point in panel.points:
                 known = ["" if value is None else repr(value) for value in (point.answer, point.error)]
-                writer.writerow([point.scene, point.method, point.setting, *known,
-                                 repr(point.seconds), int(id(point) in best)])
+                writer.writerow(
+                    [point.scene, point.method, point.setting, *known, repr(point.seconds), int(id(point) in best)]
+                )
 
 
 def by_method(panel: Panel) -> dict[str, list[Point]]:
@@ -108,9 +109,9 @@ def draw(panels: Sequence[Panel], folder: Path) -> list[Path]:
         handles: dict[str, object] = {}
         for axes, panel in zip(grid, panels):
             handles |= _draw_panel(axes, panel)
-        for axes in grid[len(panels):]:
+        for axes in grid[len(panels) :]:
             axes.set_axis_off()
-        for axes in grid[:len(panels)]:
+        for axes in grid[: len(panels)]:
             axes.tick_params(labelbottom=True)
             axes.set_xlabel("time [ms]")
         order = [handles[name] for name in _LOOKS if name in handles]
@@ -139,15 +140,27 @@ def _draw_panel(axes, panel: Panel) -> dict[str, object]:
         errors = [max(point.error, LEAST_ERROR) for point in best]
         # between two points nothing better is known than the one that took less time
         (entries[method],) = axes.loglog(
-            times, errors, drawstyle="steps-post", linestyle=dash, linewidth=1.3, color=INK[color],
-            marker=mark, markersize=5.5, markerfacecolor="white", label=method,
+            times,
+            errors,
+            drawstyle="steps-post",
+            linestyle=dash,
+            linewidth=1.3,
+            color=INK[color],
+            marker=mark,
+            markersize=5.5,
+            markerfacecolor="white",
+            label=method,
         )
     if panel.gap:
         axes.axhline(panel.gap, color=INK[2], linewidth=0.9, linestyle=(0, (1, 2)))
         axes.annotate(
             f"the associated limit is {100.0 * panel.gap:.2g} % above the answer under Coulomb friction",
-            (0.02, panel.gap), xycoords=("axes fraction", "data"), xytext=(0, -10),
-            textcoords="offset points", fontsize=8, color=INK[2],
+            (0.02, panel.gap),
+            xycoords=("axes fraction", "data"),
+            xytext=(0, -10),
+            textcoords="offset points",
+            fontsize=8,
+            color=INK[2],
         )
     axes.set_title(panel.title, fontsize=11)
     axes.set_ylabel("relative error")
@@ -157,6 +170,5 @@ def _draw_panel(axes, panel: Panel) -> dict[str, object]:
     axes.set_yticks([10.0**-k for k in range(0, decades + 1, decades // 4 if decades > 6 else 2)])
     silent = [method for method, own in by_method(panel).items() if not front(own)]
     if silent:
-        axes.annotate("no answer: " + ", ".join(silent), (0.02, 0.5), va="center",
-                      xycoords="axes fraction", fontsize=8)
+        axes.annotate("no answer: " + ", ".join(silent), (0.02, 0.5), va="center", xycoords="axes fraction", fontsize=8)
     return entries

@@ -84,15 +84,7 @@ def plan_costs(counts: Sequence[int], folder: Path, repeats: int) -> Iterator[Co
                 yield _cost(arch, part, groups, ratio, search, folder, repeats)
 
 
-def _cost(
-    arch: Arch,
-    part: str,
-    groups: str | None,
-    ratio: float,
-    search: bool,
-    folder: Path,
-    repeats: int,
-) -> Cost:
+def _cost(arch: Arch, part: str, groups: str | None, ratio: float, search: bool, folder: Path, repeats: int) -> Cost:
     """Time, memory and answer of one deck."""
     written = {"&arch": f"half_angle_deg = 90.0, voussoirs = {arch.voussoirs}"}
     written["&joint"] = f"friction_deg = {FRICTION_DEG}"
@@ -167,8 +159,7 @@ def cost_table(costs: Sequence[Cost]) -> list[str]:
     for count in dict.fromkeys(cost.voussoirs for cost in costs):
         for part, _ in PARTS:
             cells = [
-                _cells(found.get((count, part, search)), found.get((count, plan, search)))
-                for search in (False, True)
+                _cells(found.get((count, part, search)), found.get((count, plan, search))) for search in (False, True)
             ]
             if cells[0].strip("| -"):
                 same = _difference(found, count, part)
@@ -180,9 +171,7 @@ def _cells(cost: Cost | None, plan: Cost | None) -> str:
     """Time, times that of the plan, memory."""
     if cost is None or plan is None:
         return "- | - | -"
-    return (
-        f"{cost.seconds * 1e3:.3g} | {cost.seconds / plan.seconds:.2f} | {cost.megabytes:.1f}"
-    )
+    return f"{cost.seconds * 1e3:.3g} | {cost.seconds / plan.seconds:.2f} | {cost.megabytes:.1f}"
 
 
 def _difference(found: dict[tuple[int, str, bool], Cost], count: int, part: str) -> str:

@@ -113,9 +113,7 @@ def race(arch: Arch, folder: Path, repeats: int) -> Race:
         rows = run_deck(decided, folder / "decided").rows
         for number, row in enumerate(rows):
             times["decision"][number % len(ratios)].append(float(row["seconds"]))
-        right["decision"] = sum(
-            (row["verdict"] == "stable") == stands for row, stands in zip(rows[:4], truth)
-        )
+        right["decision"] = sum((row["verdict"] == "stable") == stands for row, stands in zip(rows[:4], truth))
         rows = run_deck(searched, folder / "searched").rows
         times["search"][0] += [float(row["seconds"]) for row in rows]
         if limit_lp.scipy_version() is None:

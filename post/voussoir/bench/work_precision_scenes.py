@@ -102,15 +102,15 @@ def moving_arch() -> Scene:
     current = {"analysis": {"geometry": "current"}, "search": {"tolerance": 1e-6}}
     young = tuple(5.0 * 10.0**k for k in range(8, 14))
     methods = {
-        ELASTIC: _each("material", "young", young, **current) + _with(
-            _each("search", "tolerance", (1e-2, 1e-4, 1e-8), material={"young": 5e12}),
-            geometry="current"),
+        ELASTIC: _each("material", "young", young, **current)
+        + _with(_each("search", "tolerance", (1e-2, 1e-4, 1e-8), material={"young": 5e12}), geometry="current"),
         RIGID: _with(
             _each("search", "tolerance", (1e-2, 1e-4, 1e-6, 1e-8))
             + _each("analysis", "penalty_ratio", (1.0, 10.0, 1000.0), search={"tolerance": 1e-6}),
-            geometry="current", unknowns=3),
-        ORIGINAL: _each("material", "young", (5e9, 5e11), analysis={"mode": "limerick"},
-                        search={"tolerance": 1e-2}),
+            geometry="current",
+            unknowns=3,
+        ),
+        ORIGINAL: _each("material", "young", (5e9, 5e11), analysis={"mode": "limerick"}, search={"tolerance": 1e-2}),
     }
     return Scene("moving arch", "Moving arch: thickness, blocks that move", groups, methods, 60.0)
 
@@ -119,18 +119,13 @@ def wall(courses: int = 8, bricks: int = 5) -> Scene:
     """A wall of bricks, half a brick displaced: the horizontal force that fells it."""
     text = written_block(rectangle(-1.0, -0.5, bricks + 2.0, 0.5), "fixed")
     for course in range(courses):
-        ends = list(range(bricks + 1)) if course % 2 == 0 else [
-            0, *(brick + 0.5 for brick in range(bricks)), bricks]
+        ends = list(range(bricks + 1)) if course % 2 == 0 else [0, *(brick + 0.5 for brick in range(bricks)), bricks]
         for left, right in zip(ends, ends[1:]):
             text += written_block(rectangle(float(left), 0.5 * course, float(right - left), 0.5))
     kind = {"scene": {"kind": "blocks", "geometry": BLOCKS}}
     groups = _searched(kind, "horizontal_coefficient", 30.0)
     original = tuple({"search": {"low": 0.1, "high": 1.0, "tolerance": 10.0**-k}} for k in (1, 2))
-    methods = {
-        ELASTIC: _FINE,
-        ASSOCIATED: _with(_FINE, flow="associated"),
-        ORIGINAL: _with(original, mode="limerick"),
-    }
+    methods = {ELASTIC: _FINE, ASSOCIATED: _with(_FINE, flow="associated"), ORIGINAL: _with(original, mode="limerick")}
     title = f"Wall: horizontal force, {courses} courses"
     return Scene("wall", title, groups, methods, 30.0, {BLOCKS: text})
 
@@ -146,8 +141,7 @@ def three_rings(rings: int = 3, voussoirs: int = 16) -> Scene:
     shapes: list[Corners] = []
     for ring in range(rings):
         low, high = inner + ring * depth, inner + (ring + 1) * depth
-        shapes += [[point(low, a), point(high, a), point(high, b), point(low, b)]
-                   for a, b in zip(angles, angles[1:])]
+        shapes += [[point(low, a), point(high, a), point(high, b), point(low, b)] for a, b in zip(angles, angles[1:])]
     text = "".join(map(written_block, shapes))
     outer = inner + rings * depth
     for angle, side in ((angles[0], -1.0), (angles[-1], 1.0)):

@@ -39,8 +39,7 @@ def dask_engine(address: str) -> tuple[Engine, int]:
         from distributed import Client, as_completed
     except ImportError as error:
         raise DdaError(
-            f"--scheduler:1: error: expected Dask, got none ({error}); {advice('distributed')}, "
-            "or omit --scheduler"
+            f"--scheduler:1: error: expected Dask, got none ({error}); {advice('distributed')}, or omit --scheduler"
         ) from error
     try:
         client = Client(address, timeout=WAIT)

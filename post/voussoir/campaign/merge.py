@@ -77,9 +77,7 @@ class Owner:
         return self.attempts[place] if place >= 0 else None
 
 
-def merge(
-    parts: Path, out: Path, record: str | None = None, headers: dict[str, str] | None = None
-) -> None:
+def merge(parts: Path, out: Path, record: str | None = None, headers: dict[str, str] | None = None) -> None:
     """Merge all parts into the folder of the campaign; each table is replaced at once.
 
     What that folder has of the same campaign is a part like the others.
@@ -109,11 +107,7 @@ def merge(
 
 
 def merge_table(
-    name: str,
-    attempts: list[Path],
-    owner: Owner,
-    out: Path,
-    headers: dict[str, str] | None = None,
+    name: str, attempts: list[Path], owner: Owner, out: Path, headers: dict[str, str] | None = None
 ) -> None:
     """Merge one table, sorted by case.
 

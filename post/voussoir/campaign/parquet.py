@@ -62,11 +62,14 @@ def _batches(table: Path, arrow: Any) -> Iterator[Any]:
         while True:
             cells = list(zip(*rows)) or [()] * len(names)
             columns = [column_of(name, column) for name, column in zip(names, cells)]
-            yield arrow.table({
-                name: arrow.array(column.tolist(), arrow.list_(arrow.float64())) if column.dtype == object
-                else arrow.array(column)
-                for name, column in zip(names, columns)
-            })
+            yield arrow.table(
+                {
+                    name: arrow.array(column.tolist(), arrow.list_(arrow.float64()))
+                    if column.dtype == object
+                    else arrow.array(column)
+                    for name, column in zip(names, columns)
+                }
+            )
             rows = list(islice(reader, BATCH))
             if not rows:
                 return

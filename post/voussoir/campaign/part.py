@@ -131,10 +131,7 @@ def span_of(attempt: Path) -> range | None:
 
 
 def finished_by(
-    attempt: Path,
-    record: str | None = None,
-    headers: dict[str, str] | None = None,
-    problems: list[str] | None = None,
+    attempt: Path, record: str | None = None, headers: dict[str, str] | None = None, problems: list[str] | None = None
 ) -> Set[int]:
     """Which cases an attempt has finished: a whole row of results.csv is written last.
 
@@ -158,23 +155,27 @@ def finished_by(
         return CaseSet()
 
 
-def _finished_by(
-    attempt: Path, record: str | None, headers: dict[str, str], said: list[str]
-) -> Set[int]:
+def _finished_by(attempt: Path, record: str | None, headers: dict[str, str], said: list[str]) -> Set[int]:
     """Which cases an attempt has finished; failures are exceptions."""
     if record is not None and content_of(attempt / "deck.record") != record.encode():
-        said.append(f"{attempt / 'deck.record'}:1: warning: expected the record of this campaign, "
-                    "got another one; nothing of this folder is taken")
+        said.append(
+            f"{attempt / 'deck.record'}:1: warning: expected the record of this campaign, "
+            "got another one; nothing of this folder is taken"
+        )
         return CaseSet()
     for name, header in headers.items():
         if first_line(attempt / name) != header.encode():
-            said.append(f"{attempt / name}:1: warning: expected the first line '{header}', got "
-                        "another one; its cases are computed again")
+            said.append(
+                f"{attempt / name}:1: warning: expected the first line '{header}', got "
+                "another one; its cases are computed again"
+            )
             return CaseSet()
     broken = broken_seal(attempt)
     if broken:
-        said.append(f"{attempt / broken}:1: warning: expected the table as it was written, got a "
-                    "damaged one; its cases are computed again")
+        said.append(
+            f"{attempt / broken}:1: warning: expected the table as it was written, got a "
+            "damaged one; its cases are computed again"
+        )
         return CaseSet()
     cases = whole_rows(attempt, said)
     if "sizes.record" not in headers or not cases:
@@ -186,8 +187,10 @@ def _finished_by(
             kept.add(case)
     lost = next((case for case in cases if case not in kept), None)
     if lost is not None:
-        said.append(f"{attempt / 'sizes.record'}:1: warning: expected the bytes that case {lost} has "
-                    "in the tables, got others; it is computed again")
+        said.append(
+            f"{attempt / 'sizes.record'}:1: warning: expected the bytes that case {lost} has "
+            "in the tables, got others; it is computed again"
+        )
     return kept
 
 
@@ -210,9 +213,11 @@ def whole_rows(attempt: Path, said: list[str]) -> CaseSet:
             if case.isdecimal() and case.isascii() and (span is None or int(case) in span):
                 found.add(int(case))
             else:
-                said.append(f"{attempt / 'results.csv'}:{number}: warning: expected a row of "
-                            f"{len(names)} cells with its case, got another one; its case is "
-                            "computed again")
+                said.append(
+                    f"{attempt / 'results.csv'}:{number}: warning: expected a row of "
+                    f"{len(names)} cells with its case, got another one; its case is "
+                    "computed again"
+                )
     return found
 
 
@@ -238,8 +243,11 @@ def told_sizes(attempt: Path) -> Iterator[tuple[int, int]]:
 
 def write_seal(folder: Path) -> None:
     """Write the digests of all tables beside them."""
-    lines = [f"{digest_of(path)} {path.name}\n" for path in sorted(folder.iterdir())
-             if path.suffix in (".csv", ".txt") or path.name == "sizes.record"]
+    lines = [
+        f"{digest_of(path)} {path.name}\n"
+        for path in sorted(folder.iterdir())
+        if path.suffix in (".csv", ".txt") or path.name == "sizes.record"
+    ]
     (folder / SEAL).write_text("".join(lines), encoding="utf-8")
 
 

@@ -54,9 +54,7 @@ class Campaign:
         return self.out / "parts"
 
 
-def open_campaign(
-    dda: Path, deck: Path, settings: list[str], out: Path, anew: bool, shared: bool = False
-) -> Campaign:
+def open_campaign(dda: Path, deck: Path, settings: list[str], out: Path, anew: bool, shared: bool = False) -> Campaign:
     """Begin a campaign, or go on with one.
 
     Parameters
@@ -158,8 +156,10 @@ def lock(out: Path, shared: bool) -> None:
             4,
         ) from error
     except OSError as error:
-        sys.stderr.write(f"{out / 'run.lock'}:1: warning: this file system knows no locks "
-                         f"({error.strerror}): nothing keeps another campaign from {out}\n")
+        sys.stderr.write(
+            f"{out / 'run.lock'}:1: warning: this file system knows no locks "
+            f"({error.strerror}): nothing keeps another campaign from {out}\n"
+        )
     _LOCKS[out] = file
 
 
@@ -191,11 +191,7 @@ def finished(campaign: Campaign, cases: range, problems: list[str] | None = None
 
 
 def split(
-    campaign: Campaign,
-    cases: range,
-    workers: int,
-    jobs: int = 1,
-    problems: list[str] | None = None,
+    campaign: Campaign, cases: range, workers: int, jobs: int = 1, problems: list[str] | None = None
 ) -> list[Part]:
     """Cut cases that are not finished into parts of equal size.
 

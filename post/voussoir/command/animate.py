@@ -24,11 +24,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     )
     parser.add_argument("folder", metavar="DIR", type=Path, help="folder of the results")
     parser.add_argument(
-        "--case",
-        metavar="N",
-        type=int,
-        nargs="+",
-        help=f"cases to animate (default: the first {MOST_CASES} that move)",
+        "--case", metavar="N", type=int, nargs="+", help=f"cases to animate (default: the first {MOST_CASES} that move)"
     )
     parser.add_argument(
         "--out",
@@ -61,9 +57,7 @@ def run(arguments: argparse.Namespace) -> int:
         sys.stderr.write(f"{arguments.folder}:1: error: {words}\n")
         return 2
     except ImportError as error:
-        sys.stderr.write(
-            f"voussoir:1: error: expected matplotlib, got none ({error}); {advice('matplotlib')}\n"
-        )
+        sys.stderr.write(f"voussoir:1: error: expected matplotlib, got none ({error}); {advice('matplotlib')}\n")
         return 2
     except OSError as error:
         sys.stderr.write(

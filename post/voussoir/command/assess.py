@@ -145,8 +145,10 @@ def verdict_of(own: dict[str, Any], factor: dict[str, Any] | None) -> tuple[str,
     factor : dict or None
         Row of the search for the load factor.
     """
-    words = {"stable": "The structure stands under the loads given.",
-             "collapsed": "The structure does not stand under the loads given."}
+    words = {
+        "stable": "The structure stands under the loads given.",
+        "collapsed": "The structure does not stand under the loads given.",
+    }
     text = words.get(own["verdict"], f"The calculation is {own['verdict']}: no answer is given.")
     if factor is not None and factor["verdict"] == "found":
         text += f" It falls when the live loads are multiplied by {factor['critical']:.4g}."
@@ -171,9 +173,7 @@ def assess(text: str, deck: Path) -> str:
     own = own_run.case(1)
     steps = [float(word) for word in own_run.settings("vehicle%spacings")]
     start = float(own_run.setting("vehicle%position") or "nan")
-    placed = [
-        (start + sum(steps[:k]), float(weight)) for k, weight in enumerate(own_run.settings("vehicle%axles"))
-    ]
+    placed = [(start + sum(steps[:k]), float(weight)) for k, weight in enumerate(own_run.settings("vehicle%axles"))]
     free = np.vstack([block.corners for block in own_run.blocks_of(1) if block.state != "fixed"])
     height = own_run.setting("fill%height")
     surface = None if height is None else float(free[:, 1].max()) + float(height)
@@ -230,9 +230,14 @@ def _numbers(
     if factor is None:
         rows.append(("Load factor", "no live loads"))
     elif factor["verdict"] == "found":
-        rows.append(("Load factor", f"{factor['critical']:.6g}, between {factor['critical_low']:.8g} and "
-                     f"{factor['critical_high']:.8g}; limit analysis (associated): {factor['exact_low']:.8g} to "
-                     f"{factor['exact_high']:.8g}"))
+        rows.append(
+            (
+                "Load factor",
+                f"{factor['critical']:.6g}, between {factor['critical_low']:.8g} and "
+                f"{factor['critical_high']:.8g}; limit analysis (associated): {factor['exact_low']:.8g} to "
+                f"{factor['exact_high']:.8g}",
+            )
+        )
     else:
         rows.append(("Load factor", f"{factor['verdict']}"))
     if factor is not None and not math.isnan(factor.get("worst_position", math.nan)):

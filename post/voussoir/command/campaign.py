@@ -12,16 +12,7 @@ from voussoir.campaign.dask import dask_engine
 from voussoir.campaign.merge import Summary, merge, merged
 from voussoir.campaign.parquet import write_parquet
 from voussoir.campaign.part import finished_by
-from voussoir.campaign.share import (
-    Campaign,
-    finished,
-    local_engine,
-    open_campaign,
-    run_parts,
-    share,
-    split,
-    unlock,
-)
+from voussoir.campaign.share import Campaign, finished, local_engine, open_campaign, run_parts, share, split, unlock
 from voussoir.dda_program import DdaError, find_dda
 from voussoir.extras import MissingPackage, load
 
@@ -37,10 +28,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     )
     parser.add_argument("deck", metavar="DECK", type=Path, help="the deck, with its &sweep groups")
     parser.add_argument(
-        "--out",
-        metavar="DIR",
-        type=Path,
-        help="folder of the results (default: named as the deck without its ending)",
+        "--out", metavar="DIR", type=Path, help="folder of the results (default: named as the deck without its ending)"
     )
     parser.add_argument(
         "--set",
@@ -69,15 +57,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         help="compute only the I-th of N shares of the cases, for job arrays; the last one to "
         "end merges (default: all cases)",
     )
-    parser.add_argument(
-        "--of", metavar="N", type=_positive, help="number of shares (default: no shares)"
-    )
-    parser.add_argument(
-        "--merge", action="store_true", help="compute nothing, merge what is finished so far"
-    )
-    parser.add_argument(
-        "--anew", action="store_true", help="discard what an earlier campaign has finished"
-    )
+    parser.add_argument("--of", metavar="N", type=_positive, help="number of shares (default: no shares)")
+    parser.add_argument("--merge", action="store_true", help="compute nothing, merge what is finished so far")
+    parser.add_argument("--anew", action="store_true", help="discard what an earlier campaign has finished")
     parser.add_argument(
         "--parquet", action="store_true", help="write results.csv as results.parquet, too; needs pyarrow"
     )
@@ -114,9 +96,7 @@ def _run(arguments: argparse.Namespace) -> int:
     out = (arguments.out or Path(arguments.deck.stem)).resolve()
     shared = arguments.index is not None
     try:
-        campaign = open_campaign(
-            find_dda(), arguments.deck, arguments.set, out, arguments.anew, shared
-        )
+        campaign = open_campaign(find_dda(), arguments.deck, arguments.set, out, arguments.anew, shared)
         return _compute(campaign, arguments, share(campaign.total, index, of))
     finally:
         unlock(out)
@@ -198,8 +178,10 @@ def _share_of(arguments: argparse.Namespace) -> tuple[int, int]:
     if arguments.index is None:
         return 1, 1
     if arguments.anew:
-        raise DdaError("--anew:1: error: expected no --anew with --index, got both; the shares "
-                       "would discard one another: remove the folder before they begin")
+        raise DdaError(
+            "--anew:1: error: expected no --anew with --index, got both; the shares "
+            "would discard one another: remove the folder before they begin"
+        )
     if arguments.index > arguments.of:
         raise DdaError(
             f"--index:1: error: expected an index from 1 to {arguments.of}, got "

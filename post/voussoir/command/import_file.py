@@ -21,18 +21,16 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "blocks that are inserted; arcs become chords), GeoJSON, WKT, meshes, assemblies of COMPAS (json)."
     )
     parser.add_argument("file", metavar="FILE", type=Path, help=f"of {', '.join(READERS)}")
+    parser.add_argument("--out", metavar="DECK", type=Path, help="the deck (default: FILE with the ending nml)")
+    parser.add_argument("--scale", metavar="S", type=float, default=1.0, help="metres a unit of the file")
     parser.add_argument(
-        "--out", metavar="DECK", type=Path, help="the deck (default: FILE with the ending nml)"
+        "--tolerance", metavar="T", type=float, default=1e-3, help="how far a chord may be from its arc [m]"
     )
     parser.add_argument(
-        "--scale", metavar="S", type=float, default=1.0, help="metres a unit of the file"
-    )
-    parser.add_argument(
-        "--tolerance", metavar="T", type=float, default=1e-3,
-        help="how far a chord may be from its arc [m]",
-    )
-    parser.add_argument(
-        "--fixed", metavar="WORD", nargs="+", default=list(FIXED),
+        "--fixed",
+        metavar="WORD",
+        nargs="+",
+        default=list(FIXED),
         help="layers, or values of the property role or layer, of what does not move",
     )
 
@@ -48,9 +46,7 @@ def run(arguments: argparse.Namespace) -> int:
         sys.stderr.write(f"{arguments.file}:1: error: {problem}\n")
         return 2
     if not shapes:
-        sys.stderr.write(
-            f"{arguments.file}:1: error: expected closed outlines, got none; close the polylines\n"
-        )
+        sys.stderr.write(f"{arguments.file}:1: error: expected closed outlines, got none; close the polylines\n")
         return 2
     blocks = blocks_of(shapes, tuple(word.lower() for word in arguments.fixed))
     deck = arguments.out or Path(arguments.file.with_suffix(".nml").name)
@@ -66,8 +62,10 @@ def run(arguments: argparse.Namespace) -> int:
     fixed = sum(shape.fixed for shape in blocks.shapes)
     for words in dropped:
         print(f"dropped: {words}")
-    print(f"{deck}, {name}: {len(blocks.shapes)} blocks, {fixed} of them fixed; "
-          f"chords within {arguments.tolerance:g} m of their arcs")
+    print(
+        f"{deck}, {name}: {len(blocks.shapes)} blocks, {fixed} of them fixed; "
+        f"chords within {arguments.tolerance:g} m of their arcs"
+    )
     if not fixed:
         print("nothing is fixed: put what holds the blocks on a layer named 'fixed', or --fixed WORD")
     return 0

@@ -10,25 +10,15 @@ from pathlib import Path
 #: Layers of the picture from below: role, colour by its place in INK, width of the line
 _LINES = (("joint", 0, 0.5), ("boundary", 0, 1.4), ("material", 1, 1.0), ("bolt", 2, 1.6))
 #: Points: role, mark, name in the legend
-_POINTS = (
-    ("measure", "o", "followed"),
-    ("fix", "^", "held"),
-    ("load", "v", "loaded"),
-    ("hole", "x", "taken out"),
-)
+_POINTS = (("measure", "o", "followed"), ("fix", "^", "held"), ("load", "v", "loaded"), ("hole", "x", "taken out"))
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the options of the subcommand."""
     parser.description = "Draw the lines, bolts and points that dda lines has written."
+    parser.add_argument("table", metavar="TABLE", type=Path, help="table of dda lines, NAME_lines.csv")
     parser.add_argument(
-        "table", metavar="TABLE", type=Path, help="table of dda lines, NAME_lines.csv"
-    )
-    parser.add_argument(
-        "--out",
-        metavar="FILE",
-        type=Path,
-        help="the picture, .png, .svg or .pdf (default: TABLE with the ending .png)",
+        "--out", metavar="FILE", type=Path, help="the picture, .png, .svg or .pdf (default: TABLE with the ending .png)"
     )
 
 
@@ -91,16 +81,12 @@ def draw(lines: dict[str, list[tuple[float, ...]]], picture: Path) -> None:
         for role, ink, width in _LINES:
             parts = [((x1, y1), (x2, y2)) for x1, y1, x2, y2 in lines.get(role, [])]
             label = {"bolt": "bolt", "material": "material line"}.get(role) if parts else None
-            axes.add_collection(
-                LineCollection(parts, colors=INK[ink], linewidths=width, label=label)
-            )
+            axes.add_collection(LineCollection(parts, colors=INK[ink], linewidths=width, label=label))
         for role, mark, label in _POINTS:
             points = [line for line in lines.get(role, []) if line[:2] == line[2:]]
             held = [(p[:2], p[2:]) for p in lines.get(role, []) if p[:2] != p[2:]]
             name = label if held else None
-            axes.add_collection(
-                LineCollection(held, colors=INK[1], linewidths=1.0, linestyles="--", label=name)
-            )
+            axes.add_collection(LineCollection(held, colors=INK[1], linewidths=1.0, linestyles="--", label=name))
             if points:
                 x, y = [p[0] for p in points], [p[1] for p in points]
                 axes.plot(x, y, mark, color=INK[1], markersize=5, label=label)

@@ -15,10 +15,7 @@ from voussoir import __version__
 COMMANDS = {
     "animate": ("voussoir.command.animate", "the motion of cases as a GIF"),
     "assess": ("voussoir.command.assess", "one page for a client: does the arch stand, and how safely"),
-    "campaign": (
-        "voussoir.command.campaign",
-        "the cases of one deck on many processes or machines",
-    ),
+    "campaign": ("voussoir.command.campaign", "the cases of one deck on many processes or machines"),
     "lines": ("voussoir.command.lines", "a picture of what dda lines has drawn"),
     "examples": ("voussoir.command.examples", "the decks that came with the program"),
     "export": ("voussoir.command.export_file", "the blocks of a case as a drawing, GeoJSON, WKT or a mesh"),
@@ -29,16 +26,12 @@ COMMANDS = {
     "work-precision": ("voussoir.command.work_precision", "error against run time"),
     "verify": ("voussoir.verify_command", "the proofs of a folder of results, recomputed"),
     "stability": ("voussoir.command.stability", "stiff and extreme scenes, judged by exact answers"),
-    "validation": (
-        "voussoir.command.validation",
-        "scenes with exact answers beside what the program computes",
-    ),
+    "validation": ("voussoir.command.validation", "scenes with exact answers beside what the program computes"),
 }
 
 
 EXIT_STATUS = (
-    "Exit status: 0 done; 1 a value of validation or stability is wrong; 2 bad input; "
-    "4 a result could not be written."
+    "Exit status: 0 done; 1 a value of validation or stability is wrong; 2 bad input; 4 a result could not be written."
 )
 
 

@@ -32,23 +32,16 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         default=os.cpu_count() or 1,
         help="decks computed, and figures drawn, at the same time (default: one a processor)",
     )
-    parser.add_argument(
-        "--resume", action="store_true", help="keep what an earlier run has finished"
-    )
+    parser.add_argument("--resume", action="store_true", help="keep what an earlier run has finished")
     parser.add_argument(
         "--limerick",
         action="store_true",
         help="also run the decks of the original program's scheme, which take much longer",
     )
     parser.add_argument(
-        "--decks",
-        metavar="DIR",
-        type=Path,
-        help="folder of the decks (default: those that came with the program)",
+        "--decks", metavar="DIR", type=Path, help="folder of the decks (default: those that came with the program)"
     )
-    parser.add_argument(
-        "--dda", metavar="FILE", type=Path, help="the program dda (default: the one beside `voussoir`)"
-    )
+    parser.add_argument("--dda", metavar="FILE", type=Path, help="the program dda (default: the one beside `voussoir`)")
     parser.add_argument("--quiet", action="store_true", help="print nothing but errors")
 
 
@@ -89,9 +82,7 @@ def _teller(arguments: argparse.Namespace):
 def _make(campaign: Campaign, arguments: argparse.Namespace, dda: Path, clock: Clock) -> int:
     """The whole campaign."""
     arguments.out.mkdir(parents=True, exist_ok=True)
-    status = campaign.run(
-        dda, clock, arguments.jobs, slow=arguments.limerick, resume=arguments.resume
-    )
+    status = campaign.run(dda, clock, arguments.jobs, slow=arguments.limerick, resume=arguments.resume)
     clock.timings.append(Timing(TOGETHER, clock.elapsed, sum(t.computing for t in clock.timings)))
     if status in (2, 4) or status not in (0, 3):
         return status

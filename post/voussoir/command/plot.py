@@ -46,9 +46,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         help="draw the share of records that make the blocks collapse against this swept column, "
         "amplitude or scale without a name; or, of searches, against the critical values",
     )
-    parser.add_argument(
-        "--out", metavar="DIR", type=Path, help="where the pictures go (default: DIR/plots)"
-    )
+    parser.add_argument("--out", metavar="DIR", type=Path, help="where the pictures go (default: DIR/plots)")
     parser.add_argument(
         "--format",
         metavar="ENDING",
@@ -68,9 +66,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     )
     parser.add_argument("--numbers", action="store_true", help="write the blocks' numbers on them")
     parser.add_argument("--coordinates", action="store_true", help="draw the axes, in metres")
-    parser.add_argument(
-        "--no-forces", action="store_true", help="leave the contact forces out"
-    )
+    parser.add_argument("--no-forces", action="store_true", help="leave the contact forces out")
 
 
 def run(arguments: argparse.Namespace) -> int:
@@ -88,9 +84,7 @@ def run(arguments: argparse.Namespace) -> int:
         sys.stderr.write(f"{arguments.folder}:1: error: {words}\n")
         return 2
     except ImportError as error:
-        sys.stderr.write(
-            f"voussoir:1: error: expected matplotlib, got none ({error}); {advice('matplotlib')}\n"
-        )
+        sys.stderr.write(f"voussoir:1: error: expected matplotlib, got none ({error}); {advice('matplotlib')}\n")
         return 2
     except OSError as error:
         sys.stderr.write(

@@ -14,12 +14,7 @@ _COLUMNS = ("alpha_deg", "theory", "beta_deg", "beta_rad", "eta", "h")
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the options of the subcommand."""
     parser.add_argument(
-        "--alpha",
-        metavar="DEG",
-        nargs="+",
-        type=_half_angle,
-        required=True,
-        help="half angles of embrace, in degrees",
+        "--alpha", metavar="DEG", nargs="+", type=_half_angle, required=True, help="half angles of embrace, in degrees"
     )
     parser.add_argument(
         "--theory",
@@ -66,10 +61,7 @@ def _row(alpha_deg: float, name: str) -> tuple:
 def _csv(rows: list[tuple]) -> list[str]:
     """Lines with every digit, empty beyond the limits."""
     return [",".join(_COLUMNS)] + [
-        ",".join(
-            "" if value is None else value if isinstance(value, str) else repr(value)
-            for value in row
-        )
+        ",".join("" if value is None else value if isinstance(value, str) else repr(value) for value in row)
         for row in rows
     ]
 

@@ -20,21 +20,12 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         default=Path("validation"),
         help="folder for validation.csv and validation.md (default: validation)",
     )
+    parser.add_argument("--scenes", metavar="NAME", nargs="+", help="decks by name (default: all scenes)")
     parser.add_argument(
-        "--scenes", metavar="NAME", nargs="+", help="decks by name (default: all scenes)"
+        "--halvings", metavar="N", type=_whole, default=2, help="how often the step is halved for the convergence rate"
     )
     parser.add_argument(
-        "--halvings",
-        metavar="N",
-        type=_whole,
-        default=2,
-        help="how often the step is halved for the convergence rate",
-    )
-    parser.add_argument(
-        "--decks",
-        metavar="DIR",
-        type=Path,
-        help="folder of the decks (default: those that came with the program)",
+        "--decks", metavar="DIR", type=Path, help="folder of the decks (default: those that came with the program)"
     )
     parser.add_argument("--quiet", action="store_true", help="print nothing but errors")
 

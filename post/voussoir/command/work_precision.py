@@ -19,9 +19,7 @@ from voussoir.dda_program import DdaError, find_dda
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the options of the subcommand."""
-    parser.add_argument(
-        "--out", type=Path, default=Path("work_precision"), help="folder of tables and figure"
-    )
+    parser.add_argument("--out", type=Path, default=Path("work_precision"), help="folder of tables and figure")
     parser.add_argument(
         "--angles",
         type=float,
@@ -31,28 +29,21 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         help="half angles of embrace, in degrees",
     )
     parser.add_argument(
-        "--voussoirs",
-        type=int,
-        nargs="+",
-        default=[36, 1000],
-        metavar="N",
-        help="numbers of voussoirs, even ones",
+        "--voussoirs", type=int, nargs="+", default=[36, 1000], metavar="N", help="numbers of voussoirs, even ones"
     )
     parser.add_argument("--repeats", type=int, default=5, help="runs of each setting")
     parser.add_argument(
-        "--scenes", nargs="+", choices=CLASSES, default=list(CLASSES), metavar="CLASS",
+        "--scenes",
+        nargs="+",
+        choices=CLASSES,
+        default=list(CLASSES),
+        metavar="CLASS",
         help="classes of scenes in the diagram: " + ", ".join(CLASSES),
     )
     part = parser.add_mutually_exclusive_group()
-    part.add_argument(
-        "--race", action="store_true", help="only the times of one decision, no diagram"
-    )
-    part.add_argument(
-        "--motion", action="store_true", help="only blocks that move in time, no arches"
-    )
-    part.add_argument(
-        "--plan", action="store_true", help="only what parts of the scene plan cost if forced in"
-    )
+    part.add_argument("--race", action="store_true", help="only the times of one decision, no diagram")
+    part.add_argument("--motion", action="store_true", help="only blocks that move in time, no arches")
+    part.add_argument("--plan", action="store_true", help="only what parts of the scene plan cost if forced in")
 
 
 def run(arguments: argparse.Namespace) -> int:

@@ -80,11 +80,7 @@ class Blocks(Deck):
 
     @classmethod
     def from_shapely(
-        cls,
-        polygons: Any,
-        fixed: Any = (),
-        material: Union[int, Sequence[int]] = 1,
-        **keys: Any,
+        cls, polygons: Any, fixed: Any = (), material: Union[int, Sequence[int]] = 1, **keys: Any
     ) -> Blocks:
         """Blocks from polygons of shapely.
 
@@ -117,9 +113,7 @@ class Blocks(Deck):
             found, dropped = polygons_of(shapes)
             numbers = [materials] * len(found) if isinstance(materials, int) else list(materials)
             if len(numbers) != len(found):
-                raise ValueError(
-                    f"expected {len(found)} materials, one a polygon, got {len(numbers)}"
-                )
+                raise ValueError(f"expected {len(found)} materials, one a polygon, got {len(numbers)}")
             for polygon, number in zip(found, numbers):
                 blocks.add_polygon(polygon, is_fixed, number)
             blocks.dropped += dropped
@@ -127,9 +121,7 @@ class Blocks(Deck):
             warnings.warn("dropped: " + "; ".join(blocks.dropped), stacklevel=2)
         return blocks
 
-    def add(
-        self, corners: npt.ArrayLike, fixed: bool = False, material: int = 1
-    ) -> int:
+    def add(self, corners: npt.ArrayLike, fixed: bool = False, material: int = 1) -> int:
         """Add a polygon.
 
         Parameters
@@ -184,8 +176,11 @@ class Blocks(Deck):
             lines.append(f"material {number} {words}".rstrip())
         for (first, second), law in self._laws.items():
             for one in own.all_of(first):
-                lines += [f"joint {one} {two} {law}" for two in own.all_of(second)
-                          if (one, two) not in own.bonds and (first != second or one <= two)]
+                lines += [
+                    f"joint {one} {two} {law}"
+                    for two in own.all_of(second)
+                    if (one, two) not in own.bonds and (first != second or one <= two)
+                ]
         lines += [f"joint {one} {two} {BOND}" for one, two in own.bonds]
         return "\n".join([*lines, *self.entries]) + "\n"
 

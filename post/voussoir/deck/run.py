@@ -71,9 +71,7 @@ class Deck:
 Runnable = Union[str, Path, Groups, Deck]
 
 
-def run(
-    deck: Runnable, out: Union[str, Path, None] = None, jobs: int = 1, **set: Any
-) -> results.Results:
+def run(deck: Runnable, out: Union[str, Path, None] = None, jobs: int = 1, **set: Any) -> results.Results:
     """Run a deck and read what it leaves.
 
     Parameters

@@ -29,9 +29,7 @@ class ImportedShape:
     layer: str
 
 
-def read_shapes(
-    file: Path, scale: float, tolerance: float
-) -> tuple[list[ImportedShape], list[str]]:
+def read_shapes(file: Path, scale: float, tolerance: float) -> tuple[list[ImportedShape], list[str]]:
     """Outlines of a file.
 
     Parameters

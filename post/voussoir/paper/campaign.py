@@ -18,10 +18,18 @@ from voussoir.paper import tables as paper_tables
 #: Roughly how long each part takes [s of processor]: decks, then figures that are drawn; a part
 #: that is not named here counts 1
 _WEIGHTS = {
-    "figure12": 3.0, "figure15": 3.0, "figure9": 1.5, "figure18": 1.5,
-    "drawing animation8": 10.0, "drawing animation13": 4.0, "drawing animation16": 4.0,
-    "drawing animation18": 11.0, "drawing figure9": 4.0, "drawing figure12": 3.0,
-    "drawing figure15": 3.0, "drawing figure18": 2.0,
+    "figure12": 3.0,
+    "figure15": 3.0,
+    "figure9": 1.5,
+    "figure18": 1.5,
+    "drawing animation8": 10.0,
+    "drawing animation13": 4.0,
+    "drawing animation16": 4.0,
+    "drawing animation18": 11.0,
+    "drawing figure9": 4.0,
+    "drawing figure12": 3.0,
+    "drawing figure15": 3.0,
+    "drawing figure18": 2.0,
 }
 #: Before the name of a figure or an animation that is drawn
 DRAWING = "drawing "
@@ -133,11 +141,7 @@ class Campaign:
 
     def finished_decks(self) -> list[Path]:
         """The decks that have results."""
-        return [
-            file
-            for file in self.deck_files(slow=True)
-            if (self.out / file.stem / "results.csv").is_file()
-        ]
+        return [file for file in self.deck_files(slow=True) if (self.out / file.stem / "results.csv").is_file()]
 
     def run(self, dda: Path, clock: Clock, jobs: int, slow: bool, resume: bool) -> int:
         """Run all decks, each by a process of its own.
@@ -161,9 +165,7 @@ class Campaign:
         with ThreadPoolExecutor(jobs) as workers:
             running = [
                 workers.submit(
-                    run_program,
-                    file.stem,
-                    [dda, "run", path_word(file), "--out", self.out / file.stem, *options],
+                    run_program, file.stem, [dda, "run", path_word(file), "--out", self.out / file.stem, *options]
                 )
                 for file in longest_first
             ]
@@ -185,10 +187,7 @@ class Campaign:
     def tables(self) -> dict[str, paper_tables.PaperTable]:
         """Tables 1 to 4."""
         paper = self.decks / "paper_tables.csv"
-        return {
-            name: paper_tables.build_table(name, self.out, paper, theory)
-            for name in paper_tables.TITLES
-        }
+        return {name: paper_tables.build_table(name, self.out, paper, theory) for name in paper_tables.TITLES}
 
 
 def weights(decks: list[Path], parts: list[str]) -> dict[str, float]:

@@ -44,16 +44,7 @@ SECTIONS = (
     ("3.3 Critical thickness", ("table1", "figure11")),
     (
         "3.4 Imposed haunch joint",
-        (
-            "table2",
-            "figure12",
-            "figure13",
-            "figure14",
-            "table3",
-            "figure15",
-            "figure16",
-            "figure17",
-        ),
+        ("table2", "figure12", "figure13", "figure14", "table3", "figure15", "figure16", "figure17"),
     ),
     ("3.5 Half angle of embrace", ("table4", "hinges4", "figure18", "figure19", "figure20")),
 )
@@ -87,9 +78,15 @@ _IN_WORDS = {
 }
 #: Tables whose values the figures show, and what tells their rows apart
 _TABLE_OF = {
-    "figure11": ("table1", "blocks"), "figure12": ("table2", "joint"), "figure13": ("table2", "joint"),
-    "figure14": ("table2", "joint"), "figure15": ("table3", "joint"), "figure16": ("table3", "joint"),
-    "figure17": ("table3", "joint"), "figure18": ("table4", "half_angle"), "figure19": ("table4", "half_angle"),
+    "figure11": ("table1", "blocks"),
+    "figure12": ("table2", "joint"),
+    "figure13": ("table2", "joint"),
+    "figure14": ("table2", "joint"),
+    "figure15": ("table3", "joint"),
+    "figure16": ("table3", "joint"),
+    "figure17": ("table3", "joint"),
+    "figure18": ("table4", "half_angle"),
+    "figure19": ("table4", "half_angle"),
     "figure20": ("table4", "half_angle"),
 }
 #: Joints of the two samples [deg]

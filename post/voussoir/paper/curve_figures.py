@@ -69,8 +69,7 @@ def legend_below(figure: Figure, axes: Axes, columns: int = 2) -> None:
     handles, labels = axes.get_legend_handles_labels()
     points = [*POINTS, *(label for label in labels if " mode" in label)]
     order = sorted(
-        range(len(labels)),
-        key=lambda i: (points.index(labels[i]) if labels[i] in points else len(points), i),
+        range(len(labels)), key=lambda i: (points.index(labels[i]) if labels[i] in points else len(points), i)
     )
     figure.legend(
         [handles[i] for i in order],
@@ -106,21 +105,14 @@ def friction(campaign: Campaign) -> Figure:
         (True, {**POINTS["ours, rigid"], "color": "white"}, "ours, rigid: rotational"),
     ):
         kept = (cases["collapse_mode"] == "rotational") == turning
-        axes.plot(
-            cases["friction_deg"][kept],
-            cases["critical"][kept],
-            linestyle="none",
-            label=label,
-            **style,
-        )
+        axes.plot(cases["friction_deg"][kept], cases["critical"][kept], linestyle="none", label=label, **style)
     for value, words in ((lower[0], "stands at no thickness"), (upper[0], "no joint slips")):
         axes.axvline(value, color=INK[3], linewidth=1.0, linestyle=DASHES[3])
         side = -1 if value == lower[0] else 1
         axes.text(
             value + 0.06 * side,
             0.155,
-            f"{words}\n{'below' if side < 0 else 'from'} {value:.4f}°\n"
-            f"($\\mu$ = {math.tan(math.radians(value)):.6f})",
+            f"{words}\n{'below' if side < 0 else 'from'} {value:.4f}°\n($\\mu$ = {math.tan(math.radians(value)):.6f})",
             ha="right" if side < 0 else "left",
             va="center",
             fontsize=9,
@@ -143,18 +135,8 @@ def numbers_of_blocks(campaign: Campaign) -> Figure:
         for name, heading in THEORIES.items():
             value = float(theory.critical(math.pi / 2, name)[1])
             color, dashes = CURVES[name]
-            axes.axhline(
-                value, color=color, linestyle=dashes, linewidth=1.2, label=f"{heading} {value:.6f}"
-            )
-        axes.plot(
-            even,
-            exact,
-            color=INK[0],
-            marker=".",
-            markersize=3,
-            linewidth=0.7,
-            label="exact, every even number",
-        )
+            axes.axhline(value, color=color, linestyle=dashes, linewidth=1.2, label=f"{heading} {value:.6f}")
+        axes.plot(even, exact, color=INK[0], marker=".", markersize=3, linewidth=0.7, label="exact, every even number")
         draw_points(axes, table, "blocks")
         axes.set_ylabel(r"critical thickness ratio $\eta$ [-]")
     close.set_ylim(0.1045, 0.1079)
@@ -177,9 +159,7 @@ def imposed_at_140(campaign: Campaign) -> Figure:
 
 def _imposed(table: PaperTable, alpha_deg: float, place: tuple, near: tuple, high: tuple) -> Figure:
     """A table of imposed joints; the piece near the top is drawn larger where there is room."""
-    figure, (curve, error) = plt.subplots(
-        2, 1, figsize=(6.8, 7.2), sharex=True, height_ratios=(3, 2)
-    )
+    figure, (curve, error) = plt.subplots(2, 1, figsize=(6.8, 7.2), sharex=True, height_ratios=(3, 2))
     _draw_imposed(curve, table, math.radians(alpha_deg))
     curve.set_ylim(bottom=0.0)
     curve.set_xlim(0.0, alpha_deg)
@@ -217,9 +197,7 @@ def _draw_imposed(axes: Axes, table: PaperTable, alpha: float) -> None:
 def half_angles(campaign: Campaign) -> Figure:
     """Figure 20: critical thickness against the half angle of embrace."""
     table = campaign.tables["table4"]
-    figure, (curve, error) = plt.subplots(
-        2, 1, figsize=(6.8, 7.2), sharex=True, height_ratios=(3, 2)
-    )
+    figure, (curve, error) = plt.subplots(2, 1, figsize=(6.8, 7.2), sharex=True, height_ratios=(3, 2))
     for name, heading in THEORIES.items():
         alpha = np.linspace(1e-3, theory.limits(name)["alpha_limit"] * (1.0 - 1e-12), 600)
         color, dashes = CURVES[name]

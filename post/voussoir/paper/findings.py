@@ -63,9 +63,7 @@ def from_below(campaign: Campaign) -> Finding:
     falls = int(np.count_nonzero(np.diff(exact) < 0.0))
     cases = campaign.results("figure10").cases
     first = cases.where(thickness_ratio=cases["thickness_ratio"].min())
-    example = next(
-        (i for i in range(len(first) - 1) if first["exact"][i + 1] < first["exact"][i]), None
-    )
+    example = next((i for i in range(len(first) - 1) if first["exact"][i + 1] < first["exact"][i]), None)
     shown = ""
     if example is not None:
         shown = (
@@ -74,8 +72,7 @@ def from_below(campaign: Campaign) -> Finding:
             f"{first['exact'][example + 1]:.9f}."
         )
     return Finding(
-        f"More blocks bring the critical thickness up to {limit:.6f}, from below and in no "
-        "steady way",
+        f"More blocks bring the critical thickness up to {limit:.6f}, from below and in no steady way",
         f"Of {even.size} even numbers of blocks from {even[0]} to {even[-1]}, "
         f"{int(np.count_nonzero(exact < limit))} need less than the continuous arch of "
         f"Milankovitch ({limit:.6f}); the largest value is {exact.max():.9f}, at "
@@ -113,20 +110,15 @@ def paper_elsewhere(campaign: Campaign) -> Finding:
     parts = []
     for name in ("table2", "table3", "table4"):
         table = campaign.tables[name]
-        worst, least = (
-            chosen(table.rows, key=lambda row: row.values[_PAPER].error or 0.0)
-            for chosen in (max, min)
-        )
+        worst, least = (chosen(table.rows, key=lambda row: row.values[_PAPER].error or 0.0) for chosen in (max, min))
         parts.append(
-            f"Table {name[-1]}: {_share(least, _PAPER)} ({_arch(least)}) to "
-            f"{_share(worst, _PAPER)} ({_arch(worst)})"
+            f"Table {name[-1]}: {_share(least, _PAPER)} ({_arch(least)}) to {_share(worst, _PAPER)} ({_arch(worst)})"
         )
     count = sum((value.error or 0.0) > 0.0 for _, value in _values(campaign, _PAPER))
     total = sum(1 for _ in _values(campaign, _PAPER))
     return Finding(
         f"The paper's values lie above the exact ones in {count} of {total} arches",
-        "; ".join(parts)
-        + ". The thinner the arch, the more the same closure of its joints weighs.",
+        "; ".join(parts) + ". The thinner the arch, the more the same closure of its joints weighs.",
     )
 
 
@@ -155,8 +147,7 @@ def hinges(campaign: Campaign) -> Finding:
     rows = campaign.tables["table4"].rows
     same = sum(float(row.values[_RIGID].hinge) == float(row.values[_PAPER].hinge) for row in rows)
     exact = sum(
-        [float(part) for part in row.values[_RIGID].hinge.split(";") if part] == exact_hinges(row)
-        for row in rows
+        [float(part) for part in row.values[_RIGID].hinge.split(";") if part] == exact_hinges(row) for row in rows
     )
     return Finding(
         f"The hinges of Table 4 are the paper's in {same} of {len(rows)} rows",
@@ -211,9 +202,7 @@ def friction_of_50(campaign: Campaign) -> Finding:
         )
     table3 = {row.joint: least_friction_of(row) for row in campaign.tables["table3"].rows}
     high = ", ".join(
-        f"{angle:.2f} degrees with the joint at {joint}"
-        for joint, angle in table3.items()
-        if angle > 55.0
+        f"{angle:.2f} degrees with the joint at {joint}" for joint, angle in table3.items() if angle > 55.0
     )
     rest = max(angle for angle in table3.values() if angle <= 55.0)
     return Finding(
@@ -246,22 +235,14 @@ def least_friction(joints: Any, **arch: float) -> float:
     """
     wanted = theory.discrete_solution(joints, **arch).eta * (1.0 + 1e-10)
     return _bisect(
-        lambda angle: (
-            theory.discrete_solution(joints, friction=math.radians(angle), **arch).eta <= wanted
-        ),
-        0.0,
-        89.0,
+        lambda angle: theory.discrete_solution(joints, friction=math.radians(angle), **arch).eta <= wanted, 0.0, 89.0
     )
 
 
 def exact_threshold(blocks: int, eta: float) -> float:
     """Least friction angle at which a semicircle of blocks of a thickness stands, exactly [deg]."""
     return _bisect(
-        lambda angle: (
-            theory.discrete_solution(blocks, math.pi / 2, friction=math.radians(angle)).eta <= eta
-        ),
-        0.0,
-        60.0,
+        lambda angle: theory.discrete_solution(blocks, math.pi / 2, friction=math.radians(angle)).eta <= eta, 0.0, 60.0
     )
 
 

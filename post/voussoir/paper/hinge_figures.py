@@ -21,14 +21,9 @@ _WINDOW = (44.0, 63.0)
 
 def block_numbers(campaign: Campaign) -> Figure:
     """Figure 10: hinge angle against the number of blocks, for two thicknesses."""
-    tables = {
-        "ours, elastic": campaign.results("figure9").cases,
-        "ours, rigid": campaign.results("figure10").cases,
-    }
+    tables = {"ours, elastic": campaign.results("figure9").cases, "ours, rigid": campaign.results("figure10").cases}
     thicknesses = np.unique(tables["ours, rigid"]["thickness_ratio"])
-    figure, grid = plt.subplots(
-        len(thicknesses), 1, figsize=(6.8, 7.8), sharex=True, layout="constrained"
-    )
+    figure, grid = plt.subplots(len(thicknesses), 1, figsize=(6.8, 7.8), sharex=True, layout="constrained")
     for axes, eta, word in zip(grid, thicknesses, ("Heyman's", "that of CCR")):
         cases = {name: table.where(thickness_ratio=eta) for name, table in tables.items()}
         blocks = cases["ours, rigid"]["blocks"]
@@ -36,9 +31,7 @@ def block_numbers(campaign: Campaign) -> Figure:
         for name, heading in THEORIES.items():
             beta = math.degrees(theory.critical(math.pi / 2, name)[0])
             color, dashes = CURVES[name]
-            axes.axhline(
-                beta, color=color, linestyle=dashes, linewidth=1.2, label=f"{heading} {beta:.2f}°"
-            )
+            axes.axhline(beta, color=color, linestyle=dashes, linewidth=1.2, label=f"{heading} {beta:.2f}°")
         for name, table in cases.items():
             _draw_hinges(axes, table, name)
         axes.set_ylim(*_WINDOW)
@@ -47,9 +40,7 @@ def block_numbers(campaign: Campaign) -> Figure:
         axes.set_title(f"$\\eta$ = {eta:g}, {word}", fontsize=10, loc="left")
     grid[-1].set_xlabel("number of blocks [-]")
     handles, labels = grid[0].get_legend_handles_labels()
-    figure.legend(
-        handles, labels, loc="upper center", bbox_to_anchor=(0.5, 0.0), ncols=3, fontsize=9
-    )
+    figure.legend(handles, labels, loc="upper center", bbox_to_anchor=(0.5, 0.0), ncols=3, fontsize=9)
     return figure
 
 

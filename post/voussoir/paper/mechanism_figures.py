@@ -112,9 +112,7 @@ def _half_angle_title(row: Row) -> str:
 
 def short_half_angle_title(row: Row) -> str:
     """Half angle and hinges of a case."""
-    return (
-        f"$\\alpha$ = {row['half_angle_deg']:g}°, $\\beta$ = {_angles(row['intrados_hinge_deg'])}"
-    )
+    return f"$\\alpha$ = {row['half_angle_deg']:g}°, $\\beta$ = {_angles(row['intrados_hinge_deg'])}"
 
 
 def _angles(hinges: tuple[float, ...]) -> str:

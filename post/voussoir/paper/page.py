@@ -84,12 +84,7 @@ class Page:
         self._body += [f"<p>{paragraph}</p>" for paragraph in paragraphs]
 
     def table(
-        self,
-        caption: str,
-        head: Sequence[str],
-        rows: Iterable[Sequence[str]],
-        anchor: str = "",
-        words: bool = False,
+        self, caption: str, head: Sequence[str], rows: Iterable[Sequence[str]], anchor: str = "", words: bool = False
     ) -> None:
         """Add a table.
 
@@ -137,16 +132,12 @@ class Page:
 
     def listing(self, title: str, text: str) -> None:
         """Add a text that opens at a click."""
-        self._body.append(
-            f"<details><summary>{escape(title)}</summary><pre>{escape(text)}</pre></details>"
-        )
+        self._body.append(f"<details><summary>{escape(title)}</summary><pre>{escape(text)}</pre></details>")
 
     def render(self) -> str:
         """The page as HTML; the table of contents stands where the first section begins."""
         entries = "".join(
-            f'<li><a href="#{anchor}">{escape(title)}</a></li>'
-            for level, title, anchor in self._contents
-            if level == 2
+            f'<li><a href="#{anchor}">{escape(title)}</a></li>' for level, title, anchor in self._contents if level == 2
         )
         nav = f'<nav aria-label="Contents"><strong>Contents</strong><ol>{entries}</ol></nav>'
         place = next((i for i, part in enumerate(self._body) if part.startswith("<h2")), 0)

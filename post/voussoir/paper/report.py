@@ -103,9 +103,7 @@ def _add(page: Page, campaign: Campaign, figures: Path, part: str) -> None:
         if svg.is_file():
             page.figure(svg, caption(part, campaign), part)
         else:
-            page.text(
-                f'<span id="{part}">{CAPTIONS[part]} (left out: matplotlib is missing)</span>'
-            )
+            page.text(f'<span id="{part}">{CAPTIONS[part]} (left out: matplotlib is missing)</span>')
         if moves:
             page.picture(gif, words, name)
             page.end_pair()
@@ -129,8 +127,7 @@ def _thicknesses(page: Page, table: PaperTable) -> None:
     for row in table.rows:
         name = row.joint if imposed else row.half_angle if second else row.blocks
         cells = [name, *(_cell(row, column) for column in columns), thickness(row.exact, "exact")]
-        rows.append([*cells, *([row.blocks] if second else []),
-                     escape(row.values["ours, rigid"].hinge)])
+        rows.append([*cells, *([row.blocks] if second else []), escape(row.values["ours, rigid"].hinge)])
     page.table(
         f"<strong>{escape(table.title)}.</strong> Critical thickness ratio; below it the "
         "deviation from the exact polygon value in percent; in parentheses how far the paper's "
@@ -172,15 +169,7 @@ def _modes(page: Page, campaign: Campaign) -> None:
     ]
     page.table(
         "Collapse modes of Fig. 8",
-        [
-            "&phi; [deg]",
-            "&mu;",
-            "paper",
-            "ours",
-            "sliding share",
-            "intrados hinges [deg]",
-            "extrados hinges [deg]",
-        ],
+        ["&phi; [deg]", "&mu;", "paper", "ours", "sliding share", "intrados hinges [deg]", "extrados hinges [deg]"],
         rows,
         anchor="modes",
     )
@@ -227,13 +216,7 @@ def _hinges_of_figure_10(page: Page, campaign: Campaign) -> None:
     """The points of figure 10 as numbers."""
     rigid, elastic = (campaign.results(deck).cases for deck in ("figure10", "figure9"))
     rows = [
-        [
-            f"{row['blocks']}",
-            f"{row['thickness_ratio']:g}",
-            f"{row['exact']:.7f}",
-            _outcome(row),
-            _outcome(other),
-        ]
+        [f"{row['blocks']}", f"{row['thickness_ratio']:g}", f"{row['exact']:.7f}", _outcome(row), _outcome(other)]
         for row, other in zip(rigid.rows(), elastic.rows())
     ]
     page.table(
@@ -258,8 +241,7 @@ def _hinges_of_table_4(page: Page, campaign: Campaign) -> None:
     table = campaign.tables["table4"]
     columns = [column for column in table.columns if column not in THEORIES.values()]
     page.table(
-        "Table 4, hinge angles &beta; [deg]; below the theories how far the paper's DDA lies "
-        "from them [%]",
+        "Table 4, hinge angles &beta; [deg]; below the theories how far the paper's DDA lies from them [%]",
         ["&alpha; [deg]", "exact polygon", *map(escape, columns), *THEORIES.values()],
         [_hinge_row(row, columns) for row in table.rows],
         anchor="hinges4",
@@ -268,9 +250,7 @@ def _hinges_of_table_4(page: Page, campaign: Campaign) -> None:
 
 def _hinge_row(row: Row, columns: list[str]) -> list[str]:
     cells = [row.half_angle, _joined(tuple(findings.exact_hinges(row)))]
-    cells += [
-        escape(row.values[column].hinge) if column in row.values else "" for column in columns
-    ]
+    cells += [escape(row.values[column].hinge) if column in row.values else "" for column in columns]
     paper = float(row.values["paper DDA"].hinge)
     for heading in THEORIES.values():
         beta = row.values[heading].hinge

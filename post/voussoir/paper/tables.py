@@ -119,11 +119,7 @@ def read_paper(file: Path, table: str) -> list[Row]:
             half_angle=row["alpha_deg"],
             blocks=row["blocks"],
             joint=row["beta_imposed_deg"],
-            values={
-                "paper DDA": Value(
-                    float(row["eta_dda"]), None, row["beta_dda_deg"], row["eta_dda"]
-                )
-            },
+            values={"paper DDA": Value(float(row["eta_dda"]), None, row["beta_dda_deg"], row["eta_dda"])},
         )
         for row in read_table(file)
         if row["table"] == table
@@ -253,9 +249,7 @@ def as_text(table: PaperTable) -> str:
     """Table with aligned columns."""
     lines = [headings(table), *(cells_of(table, row) for row in table.rows)]
     widths = [max(len(line[i]) for line in lines) for i in range(len(lines[0]))]
-    return "\n".join(
-        "  ".join(cell.rjust(width) for cell, width in zip(line, widths)) for line in lines
-    )
+    return "\n".join("  ".join(cell.rjust(width) for cell, width in zip(line, widths)) for line in lines)
 
 
 def as_markdown(table: PaperTable) -> str:

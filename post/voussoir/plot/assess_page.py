@@ -96,8 +96,15 @@ def draw_positions(cases: Table, worst: float | None) -> Figure:
     axes.plot(cases["position"], cases["critical"], color=INK[1], marker=".", linewidth=1.4)
     if worst is not None:
         axes.axvline(worst, color=INK[2], linewidth=1.0, linestyle="--")
-        axes.annotate(f"worst: {worst:.3f} m", (worst, 0.97), xycoords=("data", "axes fraction"),
-                      xytext=(4, -8), textcoords="offset points", color=INK[2], fontsize=9)
+        axes.annotate(
+            f"worst: {worst:.3f} m",
+            (worst, 0.97),
+            xycoords=("data", "axes fraction"),
+            xytext=(4, -8),
+            textcoords="offset points",
+            color=INK[2],
+            fontsize=9,
+        )
     least = float(np.nanmin(cases["critical"]))
     axes.set_ylim(0.0, 6.0 * least)
     axes.set_xlabel("position of the first axle [m]")

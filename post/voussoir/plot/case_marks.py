@@ -47,8 +47,9 @@ def draw_loads(axes: Axes, source: Source, size: float) -> list[Artist]:
             axes.annotate("", tips[number], tails[number], arrowprops=arrow, zorder=8)
             if len(source.loads) <= MOST_VALUES:
                 value = force_text(float(np.hypot(*source.loads[number][1])))
-                axes.annotate(value, tails[number], xytext=(4, 3), textcoords="offset points", fontsize=8.5,
-                              color=color, zorder=9)
+                axes.annotate(
+                    value, tails[number], xytext=(4, 3), textcoords="offset points", fontsize=8.5, color=color, zorder=9
+                )
         if chosen:
             entries.append(entry(words, marker=r"$\downarrow$", markersize=10, color=color))
     return entries
@@ -60,8 +61,9 @@ def draw_held(axes: Axes, source: Source) -> list[Artist]:
     for along, (mark, words) in _HELD.items():
         ends = [pair[:2] for pair in source.held if pair[2] == along]
         for start, end in ends:
-            axes.plot(*zip(start, end), color=INK[0], linewidth=2.2, zorder=7, markersize=8,
-                      markeredgecolor=INK[0], **mark)
+            axes.plot(
+                *zip(start, end), color=INK[0], linewidth=2.2, zorder=7, markersize=8, markeredgecolor=INK[0], **mark
+            )
         if ends:
             entries.append(entry(words, markeredgecolor=INK[0], markersize=8, **mark))
     for ends in source.bars:
@@ -77,8 +79,16 @@ def draw_numbers(axes: Axes, scene: CaseScene, shapes: list[np.ndarray]) -> None
     placed = [(block.number, shape) for block, shape in zip(scene.blocks, shapes)]
     placed += [(block.number, block.corners) for block in scene.supports]
     for number, shape in placed:
-        axes.text(*shape.mean(axis=0), str(number), fontsize=8, ha="center", va="center", zorder=10, clip_on=True,
-                  path_effects=[withStroke(linewidth=2.0, foreground="white")])
+        axes.text(
+            *shape.mean(axis=0),
+            str(number),
+            fontsize=8,
+            ha="center",
+            va="center",
+            zorder=10,
+            clip_on=True,
+            path_effects=[withStroke(linewidth=2.0, foreground="white")],
+        )
 
 
 def show_coordinates(axes: Axes) -> None:

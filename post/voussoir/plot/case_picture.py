@@ -11,14 +11,7 @@ from matplotlib.collections import PolyCollection
 from matplotlib.figure import Figure
 from matplotlib.patches import Patch
 
-from voussoir.plot.case_marks import (
-    draw_held,
-    draw_loads,
-    draw_numbers,
-    entry,
-    load_arrows,
-    show_coordinates,
-)
+from voussoir.plot.case_marks import draw_held, draw_loads, draw_numbers, entry, load_arrows, show_coordinates
 from voussoir.plot.case_scene import CaseScene, scene_of, view
 from voussoir.plot.case_title import title_of
 from voussoir.plot.collapse_picture import MARKS, MEANINGS
@@ -47,8 +40,12 @@ TOUCHES = {
 
 
 def draw_case(
-    run: Results, number: int, magnify: float | str | None = None, with_forces: bool = True,
-    numbers: bool = False, coordinates: bool = False,
+    run: Results,
+    number: int,
+    magnify: float | str | None = None,
+    with_forces: bool = True,
+    numbers: bool = False,
+    coordinates: bool = False,
 ) -> Figure:
     """Draw one case of any scene.
 
@@ -97,9 +94,7 @@ def draw_case(
     else:
         draw_scale(axes, low, high)
     axes.set_title(title, fontsize=10.5)
-    figure.legend(
-        handles=entries, loc="upper center", bbox_to_anchor=(0.5, -0.02), ncols=2, fontsize=9
-    )
+    figure.legend(handles=entries, loc="upper center", bbox_to_anchor=(0.5, -0.02), ncols=2, fontsize=9)
     return figure
 
 
@@ -128,17 +123,13 @@ def draw_supports(axes: Axes, supports: list[np.ndarray]) -> list[Artist]:
 def draw_beginning(axes: Axes, shapes: list[np.ndarray], largest: float) -> list[Artist]:
     """Draw where blocks that have moved were; gives the entries of the legend."""
     axes.add_collection(
-        PolyCollection(
-            shapes, facecolors="none", edgecolors=INK[3], linewidths=0.7, linestyles="--", zorder=1
-        )
+        PolyCollection(shapes, facecolors="none", edgecolors=INK[3], linewidths=0.7, linestyles="--", zorder=1)
     )
     words = f"at the beginning; true scale, largest displacement {length_text(largest)}"
     return [entry(words, linestyle="--", color=INK[3], linewidth=0.9)]
 
 
-def draw_blocks(
-    axes: Axes, scene: CaseScene, shapes: list[np.ndarray], materials: Sequence[int] = ()
-) -> list[Artist]:
+def draw_blocks(axes: Axes, scene: CaseScene, shapes: list[np.ndarray], materials: Sequence[int] = ()) -> list[Artist]:
     """Draw the blocks that can move, where their joints are told, by materials; gives the entries."""
     known = len(materials) >= max((block.number for block in scene.blocks), default=0)
     groups: dict[tuple[int, bool], list[np.ndarray]] = {}
@@ -149,7 +140,9 @@ def draw_blocks(
     entries: list[Artist] = []
     for (material, held), chosen in sorted(groups.items()):
         style = {
-            "facecolor": TINTS[(material - 1) % len(TINTS)], "edgecolor": "#777777", "linewidth": 0.7,
+            "facecolor": TINTS[(material - 1) % len(TINTS)],
+            "edgecolor": "#777777",
+            "linewidth": 0.7,
             "hatch": "..." if held else None,
         }
         axes.add_collection(PolyCollection(chosen, **style, zorder=1.5))
@@ -173,9 +166,7 @@ def factor_of(scene: CaseScene, magnify: float | str | None, size: float) -> flo
 def draw_displaced(axes: Axes, scene: CaseScene, factor: float) -> list[Artist]:
     """Draw the displaced shape or the mechanism; gives the entries of the legend."""
     axes.add_collection(
-        PolyCollection(
-            scene.shapes(factor), facecolors="none", edgecolors=INK[0], linewidths=0.8, zorder=2
-        )
+        PolyCollection(scene.shapes(factor), facecolors="none", edgecolors=INK[0], linewidths=0.8, zorder=2)
     )
     words = f"displaced shape, displacements × {factor:g} (largest {length_text(scene.largest)})"
     if scene.falls:
@@ -197,21 +188,21 @@ def draw_ways(axes: Axes, scene: CaseScene, ways: list[Table], factor: float) ->
         axes.plot(*points.T, color=INK[1], linewidth=1.1, linestyle=(0, (4, 1.5)), zorder=5)
         axes.plot(*points[-1], marker="D", color=INK[1], markersize=4, zorder=6)
         axes.annotate(
-            str(way["point"][0]), points[-1], xytext=(5, 3), textcoords="offset points",
-            fontsize=8, color=INK[1], zorder=8,
+            str(way["point"][0]),
+            points[-1],
+            xytext=(5, 3),
+            textcoords="offset points",
+            fontsize=8,
+            color=INK[1],
+            zorder=8,
         )
     if not ways:
         return []
     words = "measured points and their ways" if scene.moves or factor > 0.0 else "measured points"
-    return [
-        entry(words, linestyle=(0, (4, 1.5)), color=INK[1],
-              marker="D", markersize=4, linewidth=1.1)
-    ]
+    return [entry(words, linestyle=(0, (4, 1.5)), color=INK[1], marker="D", markersize=4, linewidth=1.1)]
 
 
-def draw_joints(
-    axes: Axes, scene: CaseScene, joints: Table, size: float, with_forces: bool
-) -> list[Artist]:
+def draw_joints(axes: Axes, scene: CaseScene, joints: Table, size: float, with_forces: bool) -> list[Artist]:
     """Draw thrust, forces, hinges and slips; gives the entries of the legend."""
     entries = draw_thrust(axes, joints) if scene.is_arch else []
     if scene.voussoirs:
@@ -254,8 +245,15 @@ def draw_forces(axes: Axes, scene: CaseScene, joints: Table, size: float) -> lis
         return []
     arrows = vectors * (FORCE_LENGTH * size / largest)
     axes.quiver(
-        *thrust_points(joints).T, *arrows.T, angles="xy", scale_units="xy", scale=1.0,
-        color=INK[2], width=0.002, headwidth=4.5, zorder=4.5,
+        *thrust_points(joints).T,
+        *arrows.T,
+        angles="xy",
+        scale_units="xy",
+        scale=1.0,
+        color=INK[2],
+        width=0.002,
+        headwidth=4.5,
+        zorder=4.5,
     )
     words = f"contact forces, longest {force_text(largest)}"
     return [entry(words, linestyle="-", color=INK[2], linewidth=1.2)]
@@ -275,9 +273,7 @@ def draw_hinges(axes: Axes, scene: CaseScene, joints: Table) -> list[Artist]:
     entries: list[Artist] = []
     role = roles_of(joints)
     collapses = role is joints["mechanism"]
-    two = np.hypot(
-        joints["x_extrados"] - joints["x_intrados"], joints["y_extrados"] - joints["y_intrados"]
-    ) > 0.0
+    two = np.hypot(joints["x_extrados"] - joints["x_intrados"], joints["y_extrados"] - joints["y_intrados"]) > 0.0
     two |= joints["mechanism"] != "none"
     places = {
         "intrados": (role == "hinge_intrados", "x_intrados", "y_intrados"),
@@ -291,7 +287,10 @@ def draw_hinges(axes: Axes, scene: CaseScene, joints: Table) -> list[Artist]:
         if not mask.any():
             continue
         axes.plot(
-            joints[x][mask], joints[y][mask], linestyle="none", zorder=6,
+            joints[x][mask],
+            joints[y][mask],
+            linestyle="none",
+            zorder=6,
             markersize=6.5 if len(joints) <= MANY else 4.0,
             **MARKS[mark],
         )
@@ -306,9 +305,7 @@ def draw_slips(axes: Axes, scene: CaseScene, joints: Table, size: float) -> list
     """Draw which way the sides of sliding joints move; gives the entries of the legend."""
     slides = np.flatnonzero(np.isfinite(joints["slides_x"]))
     falls = scene.falls or scene.moves
-    centre = {
-        block.number: block.corners.mean(axis=0) for block in scene.blocks + scene.supports
-    }
+    centre = {block.number: block.corners.mean(axis=0) for block in scene.blocks + scene.supports}
     long = np.hypot(*(joints[f"{axis}_extrados"] - joints[f"{axis}_intrados"] for axis in "xy"))
     usual = np.median(long[long > 0.0]) if np.any(long > 0.0) else size
     length = min(SLIP_LENGTH * size, 0.5 * float(usual))
@@ -324,16 +321,16 @@ def draw_slips(axes: Axes, scene: CaseScene, joints: Table, size: float) -> list
         for side in (1.0, -1.0):
             start = middle + side * (0.3 * length * normal - 0.5 * length * way)
             axes.annotate(
-                "", start + side * length * way, start, zorder=7,
-                arrowprops={"arrowstyle": "->", "color": INK[0], "linewidth": 1.3,
-                            "shrinkA": 0, "shrinkB": 0},
+                "",
+                start + side * length * way,
+                start,
+                zorder=7,
+                arrowprops={"arrowstyle": "->", "color": INK[0], "linewidth": 1.3, "shrinkA": 0, "shrinkB": 0},
             )
     if not len(slides):
         return []
     words = "sliding joint: which way its sides move" if falls else "joint at its friction limit"
-    return [
-        entry(words, marker=r"$\rightleftarrows$", markerfacecolor=INK[0], markeredgecolor=INK[0], markersize=11)
-    ]
+    return [entry(words, marker=r"$\rightleftarrows$", markerfacecolor=INK[0], markeredgecolor=INK[0], markersize=11)]
 
 
 def draw_scale(axes: Axes, low: np.ndarray, high: np.ndarray) -> None:
@@ -341,9 +338,21 @@ def draw_scale(axes: Axes, low: np.ndarray, high: np.ndarray) -> None:
     length = rounded(0.2 * float(high[0] - low[0]))
     room = 0.035 * float((high - low).max())
     start, level = low[0] + room, low[1] - room
-    axes.plot([start, start + length], [level, level], color=INK[0], linewidth=2.0,
-              solid_capstyle="butt", clip_on=False, zorder=9)
+    axes.plot(
+        [start, start + length],
+        [level, level],
+        color=INK[0],
+        linewidth=2.0,
+        solid_capstyle="butt",
+        clip_on=False,
+        zorder=9,
+    )
     axes.annotate(
-        length_text(length), (start + length, level), xytext=(5, 0), textcoords="offset points",
-        va="center", fontsize=9, annotation_clip=False,
+        length_text(length),
+        (start + length, level),
+        xytext=(5, 0),
+        textcoords="offset points",
+        va="center",
+        fontsize=9,
+        annotation_clip=False,
     )

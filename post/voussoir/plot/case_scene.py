@@ -47,10 +47,7 @@ class CaseScene:
     @property
     def largest(self) -> float:
         """Largest displacement of a corner [m], NaN where none is told."""
-        return max(
-            (float(np.hypot(*block.displacement.T).max()) for block in self.blocks),
-            default=float("nan"),
-        )
+        return max((float(np.hypot(*block.displacement.T).max()) for block in self.blocks), default=float("nan"))
 
     def shapes(self, factor: float) -> list[np.ndarray]:
         """Corners of the blocks that can move, with so many times their displacements."""

@@ -73,10 +73,7 @@ def _ending(row: Row, run: Results | None) -> str:
 def safety_of(row: Row) -> str:
     """The safety numbers of what stands, as far as they are told."""
     words = ""
-    for name, text in (
-        ("safety_thickness", ", thickness {:.3g} × critical"),
-        ("exact_low", ", load factor {:.4g}"),
-    ):
+    for name, text in (("safety_thickness", ", thickness {:.3g} × critical"), ("exact_low", ", load factor {:.4g}")):
         if not math.isnan(row.get(name, math.nan)):
             words += text.format(row[name])
     ends = [row.get(name, math.nan) for name in ("thrust_min", "thrust_max")]

@@ -97,22 +97,16 @@ def animate(
     return written
 
 
-def new_grid(
-    count: int, columns: int, width: float, height: float
-) -> tuple[Figure, np.ndarray]:
+def new_grid(count: int, columns: int, width: float, height: float) -> tuple[Figure, np.ndarray]:
     """A figure with room for so many pictures of one height [inch], and the axes of all places."""
     lines = -(-count // columns)
-    figure, grid = plt.subplots(
-        lines, columns, figsize=(width, lines * height), layout="constrained", squeeze=False
-    )
+    figure, grid = plt.subplots(lines, columns, figsize=(width, lines * height), layout="constrained", squeeze=False)
     for axes in grid.flat[count:]:
         axes.set_axis_off()
     return figure, grid
 
 
-def captions(
-    run: Results, numbers: list[int], title: Callable[[dict[str, Any]], str], magnify: float
-) -> list[str]:
+def captions(run: Results, numbers: list[int], title: Callable[[dict[str, Any]], str], magnify: float) -> list[str]:
     """What stands above the pictures: the title of each case, and what its pictures are."""
     words = []
     for number in numbers:

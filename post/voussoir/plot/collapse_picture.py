@@ -54,17 +54,13 @@ def pictures_of(run: Results, number: int) -> list[Frame]:
     most = MECHANISM_SIZE * float((high - low).max()) / scene.largest
     return [
         Frame(
-            picture, 0, 0.0,
-            [block.corners + picture / GROWTH * most * block.displacement for block in told],
-            Table({}),
+            picture, 0, 0.0, [block.corners + picture / GROWTH * most * block.displacement for block in told], Table({})
         )
         for picture in range(GROWTH + 1)
     ]
 
 
-def draw_frame(
-    axes: Axes, run: Results, number: int, frame: Frame, size: float = 5.0, magnify: float = 1.0
-) -> Axes:
+def draw_frame(axes: Axes, run: Results, number: int, frame: Frame, size: float = 5.0, magnify: float = 1.0) -> Axes:
     """Draw one picture of a case, its first one faint behind it.
 
     Parameters
@@ -78,13 +74,14 @@ def draw_frame(
     scene = scene_of(run, number)
     before = shapes_of(scene, first, first, 1.0)
     if frame.number > 0:
-        axes.add_collection(
-            PolyCollection(before, facecolors="none", edgecolors="#c4c4c4", linewidths=0.5)
-        )
+        axes.add_collection(PolyCollection(before, facecolors="none", edgecolors="#c4c4c4", linewidths=0.5))
     axes.add_collection(
         PolyCollection(
             [block.corners for block in scene.supports],
-            facecolors="white", edgecolors=INK[3], linewidths=0.6, hatch="////",
+            facecolors="white",
+            edgecolors=INK[3],
+            linewidths=0.6,
+            hatch="////",
         )
     )
     blocks = shapes_of(scene, first, frame, magnify)
@@ -98,16 +95,11 @@ def draw_frame(
     return axes
 
 
-def shapes_of(
-    scene: CaseScene, first: Frame, frame: Frame, magnify: float
-) -> list[np.ndarray]:
+def shapes_of(scene: CaseScene, first: Frame, frame: Frame, magnify: float) -> list[np.ndarray]:
     """Corners of the blocks that can move in a picture, their displacements magnified."""
     return [
         before + magnify * (now - before)
-        for before, now in (
-            (first.blocks[block.number - 1], frame.blocks[block.number - 1])
-            for block in scene.blocks
-        )
+        for before, now in ((first.blocks[block.number - 1], frame.blocks[block.number - 1]) for block in scene.blocks)
     ]
 
 
@@ -130,10 +122,7 @@ def marks_of(run: Results, number: int, frame: Frame) -> dict[str, np.ndarray]:
         "extrados": (np.isin(np.round(angle, 6), np.round(row["extrados_hinge_deg"], 6)), "_2"),
         "slip": (np.isfinite(roles["slides_x"]), ""),
     }
-    return {
-        kind: np.array([joints["x" + at][mask], joints["y" + at][mask]])
-        for kind, (mask, at) in places.items()
-    }
+    return {kind: np.array([joints["x" + at][mask], joints["y" + at][mask]]) for kind, (mask, at) in places.items()}
 
 
 def contacts_of(frame: Frame) -> dict[str, np.ndarray]:
@@ -155,17 +144,12 @@ def contacts_of(frame: Frame) -> dict[str, np.ndarray]:
 
 def mark_legend(figure: Figure, kinds: tuple[str, ...] = ("intrados", "extrados")) -> Figure:
     """Explain the marks below a figure."""
-    entries = [
-        Line2D([], [], linestyle="none", markersize=6, label=MEANINGS[kind], **MARKS[kind])
-        for kind in kinds
-    ]
+    entries = [Line2D([], [], linestyle="none", markersize=6, label=MEANINGS[kind], **MARKS[kind]) for kind in kinds]
     figure.legend(handles=entries, loc="upper center", bbox_to_anchor=(0.5, 0.0), ncols=len(kinds))
     return figure
 
 
-def limits(
-    run: Results, numbers: list[int], magnify: float = 1.0
-) -> tuple[np.ndarray, np.ndarray]:
+def limits(run: Results, numbers: list[int], magnify: float = 1.0) -> tuple[np.ndarray, np.ndarray]:
     """The piece of plane that shows all pictures of some cases [m].
 
     Returns

@@ -102,25 +102,42 @@ def _draw(run: Results, groups: list[tuple[str, Table]], column: str) -> Figure:
         known = ~np.isnan(rows["exact"])
         exact |= bool(known.any())
         axes.plot(
-            rows[column], rows["critical"], linestyle="none", color=color, markersize=6,
-            marker=_MARKERS[number], markerfacecolor="white", label=label or "DDA",
+            rows[column],
+            rows["critical"],
+            linestyle="none",
+            color=color,
+            markersize=6,
+            marker=_MARKERS[number],
+            markerfacecolor="white",
+            label=label or "DDA",
         )
         axes.plot(
-            rows[column][known], rows["exact"][known], linestyle="none", color=color,
-            marker="+", markersize=9, markeredgewidth=0.9,
+            rows[column][known],
+            rows["exact"][known],
+            linestyle="none",
+            color=color,
+            marker="+",
+            markersize=9,
+            markeredgewidth=0.9,
         )
     axes.set_xlabel(axis_label(column))
     axes.set_ylabel(_searched(run))
     if exact:
-        axes.plot([], [], color=INK[0], linestyle="none", marker="+", markersize=9,
-                  markeredgewidth=0.9, label="limit analysis, same polygons")
+        axes.plot(
+            [],
+            [],
+            color=INK[0],
+            linestyle="none",
+            marker="+",
+            markersize=9,
+            markeredgewidth=0.9,
+            label="limit analysis, same polygons",
+        )
     axes.legend()
     return figure
 
 
-def _draw_by_colour(
-    run: Results, groups: list[tuple[str, Table]], column: str, other: str
-) -> Figure:
+def _draw_by_colour(run: Results, groups: list[tuple[str, Table]], column: str, other: str) -> Figure:
     """Curves too many for marks: their colour tells the second parameter."""
     figure = Picture(figsize=(6.8, 4.4), layout="constrained")
     axes = figure.subplots()
@@ -129,8 +146,7 @@ def _draw_by_colour(
     for value, (_, rows) in zip(values, groups):
         rows = rows.take(np.argsort(rows[column], kind="stable"))
         axes.plot(
-            rows[column], rows["critical"], color=scale.to_rgba(value), linestyle="none",
-            marker=".", markersize=5,
+            rows[column], rows["critical"], color=scale.to_rgba(value), linestyle="none", marker=".", markersize=5
         )
     axes.set_xlabel(axis_label(column))
     axes.set_ylabel(_searched(run))

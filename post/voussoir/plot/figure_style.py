@@ -83,9 +83,7 @@ def house_style():
 _METADATA = {".svg": {"Date": None}, ".pdf": {"CreationDate": None}, ".png": {"Software": None}}
 
 
-def save(
-    figure: Figure, folder: Path, name: str, formats: tuple[str, ...] = ("svg", "png")
-) -> list[Path]:
+def save(figure: Figure, folder: Path, name: str, formats: tuple[str, ...] = ("svg", "png")) -> list[Path]:
     """Write a figure and close it.
 
     Parameters

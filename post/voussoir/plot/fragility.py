@@ -145,9 +145,7 @@ def _strength_column(cases: Table) -> str:
     for name in _STRENGTHS:
         if name in swept:
             return name
-    raise ChartError(
-        f"expected a sweep of amplitude or scale, got {', '.join(swept) or 'no sweep'}; name the column"
-    )
+    raise ChartError(f"expected a sweep of amplitude or scale, got {', '.join(swept) or 'no sweep'}; name the column")
 
 
 def _of_verdicts(cases: Table, column: str) -> tuple[np.ndarray, np.ndarray, Lognormal | None]:

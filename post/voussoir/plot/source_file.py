@@ -38,8 +38,10 @@ class Source:
 def source_of(run: Results) -> Source:
     """What the deck and its file of blocks say; the file is looked for beside the results and above them."""
     source = Source()
-    points, forces = ([[float(value) for value in run.settings(f"live%{name}")] for name in pair]
-                      for pair in (("x", "y"), ("fx", "fy")))
+    points, forces = (
+        [[float(value) for value in run.settings(f"live%{name}")] for name in pair]
+        for pair in (("x", "y"), ("fx", "fy"))
+    )
     for number, point in enumerate(zip(*points)):
         force = tuple(part[number] if number < len(part) else 0.0 for part in forces)
         source.loads.append((point, force, True))

@@ -299,8 +299,7 @@ class Results:
         """
         if self.joints is None:
             raise KeyError(
-                f"no joints.csv in {self.folder}: run the deck again with "
-                f"--set output%joints=.true. --cases {number}"
+                f"no joints.csv in {self.folder}: run the deck again with --set output%joints=.true. --cases {number}"
             )
         return self.joints.where(case=number)
 
@@ -323,9 +322,7 @@ class Results:
         starts = np.flatnonzero(np.diff(rows["block"])) + 1
         return [
             Block(int(rows["block"][first]), str(rows["state"][first]), shape, motion)
-            for first, shape, motion in zip(
-                [0, *starts], np.split(corners, starts), np.split(moves, starts)
-            )
+            for first, shape, motion in zip([0, *starts], np.split(corners, starts), np.split(moves, starts))
         ]
 
     def points_of(self, number: int) -> list[Table]:

@@ -61,10 +61,7 @@ def as_html(columns: dict[str, np.ndarray], rows: int) -> str:
     """A table for a notebook."""
     names, texts = _shown(columns, rows)
     head = "".join(f"<th>{html.escape(name)}</th>" for name in names)
-    body = "".join(
-        "<tr>" + "".join(f"<td>{html.escape(cell)}</td>" for cell in row) + "</tr>"
-        for row in zip(*texts)
-    )
+    body = "".join("<tr>" + "".join(f"<td>{html.escape(cell)}</td>" for cell in row) + "</tr>" for row in zip(*texts))
     return (
         f'<div style="overflow-x:auto"><table><thead><tr>{head}</tr></thead><tbody>{body}</tbody>'
         f"</table></div><p>{rows} row{'s' * (rows != 1)}, {len(columns)} columns</p>"

@@ -16,10 +16,7 @@ _WHOLE = frozenset(
 )
 #: Columns of words; what is left are numbers
 _WORDS = frozenset(
-    (
-        "deck mode geometry verdict collapses_at collapse_mode springing_hinge"
-        " state state_1 state_2 mechanism"
-    ).split()
+    ("deck mode geometry verdict collapses_at collapse_mode springing_hinge state state_1 state_2 mechanism").split()
 )
 #: What to do about a table that is damaged
 _AGAIN = "run the deck again with --resume"
@@ -74,16 +71,15 @@ def read_columns(file: Path) -> dict[str, np.ndarray]:
     try:
         names, rows = _cells_of(file)
     except (UnicodeDecodeError, csv.Error) as problem:
-        raise DamagedTable(f"{file}:{_spoilt_line(file)}: error: expected a table, got: {problem}; "
-                           + _AGAIN) from problem
+        raise DamagedTable(
+            f"{file}:{_spoilt_line(file)}: error: expected a table, got: {problem}; " + _AGAIN
+        ) from problem
     lost = [name for name in _NEEDED.get(file.name, ("case",)) if names.count(name) != 1]
     if lost:
-        raise DamagedTable(f"{file}:1: error: expected one column {lost[0]}, got "
-                           f"{names.count(lost[0])}; " + _AGAIN)
+        raise DamagedTable(f"{file}:1: error: expected one column {lost[0]}, got {names.count(lost[0])}; " + _AGAIN)
     for number, row in rows:
         if len(row) != len(names):
-            raise DamagedTable(f"{file}:{number}: error: expected {len(names)} cells, got "
-                               f"{len(row)}; " + _AGAIN)
+            raise DamagedTable(f"{file}:{number}: error: expected {len(names)} cells, got {len(row)}; " + _AGAIN)
     cells = list(zip(*(row for _, row in rows))) or [()] * len(names)
     lines = [number for number, _ in rows]
     return {name: _typed(file, lines, name, column) for name, column in zip(names, cells)}
@@ -118,10 +114,10 @@ def _typed(file: Path, lines: list[int], name: str, cells: tuple[str, ...]) -> n
         try:
             column_of(name, (cell,))
         except (ValueError, OverflowError):
-            raise DamagedTable(f"{file}:{line}: error: expected {name} as dda writes it, got "
-                               f"'{cell[:40]}'; " + _AGAIN) from None
-    raise DamagedTable(f"{file}:1: error: expected {name} as dda writes it, got another column; "
-                       + _AGAIN)
+            raise DamagedTable(
+                f"{file}:{line}: error: expected {name} as dda writes it, got '{cell[:40]}'; " + _AGAIN
+            ) from None
+    raise DamagedTable(f"{file}:1: error: expected {name} as dda writes it, got another column; " + _AGAIN)
 
 
 def column_of(name: str, cells: tuple[str, ...]) -> np.ndarray:

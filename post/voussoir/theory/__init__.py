@@ -195,9 +195,7 @@ def equilibrium_thickness(beta: npt.ArrayLike, alpha: npt.ArrayLike, theory: str
         eta(beta); its top is the critical thickness of CCR and Milankovitch.
     """
     arguments = {"beta": beta, "alpha": alpha}
-    return evaluate(theory_api.curve, arguments, [JOINT, _embraced(theory)], theory_number(theory))[
-        0
-    ]
+    return evaluate(theory_api.curve, arguments, [JOINT, _embraced(theory)], theory_number(theory))[0]
 
 
 def initial_thickness(alpha: npt.ArrayLike, theory: str) -> Value:
@@ -216,9 +214,7 @@ def initial_thickness(alpha: npt.ArrayLike, theory: str) -> Value:
         eta_0, zero where A >= 1.
     """
     arguments = {"alpha": alpha}
-    return evaluate(theory_api.curve_start, arguments, [_embraced(theory)], theory_number(theory))[
-        0
-    ]
+    return evaluate(theory_api.curve_start, arguments, [_embraced(theory)], theory_number(theory))[0]
 
 
 def curve_slope(beta: npt.ArrayLike, alpha: npt.ArrayLike, theory: str) -> Value:
@@ -239,14 +235,10 @@ def curve_slope(beta: npt.ArrayLike, alpha: npt.ArrayLike, theory: str) -> Value
         The slope [1/rad].
     """
     arguments = {"beta": beta, "alpha": alpha}
-    return evaluate(theory_api.slope, arguments, [JOINT, _embraced(theory)], theory_number(theory))[
-        0
-    ]
+    return evaluate(theory_api.slope, arguments, [JOINT, _embraced(theory)], theory_number(theory))[0]
 
 
-def thrust_line(
-    beta: npt.ArrayLike, alpha: npt.ArrayLike, eta: npt.ArrayLike, theory: str
-) -> Value:
+def thrust_line(beta: npt.ArrayLike, alpha: npt.ArrayLike, eta: npt.ArrayLike, theory: str) -> Value:
     """Line of thrust through the extrados of crown and springing: eq. (11).
 
     Parameters

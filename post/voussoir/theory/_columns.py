@@ -95,11 +95,7 @@ def shaped(shape: tuple[int, ...], column: npt.NDArray) -> Value:
 
 
 def evaluate(
-    routine: Callable,
-    arguments: Mapping[str, npt.ArrayLike],
-    ranges: Sequence[Range],
-    *numbers: int,
-    results: int = 1,
+    routine: Callable, arguments: Mapping[str, npt.ArrayLike], ranges: Sequence[Range], *numbers: int, results: int = 1
 ) -> tuple[Value, ...]:
     """Call a routine of the Fortran layer for every element of its arguments.
 
@@ -134,9 +130,7 @@ def evaluate(
     return tuple(shaped(shape, column) for column in found)
 
 
-def refuse(
-    fault: Sequence[int], names: Sequence[str], flat: Sequence[npt.NDArray], ranges: Sequence[Range]
-) -> None:
+def refuse(fault: Sequence[int], names: Sequence[str], flat: Sequence[npt.NDArray], ranges: Sequence[Range]) -> None:
     """Raise the exception that a fault of the Fortran layer stands for.
 
     Parameters

@@ -82,8 +82,7 @@ def discrete_critical(
     if none.size > 0:
         angle = flat[-1][none[0]].item()
         raise ValueError(
-            "friction must be an angle at which some thickness ratio below 2 admits equilibrium, "
-            f"got {angle!r} rad"
+            f"friction must be an angle at which some thickness ratio below 2 admits equilibrium, got {angle!r} rad"
         )
     return shaped(shape, eta)
 
@@ -111,10 +110,7 @@ def discrete_solution(
     if status.size != 1:
         raise ValueError(f"discrete_solution needs one arch, got {status.size}")
     found = STATUS[status[0]] == "found"
-    bound = {
-        name: tuple(float(angle) for angle in joint[role[:, 0] == number, 0])
-        for number, name in ROLES.items()
-    }
+    bound = {name: tuple(float(angle) for angle in joint[role[:, 0] == number, 0]) for number, name in ROLES.items()}
     ratio = math.nan if STATUS[status[0]] == "none_admissible" else float(eta[0])
     return DiscreteSolution(STATUS[status[0]], ratio, float(h[0]) if found else math.nan, **bound)
 
@@ -127,16 +123,11 @@ def _solve(joints, alpha, facet, friction, springing_no_slip):
         return _solve_equal(joints, alpha, facet, friction, springing_no_slip)
     angles = real_array("joints", joints)
     if angles.ndim != 1 or angles.size == 0:
-        raise ValueError(
-            "joints must be the angles of one half arch, or a number together with alpha, "
-            f"got {joints!r}"
-        )
+        raise ValueError(f"joints must be the angles of one half arch, or a number together with alpha, got {joints!r}")
     shape, flat = columns(facet=facet, friction=friction)
     rows = []
     for chord, angle in zip(*flat):
-        *found, fault = theory_discrete_api.discrete_joints(
-            angles, chord, angle, int(springing_no_slip)
-        )
+        *found, fault = theory_discrete_api.discrete_joints(angles, chord, angle, int(springing_no_slip))
         _refuse(fault, ["joints", "facet", "friction"], [angles, flat[0], flat[1]])
         rows.append(found)
     status, eta, h = (np.array([row[i] for row in rows]) for i in range(3))
@@ -151,21 +142,11 @@ def _solve_equal(joints, alpha, facet, friction, springing_no_slip):
     whole = np.isfinite(count) & (count == np.floor(count)) & (np.abs(count) < 2.0**31)
     if not whole.all():
         value = count[~whole][0].item()
-        raise ValueError(
-            f"joints must be whole numbers of voussoirs together with alpha, got {value!r}"
-        )
+        raise ValueError(f"joints must be whole numbers of voussoirs together with alpha, got {value!r}")
     counts = count.astype(np.int32)
     if counts.size == 0:
         none = np.empty(0)
-        return (
-            shape,
-            none.astype(int),
-            none,
-            none,
-            np.empty((5, 0)),
-            np.empty((5, 0), int),
-            flat[2:],
-        )
+        return (shape, none.astype(int), none, none, np.empty((5, 0)), np.empty((5, 0), int), flat[2:])
     *found, fault = theory_discrete_api.discrete_equal(counts, *flat[1:], int(springing_no_slip))
     _refuse(fault, ["joints", "alpha", "facet", "friction"], [counts, *flat[1:]])
     return (shape, *found, flat[2:])

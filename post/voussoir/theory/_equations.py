@@ -8,9 +8,7 @@ from voussoir._theory import theory_equations_api
 from voussoir.theory._columns import HALF_ANGLE, JOINT, THICKNESS, Value, evaluate, theory_number
 
 
-def eccentricity(
-    beta: npt.ArrayLike, alpha: npt.ArrayLike, eta: npt.ArrayLike, h: npt.ArrayLike, theory: str
-) -> Value:
+def eccentricity(beta: npt.ArrayLike, alpha: npt.ArrayLike, eta: npt.ArrayLike, h: npt.ArrayLike, theory: str) -> Value:
     """Eccentricity of a thrust h that passes the extrados at the crown: eq. (10).
 
     Parameters
@@ -33,9 +31,7 @@ def eccentricity(
     """
     arguments = {"beta": beta, "alpha": alpha, "eta": eta, "h": h}
     ranges = [JOINT, HALF_ANGLE, THICKNESS, "a positive thrust"]
-    return evaluate(
-        theory_equations_api.joint_eccentricity, arguments, ranges, theory_number(theory)
-    )[0]
+    return evaluate(theory_equations_api.joint_eccentricity, arguments, ranges, theory_number(theory))[0]
 
 
 def embrace(alpha: npt.ArrayLike) -> Value:
@@ -55,9 +51,7 @@ def embrace(alpha: npt.ArrayLike) -> Value:
     return evaluate(theory_equations_api.group_a, arguments, [HALF_ANGLE])[0]
 
 
-def thrust_through(
-    beta: npt.ArrayLike, ratio: npt.ArrayLike, eta: npt.ArrayLike, theory: str
-) -> Value:
+def thrust_through(beta: npt.ArrayLike, ratio: npt.ArrayLike, eta: npt.ArrayLike, theory: str) -> Value:
     """Thrust through the extrados of the crown and a point of a joint: eq. (6).
 
     Parameters
@@ -78,9 +72,7 @@ def thrust_through(
     """
     arguments = {"beta": beta, "ratio": ratio, "eta": eta}
     ranges = [HALF_ANGLE, "a ratio in [-1, 1]", THICKNESS]
-    return evaluate(theory_equations_api.thrust_at_joint, arguments, ranges, theory_number(theory))[
-        0
-    ]
+    return evaluate(theory_equations_api.thrust_at_joint, arguments, ranges, theory_number(theory))[0]
 
 
 def lower_thrust(beta: npt.ArrayLike, eta: npt.ArrayLike, theory: str) -> Value:
@@ -122,9 +114,7 @@ def springing_thrust(alpha: npt.ArrayLike, eta: npt.ArrayLike, theory: str) -> V
     """
     arguments = {"alpha": alpha, "eta": eta}
     ranges = [HALF_ANGLE, THICKNESS]
-    return evaluate(
-        theory_equations_api.thrust_at_springing, arguments, ranges, theory_number(theory)
-    )[0]
+    return evaluate(theory_equations_api.thrust_at_springing, arguments, ranges, theory_number(theory))[0]
 
 
 def tangent_thrust(beta: npt.ArrayLike, eta: npt.ArrayLike, theory: str) -> Value:
@@ -146,6 +136,4 @@ def tangent_thrust(beta: npt.ArrayLike, eta: npt.ArrayLike, theory: str) -> Valu
     """
     arguments = {"beta": beta, "eta": eta}
     ranges = [HALF_ANGLE, THICKNESS]
-    return evaluate(
-        theory_equations_api.thrust_at_tangent, arguments, ranges, theory_number(theory)
-    )[0]
+    return evaluate(theory_equations_api.thrust_at_tangent, arguments, ranges, theory_number(theory))[0]

@@ -32,13 +32,7 @@ def friction(theory: str, alpha: float = _SEMICIRCLE) -> dict[str, float | str]:
         slides there together with the springing; ``slides_first`` "springing" or "haunch", the
         joint that limits mu_rotational.
     """
-    found = evaluate(
-        theory_discrete_api.friction_range,
-        {"alpha": alpha},
-        [_ANGLE],
-        theory_number(theory),
-        results=5,
-    )
+    found = evaluate(theory_discrete_api.friction_range, {"alpha": alpha}, [_ANGLE], theory_number(theory), results=5)
     if found[0].ndim > 0:
         raise ValueError(f"alpha must be one angle, got {alpha!r}")
     rotational, mixed, h, slip, springing = found
@@ -54,9 +48,7 @@ def friction(theory: str, alpha: float = _SEMICIRCLE) -> dict[str, float | str]:
     }
 
 
-def friction_critical(
-    mu: npt.ArrayLike, theory: str, alpha: npt.ArrayLike = _SEMICIRCLE
-) -> tuple[Value, Value, Value]:
+def friction_critical(mu: npt.ArrayLike, theory: str, alpha: npt.ArrayLike = _SEMICIRCLE) -> tuple[Value, Value, Value]:
     """Hinge, least thickness and thrust at a friction coefficient.
 
     Parameters
@@ -80,9 +72,7 @@ def friction_critical(
     """
     ranges = ["a coefficient of mu_mixed or more, see friction()", _ANGLE]
     arguments = {"mu": mu, "alpha": alpha}
-    return evaluate(
-        theory_discrete_api.friction_states, arguments, ranges, theory_number(theory), results=3
-    )
+    return evaluate(theory_discrete_api.friction_states, arguments, ranges, theory_number(theory), results=3)
 
 
 def friction_thickness(mu: npt.ArrayLike, theory: str, alpha: npt.ArrayLike = _SEMICIRCLE) -> Value:

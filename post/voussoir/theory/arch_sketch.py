@@ -80,11 +80,7 @@ def draw_thrust(axes: Axes, alpha: float, eta: float, name: str, **style) -> Axe
     angle = np.linspace(0.0, alpha, STATIONS)
     ratio = theory.thrust_line(angle, alpha, eta, name)
     x, y = on_circle(1 - ratio * eta / 2, angle)
-    axes.plot(
-        np.hstack([-x[::-1], x]),
-        np.hstack([y[::-1], y]),
-        **({"color": INK[1], "zorder": 3} | style),
-    )
+    axes.plot(np.hstack([-x[::-1], x]), np.hstack([y[::-1], y]), **({"color": INK[1], "zorder": 3} | style))
     return axes
 
 
@@ -96,13 +92,7 @@ def draw_hinges(axes: Axes, points: np.ndarray, **style) -> Axes:
     points : ndarray
         x >= 0 and y: (2, n).
     """
-    options = {
-        "marker": "o",
-        "linestyle": "",
-        "color": INK[0],
-        "markerfacecolor": "white",
-        "zorder": 5,
-    } | style
+    options = {"marker": "o", "linestyle": "", "color": INK[0], "markerfacecolor": "white", "zorder": 5} | style
     for side in (1, -1):
         axes.plot(side * points[0], points[1], **options)
     return axes
@@ -129,9 +119,7 @@ def rotated(points: np.ndarray, about: np.ndarray, onto: np.ndarray, angle: floa
     return onto[:, None] + turn @ (points - about[:, None])
 
 
-def collapsed_half(
-    alpha: float, beta: float, eta: float, turn: float
-) -> tuple[list[np.ndarray], np.ndarray]:
+def collapsed_half(alpha: float, beta: float, eta: float, turn: float) -> tuple[list[np.ndarray], np.ndarray]:
     """The five-hinge mechanism, displaced by a finite turn of the lower chunk.
 
     Parameters
@@ -178,12 +166,5 @@ def draw_mechanism(axes: Axes, alpha: float, beta: float, eta: float, turn: floa
     chunks, hinges = collapsed_half(alpha, beta, eta, turn)
     for outline in chunks:
         for side in (1, -1):
-            axes.plot(
-                side * outline[0],
-                outline[1],
-                color=INK[2],
-                linewidth=1.1,
-                linestyle=DASHES[1],
-                zorder=2,
-            )
+            axes.plot(side * outline[0], outline[1], color=INK[2], linewidth=1.1, linestyle=DASHES[1], zorder=2)
     return draw_hinges(axes, hinges, color=INK[2], markersize=5)

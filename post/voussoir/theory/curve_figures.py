@@ -33,9 +33,7 @@ def curve_of_the_semicircle(alpha_deg: float = 90.0) -> Figure:
         (0.7, "sub-critical:\ntwo hinges"),
     ):
         axes.axhline(share * eta, color=INK[1], linewidth=0.9, linestyle=DASHES[1])
-        axes.text(
-            1.02, share * eta, word, va="center", fontsize=9, color=INK[1], transform=axes.get_yaxis_transform()
-        )
+        axes.text(1.02, share * eta, word, va="center", fontsize=9, color=INK[1], transform=axes.get_yaxis_transform())
     axes.plot(math.degrees(beta), eta, marker="o", color=INK[2], markersize=7, zorder=5)
     axes.annotate(
         f"$\\beta$ = {math.degrees(beta):.4f}°\n$\\eta$ = {eta:.6f}",
@@ -136,8 +134,16 @@ def _compare(axes: Axes, alpha: float) -> None:
         beta, eta, _ = theory.critical(alpha, name)
         label = f"{_NAMES[name]}: {math.degrees(beta):.4f}°, {eta:.6f}"
         axes.plot(
-            math.degrees(beta), eta, marker=marker, color=color, markerfacecolor="white", linestyle="",
-            markersize=7, markeredgewidth=1.5, label=label, zorder=5,
+            math.degrees(beta),
+            eta,
+            marker=marker,
+            color=color,
+            markerfacecolor="white",
+            linestyle="",
+            markersize=7,
+            markeredgewidth=1.5,
+            label=label,
+            zorder=5,
         )
 
 

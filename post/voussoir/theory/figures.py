@@ -10,24 +10,11 @@ import argparse
 from pathlib import Path
 
 from voussoir.plot.figure_style import house_style, save
-from voussoir.theory.curve_figures import (
-    curve_of_the_semicircle,
-    curves,
-    curves_at_90,
-    curves_at_140,
-)
+from voussoir.theory.curve_figures import curve_of_the_semicircle, curves, curves_at_90, curves_at_140
 from voussoir.theory.sketches import collapse_mode, lines_of_thrust, notation
 
 #: In the order of the paper
-FIGURES = (
-    collapse_mode,
-    notation,
-    lines_of_thrust,
-    curve_of_the_semicircle,
-    curves,
-    curves_at_90,
-    curves_at_140,
-)
+FIGURES = (collapse_mode, notation, lines_of_thrust, curve_of_the_semicircle, curves, curves_at_90, curves_at_140)
 
 
 def main(arguments: list[str] | None = None) -> int:
@@ -38,16 +25,8 @@ def main(arguments: list[str] | None = None) -> int:
     int
         Exit status, 0.
     """
-    parser = argparse.ArgumentParser(
-        prog="python3 -m voussoir.theory.figures", description=__doc__.splitlines()[0]
-    )
-    parser.add_argument(
-        "--out",
-        metavar="DIR",
-        type=Path,
-        default=Path("."),
-        help="folder for the files (default: .)",
-    )
+    parser = argparse.ArgumentParser(prog="python3 -m voussoir.theory.figures", description=__doc__.splitlines()[0])
+    parser.add_argument("--out", metavar="DIR", type=Path, default=Path("."), help="folder for the files (default: .)")
     for path in draw_all(parser.parse_args(arguments).out):
         print(path)
     return 0

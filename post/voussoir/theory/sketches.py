@@ -11,14 +11,7 @@ from matplotlib.figure import Figure
 
 from voussoir import theory
 from voussoir.plot.figure_style import DASHES, INK, STONE
-from voussoir.theory.arch_sketch import (
-    chunk,
-    draw_arch,
-    draw_hinges,
-    draw_mechanism,
-    draw_thrust,
-    on_circle,
-)
+from voussoir.theory.arch_sketch import chunk, draw_arch, draw_hinges, draw_mechanism, draw_thrust, on_circle
 
 _ARROW = {"arrowstyle": "-|>", "color": INK[0], "linewidth": 1.3, "shrinkA": 0, "shrinkB": 0}
 _SPAN = {"arrowstyle": "<|-|>", "color": INK[0], "linewidth": 0.7, "shrinkA": 0, "shrinkB": 0}
@@ -48,10 +41,7 @@ def collapse_mode(alpha_deg: float = 120.0) -> Figure:
     rows = [f"$\\alpha$ = {alpha_deg:g}°"]
     for name in ("ccr", "milankovitch", "heyman"):
         b, e, thrust = theory.critical(alpha, name)
-        rows.append(
-            f"{_NAMES[name]}: $\\beta$ = {math.degrees(b):.4f}°, "
-            f"$\\eta$ = {e:.6f}, $h$ = {thrust:.6f}"
-        )
+        rows.append(f"{_NAMES[name]}: $\\beta$ = {math.degrees(b):.4f}°, $\\eta$ = {e:.6f}, $h$ = {thrust:.6f}")
     axes.set_title("\n".join(rows), fontsize=10, loc="left", pad=18)
     return figure
 
@@ -79,17 +69,9 @@ def notation(alpha_deg: float = 120.0, beta_deg: float = 58.0, eta: float = 0.4)
     axes.set_xlim(-0.85, 1.35)
     axes.set_ylim(-0.2, 1.38)
     arrow(axes, crown - (0.34, 0.0), crown, "$H$", (-0.02, 0.05))
-    axes.plot(
-        [crown[0], meeting[0]], [crown[1]] * 2, color=INK[0], linewidth=0.8, linestyle=DASHES[3]
-    )
+    axes.plot([crown[0], meeting[0]], [crown[1]] * 2, color=INK[0], linewidth=0.8, linestyle=DASHES[3])
     arrow(axes, meeting, meeting - (0.0, 0.42), "$W_1$", (-0.13, -0.4))
-    axes.plot(
-        *np.stack([meeting, point], axis=1),
-        color=INK[2],
-        linewidth=0.9,
-        linestyle=DASHES[3],
-        zorder=4,
-    )
+    axes.plot(*np.stack([meeting, point], axis=1), color=INK[2], linewidth=0.9, linestyle=DASHES[3], zorder=4)
     direction = (point - meeting) / np.linalg.norm(point - meeting)
     arrow(axes, point + 0.36 * direction, point, "$R$", (0.02, 0.02))
     radius = on_circle(1.0, beta)
@@ -122,20 +104,14 @@ def label_lengths(axes: Axes, figure: Figure, eta: float, ratio: float, beta: fl
     axes.text(*(on_circle(1.0, -0.5) + (0.03, -0.02)), "$t$", fontsize=12)
     axes.text(*(on_circle(0.55, beta) + (0.03, -0.07)), "$r$", fontsize=12)
     aside = beta + 0.16
-    axes.annotate(
-        "", on_circle(1.0, aside), on_circle(1 - ratio * eta / 2, aside), arrowprops=_SPAN
-    )
+    axes.annotate("", on_circle(1.0, aside), on_circle(1 - ratio * eta / 2, aside), arrowprops=_SPAN)
     axes.text(*on_circle(1 - ratio * eta / 4, aside + 0.09), "$e$", fontsize=12)
     for radius in (1.0, 1 - ratio * eta / 2):
         ends = on_circle(radius, np.array([beta, aside + 0.03]))
         axes.plot(*ends, color=INK[0], linewidth=0.5, zorder=4)
     angle = np.linspace(0.0, beta, 200)
     axes.plot(*on_circle(1.0, angle), color=INK[3], linewidth=0.8, linestyle=DASHES[2], zorder=3)
-    axes.set_title(
-        f"$\\hat e$ = 2e/t = {ratio:.3f} at $\\beta$ = {math.degrees(beta):g}°",
-        fontsize=10,
-        loc="left",
-    )
+    axes.set_title(f"$\\hat e$ = 2e/t = {ratio:.3f} at $\\beta$ = {math.degrees(beta):g}°", fontsize=10, loc="left")
     return figure
 
 
@@ -159,9 +135,7 @@ def lines_of_thrust(alpha_deg: float = 90.0, shares: tuple[float, ...] = (1.6, 1
         kind = "critical" if share == 1 else "super-critical" if share > 1 else "sub-critical"
         axes.set_title(f"{kind}: $\\eta$ = {eta:.6f}", fontsize=10)
         if share == 1:
-            draw_hinges(
-                axes, on_circle(1 + eta / 2 * np.array([1, -1, 1]), np.array([0.0, beta, alpha]))
-            )
+            draw_hinges(axes, on_circle(1 + eta / 2 * np.array([1, -1, 1]), np.array([0.0, beta, alpha])))
     return figure
 
 
@@ -175,18 +149,12 @@ def draw_angle(axes: Axes, angle: float, radius: float, label: str) -> Axes:
     """
     axes.plot(*on_circle(radius, np.linspace(0.0, angle, 100)), color=INK[0], linewidth=0.7)
     for end in (0.0, angle):
-        axes.plot(
-            *np.stack([np.zeros(2), on_circle(1.15 * radius, end)], axis=1),
-            color=INK[0],
-            linewidth=0.7,
-        )
+        axes.plot(*np.stack([np.zeros(2), on_circle(1.15 * radius, end)], axis=1), color=INK[0], linewidth=0.7)
     axes.text(*on_circle(1.2 * radius, 0.55 * angle), label, fontsize=12, ha="center", va="center")
     return axes
 
 
-def arrow(
-    axes: Axes, start: np.ndarray, end: np.ndarray, label: str, shift: tuple[float, float]
-) -> Axes:
+def arrow(axes: Axes, start: np.ndarray, end: np.ndarray, label: str, shift: tuple[float, float]) -> Axes:
     """Draw a force.
 
     Parameters
