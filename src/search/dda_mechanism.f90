@@ -4,6 +4,7 @@ module dda_mechanism
    use dda_decision, only : decision_t, follow_coulomb
    use dda_frames, only : album_t, blank_album
    use dda_friction_cone, only : joint_face_t
+   use dda_graph_decision, only : decides_as_graph
    use dda_kinds, only : wp
    use dda_scene, only : scene_t
    use dda_settings, only : flow_rule
@@ -51,6 +52,9 @@ module dda_mechanism
    real(wp), parameter :: least_slip = 1.0e-6_wp
    !> Sliding shares below this one count as none, and those above its complement as all
    real(wp), parameter :: little = 1.0e-3_wp
+   !> Most blocks of an assembly whose collapse is followed under Coulomb friction by steps where
+   !> the joint graph has proven it: of larger ones steps take minutes, and only for a picture
+   integer, parameter :: most_followed = 300
 
 contains
 
@@ -69,6 +73,8 @@ contains
       if (decision%by_graph .or. decision%flow == flow_rule%coulomb) return
       if (scene%settings%verdict_flow == flow_rule%associated) return
       if (.not. any(decision%contacts%face%slip /= 0)) return
+      if (maxval(scene%system%equation) > most_followed &
+         & .and. decides_as_graph(scene%settings, scene%contacts)) return
       pictures = blank_album(album)
       call follow_coulomb(scene%settings, scene%system, scene%contacts, other, pictures)
       if (other%outcome%verdict /= verdict%collapsed) return
