@@ -59,7 +59,7 @@ module dda_map_keys
       key_t(group="outline", name="fixed", kind=key_kind%texts, without="none", &
             meaning="Sides whose blocks are held: 'left', 'right', 'bottom'."), &
       key_t(group="outline", name="hold_depth", unit="m", &
-            without="edge_node_ratio of the outline's size", above=0.0_wp, at_most=far, &
+            without="0.2 edge_node_ratio of the outline's size", above=0.0_wp, at_most=far, &
             meaning="How far inside the side the line runs that holds them."), &
       key_t(group="outline", name="material", kind=key_kind%whole, default="1", at_least=1.0_wp, &
             at_most=1000.0_wp, meaning="Joint material of its edges.")]

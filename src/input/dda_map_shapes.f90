@@ -70,9 +70,10 @@ contains
             end if
             map%held_side = map%held_side .or. sides == side(s)
          end do
-         ! blocks that a line so near to the side misses are no larger than what the cut merges
-         map%hold_depth = number_in(outline, "hold_depth", max(1.0e-4_wp, map%edge_node_ratio) &
-            & *norm2(maxval(map%outline, 2) - minval(map%outline, 2)))
+         ! a line so near to the side crosses all blocks along it: corners nearer than twice as much
+         ! are merged with the side
+         map%hold_depth = number_in(outline, "hold_depth", 0.2_wp*max(1.0e-4_wp, &
+            & map%edge_node_ratio)*norm2(maxval(map%outline, 2) - minval(map%outline, 2)))
       end associate
    end subroutine take_outline
 

@@ -165,3 +165,25 @@ def test_mutated_maps_never_crash(tmp_path: Path) -> None:
         assert done.returncode in (0, 2), " ".join(parts)
         if done.returncode == 2:
             assert ": error: " in done.stderr
+
+
+@pytest.mark.parametrize("spacing", [1.7, 1.13, 0.83])
+def test_blocks_along_held_sides_are_held_however_thin(tmp_path: Path, spacing: float) -> None:
+    text = (
+        "&lines seed=3 /\n&outline left=-12 right=12 bottom=-12 top=12 fixed='left','right','bottom' /\n"
+        f"&joint_set dip_deg=0 spacing=1.5 /\n&joint_set dip_deg=70 spacing={spacing} /\n"
+    )
+    draw(text, tmp_path)
+    (tmp_path / "deck.nml").write_text("&scene kind = 'lines', geometry = 'map.geo' /\n")
+    assert run_dda("run", "deck.nml", "--out", "out", "--quiet", cwd=tmp_path).returncode == 0
+    corners: dict[tuple[str, str], list[tuple[float, float]]] = {}
+    with (tmp_path / "out" / "blocks.csv").open(newline="") as stream:
+        for row in csv.DictReader(stream):
+            corners.setdefault((row["block"], row["state"]), []).append((float(row["x"]), float(row["y"])))
+    along = 0
+    for (number, state), points in corners.items():
+        for axis, side in ((0, -12.0), (0, 12.0), (1, -12.0)):
+            if sum(abs(point[axis] - side) < 1e-9 for point in points) > 1:
+                along += 1
+                assert state == "fixed", f"block {number}"
+    assert along > 30
