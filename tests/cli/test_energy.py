@@ -10,7 +10,8 @@ from block_scene import block, on_slope, rows_of, run_blocks, turned
 
 #: 2240 kg/m3 on 1 m2, and gravity
 MASS, G = 2240.0, 9.81
-DYNAMIC = "&analysis mode = 'dynamic', geometry = 'current', unknowns = 3, steps = 9999, time_step = {}, duration = {}{} /\n"
+DYNAMIC = ("&analysis mode = 'dynamic', geometry = 'current', unknowns = 3, steps = 9999, time_step = {},"
+           " duration = {}{} /\n")
 OUTPUT = "&output energy = .true. /\n"
 SQUARE = [(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0)]
 
@@ -77,7 +78,7 @@ def test_a_bounce_takes_what_restitution_leaves_out(tmp_path: Path, restitution:
     ground = block([(-2.0, -1.0), (3.0, -1.0), (3.0, 0.0), (-2.0, 0.0)], "fixed")
     fall = math.sqrt(2.0 * 0.2 / G)
     rows = energies(tmp_path, ground + block([(x, y + 0.2) for x, y in SQUARE]),
-                    "&joint friction_deg = 30.0 /\n" + DYNAMIC.format(0.001, 1.2 * fall, f", restitution = {restitution}"))
+                    DYNAMIC.format(0.001, 1.2 * fall, f", restitution = {restitution}"))
     energy = MASS * G * 0.2
     # without a rebound no step ends at the impact: the step in which it is takes a part
     taken = rows[-1]["impact"] + (0.0 if restitution else rows[-1]["numerical"])

@@ -76,33 +76,41 @@ class Copy:
         return f"{begun[-1]} (crash)" if begun else f"{name} (crash)", taken
 
 
-def prepare(source: Path, copy: Copy, flags: str) -> None:
-    """Copy the tree and build all test programs without a fault."""
-    copy.root.mkdir(parents=True, exist_ok=True)
+def copy_changed(source: Path, target: Path) -> None:
+    """Copy what differs; its new time makes the build take it in, even where a fault was taken out."""
+    for path in [source, *sorted(source.rglob("*"))] if source.is_dir() else [source]:
+        other = target / path.relative_to(source)
+        if path.is_dir() or "__pycache__" in path.parts:
+            continue
+        if not other.exists() or other.read_bytes() != path.read_bytes():
+            other.parent.mkdir(parents=True, exist_ok=True)
+            shutil.copyfile(path, other)
+            shutil.copymode(path, other)
+
+
+def prepare(source: Path, copy: Copy, asked: argparse.Namespace) -> list[str]:
+    """Copy the tree and build all test programs without a fault; the names of those of units."""
     for part in PARTS:
-        if (source / part).is_dir():
-            ignore = shutil.ignore_patterns("__pycache__")
-            shutil.copytree(source / part, copy.root / part, dirs_exist_ok=True, ignore=ignore)
-        elif (source / part).exists():
-            shutil.copy2(source / part, copy.root / part)
+        if (source / part).exists():
+            copy_changed(source / part, copy.root / part)
     subprocess.run(["cmake", "-S", str(copy.root), "-B", str(copy.build), "-G", "Ninja", "-DCMAKE_BUILD_TYPE=Release",
-                    f"-DCMAKE_Fortran_FLAGS_RELEASE={flags}"], check=True, stdout=subprocess.DEVNULL)
-    subprocess.run(["cmake", "--build", str(copy.build), "-j", str(copy.jobs)], check=True, stdout=subprocess.DEVNULL)
+                    f"-DCMAKE_Fortran_FLAGS_RELEASE={asked.flags}"], check=True, stdout=subprocess.DEVNULL)
+    listed = (copy.root / "tests" / "CMakeLists.txt").read_text()
+    units = re.findall(r"add_pfunit_ctest\((unit_\w+)", listed)
+    if not copy.make(*units, *(["physics"] if "physics" in asked.levels else [])):
+        raise SystemExit(f"{copy.build}: does not build without a fault")
+    return units
 
 
-def unit_programs(copy: Copy) -> list[str]:
-    """Unit test programs of the copy."""
-    found = re.findall(r"add_pfunit_ctest\((unit_\w+)", (copy.root / "tests" / "CMakeLists.txt").read_text())
-    return [name for name in found if (copy.build / "tests" / "bin" / name).exists()]
-
-
-def judge(fault: Fault, copy: Copy, units: list[str], cli: list[str]) -> dict[str, object]:
+def judge(fault: Fault, copy: Copy, units: list[str], asked: argparse.Namespace) -> dict[str, object]:
     """What becomes of one fault that is in the copy."""
     own = f"unit_{fault.path.parts[1]}"
     start = time.monotonic()
     levels = [("room", [own] if own in units else []), ("unit", [name for name in units if name != own]),
               ("physics", ["physics"])]
     for level, programs in levels:
+        if level not in asked.levels:
+            continue
         if programs and not copy.make(*programs):
             return {"result": "does not compile"}
         start = time.monotonic() if level == "room" else start
@@ -111,9 +119,9 @@ def judge(fault: Fault, copy: Copy, units: list[str], cli: list[str]) -> dict[st
             if test:
                 return {"result": "found", "level": level, "found_by": f"{program}: {test}",
                         "seconds": round(time.monotonic() - start, 1)}
-    if cli:
+    if asked.cli:
         copy.make("dda", "_theory")
-        test, _ = copy.run_pytest(cli)
+        test, _ = copy.run_pytest(asked.cli)
         if test:
             return {"result": "found", "level": "cli", "found_by": test,
                     "seconds": round(time.monotonic() - start, 1)}
@@ -148,6 +156,7 @@ def arguments() -> argparse.Namespace:
     parser.add_argument("--seed", type=int, default=1, help="where the random numbers begin [1]")
     parser.add_argument("--rooms", nargs="*", help="folders of src/ [all but app and files]")
     parser.add_argument("--again", type=Path, help="a table: judge those of its faults that survived")
+    parser.add_argument("--levels", nargs="*", default=["room", "unit", "physics"], help="which programs run [all]")
     parser.add_argument("--cli", nargs="*", default=[], help="files of tests/cli for what survives physics [none]")
     parser.add_argument("--list", action="store_true", help="write the table of faults and stop")
     parser.add_argument("--jobs", type=int, default=2, help="compilers at a time [2]")
@@ -166,9 +175,8 @@ def main() -> int:
     copy = Copy((asked.work / "tree").resolve(), asked.jobs, 600.0)
     units: list[str] = []
     if not asked.list:
-        prepare(asked.source, copy, asked.flags)
-        units = unit_programs(copy)
-        for program in [*units, "physics"]:
+        units = prepare(asked.source, copy, asked)
+        for program in [*units, *(["physics"] if "physics" in asked.levels else [])]:
             test, copy.usual[program] = copy.run(program)
             if test:
                 print(f"{program} fails without a fault: {test}", file=sys.stderr)
@@ -182,7 +190,7 @@ def main() -> int:
                                       "line": fault.line, "kind": fault.kind, "before": fault.before.strip(),
                                       "after": fault.after.strip()}
             if not asked.list:
-                row.update(with_fault(fault, copy, units, asked.cli))
+                row.update(with_fault(fault, copy, units, asked))
                 print(f"{number:4} {row['result']:9} {fault.path}:{fault.line} {row.get('found_by', row['after'])}",
                       flush=True)
             rows.append(row)
@@ -193,7 +201,7 @@ def main() -> int:
     return 0
 
 
-def with_fault(fault: Fault, copy: Copy, units: list[str], cli: list[str]) -> dict[str, object]:
+def with_fault(fault: Fault, copy: Copy, units: list[str], asked: argparse.Namespace) -> dict[str, object]:
     """Put one fault into the copy, judge it, and take it out again."""
     path = copy.root / fault.path
     sound = path.read_text()
@@ -205,7 +213,7 @@ def with_fault(fault: Fault, copy: Copy, units: list[str], cli: list[str]) -> di
     lines[place] = indent + fault.after.strip() + "\n"
     try:
         path.write_text("".join(lines))
-        return judge(fault, copy, units, cli)
+        return judge(fault, copy, units, asked)
     finally:
         path.write_text(sound)
 
