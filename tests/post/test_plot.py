@@ -335,6 +335,25 @@ def test_chart_shows_critical_and_exact_values(searches, tmp_path: Path) -> None
     assert (tmp_path / "chart.svg").exists()
 
 
+def test_positions_of_a_vehicle_are_charted_above_the_bridge(tmp_path: Path) -> None:
+    run = compute(
+        tmp_path,
+        "&arch shape = 'segmental', span = 6, rise = 1.5, thickness = 0.4, voussoirs = 11 /\n"
+        "&vehicle axles = 6e4, 1e5, spacings = 2.5 /\n&search parameter = 'load_factor' /\n"
+        "&sweep parameter = 'position', values = 2, -3, 1.5, -2.7 /\n",
+    )
+    with house_style():
+        diagram, bridge = draw_chart(run).axes
+    factors, place = diagram.lines[0], float(run.cases["position"][np.argmin(run.cases["critical"])])
+    assert list(factors.get_xdata()) == [-3, -2.7, 1.5, 2]
+    assert sorted(factors.get_ydata()) == sorted(run.cases["critical"])
+    assert [line.get_xdata()[0] for line in (diagram.lines[1], bridge.lines[0])] == [place, place]
+    assert f"at {place:.3f} m" in diagram.texts[0].get_text()
+    assert sum(len(drawn.get_paths()) for drawn in bridge.collections) >= 11
+    assert main(["plot", str(run.folder), "--chart", "position", "--out", str(tmp_path)]) == 0
+    assert (tmp_path / "chart_position.svg").exists()
+
+
 def test_chart_over_blocks_of_a_linked_sweep(tmp_path: Path) -> None:
     run = compute(
         tmp_path,

@@ -161,9 +161,10 @@ def verdict_of(own: dict[str, Any], factor: dict[str, Any] | None) -> tuple[str,
 
 def assess(text: str, deck: Path) -> str:
     """Compute what the page tells, and write it."""
-    from voussoir.plot.assess_page import draw_positions, draw_scheme, figure_of, page, table_of
+    from voussoir.plot.assess_page import draw_scheme, figure_of, page, table_of
     from voussoir.plot.case_picture import draw_case
     from voussoir.plot.figure_style import house_style
+    from voussoir.plot.position_chart import draw_positions
 
     bare = without(text, "search")
     found, factor = load_search(bare)
@@ -185,7 +186,7 @@ def assess(text: str, deck: Path) -> str:
         ]
         cases = _positions(fixed, free[:, 0], steps) if placed else None
         if cases is not None:
-            chart = draw_positions(cases, None if math.isnan(place) else place)
+            chart = draw_positions(own_run, cases, None if math.isnan(place) else place)
             parts.append(("Position of the vehicle", figure_of(chart, "Factor of the live loads that brings it down.")))
         parts.append(("Thrust under the loads given", figure_of(draw_case(own_run, 1))))
         if found is not None and factor is not None and factor["verdict"] == "found":

@@ -13,7 +13,7 @@ from voussoir.plot.case_picture import draw_blocks, draw_supports, new_figure
 from voussoir.plot.case_scene import scene_of, view
 from voussoir.plot.figure_style import INK
 from voussoir.plot.units import force_text
-from voussoir.results import Results, Table
+from voussoir.results import Results
 
 STYLE = """
 body{font:16px/1.45 Georgia,serif;color:#222;max-width:62rem;margin:1.5rem auto;padding:0 1rem}
@@ -79,36 +79,6 @@ def draw_scheme(run: Results, axles: Sequence[tuple[float, float]], surface: flo
         tip = {"arrowstyle": "-|>", "color": INK[2], "linewidth": 1.6}
         axes.annotate("", (place, road), (place, road + 0.13 * size), arrowprops=tip)
         axes.text(place, road + 0.14 * size, f"{force_text(weight)}", ha="center", fontsize=8, color=INK[2])
-    return figure
-
-
-def draw_positions(cases: Table, worst: float | None) -> Figure:
-    """The load factor against the position of the first axle.
-
-    Parameters
-    ----------
-    worst : float or None
-        The worst position [m].
-    """
-    import matplotlib.pyplot as plt
-
-    figure, axes = plt.subplots(figsize=(8.0, 3.0), layout="constrained")
-    axes.plot(cases["position"], cases["critical"], color=INK[1], marker=".", linewidth=1.4)
-    if worst is not None:
-        axes.axvline(worst, color=INK[2], linewidth=1.0, linestyle="--")
-        axes.annotate(
-            f"worst: {worst:.3f} m",
-            (worst, 0.97),
-            xycoords=("data", "axes fraction"),
-            xytext=(4, -8),
-            textcoords="offset points",
-            color=INK[2],
-            fontsize=9,
-        )
-    least = float(np.nanmin(cases["critical"]))
-    axes.set_ylim(0.0, 6.0 * least)
-    axes.set_xlabel("position of the first axle [m]")
-    axes.set_ylabel("load factor")
     return figure
 
 

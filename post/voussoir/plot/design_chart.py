@@ -8,6 +8,7 @@ from matplotlib.colors import Normalize
 from matplotlib.figure import Figure
 
 from voussoir.plot.figure_style import INK, Picture
+from voussoir.plot.position_chart import draw_positions
 from voussoir.plot.units import axis_label, value_label
 from voussoir.results import Results, Table
 
@@ -75,6 +76,8 @@ def draw_chart(run: Results, column: str | None = None) -> Figure:
         raise ChartError("expected two critical values or more, got fewer; give the deck &search")
     others = [name for name in swept if name != column and not _follows(found, name, column)]
     groups = _groups(found, others)
+    if column == "position" and len(groups) == 1 and run.searched == "load_factor" and run.blocks is not None:
+        return draw_positions(run, run.cases)
     if len(groups) <= MOST_CURVES:
         figure = _draw(run, groups, column)
     elif len(others) == 1 and others[0] in numeric:
