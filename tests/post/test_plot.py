@@ -311,6 +311,16 @@ def test_loads_held_points_materials_and_numbers_are_drawn_where_they_are(tmp_pa
     assert len(tints) == 2
 
 
+def test_live_loads_of_an_arch_are_drawn_unless_they_are_swept(tmp_path: Path) -> None:
+    deck = "&arch radius = 5 /\n&live x = 0.3, y = 4.7, fy = -1000 /\n"
+    with house_style():
+        legend = legend_of(draw_case(compute(tmp_path, deck), 1))
+        assert "live load, before its factor" in legend and "not drawn" not in legend
+        swept = compute(tmp_path, deck + "&sweep parameter = 'live%x(1)', values = 0.3 /\n")
+        legend = legend_of(draw_case(swept, 1))
+        assert "not drawn: &live, which is swept" in legend and "live load" not in legend
+
+
 def test_file_of_blocks_that_is_not_there_is_told(tmp_path: Path) -> None:
     (tmp_path / "two.blocks").write_text(LOADED)
     run = compute(tmp_path, "&scene kind = 'blocks', geometry = 'two.blocks' /\n")

@@ -38,13 +38,12 @@ class Source:
 def source_of(run: Results) -> Source:
     """What the deck and its file of blocks say; the file is looked for beside the results and above them."""
     source = Source()
-    points, forces = (
-        [[float(value) for value in run.settings(f"live%{name}")] for name in pair]
-        for pair in (("x", "y"), ("fx", "fy"))
-    )
-    for number, point in enumerate(zip(*points)):
-        force = tuple(part[number] if number < len(part) else 0.0 for part in forces)
+    x, y, fx, fy = _lists(run, source, "live", "x", "y", "fx", "fy")
+    for number, point in enumerate(zip(x, y)):
+        force = (fx[number] if number < len(fx) else 0.0, fy[number] if number < len(fy) else 0.0)
         source.loads.append((point, force, True))
+    x1, y1, x2, y2 = _lists(run, source, "tie", "x1", "y1", "x2", "y2")
+    source.bars += zip(zip(x1, y1), zip(x2, y2))
     name = run.setting("scene%geometry")
     if run.kind not in ("blocks", "lines") or not name:
         return source
@@ -62,6 +61,15 @@ def source_of(run: Results) -> Source:
         rows = [_numbers(line.split()) for line in text.splitlines()]
         source.bars += [((row[0], row[1]), (row[2], row[3])) for row in rows if len(row) == 7]
     return source
+
+
+def _lists(run: Results, source: Source, group: str, *keys: str) -> list[list[float]]:
+    """Lists of a group of the deck; empty ones, and a word about them, where they are swept."""
+    stems = {name.rpartition("%")[2].partition("(")[0] for name in run.swept}
+    if stems & set(keys) and run.settings(f"{group}%{keys[0]}"):
+        source.missing.append(f"&{group}, which is swept")
+        return [[] for _ in keys]
+    return [[float(value) for value in run.settings(f"{group}%{key}")] for key in keys]
 
 
 def _read(text: str, source: Source) -> None:
