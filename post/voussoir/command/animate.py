@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from voussoir import results
-from voussoir.command.plot import magnification
+from voussoir.command.options import magnification
 from voussoir.extras import advice
 
 #: Most cases that move side by side without being named

@@ -13,6 +13,7 @@ from voussoir.campaign.merge import Summary, merge, merged
 from voussoir.campaign.parquet import write_parquet
 from voussoir.campaign.part import finished_by
 from voussoir.campaign.share import Campaign, finished, local_engine, open_campaign, run_parts, share, split, unlock
+from voussoir.command.options import add_quiet, whole_number
 from voussoir.dda_program import DdaError, find_dda
 from voussoir.extras import MissingPackage, load
 
@@ -40,7 +41,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--workers",
         metavar="N",
-        type=_positive,
+        type=whole_number(1),
         default=os.cpu_count() or 1,
         help="processes on this machine (default: one a processor, here %(default)s)",
     )
@@ -53,17 +54,17 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--index",
         metavar="I",
-        type=_positive,
+        type=whole_number(1),
         help="compute only the I-th of N shares of the cases, for job arrays; the last one to "
         "end merges (default: all cases)",
     )
-    parser.add_argument("--of", metavar="N", type=_positive, help="number of shares (default: no shares)")
+    parser.add_argument("--of", metavar="N", type=whole_number(1), help="number of shares (default: no shares)")
     parser.add_argument("--merge", action="store_true", help="compute nothing, merge what is finished so far")
     parser.add_argument("--anew", action="store_true", help="discard what an earlier campaign has finished")
     parser.add_argument(
         "--parquet", action="store_true", help="write results.csv as results.parquet, too; needs pyarrow"
     )
-    parser.add_argument("--quiet", action="store_true", help="print nothing but errors")
+    add_quiet(parser)
 
 
 def run(arguments: argparse.Namespace) -> int:
@@ -188,10 +189,3 @@ def _share_of(arguments: argparse.Namespace) -> tuple[int, int]:
             f"{arguments.index}; number the shares from 1"
         )
     return arguments.index, arguments.of
-
-
-def _positive(word: str) -> int:
-    """A whole number from 1."""
-    if not word.isdigit() or int(word) < 1:
-        raise argparse.ArgumentTypeError(f"must be a whole number from 1, got '{word}'")
-    return int(word)

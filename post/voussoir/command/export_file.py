@@ -7,7 +7,7 @@ import sys
 from pathlib import Path
 
 from voussoir import results
-from voussoir.command.plot import magnification
+from voussoir.command.options import magnification
 from voussoir.deck.export import WRITERS, outlines_of
 from voussoir.extras import MissingPackage
 

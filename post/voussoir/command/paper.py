@@ -10,6 +10,7 @@ import time
 from concurrent.futures import ProcessPoolExecutor, as_completed
 from pathlib import Path
 
+from voussoir.command.options import add_decks, add_quiet, whole_number
 from voussoir.dda_program import DdaError, find_dda, find_input
 from voussoir.extras import advice
 from voussoir.paper import tables
@@ -28,7 +29,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--jobs",
         metavar="N",
-        type=_at_least_one,
+        type=whole_number(1),
         default=os.cpu_count() or 1,
         help="decks computed, and figures drawn, at the same time (default: one a processor)",
     )
@@ -38,18 +39,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         action="store_true",
         help="also run the decks of the original program's scheme, which take much longer",
     )
-    parser.add_argument(
-        "--decks", metavar="DIR", type=Path, help="folder of the decks (default: those that came with the program)"
-    )
+    add_decks(parser)
     parser.add_argument("--dda", metavar="FILE", type=Path, help="the program dda (default: the one beside `voussoir`)")
-    parser.add_argument("--quiet", action="store_true", help="print nothing but errors")
-
-
-def _at_least_one(word: str) -> int:
-    number = int(word)
-    if number < 1:
-        raise argparse.ArgumentTypeError(f"expected a number from 1, got {word}")
-    return number
+    add_quiet(parser)
 
 
 def run(arguments: argparse.Namespace) -> int:

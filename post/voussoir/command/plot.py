@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import argparse
-import math
 import sys
 from pathlib import Path
 
 from voussoir import results
+from voussoir.command.options import magnification
 from voussoir.extras import advice
 
 #: Most cases that are drawn without being named
@@ -133,20 +133,3 @@ def _cases(arguments: argparse.Namespace, read: results.Results) -> list[int]:
     if len(drawn) < len(read.cases):
         print(f"the first {MOST_CASES} of {len(read.cases)} cases; --case N draws others")
     return drawn
-
-
-def magnification(word: str) -> float:
-    """A finite number from 0.
-
-    Raises
-    ------
-    argparse.ArgumentTypeError
-        If it is none.
-    """
-    try:
-        number = float(word)
-    except ValueError:
-        number = math.nan
-    if not 0.0 <= number < math.inf:
-        raise argparse.ArgumentTypeError(f"must be a number from 0, got '{word}'")
-    return number

@@ -15,6 +15,7 @@ from voussoir.bench.stability_judge import RIGHT, UNDECIDED, WRONG, judge
 from voussoir.bench.stability_page import Line, headline, write_csv, write_markdown, write_page
 from voussoir.bench.stability_scene import Scene
 from voussoir.bench.stability_scenes import catalogue, random_scenes
+from voussoir.command.options import whole_number
 from voussoir.dda_program import DdaError, find_dda
 
 #: Results from good to bad
@@ -24,9 +25,9 @@ _SEVERITY = (RIGHT, UNDECIDED, WRONG)
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the options of the subcommand."""
     parser.add_argument("--out", type=Path, default=Path("stability"), help="folder of the tables")
-    parser.add_argument("--jobs", type=int, default=1, help="scenes run at the same time")
-    parser.add_argument("--random", type=int, default=150, metavar="N", help="number of random scenes")
-    parser.add_argument("--seed", type=int, default=1, help="beginning of the random numbers")
+    parser.add_argument("--jobs", type=whole_number(1), default=1, help="scenes run at the same time")
+    parser.add_argument("--random", type=whole_number(0), default=150, metavar="N", help="number of random scenes")
+    parser.add_argument("--seed", type=whole_number(0), default=1, help="beginning of the random numbers")
     parser.add_argument("--only", metavar="WORD", help="only scenes whose group or name has WORD")
     parser.add_argument("--timeout", type=float, default=300.0, help="longest time of one scene, in seconds")
     parser.add_argument("--list", action="store_true", help="name the scenes, run nothing")

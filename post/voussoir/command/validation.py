@@ -8,6 +8,7 @@ from pathlib import Path
 
 from voussoir.bench.validation_page import csv_text, page, told
 from voussoir.bench.validation_run import Line, all_scenes, run_scene
+from voussoir.command.options import add_decks, add_quiet, whole_number
 from voussoir.dda_program import DdaError, find_dda, find_input, version_of
 
 
@@ -22,18 +23,14 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     )
     parser.add_argument("--scenes", metavar="NAME", nargs="+", help="decks by name (default: all scenes)")
     parser.add_argument(
-        "--halvings", metavar="N", type=_whole, default=2, help="how often the step is halved for the convergence rate"
+        "--halvings",
+        metavar="N",
+        type=whole_number(0),
+        default=2,
+        help="how often the step is halved for the convergence rate",
     )
-    parser.add_argument(
-        "--decks", metavar="DIR", type=Path, help="folder of the decks (default: those that came with the program)"
-    )
-    parser.add_argument("--quiet", action="store_true", help="print nothing but errors")
-
-
-def _whole(word: str) -> int:
-    if not word.isdecimal():
-        raise argparse.ArgumentTypeError(f"expected a whole number from 0, got {word}")
-    return int(word)
+    add_decks(parser)
+    add_quiet(parser)
 
 
 def run(arguments: argparse.Namespace) -> int:

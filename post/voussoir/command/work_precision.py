@@ -14,6 +14,7 @@ from voussoir.bench.work_precision_motion_page import motion_table, write_motion
 from voussoir.bench.work_precision_page import draw, front_table, race_table, write_csv
 from voussoir.bench.work_precision_plan import cost_table, plan_costs
 from voussoir.bench.work_precision_runs import Arch, Race, race
+from voussoir.command.options import whole_number
 from voussoir.dda_program import DdaError, find_dda
 
 
@@ -29,9 +30,14 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         help="half angles of embrace, in degrees",
     )
     parser.add_argument(
-        "--voussoirs", type=int, nargs="+", default=[36, 1000], metavar="N", help="numbers of voussoirs, even ones"
+        "--voussoirs",
+        type=whole_number(2),
+        nargs="+",
+        default=[36, 1000],
+        metavar="N",
+        help="numbers of voussoirs, even ones",
     )
-    parser.add_argument("--repeats", type=int, default=5, help="runs of each setting")
+    parser.add_argument("--repeats", type=whole_number(1), default=5, help="runs of each setting")
     parser.add_argument(
         "--scenes",
         nargs="+",
