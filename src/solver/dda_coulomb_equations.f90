@@ -77,7 +77,6 @@ contains
       allocate (equations%base_face(3, n_joint), equations%place(n_joint), source=0)
       allocate (equations%joint(max_answer), equations%difference(3, 3, max_answer))
       allocate (equations%answer(3, max_answer), equations%origin(2, max_answer))
-      allocate (equations%response(joints%graph%n_dof, joints%graph%n_block, max_answer))
       allocate (equations%opening(3, max_answer, max_answer), equations%active(0))
    end subroutine new_equations
 
@@ -172,6 +171,9 @@ contains
       integer, intent(in) :: part
       integer :: a, b, c, side
 
+      ! a load at once that stands asks for none
+      if (.not. allocated(equations%response)) allocate (equations%response( &
+         & joints%graph%n_dof, joints%graph%n_block, max_answer))
       equations%n_answer = equations%n_answer + 1
       a = equations%n_answer
       equations%answer(part, place) = a
