@@ -188,6 +188,17 @@ def test_random_assemblies_are_proven_on_both_sides_of_their_programme(tmp_path:
     assert high - low <= 1e-8 * factor
 
 
+@pytest.mark.parametrize("seed", [3, 1105])
+def test_a_tight_search_has_bounds_as_near_as_rounding_lets_them_be(tmp_path: Path, seed: int) -> None:
+    blocks, friction = random_assembly(seed)
+    search = SEARCH.replace(" /", ", tolerance = 1e-11 /")
+    folder = run_deck(tmp_path, HEAD + f"&joint friction_deg = {friction!r} /\n" + search, blocks)
+    (row,) = rows_of(folder / "results.csv")
+    low, high = float(row["exact_low"]), float(row["exact_high"])
+    assert high - low <= 1e-12 * high
+    assert main(["verify", str(folder), "--exact"]) == 0
+
+
 @pytest.mark.parametrize("seed", range(40))
 def test_a_changed_number_is_found(tmp_path: Path, seed: int, capsys: pytest.CaptureFixture[str]) -> None:
     source = random.Random(seed)
