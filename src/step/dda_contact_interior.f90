@@ -134,7 +134,7 @@ contains
       real(wp) :: opening(3, size(p%joint)), flow, least, unit
       integer :: i, k
 
-      x%motion = motion(:, p%equation)
+      x%motion = motion(:size(p%balance, 1), p%equation)
       x%force = p%before
       allocate (x%slack(4, size(p%joint)), x%flow(4, size(p%joint)))
       call see_openings(springs, view, p, x%motion, opening)
@@ -178,12 +178,13 @@ contains
       real(wp), intent(out) :: mean
       !> Forces that are wrong, over the size of a force
       real(wp), intent(out) :: merit
-      integer :: b
+      integer :: b, n
 
+      n = size(p%balance, 1)
       do b = 1, size(p%equation)
          associate (e => p%equation(b))
-            p%balance(:, b) = equations%load(:, e) &
-               & - matmul(equations%base(:, :, e), x%motion(:, b))
+            p%balance(:, b) = equations%load(:n, e) &
+               & - matmul(equations%base(:n, :n, e), x%motion(:, b))
          end associate
       end do
       call push_blocks(springs, p, x%force, p%balance)

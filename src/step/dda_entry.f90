@@ -7,12 +7,12 @@ module dda_entry
    use dda_contact_transfer, only : renew_contacts
    use dda_kinds, only : wp
    use dda_settings, only : settings_t
-   use dda_step_context, only : march_t, step_context_t
+   use dda_step_context, only : march_t, step_context_t, step_outcome_t
    use dda_step_reach, only : travel_of
    implicit none
    private
 
-   public :: refuse_entry
+   public :: check_penetration
 
    !> Depth that counts as entered, over the size of the smaller block
    real(wp), parameter :: deep = 2.0e-4_wp
@@ -21,23 +21,26 @@ module dda_entry
 
 contains
 
-   !> Cut a step at whose end a search finds corners deeper inside than they were at its beginning,
-   !> where a block with a notch is one of the two
-   pure subroutine refuse_entry(settings, system, contacts, march, step)
+   !> Check that a search at the end of a step finds no corners deeper inside than they were at its
+   !> beginning, where a block with a notch is one of the two
+   pure function check_penetration(settings, system, contacts, march, step) result(outcome)
       !> Settings of the run
       type(settings_t), intent(in) :: settings
       !> The blocks before the step
       type(block_system_t), intent(in) :: system
       !> The contacts before the step
       type(contacts_t), intent(in) :: contacts
-      !> The march; the length of the next try is set
-      type(march_t), intent(inout) :: march
-      !> The settled step with its velocities; whether it counts is set
-      type(step_context_t), intent(inout) :: step
+      !> The march
+      type(march_t), intent(in) :: march
+      !> The settled step with its velocities
+      type(step_context_t), intent(in) :: step
+      !> What the check says
+      type(step_outcome_t) :: outcome
       type(block_system_t) :: after
       type(contacts_t) :: found
       logical :: breaks
 
+      outcome = step_outcome_t(accepted=.true., dt=step%dt)
       if (all(contacts%search%outline%convex) .or. step%dt <= shortest*march%longest) return
       after = system
       found = contacts
@@ -45,11 +48,9 @@ contains
       call update_blocks(step, settings, after)
       call renew_contacts(after, travel_of(after, settings, march), march%reach, &
          & settings%penalty_ratio, settings%n_dof, found)
-      step%accepted = depth(after, found) <= max(deep, 1.1_wp*depth(system, contacts))
-      if (step%accepted) return
-      step%was_cut = .true.
-      march%dt = step%dt/2.0_wp
-   end subroutine refuse_entry
+      if (depth(after, found) > max(deep, 1.1_wp*depth(system, contacts))) &
+         & outcome = step_outcome_t(dt=step%dt/2.0_wp, was_cut=.true.)
+   end function check_penetration
 
    !> How deep the deepest corner is, over the size of the smaller block
    pure real(wp) function depth(system, contacts)

@@ -6,19 +6,19 @@ module dda_impact_time
    use dda_contact_detection, only : contacts_t
    use dda_kinds, only : wp
    use dda_settings, only : settings_t
-   use dda_step_context, only : march_t, step_context_t
+   use dda_step_context, only : step_context_t, step_outcome_t
    use dda_velocity, only : near_gap
    use dda_spring_products, only : relative_displacement
    implicit none
    private
 
-   public :: meet_impact
+   public :: check_impact
 
 contains
 
-   !> Cut a step in which an open contact closes fast to the time at which the two blocks, if
-   !> nothing else touched them, would be near enough to count as touching
-   pure subroutine meet_impact(settings, system, contacts, equations, march, step)
+   !> Check that no open contact closes fast within the step; a step in which one does ends when the
+   !> two blocks, if nothing else touched them, would be near enough to count as touching
+   pure function check_impact(settings, system, contacts, equations, step) result(outcome)
       !> Settings of the run
       type(settings_t), intent(in) :: settings
       !> The blocks before the step
@@ -27,15 +27,17 @@ contains
       type(contacts_t), intent(in) :: contacts
       !> The equations of the step
       type(equations_t), intent(in) :: equations
-      !> The march; the length of the next try is set if there is an impact
-      type(march_t), intent(inout) :: march
-      !> The settled step; it counts if there is no impact in it
-      type(step_context_t), intent(inout) :: step
+      !> The settled step
+      type(step_context_t), intent(in) :: step
+      !> What the check says
+      type(step_outcome_t) :: outcome
       real(wp) :: free(size(step%state%motion, 1), size(step%state%motion, 2))
       real(wp) :: speed(3, size(contacts%joint)), acceleration(3, size(contacts%joint))
       real(wp) :: near, earliest, time
       integer :: e, i, j, k
 
+      outcome%accepted = .true.
+      outcome%dt = step%dt
       if (.not. settings%restitution > 0.0_wp) return
       free = 0.0_wp
       do e = 1, size(free, 2)
@@ -57,9 +59,9 @@ contains
          end do
       end do
       if (earliest > 2.0_wp*step%dt) return
-      step%accepted = .false.
-      march%dt = merge(earliest, step%dt/2.0_wp, earliest < 0.999_wp*step%dt)
-   end subroutine meet_impact
+      outcome%accepted = .false.
+      outcome%dt = merge(earliest, step%dt/2.0_wp, earliest < 0.999_wp*step%dt)
+   end function check_impact
 
    !> Time to cover a way at constant acceleration
    pure real(wp) function falling_time(way, speed, acceleration)

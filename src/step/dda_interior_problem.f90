@@ -77,10 +77,13 @@ contains
       real(wp), intent(in) :: motion(:, :)
       !> The problem
       type(problem_t), intent(out) :: p
-      integer :: e, i, k, n, side, number(0:size(equations%load, 2))
+      integer :: e, i, k, n, n_dof, side, number(0:size(equations%load, 2))
       integer :: pair(2, size(joint)), equation(2*size(joint))
 
       n = size(joint)
+      n_dof = size(motion, 1)
+      ! strain that follows its load has no part in impulses
+      if (.not. any(abs(springs%row(4:, :, :, joint)) > 0.0_wp)) n_dof = 3
       p%joint = joint
       allocate (p%block(2, n), p%entry(n), p%bounded(4, n), p%unit(3, n), p%before(3, n))
       allocate (p%opening(3, n), p%product(4, n), p%given(3, n))
@@ -105,9 +108,9 @@ contains
          pair(:, k) = p%block(:, i)
       end do
       p%equation = equation(:e)
-      call set_pattern(p%matrix, size(motion, 1), e, pair(:, :k), symmetric=.false.)
+      call set_pattern(p%matrix, n_dof, e, pair(:, :k), symmetric=.false.)
       call plan_factor(p%matrix, p%factor)
-      allocate (p%balance(size(motion, 1), e))
+      allocate (p%balance(n_dof, e))
       do i = 1, n
          associate (j => joint(i), given => p%given(:, i))
             p%unit(:, i) = [(view%give(k, k, j), k=1, 3)]
@@ -178,15 +181,17 @@ contains
       real(wp), intent(in) :: force(:, :)
       !> Receives them: (n_dof, n_block) [N/m]
       real(wp), intent(inout) :: load(:, :)
-      integer :: b, i, side
+      integer :: b, d, i, side
 
       do i = 1, size(p%joint)
          do side = 1, 2
             b = p%block(side, i)
             if (b == 0) cycle
             associate (row => springs%row(:, :, side, p%joint(i)))
-               load(:, b) = load(:, b) + row(:, 1)*force(1, i) + row(:, 2)*force(2, i) &
-                  & + row(:, 3)*force(3, i)
+               do d = 1, size(load, 1)
+                  load(d, b) = load(d, b) + row(d, 1)*force(1, i) + row(d, 2)*force(2, i) &
+                     & + row(d, 3)*force(3, i)
+               end do
             end associate
          end do
       end do
@@ -230,11 +235,11 @@ contains
       integer :: b, c, d, first, i, k, n, one
 
       n = size(p%balance, 1)
-      p%matrix%diagonal = equations%base(:, :, p%equation)
+      p%matrix%diagonal = equations%base(:n, :n, p%equation)
       p%matrix%coupling = 0.0_wp
       p%matrix%upper = 0.0_wp
       do i = 1, size(p%joint)
-         associate (row => springs%row(:, :, :, p%joint(i)), m => p%matrix)
+         associate (row => springs%row(:n, :, :, p%joint(i)), m => p%matrix)
             ! R S, of columns opening 1, opening 2, slip
             do k = 1, 3
                unit = 0.0_wp

@@ -11,11 +11,11 @@ module dda_parting
    use dda_kinds, only : wp
    use dda_parting_line, only : block_gap
    use dda_settings, only : settings_t
-   use dda_step_context, only : march_t, step_context_t
+   use dda_step_context, only : march_t, step_context_t, step_outcome_t
    implicit none
    private
 
-   public :: judge_parting
+   public :: check_axes
 
    !> Gap or depth that is no matter, over the size of the smaller block
    real(wp), parameter :: no_matter = 1.0e-6_wp
@@ -26,24 +26,22 @@ module dda_parting
 
 contains
 
-   !> Judge the lines of a settled step: where they were wrong they must be chosen anew by its
+   !> Check the lines of a settled step: where they were wrong they must be chosen anew by its
    !> motion; if blocks still enter one another the step is cut, and if some are still held off in
    !> thin air, they are
-   pure subroutine judge_parting(settings, system, contacts, choices, march, step, again)
+   pure function check_axes(settings, system, contacts, march, step) result(outcome)
       !> Settings of the run
       type(settings_t), intent(in) :: settings
       !> The blocks before the step
       type(block_system_t), intent(in) :: system
       !> The contacts of the step
       type(contacts_t), intent(in) :: contacts
-      !> Choices so far
-      integer, intent(inout) :: choices
-      !> The march; the length of the next try is set if the step is cut
-      type(march_t), intent(inout) :: march
-      !> The settled step; whether it is accepted is set
-      type(step_context_t), intent(inout) :: step
-      !> Whether lines must be chosen by the motion of this step
-      logical, intent(out) :: again
+      !> The march
+      type(march_t), intent(in) :: march
+      !> The settled step
+      type(step_context_t), intent(in) :: step
+      !> What the check says
+      type(step_outcome_t) :: outcome
       type(block_system_t) :: after
       real(wp) :: gap, matters
       logical :: entered, held_off
@@ -63,13 +61,10 @@ contains
                & entered = .true.
          end associate
       end do
-      again = (entered .or. held_off) .and. choices < max_choices
-      if (again) choices = choices + 1
-      step%accepted = .not. again
-      if (again .or. .not. entered .or. step%dt <= shortest*march%longest) return
-      step%accepted = .false.
-      step%was_cut = .true.
-      march%dt = step%dt/2.0_wp
-      choices = 0
-   end subroutine judge_parting
+      outcome%dt = step%dt
+      outcome%wrong_axes = (entered .or. held_off) .and. step%choices < max_choices
+      outcome%accepted = .not. outcome%wrong_axes
+      if (outcome%wrong_axes .or. .not. entered .or. step%dt <= shortest*march%longest) return
+      outcome = step_outcome_t(dt=step%dt/2.0_wp, was_cut=.true.)
+   end function check_axes
 end module dda_parting

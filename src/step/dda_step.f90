@@ -11,17 +11,15 @@ module dda_step
    use dda_contact_transfer, only : renew_contacts
    use dda_curved_motion, only : follow_curves
    use dda_energy, only : audit_step
-   use dda_entry, only : refuse_entry
    use dda_error, only : error_t, fatal_error
-   use dda_impact_time, only : meet_impact
    use dda_kinds, only : wp
    use dda_load_clock, only : has_path
    use dda_multipliers, only : settle_joints
-   use dda_parting, only : judge_parting
    use dda_settings, only : settings_t
-   use dda_step_context, only : march_t, step_context_t
-   use dda_step_interval, only : judge_step
-   use dda_step_reach, only : first_reach, judge_reach, next_reach, travel_by, travel_of
+   use dda_step_check, only : check_motion, check_velocities, retry
+   use dda_step_context, only : march_t, step_context_t, step_outcome_t
+   use dda_step_interval, only : largest_motion
+   use dda_step_reach, only : first_reach, next_reach, travel_of
    use dda_step_state, only : step_state_t
    use dda_velocity, only : settle_velocities, stiffen_contacts
    use dda_verdict, only : measure_step
@@ -54,44 +52,69 @@ contains
       !> Allocated if no step, however short, settles
       type(error_t), allocatable, intent(inout) :: error
       type(contacts_t), allocatable :: kept
-      real(wp) :: travel(2, size(system%vertex, 2))
-      integer :: choices, retry
-      logical :: again, in_time, widened
+      type(step_outcome_t) :: outcome
+      integer :: attempt
 
-      in_time = settings%dynamic .and. settings%current
-      widened = settings%current
-      contacts%remember = .not. in_time
-      if (settings%current) call turn_masses(system, equations)
-      step%was_cut = .false.
-      step%accepted = .false.
-      choices = 0
-      travel = 0.0_wp
-      if (contacts%searched .and. settings%current) travel = travel_of(system, settings, march)
-      if (contacts%searched .and. widened .and. .not. in_time) kept = contacts
-      step%accepted = .false.
-      do retry = 0, max_retries
-         if (in_time .and. march%dt < max(shortest_step, spacing(march%time))) exit
-         if (widened) call place_contacts(settings, system, travel, kept, march, contacts, &
-            & equations)
-         widened = .false.
-         again = .false.
-         call find_motion(settings, system, in_time, contacts, equations, march, step)
-         if (contacts%searched .and. settings%current) &
-            & call judge_reach(system, contacts, march, step, widened)
-         if (march%clock%tries .and. .not. (step%accepted .or. widened)) return
-         if (step%accepted .and. in_time) &
-            & call settle_impacts(settings, system, contacts, equations, choices, march, step, &
-            & again)
-         if (step%accepted) exit
-         widened = widened .or. again
-         if (again) travel = travel_by(system, step%state%motion)
+      call predict(settings, system, contacts, equations, march, step)
+      if (contacts%searched .and. contacts%remember .and. settings%current) kept = contacts
+      do attempt = 0, max_retries
+         if (too_short(settings, march)) exit
+         if (step%renews) call place_contacts(settings, system, step%travel, kept, march, &
+            & contacts, equations)
+         call find_motion(settings, system, contacts, equations, march, step)
+         outcome = check_motion(settings, system, contacts, equations, march, step)
+         if (outcome%accepted .and. .not. contacts%remember) then
+            call settle_velocities(settings, system, contacts, equations, step)
+            outcome = check_velocities(settings, system, contacts, march, step)
+         end if
+         if (outcome%accepted .or. march%clock%tries .and. .not. outcome%beyond_margin) exit
+         call retry(system, outcome, march, step)
       end do
-      if (.not. step%accepted) then
+      step%accepted = outcome%accepted
+      if (step%accepted) then
+         call commit(settings, system, contacts, equations, march, step)
+      else if (.not. march%clock%tries) then
          call fatal_error(error, "open-close iteration does not converge for any time step")
-         return
       end if
-      call commit(settings, system, contacts, equations, march, step)
    end subroutine advance
+
+   !> What a step begins with: masses as the blocks have turned, and how corners are about to move
+   pure subroutine predict(settings, system, contacts, equations, march, step)
+      !> Settings of the run
+      type(settings_t), intent(in) :: settings
+      !> The blocks
+      type(block_system_t), intent(in) :: system
+      !> The contacts; whether they remember their slip is set
+      type(contacts_t), intent(inout) :: contacts
+      !> The equations; masses are set
+      type(equations_t), intent(inout) :: equations
+      !> What is carried from step to step
+      type(march_t), intent(in) :: march
+      !> The step
+      type(step_context_t), intent(inout) :: step
+
+      contacts%remember = .not. (settings%dynamic .and. settings%current)
+      step%was_cut = .false.
+      step%choices = 0
+      step%renews = settings%current
+      step%longest = march%longest
+      step%slowest_impact = 2.0_wp*march%free_acceleration*march%longest
+      step%travel = 0.0_wp*system%vertex
+      if (.not. settings%current) return
+      call turn_masses(system, equations)
+      if (contacts%searched) step%travel = travel_of(system, settings, march)
+   end subroutine predict
+
+   !> Whether a step in time is too short for its stiffness, or for time to go on
+   pure logical function too_short(settings, march)
+      !> Settings of the run
+      type(settings_t), intent(in) :: settings
+      !> The march
+      type(march_t), intent(in) :: march
+
+      too_short = settings%dynamic .and. settings%current &
+         & .and. march%dt < max(shortest_step, spacing(march%time))
+   end function too_short
 
    !> Carry an accepted step over
    pure subroutine commit(settings, system, contacts, equations, march, step)
@@ -122,23 +145,23 @@ contains
          & march%time, march%energy)
    end subroutine commit
 
-   !> The motion of one try, and whether it is short enough
-   pure subroutine find_motion(settings, system, in_time, contacts, equations, march, step)
+   !> The motion of one try, measured
+   pure subroutine find_motion(settings, system, contacts, equations, march, step)
       !> Settings of the run
       type(settings_t), intent(in) :: settings
       !> The blocks
       type(block_system_t), intent(in) :: system
-      !> Whether blocks move in time
-      logical, intent(in) :: in_time
       !> The contacts
       type(contacts_t), intent(inout) :: contacts
       !> The equations
       type(equations_t), intent(inout) :: equations
-      !> The march; the length of the next try is set
+      !> The march; passes are counted
       type(march_t), intent(inout) :: march
       !> The step
       type(step_context_t), intent(inout) :: step
+      logical :: in_time
 
+      in_time = settings%dynamic .and. settings%current
       step%dt = march%dt
       if (in_time) call stiffen_contacts(system, step%dt, contacts)
       if (in_time) call take_springs(equations)
@@ -149,45 +172,9 @@ contains
       if (in_time .and. step%state%settled) &
          & call follow_curves(settings, system, contacts, equations, step)
       march%passes = march%passes + step%state%passes
-      call judge_step(settings, system, march, step)
+      step%last_farthest = step%farthest
+      if (step%state%settled) step%farthest = largest_motion(system, step%state%motion)
    end subroutine find_motion
-
-   !> Velocities after a settled step: cut it if blocks meet in it that rebound, or if the impulses
-   !> do not settle
-   pure subroutine settle_impacts(settings, system, contacts, equations, choices, march, step, &
-      & again)
-      !> Settings of the run
-      type(settings_t), intent(in) :: settings
-      !> The blocks before the step
-      type(block_system_t), intent(in) :: system
-      !> The contacts before the step
-      type(contacts_t), intent(in) :: contacts
-      !> The equations
-      type(equations_t), intent(inout) :: equations
-      !> How often the lines that part blocks were chosen by the motion of the step
-      integer, intent(inout) :: choices
-      !> The march; the length of the next try is set
-      type(march_t), intent(inout) :: march
-      !> The settled step; its velocities are set, and whether it counts
-      type(step_context_t), intent(inout) :: step
-      !> Whether they must be chosen again
-      logical, intent(out) :: again
-
-      again = .false.
-      step%longest = march%longest
-      step%slowest_impact = 2.0_wp*march%free_acceleration*march%longest
-      call meet_impact(settings, system, contacts, equations, march, step)
-      if (step%accepted .and. contacts%searched) &
-         & call judge_parting(settings, system, contacts, choices, march, step, again)
-      if (.not. step%accepted) return
-      call settle_velocities(settings, system, contacts, equations, step)
-      if (step%accepted) then
-         if (contacts%searched) call refuse_entry(settings, system, contacts, march, step)
-      else
-         step%was_cut = .true.
-         march%dt = march%dt/2.0_wp
-      end if
-   end subroutine settle_impacts
 
    !> Contacts where the blocks are now: those that were given, or those that a search finds
    pure subroutine place_contacts(settings, system, travel, kept, march, contacts, equations)

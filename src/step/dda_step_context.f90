@@ -6,7 +6,7 @@ module dda_step_context
    implicit none
    private
 
-   public :: step_context_t, march_t, energy_t
+   public :: energy_t, march_t, step_context_t, step_outcome_t
 
    !> Energies of a dynamic run; what is gone or brought in is a sum since the beginning [J/m]
    type :: energy_t
@@ -32,6 +32,20 @@ module dda_step_context
       real(wp) :: numerical = 0.0_wp
    end type energy_t
 
+   !> What the checks of a try say: whether the step counts, and if not what the next try changes
+   type :: step_outcome_t
+      !> Whether the step counts
+      logical :: accepted = .false.
+      !> Length of the next try [s]
+      real(wp) :: dt = 0.0_wp
+      !> Whether the step after goes on carefully, because a longer one did not settle
+      logical :: was_cut = .false.
+      !> Whether a corner moves beyond the margin of its block: margins must be wider
+      logical :: beyond_margin = .false.
+      !> Whether the separating axes must be chosen by the motion of this try
+      logical :: wrong_axes = .false.
+   end type step_outcome_t
+
    !> One step
    type :: step_context_t
       !> Length of the step [s]
@@ -54,14 +68,22 @@ module dda_step_context
       real(wp) :: impact = 0.0_wp
       !> Contacts that meet more slowly do not rebound [m/s]
       real(wp) :: slowest_impact = 0.0_wp
+      !> Whether there are velocities for its end
+      logical :: has_velocity = .false.
+      !> How the corners are about to move, where contacts are searched: (2, n_vertex) [m]
+      real(wp), allocatable :: travel(:, :)
+      !> Whether the contacts must be placed, or searched, for the next try
+      logical :: renews = .false.
+      !> How often the separating axes were chosen by the motion of a try
+      integer :: choices = 0
       !> Whether the step counts
       logical :: accepted = .false.
       !> Whether a longer step did not settle
       logical :: was_cut = .false.
       !> Whether no contact broke in it, so that its end is one of equilibrium
       logical :: whole = .true.
-      !> Largest motion of a point [m]
-      real(wp) :: farthest = 0.0_wp
+      !> Largest motion of a point, in it and in the try before: [m]
+      real(wp) :: farthest = 0.0_wp, last_farthest = 0.0_wp
       !> Largest acceleration of a point [m/s2]
       real(wp) :: acceleration = 0.0_wp
       !> Largest share that the inertia of a block's translation and rotation has of its load

@@ -13,12 +13,12 @@ module dda_step_interval
    use dda_load_clock, only : has_path, new_load_clock
    use dda_open_close, only : change_faces
    use dda_settings, only : settings_t
-   use dda_step_context, only : march_t, step_context_t
+   use dda_step_context, only : march_t, step_context_t, step_outcome_t
    use dda_step_state, only : step_state_t
    implicit none
    private
 
-   public :: first_interval, judge_step, next_interval, largest_motion, measure_scales
+   public :: check_length, first_interval, next_interval, largest_motion, measure_scales
    public :: longest_motion, longest_static_step
 
    !> Free fall in the first static step over the elastic motion
@@ -265,36 +265,34 @@ contains
       if (left > 0.0_wp .and. left < march%dt*(1.0_wp + 1.0e-6_wp)) march%dt = left
    end subroutine fit_interval
 
-   !> Accept a step, or cut its length for another try: it must have settled and, where blocks move,
-   !> not have moved too far for a linear step (Shi: df24)
-   pure subroutine judge_step(settings, system, march, step)
+   !> Check that a try has settled and, where blocks move, has not moved too far for a linear step
+   !> (Shi: df24)
+   pure function check_length(settings, march, step) result(outcome)
       !> Settings of the run
       type(settings_t), intent(in) :: settings
-      !> The blocks before the step
-      type(block_system_t), intent(in) :: system
-      !> The march; the length of the next try is set
-      type(march_t), intent(inout) :: march
-      !> The step; whether it is accepted is set
-      type(step_context_t), intent(inout) :: step
-      real(wp) :: before, factor, limit
+      !> The march
+      type(march_t), intent(in) :: march
+      !> The step, its motion measured
+      type(step_context_t), intent(in) :: step
+      !> What the check says
+      type(step_outcome_t) :: outcome
+      real(wp) :: factor, limit
 
-      step%accepted = step%state%settled
-      if (.not. step%accepted) then
-         march%dt = cut*march%dt
-         step%was_cut = .true.
+      outcome%dt = step%dt
+      outcome%accepted = step%state%settled
+      if (.not. outcome%accepted) then
+         outcome%dt = cut*step%dt
+         outcome%was_cut = .true.
          return
       end if
-      before = step%farthest
-      step%farthest = largest_motion(system, step%state%motion)
-      if (.not. settings%current) return
       limit = longest_motion(march)
-      step%accepted = step%farthest <= limit
-      if (step%accepted) return
+      outcome%accepted = .not. settings%current .or. step%farthest <= limit
+      if (outcome%accepted) return
       factor = 0.8_wp*sqrt(limit/step%farthest)
       ! what strain alone holds goes as far in a step a little shorter
-      if (before > limit) factor = min(cut, factor)
-      march%dt = factor*march%dt
-   end subroutine judge_step
+      if (step%last_farthest > limit) factor = min(cut, factor)
+      outcome%dt = factor*step%dt
+   end function check_length
 
    !> Most that a step may move where blocks move
    pure real(wp) function longest_motion(march)

@@ -5,11 +5,11 @@ module dda_step_reach
    use dda_deformation, only : displacement_matrix
    use dda_kinds, only : wp
    use dda_settings, only : load_direction, settings_t
-   use dda_step_context, only : march_t, step_context_t
+   use dda_step_context, only : march_t, step_context_t, step_outcome_t
    implicit none
    private
 
-   public :: first_reach, judge_reach, next_reach, travel_by, travel_of
+   public :: check_margins, first_reach, next_reach, travel_by, travel_of, widen_margins
 
    !> Least reach of a block over its size: contacts nearer than this are always looked at
    real(wp), parameter :: least_reach = 1.0e-3_wp
@@ -60,41 +60,52 @@ contains
       where (system%equation == 0) march%reach = 0.0_wp
    end subroutine next_reach
 
-   !> A step in which a corner moves beyond the reach of its block does not count: it is made again
-   !> with a longer reach, and a block that may meet others there goes on in shorter steps
-   pure subroutine judge_reach(system, contacts, march, step, widened)
+   !> Check that no corner moves beyond the reach of its block, or so far that a block may pass by
+   !> what it meets
+   pure function check_margins(system, contacts, march, step) result(outcome)
       !> The blocks before the step
       type(block_system_t), intent(in) :: system
       !> The contacts of the step
       type(contacts_t), intent(in) :: contacts
-      !> The march; reach and length of the next try are set
-      type(march_t), intent(inout) :: march
-      !> The step; whether it is accepted is set
-      type(step_context_t), intent(inout) :: step
-      !> Whether the contacts must be searched again
-      logical, intent(out) :: widened
+      !> The march
+      type(march_t), intent(in) :: march
+      !> The step
+      type(step_context_t), intent(in) :: step
+      !> What the check says
+      type(step_outcome_t) :: outcome
       real(wp) :: way(size(system%area)), farthest
       logical :: may_meet(size(system%area))
       integer :: j
 
-      widened = .false.
-      if (.not. step%accepted) return
+      outcome%dt = step%dt
       way = corner_motion(system, step%state%motion)
       may_meet = .false.
       do j = 1, size(contacts%joint)
          may_meet(contacts%joint(j)%block) = .true.
       end do
       farthest = maxval(way, mask=may_meet .and. system%equation > 0)
-      if (farthest > 2.0_wp*too_far*march%allowed_motion) then
-         step%accepted = .false.
-         march%dt = march%dt*max(0.1_wp, 0.8_wp*too_far*march%allowed_motion/farthest)
+      outcome%accepted = .not. farthest > 2.0_wp*too_far*march%allowed_motion
+      if (.not. outcome%accepted) then
+         outcome%dt = step%dt*max(0.1_wp, 0.8_wp*too_far*march%allowed_motion/farthest)
          return
       end if
-      widened = any(way > march%reach)
-      if (.not. widened) return
-      step%accepted = .false.
-      where (way > march%reach) march%reach = margin*way
-   end subroutine judge_reach
+      outcome%beyond_margin = any(way > march%reach)
+      outcome%accepted = .not. outcome%beyond_margin
+   end function check_margins
+
+   !> Let blocks reach as far as a motion takes them
+   pure subroutine widen_margins(system, motion, reach)
+      !> The blocks
+      type(block_system_t), intent(in) :: system
+      !> The motion: (n_dof, n_equation)
+      real(wp), intent(in) :: motion(:, :)
+      !> The reach: (n_block) [m]
+      real(wp), intent(inout) :: reach(:)
+      real(wp) :: way(size(reach))
+
+      way = corner_motion(system, motion)
+      where (way > reach) reach = margin*way
+   end subroutine widen_margins
 
    !> Most that a corner of each block moves
    pure function corner_motion(system, motion) result(way)

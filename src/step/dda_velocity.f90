@@ -58,7 +58,7 @@ contains
       type(contacts_t), intent(in) :: contacts
       !> The equations; matrix and factor are made anew
       type(equations_t), intent(inout) :: equations
-      !> The step; its velocities are set, and whether it counts
+      !> The step; its velocities are set, if they settle
       type(step_context_t), intent(inout) :: step
       logical :: closed(2, size(contacts%joint))
       real(wp) :: part(2, size(contacts%joint)), allowed, before, less
@@ -75,7 +75,7 @@ contains
       do try = 0, max_tries
          if (try == max_tries) part = 0.0_wp
          call settle_impulses(settings, system, contacts, closed, part, equations, step)
-         if (.not. step%accepted) return
+         if (.not. step%has_velocity) return
          if (kinetic_energy(equations, step%velocity) <= allowed + energy_noise*before) exit
          if (.not. any(part > 0.0_wp)) exit
          part = (1.0_wp - less)*part
@@ -103,7 +103,7 @@ contains
       real(wp), intent(in) :: part(:, :)
       !> The equations; matrix and factor are made anew
       type(equations_t), intent(inout) :: equations
-      !> The step; its velocities are set, and whether it counts
+      !> The step; its velocities are set, if they settle
       type(step_context_t), intent(inout) :: step
       type(step_state_t) :: state
       type(joint_springs_t) :: springs
@@ -129,8 +129,8 @@ contains
       step%held_impulse = equations%fixed%force + held_force/2.0_wp
       step%impulse = state%force
       equations%fixed%force = held_force
-      step%accepted = state%settled
-      if (.not. step%accepted) return
+      step%has_velocity = state%settled
+      if (.not. step%has_velocity) return
       step%velocity = state%motion/step%dt
       call keep_moment(system, contacts, springs, equations, state%force, step)
    end subroutine settle_impulses

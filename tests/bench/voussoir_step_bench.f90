@@ -11,9 +11,10 @@ program voussoir_step_bench
    integer, parameter :: cell = 30
    logical :: markdown
    character(len=cell) :: head(11)
+   character(len=cell) :: only
    integer :: largest
 
-   call read_options(markdown, largest)
+   call read_options(markdown, largest, only)
    write (output_unit, "(a)") machine_line(), ""
    head = [character(len=cell) :: "scene", "blocks", "search us", "transfer us", "assemble us", &
       & "factorise us", "substitute us", "step us", "search %", "passes", "factorisations"]
@@ -83,6 +84,7 @@ contains
       real(wp) :: exponent
       integer :: i, j, n
 
+      if (index(trim(step_case(1)%name)//how, trim(only)) == 0) return
       n = count([(blocks_of(step_case(i)) <= largest, i=1, size(step_case))])
       do i = 1, n
          call measure_steps(step_case(i), figures(i))
@@ -145,17 +147,20 @@ contains
    end function three_digits
 
    !> Read the options
-   subroutine read_options(markdown, largest)
+   subroutine read_options(markdown, largest, only)
       !> Whether the table is wanted in Markdown
       logical, intent(out) :: markdown
       !> Most blocks
       integer, intent(out) :: largest
+      !> Part of the names of the scenes that are measured
+      character(len=*), intent(out) :: only
       character(len=200) :: argument
       integer :: k
       logical :: ok
 
       markdown = .false.
       largest = 10000
+      only = ""
       k = 1
       do while (k <= command_argument_count())
          call get_command_argument(k, argument)
@@ -167,15 +172,19 @@ contains
             k = k + 1
             call get_command_argument(k, argument)
             call read_integer(trim(argument), largest, ok)
+         case ("--only")
+            k = k + 1
+            call get_command_argument(k, only)
          case ("--help")
-            write (output_unit, "(a)") "voussoir-step-bench [--largest BLOCKS] [--markdown]"
+            write (output_unit, "(a)") "voussoir-step-bench [--largest BLOCKS] [--only NAME] " &
+               & //"[--markdown]"
             call leave(exit_status%success)
          case default
             ok = .false.
          end select
          if (.not. ok) then
-            write (error_unit, "(a)") "voussoir-step-bench: error: --largest BLOCKS, --markdown " &
-               & //"or --help is wanted, '"//trim(argument)//"' was found"
+            write (error_unit, "(a)") "voussoir-step-bench: error: expected --largest BLOCKS, " &
+               & //"--only NAME, --markdown or --help, got '"//trim(argument)//"'"
             call leave(exit_status%bad_input)
          end if
          k = k + 1
