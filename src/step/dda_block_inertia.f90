@@ -38,11 +38,12 @@ contains
       !> Time at the beginning of a dynamic step, or of the loads in a static one; zero if it is
       !> left out [s]
       real(wp), intent(in), optional :: time
+      real(wp) :: before(size(equations%base, 1), size(equations%base, 2), size(equations%base, 3))
       real(wp) :: stress(6), impetus(6), finish, start, damping
       integer :: b, e, nd
 
       nd = settings%n_dof
-      equations%changed = .true.
+      before = equations%base
       start = 0.0_wp
       if (present(time)) start = time
       damping = damping_rate(settings, dt)
@@ -71,6 +72,11 @@ contains
       call follow_bars(system, settings, equations%bars)
       call add_bars(equations%bars, 1.0_wp, equations%base, equations%load)
       call couple_bars(equations%bars, equations%matrix%pair, .true., equations%matrix%coupling)
+      ! in reference geometry steps of one length have one matrix
+      do e = 1, size(before, 3)
+         equations%changed(e) = equations%changed(e) .or. size(equations%bars%entry) > 0 &
+            & .or. .not. all(abs(equations%base(:, :, e) - before(:, :, e)) <= 0.0_wp)
+      end do
    end subroutine assemble_blocks
 
    !> Rate of mass damping in a dynamic step: never more than what would stop a block within it

@@ -27,27 +27,34 @@ module dda_friction
 
 contains
 
-   !> Find the motion and the states of one step under Coulomb friction. First no joint may slide;
-   !> if a shear force is then too large, all shear forces are bounded by friction times the normal
-   !> forces of the pass before, until these no longer change. Where blocks fall so far that
-   !> rounding hides smaller changes, the bounds that changed least are taken
-   pure subroutine iterate_friction(equations, springs, max_changes, state)
+   !> Find the motion and the states of one step under Coulomb friction. In time the bounds begin
+   !> with the normal forces of the step before, and faces as they were: what changes little costs
+   !> little, and what slid goes on sliding. Else, and where that does not settle, no joint may slide
+   !> at first
+   pure subroutine iterate_friction(equations, springs, max_changes, goes_on, state)
       !> Blocks assembled; matrix and factor are made anew
       type(equations_t), intent(inout) :: equations
       !> The springs of the joints
       type(joint_springs_t), intent(in) :: springs
       !> Most changes of faces before Newton's method takes over
       integer, intent(in) :: max_changes
+      !> Whether the step goes on from the forces of the one before
+      logical, intent(in) :: goes_on
       !> Faces to begin with in, motion and joints out
       type(step_state_t), intent(inout) :: state
-      real(wp) :: bound(size(springs%stiffness)), change(size(springs%stiffness))
-      real(wp) :: bounds(size(springs%stiffness), memory + 1)
-      real(wp) :: changes(size(springs%stiffness), memory + 1)
-      real(wp) :: best(size(springs%stiffness)), least, tolerance
-      integer :: correction, kept, stale
-      logical :: resolved
+      type(step_state_t) :: begun
+      real(wp) :: bound(size(springs%stiffness)), tolerance
 
       tolerance = 1.0e-11_wp*equations%force_scale
+      if (goes_on .and. any(abs(state%multiplier) > 0.0_wp)) then
+         begun = state
+         state%force = state%multiplier
+         bound = max(0.0_wp, coulomb_bound(springs, state))
+         call follow_bounds(equations, springs, max_changes, tolerance, bound, state)
+         if (state%settled) return
+         begun%passes = state%passes
+         state = begun
+      end if
       state%cone = cone_t(friction=0.0_wp, limit=huge(1.0_wp))
       state%face%slip = 0
       state%unsettled_work = 0.0_wp
@@ -55,6 +62,31 @@ contains
       if (.not. state%settled) return
       bound = coulomb_bound(springs, state)
       if (all(abs(state%force(3, :)) <= bound + tolerance)) return
+      call follow_bounds(equations, springs, max_changes, tolerance, bound, state)
+   end subroutine iterate_friction
+
+   !> Bound all shear forces by friction times the normal forces of the pass before, until these no
+   !> longer change. Where blocks fall so far that rounding hides smaller changes, the bounds that
+   !> changed least are taken
+   pure subroutine follow_bounds(equations, springs, max_changes, tolerance, bound, state)
+      !> Blocks assembled; matrix and factor are made anew
+      type(equations_t), intent(inout) :: equations
+      !> The springs of the joints
+      type(joint_springs_t), intent(in) :: springs
+      !> Most changes of faces before Newton's method takes over
+      integer, intent(in) :: max_changes
+      !> Change of a bound that counts as none [N/m]
+      real(wp), intent(in) :: tolerance
+      !> Bounds: (n_joint) [N/m]
+      real(wp), intent(inout) :: bound(:)
+      !> Faces to begin with in, motion and joints out
+      type(step_state_t), intent(inout) :: state
+      real(wp) :: change(size(bound)), best(size(bound)), least
+      real(wp), dimension(size(bound), memory + 1) :: bounds, changes
+      integer :: correction, kept, stale
+      logical :: resolved
+
+      state%cone = cone_t(friction=0.0_wp, limit=huge(1.0_wp))
       kept = 0
       stale = 0
       least = huge(least)
@@ -90,7 +122,7 @@ contains
          bound = max(0.0_wp, accelerated(bounds(:, :kept), changes(:, :kept)))
       end do
       state%settled = .false.
-   end subroutine iterate_friction
+   end subroutine follow_bounds
 
    !> Anderson's acceleration of a fixed-point iteration: the mixture of the remembered points whose
    !> mixed change is least, moved by that change

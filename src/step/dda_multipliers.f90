@@ -129,7 +129,7 @@ contains
       if (settings%flow == flow_rule%associated) then
          call iterate_open_close(equations, springs, settings%max_changes, state)
       else
-         call iterate_friction(equations, springs, settings%max_changes, state)
+         call iterate_friction(equations, springs, settings%max_changes, settings%dynamic, state)
       end if
    end subroutine settle_once
 end module dda_multipliers
