@@ -29,8 +29,8 @@ contains
 
    !> Find the motion and the states of one step under Coulomb friction. In time the bounds begin
    !> with the normal forces of the step before, and faces as they were: what changes little costs
-   !> little, and what slid goes on sliding. Else, and where that does not settle, no joint may slide
-   !> at first
+   !> little, and what slid goes on sliding. Else, and where that does not settle, no joint may
+   !> slide at first
    pure subroutine iterate_friction(equations, springs, max_changes, goes_on, state)
       !> Blocks assembled; matrix and factor are made anew
       type(equations_t), intent(inout) :: equations

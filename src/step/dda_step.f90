@@ -16,7 +16,7 @@ module dda_step
    use dda_load_clock, only : has_path
    use dda_multipliers, only : settle_joints
    use dda_settings, only : settings_t
-   use dda_step_check, only : check_motion, check_velocities, retry
+   use dda_step_check, only : check_motion, check_end_velocities, retry
    use dda_step_context, only : march_t, step_context_t, step_outcome_t
    use dda_step_interval, only : largest_motion
    use dda_step_reach, only : first_reach, next_reach, travel_of
@@ -65,7 +65,7 @@ contains
          outcome = check_motion(settings, system, contacts, equations, march, step)
          if (outcome%accepted .and. .not. contacts%remember) then
             call settle_velocities(settings, system, contacts, equations, step)
-            outcome = check_velocities(settings, system, contacts, march, step)
+            outcome = check_end_velocities(settings, system, contacts, march, step)
          end if
          if (outcome%accepted .or. march%clock%tries .and. .not. outcome%beyond_margin) exit
          call retry(system, outcome, march, step)

@@ -14,7 +14,7 @@ module dda_step_check
    implicit none
    private
 
-   public :: check_motion, check_velocities, retry
+   public :: check_motion, check_end_velocities, retry
 
 contains
 
@@ -47,7 +47,7 @@ contains
    end function check_motion
 
    !> Check the velocities of a try: settled, and no corner inside a neighbour
-   pure function check_velocities(settings, system, contacts, march, step) result(outcome)
+   pure function check_end_velocities(settings, system, contacts, march, step) result(outcome)
       !> Settings of the run
       type(settings_t), intent(in) :: settings
       !> The blocks before the step
@@ -65,7 +65,7 @@ contains
       if (.not. outcome%accepted) outcome = step_outcome_t(dt=step%dt/2.0_wp, was_cut=.true.)
       if (outcome%accepted .and. contacts%searched) &
          & outcome = check_penetration(settings, system, contacts, march, step)
-   end function check_velocities
+   end function check_end_velocities
 
    !> Change for the next try what the checks ask for: its length, margins, axes
    pure subroutine retry(system, outcome, march, step)
