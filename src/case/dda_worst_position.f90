@@ -12,6 +12,7 @@ module dda_worst_position
    use dda_graph_decision, only : decides_as_graph
    use dda_joint_graph, only : joint_graph_t
    use dda_kinds, only : wp
+   use dda_limit_decision, only : decide_load, load_decision_t, load_state
    use dda_limit_load, only : find_limit, limit_load_t, limit_state
    use dda_load_coefficient, only : added_loads, full_loads, with_coefficient
    use dda_scene, only : scene_t, searched_load
@@ -24,8 +25,8 @@ module dda_worst_position
 
    public :: find_worst_position
 
-   !> Relative gap of the limits that are compared
-   real(wp), parameter :: gap = 1.0e-9_wp
+   !> Relative gap of the limits that choose the positions to look at, and of those that decide
+   real(wp), parameter :: coarse = 1.0e-3_wp, fine = 1.0e-9_wp
    !> How far beside a corner an axle is on the next block, and how near the least is closed in,
    !> over the size of all
    real(wp), parameter :: beside = 1.0e-10_wp, near = 1.0e-6_wp
@@ -47,6 +48,8 @@ module dda_worst_position
       type(fill_t), allocatable :: fill
       !> All other loads on points: (n)
       type(loaded_point_t), allocatable :: other(:)
+      !> Whether it stands without live loads
+      logical :: stands = .false.
    end type bridge_t
 
 contains
@@ -80,11 +83,17 @@ contains
       allocate (bridge%dead, source=full_loads(with_coefficient(scene%settings, &
          & searched_load%factor, 0.0_wp), scene, bridge%graph))
       bridge%scene%settings = with_coefficient(scene%settings, searched_load%factor, 1.0_wp)
+      bridge%stands = stands_alone(scene)
       size_of_all = norm2(maxval(scene%system%vertex, dim=2) - minval(scene%system%vertex, dim=2))
       allocate (at, source=positions(bridge, size_of_all))
       allocate (inverse(size(at)))
       do k = 1, size(at)
-         inverse(k) = inverse_factor(bridge, at(k))
+         inverse(k) = inverse_factor(bridge, at(k), coarse)
+      end do
+      best = maxval(inverse)
+      do k = 1, size(at)
+         if (inverse(k) >= (1.0_wp - 4.0_wp*coarse)*best) &
+            & inverse(k) = inverse_factor(bridge, at(k), fine)
       end do
       k = maxloc(inverse, dim=1)
       found = inverse(k) > 0.0_wp
@@ -94,11 +103,29 @@ contains
       if (.not. bridge%vehicle%length > 0.0_wp) return
       do k = 1, size(at)
          if (inverse(k) < promising*maxval(inverse) &
-            & .or. inverse(k) < maxval(inverse(max(1, k - 1):min(size(at), k + 1)))) cycle
+            & .or. inverse(k) < (1.0_wp - 4.0_wp*coarse) &
+            & *maxval(inverse(max(1, k - 1):min(size(at), k + 1)))) cycle
          call close_in(bridge, at(max(1, k - 1)), at(min(size(at), k + 1)), near*size_of_all, &
             & position, best)
       end do
    end subroutine find_worst_position
+
+   !> Whether the bridge stands without live loads, and without leaning against fill, which could
+   !> only help
+   pure logical function stands_alone(scene)
+      !> The scene
+      type(scene_t), intent(in) :: scene
+      type(load_decision_t) :: decision
+      type(joint_graph_t) :: graph
+      type(scene_t) :: bare
+
+      bare = scene
+      if (allocated(bare%settings%boundary%bounded)) deallocate (bare%settings%boundary%bounded)
+      bare%settings = with_coefficient(bare%settings, searched_load%factor, 0.0_wp)
+      call scene_graph(bare%settings, bare%system, bare%contacts, graph)
+      call decide_load(graph, full_loads(bare%settings, bare, graph), decision)
+      stands_alone = decision%state == load_state%stands
+   end function stands_alone
 
    !> Positions at which an axle is at a corner, on either side of it; of axles that are spread, an
    !> end or the middle
@@ -129,11 +156,13 @@ contains
    end function positions
 
    !> Inverse of the associated limit at a position; 0 where there is none
-   pure real(wp) function inverse_factor(bridge, position) result(inverse)
+   pure real(wp) function inverse_factor(bridge, position, gap) result(inverse)
       !> The scene and the vehicle
       type(bridge_t), intent(in) :: bridge
       !> The position [m]
       real(wp), intent(in) :: position
+      !> Relative gap
+      real(wp), intent(in) :: gap
       type(vehicle_t) :: vehicle
       type(scene_t) :: scene
       type(limit_load_t) :: limit
@@ -149,7 +178,7 @@ contains
       allocate (axles, source=axle_loads(vehicle, scene%system, bridge%scene%origin))
       if (size(axles) == 0) return
       if (allocated(bridge%fill)) then
-         inverse = inverse_in_fill(bridge, axles)
+         inverse = inverse_in_fill(bridge, axles, gap)
          return
       end if
       allocate (scene%settings%boundary%loaded(size(bridge%other) + size(axles)))
@@ -157,7 +186,7 @@ contains
       scene%settings%boundary%loaded(size(bridge%other) + 1:) = axles
       live = added_loads(searched_load%factor, scene%settings, scene, bridge%graph)
       if (.not. maxval(abs(live)) > 0.0_wp) return
-      call find_limit(bridge%graph, bridge%dead, live, gap, limit)
+      call find_limit(bridge%graph, bridge%dead, live, gap, limit, bridge%stands)
       if (limit%state == limit_state%found) inverse = 2.0_wp/(limit%lower + limit%upper)
    end function inverse_factor
 
@@ -182,11 +211,13 @@ contains
 
    !> Inverse of the associated limit for axles on fill, which is leant against on the side away
    !> from them; 0 where there is none
-   pure real(wp) function inverse_in_fill(bridge, axles) result(inverse)
+   pure real(wp) function inverse_in_fill(bridge, axles, gap) result(inverse)
       !> The scene and the vehicle
       type(bridge_t), intent(in) :: bridge
       !> Loads of the axles
       type(loaded_point_t), intent(in) :: axles(:)
+      !> Relative gap
+      real(wp), intent(in) :: gap
       type(joint_graph_t) :: graph
       type(limit_load_t) :: limit
       type(scene_t) :: scene
@@ -204,7 +235,7 @@ contains
       dead = full_loads(scene%settings, scene, graph)
       live = live - dead
       if (.not. maxval(abs(live)) > 0.0_wp) return
-      call find_limit(graph, dead, live, gap, limit)
+      call find_limit(graph, dead, live, gap, limit, bridge%stands)
       if (limit%state == limit_state%found) inverse = 2.0_wp/(limit%lower + limit%upper)
    end function inverse_in_fill
 
@@ -228,19 +259,25 @@ contains
 
       a = left
       b = right
-      do while (b - a > least)
-         x = [b - golden*(b - a), a + golden*(b - a)]
-         do k = 1, 2
-            value(k) = inverse_factor(bridge, x(k))
-            if (.not. value(k) > best) cycle
+      x = [b - golden*(b - a), a + golden*(b - a)]
+      value = [inverse_factor(bridge, x(1), fine), inverse_factor(bridge, x(2), fine)]
+      do
+         k = merge(1, 2, value(1) > value(2))
+         if (value(k) > best) then
             best = value(k)
             position = x(k)
-         end do
-         if (value(1) > value(2)) then
+         end if
+         if (k == 1) then
             b = x(2)
          else
             a = x(1)
          end if
+         if (b - a <= least) exit
+         ! the better one is one of the next two
+         x(3 - k) = x(k)
+         value(3 - k) = value(k)
+         x(k) = merge(b - golden*(b - a), a + golden*(b - a), k == 1)
+         value(k) = inverse_factor(bridge, x(k), fine)
       end do
    end subroutine close_in
 end module dda_worst_position
