@@ -6,7 +6,7 @@ module dda_load_search
    use dda_decision, only : record_collapse, record_rest
    use dda_error, only : error_t
    use dda_graph_decision, only : decides_as_graph, follow_stations, graph_verdict_t, &
-      & has_friction, see_fall, slide_along
+      & has_friction, no_start, see_fall, slide_along
    use dda_joint_graph, only : joint_graph_t
    use dda_kinds, only : wp
    use dda_limit_load, only : find_limit, limit_load_t, limit_state
@@ -158,6 +158,8 @@ contains
          proof%n_factorisation = proof%n_factorisation + limit%n_factorisation
          side%end = proof%end
          side%value = value_at_end(load, far, stations, proof)
+         if (proof%no_start .and. side%has_limit) side%end = path_end%undecided
+         if (side%end == path_end%undecided .and. proof%no_start) proof%reason = no_start
          if (proof%end == path_end%reached .and. abs(far) < abs(last)) then
             ! no forces go on from here, whatever the law of friction
             side%end = path_end%collapsed

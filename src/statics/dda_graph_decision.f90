@@ -23,7 +23,7 @@ module dda_graph_decision
    private
 
    public :: graph_verdict_t, decide_graph, decides_as_graph, follow_stations, has_friction
-   public :: see_fall, slide_along
+   public :: no_start, see_fall, slide_along
 
    !> A verdict and its proof
    type :: graph_verdict_t
@@ -45,6 +45,8 @@ module dda_graph_decision
       logical :: on_path = .false.
       !> Whether steps may prove what limit analysis did not, as no path leads to the load
       logical :: unproven = .false.
+      !> Whether the path has found no state under the dead loads
+      logical :: no_start = .false.
       !> Last station of the path that was reached, and the share of the leg after it
       integer :: station = 0
       !> Likewise
@@ -59,6 +61,9 @@ module dda_graph_decision
       integer :: n_factorisation = 0
    end type graph_verdict_t
 
+   !> Why a path is undecided whose dead loads limit analysis lets stand
+   character(len=*), parameter :: no_start = "forces balance the dead loads, but no state under " &
+      & //"Coulomb friction is found"
    !> Relative gap of the two proofs of a limit whose mechanism is asked for
    real(wp), parameter :: limit_gap = 1.0e-7_wp
 
@@ -130,7 +135,10 @@ contains
       call follow_stations(settings, system, graph, stations, path, start)
       path%n_factorisation = path%n_factorisation + verdict%n_factorisation
       path%unproven = verdict%unproven .or. dead_alone
-      if (dead_alone .and. path%end == path_end%collapsed) path%end = path_end%undecided
+      if (path%no_start .and. (dead_alone .or. verdict%end == path_end%reached)) then
+         path%end = path_end%undecided
+         path%reason = no_start
+      end if
       verdict = path
    end subroutine decide_graph
 
@@ -279,7 +287,6 @@ contains
       type(path_result_t) :: result
       real(wp) :: load(3, graph%n_block), opening(3, size(graph%kind))
       integer :: i, n
-
       verdict%flow = flow_rule%coulomb
       n = ubound(stations%tilt, 1)
       verdict%on_path = n > 0
@@ -296,6 +303,7 @@ contains
          call begin_path(graph, load, path, state, result)
       end if
       call count_up(result, verdict)
+      verdict%no_start = result%end == path_end%collapsed
       do i = 1, n
          if (result%end /= path_end%reached) exit
          rate%load = -load
