@@ -20,6 +20,7 @@ MAY_SKIP = (
     "could not import 'pandas'",
     "could not import 'PIL.Image'",
     "Dask is not installed",
+    "pyarrow is not installed",
     "the site wants",
     "no Chromium was found",
     "ffmpeg is",  # one test for either case

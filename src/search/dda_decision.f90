@@ -23,6 +23,9 @@ module dda_decision
    public :: decision_t, decide, decide_by_steps, follow_coulomb, record_collapse, record_rest
    public :: share_elastically
 
+   !> A joint slides against friction if its force is more than this share of the largest
+   real(wp), parameter :: felt = 1.0e-9_wp
+
    !> A decided structure
    type :: decision_t
       !> How the run ended; its counts are those of all runs
@@ -119,7 +122,12 @@ contains
       type(graph_verdict_t), intent(in) :: proof
 
       has_slid = .false.
-      if (allocated(proof%state)) has_slid = any(abs(proof%state%face(3, :)) == face%slides)
+      if (.not. allocated(proof%state)) return
+      associate (force => proof%state%force)
+         ! where two corners touch without force nothing resists
+         has_slid = any(abs(proof%state%face(3, :)) == face%slides &
+            & .and. sum(force(1:2, :), dim=1) > felt*maxval(abs(force)))
+      end associate
    end function has_slid
 
    !> Whether a run of steps can tell what the graph does not: steps know neither bounded forces nor

@@ -169,7 +169,9 @@ def test_scenes_are_run_and_told(tmp_path, capsys):
     with (tmp_path / "stability.csv").open() as lines:
         rows = list(csv.DictReader(lines))
     assert {line["result"] for line in rows} == {"right"}
-    assert all(float(line["condition"]) > 1.0 and int(line["passes"]) > 0 for line in rows)
+    # what the joint graph proves to fall has no equations of a step
+    assert all(not line["condition"] or float(line["condition"]) > 1.0 for line in rows)
+    assert any(line["condition"] and int(line["passes"]) > 0 for line in rows)
     assert "0 WRONG" in (tmp_path / "stability.md").read_text()
     page = (tmp_path / "stability.html").read_text()
     assert page.count("<td class='right'>") == 4 and "<td class='number '>4</td>" in page
