@@ -87,7 +87,7 @@ def test_an_arch_carries_what_a_programme_of_tangents_has(
 ) -> None:
     pytest.importorskip("scipy", reason="the linear programme wants scipy")
     verify = pytest.importorskip("voussoir.verify_command", reason="PYTHONPATH wants python/")
-    from random_assemblies import programme
+    from live_assemblies import programme
     from voussoir.verify_deck import read_record
 
     (row,) = rows(tmp_path, BRIDGE.format(shape=shape, rise=rise) + material(strength, 2e4), head="")

@@ -19,7 +19,7 @@ from voussoir.verify_deck import read_record  # noqa: E402
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "cli"))
 
-from random_assemblies import programme, random_assembly  # noqa: E402
+from live_assemblies import programme, random_assembly  # noqa: E402
 
 HEAD = "&scene kind = 'blocks', geometry = 'x.blocks' /\n"
 SEARCH = "&search parameter = 'load_factor' /\n"

@@ -22,7 +22,7 @@ from voussoir.verify_simplex import Programme, find_best  # noqa: E402
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "cli"))
 
-from random_assemblies import random_wall  # noqa: E402
+from live_assemblies import random_wall  # noqa: E402
 from test_loading_path import wall  # noqa: E402
 
 REPOSITORY = Path(__file__).parents[2]
