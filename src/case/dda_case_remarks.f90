@@ -1,5 +1,6 @@
 !> What the user should know of a case beside its row
 module dda_case_remarks
+   use dda_block_system, only : block_system_t
    use dda_critical, only : critical_t
    use dda_forward, only : outcome_t
    use dda_kinds, only : wp
@@ -8,9 +9,47 @@ module dda_case_remarks
    implicit none
    private
 
-   public :: change_remark, jump_remark, path_remark
+   public :: change_remark, fall_remark, jump_remark, path_remark
+
+   !> A block moves in a collapse if it goes this share of the way of the one that goes farthest
+   real(wp), parameter :: moves = 1.0e-3_wp
+   !> Most blocks that are named
+   integer, parameter :: most_named = 5
 
 contains
+
+   !> Which blocks fall, where most of them stay: a chip that no bolt holds is a collapse, too
+   pure function fall_remark(system, motion, before) result(remark)
+      !> The blocks at the beginning
+      type(block_system_t), intent(in) :: system
+      !> Their motion in the collapse: (n_dof, n_equation)
+      real(wp), intent(in) :: motion(:, :)
+      !> What else there is to know
+      character(len=*), intent(in) :: before
+      !> All of it
+      character(len=:), allocatable :: remark
+      real(wp) :: way(size(system%equation))
+      integer :: b, e, i, n
+
+      remark = before
+      way = 0.0_wp
+      do b = 1, size(way)
+         e = system%equation(b)
+         if (e > 0 .and. e <= size(motion, 2)) way(b) = norm2(motion(1:2, e)) &
+            & + abs(motion(3, e))*sqrt(system%area(b))
+      end do
+      n = count(way > moves*maxval(way))
+      if (n == 0 .or. 3*n > count(system%equation > 0)) return
+      if (len(remark) > 0) remark = remark//"; "
+      remark = remark//"of "//to_text(count(system%equation > 0))//" blocks "//to_text(n)//" move:"
+      do i = 1, min(n, most_named)
+         b = maxloc(way, dim=1)
+         way(b) = -1.0_wp
+         if (i > 1) remark = remark//","
+         remark = remark//" "//to_text(b)
+      end do
+      if (n > most_named) remark = remark//" and others"
+   end function fall_remark
 
    !> What the user should know of the path of a static run
    pure function path_remark(outcome, before) result(remark)

@@ -3,7 +3,7 @@ module dda_case_rows
    use dda_block_scene, only : lacks_friction
    use dda_case, only : case_t, searched_name
    use dda_case_proof, only : proof_t
-   use dda_case_remarks, only : change_remark, jump_remark, path_remark
+   use dda_case_remarks, only : change_remark, fall_remark, jump_remark, path_remark
    use dda_contact_detection, only : contacts_t
    use dda_contact_types, only : joint_t
    use dda_critical, only : critical_t
@@ -170,6 +170,9 @@ contains
             row%path_time = some_number(outcome%path_time)
             remark = path_remark(outcome, remark)
          end if
+         if (outcome%verdict == verdict%collapsed .and. allocated(outcome%motion) &
+            & .and. .not. this%plan%velocities .and. scene_kind(this%deck) /= "arch") &
+            & remark = fall_remark(this%scene%system, outcome%motion, remark)
          if (allocated(this%decision%contacts%joint)) joint_row = &
             & joint_rows(this%decision%contacts, this%scene%joint_angle_deg, this%scene%origin)
          if (outcome%verdict == verdict%collapsed) then

@@ -187,3 +187,23 @@ def test_blocks_along_held_sides_are_held_however_thin(tmp_path: Path, spacing: 
                 along += 1
                 assert state == "fixed", f"block {number}"
     assert along > 30
+
+
+def test_log_names_the_blocks_that_fall_out_of_a_tunnel(tmp_path: Path) -> None:
+    text = (
+        "&lines seed=3 /\n&outline left=-10 right=10 bottom=-8 top=10 fixed='left','right','bottom' /\n"
+        "&opening shape='horseshoe' width=5 wall=2 y=-2 sides=12 /\n"
+        "&joint_set dip_deg=0 spacing=1.5 spacing_law='uniform' spacing_randomness=0.2 /\n"
+        "&joint_set dip_deg=70 spacing=1.7 /\n"
+    )
+    draw(text, tmp_path)
+    (tmp_path / "deck.nml").write_text("&scene kind='lines', geometry='map.geo' /\n&joint friction_deg=35 /\n")
+    assert run_dda("run", "deck.nml", "--out", "out", "--quiet", cwd=tmp_path).returncode == 0
+    way: dict[str, float] = {}
+    with (tmp_path / "out" / "blocks.csv").open(newline="") as stream:
+        for row in csv.DictReader(stream):
+            way[row["block"]] = max(way.get(row["block"], 0.0), math.hypot(float(row["u"]), float(row["v"])))
+    fallen = {block for block, far in way.items() if far > 0.01}
+    line = (tmp_path / "out" / "log.txt").read_text().splitlines()[-1]
+    assert f"blocks {len(fallen)} move:" in line
+    assert set(line.split("move: ")[1].split(", ")) == fallen
