@@ -26,7 +26,8 @@ contains
 
       call check_collapse(deck, error)
       if (.not. allocated(error) .and. searched%key > 0) call check_search_in_time(deck, error)
-      if (allocated(error) .or. .not. (has_group(deck, "ground") .or. varies_ground())) return
+      if (allocated(error)) return
+      if (.not. (has_group(deck, "ground") .or. varies_ground(deck, searched))) return
       place = deck%group(group_index("ground"))
       if (place%line == 0) place = place_of(deck, key_index("search", "parameter"))
       key = 0
@@ -34,78 +35,88 @@ contains
       if (word_of(deck, "analysis", "mode") /= "dynamic") then
          problem = "&ground needs mode = 'dynamic', got '" &
             & //trim(word_of(deck, "analysis", "mode"))//"'; change the one or remove the other"
-      else if (has("pulse") .and. has("record")) then
+      else if (gives(deck, searched, "pulse") .and. gives(deck, searched, "record")) then
          problem = "&ground needs a pulse or a record, got both; remove one of them"
          key = key_index("ground", "record")
-      else if (.not. (has("pulse") .or. has("record")) &
+      else if (.not. (gives(deck, searched, "pulse") .or. gives(deck, searched, "record")) &
          & .and. word_of(deck, "scene", "kind") /= "blocks") then
          problem = "&ground needs a pulse or a record, got none; give one"
       end if
-      if (len(problem) == 0) call check_keys(problem, key)
+      if (len(problem) == 0) call check_keys(deck, searched, problem, key)
       if (key > 0) place = place_of(deck, key)
       if (len(problem) > 0) call deck_error(error, problem, deck, place)
-
-   contains
-
-      !> Whether the search or a sweep gives a key of &ground
-      pure logical function varies_ground()
-         integer :: s
-
-         varies_ground = .false.
-         if (searched%key > 0) varies_ground = deck_key(searched%key)%group == "ground"
-         do s = 1, size(deck%sweep)
-            varies_ground = varies_ground &
-               & .or. deck_key(deck%sweep(s)%parameter%key)%group == "ground"
-         end do
-      end function varies_ground
-
-      !> Whether a key of &ground is given, or searched
-      pure logical function has(name)
-         !> Name of the key
-         character(len=*), intent(in) :: name
-
-         has = is_given(deck, "ground", name) .or. searched%key == key_index("ground", name)
-      end function has
-
-      !> Check what a pulse or a record needs, and what it has no use for
-      pure subroutine check_keys(problem, key)
-         !> What is wrong; left as it was if nothing is
-         character(len=:), allocatable, intent(inout) :: problem
-         !> The key at fault, 0 if one is missing
-         integer, intent(inout) :: key
-         character(len=*), parameter :: name(7) = [character(len=13) :: "amplitude", "duration", &
-            & "frequency", "direction_deg", "columns", "quantity", "unit"]
-         logical :: needed(size(name)), used(size(name))
-         character(len=:), allocatable :: what
-         integer :: i
-
-         needed = .false.
-         used = .false.
-         if (has("record")) then
-            what = "a record"
-            used([1, 4, 5, 6, 7]) = .true.
-         else if (.not. has("pulse")) then
-            what = "the motion of the file of blocks"
-         else if (word_of(deck, "ground", "pulse") == "sine") then
-            what = "a sine"
-            needed([1, 3]) = .true.
-            used(:4) = .true.
-         else
-            what = "a rectangular pulse"
-            needed(:2) = .true.
-            used([1, 2, 4]) = .true.
-         end if
-         do i = 1, size(name)
-            if (needed(i) .and. .not. has(trim(name(i)))) then
-               problem = "&ground needs "//trim(name(i))//" for "//what//", got none; give it"
-            else if (has(trim(name(i))) .and. .not. used(i)) then
-               problem = "ground%"//trim(name(i))//" has no effect on "//what//"; remove it"
-               key = key_index("ground", trim(name(i)))
-            end if
-            if (len(problem) > 0) return
-         end do
-      end subroutine check_keys
    end subroutine check_ground
+
+   !> Whether the search or a sweep gives a key of &ground
+   pure logical function varies_ground(deck, searched)
+      !> The deck of the case
+      type(deck_t), intent(in) :: deck
+      !> What is searched; key 0 if nothing is
+      type(parameter_t), intent(in) :: searched
+      integer :: s
+
+      varies_ground = .false.
+      if (searched%key > 0) varies_ground = deck_key(searched%key)%group == "ground"
+      do s = 1, size(deck%sweep)
+         varies_ground = varies_ground &
+            & .or. deck_key(deck%sweep(s)%parameter%key)%group == "ground"
+      end do
+   end function varies_ground
+
+   !> Whether a key of &ground is given, or searched
+   pure logical function gives(deck, searched, name)
+      !> The deck of the case
+      type(deck_t), intent(in) :: deck
+      !> What is searched; key 0 if nothing is
+      type(parameter_t), intent(in) :: searched
+      !> Name of the key
+      character(len=*), intent(in) :: name
+
+      gives = is_given(deck, "ground", name) .or. searched%key == key_index("ground", name)
+   end function gives
+
+   !> Check what a pulse or a record needs, and what it has no use for
+   pure subroutine check_keys(deck, searched, problem, key)
+      !> The deck of the case
+      type(deck_t), intent(in) :: deck
+      !> What is searched; key 0 if nothing is
+      type(parameter_t), intent(in) :: searched
+      !> What is wrong; left as it was if nothing is
+      character(len=:), allocatable, intent(inout) :: problem
+      !> The key at fault, 0 if one is missing
+      integer, intent(inout) :: key
+      character(len=*), parameter :: name(7) = [character(len=13) :: "amplitude", "duration", &
+         & "frequency", "direction_deg", "columns", "quantity", "unit"]
+      logical :: needed(size(name)), fits(size(name))
+      character(len=:), allocatable :: what
+      integer :: i
+
+      needed = .false.
+      fits = .false.
+      if (gives(deck, searched, "record")) then
+         what = "a record"
+         fits([1, 4, 5, 6, 7]) = .true.
+      else if (.not. gives(deck, searched, "pulse")) then
+         what = "the motion of the file of blocks"
+      else if (word_of(deck, "ground", "pulse") == "sine") then
+         what = "a sine"
+         needed([1, 3]) = .true.
+         fits(:4) = .true.
+      else
+         what = "a rectangular pulse"
+         needed(:2) = .true.
+         fits([1, 2, 4]) = .true.
+      end if
+      do i = 1, size(name)
+         if (needed(i) .and. .not. gives(deck, searched, trim(name(i)))) then
+            problem = "&ground needs "//trim(name(i))//" for "//what//", got none; give it"
+         else if (gives(deck, searched, trim(name(i))) .and. .not. fits(i)) then
+            problem = "ground%"//trim(name(i))//" has no effect on "//what//"; remove it"
+            key = key_index("ground", trim(name(i)))
+         end if
+         if (len(problem) > 0) return
+      end do
+   end subroutine check_keys
 
    !> Check a deck against its file of blocks: the ground has one motion, and the point that means
    !> collapse is measured
