@@ -37,6 +37,8 @@ module dda_interior_direction
       !> Direction: (n_side, n_joint), the same, (3, 0:n_block), and of the factor
       real(wp), allocatable :: dx(:, :), ds(:, :), dv(:, :)
       real(wp) :: dfactor = 0.0_wp
+      !> One over forces and over rates of bounded rays, none of others: (n_side, n_joint)
+      real(wp), allocatable :: per_force(:, :), per_rate(:, :)
       !> Imbalance that the direction leaves, the largest that is accepted
       real(wp) :: left = 0.0_wp, accepted = 0.0_wp
    end type turn_t

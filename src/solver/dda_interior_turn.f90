@@ -28,6 +28,8 @@ module dda_interior_turn
    real(wp), parameter :: worthwhile = 0.03_wp
    !> After steps shorter than this all products are drawn towards half their mean
    real(wp), parameter :: short = 0.1_wp, half = 0.5_wp
+   !> Parts of a correction that are tried
+   integer, parameter :: n_share = 10
    !> Products beyond these multiples of the one aimed at are corrected
    real(wp), parameter :: least_product = 0.1_wp, largest_product = 10.0_wp
 
@@ -47,7 +49,7 @@ contains
       allocate (turn%lack, turn%rest, turn%unit_response, turn%response, turn%dv, &
          & source=0.0_wp*path%dead)
       allocate (turn%excess, turn%aim, turn%unit_rate, turn%rate, turn%dx, turn%ds, &
-         & source=0.0_wp*rays%bounded)
+         & turn%per_force, turn%per_rate, source=0.0_wp*rays%bounded)
       turn%least_factor = path%negligible/goal%tolerance
    end subroutine begin_turns
 
@@ -126,6 +128,10 @@ contains
 
       turn%accepted = max(min(1.0e-9_wp, 0.01_wp*point%gap)*path%largest_dead, &
          & 1.0e-13_wp*path%largest_dead, 0.05_wp*maxval(abs(turn%lack)))
+      where (rays%bounded > 0.0_wp)
+         turn%per_force = 1.0_wp/point%x
+         turn%per_rate = 1.0_wp/point%s
+      end where
       call set_stiffness(rays, point, springs)
       call set_springs(rays, path%mass, lift, springs)
       if (springs%usable) call respond_to_live_load(rays, path, springs, turn)
@@ -167,7 +173,7 @@ contains
       real(wp) :: change(size(point%x, 1), size(point%x, 2))
       integer :: i
 
-      reach = longest_steps(rays, point, turn%dx, turn%ds)
+      reach = longest_steps(turn)
       product = aimed_product(rays, goal, point, turn, reach)
       call add_correction(rays, path, (product - turn%dx*turn%ds)/point%s, springs, point, turn, &
          & reach)
@@ -231,9 +237,8 @@ contains
       !> Steps along it
       real(wp), intent(out) :: reach(2)
       real(wp) :: dx(size(change, 1), size(change, 2)), ds(size(change, 1), size(change, 2))
-      real(wp) :: dv(3, 0:rays%n_block), dfactor, share, steps(2)
-      integer, parameter :: n_share = 10
-      integer :: i
+      real(wp) :: dv(3, 0:rays%n_block), dfactor, share, steps(2, n_share)
+      integer :: i, best
 
       dx = turn%dx
       ds = turn%ds
@@ -241,17 +246,13 @@ contains
       dfactor = turn%dfactor
       turn%dx = turn%dx + change*rays%bounded
       call balance_direction(rays, path, point, springs, turn)
-      reach = longest_steps(rays, point, turn%dx, turn%ds)
-      share = 1.0_wp
+      steps = steps_of_shares(turn, dx, ds)
+      best = n_share
       do i = n_share - 1, 1, -1
-         associate (part => real(i, wp)/real(n_share, wp))
-            steps = longest_steps(rays, point, dx + part*(turn%dx - dx), &
-               & ds + part*(turn%ds - ds))
-            if (product(steps) <= 1.02_wp*product(reach)) cycle
-            reach = steps
-            share = part
-         end associate
+         if (product(steps(:, i)) > 1.02_wp*product(steps(:, best))) best = i
       end do
+      reach = steps(:, best)
+      share = real(best, wp)/real(n_share, wp)
       turn%aim = turn%aim + share*change*rays%bounded
       turn%dx = dx + share*(turn%dx - dx)
       turn%ds = ds + share*(turn%ds - ds)
@@ -259,27 +260,47 @@ contains
       turn%dfactor = dfactor + share*(turn%dfactor - dfactor)
    end subroutine add_correction
 
-   !> Longest steps of forces and of rates along a direction, at most 1, that keep them inside their
-   !> bounds
-   pure function longest_steps(rays, point, dx, ds) result(reach)
-      !> The rays
-      type(joint_rays_t), intent(in) :: rays
-      !> The point
-      type(interior_point_t), intent(in) :: point
-      !> The direction: (n_side, n_joint)
+   !> Longest steps along a direction of which the first, second ... n_share-th part of what the
+   !> turn changed is taken
+   pure function steps_of_shares(turn, dx, ds) result(steps)
+      !> The turn with the changed direction
+      type(turn_t), intent(in) :: turn
+      !> The direction before: (n_side, n_joint)
       real(wp), intent(in) :: dx(:, :), ds(:, :)
-      !> Steps
-      real(wp) :: reach(2)
+      !> Steps of forces and of rates: (2, n_share)
+      real(wp) :: steps(2, n_share)
+      real(wp) :: hurry(n_side, 2, n_share), from(n_side, 2), more(n_side, 2)
       integer :: i, j
 
-      reach = 1.0_wp/share_of_way
+      hurry = share_of_way
       do j = 1, size(dx, 2)
-         do i = 1, n_side
-            if (.not. rays%bounded(i, j) > 0.0_wp) cycle
-            if (point%x(i, j) + reach(1)*dx(i, j) < 0.0_wp) reach(1) = -point%x(i, j)/dx(i, j)
-            if (point%s(i, j) + reach(2)*ds(i, j) < 0.0_wp) reach(2) = -point%s(i, j)/ds(i, j)
+         from(:, 1) = -dx(:, j)*turn%per_force(:, j)
+         from(:, 2) = -ds(:, j)*turn%per_rate(:, j)
+         more(:, 1) = -turn%dx(:, j)*turn%per_force(:, j) - from(:, 1)
+         more(:, 2) = -turn%ds(:, j)*turn%per_rate(:, j) - from(:, 2)
+         do i = 1, n_share
+            hurry(:, :, i) = max(hurry(:, :, i), from + real(i, wp)/real(n_share, wp)*more)
          end do
       end do
+      steps = 1.0_wp/maxval(hurry, dim=1)
+   end function steps_of_shares
+
+   !> Longest steps of forces and of rates along the direction, at most 1, that keep them inside
+   !> their bounds
+   pure function longest_steps(turn) result(reach)
+      !> The turn
+      type(turn_t), intent(in) :: turn
+      !> Steps
+      real(wp) :: reach(2)
+      real(wp) :: hurry(n_side, 2)
+      integer :: j
+
+      hurry = share_of_way
+      do j = 1, size(turn%dx, 2)
+         hurry(:, 1) = max(hurry(:, 1), -turn%dx(:, j)*turn%per_force(:, j))
+         hurry(:, 2) = max(hurry(:, 2), -turn%ds(:, j)*turn%per_rate(:, j))
+      end do
+      reach = 1.0_wp/maxval(hurry, dim=1)
    end function longest_steps
 
    !> Move along the direction, almost to the border
@@ -294,7 +315,7 @@ contains
       type(interior_point_t), intent(inout) :: point
       real(wp) :: reach(2)
 
-      reach = share_of_way*longest_steps(rays, point, turn%dx, turn%ds)
+      reach = share_of_way*longest_steps(turn)
       ! with masses, forces and accelerations balance together
       if (path%moves) reach = minval(reach)
       point%x = point%x + reach(1)*turn%dx
