@@ -9,7 +9,8 @@ module dda_case
    use dda_chain_decision, only : decide_chain
    use dda_chain_unfold, only : unfold
    use dda_contact_detection, only : contacts_t
-   use dda_critical, only : critical_t, find_critical, search_t
+   use dda_search, only : critical_t, search_t
+   use dda_critical, only : find_critical
    use dda_decision, only : decision_t
    use dda_deck, only : deck_t, file_beside, flag_of, has_group, integer_of, is_given, &
       & parameter_t, real_of, scene_kind, text_of, word_of
@@ -49,10 +50,8 @@ module dda_case
       type(deck_t) :: deck
       !> What its scene needs
       type(scene_plan_t) :: plan
-      !> Whether a critical value is searched
-      logical :: searches = .false.
-      !> Whether tables of joints or blocks are told, for which a scene is made
-      logical :: tells_tables = .true.
+      !> Whether a critical value is searched; whether tables of joints or blocks are told
+      logical :: searches = .false., tells_tables = .true.
       !> Whether its verdict is proven
       logical :: proves = .true.
       !> Whether the original's scheme decides

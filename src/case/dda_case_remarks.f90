@@ -1,7 +1,7 @@
 !> What the user should know of a case beside its row
 module dda_case_remarks
    use dda_block_system, only : block_system_t
-   use dda_critical, only : critical_t
+   use dda_search, only : critical_t
    use dda_forward, only : outcome_t
    use dda_kinds, only : wp
    use dda_text, only : to_text

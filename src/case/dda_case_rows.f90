@@ -6,7 +6,7 @@ module dda_case_rows
    use dda_case_remarks, only : change_remark, fall_remark, jump_remark, path_remark
    use dda_contact_detection, only : contacts_t
    use dda_contact_types, only : joint_t
-   use dda_critical, only : critical_t
+   use dda_search, only : critical_t
    use dda_decision, only : decision_t
    use dda_deck, only : deck_t, flag_of, is_given, real_of, scene_kind, word_of
    use dda_deck_scene, only : movable_blocks

@@ -9,7 +9,7 @@
 !> matrix is not symmetric, within three unknowns of a block alone.
 module dda_block_factor
    use dda_block_matrix, only : block_matrix_t
-   use dda_block_plan, only : block_plan_t, plan_panels
+   use dda_block_plan, only : elimination_plan_t, plan_panels
    use dda_kinds, only : wp
    use dda_panels, only : eliminate, new_panels, panels_t, substitute_panels
    implicit none
@@ -20,7 +20,7 @@ module dda_block_factor
    !> Factor of a block matrix
    type :: block_factor_t
       !> Which numbers there are
-      type(block_plan_t) :: plan
+      type(elimination_plan_t) :: plan
       !> The numbers
       type(panels_t) :: panels
       !> Whether the factor can be used: the matrix was positive definite, or if it is not

@@ -12,10 +12,10 @@ module dda_block_plan
    implicit none
    private
 
-   public :: block_plan_t, most_columns, plan_panels, choose_order
+   public :: elimination_plan_t, most_columns, plan_panels, choose_order
 
    !> Panels; a place is one in the order of elimination
-   type :: block_plan_t
+   type :: elimination_plan_t
       !> Triples of one block
       integer :: n_triple = 0
       !> Block at each place: (n_block)
@@ -39,7 +39,7 @@ module dda_block_plan
       integer, allocatable :: given(:, :)
       !> Most rows of a panel, those of its diagonal among them, as triples
       integer :: highest = 0
-   end type block_plan_t
+   end type elimination_plan_t
 
    !> A matrix that is no wider than this in the narrow order is eliminated in it without a thought:
    !> no other order does with much less
@@ -56,7 +56,7 @@ contains
       !> The matrix, of which the pattern counts
       type(block_matrix_t), intent(in) :: matrix
       !> The plan
-      type(block_plan_t), intent(out) :: plan
+      type(elimination_plan_t), intent(out) :: plan
       type(elimination_t) :: elimination
       integer :: panel(size(matrix%place)), i
 
@@ -156,7 +156,7 @@ contains
       !> Panel of each column: (n_block)
       integer, intent(in) :: panel(:)
       !> Receives the rows
-      type(block_plan_t), intent(inout) :: plan
+      type(elimination_plan_t), intent(inout) :: plan
       integer, dimension(size(panel)) :: seen
       integer, dimension(size(plan%first)) :: next
       integer :: g, i, j, pass
@@ -193,7 +193,7 @@ contains
       !> Panel of each column: (n_block)
       integer, intent(in) :: panel(:)
       !> The plan with its rows; receives the sources
-      type(block_plan_t), intent(inout) :: plan
+      type(elimination_plan_t), intent(inout) :: plan
       integer :: next(size(plan%first)), i, k, pass
 
       allocate (plan%first_source(size(next)))
@@ -223,7 +223,7 @@ contains
    !> Turn blocks into triples, and lay out the numbers
    pure subroutine count_in_triples(plan)
       !> The plan
-      type(block_plan_t), intent(inout) :: plan
+      type(elimination_plan_t), intent(inout) :: plan
       integer :: i, k, height, width
 
       associate (n => plan%n_triple)
@@ -251,7 +251,7 @@ contains
       !> Panel of each place: (n_block)
       integer, intent(in) :: panel(:)
       !> The plan; receives the couplings
-      type(block_plan_t), intent(inout) :: plan
+      type(elimination_plan_t), intent(inout) :: plan
       integer :: next(size(plan%first)), at(size(place)), e, g, i, p, width, height
 
       next = 0

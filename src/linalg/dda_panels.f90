@@ -1,6 +1,6 @@
 !> Numbers of a factor by panels, in working precision
 module dda_panels
-   use dda_block_plan, only : block_plan_t, most_columns
+   use dda_block_plan, only : elimination_plan_t, most_columns
    use dda_kinds, only : rk => wp
    implicit none
    private

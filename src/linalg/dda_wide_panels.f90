@@ -1,6 +1,6 @@
 !> Numbers of a factor by panels in numbers of twice the digits
 module dda_wide_panels
-   use dda_block_plan, only : block_plan_t, most_columns
+   use dda_block_plan, only : elimination_plan_t, most_columns
    implicit none
    private
 

@@ -6,7 +6,7 @@
 module dda_case_proof
    use dda_bar_joints, only : bar_joint
    use dda_contact_detection, only : contacts_t
-   use dda_critical, only : critical_t
+   use dda_search, only : critical_t
    use dda_decision, only : decision_t
    use dda_error, only : error_t
    use dda_graph_decision, only : decides_as_graph

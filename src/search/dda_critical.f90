@@ -23,7 +23,7 @@ module dda_critical
    implicit none
    private
 
-   public :: search_t, critical_t, find_critical
+   public :: find_critical
 
    !> Most decisions of a search
    integer, parameter :: max_decisions = 100

@@ -13,7 +13,8 @@ module dda_decision
    use dda_graph_decision, only : decide_graph, decides_as_graph, graph_verdict_t
    use dda_graph_report, only : show_mechanism, show_state
    use dda_kinds, only : wp
-   use dda_loading_path, only : face, path_end
+   use dda_coulomb_law, only : face
+   use dda_loading_path, only : path_end
    use dda_settings, only : flow_rule, settings_t
    use dda_step_context, only : march_t
    use dda_verdict, only : verdict

@@ -12,11 +12,12 @@ module dda_mechanism
    implicit none
    private
 
-   public :: mechanism_t, mechanism_of, follow_collapse, joint_role, joint_role_enum, role_of_joint
+   public :: mechanism_t, mechanism_of, follow_collapse
+   public :: mechanism_role, mechanism_role_enum, role_of_joint
    public :: largest_of, slides
 
    !> What a joint does in a mechanism
-   type :: joint_role_enum
+   type :: mechanism_role_enum
       !> Both corners closed and stuck
       integer :: locked = 0
       !> Both corners open
@@ -27,10 +28,10 @@ module dda_mechanism
       integer :: hinge_first = 3
       !> Turns about its second corner: in an arch the extrados
       integer :: hinge_second = 4
-   end type joint_role_enum
+   end type mechanism_role_enum
 
    !> Names of the roles
-   type(joint_role_enum), parameter :: joint_role = joint_role_enum()
+   type(mechanism_role_enum), parameter :: mechanism_role = mechanism_role_enum()
 
    !> A collapse mechanism
    type :: mechanism_t
@@ -100,18 +101,18 @@ contains
       associate (increment => contacts%increment)
          slip = sum(abs(increment(3, :)), mask=slides(contacts%face, increment(3, :), &
             & largest_of(contacts, motion)))
-         opening = sum(increment(1, :), mask=role == joint_role%hinge_second) &
-            & + sum(increment(2, :), mask=role == joint_role%hinge_first)
+         opening = sum(increment(1, :), mask=role == mechanism_role%hinge_second) &
+            & + sum(increment(2, :), mask=role == mechanism_role%hinge_first)
       end associate
       allocate (mechanism%intrados_deg(0), mechanism%extrados_deg(0))
       if (n > 0) then
          mechanism%springing = "none"
          mechanism%intrados_deg = &
-            & each_once(abs(pack(joint_angle_deg, role == joint_role%hinge_first)))
+            & each_once(abs(pack(joint_angle_deg, role == mechanism_role%hinge_first)))
          mechanism%extrados_deg = &
-            & each_once(abs(pack(joint_angle_deg, role == joint_role%hinge_second)))
-         if (any(role([1, n]) == joint_role%hinge_first)) mechanism%springing = "intrados"
-         if (any(role([1, n]) == joint_role%hinge_second)) mechanism%springing = "extrados"
+            & each_once(abs(pack(joint_angle_deg, role == mechanism_role%hinge_second)))
+         if (any(role([1, n]) == mechanism_role%hinge_first)) mechanism%springing = "intrados"
+         if (any(role([1, n]) == mechanism_role%hinge_second)) mechanism%springing = "extrados"
       end if
       if (.not. slip + opening > 0.0_wp) return
       mechanism%sliding_share = slip/(slip + opening)
@@ -127,20 +128,20 @@ contains
       type(contacts_t), intent(in) :: contacts
       !> Motion of the blocks in the step, where it is known: (n_dof, n_equation)
       real(wp), intent(in), optional :: motion(:, :)
-      !> One of joint_role each: (n_joint)
+      !> One of mechanism_role each: (n_joint)
       integer :: role(size(contacts%face))
       real(wp) :: least
       logical :: opens(2)
       integer :: j
 
       least = elastic_share*maxval(abs(contacts%increment))
-      role = merge(joint_role%sliding, joint_role%locked, slides(contacts%face, &
+      role = merge(mechanism_role%sliding, mechanism_role%locked, slides(contacts%face, &
          & contacts%increment(3, :), largest_of(contacts, motion)))
       do j = 1, size(role)
          opens = contacts%face(j)%open .and. contacts%increment(1:2, j) > least
          if (.not. any(opens)) cycle
-         role(j) = merge(joint_role%hinge_second, joint_role%hinge_first, opens(1))
-         if (all(contacts%face(j)%open)) role(j) = joint_role%open
+         role(j) = merge(mechanism_role%hinge_second, mechanism_role%hinge_first, opens(1))
+         if (all(contacts%face(j)%open)) role(j) = mechanism_role%open
       end do
    end function role_of_joint
 

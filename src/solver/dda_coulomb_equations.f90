@@ -19,7 +19,7 @@ module dda_coulomb_equations
    implicit none
    private
 
-   public :: coulomb_equations_t, new_equations, use_faces, solve_equations
+   public :: coulomb_equations_t, new_coulomb_equations, use_faces, solve_equations
 
    !> A factor, and what has changed since
    type :: coulomb_equations_t
@@ -65,7 +65,7 @@ module dda_coulomb_equations
 contains
 
    !> Pattern of the equations
-   pure subroutine new_equations(joints, equations)
+   pure subroutine new_coulomb_equations(joints, equations)
       !> The joints
       type(coulomb_joints_t), intent(in) :: joints
       !> Receives it
@@ -78,7 +78,7 @@ contains
       allocate (equations%joint(max_answer), equations%difference(3, 3, max_answer))
       allocate (equations%answer(3, max_answer), equations%origin(2, max_answer))
       allocate (equations%opening(3, max_answer, max_answer), equations%active(0))
-   end subroutine new_equations
+   end subroutine new_coulomb_equations
 
    !> Make the equations those of a set of faces: by few changes of the factor, or by a new one
    pure subroutine use_faces(equations, joints, faces, damping)

@@ -4,7 +4,7 @@
 !> mechanism whose joints open as they slide. From these forces the blocks move at the load, damped
 !> by mass, with joints that slide along themselves: until nothing stops them.
 module dda_coulomb_fall
-   use dda_coulomb_equations, only : coulomb_equations_t, new_equations
+   use dda_coulomb_equations, only : coulomb_equations_t, new_coulomb_equations
    use dda_coulomb_joints, only : coulomb_joints_t, in_metres, in_units, new_coulomb_joints, &
       & shear_role
    use dda_coulomb_law, only : apply_law, coulomb_state_t, unloaded_state
@@ -45,7 +45,7 @@ contains
       integer :: end
 
       call new_coulomb_joints(graph, load, joints)
-      call new_equations(joints, equations)
+      call new_coulomb_equations(joints, equations)
       call begin_at(joints, force/joints%force_unit, state)
       still = 0.0_wp
       call apply_law(joints, state, still, state)

@@ -18,7 +18,7 @@ module dda_coulomb_law
 
    public :: coulomb_state_t, face, face_enum
    public :: unloaded_state, apply_law, joint_stiffness, spring_forces, imbalance, &
-      & change_faces, shear_face
+      & force_faces, shear_face
 
    !> What a corner or a joint does: a corner is open or closed, a joint sticks, slides or is free
    type :: face_enum
@@ -228,7 +228,7 @@ contains
    end subroutine imbalance
 
    !> Forces of a state whose joints take other faces, before anything has moved
-   pure subroutine change_faces(joints, state, faces, change)
+   pure subroutine force_faces(joints, state, faces, change)
       !> The joints
       type(coulomb_joints_t), intent(in) :: joints
       !> The state
@@ -256,5 +256,5 @@ contains
                & *sum(state%force(:2, j) + change(:2, j)) - state%force(3, j)
          end select
       end do
-   end subroutine change_faces
+   end subroutine force_faces
 end module dda_coulomb_law

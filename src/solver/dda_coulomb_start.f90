@@ -8,7 +8,7 @@ module dda_coulomb_start
    use dda_coulomb_equations, only : coulomb_equations_t, solve_equations, use_faces
    use dda_coulomb_interior, only : enough, interior_motion, coulomb_interior_t, sharp
    use dda_coulomb_joints, only : coulomb_joints_t
-   use dda_coulomb_law, only : apply_law, change_faces, coulomb_state_t, imbalance, unloaded_state
+   use dda_coulomb_law, only : apply_law, force_faces, coulomb_state_t, imbalance, unloaded_state
    use dda_joint_graph, only : joint_motion
    use dda_kinds, only : wp
    use dda_load_jump, only : far_factor, jump_t, jump_to_balance, motion_end, path_damping
@@ -157,7 +157,7 @@ contains
       do pass = 1, most
          call use_faces(equations, joints, faces, damping)
          if (.not. equations%usable) return
-         call change_faces(joints, before, faces, change)
+         call force_faces(joints, before, faces, change)
          call imbalance(joints, first, change, rest)
          call solve_equations(equations, joints, rest, step, change)
          if (.not. (equations%usable .and. all(abs(step) <= huge(1.0_wp)))) return

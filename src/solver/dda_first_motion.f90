@@ -5,11 +5,11 @@
 !> masses instead of a factor, and the answer is one alone. Joints that slide open by their
 !> friction, as limit analysis has it.
 module dda_first_motion
-   use dda_interior_point, only : solve_interior, worst
+   use dda_interior_point, only : solve_cones, worst
    use dda_interior_state, only : interior_goal_t, interior_point_t, load_path_t, set_path
    use dda_interior_turn, only : lift
    use dda_joint_graph, only : joint_graph_t
-   use dda_joint_rays, only : joint_forces, joint_rays_t, scale_load, set_rays
+   use dda_joint_rays, only : forces_of_rays, joint_rays_t, scale_load, set_rays
    use dda_kinds, only : wp
    use dda_limit_decision, only : keep_velocities, unit_of_force
    use dda_ray_matrix, only : plan_matrix, ray_matrix_t, set_springs, solve_springs
@@ -51,11 +51,11 @@ contains
       path%mass(3, 1:) = path%mass(3, 1:)/rays%length**2
       path%moves = .true.
       call begin(rays, path, springs, point)
-      call solve_interior(rays, path, interior_goal_t(tolerance=aim), springs, point)
+      call solve_cones(rays, path, interior_goal_t(tolerance=aim), springs, point)
       found = worst(point) < accepted
       n_factorisation = springs%n_factorisation
       call keep_velocities(rays, point%v, motion)
-      call joint_forces(rays, point%x, unit_of_force(load), force)
+      call forces_of_rays(rays, point%x, unit_of_force(load), force)
    end subroutine find_first_motion
 
    !> Springs of equal stiffness beside the masses; forces and rates are then pushed inside

@@ -13,15 +13,15 @@
 module dda_interior_point
    use dda_interior_state, only : interior_goal_t, interior_point_t, interior_state, &
       & load_path_t, no_limit
-   use dda_interior_turn, only : begin_turns, correct, lift, move, predict, see_residuals, &
-      & turn_t
+   use dda_interior_direction, only : turn_t
+   use dda_interior_turn, only : begin_turns, correct, lift, move, predict, see_residuals
    use dda_joint_rays, only : joint_rays_t
    use dda_kinds, only : wp
    use dda_ray_matrix, only : ray_matrix_t, set_springs, solve_springs
    implicit none
    private
 
-   public :: start_by_springs, worst, solve_interior
+   public :: start_by_springs, worst, solve_cones
 
    !> Turns without progress before the iteration ends
    integer, parameter :: patience = 8
@@ -67,7 +67,7 @@ contains
    end subroutine start_by_springs
 
    !> Largest factor, or motion of masses, from a point inside the bounds
-   pure subroutine solve_interior(rays, path, goal, springs, point)
+   pure subroutine solve_cones(rays, path, goal, springs, point)
       !> The rays
       type(joint_rays_t), intent(in) :: rays
       !> The loads
@@ -109,7 +109,7 @@ contains
       best%n_turn = point%n_turn
       best%state = point%state
       point = best
-   end subroutine solve_interior
+   end subroutine solve_cones
 
    !> The worst of the three figures
    pure real(wp) function worst(point)

@@ -11,7 +11,7 @@ module dda_interior_turn
    implicit none
    private
 
-   public :: turn_t, lift
+   public :: lift
    public :: begin_turns, see_residuals, predict, correct, move
 
    !> Share by which diagonal entries are raised

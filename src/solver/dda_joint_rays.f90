@@ -11,7 +11,7 @@ module dda_joint_rays
    implicit none
    private
 
-   public :: joint_rays_t, n_side, set_rays, scale_load, ray_rates, add_ray_forces, joint_forces
+   public :: joint_rays_t, n_side, set_rays, scale_load, ray_rates, add_ray_forces, forces_of_rays
 
    !> Rays of a joint
    integer, parameter :: n_side = 4
@@ -187,7 +187,7 @@ contains
    end subroutine add_ray_forces
 
    !> Forces of the joints from the factors of their rays
-   pure subroutine joint_forces(rays, x, unit, force)
+   pure subroutine forces_of_rays(rays, x, unit, force)
       !> The rays
       type(joint_rays_t), intent(in) :: rays
       !> Their factors: (n_side, n_joint)
@@ -201,5 +201,5 @@ contains
       do j = 1, size(x, 2)
          force(:, j) = unit*matmul(rays%force(:, :, j), x(:, j))
       end do
-   end subroutine joint_forces
+   end subroutine forces_of_rays
 end module dda_joint_rays

@@ -5,12 +5,12 @@
 !> more. The interior-point method starts at those forces, in balance, and stops as soon as forces
 !> reach the end of the path or velocities say that none do.
 module dda_limit_decision
-   use dda_interior_point, only : solve_interior
+   use dda_interior_point, only : solve_cones
    use dda_interior_state, only : interior_goal_t, interior_point_t, interior_state, &
       & load_path_t, set_path, size_of_load
    use dda_joint_graph, only : crushes, joint_graph_t
    use dda_joint_layers, only : add_layers, joint_layers_t, touch_parabola
-   use dda_joint_rays, only : add_ray_forces, joint_forces, joint_rays_t, scale_load, set_rays
+   use dda_joint_rays, only : add_ray_forces, forces_of_rays, joint_rays_t, scale_load, set_rays
    use dda_kinds, only : wp
    use dda_limit_certificate, only : check_forces, check_velocities, crushing_power
    use dda_ray_matrix, only : plan_matrix, ray_matrix_t
@@ -149,7 +149,7 @@ contains
       call plan_matrix(rays, springs)
       call go_to_load(rays, load, springs, point)
       decision%n_factorisation = springs%n_factorisation
-      call joint_forces(rays, point%x, unit_of_force(load), decision%force)
+      call forces_of_rays(rays, point%x, unit_of_force(load), decision%force)
       call keep_velocities(rays, point%v, decision%velocity)
       call conclude(graph, load, point, decision)
    end subroutine decide_cones
@@ -182,7 +182,7 @@ contains
       allocate (point%v(3, 0:rays%n_block), source=0.0_wp)
       goal%tolerance = resolution
       goal%target = path%size
-      call solve_interior(rays, path, goal, springs, point)
+      call solve_cones(rays, path, goal, springs, point)
       point%factor = point%factor/path%size
       point%upper = point%upper/path%size
       if (point%factor > 1.0_wp) then

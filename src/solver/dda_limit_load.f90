@@ -5,12 +5,12 @@
 !>
 !> Equation (M6) of docs/method.md
 module dda_limit_load
-   use dda_interior_point, only : solve_interior, start_by_springs
+   use dda_interior_point, only : solve_cones, start_by_springs
    use dda_interior_state, only : interior_goal_t, interior_point_t, interior_state, &
       & load_path_t, no_limit, set_path
    use dda_joint_graph, only : crushes, joint_graph_t
    use dda_joint_layers, only : add_layers, bound_all, joint_layers_t, touch_parabola
-   use dda_joint_rays, only : joint_forces, joint_rays_t, scale_load, set_rays
+   use dda_joint_rays, only : forces_of_rays, joint_rays_t, scale_load, set_rays
    use dda_kinds, only : wp
    use dda_limit_certificate, only : balance_margin, carried_factor, check_forces, &
       & check_velocities, crushing_power, flow_margin, stopping_factor
@@ -228,7 +228,7 @@ contains
       end if
       allocate (limit%force(3, size(graph%kind)))
       allocate (limit%velocity(graph%n_dof, graph%n_block))
-      call joint_forces(rays, point%x, unit, limit%force)
+      call forces_of_rays(rays, point%x, unit, limit%force)
       call keep_velocities(rays, point%v, limit%velocity)
       call certify(graph, dead, live, limit)
       limit%n_factorisation = springs%n_factorisation
@@ -260,7 +260,7 @@ contains
       call start_by_springs(rays, path, springs, point)
       goal%tolerance = tolerance
       goal%ceiling = ceiling
-      call solve_interior(rays, path, goal, springs, point)
+      call solve_cones(rays, path, goal, springs, point)
       point%factor = point%factor/path%size
    end subroutine raise_live_load
 

@@ -12,11 +12,11 @@
 !>
 !> Equation (M4) of docs/method.md
 module dda_loading_path
-   use dda_coulomb_equations, only : coulomb_equations_t, new_equations
+   use dda_coulomb_equations, only : coulomb_equations_t, new_coulomb_equations
    use dda_coulomb_joints, only : coulomb_joints_t, in_metres, in_motion_units, in_newtons, &
       & in_units, &
       & new_coulomb_joints, set_force_unit
-   use dda_coulomb_law, only : apply_law, coulomb_state_t, face, face_enum, imbalance
+   use dda_coulomb_law, only : apply_law, coulomb_state_t, imbalance
    use dda_coulomb_start, only : load_at_once
    use dda_event_rates, only : find_rates, new_rates, rates_t, undamp_rates
    use dda_joint_graph, only : joint_graph_t
@@ -27,7 +27,7 @@ module dda_loading_path
    implicit none
    private
 
-   public :: loading_path_t, path_rate_t, path_result_t, coulomb_state_t, face, face_enum
+   public :: loading_path_t, path_rate_t, path_result_t
    public :: path_end, path_end_enum, path_reason, path_reason_enum
    public :: begin_path, follow_path, new_path, new_rate
 
@@ -147,7 +147,7 @@ contains
       type(loading_path_t), intent(out) :: path
 
       call new_coulomb_joints(graph, load, path%joints)
-      call new_equations(path%joints, path%equations)
+      call new_coulomb_equations(path%joints, path%equations)
    end subroutine new_path
 
    !> The state under the dead load

@@ -2,7 +2,7 @@
 !> spreads over more decades than working precision has
 module dda_wide_factor
    use dda_block_matrix, only : block_matrix_t
-   use dda_block_plan, only : block_plan_t
+   use dda_block_plan, only : elimination_plan_t
    use dda_joint_rays, only : joint_rays_t
    use dda_kinds, only : wp
    use dda_wide_panels, only : eliminate, new_panels, panels_t, substitute_panels, wide
@@ -37,7 +37,7 @@ contains
       !> Entry of the matrix that each joint couples, 0 for none: (n_joint)
       integer, intent(in) :: entry(:)
       !> Plan of its factor
-      type(block_plan_t), intent(in) :: plan
+      type(elimination_plan_t), intent(in) :: plan
       !> The factor
       type(wide_factor_t), intent(inout) :: wide
       real(qp), allocatable :: diagonal(:, :, :), coupling(:, :, :)
@@ -77,7 +77,7 @@ contains
       !> The rays
       type(joint_rays_t), intent(in) :: rays
       !> Plan of the factor
-      type(block_plan_t), intent(in) :: plan
+      type(elimination_plan_t), intent(in) :: plan
       !> The factor
       type(wide_factor_t), intent(in) :: wide
       !> Right-hand side in, solution out: (3, n_block)

@@ -12,7 +12,7 @@ module dda_chain_thrust
    use dda_chain_balance, only : cone_of, holds, influence, joint_force, sum_loads
    use dda_friction_cone, only : apply_face, cone_t, joint_face_t, project
    use dda_kinds, only : wp
-   use dda_three_unknowns, only : energy_t, hold_upright, is_better, solve_3, try_between
+   use dda_three_unknowns, only : chain_energy_t, hold_upright, is_better, solve_3, try_between
    implicit none
    private
 
@@ -56,7 +56,7 @@ contains
       type(thrust_t), intent(out) :: thrust
       !> Sums of the loads, force and moment: (3, n + 1)
       real(wp), intent(out) :: load(:, :)
-      type(energy_t) :: glued
+      type(chain_energy_t) :: glued
       integer, allocatable :: watched(:)
       integer :: j, m, stride
 
@@ -73,7 +73,7 @@ contains
       end do
       if (chain%whole_load > 0.0_wp) thrust%elastic_motion = thrust%elastic_motion &
          & *real(m, wp)/real(size(watched), wp)/chain%whole_load
-      glued = energy_t(share*glued%value, share*glued%slope, share*glued%curvature)
+      glued = chain_energy_t(share*glued%value, share*glued%slope, share*glued%curvature)
       call descend(chain, load, glued, watched, thrust)
       if (stride == 1) return
       watched = around_weak(chain, load, thrust%reaction, stride, watched)
@@ -88,12 +88,12 @@ contains
       real(wp), intent(in) :: load(:, :)
       !> The forces, by some joints
       type(thrust_t), intent(inout) :: thrust
-      type(energy_t) :: glued
+      type(chain_energy_t) :: glued
       integer :: j
 
       if (size(chain%half) < coarse) return
       glued = glued_energy(chain, load, [(j, j=1, size(chain%half))])
-      glued = energy_t(share*glued%value, share*glued%slope, share*glued%curvature)
+      glued = chain_energy_t(share*glued%value, share*glued%slope, share*glued%curvature)
       call descend(chain, load, glued, [(j, j=1, size(chain%half))], thrust)
    end subroutine refine_thrust
 
@@ -136,12 +136,12 @@ contains
       !> Sums of the loads: (3, n + 1)
       real(wp), intent(in) :: load(:, :)
       !> Energy if no joint could fail, at zero
-      type(energy_t), intent(in) :: glued
+      type(chain_energy_t), intent(in) :: glued
       !> The joints that count
       integer, intent(in) :: watched(:)
       !> The forces
       type(thrust_t), intent(inout) :: thrust
-      type(energy_t) :: here, there
+      type(chain_energy_t) :: here, there
       real(wp) :: bracket(2), direction(3), fall, steepness(2), way
       integer :: pass, try
 
@@ -171,13 +171,13 @@ contains
       !> Sums of the loads: (3, n + 1)
       real(wp), intent(in) :: load(:, :)
       !> Its part if no joint could fail, at zero
-      type(energy_t), intent(in) :: glued
+      type(chain_energy_t), intent(in) :: glued
       !> The joints that count
       integer, intent(in) :: watched(:)
       !> The place
       real(wp), intent(in) :: reaction(3)
       !> The function with its derivatives
-      type(energy_t), intent(out) :: energy
+      type(chain_energy_t), intent(out) :: energy
       real(wp) :: beyond(3), force(3), slope(3)
       integer :: i
 
@@ -203,7 +203,7 @@ contains
       !> The joints that count
       integer, intent(in) :: watched(:)
       !> The energy
-      type(energy_t) :: energy
+      type(chain_energy_t) :: energy
       real(wp) :: n(3), t(3), m(3), force(3), give
       integer :: c, i, j
 
@@ -241,7 +241,7 @@ contains
       !> Number of the joint
       integer, intent(in) :: j
       !> What it is added to
-      type(energy_t), intent(inout) :: energy
+      type(chain_energy_t), intent(inout) :: energy
       !> The part of the force that the cone does not let pass [N/m]
       real(wp), intent(out) :: beyond(3)
       type(cone_t) :: cone
@@ -285,7 +285,7 @@ contains
       real(wp), intent(out) :: beyond(:, :)
       !> Passes of Newton's method
       integer, intent(out) :: passes
-      type(energy_t) :: here, there
+      type(chain_energy_t) :: here, there
       real(wp) :: bracket(2), direction(3), fall, steepness(2), way
       real(wp) :: rest(3, size(force, 2)), tried(3, size(force, 2))
       integer :: try
@@ -341,7 +341,7 @@ contains
       !> The part that the cones do not let pass: (3, n + 1) [N/m]
       real(wp), intent(out) :: beyond(:, :)
       !> Its energy
-      type(energy_t), intent(out) :: energy
+      type(chain_energy_t), intent(out) :: energy
       integer :: j
 
       do j = 1, size(force, 2)

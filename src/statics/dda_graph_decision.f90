@@ -15,8 +15,9 @@ module dda_graph_decision
    use dda_limit_decision, only : decide_load, load_decision_t, load_state
    use dda_limit_load, only : find_limit, limit_load_t, limit_state
    use dda_load_stations, only : last_history_time, load_stations, load_stations_t, loads_at
-   use dda_loading_path, only : begin_path, coulomb_state_t, follow_path, loading_path_t, &
-      & new_path, new_rate, path_end, path_rate_t, path_reason, path_result_t
+   use dda_coulomb_law, only : coulomb_state_t
+   use dda_loading_path, only : begin_path, follow_path, loading_path_t, new_path, new_rate, &
+      & path_end, path_rate_t, path_reason, path_result_t
    use dda_scene_graph, only : has_pure_friction, scene_graph
    use dda_settings, only : factor_of, flow_rule, settings_t
    implicit none

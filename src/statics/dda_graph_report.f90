@@ -10,7 +10,7 @@ module dda_graph_report
    use dda_joint_graph, only : joint_graph_t, joint_motion
    use dda_kinds, only : wp
    use dda_load_stations, only : last_history_time
-   use dda_loading_path, only : face
+   use dda_coulomb_law, only : face
    use dda_scene_graph, only : scene_graph
    use dda_settings, only : flow_rule, settings_t
    implicit none

@@ -4,17 +4,17 @@ module dda_three_unknowns
    implicit none
    private
 
-   public :: energy_t, is_better, try_between, hold_upright, solve_3
+   public :: chain_energy_t, is_better, try_between, hold_upright, solve_3
 
    !> A function of the three unknowns: its value with its first and second derivatives
-   type :: energy_t
+   type :: chain_energy_t
       !> Value
       real(wp) :: value = 0.0_wp
       !> First derivatives
       real(wp) :: slope(3) = 0.0_wp
       !> Second derivatives
       real(wp) :: curvature(3, 3) = 0.0_wp
-   end type energy_t
+   end type chain_energy_t
 
    !> Share of the fall that a straight line promises which counts as a fall
    real(wp), parameter :: barely = 1.0e-4_wp
@@ -28,9 +28,9 @@ contains
    !> Whether a place along a direction is good enough: lower, and not as steep by far
    pure logical function is_better(here, there, direction, fall, way)
       !> The function where the direction begins
-      type(energy_t), intent(in) :: here
+      type(chain_energy_t), intent(in) :: here
       !> The function at the place
-      type(energy_t), intent(in) :: there
+      type(chain_energy_t), intent(in) :: there
       !> The direction
       real(wp), intent(in) :: direction(3)
       !> How steeply the function falls at the beginning
@@ -47,7 +47,7 @@ contains
    !> positive one: Newton's method on the slope and the secant in turns
    pure subroutine try_between(there, direction, bracket, steepness, try, way)
       !> The function at the last place
-      type(energy_t), intent(in) :: there
+      type(chain_energy_t), intent(in) :: there
       !> The direction
       real(wp), intent(in) :: direction(3)
       !> How far its ends are: (2)

@@ -14,7 +14,8 @@ module dda_benchmark
    use dda_chain_unfold, only : unfold
    use dda_constants, only : pi
    use dda_contact_detection, only : contacts_t, find_contacts
-   use dda_critical, only : critical_t, find_critical, search_t
+   use dda_search, only : critical_t, search_t
+   use dda_critical, only : find_critical
    use dda_decision, only : decide, decision_t
    use dda_error, only : error_t
    use dda_kinds, only : wp
