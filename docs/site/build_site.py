@@ -81,6 +81,8 @@ STYLE = """.wy-nav-content { max-width: 1060px; }
 .rst-content h2, .rst-content h3, .rst-content h3 code, .rst-content p code, .rst-content li code
 { white-space: normal; overflow-wrap: anywhere; }
 .rst-content img { background: #fff; max-width: 100%; }
+.rst-content p:has(img + img) { display: grid; gap: 1em;
+grid-template-columns: repeat(auto-fit, minmax(min(100%, 24rem), 1fr)); }
 pre code.language-message { white-space: pre-wrap; }
 math { font-size: 1.1em; }
 span.formula { display: inline-block; max-width: 100%; overflow-x: auto; vertical-align: middle; }

@@ -15,9 +15,9 @@ from voussoir.bench.limit_lp_blocks import assembly_of, limit_factor  # noqa: E4
 from voussoir.bench.work_precision_fronts import Panel, Point, front  # noqa: E402
 from voussoir.bench.work_precision_motion import MotionPoint, order, pendulum_quarter  # noqa: E402
 from voussoir.bench.work_precision_motion_page import motion_table  # noqa: E402
-from voussoir.bench.work_precision_page import front_table, race_table  # noqa: E402
+from voussoir.bench.work_precision_page import answer_words, draw, front_table, race_table  # noqa: E402
 from voussoir.bench.work_precision_runs import Arch, Race  # noqa: E402
-from voussoir.bench.work_precision_scenes import RIGID, three_rings, wall  # noqa: E402
+from voussoir.bench.work_precision_scenes import ORIGINAL, RIGID, three_rings, wall  # noqa: E402
 from voussoir.command.main import main  # noqa: E402
 from voussoir.deck.run import Deck  # noqa: E402
 
@@ -69,6 +69,22 @@ def test_front_never_runs_backwards_and_nothing_beats_it():
     assert front([point(None, 1.0)]) == []
     row = front_table([Panel("", tuple(points))])[-1]
     assert row == f"| arch | {RIGID} | 1e-09 | 500 ms | 500 ms | 3e+03 ms | 3e+03 ms |"
+
+
+def test_legend_tells_the_best_answer_and_when_it_is_first_had():
+    assert answer_words("a", [point(1e-3, 0.01), point(2e-15, 0.02), point(1e-16, 3.0)]) == "a: all digits in 20 ms"
+    assert answer_words("a", [point(0.0732, 2.34), point(0.1, 1e-3)]) == "a: 7.3 % in 2.3 s"
+    assert answer_words("a", [point(2e-8, 4.2e-5)]) == "a: $2\\cdot10^{-8}$ in 0.042 ms"
+    assert answer_words("a", [point(None, 1.0)]) == "a: no answer"
+
+
+def test_methods_without_an_answer_are_drawn_beside_those_with_one(tmp_path):
+    pytest.importorskip("matplotlib")
+    silent = Point("three rings", ORIGINAL, "", None, 1.0, None)
+    one = Point("three rings", RIGID, "", 1e-3, 0.5, None)
+    paths = draw([Panel("three", (one, silent), 0.3)], tmp_path)
+    assert [path.name for path in paths] == ["work_precision_three_rings.svg", "work_precision_three_rings.png"]
+    assert draw([Panel("none", (silent,))], tmp_path) == []
 
 
 @needs_scipy
@@ -141,9 +157,8 @@ def test_small_run_writes_tables_and_figures(tmp_path, capsys):
     original = [float(row["error"]) for row in rows if row["method"] == "the original's scheme"]
     assert original and all(0.01 < error < 0.5 for error in original)
     assert {row["on_front"] for row in rows} == {"0", "1"}
-    for name in ("work_precision", "work_precision_arch"):
-        for ending in ("svg", "png"):
-            assert (tmp_path / f"{name}.{ending}").stat().st_size > 5000
+    for ending in ("svg", "png"):
+        assert (tmp_path / f"work_precision_arch.{ending}").stat().st_size > 5000
 
 
 @needs_dda

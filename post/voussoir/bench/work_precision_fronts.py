@@ -104,7 +104,7 @@ def panels(folder: Path, repeats: int, classes: Sequence[str] = CLASSES) -> Iter
         "wall": lambda: _block_panel(scenes.wall(), folder, repeats),
         "three rings": lambda: _block_panel(scenes.three_rings(), folder, repeats),
         "moving arch": lambda: _arch_panel(scenes.moving_arch(), folder, repeats),
-        "motion": lambda: Panel("Motion in time: quarter period, rocking block", tuple(_motion(folder, repeats))),
+        "motion": lambda: Panel("Motion in time: quarter period of a rocking block", tuple(_motion(folder, repeats))),
     }
     for name in classes:
         yield made[name]()

@@ -3,21 +3,32 @@
 from __future__ import annotations
 
 import csv
+import math
 from collections.abc import Sequence
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from voussoir.bench import work_precision_scenes as scenes
 from voussoir.bench.work_precision_fronts import Panel, Point, front
 from voussoir.bench.work_precision_runs import Race
 
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.lines import Line2D
+
+#: Errors up to this are rounding: all digits are right
+ALL_DIGITS = 1e-14
 #: Smallest error that a logarithmic axis shows: below, digits are spent
 LEAST_ERROR = 1e-16
+#: Colour of words in the axes
+_QUIET = "#555555"
 #: Errors that the table tells the cost of
 GOALS = (1e-1, 1e-3, 1e-6, 1e-9)
 #: Colour (place in the style's inks), mark and line of each method
 _LOOKS = {
     scenes.RIGID: (1, "o", "-"),
     scenes.ELASTIC: (0, "s", "-"),
+    scenes.COULOMB: (0, "s", "-"),
     scenes.ASSOCIATED: (1, "D", "--"),
     scenes.ORIGINAL: (2, "^", "-"),
     scenes.SIMPLEX: (3, "v", "--"),
@@ -94,81 +105,111 @@ def race_table(races: Sequence[Race]) -> list[str]:
 
 
 def draw(panels: Sequence[Panel], folder: Path) -> list[Path]:
-    """Error against run time: all panels in one figure, and the first one alone.
+    """Error against run time: a picture a class of scene, all on the same axis of time.
 
     Parameters
     ----------
     folder : Path
-        Where work_precision.svg and work_precision_arch.svg go, and .png of both.
+        Where work_precision_arch.svg and so on go, and .png of each.
     """
     from voussoir.plot.figure_style import Picture, house_style, save
 
+    told = [point.seconds for panel in panels for own in by_method(panel).values() for point in front(own)]
+    if not told:
+        return []
+    span = 10.0 ** math.floor(math.log10(min(told)) - 0.1), 10.0 ** math.ceil(math.log10(max(told)) + 0.2)
+    paths = []
     with house_style():
-        whole = Picture(figsize=(10.4, 11.4), layout="constrained")
-        grid = list(whole.subplots(3, 2, sharex=True).flat)
-        handles: dict[str, object] = {}
-        for axes, panel in zip(grid, panels):
-            handles |= _draw_panel(axes, panel)
-        for axes in grid[len(panels) :]:
-            axes.set_axis_off()
-        for axes in grid[: len(panels)]:
-            axes.tick_params(labelbottom=True)
-            axes.set_xlabel("time [ms]")
-        order = [handles[name] for name in _LOOKS if name in handles]
-        if len(panels) < len(grid):
-            grid[-1].legend(handles=order, loc="center", fontsize=11, title="best settings of")
-        else:
-            whole.legend(handles=order, loc="outside lower center", ncols=3)
-        paths = save(whole, folder, "work_precision")
-        alone = Picture(figsize=(6.4, 4.6), layout="constrained")
-        axes = alone.subplots()
-        shown = _draw_panel(axes, panels[0])
-        axes.set_xlabel("time [ms]")
-        axes.legend(handles=list(shown.values()), fontsize=9, loc="best")
-        return paths + save(alone, folder, "work_precision_arch")
+        for panel in panels:
+            picture = Picture(figsize=(4.8, 4.7), layout="constrained")
+            axes = picture.subplots()
+            handles = _draw_panel(axes, panel, span)
+            below = {"loc": "upper left", "bbox_to_anchor": (-0.12, -0.16)}
+            axes.legend(handles=handles, fontsize=9.5, handlelength=2.4, **below)
+            paths += save(picture, folder, "work_precision_" + panel.points[0].scene.replace(" ", "_"))
+    return paths
 
 
-def _draw_panel(axes, panel: Panel) -> dict[str, object]:
-    """One panel; gives the entries of the legend by their methods."""
+def answer_words(method: str, own: Sequence[Point]) -> str:
+    """What a method reaches, and when: a line of a legend."""
+    best = front(list(own))
+    if not best:
+        return f"{method}: no answer"
+    last = next(point for point in best if point.error <= max(best[-1].error, ALL_DIGITS))
+    if last.error <= ALL_DIGITS:
+        return f"{method}: all digits in {_duration(last.seconds)}"
+    return f"{method}: {_share(last.error)} in {_duration(last.seconds)}"
+
+
+def _share(error: float) -> str:
+    """An error in words: percent where that is legible."""
+    if error >= 1e-4:
+        return f"{100.0 * error:.2g} %"
+    digit, _, power = f"{error:.0e}".partition("e")
+    return f"${digit}\\cdot10^{{{int(power)}}}$"
+
+
+def _duration(seconds: float, digits: int = 2) -> str:
+    """A time with its unit, to so many digits."""
+    unit, scale = ("s", 1.0) if seconds >= 1.0 else ("ms", 1e3) if seconds >= 1e-5 else ("µs", 1e6)
+    shown = float(f"{scale * seconds:.{digits - 1}e}")
+    return f"{shown:g} {unit}"
+
+
+def _draw_panel(axes: Axes, panel: Panel, span: tuple[float, float]) -> list[Line2D]:
+    """One panel; gives the lines of its legend, the quickest method first."""
     from voussoir.plot.figure_style import INK
 
+    methods = by_method(panel)
+    least = min((point.error for own in methods.values() for point in front(own)), default=0.0)
+    decades = 16 if least < 1e-6 else 4
+    bottom, top = 10.0**-decades / (6.0 if decades == 16 else 2.0), 2.0
     entries = {}
-    for method, own in by_method(panel).items():
+    for method, own in methods.items():
         best = front(own)
         color, mark, dash = _LOOKS[method]
-        times = [point.seconds * 1e3 for point in best]
+        times = [point.seconds for point in best]
         errors = [max(point.error, LEAST_ERROR) for point in best]
-        # between two points nothing better is known than the one that took less time
-        (entries[method],) = axes.loglog(
-            times,
-            errors,
-            drawstyle="steps-post",
-            linestyle=dash,
-            linewidth=1.3,
-            color=INK[color],
-            marker=mark,
-            markersize=5.5,
-            markerfacecolor="white",
-            label=method,
-        )
+        look = {"linestyle": dash, "color": INK[color], "linewidth": 1.4}
+        if best:  # nothing is known before the first answer, and the best one holds from then on
+            end = times[-1] if errors[-1] <= ALL_DIGITS else span[1]
+            axes.plot([times[0], *times, end], [top, *errors, errors[-1]], drawstyle="steps-post", **look)
+        marks = {"marker": mark, "markersize": 6, "markerfacecolor": "white"}
+        axes.plot(times, errors, color=INK[color], linestyle="none", zorder=3, **marks)
+        (entries[method],) = axes.plot([], [], label=answer_words(method, own), **look, **marks)
+    axes.set(xscale="log", yscale="log", xlim=span, ylim=(bottom, top))
+    axes.set_title(panel.title, fontsize=11.5, loc="left")
+    axes.set_xlabel("time to answer")
+    axes.set_ylabel("relative error of the answer")
+    axes.set_xticks([t for t in (10.0**k for k in range(-6, 4)) if span[0] <= t <= span[1]])
+    axes.xaxis.set_major_formatter(lambda t, place: _duration(t))
+    axes.set_yticks([10.0**-k for k in range(0, decades + 1, decades // 4)])
+    axes.yaxis.set_major_formatter(lambda error, place: _tick(error))
+    axes.minorticks_off()
+    if decades == 16:
+        axes.axhspan(bottom, ALL_DIGITS, color="#eeeeee", zorder=0)
+        _note(axes, "rounding", ALL_DIGITS, -11)
     if panel.gap:
-        axes.axhline(panel.gap, color=INK[2], linewidth=0.9, linestyle=(0, (1, 2)))
-        axes.annotate(
-            f"the associated limit is {100.0 * panel.gap:.2g} % above the answer under Coulomb friction",
-            (0.02, panel.gap),
-            xycoords=("axes fraction", "data"),
-            xytext=(0, -10),
-            textcoords="offset points",
-            fontsize=8,
-            color=INK[2],
-        )
-    axes.set_title(panel.title, fontsize=11)
-    axes.set_ylabel("relative error")
-    least = min((point.error for own in by_method(panel).values() for point in front(own)), default=0)
-    decades = 16 if least < 1e-6 else 6
-    axes.set_ylim(10.0**-decades / 3.0, 3.0)
-    axes.set_yticks([10.0**-k for k in range(0, decades + 1, decades // 4 if decades > 6 else 2)])
-    silent = [method for method, own in by_method(panel).items() if not front(own)]
-    if silent:
-        axes.annotate("no answer: " + ", ".join(silent), (0.02, 0.5), va="center", xycoords="axes fraction", fontsize=8)
-    return entries
+        axes.axhline(panel.gap, color=_QUIET, linewidth=0.9, linestyle=(0, (1, 2)))
+        _note(axes, f"the associated limit is {_share(panel.gap)} above\nwhat stands under Coulomb friction",
+              panel.gap, -24)
+    return [entries[method] for method in sorted(entries, key=lambda method: _first_time(methods[method]))]
+
+
+def _first_time(own: Sequence[Point]) -> float:
+    """When a method has its best answer; never where it has none."""
+    best = front(list(own))
+    return best[-1].seconds if best else math.inf
+
+
+def _tick(error: float) -> str:
+    """An error at its tick: percent as long as it is legible, then powers of ten."""
+    power = round(math.log10(error))
+    return f"{100.0 * error:g} %" if power >= -4 else f"$10^{{{power}}}$"
+
+
+def _note(axes: Axes, text: str, error: float, below: float) -> None:
+    """Words at the left end of the axes, so many points below an error."""
+    box = {"facecolor": "white", "edgecolor": "none", "pad": 0.5, "alpha": 0.85} if "\n" in text else None
+    axes.annotate(text, (0.02, error), xycoords=("axes fraction", "data"), xytext=(0, below), bbox=box,
+                  textcoords="offset points", fontsize=8.5, color=_QUIET, linespacing=1.1, zorder=4)

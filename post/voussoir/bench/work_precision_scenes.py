@@ -12,6 +12,7 @@ from voussoir.bench.stability_scene import BLOCKS, Corners, rectangle, written_b
 #: Names of the methods, as legends have them; where each stands is a panel's affair
 RIGID = "DDA, rigid blocks"
 ELASTIC = "DDA, elastic blocks"
+COULOMB = "DDA, Coulomb friction"
 ASSOCIATED = "DDA, associated limit"
 ORIGINAL = "the original's scheme"
 SIMPLEX = "HiGHS, simplex (associated)"
@@ -93,7 +94,7 @@ def arch() -> Scene:
         ELASTIC: _with(_FINE + stiffness, unknowns=6),
         ORIGINAL: _with(_COARSE, mode="limerick"),
     }
-    return Scene("arch", "Arch: thickness of 36 voussoirs", groups, methods, 60.0)
+    return Scene("arch", "Arch: critical thickness of 36 voussoirs", groups, methods, 60.0)
 
 
 def moving_arch() -> Scene:
@@ -112,7 +113,7 @@ def moving_arch() -> Scene:
         ),
         ORIGINAL: _each("material", "young", (5e9, 5e11), analysis={"mode": "limerick"}, search={"tolerance": 1e-2}),
     }
-    return Scene("moving arch", "Moving arch: thickness, blocks that move", groups, methods, 60.0)
+    return Scene("moving arch", "Arch that moves: critical thickness", groups, methods, 60.0)
 
 
 def wall(courses: int = 8, bricks: int = 5) -> Scene:
@@ -125,8 +126,8 @@ def wall(courses: int = 8, bricks: int = 5) -> Scene:
     kind = {"scene": {"kind": "blocks", "geometry": BLOCKS}}
     groups = _searched(kind, "horizontal_coefficient", 30.0)
     original = tuple({"search": {"low": 0.1, "high": 1.0, "tolerance": 10.0**-k}} for k in (1, 2))
-    methods = {ELASTIC: _FINE, ASSOCIATED: _with(_FINE, flow="associated"), ORIGINAL: _with(original, mode="limerick")}
-    title = f"Wall: horizontal force, {courses} courses"
+    methods = {COULOMB: _FINE, ASSOCIATED: _with(_FINE, flow="associated"), ORIGINAL: _with(original, mode="limerick")}
+    title = f"Wall of {courses} courses: the push that fells it"
     return Scene("wall", title, groups, methods, 30.0, {BLOCKS: text})
 
 
@@ -157,9 +158,9 @@ def three_rings(rings: int = 3, voussoirs: int = 16) -> Scene:
     groups = _searched({"scene": {"kind": "blocks", "geometry": BLOCKS}}, "load_factor", 35.0)
     original = tuple({"search": {"low": 1.0, "high": 100.0, "tolerance": 10.0**-k}} for k in (1, 2))
     methods = {
-        ELASTIC: _FINE[1:6:2],
+        COULOMB: _FINE[1:6:2],
         ASSOCIATED: _with(_FINE, flow="associated"),
         ORIGINAL: _with(original, mode="limerick"),
     }
-    title = "Three rings: load at the quarter point"
+    title = "Three rings: load at the quarter point that fells them"
     return Scene("three rings", title, groups, methods, 35.0, {BLOCKS: text}, number, (x, y))
