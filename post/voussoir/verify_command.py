@@ -16,6 +16,7 @@ from voussoir.verify_deck import Deck, VerifyError, read_record
 from voussoir.verify_exact import MOST_JOINTS, check_exactly
 from voussoir.verify_lines import read_lines
 from voussoir.verify_proofs import TOLERANCE, Finding, Row, Scene, check_forces, check_motion
+from voussoir.verify_sums import sums_of, told_sums
 from voussoir.verify_tables import check_joints, check_rigid
 
 #: A collapse that no limit analysis tells is that of blocks that strain, which may be so far from rigid
@@ -36,7 +37,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.description = (
         "Check the proofs of static verdicts that dda run has left in a folder: forces must balance the loads and keep "
         "the law of every joint, mechanisms must open or leave every joint and be driven by the loads. Joints, weights "
-        "and loads are found again from blocks.csv, deck.record and the file of blocks."
+        "and loads are found again from blocks.csv, deck.record and the file of blocks. Where a proof leaves a number "
+        "free, as a velocity of what parts, the check sum of the rows says whether the program wrote it."
     )
     parser.add_argument("folder", metavar="DIR", type=Path, help="folder of the results")
     parser.add_argument(
@@ -49,6 +51,11 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "--exact",
         action="store_true",
         help=f"prove limits again in rational arithmetic, of cases of at most {MOST_JOINTS} joints",
+    )
+    parser.add_argument(
+        "--ignore-sums",
+        action="store_true",
+        help="check the proofs of tables that were written again, whose rows no longer have the check sums of the run",
     )
     parser.add_argument("--quiet", action="store_true", help="tell the worst case alone")
 
@@ -71,6 +78,8 @@ def run(arguments: argparse.Namespace) -> int:
         tables = {name: read_table(arguments.folder / f"{name}.csv") for name in TABLES}
         places = [arguments.decks] if arguments.decks else [arguments.folder.parent, Path()]
         found = {number: _check_case(deck, number, tables, places) for number in sorted(tables["results"])}
+        if not arguments.ignore_sums:
+            _check_sums(arguments.folder, found)
         if arguments.exact:
             for number, finding in found.items():
                 if finding.figures:
@@ -80,6 +89,16 @@ def run(arguments: argparse.Namespace) -> int:
         sys.stderr.write(f"{arguments.folder}: error: {error}\n")
         return 1 if isinstance(error, (KeyError, IndexError)) else 2
     return _report(found, arguments.quiet)
+
+
+def _check_sums(folder: Path, found: dict[int, Finding]) -> None:
+    """Check that the rows of each case are those that the program wrote."""
+    told, sums = told_sums(folder), sums_of(folder)
+    for number, finding in found.items():
+        if sums.get(number) != told.get(number):
+            finding.faults.append("its rows are not as the program wrote them")
+    for number in sums.keys() - found.keys():
+        raise VerifyError(f"rows of case {number} in the tables, which results.csv does not have")
 
 
 def _report(found: dict[int, Finding], quiet: bool) -> int:
@@ -243,6 +262,7 @@ def scene_of(deck: Deck, rows: list[Row], places: list[Path], finding: Finding) 
         source = read_lines(*_files_of(deck, places), blocks, deck)
     elif deck.text("scene%kind") == "arch" and not deck.is_shape():
         _compare([np.array(corners[n]) for n in sorted(corners) if not fixed[n]], arch_corners(deck), finding)
+        _check_supports(blocks, finding)
     elif deck.is_shape():
         _check_supports(blocks, finding)
     return Scene(blocks, find_joints(blocks), source, deck)

@@ -36,9 +36,9 @@ contains
       !> The pictures
       type(album_t), intent(in) :: album
       !> frames.csv
-      type(table_file_t), intent(in) :: frames
+      type(table_file_t), intent(inout) :: frames
       !> frame_joints.csv
-      type(table_file_t), intent(in) :: joints
+      type(table_file_t), intent(inout) :: joints
       !> Allocated if something cannot be written
       type(error_t), allocatable, intent(out) :: error
       type(pvd_index_t) :: index
@@ -84,7 +84,7 @@ contains
       !> Holds the ways
       type(album_t), intent(in) :: album
       !> points.csv
-      type(table_file_t), intent(in) :: points
+      type(table_file_t), intent(inout) :: points
       !> Allocated if they cannot be written
       type(error_t), allocatable, intent(out) :: error
       real(wp) :: place(2, size(album%point))
@@ -105,7 +105,7 @@ contains
       !> Holds the energies
       type(album_t), intent(in) :: album
       !> energy.csv
-      type(table_file_t), intent(in) :: table
+      type(table_file_t), intent(inout) :: table
       !> Allocated if they cannot be written
       type(error_t), allocatable, intent(out) :: error
       real(wp) :: value(10, album%audit%n)

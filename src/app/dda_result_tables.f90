@@ -7,10 +7,11 @@ module dda_result_tables
    use dda_disk_record, only : write_disk_record
    use dda_error, only : error_t
    use dda_kinds, only : wp
+   use dda_line_sum, only : add_sums
    use dda_proof_rows, only : proof_forces_header, proof_motion_header
    use dda_read_deck, only : few_cases, many_case_tables
    use dda_table_file, only : append_line, close_table, length_of, open_table, remove_file, &
-      & sync_table, table_file_t
+      & sum_of, sync_table, table_file_t
    use dda_text, only : to_text
    use dda_growing_text, only : add_line, growing_text_t, lines_of
    use dda_write_blocks, only : block_lines, blocks_header, told_blocks_t
@@ -24,7 +25,7 @@ module dda_result_tables
 
    public :: result_tables_t, result_table_t, table, table_enum
    public :: name_tables, open_tables, close_tables, write_case, swept_fields, left_out
-   public :: common_length, sync_tables, sync_when_due
+   public :: common_length, common_sum, sync_tables, sync_when_due
 
    !> Places of the tables in result_tables_t
    type :: table_enum
@@ -44,7 +45,8 @@ module dda_result_tables
       integer :: energy = 7
       !> A row a corner of a block
       integer :: blocks = 8
-      !> A row a case: its bytes in all tables but this one and results.csv
+      !> A row a case: its bytes in all tables but this one and results.csv, and the check sum of
+      !> its lines there
       integer :: sizes = 9
       !> A row a joint: forces of the proof
       integer :: proof_forces = 10
@@ -79,6 +81,8 @@ module dda_result_tables
       type(result_table_t) :: at(13)
       !> Bytes of all tables but results.csv and the sizes after the last case
       integer(int64) :: length = 0
+      !> Check sum of their lines
+      integer(int64) :: sum = 0
       !> File that holds what was asked for
       character(len=:), allocatable :: record_file
       !> File that holds how much of results.csv is on the disk
@@ -125,7 +129,7 @@ contains
       call name_table(tables%at(table%joints), "/joints.csv", joints_header())
       call name_table(tables%at(table%log), "/log.txt", "case verdict remark" &
          & //parenthesis(left_out(deck)))
-      call name_table(tables%at(table%sizes), "/sizes.record", "case,bytes")
+      call name_table(tables%at(table%sizes), "/sizes.record", "case,bytes,sum")
       call name_table(tables%at(table%frames), "/frames.csv", frames_header())
       call name_table(tables%at(table%frame_joints), "/frame_joints.csv", frame_joints_header())
       call name_table(tables%at(table%points), "/points.csv", points_header())
@@ -225,6 +229,7 @@ contains
          if (allocated(error)) return
       end do
       tables%length = common_length(tables)
+      tables%sum = common_sum(tables)
       call write_disk_record(tables%disk_file, 0_int64, error)
       if (.not. allocated(error)) call write_record(tables, record, error)
       call system_clock(now, rate)
@@ -322,6 +327,19 @@ contains
       end do
    end function common_length
 
+   !> Check sum of the lines that were appended to all tables but results.csv and the sizes
+   pure integer(int64) function common_sum(tables)
+      !> The tables, open
+      type(result_tables_t), intent(in) :: tables
+      integer :: i
+
+      common_sum = 0
+      do i = 1, size(tables%at)
+         if (i /= table%results .and. i /= table%sizes) &
+            & common_sum = add_sums(common_sum, sum_of(tables%at(i)%open))
+      end do
+   end function common_sum
+
    !> Write the rows of one case, of which pictures, points and proofs are written already: how many
    !> bytes they are, and last that of results.csv, so that a case with a row is whole
    subroutine write_case(tables, row, joint_row, blocks, remark, error)
@@ -338,7 +356,7 @@ contains
       !> Allocated if they cannot be written
       type(error_t), allocatable, intent(inout) :: error
       type(growing_text_t) :: lines
-      integer(int64) :: length
+      integer(int64) :: length, lines_sum
       integer :: j
 
       if (tables%at(table%joints)%wanted) then
@@ -356,9 +374,12 @@ contains
          & //trim(trim(row%verdict)//" "//remark), error)
       if (allocated(error)) return
       length = common_length(tables)
+      lines_sum = common_sum(tables)
       call append_line(tables%at(table%sizes)%open, to_text(row%number)//"," &
-         & //to_text(real(length - tables%length, wp)), error)
+         & //to_text(real(length - tables%length, wp))//"," &
+         & //to_text(real(add_sums(lines_sum, -tables%sum), wp)), error)
       tables%length = length
+      tables%sum = lines_sum
       if (allocated(error)) return
       call append_line(tables%at(table%results)%open, results_line(row), error)
    end subroutine write_case

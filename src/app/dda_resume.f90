@@ -1,15 +1,16 @@
 !> dda run --resume: what an earlier run of the same deck has finished
 !>
 !> A case is finished where its row in results.csv is whole, for that row is written last, and where
-!> its rows in all other tables have the bytes that sizes.record tells. Everything else of that run,
-!> rows cut off by a kill among them, is left out of the tables.
+!> its rows in all other tables have the bytes and the check sum that sizes.record tells. Everything
+!> else of that run, rows cut off by a kill among them, is left out of the tables.
 module dda_resume
    use, intrinsic :: iso_fortran_env, only : int64
    use dda_disk_record, only : trusted_length
    use dda_error, only : error_t
    use dda_kinds, only : wp
-   use dda_result_tables, only : common_length, result_table_t, result_tables_t, sync_tables, &
-      & table
+   use dda_line_sum, only : add_sums, line_sum
+   use dda_result_tables, only : common_length, common_sum, result_table_t, result_tables_t, &
+      & sync_tables, table
    use dda_table_file, only : keep_line, open_part, settle_part
    use dda_table_lines, only : close_lines, field, n_fields, next_line, open_lines, table_lines_t
    use dda_text, only : read_integer, read_number
@@ -67,7 +68,8 @@ contains
          & finished)
    end subroutine find_finished
 
-   !> Whether each case has the bytes that were written down of it in the tables beside results.csv
+   !> Whether each case has the bytes and lines that were written down of it in the tables beside
+   !> results.csv
    subroutine compare_sizes(tables, whole)
       !> The tables, named
       type(result_tables_t), intent(in) :: tables
@@ -76,10 +78,10 @@ contains
       type(table_lines_t) :: lines
       type(layout_t) :: layout
       character(len=:), allocatable :: line
-      integer(int64) :: bytes(size(whole))
-      real(wp) :: told
+      integer(int64) :: bytes(2, size(whole))
+      real(wp) :: told(2)
       integer :: i, number
-      logical :: found, ok
+      logical :: found, ok(2)
 
       bytes = 0
       do i = 1, size(tables%at)
@@ -94,18 +96,20 @@ contains
          if (.not. found) exit
          number = case_of(layout, line, size(whole))
          if (number == 0) cycle
-         call read_number(field(line, 2), told, ok)
-         whole(number) = ok .and. .not. abs(told - real(bytes(number), wp)) > 0.0_wp
+         do i = 1, 2
+            call read_number(field(line, i + 1), told(i), ok(i))
+         end do
+         whole(number) = all(ok) .and. .not. any(abs(told - real(bytes(:, number), wp)) > 0.0_wp)
       end do
       call close_lines(lines)
    end subroutine compare_sizes
 
-   !> Add the bytes that each case has in a table
+   !> Add the bytes that each case has in a table, and the check sums of its lines
    subroutine add_bytes(this, bytes)
       !> The table
       type(result_table_t), intent(in) :: this
-      !> The bytes: (n)
-      integer(int64), intent(inout) :: bytes(:)
+      !> Bytes and sum: (2, n)
+      integer(int64), intent(inout) :: bytes(:, :)
       type(table_lines_t) :: lines
       type(layout_t) :: layout
       character(len=:), allocatable :: line
@@ -117,8 +121,10 @@ contains
       do
          call next_line(lines, line, found)
          if (.not. found) exit
-         number = case_of(layout, line, size(bytes))
-         if (number > 0) bytes(number) = bytes(number) + len(line) + 1
+         number = case_of(layout, line, size(bytes, 2))
+         if (number == 0) cycle
+         bytes(1, number) = bytes(1, number) + len(line) + 1
+         bytes(2, number) = add_sums(bytes(2, number), line_sum(line))
       end do
       call close_lines(lines)
    end subroutine add_bytes
@@ -171,6 +177,7 @@ contains
          if (allocated(error)) return
       end do
       tables%length = common_length(tables)
+      tables%sum = common_sum(tables)
       call sync_tables(tables, error)
    end subroutine reopen_tables
 

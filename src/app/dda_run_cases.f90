@@ -222,7 +222,7 @@ contains
    !> Write what is seen of a case on its way: pictures, measured points, energies
    subroutine write_pictures(tables, number, this, error)
       !> Where the results go
-      type(result_tables_t), intent(in) :: tables
+      type(result_tables_t), intent(inout) :: tables
       !> Number of the case
       integer, intent(in) :: number
       !> The case, computed

@@ -5,17 +5,21 @@ module dda_table_file
    use dda_binary_file, only : append_text, binary_file_t, close_binary, flush_binary, &
       & open_binary, position_of, sync_binary
    use dda_error, only : error_t, fatal_error
+   use dda_line_sum, only : add_sums, line_sum
    implicit none
    private
 
    public :: table_file_t, open_table, append_line, close_table, remove_file
    public :: open_part, keep_line, settle_part, part_name, rename_part, sync_table, length_of
+   public :: sum_of
 
    !> An open table
    type :: table_file_t
       private
       !> Its file
       type(binary_file_t) :: file
+      !> Check sum of the lines that were appended since it was opened
+      integer(int64) :: lines = 0
    end type table_file_t
 
    interface
@@ -60,13 +64,14 @@ contains
    !> Write one line, or several, so that it survives the end of the program; nothing is no line
    subroutine append_line(table, line, error)
       !> The table
-      type(table_file_t), intent(in) :: table
+      type(table_file_t), intent(inout) :: table
       !> The line
       character(len=*), intent(in) :: line
       !> Allocated if it cannot be written
       type(error_t), allocatable, intent(out) :: error
 
       if (len(line) == 0) return
+      table%lines = add_sums(table%lines, line_sum(line))
       call append_text(table%file, line//new_line("a"))
       call flush_binary(table%file, error)
    end subroutine append_line
@@ -88,6 +93,14 @@ contains
 
       length_of = position_of(table%file)
    end function length_of
+
+   !> Check sum of the lines that were appended to a table since it was opened, modulo 2**32
+   pure integer(int64) function sum_of(table)
+      !> The table
+      type(table_file_t), intent(in) :: table
+
+      sum_of = table%lines
+   end function sum_of
 
    !> Close a table
    subroutine close_table(table, error)

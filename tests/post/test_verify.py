@@ -205,17 +205,70 @@ def test_a_changed_number_is_found(tmp_path: Path, seed: int, capsys: pytest.Cap
     blocks, friction = random_assembly(seed % 5)
     head = HEAD + f"&material unit_weight = 1 /\n&joint friction_deg = {friction!r} /\n"
     folder = run_deck(tmp_path, head + SEARCH, blocks)
-    table, columns = source.choice(CHANGED)
-    rows = rows_of(folder / f"{table}.csv")
-    scale = max(abs(float(row[name])) for row in rows for name in columns)
-    row, column = source.choice(rows), source.choice(columns)
-    row[column] = repr(float(row[column]) + source.choice([-1, 1]) * scale * 10 ** source.uniform(-5.9, -1.0))
+    change_a_number(folder, source)
+    assert main(["verify", str(folder), "--ignore-sums"]) == 1
+    assert "FAILS" in capsys.readouterr().out
+
+
+def change_a_number(folder: Path, source: random.Random) -> None:
+    """Change a force, a velocity or a corner by more than a millionth of the largest of its columns."""
+    tables = [(name, rows_of(folder / f"{name}.csv"), columns) for name, columns in CHANGED]
+    cells = [[(row, column) for row in rows for column in columns if row[column]] for _, rows, columns in tables]
+    place = source.choice([place for place, cell in enumerate(cells) if cell])
+    table, rows, _ = tables[place]
+    scale = max(abs(float(row[column])) for row, column in cells[place])
+    row, column = source.choice(cells[place])
+    row[column] = repr(float(row[column]) + source.choice([-1, 1]) * (scale or 1) * 10 ** source.uniform(-5.9, -1.0))
     with (folder / f"{table}.csv").open("w", newline="") as lines:
-        writer = csv.DictWriter(lines, list(row))
+        writer = csv.DictWriter(lines, list(row), lineterminator="\n")
         writer.writeheader()
         writer.writerows(rows)
+
+
+@pytest.mark.parametrize("name", [*DECKS, *SCENES])
+def test_a_changed_number_is_found_whatever_a_proof_leaves_free(tmp_path: Path, name: str) -> None:
+    scene = SCENES.get(name)
+    folder = run_deck(tmp_path, HEAD + scene[1], scene[0]) if scene else run_deck(tmp_path, DECKS[name])
+    before = {path: path.read_bytes() for path in folder.glob("*.csv")}
+    for seed in range(8):
+        change_a_number(folder, random.Random(f"{name} {seed}"))
+        assert main(["verify", str(folder), "--quiet"]) == 1
+        for path, text in before.items():
+            path.write_bytes(text)
+    assert main(["verify", str(folder), "--quiet"]) == 0
+
+
+def test_tables_that_were_written_again_are_told(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    folder = run_deck(tmp_path, DECKS["a lune that falls"])
+    table = folder / "proof_motion.csv"
+    text = table.read_text()
+    # a velocity that is another one by less than a proof can see
+    first, *rest = text.splitlines()
+    *cells, spin = rest[0].split(",")
+    other = repr(float(spin) * (1.0 + 1e-13))
+    assert other != spin
+    table.write_text("\n".join([first, ",".join([*cells, other]), *rest[1:]]) + "\n")
     assert main(["verify", str(folder)]) == 1
-    assert "FAILS" in capsys.readouterr().out
+    assert "not as the program wrote them" in capsys.readouterr().out
+    assert main(["verify", str(folder), "--ignore-sums"]) == 0
+    table.write_text(text)
+    assert main(["verify", str(folder)]) == 0
+    (folder / "sizes.record").unlink()
+    assert main(["verify", str(folder)]) == 2
+    assert "--ignore-sums" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("deck", ["arch", "no slip at springings", "listed joints"])
+def test_corners_of_what_is_fixed_are_those_of_the_arch(tmp_path: Path, deck: str) -> None:
+    folder = run_deck(tmp_path, DECKS[deck])
+    rows = rows_of(folder / "blocks.csv")
+    far = [row for row in rows if row["state"] == "fixed"][-1]
+    for column in "xy":
+        text = (folder / "blocks.csv").read_text()
+        other = dict(far, **{column: repr(float(far[column]) + 1e-5)})
+        (folder / "blocks.csv").write_text(text.replace(",".join(far.values()), ",".join(other.values())))
+        assert main(["verify", str(folder), "--quiet", "--ignore-sums"]) == 1
+        (folder / "blocks.csv").write_text(text)
 
 
 @pytest.mark.parametrize(

@@ -236,7 +236,7 @@ def told_sizes(attempt: Path) -> Iterator[tuple[int, int]]:
     with (attempt / "sizes.record").open("rb") as file:
         file.readline()
         for line in file:
-            case, _, size = line.rstrip(b"\n").partition(b",")
+            case, size, *_ = [*line.rstrip(b"\n").split(b","), b""]
             if line.endswith(b"\n") and case.isdigit() and size.isdigit():
                 yield int(case), int(size)
 

@@ -1,0 +1,64 @@
+"""Whether the rows of a case are those that the program wrote: their check sum, which sizes.record tells."""
+
+from __future__ import annotations
+
+import zlib
+from pathlib import Path
+
+from voussoir.verify_deck import VerifyError
+
+#: Tables whose lines are in the sum, where a run leaves them
+SUMMED = (
+    "joints.csv", "log.txt", "frames.csv", "frame_joints.csv", "points.csv", "energy.csv", "blocks.csv",
+    "proof_forces.csv", "proof_motion.csv", "bars.csv", "reactions.csv",
+)
+
+
+def told_sums(folder: Path) -> dict[int, int]:
+    """Sums that the program has written down.
+
+    Parameters
+    ----------
+    folder : Path
+        Folder of the results.
+
+    Returns
+    -------
+    dict
+        The sum of each case.
+    """
+    path = folder / "sizes.record"
+    if not path.exists():
+        raise VerifyError("no sizes.record: run the deck again, or check proofs alone by --ignore-sums")
+    first, *lines = path.read_text(encoding="utf-8").splitlines()
+    if first != "case,bytes,sum":
+        raise VerifyError("sizes.record tells no sums: run the deck again, or check proofs alone by --ignore-sums")
+    rows = [[int(word) for word in line.split(",")] for line in lines]
+    return {case: total for case, _, total in rows}
+
+
+def sums_of(folder: Path) -> dict[int, int]:
+    """Sums of the tables as they are: CRC-32 of each line, added up for each case.
+
+    Parameters
+    ----------
+    folder : Path
+        Folder of the results.
+
+    Returns
+    -------
+    dict
+        The sum of each case, and of lines of no case under 0.
+    """
+    sums: dict[int, int] = {}
+    for path in [folder / name for name in SUMMED]:
+        if not path.exists():
+            continue
+        blank = b" " if path.suffix == ".txt" else b","
+        with path.open("rb") as lines:
+            next(lines, None)
+            for line in lines:
+                word = line.split(blank, 1)[0]
+                case = int(word) if word.isdigit() else 0
+                sums[case] = (sums.get(case, 0) + zlib.crc32(line.rstrip(b"\n"))) % 2**32
+    return sums
