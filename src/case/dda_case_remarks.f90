@@ -72,16 +72,33 @@ contains
             remark = remark//" time "//to_text(outcome%path_time)
          end if
       end if
-      if (outcome%slid > 0) then
+      if (outcome%n_slid > 0) then
          if (len(remark) > 0) remark = remark//"; "
-         remark = remark//"joints that slid between stages: "//to_text(outcome%slid) &
-            & //"; forces depend on the order of the stages"
+         remark = remark//"joints that slid between stages: "//to_text(outcome%n_slid) &
+            & //numbered(outcome%slid)//"; forces depend on the order of the stages"
       end if
       if (outcome%jumps == 0) return
       if (len(remark) > 0) remark = remark//"; "
       remark = remark//"jumps on the loading path: "//to_text(outcome%jumps)//", the largest " &
          & //to_text(outcome%largest_jump)//" m"
    end function path_remark
+
+   !> Numbers of joints in parentheses, not too many of them; nothing for none
+   pure function numbered(joint) result(text)
+      !> The numbers: (n)
+      integer, intent(in) :: joint(:)
+      !> The text
+      character(len=:), allocatable :: text
+      integer, parameter :: most = 12
+      integer :: i
+
+      text = ""
+      do i = 1, min(size(joint), most)
+         text = text//", "//to_text(joint(i))
+      end do
+      if (size(joint) > most) text = text//" and others"
+      if (len(text) > 0) text = " ("//text(3:)//")"
+   end function numbered
 
    !> What a search in time has found on both sides of its bracket
    pure function change_remark(critical, before) result(remark)

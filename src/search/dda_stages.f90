@@ -143,13 +143,14 @@ contains
       type(contacts_t) :: all, contacts
       type(graph_verdict_t) :: proof
       type(coulomb_state_t), allocatable :: start
-      integer :: factorisations, k, slid, steps
+      logical :: slid(size(decision%contacts%joint)), there(size(slid))
+      integer :: factorisations, j, k, steps
 
       system = decision%system
       all = decision%contacts
       contacts = all
       stage = settings
-      slid = 0
+      slid = .false.
       steps = 0
       factorisations = 0
       do k = 1, size(time) - 1
@@ -160,22 +161,17 @@ contains
          contacts = all
          call enter_stage(settings, time(k), system, contacts)
          call decide_graph(stage, system, contacts, .false., proof, start)
-         if (allocated(start) .and. allocated(proof%state)) slid = slid + n_slid(start, proof%state)
+         there = [(.not. any(system%absent(all%joint(j)%block)), j=1, size(there))]
+         if (allocated(proof%state)) slid = slid .or. unpack(has_slid(proof%state, count(there), &
+            & start), there, .false.)
          steps = steps + proof%n_event + 1
          factorisations = factorisations + proof%n_factorisation
          if (proof%end /= path_end%reached) exit
       end do
-      decision%outcome%slid = slid
-      if (proof%end == path_end%collapsed) then
-         call record_collapse(stage, system, contacts, proof, decision)
-      else if (proof%end == path_end%reached) then
-         call record_rest(stage, system, contacts, proof, decision)
-      else
-         decision%system = system
-         decision%contacts = contacts
-         decision%outcome%reason = proof%reason
-      end if
+      call record_stage(settings, stage, system, contacts, proof, any(slid), decision)
       associate (outcome => decision%outcome)
+         outcome%n_slid = count(slid)
+         outcome%slid = pack([(j, j=1, count(there))], pack(slid, there))
          outcome%steps = steps
          outcome%factorisations = factorisations
          outcome%has_path = .true.
@@ -185,16 +181,65 @@ contains
       end associate
    end subroutine decide_at_rest
 
-   !> Joints that have slid against friction between two states
-   pure integer function n_slid(before, after)
-      !> The state before
-      type(coulomb_state_t), intent(in) :: before
-      !> The state after
-      type(coulomb_state_t), intent(in) :: after
+   !> Blocks and contacts of the last stage
+   pure subroutine record_stage(settings, stage, system, contacts, proof, slid, decision)
+      !> Settings of the run
+      type(settings_t), intent(in) :: settings
+      !> Those of the stage
+      type(settings_t), intent(in) :: stage
+      !> The blocks that are there
+      type(block_system_t), intent(in) :: system
+      !> Their contacts
+      type(contacts_t), intent(in) :: contacts
+      !> How the stage ended
+      type(graph_verdict_t), intent(in) :: proof
+      !> Whether joints have slid in any stage; where none has forces are those of the last shape
+      !> built at once
+      logical, intent(in) :: slid
+      !> Receives them
+      type(decision_t), intent(inout) :: decision
 
-      n_slid = count(abs(after%slip - before%slip) > slip_share*maxval(abs(after%motion)) &
-         & .and. sum(after%force(:2, :), dim=1) > slip_share*maxval(abs(after%force)))
-   end function n_slid
+      if (proof%end == path_end%collapsed) then
+         call record_collapse(stage, system, contacts, proof, decision)
+      else if (proof%end == path_end%reached) then
+         if (.not. slid) call decide(settings, system, contacts, decision)
+         if (slid .or. has_slipped(decision)) &
+            & call record_rest(stage, system, contacts, proof, decision)
+      else
+         decision%system = system
+         decision%contacts = contacts
+         decision%outcome%reason = proof%reason
+      end if
+   end subroutine record_stage
+
+   !> Whether what was decided does not stand without any slip: its forces are not those of the way
+   !> without slip, which are one whatever the order of the stages
+   pure logical function has_slipped(decision)
+      !> What was decided of the last shape at once
+      type(decision_t), intent(in) :: decision
+
+      has_slipped = decision%outcome%verdict /= verdict%stable
+      if (.not. has_slipped) has_slipped = any(decision%contacts%face%slip /= 0)
+   end function has_slipped
+
+   !> Which joints have slid against friction since a state, or since there was no load
+   pure function has_slid(after, n, before) result(slid)
+      !> The state
+      type(coulomb_state_t), intent(in) :: after
+      !> Number of joints that are asked for, the first ones
+      integer, intent(in) :: n
+      !> The state before; not allocated in the first stage
+      type(coulomb_state_t), allocatable, intent(in) :: before
+      !> Whether they have: (n)
+      logical :: slid(n)
+      real(wp) :: slip(n)
+
+      slip = after%slip(:n)
+      if (allocated(before)) slip = slip - before%slip(:n)
+      slid = abs(slip) > slip_share*maxval(abs(after%motion)) &
+         & .and. sum(after%force(:2, :n), dim=1) > slip_share*maxval(abs(after%force))
+   end function has_slid
+
 
    !> Which blocks and contacts there are from a time on
    pure subroutine enter_stage(settings, time, system, contacts)

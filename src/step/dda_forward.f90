@@ -50,8 +50,10 @@ module dda_forward
       integer :: jumps = 0
       !> The largest of these jumps [m]
       real(wp) :: largest_jump = 0.0_wp
-      !> Joints that have slid as blocks were built or taken away
-      integer :: slid = 0
+      !> Joints that have slid in stages in which blocks were built or taken away
+      integer :: n_slid = 0
+      !> Those of them that the last stage has, by their numbers there
+      integer, allocatable :: slid(:)
       !> Accepted steps
       integer :: steps = 0
       !> Passes of the open-close loop
