@@ -1,4 +1,5 @@
-!> dda export: arch decks as files of the Limerick line, or of blocks
+!> dda export: arch decks as files of the Limerick line or of blocks, blocks cut from lines as files
+!> of blocks
 module dda_export
    use, intrinsic :: iso_fortran_env, only : error_unit
    use dda_arch_lines, only : arch_analysis, arch_lines, what_is_lost
@@ -9,6 +10,7 @@ module dda_export
    use dda_error, only : error_line, error_t
    use dda_limerick_analysis, only : limerick_analysis_t
    use dda_line_model, only : line_model_t
+   use dda_line_text, only : has_one_law, line_losses, line_text
    use dda_process, only : exit_status, make_folder, worst_status
    use dda_read_deck, only : read_deck
    use dda_run_cases, only : deck_stem
@@ -38,9 +40,9 @@ contains
       status = exit_status%success
       do i = 1, size(command%name)
          call read_deck(name_of(command, i), command%setting, deck, error)
-         if (.not. allocated(error) .and. word_of(deck, "scene", "kind") /= "arch") &
-            & call deck_error(error, "dda export needs scene%kind = 'arch', got '" &
-            & //trim(word_of(deck, "scene", "kind"))//"'; copy the file that it names", deck, &
+         if (.not. allocated(error) .and. word_of(deck, "scene", "kind") == "blocks") &
+            & call deck_error(error, "dda export needs scene%kind 'arch' or 'lines', got " &
+            & //"'blocks'; copy the file that it names", deck, &
             & place_of(deck, key_index("scene", "kind")))
          if (allocated(error)) then
             write (error_unit, "(a)") error_line(error)
@@ -75,8 +77,8 @@ contains
          if (n_cases(deck) > 1) stem = stem//"_"//to_text(number)
          call case_deck(deck, number, case_of_deck, error)
          if (.not. allocated(error)) then
-            if (scene_kind(case_of_deck) == "shape") then
-               call export_shape(command, stem, case_of_deck, status)
+            if (scene_kind(case_of_deck) /= "arch") then
+               call export_blocks(command, stem, case_of_deck, status)
                if (status /= exit_status%success) return
                cycle
             end if
@@ -95,8 +97,8 @@ contains
       end do
    end subroutine export_deck
 
-   !> Export an arch of any shape as a file of blocks
-   subroutine export_shape(command, stem, deck, status)
+   !> Export an arch of any shape, or blocks that were cut from lines, as a file of blocks
+   subroutine export_blocks(command, stem, deck, status)
       !> What the user asked for
       type(command_t), intent(in) :: command
       !> Name of the file without its ending
@@ -106,24 +108,35 @@ contains
       !> Exit status of this deck
       integer, intent(out) :: status
       type(error_t), allocatable :: error
+      character(len=:), allocatable :: text, losses
 
       status = exit_status%success
-      call check_form(deck, error)
+      if (scene_kind(deck) == "shape") then
+         call check_form(deck, error)
+         if (.not. allocated(error)) text = shape_text(deck)
+         losses = shape_losses(deck)
+      else
+         if (.not. has_one_law(deck)) call deck_error(error, "expected joints of one law, got " &
+            & //"several: a file of blocks has laws of pairs of block materials; give the law by " &
+            & //"the keys of &joint", deck, place_of(deck, key_index("scene", "geometry")))
+         if (.not. allocated(error)) text = line_text(deck)
+         losses = line_losses(deck)
+      end if
       if (allocated(error)) status = exit_status%bad_input
       if (.not. allocated(error)) then
-         call write_text(stem//".blocks", shape_text(deck), error)
+         call write_text(stem//".blocks", text, error)
          if (allocated(error)) status = exit_status%not_written
       end if
       if (allocated(error)) then
          write (error_unit, "(a)") error_line(error)
       else if (.not. command%quiet) then
          call print_line(command%screen, stem//".blocks, for scene%kind = 'blocks'")
-         if (shape_losses(deck) /= "") call print_line(command%screen, &
-            & "   a file of blocks has no place for "//shape_losses(deck))
+         if (losses /= "") call print_line(command%screen, &
+            & "   a file of blocks has no place for "//losses)
          if (has_group(deck, "search")) call print_line(command%screen, &
             & "   the search is not written: the file holds the deck's own value of its parameter")
       end if
-   end subroutine export_shape
+   end subroutine export_blocks
 
    !> Write geometry and analysis in both forms
    subroutine write_pair(stem, model, analysis, error)

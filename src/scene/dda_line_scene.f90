@@ -18,7 +18,7 @@ module dda_line_scene
    implicit none
    private
 
-   public :: line_scene, check_line_scene, held_blocks, law_of_joint
+   public :: line_scene, check_line_scene, held_blocks, law_of_joint, line_system
 
    !> Friction angles from here on mean that a joint cannot slide [deg]
    real(wp), parameter :: no_slip_deg = 89.9_wp
@@ -41,7 +41,7 @@ contains
 
       scene%origin = deck%cut%scale%origin
       call split_edges(deck%cut, split)
-      call make_system(deck, split, scene%system)
+      call line_system(deck, split, scene%system)
       split%pair = pack(split%pair, scene%system%equation(split%pair%side(1)) > 0 &
          & .or. scene%system%equation(split%pair%side(3)) > 0)
       n = size(split%pair)
@@ -100,7 +100,7 @@ contains
 
       problem = ""
       b = pinned_block(deck%cut)
-      call make_system(deck, deck%cut, system)
+      call line_system(deck, deck%cut, system)
       if (b > 0) then
          problem = "expected blocks held by two fixed points or more, got block " &
             & //to_text(b)//" with one: this version has no hinges; add a fixed point"
@@ -122,7 +122,7 @@ contains
    end subroutine check_line_scene
 
    !> The blocks with their materials, weights and states at the beginning
-   pure subroutine make_system(deck, cut, system)
+   pure subroutine line_system(deck, cut, system)
       !> The deck
       type(deck_t), intent(in) :: deck
       !> The blocks, perhaps with more corners than the deck's
@@ -150,7 +150,7 @@ contains
             system%velocity(1:3, b) = list(m)%velocity
          end do
       end associate
-   end subroutine make_system
+   end subroutine line_system
 
    !> Whether the deck itself says what the blocks weigh
    pure logical function weight_is_given(deck)

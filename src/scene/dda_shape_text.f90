@@ -15,7 +15,7 @@ module dda_shape_text
    implicit none
    private
 
-   public :: shape_losses, shape_text
+   public :: add_bar, pair_text, shape_losses, shape_text
 
 contains
 
@@ -64,7 +64,7 @@ contains
          call add_line(lines, trim(merge("block fixed", "block      ", plan%fixed(b)))// &
             & trim(merge(" material 2", "           ", plan%material(b) == 2)))
          do v = plan%first_vertex(b), plan%first_vertex(b + 1) - 1
-            call add_line(lines, "   "//pair(plan%vertex(:, v)))
+            call add_line(lines, "   "//pair_text(plan%vertex(:, v)))
          end do
       end do
    end subroutine add_blocks
@@ -79,13 +79,13 @@ contains
       type(growing_text_t), intent(inout) :: lines
 
       call add_line(lines, trim(merge("live", "load", loaded%live))//" block " &
-         & //to_text(loaded%block)//" "//pair(loaded%point + origin)//" " &
-         & //pair(loaded%force%value(:, 1)))
+         & //to_text(loaded%block)//" "//pair_text(loaded%point + origin)//" " &
+         & //pair_text(loaded%force%value(:, 1)))
    end subroutine add_load
 
-   !> Add a tie
+   !> Add a bar
    pure subroutine add_bar(bar, origin, lines)
-      !> The tie
+      !> The bar
       type(bar_t), intent(in) :: bar
       !> Where the origin of its coordinates is: (2) [m]
       real(wp), intent(in) :: origin(2)
@@ -93,21 +93,22 @@ contains
       type(growing_text_t), intent(inout) :: lines
       character(len=:), allocatable :: text
 
-      text = "bar "//pair(bar%point(:, 1) + origin)//" "//pair(bar%point(:, 2) + origin) &
-         & //" stiffness "//to_text(bar%stiffness)//" prestress "//to_text(bar%prestress)//" slack"
+      text = "bar "//pair_text(bar%point(:, 1) + origin)//" "//pair_text(bar%point(:, 2) + origin) &
+         & //" stiffness "//to_text(bar%stiffness)//" prestress "//to_text(bar%prestress)
+      if (.not. bar%pushes) text = text//" slack"
       if (bar%strength < huge(bar%strength)) text = text//" strength "//to_text(bar%strength)
       call add_line(lines, text)
    end subroutine add_bar
 
    !> Two numbers
-   pure function pair(vector) result(text)
+   pure function pair_text(vector) result(text)
       !> The numbers: (2)
       real(wp), intent(in) :: vector(2)
       !> The text
       character(len=:), allocatable :: text
 
       text = to_text(vector(1))//" "//to_text(vector(2))
-   end function pair
+   end function pair_text
 
    !> What a file of blocks has no place for
    pure function shape_losses(deck) result(text)

@@ -1,0 +1,204 @@
+!> Blocks that were cut from lines as a file of blocks, with what acts on points of them
+module dda_line_text
+   use dda_block_system, only : block_system_t
+   use dda_constants, only : degree
+   use dda_cut_model, only : cut_model_t, point_kind
+   use dda_deck, only : deck_t, has_group
+   use dda_deck_scene, only : deck_scene
+   use dda_growing_text, only : add_line, growing_text_t, lines_of
+   use dda_kinds, only : wp
+   use dda_limerick_analysis, only : load_history_t
+   use dda_line_scene, only : held_blocks, law_of_joint, line_system
+   use dda_material, only : joint_law_t
+   use dda_scene, only : scene_t
+   use dda_shape_text, only : add_bar, pair_text
+   use dda_text, only : to_text
+   implicit none
+   private
+
+   public :: line_losses, line_text, has_one_law
+
+contains
+
+   !> Whether all joints of a deck's lines have one law: a file of blocks has laws of pairs of block
+   !> materials, not of lines
+   pure logical function has_one_law(deck)
+      !> The deck of the case, with its blocks
+      type(deck_t), intent(in) :: deck
+      type(joint_law_t) :: first, law
+      integer :: j
+
+      has_one_law = .true.
+      do j = 1, size(deck%cut%pair)
+         law = law_of_joint(deck, deck%cut%pair(j)%joint)
+         if (j == 1) first = law
+         has_one_law = has_one_law .and. (law%no_slip .eqv. first%no_slip) &
+            & .and. .not. any(abs(numbers_of(law) - numbers_of(first)) > 0.0_wp)
+      end do
+   end function has_one_law
+
+   !> The blocks of a deck's lines
+   pure function line_text(deck) result(text)
+      !> The deck of the case, with its blocks; its joints have one law
+      type(deck_t), intent(in) :: deck
+      !> Lines, each ended by a line feed
+      character(len=:), allocatable :: text
+      type(block_system_t) :: system
+      type(growing_text_t) :: lines
+      type(scene_t) :: scene
+      integer :: i
+
+      call line_system(deck, deck%cut, system)
+      call deck_scene(deck, scene)
+      call add_line(lines, "! the blocks of "//deck%file//", written by dda export")
+      call add_blocks(deck%cut, system, lines)
+      call add_materials(system, lines)
+      if (size(deck%cut%pair) > 0) call add_laws(law_of_joint(deck, deck%cut%pair(1)%joint), &
+         & maxval(system%material), lines)
+      call add_points(deck, lines)
+      if (allocated(scene%settings%boundary%bar)) then
+         do i = 1, size(scene%settings%boundary%bar)
+            call add_bar(scene%settings%boundary%bar(i), scene%origin, lines)
+         end do
+      end if
+      text = lines_of(lines)
+   end function line_text
+
+   !> Friction, cohesion and tension of a law
+   pure function numbers_of(law) result(number)
+      !> The law
+      type(joint_law_t), intent(in) :: law
+      !> The numbers: (3)
+      real(wp) :: number(3)
+
+      number = [law%friction, law%cohesion, law%tension]
+   end function numbers_of
+
+   !> Add the blocks, each with its corners. Material 1 is that of the deck, so those of the lines
+   !> are counted from 2
+   pure subroutine add_blocks(cut, system, lines)
+      !> The blocks
+      type(cut_model_t), intent(in) :: cut
+      !> What they are made of, and how they begin
+      type(block_system_t), intent(in) :: system
+      !> Receives the lines
+      type(growing_text_t), intent(inout) :: lines
+      character(len=:), allocatable :: line
+      logical :: held(size(cut%area))
+      integer :: b, v
+
+      held = held_blocks(cut)
+      do b = 1, size(cut%area)
+         line = "block"
+         if (held(b)) line = line//" fixed"
+         line = line//" material "//to_text(system%material(b) + 1)
+         if (any(abs(system%velocity(1:3, b)) > 0.0_wp)) line = line//" velocity " &
+            & //pair_text(system%velocity(1:2, b))//" "//to_text(system%velocity(3, b))
+         if (any(abs(system%stress(:, b)) > 0.0_wp)) line = line//" stress " &
+            & //pair_text(system%stress(1:2, b))//" "//to_text(system%stress(3, b))
+         call add_line(lines, line)
+         do v = cut%first_vertex(b), cut%first_vertex(b + 1) - 1
+            call add_line(lines, "   "//pair_text(cut%vertex(:, v) + cut%scale%origin))
+         end do
+      end do
+   end subroutine add_blocks
+
+   !> Add the materials of the blocks
+   pure subroutine add_materials(system, lines)
+      !> The blocks
+      type(block_system_t), intent(in) :: system
+      !> Receives the lines
+      type(growing_text_t), intent(inout) :: lines
+      integer :: b, m
+
+      do m = 1, maxval(system%material)
+         b = findloc(system%material, m, dim=1)
+         if (b == 0) cycle
+         associate (material => system%materials(m))
+            call add_line(lines, "material "//to_text(m + 1)//" density " &
+               & //to_text(system%density(b))//" unit_weight "//to_text(system%unit_weight(b)) &
+               & //" young "//to_text(material%young)//" poisson "//to_text(material%poisson))
+         end associate
+      end do
+   end subroutine add_materials
+
+   !> Add one law for the joints of all materials
+   pure subroutine add_laws(law, n, lines)
+      !> The law
+      type(joint_law_t), intent(in) :: law
+      !> Number of materials
+      integer, intent(in) :: n
+      !> Receives the lines
+      type(growing_text_t), intent(inout) :: lines
+      character(len=:), allocatable :: friction
+      integer :: i, j
+
+      friction = to_text(atan(law%friction)/degree)
+      if (law%no_slip) friction = "90"
+      do j = 1, n
+         do i = 1, j
+            call add_line(lines, "joint "//to_text(i + 1)//" "//to_text(j + 1)//" friction_deg " &
+               & //friction//" cohesion "//to_text(law%cohesion)//" tension " &
+               & //to_text(law%tension))
+         end do
+      end do
+   end subroutine add_laws
+
+   !> Add what is held, loaded and measured; blocks that two points hold are fixed
+   pure subroutine add_points(deck, lines)
+      !> The deck
+      type(deck_t), intent(in) :: deck
+      !> Receives the lines
+      type(growing_text_t), intent(inout) :: lines
+      character(len=:), allocatable :: at
+      logical :: held(size(deck%cut%area))
+      integer :: i
+
+      held = held_blocks(deck%cut)
+      do i = 1, size(deck%cut%point)
+         associate (point => deck%cut%point(i))
+            if (held(point%block) .and. point%kind /= point_kind%measured) cycle
+            at = " block "//to_text(point%block)//" " &
+               & //pair_text(point%place + deck%cut%scale%origin)
+            if (point%kind == point_kind%fixed) call add_line(lines, "fix"//at)
+            if (point%kind == point_kind%measured) call add_line(lines, "measure"//at)
+            if (point%kind /= point_kind%load .or. .not. allocated(deck%analysis)) cycle
+            if (point%source <= size(deck%analysis%load)) &
+               & call add_load(deck%analysis%load(point%source), at, lines)
+         end associate
+      end do
+   end subroutine add_points
+
+   !> Add a force with its history
+   pure subroutine add_load(load, at, lines)
+      !> The force
+      type(load_history_t), intent(in) :: load
+      !> Where it acts
+      character(len=*), intent(in) :: at
+      !> Receives the lines
+      type(growing_text_t), intent(inout) :: lines
+      integer :: i
+
+      if (.not. any(abs(load%record(2:3, :)) > 0.0_wp)) return
+      call add_line(lines, "load"//at)
+      do i = 1, size(load%record, 2)
+         call add_line(lines, "   "//to_text(load%record(1, i))//" " &
+            & //pair_text(load%record(2:3, i)))
+      end do
+   end subroutine add_load
+
+   !> What a file of blocks has no place for
+   pure function line_losses(deck) result(text)
+      !> The deck of the case
+      type(deck_t), intent(in) :: deck
+      !> What it is, parted by commas; empty if nothing is lost
+      character(len=:), allocatable :: text
+
+      text = ""
+      if (allocated(deck%analysis)) then
+         if (deck%analysis%plane_strain) text = ", plane strain (material%plane)"
+      end if
+      if (has_group(deck, "live") .or. has_group(deck, "vehicle")) text = text//", &live, &vehicle"
+      if (len(text) > 0) text = text(3:)
+   end function line_losses
+end module dda_line_text
