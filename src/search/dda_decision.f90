@@ -8,12 +8,13 @@
 module dda_decision
    use dda_block_system, only : block_system_t
    use dda_contact_detection, only : contacts_t
+   use dda_coulomb_law, only : coulomb_state_t, face
+   use dda_dead_rest, only : fall_at_once, rest_under_dead_loads
    use dda_forward, only : outcome_t, run_to_verdict
    use dda_frames, only : album_t, blank_album, keep_pictures
    use dda_graph_decision, only : decide_graph, decides_as_graph, graph_verdict_t
    use dda_graph_report, only : show_mechanism, show_state
    use dda_kinds, only : wp
-   use dda_coulomb_law, only : face
    use dda_loading_path, only : path_end
    use dda_settings, only : flow_rule, settings_t
    use dda_step_context, only : march_t
@@ -92,8 +93,17 @@ contains
       !> Receives pictures of the state that is told
       type(album_t), intent(inout), optional :: album
       type(graph_verdict_t) :: proof
+      type(coulomb_state_t), allocatable :: start
+      real(wp), allocatable :: mechanism(:, :)
+      integer :: n
 
       call decide_graph(settings, system, contacts, bare, proof)
+      if (proof%no_start .and. .not. proof%unproven) then
+         call rest_under_dead_loads(settings, system, contacts, start, mechanism, n)
+         if (allocated(start)) call decide_graph(settings, system, contacts, bare, proof, start)
+         if (allocated(mechanism)) call fall_at_once(mechanism, proof)
+         proof%n_factorisation = proof%n_factorisation + n
+      end if
       if (proof%end == path_end%collapsed) then
          call record_collapse(settings, system, contacts, proof, decision, album)
       else if (proof%end == path_end%reached .and. (bare .or. proof%on_path &

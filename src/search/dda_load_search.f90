@@ -3,6 +3,8 @@
 !>
 !> The coefficient comes last on the path, so one path finds its critical value.
 module dda_load_search
+   use dda_coulomb_law, only : coulomb_state_t
+   use dda_dead_rest, only : fall_at_once, rest_under_dead_loads
    use dda_decision, only : record_collapse, record_rest
    use dda_error, only : error_t
    use dda_graph_decision, only : decides_as_graph, follow_stations, graph_verdict_t, &
@@ -61,7 +63,6 @@ contains
 
    !> Search a family whose parameter is a load coefficient
    pure subroutine find_critical_load(family, search, critical, done)
-      !> The family
       class(family_t), intent(in) :: family
       !> What is searched
       type(search_t), intent(in) :: search
@@ -100,11 +101,8 @@ contains
 
    !> How a side falls that limit analysis brings down
    pure subroutine tell_fall(settings, graph, side)
-      !> Settings of the run
       type(settings_t), intent(in) :: settings
-      !> The joints
       type(joint_graph_t), intent(in) :: graph
-      !> The side
       type(side_t), intent(inout) :: side
 
       if (side%end /= path_end%collapsed .or. side%proof%flow /= flow_rule%associated) return
@@ -120,9 +118,7 @@ contains
    pure subroutine follow_side(load, scene, graph, last, search, side)
       !> One of searched_load
       integer, intent(in) :: load
-      !> The scene
       type(scene_t), intent(in) :: scene
-      !> Its joints
       type(joint_graph_t), intent(in) :: graph
       !> End of the range on this side
       real(wp), intent(in) :: last
@@ -154,12 +150,10 @@ contains
          if (abs(far) < abs(last)) far = far*(1.0_wp - path_resolution)
          settings = with_coefficient(scene%settings, load, far)
          stations = load_stations(settings, .true.)
-         call follow_stations(settings, scene%system, graph, stations, proof)
+         call follow_from_rest(settings, scene, graph, stations, side%has_limit, proof)
          proof%n_factorisation = proof%n_factorisation + limit%n_factorisation
          side%end = proof%end
          side%value = value_at_end(load, far, stations, proof)
-         if (proof%no_start .and. side%has_limit) side%end = path_end%undecided
-         if (side%end == path_end%undecided .and. proof%no_start) proof%reason = no_start
          if (proof%end == path_end%reached .and. abs(far) < abs(last)) then
             ! no forces go on from here, whatever the law of friction
             side%end = path_end%collapsed
@@ -178,13 +172,40 @@ contains
       end associate
    end subroutine follow_side
 
+   !> Follow the path from its dead loads; where it finds no state under them though forces balance
+   !> them, from the rest that blocks come to
+   pure subroutine follow_from_rest(settings, scene, graph, stations, is_balanced, proof)
+      type(settings_t), intent(in) :: settings
+      type(scene_t), intent(in) :: scene
+      type(joint_graph_t), intent(in) :: graph
+      type(load_stations_t), intent(in) :: stations
+      !> Whether forces balance the dead loads
+      logical, intent(in) :: is_balanced
+      !> How the path went
+      type(graph_verdict_t), intent(inout) :: proof
+      type(coulomb_state_t), allocatable :: start
+      real(wp), allocatable :: mechanism(:, :)
+      integer :: n
+
+      call follow_stations(settings, scene%system, graph, stations, proof)
+      if (.not. (proof%no_start .and. is_balanced)) return
+      call rest_under_dead_loads(settings, scene%system, scene%contacts, start, mechanism, n)
+      if (allocated(start)) then
+         call follow_stations(settings, scene%system, graph, stations, proof, start)
+      else if (allocated(mechanism)) then
+         call fall_at_once(mechanism, proof)
+      else
+         proof%end = path_end%undecided
+         proof%reason = no_start
+      end if
+      proof%n_factorisation = proof%n_factorisation + n
+   end subroutine follow_from_rest
+
    !> The associated limit of what is searched, where it is linear in the load
    pure subroutine find_associated(load, scene, graph, last, search, side, limit)
       !> One of searched_load
       integer, intent(in) :: load
-      !> The scene
       type(scene_t), intent(in) :: scene
-      !> Its joints
       type(joint_graph_t), intent(in) :: graph
       !> End of the range on this side
       real(wp), intent(in) :: last
@@ -192,7 +213,6 @@ contains
       type(search_t), intent(in) :: search
       !> Receives the limit
       type(side_t), intent(inout) :: side
-      !> The limit
       type(limit_load_t), intent(out) :: limit
       type(settings_t) :: settings
       real(wp) :: dead(3, graph%n_block), live(3, graph%n_block)
@@ -237,7 +257,6 @@ contains
       real(wp), intent(in) :: last
       !> What is searched
       type(search_t), intent(in) :: search
-      !> The limit
       type(limit_load_t), intent(in) :: limit
       !> Where it falls
       type(side_t), intent(inout) :: side
@@ -278,7 +297,6 @@ contains
       real(wp), intent(in) :: low
       !> High end, likewise
       real(wp), intent(in) :: high
-      !> The scene
       type(scene_t), intent(in) :: scene
       !> Where it falls to the right
       type(side_t), intent(in) :: right
@@ -330,9 +348,7 @@ contains
       real(wp), intent(in) :: low
       !> High end, likewise
       real(wp), intent(in) :: high
-      !> The scene
       type(scene_t), intent(in) :: scene
-      !> The side
       type(side_t), intent(in) :: side
       !> 1 to the right, -1 to the left
       real(wp), intent(in) :: outward
@@ -363,9 +379,7 @@ contains
 
    !> Keep how it falls
    pure subroutine keep_collapse(scene, side, critical)
-      !> The scene
       type(scene_t), intent(in) :: scene
-      !> The side
       type(side_t), intent(in) :: side
       !> Receives the collapse
       type(critical_t), intent(inout) :: critical

@@ -304,7 +304,7 @@ contains
          call begin_path(graph, load, path, state, result)
       end if
       call count_up(result, verdict)
-      verdict%no_start = result%end == path_end%collapsed .and. .not. present(start)
+      verdict%no_start = result%end /= path_end%reached .and. .not. present(start)
       do i = 1, n
          if (result%end /= path_end%reached) exit
          rate%load = -load

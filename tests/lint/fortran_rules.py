@@ -12,6 +12,8 @@ FILE_LINES, PROCEDURE_LINES, LINE_LENGTH = 400, 60, 100
 
 _STRING = re.compile(r"'[^']*'|\"[^\"]*\"")
 _PROCEDURE = re.compile(r"(?!end\b)(?:[\w()=*:, ]+ )?(?:subroutine|function) (\w+) *(?:\(|$)")
+#: An argument of a derived type that is no array: the type says what it is
+_IS_NAMED_TYPE = re.compile(r"(?:type|class)\(\w+\)[^:(]*(?:intent\(\w+\))[^:(]*:: *\w+(?: *, *\w+)*$")
 _END_PROCEDURE = re.compile(r"end (?:subroutine|function)\b")
 _TYPED = re.compile(r"(?:type|class) *\((\w+)\)")
 _BLOCK = re.compile(r"(type\b(?! *\()|interface\b|abstract interface\b)")
@@ -106,8 +108,8 @@ def _of_statements(all_of_them: list[Statement], long: Collection[str]) -> Itera
             if not this.documented:
                 yield this.first, "a procedure has its !> line"
             open_procedures.append(this)
-        elif "intent(" in text.replace(" ", "") and not this.documented:
-            yield this.first, "an argument has its !> line"
+        elif "intent(" in text.replace(" ", "") and not this.documented and not _IS_NAMED_TYPE.match(text):
+            yield this.first, "an argument of an intrinsic type, or an array, has its !> line"
         elif text == "contains":
             contains = True
         elif not (block or contains or open_procedures) and _is_variable(text):

@@ -127,7 +127,7 @@ def test_what_keeps_the_rules_is_left_in_peace(tmp_path: Path) -> None:
         ("   implicit none\n", "", "implicit none"),
         ("   private\n", "", "private"),
         ("   !> A procedure\n", "", "a procedure has its !> line"),
-        ("      !> Its argument\n", "", "an argument has its !> line"),
+        ("      !> Its argument\n", "", "has its !> line"),
         ("   !> A type\n", "", "a type has its !> line"),
         ("i = 1", "i = 1 ", "no blanks at the end"),
         ("i = 1", "i = 1" + " + 1" * 30, "at most 100 characters"),

@@ -1,0 +1,75 @@
+"""Where no state under the dead loads is found by springs alone, blocks that move say whether there is one."""
+
+from __future__ import annotations
+
+import csv
+import sys
+from pathlib import Path
+
+import pytest
+from dda_command import run_dda
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "bench"))
+from assembly import area_and_centre  # noqa: E402
+from random_assemblies import make_pushed  # noqa: E402
+
+BETWEEN_WALLS = """block fixed
+0 0
+1 0
+1 1
+0 1
+block fixed
+2 0
+3 0
+3 1
+2 1
+block
+1 0
+2 0
+2 1
+1 1
+"""
+
+
+def rows(folder: Path, blocks: str, task: str) -> list[dict[str, str]]:
+    """Rows of a deck in the order of its cases."""
+    (folder / "x.blocks").write_text(blocks)
+    (folder / "deck.nml").write_text(f"&scene kind = 'blocks', geometry = 'x.blocks' /\n{task}\n")
+    done = run_dda("run", "deck.nml", "--quiet", cwd=folder)
+    assert done.returncode == 0, done.stderr + done.stdout
+    with (folder / "deck" / "results.csv").open() as table:
+        return sorted(csv.DictReader(table), key=lambda row: int(row["case"]))
+
+
+@pytest.mark.parametrize(("flow", "verdict"), [("coulomb", "collapsed"), ("associated", "stable")])
+def test_a_block_between_two_walls_falls_unless_sliding_presses_it(tmp_path: Path, flow: str, verdict: str) -> None:
+    """Nothing presses it before its weight moves it; where sliding opens joints the walls clamp it."""
+    sweep = "&sweep parameter = 'horizontal_coefficient', values = -0.3, 0, 0.01, 0.9 /"
+    found = rows(tmp_path, BETWEEN_WALLS, f"&analysis flow = '{flow}' /\n&joint friction_deg = 45.0 /\n{sweep}")
+    assert [row["verdict"] for row in found] == 4 * [verdict]
+
+
+def test_a_search_says_what_falls_by_its_dead_loads(tmp_path: Path) -> None:
+    search = "&search parameter = 'horizontal_coefficient', high = 0.9 /"
+    (row,) = rows(tmp_path, BETWEEN_WALLS, f"&joint friction_deg = 45.0 /\n{search}")
+    assert row["verdict"] == "collapsed"
+
+
+def test_a_corbel_of_rough_blocks_is_decided_as_its_search_says(tmp_path: Path) -> None:
+    """Friction of 88.8 degrees: springs that are loaded at once find no state, elastic blocks do."""
+    assembly, ground = make_pushed(41155)
+    blocks = ""
+    for words, polygons in (("block fixed", ground), ("block", assembly.blocks)):
+        for polygon in polygons:
+            blocks += words + "\n" + "".join(f"{x!r} {y!r}\n" for x, y in polygon)
+    assert len(assembly.blocks) == 12 and all(area_and_centre(block)[0] > 0.0 for block in assembly.blocks)
+    rough = "&joint friction_deg = 88.7800220058748 /\n"
+    (row,) = rows(tmp_path, blocks, rough + "&search parameter = 'horizontal_coefficient', high = 5 /")
+    critical, limit = float(row["critical"]), float(row["exact_high"])
+    # the limit by HiGHS
+    assert limit == pytest.approx(0.247448380, abs=1e-8)
+    assert critical <= limit * (1.0 + 1e-9)
+    values = [share * critical for share in (0.5, 0.9, 0.99, 1.01, 1.5, 5.0)]
+    sweep = f"&sweep parameter = 'horizontal_coefficient', values = {', '.join(map(repr, values))} /"
+    found = rows(tmp_path, blocks, rough + sweep)
+    assert [row["verdict"] for row in found] == 3 * ["stable"] + 3 * ["collapsed"]
