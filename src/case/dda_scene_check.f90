@@ -296,6 +296,11 @@ contains
       else if (is_given(deck, "output", "reactions") .and. flag_of(deck, "output", "reactions") &
          & .and. word_of(deck, "analysis", "mode") == "dynamic") then
          problem = "output%reactions of a dynamic run needs blocks that stay"
+      else if ((is_given(deck, "material", "compressive_strength") &
+         & .or. any(deck%plan%materials%given(5))) &
+         & .and. word_of(deck, "analysis", "flow") /= "associated") then
+         problem = "blocks with a compressive_strength need flow = 'associated' where some "// &
+            & "come or go"
       else if ((word_of(deck, "analysis", "mode") == "dynamic") &
          & .neqv. word_of(deck, "analysis", "geometry") == "current") then
          problem = "stages need mode = 'static' with geometry = 'reference', or mode = 'dynamic' " &

@@ -42,9 +42,6 @@ contains
          & .or. word_of(deck, "analysis", "geometry") /= "reference") then
          problem = needs//"mode = 'static' and geometry = 'reference', got others: joints of "// &
             & "blocks that move are not crushed; change the run, or remove it"
-      else if (word_of(deck, "analysis", "flow") /= "associated") then
-         problem = needs//"flow = 'associated', got 'coulomb': no joint is crushed on the "// &
-            & "loading path; add &analysis flow = 'associated'"
       else if (is_given(deck, "analysis", "collapse_displacement") .or. has_bond(deck)) then
          problem = needs//"joints without cohesion and tension, and no collapse_displacement, "// &
             & "got one; remove one of the two"

@@ -9,7 +9,7 @@ module dda_dead_rest
    use dda_coulomb_joints, only : coulomb_joints_t, end_role, new_coulomb_joints
    use dda_coulomb_law, only : coulomb_state_t, face, shear_face, unloaded_state
    use dda_forward, only : outcome_t, run_to_verdict
-   use dda_graph_decision, only : graph_verdict_t
+   use dda_path_verdict, only : graph_verdict_t
    use dda_joint_graph, only : add_joint_forces, joint_graph_t
    use dda_kinds, only : wp
    use dda_load_stations, only : history_times, leads_at_once

@@ -12,10 +12,11 @@ module dda_decision
    use dda_dead_rest, only : fall_at_once, rest_under_dead_loads
    use dda_forward, only : outcome_t, run_to_verdict
    use dda_frames, only : album_t, blank_album, keep_pictures
-   use dda_graph_decision, only : decide_graph, decides_as_graph, graph_verdict_t
+   use dda_graph_decision, only : decide_graph, decides_as_graph
    use dda_graph_report, only : show_mechanism, show_state
    use dda_kinds, only : wp
    use dda_loading_path, only : path_end
+   use dda_path_verdict, only : graph_verdict_t
    use dda_settings, only : flow_rule, settings_t
    use dda_step_context, only : march_t
    use dda_verdict, only : verdict

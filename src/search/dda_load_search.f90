@@ -7,8 +7,7 @@ module dda_load_search
    use dda_dead_rest, only : fall_at_once, rest_under_dead_loads
    use dda_decision, only : record_collapse, record_rest
    use dda_error, only : error_t
-   use dda_graph_decision, only : decides_as_graph, follow_stations, graph_verdict_t, &
-      & has_friction, no_start, see_fall, slide_along
+   use dda_graph_decision, only : decides_as_graph, has_friction, no_start, see_fall, slide_along
    use dda_joint_graph, only : joint_graph_t
    use dda_kinds, only : wp
    use dda_limit_load, only : find_limit, limit_load_t, limit_state
@@ -16,6 +15,7 @@ module dda_load_search
       & value_at_end, with_coefficient
    use dda_load_stations, only : load_stations, load_stations_t
    use dda_loading_path, only : path_end
+   use dda_path_verdict, only : follow_stations, graph_verdict_t
    use dda_scene, only : family_t, scene_t, searched_load
    use dda_scene_graph, only : scene_graph
    use dda_search, only : critical_t, search_t
@@ -310,10 +310,12 @@ contains
       falls_left = left%end == path_end%collapsed
       if (right%end == path_end%undecided) then
          critical%reason = right%proof%reason
-         critical%undecided_at = search%high
+         critical%undecided_at = search%low &
+            & + (right%value - low)*(search%high - search%low)/(high - low)
       else if (left%end == path_end%undecided) then
          critical%reason = left%proof%reason
-         critical%undecided_at = search%low
+         critical%undecided_at = search%low &
+            & + (left%value - low)*(search%high - search%low)/(high - low)
       else if (falls_right .and. .not. right%value - right%half > low) then
          critical%verdict = verdict%collapsed
          critical%falls = search%low

@@ -14,10 +14,11 @@ module dda_stages
    use dda_decision, only : decide, decision_t, follow_coulomb, record_collapse, record_rest
    use dda_forward, only : outcome_t
    use dda_frames, only : album_t
-   use dda_graph_decision, only : decide_graph, decides_as_graph, graph_verdict_t
+   use dda_graph_decision, only : decide_graph, decides_as_graph
    use dda_joint_graph, only : add_joint_forces, joint_graph_t
    use dda_kinds, only : wp
    use dda_loading_path, only : path_end
+   use dda_path_verdict, only : graph_verdict_t
    use dda_scene, only : scene_t
    use dda_scene_graph, only : scene_graph
    use dda_settings, only : settings_t

@@ -15,7 +15,7 @@ module dda_joint_layers
    private
 
    public :: joint_layers_t
-   public :: add_layers, beyond_parabola, bound_all, touch_parabola
+   public :: add_layers, beyond_parabola, bound_all, no_layers, touch_parabola
 
    !> Tangents of the parabolas of joints
    type :: joint_layers_t
@@ -30,7 +30,18 @@ module dda_joint_layers
    !> Two tangents of a joint that touch nearer than this are one
    real(wp), parameter :: same = 1.0e-10_wp
 
+   !> Compliance of a layer over that of its joint, and mass of its plate over the mean of blocks
+   real(wp), parameter :: stiff_share = 1.0e-3_wp, plate_mass = 1.0e-3_wp
+
 contains
+
+   !> No tangents
+   pure function no_layers() result(layers)
+      !> None
+      type(joint_layers_t) :: layers
+
+      allocate (layers%joint(0), layers%side(0), layers%share(0))
+   end function no_layers
 
    !> How far the forces of a joint lie beyond what it can carry without being crushed [N/m]
    elemental real(wp) function beyond_parabola(strength, n1, n2) result(beyond)
@@ -133,7 +144,33 @@ contains
          call place_layer(layers, i, graph%crush(layers%joint(i)), n + 2*i - 1, &
             & graph%n_block + i, layered, couple)
       end do
+      if (allocated(graph%compliance)) call add_springs(graph, layers, layered)
    end subroutine add_layers
+
+   !> What a loading path needs of layers: springs that hardly give, plates that hardly weigh
+   pure subroutine add_springs(graph, layers, layered)
+      !> The joints
+      type(joint_graph_t), intent(in) :: graph
+      !> Tangents of their parabolas
+      type(joint_layers_t), intent(in) :: layers
+      !> Joints and layers
+      type(joint_graph_t), intent(inout) :: layered
+      integer :: i, m, n
+
+      m = size(layers%joint)
+      n = size(graph%kind)
+      allocate (layered%gap(2, n + 2*m), source=0.0_wp)
+      layered%gap(:, :n) = graph%gap
+      allocate (layered%compliance(3, n + 2*m))
+      layered%compliance(:, :n) = graph%compliance
+      do i = 1, m
+         layered%compliance(:, n + 2*i - 1) = stiff_share*graph%compliance(:, layers%joint(i))
+         layered%compliance(:, n + 2*i) = stiff_share*graph%compliance(:, layers%joint(i))
+      end do
+      allocate (layered%mass(3, layered%n_block), source=plate_mass*sum(graph%mass(1, :)) &
+         & /real(max(1, graph%n_block), wp))
+      layered%mass(:, :graph%n_block) = graph%mass(1:3, :)
+   end subroutine add_springs
 
    !> Put a plate in the place of a joint's second block, and a layer between the two
    pure subroutine place_layer(layers, number, strength, at, plate, layered, couple)

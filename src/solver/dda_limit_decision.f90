@@ -9,7 +9,7 @@ module dda_limit_decision
    use dda_interior_state, only : interior_goal_t, interior_point_t, interior_state, &
       & load_path_t, set_path, size_of_load
    use dda_joint_graph, only : crushes, joint_graph_t
-   use dda_joint_layers, only : add_layers, joint_layers_t, touch_parabola
+   use dda_joint_layers, only : add_layers, joint_layers_t, no_layers, touch_parabola
    use dda_joint_rays, only : add_ray_forces, forces_of_rays, joint_rays_t, scale_load, set_rays
    use dda_kinds, only : wp
    use dda_limit_certificate, only : check_forces, check_velocities, crushing_power
@@ -19,7 +19,8 @@ module dda_limit_decision
 
    public :: load_decision_t, load_state
    public :: decide_load
-   public :: go_to_load, state_at_end, unit_of_force, keep_velocities, resolution
+   public :: begin_inside, go_on_to_load, go_to_load, state_at_end, unit_of_force
+   public :: keep_velocities, resolution
    public :: crush_tolerance, most_rounds
 
    !> Whether a load can be carried
@@ -101,7 +102,7 @@ contains
       integer :: k, n
       logical :: touched
 
-      allocate (layers%joint(0), layers%side(0), layers%share(0))
+      layers = no_layers()
       n = 0
       do k = 1, most_rounds
          call add_layers(graph, layers, layered, apex)
@@ -164,33 +165,62 @@ contains
       type(ray_matrix_t), intent(inout) :: springs
       !> Where the path ends; the load is at factor one
       type(interior_point_t), intent(out) :: point
-      type(interior_goal_t) :: goal
-      type(load_path_t) :: path
-      real(wp) :: start(3, 0:rays%n_block), finish(3, 0:rays%n_block), force
+      real(wp) :: finish(3, 0:rays%n_block)
 
       call scale_load(rays, load, unit_of_force(load), finish)
-      force = max(1.0_wp, sqrt(size_of_load(finish)))
-      point%x = force*rays%bounded
+      call begin_inside(rays, finish, point)
+      call go_on_to_load(rays, finish, resolution, springs, point)
+   end subroutine go_to_load
+
+   !> Forces that are equal along all rays, of the size of a load
+   pure subroutine begin_inside(rays, load, point)
+      !> The rays
+      type(joint_rays_t), intent(in) :: rays
+      !> The load in the units of the rays: (3, 0:n_block)
+      real(wp), intent(in) :: load(:, 0:)
+      !> Has these forces
+      type(interior_point_t), intent(out) :: point
+
+      point%x = max(1.0_wp, sqrt(size_of_load(load)))*rays%bounded
+   end subroutine begin_inside
+
+   !> Follow the path from the load that given forces carry to another one
+   pure subroutine go_on_to_load(rays, finish, tolerance, springs, point)
+      !> The rays
+      type(joint_rays_t), intent(in) :: rays
+      !> The load in the units of the rays: (3, 0:n_block)
+      real(wp), intent(in) :: finish(:, 0:)
+      !> Gap at which a decision that is not made ends
+      real(wp), intent(in) :: tolerance
+      !> The matrix
+      type(ray_matrix_t), intent(inout) :: springs
+      !> Forces inside their bounds in, where the path ends out; the load is at factor one
+      type(interior_point_t), intent(inout) :: point
+      type(interior_goal_t) :: goal
+      type(load_path_t) :: path
+      real(wp) :: start(3, 0:rays%n_block), before(size(point%x, 1), size(point%x, 2))
+
+      before = point%x
       start = 0.0_wp
-      call add_ray_forces(rays, point%x, start)
+      call add_ray_forces(rays, before, start)
       call set_path(-start, start + finish, path)
       ! what lacks of balance is judged by the load in question
       path%largest_dead = maxval(abs(finish))
       path%largest_live = 0.0_wp
-      point%s = path%size/(real(max(1, rays%n_bounded), wp)*force)*rays%bounded &
-         & + (1.0_wp - rays%bounded)
+      point%s = path%size*rays%bounded/(real(max(1, rays%n_bounded), wp) &
+         & *(before*rays%bounded + (1.0_wp - rays%bounded))) + (1.0_wp - rays%bounded)
       allocate (point%v(3, 0:rays%n_block), source=0.0_wp)
-      goal%tolerance = resolution
+      goal%tolerance = tolerance
       goal%target = path%size
       call solve_cones(rays, path, goal, springs, point)
       point%factor = point%factor/path%size
       point%upper = point%upper/path%size
       if (point%factor > 1.0_wp) then
          ! between two states in balance all are: back to the load
-         point%x = force*rays%bounded + (point%x - force*rays%bounded)/point%factor
+         point%x = before + (point%x - before)/point%factor
          point%factor = 1.0_wp
       end if
-   end subroutine go_to_load
+   end subroutine go_on_to_load
 
    !> Mean load of a block; moments count where no forces do
    pure real(wp) function unit_of_force(load) result(unit)

@@ -9,7 +9,7 @@ module dda_limit_load
    use dda_interior_state, only : interior_goal_t, interior_point_t, interior_state, &
       & load_path_t, no_limit, set_path
    use dda_joint_graph, only : crushes, joint_graph_t
-   use dda_joint_layers, only : add_layers, bound_all, joint_layers_t, touch_parabola
+   use dda_joint_layers, only : add_layers, bound_all, joint_layers_t, no_layers, touch_parabola
    use dda_joint_rays, only : forces_of_rays, joint_rays_t, scale_load, set_rays
    use dda_kinds, only : wp
    use dda_limit_certificate, only : balance_margin, carried_factor, check_forces, &
@@ -128,7 +128,7 @@ contains
             return
          end if
       end if
-      allocate (layers%joint(0), layers%side(0), layers%share(0))
+      layers = no_layers()
       bounded = .false.
       n = 0
       do k = 1, most_rounds

@@ -16,51 +16,14 @@ module dda_graph_decision
    use dda_limit_load, only : find_limit, limit_load_t, limit_state
    use dda_load_stations, only : last_history_time, load_stations, load_stations_t, loads_at
    use dda_coulomb_law, only : coulomb_state_t
-   use dda_loading_path, only : begin_path, follow_path, loading_path_t, new_path, new_rate, &
-      & path_end, path_rate_t, path_reason, path_result_t
+   use dda_loading_path, only : path_end
+   use dda_path_verdict, only : follow_stations, graph_verdict_t
    use dda_scene_graph, only : has_pure_friction, scene_graph
    use dda_settings, only : factor_of, flow_rule, settings_t
    implicit none
    private
 
-   public :: graph_verdict_t, decide_graph, decides_as_graph, follow_stations, has_friction
-   public :: no_start, see_fall, slide_along
-
-   !> A verdict and its proof
-   type :: graph_verdict_t
-      !> One of path_end
-      integer :: end = 0
-      !> Why it is undecided; unallocated otherwise
-      character(len=:), allocatable :: reason
-      !> Flow rule that it was found under, one of flow_rule
-      integer :: flow = flow_rule%associated
-      !> Velocities of the collapse: (3, n_block)
-      real(wp), allocatable :: mechanism(:, :)
-      !> Last state in balance under Coulomb friction
-      type(coulomb_state_t), allocatable :: state
-      !> Forces of what stands under the associated rule: (3, n_joint) [N/m]
-      real(wp), allocatable :: force(:, :)
-      !> Whether the mechanism is the one in which the blocks fall; otherwise a run tells it
-      logical :: is_told = .false.
-      !> Whether something live was followed to the state
-      logical :: on_path = .false.
-      !> Whether steps may prove what limit analysis did not, as no path leads to the load
-      logical :: unproven = .false.
-      !> Whether the path has found no state under the dead loads
-      logical :: no_start = .false.
-      !> Last station of the path that was reached, and the share of the leg after it
-      integer :: station = 0
-      !> Likewise
-      real(wp) :: share = 0.0_wp
-      !> Jumps on the path
-      integer :: n_jump = 0
-      !> The largest of them [m]
-      real(wp) :: largest_jump = 0.0_wp
-      !> Events on the path
-      integer :: n_event = 0
-      !> Factorisations
-      integer :: n_factorisation = 0
-   end type graph_verdict_t
+   public :: decide_graph, decides_as_graph, has_friction, no_start, see_fall, slide_along
 
    !> Why a path is undecided whose dead loads limit analysis lets stand
    character(len=*), parameter :: no_start = "forces balance the dead loads, but no state under " &
@@ -246,7 +209,7 @@ contains
    end subroutine see_fall
 
    !> Under Coulomb friction joints slide along themselves. Where that takes more than a few
-   !> factorisations it falls as limit analysis has it
+   !> factorisations, or joints are crushed, it falls as limit analysis has it
    pure subroutine slide_along(settings, graph, load, force, verdict)
       !> Settings of the run
       type(settings_t), intent(in) :: settings
@@ -262,86 +225,12 @@ contains
       integer :: n
       logical :: found
 
-      if (settings%verdict_flow == flow_rule%associated .or. .not. has_friction(graph)) return
+      if (settings%verdict_flow == flow_rule%associated .or. .not. has_friction(graph) &
+         & .or. crushes(graph)) return
       call find_coulomb_fall(graph, load, force, few, verdict%mechanism, found, n)
       verdict%n_factorisation = verdict%n_factorisation + n
       if (found) verdict%flow = flow_rule%coulomb
    end subroutine slide_along
-
-   !> Follow the loading path from its dead loads to its end or its collapse
-   pure subroutine follow_stations(settings, system, graph, stations, verdict, start)
-      !> Settings of the run
-      type(settings_t), intent(in) :: settings
-      !> The blocks
-      type(block_system_t), intent(in) :: system
-      !> Their joints
-      type(joint_graph_t), intent(in) :: graph
-      !> The stations
-      type(load_stations_t), intent(in) :: stations
-      !> How it ended
-      type(graph_verdict_t), intent(out) :: verdict
-      !> State that a stage before has left, with the load that it balances; the path begins there
-      type(coulomb_state_t), intent(in), optional :: start
-      type(loading_path_t) :: path
-      type(coulomb_state_t) :: state
-      type(path_rate_t) :: rate
-      type(path_result_t) :: result
-      real(wp) :: load(3, graph%n_block), opening(3, size(graph%kind))
-      integer :: i, n
-      verdict%flow = flow_rule%coulomb
-      n = ubound(stations%tilt, 1)
-      verdict%on_path = n > 0
-      call new_rate(graph, rate)
-      call loads_at(stations, 0, settings, system, graph, load, opening)
-      if (present(start)) then
-         ! what was taken away leaves its neighbours, and what was built gets its weight
-         state = start
-         call new_path(graph, load, path)
-         rate%load = load - state%load
-         call follow_path(path, state, rate, 1.0_wp, result)
-         verdict%on_path = .true.
-      else
-         call begin_path(graph, load, path, state, result)
-      end if
-      call count_up(result, verdict)
-      verdict%no_start = result%end /= path_end%reached .and. .not. present(start)
-      do i = 1, n
-         if (result%end /= path_end%reached) exit
-         rate%load = -load
-         rate%opening = -opening
-         call loads_at(stations, i, settings, system, graph, load, opening)
-         rate%load = rate%load + load
-         rate%opening = rate%opening + opening
-         call follow_path(path, state, rate, 1.0_wp, result)
-         call count_up(result, verdict)
-         verdict%station = i - 1
-         verdict%share = result%reached
-      end do
-      verdict%end = result%end
-      verdict%state = state
-      if (result%end == path_end%collapsed) then
-         call move_alloc(result%mechanism, verdict%mechanism)
-      else if (result%end == path_end%reached) then
-         return
-      else if (result%reason == path_reason%too_many) then
-         verdict%reason = "the loading path has too many jumps"
-      else
-         verdict%reason = "a jump on the loading path does not converge"
-      end if
-   end subroutine follow_stations
-
-   !> Add what one leg took
-   pure subroutine count_up(result, verdict)
-      !> How the leg ended
-      type(path_result_t), intent(in) :: result
-      !> Receives it
-      type(graph_verdict_t), intent(inout) :: verdict
-
-      verdict%n_event = verdict%n_event + result%n_event
-      verdict%n_jump = verdict%n_jump + result%n_jump
-      verdict%largest_jump = max(verdict%largest_jump, result%largest_jump)
-      verdict%n_factorisation = verdict%n_factorisation + result%n_factorisation
-   end subroutine count_up
 
    !> Whether friction has a say: where joints cannot slide, or slide freely, both rules are one
    pure logical function has_friction(graph)

@@ -59,15 +59,18 @@ def random_assembly(seed: int) -> tuple[str, float]:
     return text, math.degrees(math.atan(source.uniform(0.35, 0.9)))
 
 
-def programme(scene, tangents: int = 0) -> float | None:
+def programme(scene, crushes: bool = False) -> float | None:
     """Largest load factor of a scene of voussoir.verify by HiGHS, its load being that of a factor of one.
+
+    A joint that crushes has tangents of its parabola as cuts, each where the last solution lies beyond the parabola,
+    until none does: what cuts allow is never less than what the parabola does.
 
     Parameters
     ----------
     scene
         Blocks, joints, deck and file of blocks, of voussoir.verify_proofs.
-    tangents
-        Tangents of the parabola of a joint that crushes, on either side.
+    crushes
+        Whether joints have the strength of their blocks.
     """
     from scipy.optimize import linprog
     from voussoir.verify_loads import loads_on
@@ -77,11 +80,12 @@ def programme(scene, tangents: int = 0) -> float | None:
     # of many, lest rounding of the weights be in it
     live = (loads_on(scene.deck.with_value("load_factor", repr(MANY)), scene.source, scene.blocks) - dead) / MANY
     free = [block.number - 1 for block in scene.blocks if not block.fixed]
+    unit = np.abs(dead).max()
     columns, pressed = [], []
     for joint in scene.joints:
         friction = scene.friction(joint)
-        if tangents:
-            pressed.append((len(columns), scene.crush(joint)))
+        if crushes:
+            pressed.append((len(columns), scene.crush(joint) / unit))
         for k in (0,) if joint.single else (0, 1):
             for sign in (1.0, -1.0):
                 effect = np.zeros((len(scene.blocks), 3))
@@ -89,20 +93,33 @@ def programme(scene, tangents: int = 0) -> float | None:
                     push(effect, scene.blocks[joint.second - 1], at, vector)
                     push(effect, scene.blocks[joint.first - 1], at, -vector)
                 columns.append(effect[free].ravel())
-    unit = np.abs(dead).max()
     matrix = np.array([*columns, live[free].ravel() / unit]).T
-    cuts, most = np.zeros((2 * tangents * len(pressed), matrix.shape[1])), []
-    for first, crush in pressed:
-        # as far apart as the force is large where they touch
-        for share in ((np.arange(tangents) + 0.5) / tangents) ** 2:
-            for way in (1.0, -1.0):
-                # more at one corner than at the other: at most as much as the tangent has
-                cut = cuts[len(most)]
-                cut[first:first + 2], cut[first + 2:first + 4] = way - (1 - 2 * share), -way - (1 - 2 * share)
-                most.append(share**2 * crush / unit)
     cost = np.zeros(matrix.shape[1])
     cost[-1] = -1.0
-    found = linprog(cost, A_eq=matrix, b_eq=-dead[free].ravel() / unit, bounds=(0.0, None), method="highs-ds",
-                    A_ub=cuts if tangents else None, b_ub=most if tangents else None,
-                    options={"primal_feasibility_tolerance": 1e-10, "dual_feasibility_tolerance": 1e-10})
-    return -found.fun if found.status == 0 else None
+    cuts: list[np.ndarray] = []
+    most: list[float] = []
+
+    def touch(first: int, strength: float, share: float) -> None:
+        for way in (1.0, -1.0):
+            # more at one corner than at the other: at most as much as the tangent has
+            cut = np.zeros(matrix.shape[1])
+            cut[first:first + 2], cut[first + 2:first + 4] = way - (1 - 2 * share), -way - (1 - 2 * share)
+            cuts.append(cut)
+            most.append(share**2 * strength)
+
+    for first, strength in pressed:
+        for share in np.geomspace(1e-3, 1.0, 8):
+            touch(first, strength, share)
+    while True:
+        found = linprog(cost, A_eq=matrix, b_eq=-dead[free].ravel() / unit, bounds=(0.0, None), method="highs-ds",
+                        A_ub=np.array(cuts) if cuts else None, b_ub=most or None,
+                        options={"primal_feasibility_tolerance": 1e-10, "dual_feasibility_tolerance": 1e-10})
+        if found.status != 0:
+            return None
+        before = len(cuts)
+        for first, strength in pressed:
+            ends = found.x[first:first + 2].sum(), found.x[first + 2:first + 4].sum()
+            if abs(ends[0] - ends[1]) > sum(ends) * (1 - sum(ends) / strength) + 1e-9 * strength:
+                touch(first, strength, sum(ends) / strength)
+        if len(cuts) == before:
+            return -found.fun

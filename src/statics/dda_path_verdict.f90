@@ -1,0 +1,242 @@
+!> The loading path of a scene under Coulomb friction, as a verdict with its proof
+!>
+!> Where joints are crushed the path is followed with tangents of their parabolas as layers, which
+!> are added where the forces at its end lie beyond, until they do not: the hinge of a layer is a
+!> corner that has moved inwards by half the strip that bears the force.
+module dda_path_verdict
+   use dda_block_system, only : block_system_t
+   use dda_coulomb_law, only : coulomb_state_t
+   use dda_joint_graph, only : crushes, joint_graph_t
+   use dda_joint_layers, only : add_layers, joint_layers_t, no_layers, touch_parabola
+   use dda_kinds, only : wp
+   use dda_load_stations, only : load_stations_t, loads_at
+   use dda_loading_path, only : begin_path, follow_path, loading_path_t, new_path, new_rate, &
+      & path_end, path_rate_t, path_reason, path_result_t
+   use dda_settings, only : flow_rule, settings_t
+   implicit none
+   private
+
+   public :: graph_verdict_t, follow_stations
+
+   !> A verdict and its proof
+   type :: graph_verdict_t
+      !> One of path_end
+      integer :: end = 0
+      !> Why it is undecided; unallocated otherwise
+      character(len=:), allocatable :: reason
+      !> Flow rule that it was found under, one of flow_rule
+      integer :: flow = flow_rule%associated
+      !> Velocities of the collapse: (3, n_block)
+      real(wp), allocatable :: mechanism(:, :)
+      !> Last state in balance under Coulomb friction
+      type(coulomb_state_t), allocatable :: state
+      !> Forces of what stands under the associated rule: (3, n_joint) [N/m]
+      real(wp), allocatable :: force(:, :)
+      !> Whether the mechanism is the one in which the blocks fall; otherwise a run tells it
+      logical :: is_told = .false.
+      !> Whether something live was followed to the state
+      logical :: on_path = .false.
+      !> Whether steps may prove what limit analysis did not, as no path leads to the load
+      logical :: unproven = .false.
+      !> Whether the path has found no state under the dead loads
+      logical :: no_start = .false.
+      !> Last station of the path that was reached, and the share of the leg after it
+      integer :: station = 0
+      !> Likewise
+      real(wp) :: share = 0.0_wp
+      !> Jumps on the path
+      integer :: n_jump = 0
+      !> The largest of them [m]
+      real(wp) :: largest_jump = 0.0_wp
+      !> Events on the path
+      integer :: n_event = 0
+      !> Factorisations
+      integer :: n_factorisation = 0
+   end type graph_verdict_t
+
+   !> How far forces on the path may lie beyond the parabola of a joint that crushes, over the
+   !> largest force
+   real(wp), parameter :: beyond = 1.0e-9_wp
+   !> Paths that are followed before it is said that they do not converge, and factorisations of all
+   integer, parameter :: most_paths = 30, most_factorisations = 6000
+
+contains
+
+   !> Follow the loading path from its dead loads to its end or its collapse
+   pure subroutine follow_stations(settings, system, graph, stations, verdict, start)
+      !> Settings of the run
+      type(settings_t), intent(in) :: settings
+      !> The blocks
+      type(block_system_t), intent(in) :: system
+      !> Their joints
+      type(joint_graph_t), intent(in) :: graph
+      !> The stations
+      type(load_stations_t), intent(in) :: stations
+      !> How it ended
+      type(graph_verdict_t), intent(out) :: verdict
+      !> State that a stage before has left, with the load that it balances; the path begins there.
+      !> Joints that crush begin unloaded
+      type(coulomb_state_t), intent(in), optional :: start
+      type(joint_graph_t) :: layered
+      type(joint_layers_t) :: layers
+      real(wp), allocatable :: couple(:, :)
+      integer :: k, n_factorisation
+      logical :: touched
+
+      if (.not. crushes(graph)) then
+         allocate (couple(3, graph%n_block), source=0.0_wp)
+         call follow_joints(settings, system, graph, graph, couple, stations, verdict, start)
+         return
+      end if
+      layers = no_layers()
+      n_factorisation = 0
+      do k = 1, most_paths
+         call add_layers(graph, layers, layered, couple)
+         call follow_joints(settings, system, graph, layered, couple, stations, verdict)
+         n_factorisation = n_factorisation + verdict%n_factorisation
+         call touch_parabola(graph, verdict%state%force(:, :size(graph%kind)), &
+            & beyond*maxval(abs(verdict%state%force(1:2, :))), layers, touched)
+         if (.not. touched .or. n_factorisation > most_factorisations) exit
+      end do
+      verdict%n_factorisation = n_factorisation
+      call take_layers_away(graph, verdict)
+      if (.not. touched) return
+      verdict%end = path_end%undecided
+      verdict%reason = "the strips that bear the forces of joints that crush do not converge"
+   end subroutine follow_stations
+
+   !> Loads and openings at a station, of layers too
+   pure subroutine load_joints(stations, station, settings, system, graph, couple, load, opening)
+      !> The stations
+      type(load_stations_t), intent(in) :: stations
+      !> Number of the station
+      integer, intent(in) :: station
+      !> Settings of the run
+      type(settings_t), intent(in) :: settings
+      !> The blocks
+      type(block_system_t), intent(in) :: system
+      !> Their joints without layers
+      type(joint_graph_t), intent(in) :: graph
+      !> Loads by the couples of the layers: (3, n_block of layered)
+      real(wp), intent(in) :: couple(:, :)
+      !> Loads: (3, n_block of layered) [N/m, N/m, N]
+      real(wp), intent(out) :: load(:, :)
+      !> Openings: (3, n_joint of layered) [m]
+      real(wp), intent(out) :: opening(:, :)
+
+      load = couple
+      opening = 0.0_wp
+      associate (b => graph%n_block, n => size(graph%kind))
+         call loads_at(stations, station, settings, system, graph, load(:, :b), opening(:, :n))
+         load(:, :b) = load(:, :b) + couple(:, :b)
+      end associate
+   end subroutine load_joints
+
+   !> Leave joints and blocks alone of those with layers
+   pure subroutine take_layers_away(graph, verdict)
+      !> The joints without layers
+      type(joint_graph_t), intent(in) :: graph
+      !> The verdict
+      type(graph_verdict_t), intent(inout) :: verdict
+
+      associate (state => verdict%state, b => graph%n_block, n => size(graph%kind))
+         state%motion = state%motion(:, :b)
+         state%load = state%load(:, :b)
+         state%force = state%force(:, :n)
+         state%gap = state%gap(:, :n)
+         state%slip = state%slip(:n)
+         state%face = state%face(:, :n)
+         if (allocated(verdict%mechanism)) &
+            & verdict%mechanism = verdict%mechanism(:, :min(b, size(verdict%mechanism, 2)))
+      end associate
+   end subroutine take_layers_away
+
+   !> Follow the path of joints some of which may have layers
+   pure subroutine follow_joints(settings, system, graph, layered, couple, stations, verdict, start)
+      !> Settings of the run
+      type(settings_t), intent(in) :: settings
+      !> The blocks
+      type(block_system_t), intent(in) :: system
+      !> Their joints without layers
+      type(joint_graph_t), intent(in) :: graph
+      !> The joints with layers
+      type(joint_graph_t), intent(in) :: layered
+      !> Loads by the couples of the layers: (3, n_block of layered)
+      real(wp), intent(in) :: couple(:, :)
+      !> The stations
+      type(load_stations_t), intent(in) :: stations
+      !> How it ended
+      type(graph_verdict_t), intent(out) :: verdict
+      !> State that a stage before has left, with the load that it balances; the path begins there
+      type(coulomb_state_t), intent(in), optional :: start
+      type(loading_path_t) :: path
+      type(coulomb_state_t) :: state
+      type(path_rate_t) :: rate
+      type(path_result_t) :: result
+      real(wp) :: load(3, layered%n_block), opening(3, size(layered%kind))
+      integer :: i, n
+
+      verdict%flow = flow_rule%coulomb
+      n = ubound(stations%tilt, 1)
+      verdict%on_path = n > 0
+      call new_rate(layered, rate)
+      call load_joints(stations, 0, settings, system, graph, couple, load, opening)
+      if (present(start)) then
+         ! what was taken away leaves its neighbours, and what was built gets its weight
+         state = start
+         call new_path(layered, load, path)
+         rate%load = load - state%load
+         call follow_path(path, state, rate, 1.0_wp, result)
+         verdict%on_path = .true.
+      else
+         call begin_path(layered, load, path, state, result)
+      end if
+      call count_up(result, verdict)
+      verdict%no_start = result%end /= path_end%reached .and. .not. present(start)
+      do i = 1, n
+         if (result%end /= path_end%reached) exit
+         rate%load = -load
+         rate%opening = -opening
+         call load_joints(stations, i, settings, system, graph, couple, load, opening)
+         rate%load = rate%load + load
+         rate%opening = rate%opening + opening
+         call follow_path(path, state, rate, 1.0_wp, result)
+         call count_up(result, verdict)
+         verdict%station = i - 1
+         verdict%share = result%reached
+      end do
+      verdict%state = state
+      call conclude(result, verdict)
+   end subroutine follow_joints
+
+   !> How a path has ended
+   pure subroutine conclude(result, verdict)
+      !> How its last leg ended
+      type(path_result_t), intent(inout) :: result
+      !> Receives it
+      type(graph_verdict_t), intent(inout) :: verdict
+
+      verdict%end = result%end
+      if (result%end == path_end%collapsed) then
+         call move_alloc(result%mechanism, verdict%mechanism)
+      else if (result%end == path_end%undecided .and. result%reason == path_reason%too_many) then
+         verdict%reason = "the loading path has too many jumps"
+      else if (result%end == path_end%undecided) then
+         verdict%reason = "a jump on the loading path does not converge"
+      end if
+   end subroutine conclude
+
+   !> Add what one leg took
+   pure subroutine count_up(result, verdict)
+      !> How the leg ended
+      type(path_result_t), intent(in) :: result
+      !> Receives it
+      type(graph_verdict_t), intent(inout) :: verdict
+
+      verdict%n_event = verdict%n_event + result%n_event
+      verdict%n_jump = verdict%n_jump + result%n_jump
+      verdict%largest_jump = max(verdict%largest_jump, result%largest_jump)
+      verdict%n_factorisation = verdict%n_factorisation + result%n_factorisation
+   end subroutine count_up
+
+end module dda_path_verdict
