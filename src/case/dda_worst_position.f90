@@ -1,53 +1,47 @@
 !> The position of a vehicle at which the least load factor is carried
 !>
-!> While no axle passes from one block to another, the load goes with the position in proportion,
-!> and the inverse of its associated limit is convex in it: of axles that are points the least
-!> factor is at a corner, on one side of it. Axles that are spread are closed in around the least.
+!> Between two passages of an axle from block to block its loads are quadratic in the position.
+!> Which of all these is carried at the least factor, under the associated rule, is a question of
+!> the joint graph; the pressure of fill, which the arch leans against on the side away from the
+!> vehicle, makes as many graphs as there are sides.
 module dda_worst_position
    use dda_arch_assembly, only : arch_assembly_t
    use dda_arch_form, only : form_problem_t
-   use dda_boundary, only : loaded_point_t
+   use dda_boundary, only : bounded_force_t, loaded_point_t, value_at
    use dda_deck, only : deck_t, has_group
    use dda_fill_loads, only : fill_of, fill_t, press_fill
    use dda_graph_decision, only : decides_as_graph
    use dda_joint_graph, only : joint_graph_t
    use dda_kinds, only : wp
    use dda_limit_decision, only : decide_load, load_decision_t, load_state
-   use dda_limit_load, only : find_limit, limit_load_t, limit_state
    use dda_load_coefficient, only : added_loads, full_loads, with_coefficient
+   use dda_loads, only : point_load
    use dda_scene, only : scene_t, searched_load
    use dda_scene_graph, only : scene_graph
+   use dda_settings, only : factor_of
    use dda_shape_scene, only : add_loads, shape_assembly
-   use dda_sort, only : sorted_order
-   use dda_vehicle, only : axle_loads, upper_corners, vehicle_of, vehicle_t
+   use dda_vehicle, only : axle_loads, passages, road_of, road_t, vehicle_of, vehicle_t
+   use dda_worst_load, only : least_factor_t, load_arc_t, seek_least_factor
+   use dda_interior_state, only : no_limit
    implicit none
    private
 
    public :: find_worst_position
 
-   !> Relative gap of the limits that choose the positions to look at, and of those that decide
-   real(wp), parameter :: coarse = 1.0e-3_wp, fine = 1.0e-9_wp
-   !> How far beside a corner an axle is on the next block, and how near the least is closed in,
+   !> How far beside a passage an axle is on the next block, and how near the least is closed in,
    !> over the size of all
    real(wp), parameter :: beside = 1.0e-10_wp, near = 1.0e-6_wp
 
-   !> Positions whose inverse factor is this share of the largest are closed in
-   real(wp), parameter :: promising = 0.9_wp
-
    !> What the positions have in common
    type :: bridge_t
-      !> The scene without the vehicle
+      !> The scene without the vehicle, its live loads at a factor of one
       type(scene_t) :: scene
-      !> Its joints
-      type(joint_graph_t) :: graph
-      !> Loads at a factor of zero: (3, n_block) [N/m, N/m, N]
-      real(wp), allocatable :: dead(:, :)
       !> The vehicle
       type(vehicle_t) :: vehicle
+      !> What it stands on
+      type(road_t) :: road
       !> Fill that it stands on
       type(fill_t), allocatable :: fill
-      !> All other loads on points: (n)
-      type(loaded_point_t), allocatable :: other(:)
       !> Whether it stands without live loads
       logical :: stands = .false.
    end type bridge_t
@@ -65,53 +59,63 @@ contains
       !> Whether any position is bounded
       logical, intent(out) :: found
       type(bridge_t) :: bridge
-      real(wp), allocatable :: at(:), inverse(:)
-      real(wp) :: best, size_of_all
-      integer :: k
+      type(least_factor_t) :: least
+      real(wp), allocatable :: at(:)
+      integer :: first, last
 
       position = 0.0_wp
       found = .false.
       if (.not. decides_as_graph(scene%settings, scene%contacts)) return
-      bridge%scene = scene
-      call take_vehicle(deck, bridge)
-      ! those of the vehicle are the last
-      associate (loaded => scene%settings%boundary%loaded, vehicle => bridge%vehicle)
-         allocate (bridge%other, source=loaded(:size(loaded) &
-            & - size(axle_loads(vehicle, scene%system, scene%origin))))
-      end associate
-      call scene_graph(scene%settings, scene%system, scene%contacts, bridge%graph)
-      allocate (bridge%dead, source=full_loads(with_coefficient(scene%settings, &
-         & searched_load%factor, 0.0_wp), scene, bridge%graph))
-      bridge%scene%settings = with_coefficient(scene%settings, searched_load%factor, 1.0_wp)
-      bridge%stands = stands_alone(scene)
-      size_of_all = norm2(maxval(scene%system%vertex, dim=2) - minval(scene%system%vertex, dim=2))
-      allocate (at, source=positions(bridge, size_of_all))
-      allocate (inverse(size(at)))
-      do k = 1, size(at)
-         inverse(k) = inverse_factor(bridge, at(k), coarse)
+      call take_bridge(deck, scene, bridge)
+      allocate (at, source=stretches(bridge))
+      first = 1
+      do while (first < size(at))
+         last = first + 1
+         do while (last + 1 < size(at))
+            if (.not. lean_alike(bridge, at(first), at(last + 1))) exit
+            last = last + 2
+         end do
+         call seek_on_side(bridge, at(first:last), least)
+         first = last + 1
       end do
-      best = maxval(inverse)
-      do k = 1, size(at)
-         if (inverse(k) >= (1.0_wp - 4.0_wp*coarse)*best) &
-            & inverse(k) = inverse_factor(bridge, at(k), fine)
-      end do
-      k = maxloc(inverse, dim=1)
-      found = inverse(k) > 0.0_wp
-      if (.not. found) return
-      position = at(k)
-      best = inverse(k)
-      if (.not. bridge%vehicle%length > 0.0_wp) return
-      do k = 1, size(at)
-         if (inverse(k) < promising*maxval(inverse) &
-            & .or. inverse(k) < (1.0_wp - 4.0_wp*coarse) &
-            & *maxval(inverse(max(1, k - 1):min(size(at), k + 1)))) cycle
-         call close_in(bridge, at(max(1, k - 1)), at(min(size(at), k + 1)), near*size_of_all, &
-            & position, best)
-      end do
+      found = least%factor < no_limit
+      if (found) position = least%place
    end subroutine find_worst_position
 
-   !> Whether the bridge stands without live loads, and without leaning against fill, which could
-   !> only help
+   !> What a deck has of a bridge
+   pure subroutine take_bridge(deck, scene, bridge)
+      !> The deck of the case
+      type(deck_t), intent(in) :: deck
+      !> Its scene with a vehicle anywhere
+      type(scene_t), intent(in) :: scene
+      !> The bridge
+      type(bridge_t), intent(out) :: bridge
+      type(arch_assembly_t) :: assembly
+      type(form_problem_t) :: problem
+      type(loaded_point_t), allocatable :: other(:)
+
+      bridge%scene = scene
+      bridge%road = road_of(scene%system)
+      if (has_group(deck, "fill")) then
+         call shape_assembly(deck, assembly, problem)
+         allocate (bridge%fill)
+         bridge%fill = fill_of(deck, assembly)
+         bridge%vehicle = vehicle_of(deck, bridge%fill)
+      else
+         bridge%vehicle = vehicle_of(deck)
+      end if
+      ! the loads of the vehicle are the last
+      associate (loaded => scene%settings%boundary%loaded)
+         allocate (other, source=loaded(:size(loaded) &
+            & - size(axle_loads(bridge%vehicle, bridge%road, scene%origin))))
+      end associate
+      call move_alloc(other, bridge%scene%settings%boundary%loaded)
+      bridge%scene%settings = with_coefficient(bridge%scene%settings, searched_load%factor, 1.0_wp)
+      bridge%stands = stands_alone(bridge%scene)
+   end subroutine take_bridge
+
+   !> Whether a bridge stands without live loads, and without leaning against fill, which could only
+   !> help
    pure logical function stands_alone(scene)
       !> The scene
       type(scene_t), intent(in) :: scene
@@ -127,157 +131,164 @@ contains
       stands_alone = decision%state == load_state%stands
    end function stands_alone
 
-   !> Positions at which an axle is at a corner, on either side of it; of axles that are spread, an
-   !> end or the middle
-   pure function positions(bridge, size_of_all) result(at)
-      !> The scene and the vehicle
+   !> Stretches of the road along which the loads change smoothly and the bridge leans against the
+   !> same fill
+   pure function stretches(bridge) result(at)
+      !> The bridge
       type(bridge_t), intent(in) :: bridge
-      !> Size of the scene [m]
-      real(wp), intent(in) :: size_of_all
-      !> The positions, rising: (n) [m]
+      !> Beginning and end of each, one after the other: (2 n) [m]
       real(wp), allocatable :: at(:)
-      real(wp), allocatable :: corner(:)
-      real(wp) :: shift(3)
-      integer :: i, j, n
+      real(wp), allocatable :: passage(:)
+      real(wp) :: from, other, to
+      integer :: k, n
 
-      allocate (corner, source=upper_corners(bridge%scene%system) + bridge%scene%origin(1))
-      shift = beside*size_of_all*[-1.0_wp, 0.0_wp, 1.0_wp]
-      if (bridge%vehicle%length > 0.0_wp) &
-         & shift = 0.5_wp*bridge%vehicle%length*[-1.0_wp, 0.0_wp, 1.0_wp]
+      allocate (passage, source=passages(bridge%vehicle, bridge%road, bridge%scene%origin))
+      allocate (at(4*size(passage)))
       n = 0
-      allocate (at(3*size(corner)*size(bridge%vehicle%axle)))
-      do i = 1, size(bridge%vehicle%axle)
-         do j = 1, 3
-            at(n + 1:n + size(corner)) = corner - bridge%vehicle%offset(i) + shift(j)
-            n = n + size(corner)
-         end do
+      do k = 1, size(passage) - 1
+         from = passage(k) + beside*bridge%road%size
+         to = passage(k + 1) - beside*bridge%road%size
+         if (.not. to > from) cycle
+         if (.not. lean_alike(bridge, from, to)) then
+            other = turning_point(bridge, from, to)
+            at(n + 1:n + 2) = [from, other - beside*bridge%road%size]
+            n = n + 2
+            from = other + beside*bridge%road%size
+         end if
+         at(n + 1:n + 2) = [from, to]
+         n = n + 2
       end do
-      at = at(sorted_order(spread(0, 1, n), at))
-   end function positions
+      at = at(:n)
+   end function stretches
 
-   !> Inverse of the associated limit at a position; 0 where there is none
-   pure real(wp) function inverse_factor(bridge, position, gap) result(inverse)
-      !> The scene and the vehicle
+   !> Position between two others at which the bridge begins to lean against other fill
+   pure real(wp) function turning_point(bridge, from, to) result(middle)
+      !> The bridge
+      type(bridge_t), intent(in) :: bridge
+      !> The two positions [m]
+      real(wp), intent(in) :: from, to
+      real(wp) :: ends(2)
+
+      ends = [from, to]
+      do
+         middle = 0.5_wp*sum(ends)
+         if (ends(2) - ends(1) <= 0.1_wp*beside*bridge%road%size) return
+         if (lean_alike(bridge, from, middle)) then
+            ends(1) = middle
+         else
+            ends(2) = middle
+         end if
+      end do
+   end function turning_point
+
+   !> Whether the bridge leans against the same fill at two positions
+   pure logical function lean_alike(bridge, one, other)
+      !> The bridge
+      type(bridge_t), intent(in) :: bridge
+      !> The two positions [m]
+      real(wp), intent(in) :: one, other
+      type(bounded_force_t), allocatable :: a(:), b(:)
+
+      lean_alike = .true.
+      if (.not. allocated(bridge%fill)) return
+      allocate (a, source=leant_against(bridge, one))
+      allocate (b, source=leant_against(bridge, other))
+      lean_alike = size(a) == size(b)
+      if (lean_alike) lean_alike = all(a%block == b%block)
+   end function lean_alike
+
+   !> What the bridge leans against with the vehicle at a position
+   pure function leant_against(bridge, position) result(bounded)
+      !> The bridge, with fill
       type(bridge_t), intent(in) :: bridge
       !> The position [m]
       real(wp), intent(in) :: position
-      !> Relative gap
-      real(wp), intent(in) :: gap
-      type(vehicle_t) :: vehicle
-      type(scene_t) :: scene
-      type(limit_load_t) :: limit
-      type(loaded_point_t), allocatable :: axles(:)
-      real(wp) :: live(3, bridge%graph%n_block)
+      !> The forces: (n)
+      type(bounded_force_t), allocatable :: bounded(:)
+      type(scene_t) :: loads
 
-      inverse = 0.0_wp
+      loads%origin = bridge%scene%origin
+      loads%settings%boundary%loaded = bridge%scene%settings%boundary%loaded
+      call add_loads(axles_at(bridge, position), loads)
+      call press_fill(bridge%fill, loads)
+      allocate (bounded(0))
+      if (allocated(loads%settings%boundary%bounded)) bounded = loads%settings%boundary%bounded
+   end function leant_against
+
+   !> Loads of the vehicle at a position
+   pure function axles_at(bridge, position) result(axles)
+      !> The bridge
+      type(bridge_t), intent(in) :: bridge
+      !> The position [m]
+      real(wp), intent(in) :: position
+      !> The loads: (n)
+      type(loaded_point_t), allocatable :: axles(:)
+      type(vehicle_t) :: vehicle
+
       vehicle = bridge%vehicle
       vehicle%position = position
-      scene%system = bridge%scene%system
-      scene%settings = bridge%scene%settings
-      if (allocated(scene%settings%boundary%loaded)) deallocate (scene%settings%boundary%loaded)
-      allocate (axles, source=axle_loads(vehicle, scene%system, bridge%scene%origin))
-      if (size(axles) == 0) return
-      if (allocated(bridge%fill)) then
-         inverse = inverse_in_fill(bridge, axles, gap)
-         return
-      end if
-      allocate (scene%settings%boundary%loaded(size(bridge%other) + size(axles)))
-      scene%settings%boundary%loaded(:size(bridge%other)) = bridge%other
-      scene%settings%boundary%loaded(size(bridge%other) + 1:) = axles
-      live = added_loads(searched_load%factor, scene%settings, scene, bridge%graph)
-      if (.not. maxval(abs(live)) > 0.0_wp) return
-      call find_limit(bridge%graph, bridge%dead, live, gap, limit, bridge%stands)
-      if (limit%state == limit_state%found) inverse = 2.0_wp/(limit%lower + limit%upper)
-   end function inverse_factor
+      allocate (axles, source=axle_loads(vehicle, bridge%road, bridge%scene%origin))
+   end function axles_at
 
-   !> The vehicle of a deck, and the fill that it stands on
-   pure subroutine take_vehicle(deck, bridge)
-      !> The deck of the case
-      type(deck_t), intent(in) :: deck
-      !> Receives them
-      type(bridge_t), intent(inout) :: bridge
-      type(arch_assembly_t) :: assembly
-      type(form_problem_t) :: problem
-
-      if (has_group(deck, "fill")) then
-         call shape_assembly(deck, assembly, problem)
-         allocate (bridge%fill)
-         bridge%fill = fill_of(deck, assembly)
-         bridge%vehicle = vehicle_of(deck, bridge%fill)
-      else
-         bridge%vehicle = vehicle_of(deck)
-      end if
-   end subroutine take_vehicle
-
-   !> Inverse of the associated limit for axles on fill, which is leant against on the side away
-   !> from them; 0 where there is none
-   pure real(wp) function inverse_in_fill(bridge, axles, gap) result(inverse)
-      !> The scene and the vehicle
+   !> Seek the least factor on stretches on which the bridge leans against the same fill
+   pure subroutine seek_on_side(bridge, at, least)
+      !> The bridge
       type(bridge_t), intent(in) :: bridge
-      !> Loads of the axles
-      type(loaded_point_t), intent(in) :: axles(:)
-      !> Relative gap
-      real(wp), intent(in) :: gap
+      !> Beginning and end of each stretch: (2 n) [m]
+      real(wp), intent(in) :: at(:)
+      !> The least factor so far
+      type(least_factor_t), intent(inout) :: least
+      type(load_arc_t) :: arc(size(at)/2)
       type(joint_graph_t) :: graph
-      type(limit_load_t) :: limit
       type(scene_t) :: scene
-      real(wp), allocatable :: dead(:, :), live(:, :)
-
-      inverse = 0.0_wp
-      scene = bridge%scene
-      deallocate (scene%settings%boundary%loaded)
-      allocate (scene%settings%boundary%loaded, source=bridge%other)
-      call add_loads(axles, scene)
-      call press_fill(bridge%fill, scene)
-      call scene_graph(scene%settings, scene%system, scene%contacts, graph)
-      live = full_loads(scene%settings, scene, graph)
-      scene%settings%load_factor = 0.0_wp
-      dead = full_loads(scene%settings, scene, graph)
-      live = live - dead
-      if (.not. maxval(abs(live)) > 0.0_wp) return
-      call find_limit(graph, dead, live, gap, limit, bridge%stands)
-      if (limit%state == limit_state%found) inverse = 2.0_wp/(limit%lower + limit%upper)
-   end function inverse_in_fill
-
-   !> Close in around the least factor by golden sections
-   pure subroutine close_in(bridge, left, right, least, position, best)
-      !> The scene and the vehicle
-      type(bridge_t), intent(in) :: bridge
-      !> A position before it [m]
-      real(wp), intent(in) :: left
-      !> A position behind it [m]
-      real(wp), intent(in) :: right
-      !> How near it is to be [m]
-      real(wp), intent(in) :: least
-      !> The position so far; a worse one takes its place [m]
-      real(wp), intent(inout) :: position
-      !> Inverse of its factor
-      real(wp), intent(inout) :: best
-      real(wp), parameter :: golden = 0.5_wp*(sqrt(5.0_wp) - 1.0_wp)
-      real(wp) :: a, b, value(2), x(2)
+      real(wp), allocatable :: dead(:, :), other(:, :)
       integer :: k
 
-      a = left
-      b = right
-      x = [b - golden*(b - a), a + golden*(b - a)]
-      value = [inverse_factor(bridge, x(1), fine), inverse_factor(bridge, x(2), fine)]
-      do
-         k = merge(1, 2, value(1) > value(2))
-         if (value(k) > best) then
-            best = value(k)
-            position = x(k)
-         end if
-         if (k == 1) then
-            b = x(2)
-         else
-            a = x(1)
-         end if
-         if (b - a <= least) exit
-         ! the better one is one of the next two
-         x(3 - k) = x(k)
-         value(3 - k) = value(k)
-         x(k) = merge(b - golden*(b - a), a + golden*(b - a), k == 1)
-         value(k) = inverse_factor(bridge, x(k), fine)
+      scene = bridge%scene
+      if (allocated(bridge%fill)) scene%settings%boundary%bounded = leant_against(bridge, at(1))
+      call scene_graph(scene%settings, scene%system, scene%contacts, graph)
+      other = added_loads(searched_load%factor, scene%settings, scene, graph)
+      scene%settings%load_factor = 0.0_wp
+      dead = full_loads(scene%settings, scene, graph)
+      do k = 1, size(arc)
+         arc(k) = arc_of(bridge, at(2*k - 1), at(2*k), other)
       end do
-   end subroutine close_in
+      call seek_least_factor(graph, dead, arc, bridge%stands, near*bridge%road%size, least)
+   end subroutine seek_on_side
+
+   !> Live loads with the vehicle on a stretch
+   pure function arc_of(bridge, from, to, other) result(arc)
+      !> The bridge
+      type(bridge_t), intent(in) :: bridge
+      !> Beginning and end of the stretch [m]
+      real(wp), intent(in) :: from, to
+      !> Live loads beside the vehicle: (3, n_block) [N/m, N/m, N]
+      real(wp), intent(in) :: other(:, :)
+      !> The loads
+      type(load_arc_t) :: arc
+      type(loaded_point_t), allocatable :: axles(:)
+      real(wp) :: live(3, size(other, 2), 3), load(6)
+      logical :: is_loaded(size(other, 2))
+      integer :: e, i, j
+
+      is_loaded = any(abs(other) > 0.0_wp, dim=1)
+      do j = 1, 3
+         live(:, :, j) = other
+         if (allocated(axles)) deallocate (axles)
+         allocate (axles, source=axles_at(bridge, from + 0.5_wp*real(j - 1, wp)*(to - from)))
+         do i = 1, size(axles)
+            associate (axle => axles(i), system => bridge%scene%system)
+               e = system%equation(axle%block)
+               load = point_load(factor_of(bridge%scene%settings, axle)*value_at(axle%force, &
+                  & 0.0_wp), axle%point, system%centroid(:, axle%block))
+               live(:, e, j) = live(:, e, j) + load(:3)
+               is_loaded(e) = .true.
+            end associate
+         end do
+      end do
+      arc%from = from
+      arc%to = to
+      arc%block = pack([(i, i=1, size(is_loaded))], is_loaded)
+      arc%load = live(:, arc%block, :)
+   end function arc_of
 end module dda_worst_position

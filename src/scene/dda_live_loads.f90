@@ -12,7 +12,7 @@ module dda_live_loads
    use dda_scene, only : scene_t
    use dda_shape_scene, only : add_loads
    use dda_text, only : to_text
-   use dda_vehicle, only : axle_loads, vehicle_of
+   use dda_vehicle, only : axle_loads, road_of, vehicle_of
    implicit none
    private
 
@@ -34,7 +34,8 @@ contains
 
       if (has_group(deck, "live")) call add_loads(loads_of_live(deck, scene), scene)
       if (has_group(deck, "vehicle")) &
-         & call add_loads(axle_loads(vehicle_of(deck, fill), scene%system, scene%origin), scene)
+         & call add_loads(axle_loads(vehicle_of(deck, fill), road_of(scene%system), scene%origin), &
+         & scene)
    end subroutine add_live_loads
 
    !> The forces of &live on the blocks of a scene
@@ -139,7 +140,7 @@ contains
       integer :: b, i
 
       if (has_group(deck, "vehicle") .and. .not. flag_of(deck, "vehicle", "worst")) then
-         if (size(axle_loads(vehicle_of(deck), scene%system, scene%origin)) == 0) then
+         if (size(axle_loads(vehicle_of(deck), road_of(scene%system), scene%origin)) == 0) then
             call deck_error(error, "&vehicle needs an axle above a block that moves, got "// &
                & "none at position "//to_text(real_of(deck, "vehicle", "position"))//"; move it", &
                & deck, place_of(deck, key_index("vehicle", "position")))

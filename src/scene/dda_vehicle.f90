@@ -9,7 +9,7 @@ module dda_vehicle
    implicit none
    private
 
-   public :: vehicle_t, axle_loads, upper_corners, vehicle_of
+   public :: road_t, vehicle_t, axle_loads, passages, road_of, vehicle_of
 
    !> A vehicle
    type :: vehicle_t
@@ -27,8 +27,22 @@ module dda_vehicle
       real(wp) :: surface = 0.0_wp
    end type vehicle_t
 
+   !> What axles stand on: edges of blocks that have their block below them
+   type :: road_t
+      !> Left and right end of each: (2, n) [m]
+      real(wp), allocatable :: left(:, :), right(:, :)
+      !> Its block: (n)
+      integer, allocatable :: block(:)
+      !> Whether that moves: (n)
+      logical, allocatable :: moves(:)
+      !> Size of all blocks [m]
+      real(wp) :: size = 0.0_wp
+   end type road_t
+
    !> A corner no lower than the upper face by this share of the size of all is on it
    real(wp), parameter :: on_top = 1.0e-9_wp
+   !> Farther from all corners than any axle is spread, over the size of all
+   real(wp), parameter :: beyond_all = 1.0e6_wp
 
 contains
 
@@ -56,129 +70,193 @@ contains
       vehicle%surface = fill%surface
    end function vehicle_of
 
-   !> Live loads of the axles; what is not above a block that moves is left out
-   pure function axle_loads(vehicle, system, origin) result(loaded)
-      !> The vehicle
-      type(vehicle_t), intent(in) :: vehicle
+   !> The edges that axles may stand on
+   pure function road_of(system) result(road)
       !> The blocks
       type(block_system_t), intent(in) :: system
-      !> Origin of their coordinates: (2) [m]
+      !> Their upper edges
+      type(road_t) :: road
+      integer :: b, k, n, next
+
+      road%size = norm2(maxval(system%vertex, dim=2) - minval(system%vertex, dim=2))
+      n = size(system%vertex, 2)
+      allocate (road%left(2, n), road%right(2, n), road%block(n))
+      n = 0
+      do b = 1, size(system%area)
+         do k = system%first_vertex(b), system%first_vertex(b + 1) - 1
+            next = merge(system%first_vertex(b), k + 1, k + 1 == system%first_vertex(b + 1))
+            if (.not. system%vertex(1, next) < system%vertex(1, k)) cycle
+            n = n + 1
+            road%left(:, n) = system%vertex(:, next)
+            road%right(:, n) = system%vertex(:, k)
+            road%block(n) = b
+         end do
+      end do
+      road%left = road%left(:, :n)
+      road%right = road%right(:, :n)
+      road%block = road%block(:n)
+      road%moves = system%equation(road%block) > 0
+   end function road_of
+
+   !> Live loads of the axles; what is not above a block that moves is left out
+   pure function axle_loads(vehicle, road, origin) result(loaded)
+      !> The vehicle
+      type(vehicle_t), intent(in) :: vehicle
+      !> What it stands on
+      type(road_t), intent(in) :: road
+      !> Origin of the coordinates of the blocks: (2) [m]
       real(wp), intent(in) :: origin(2)
       !> The loads: (n)
       type(loaded_point_t), allocatable :: loaded(:)
-      type(loaded_point_t), allocatable :: piece(:)
-      real(wp), allocatable :: cut(:)
+      real(wp), allocatable :: cut(:), force(:), point(:, :)
+      integer, allocatable :: block(:)
       real(wp) :: half, middle, top, width, x
-      integer :: b, i, k, n
+      integer :: edge, i, k, n
 
-      allocate (piece(size(vehicle%axle)*(size(system%vertex, 2) + 1)))
+      n = size(vehicle%axle)*(size(road%left, 2) + 2)
+      allocate (block(n), force(n), point(2, n))
       n = 0
       do i = 1, size(vehicle%axle)
          x = vehicle%position + vehicle%offset(i) - origin(1)
-         half = 0.5_wp*vehicle%length
-         if (vehicle%spread > 0.0_wp) half = half + vehicle%spread &
-            & *max(0.0_wp, vehicle%surface - origin(2) - top_below(system, x))
+         half = half_length(vehicle, road, origin, x)
          if (allocated(cut)) deallocate (cut)
-         allocate (cut, source=[x - half, pack(system%vertex(1, :), &
-            & abs(system%vertex(1, :) - x) < half), x + half])
+         allocate (cut, source=[x - half, pack(road%left(1, :), abs(road%left(1, :) - x) < half), &
+            & pack(road%right(1, :), abs(road%right(1, :) - x) < half), x + half])
          cut = cut(sorted_order(spread(0, 1, size(cut)), cut))
          do k = 1, size(cut) - 1
             width = cut(k + 1) - cut(k)
             if (.not. width > 0.0_wp .and. half > 0.0_wp) cycle
             middle = 0.5_wp*(cut(k) + cut(k + 1))
-            call find_top(system, middle, b, top)
-            if (b == 0) cycle
-            if (system%equation(b) == 0) cycle
+            call find_top(road, middle, edge, top)
+            if (edge == 0) cycle
+            if (.not. road%moves(edge)) cycle
             n = n + 1
-            piece(n)%block = b
-            piece(n)%point = [middle, top]
-            piece(n)%live = .true.
-            piece(n)%force = constant_history([0.0_wp, -vehicle%axle(i)])
-            if (half > 0.0_wp) piece(n)%force%value = width/(2.0_wp*half)*piece(n)%force%value
+            block(n) = road%block(edge)
+            point(:, n) = [middle, top]
+            force(n) = vehicle%axle(i)
+            if (half > 0.0_wp) force(n) = width/(2.0_wp*half)*force(n)
          end do
       end do
-      allocate (loaded, source=piece(:n))
+      allocate (loaded(n))
+      do i = 1, n
+         loaded(i)%block = block(i)
+         loaded(i)%point = point(:, i)
+         loaded(i)%live = .true.
+         loaded(i)%force = constant_history([0.0_wp, -force(i)])
+      end do
    end function axle_loads
+
+   !> Half the length over which an axle is spread [m]
+   pure real(wp) function half_length(vehicle, road, origin, x) result(half)
+      !> The vehicle
+      type(vehicle_t), intent(in) :: vehicle
+      !> What it stands on
+      type(road_t), intent(in) :: road
+      !> Origin of the coordinates of the blocks: (2) [m]
+      real(wp), intent(in) :: origin(2)
+      !> Where the axle is, in these coordinates [m]
+      real(wp), intent(in) :: x
+
+      half = 0.5_wp*vehicle%length
+      if (vehicle%spread > 0.0_wp) half = half + vehicle%spread &
+         & *max(0.0_wp, vehicle%surface - origin(2) - top_below(road, x))
+   end function half_length
+
+   !> Positions between which the loads of all axles change smoothly: where an end of one passes a
+   !> corner of an upper face, or its middle, where what it is spread over is another length beyond
+   pure function passages(vehicle, road, origin) result(at)
+      !> The vehicle
+      type(vehicle_t), intent(in) :: vehicle
+      !> What it stands on
+      type(road_t), intent(in) :: road
+      !> Origin of the coordinates of the blocks: (2) [m]
+      real(wp), intent(in) :: origin(2)
+      !> The positions, rising: (n) [m]
+      real(wp), allocatable :: at(:)
+      real(wp), allocatable :: corner(:), edge(:), place(:)
+      real(wp) :: far, half, middle
+      integer :: i, j, n
+
+      allocate (corner, source=upper_corners(road))
+      n = size(corner)
+      far = beyond_all*(corner(n) - corner(1) + vehicle%length)
+      allocate (edge(0:n + 1), source=[corner(1) - far, corner, corner(n) + far])
+      allocate (place, source=corner)
+      do j = 0, n
+         if (.not. edge(j + 1) > edge(j)) cycle
+         middle = 0.5_wp*(edge(j) + edge(j + 1))
+         half = half_length(vehicle, road, origin, middle)
+         if (.not. half > 0.0_wp) cycle
+         place = [place, pack([corner - half, corner + half], &
+            & ([corner - half, corner + half] - edge(j))*([corner - half, corner + half] &
+            & - edge(j + 1)) <= 0.0_wp)]
+      end do
+      allocate (at(size(place)*size(vehicle%axle)))
+      do i = 1, size(vehicle%axle)
+         at((i - 1)*size(place) + 1:i*size(place)) = place + origin(1) - vehicle%offset(i)
+      end do
+      at = at(sorted_order(spread(0, 1, size(at)), at))
+   end function passages
 
    !> Height of the lower end of the upper edge below an axle, of blocks that move; beside them all,
    !> of the nearest end
-   pure real(wp) function top_below(system, x) result(top)
-      !> The blocks
-      type(block_system_t), intent(in) :: system
+   pure real(wp) function top_below(road, x) result(lower_end)
+      !> What it stands on
+      type(road_t), intent(in) :: road
       !> The place [m]
       real(wp), intent(in) :: x
-      real(wp) :: low, high, top_low
-      integer :: b, block
+      real(wp) :: top
+      integer :: edge
 
-      low = huge(low)
-      high = -huge(high)
-      do b = 1, size(system%area)
-         if (system%equation(b) == 0) cycle
-         associate (place => system%vertex(1, &
-            & system%first_vertex(b):system%first_vertex(b + 1) - 1))
-            low = min(low, minval(place))
-            high = max(high, maxval(place))
-         end associate
-      end do
-      call find_top(system, min(max(x, low), high), block, top, top_low)
-      top = top_low
+      call find_top(road, min(max(x, minval(road%left(1, :), road%moves)), &
+         & maxval(road%right(1, :), road%moves)), edge, top)
+      lower_end = top
+      if (edge > 0) lower_end = min(road%left(2, edge), road%right(2, edge))
    end function top_below
 
-   !> The highest block at a place
-   pure subroutine find_top(system, x, block, top, lower_end)
-      !> The blocks
-      type(block_system_t), intent(in) :: system
+   !> The highest edge at a place
+   pure subroutine find_top(road, x, edge, top)
+      !> What axles stand on
+      type(road_t), intent(in) :: road
       !> The place [m]
       real(wp), intent(in) :: x
       !> Its number; 0 if there is none
-      integer, intent(out) :: block
+      integer, intent(out) :: edge
       !> Its height [m]
       real(wp), intent(out) :: top
-      !> Height of the lower end of that edge [m]
-      real(wp), intent(out), optional :: lower_end
-      real(wp) :: share, y
-      integer :: b, first, k, n, next
+      real(wp) :: y
+      integer :: k
 
-      block = 0
+      edge = 0
       top = -huge(top)
-      do b = 1, size(system%area)
-         first = system%first_vertex(b)
-         n = system%first_vertex(b + 1) - first
-         do k = 0, n - 1
-            next = first + modulo(k + 1, n)
-            associate (from => system%vertex(:, first + k), to => system%vertex(:, next))
-               if ((from(1) - x)*(to(1) - x) > 0.0_wp) cycle
-               y = max(from(2), to(2))
-               if (abs(to(1) - from(1)) > 0.0_wp) then
-                  share = (x - from(1))/(to(1) - from(1))
-                  y = from(2) + share*(to(2) - from(2))
-               end if
-            end associate
-            if (.not. y > top) cycle
-            top = y
-            if (present(lower_end)) lower_end = min(system%vertex(2, first + k), &
-               & system%vertex(2, next))
-            block = b
-         end do
+      do k = 1, size(road%block)
+         if (x < road%left(1, k) .or. x > road%right(1, k)) cycle
+         y = road%left(2, k) + (x - road%left(1, k))/(road%right(1, k) - road%left(1, k)) &
+            & *(road%right(2, k) - road%left(2, k))
+         if (.not. y > top) cycle
+         top = y
+         edge = k
       end do
    end subroutine find_top
 
    !> Places of the corners of the upper faces, where an axle goes from block to block
-   pure function upper_corners(system) result(x)
-      !> The blocks
-      type(block_system_t), intent(in) :: system
-      !> Their places, rising: (n) [m]
+   pure function upper_corners(road) result(x)
+      !> What axles stand on
+      type(road_t), intent(in) :: road
+      !> Their places, each once, rising: (n) [m]
       real(wp), allocatable :: x(:)
-      logical :: upper(size(system%vertex, 2))
-      real(wp) :: size_of_all, top
-      integer :: block, v
+      real(wp) :: corner(2, 2*size(road%block)), top
+      logical :: upper(2*size(road%block))
+      integer :: edge, k
 
-      size_of_all = norm2(maxval(system%vertex, dim=2) - minval(system%vertex, dim=2))
-      do v = 1, size(upper)
-         call find_top(system, system%vertex(1, v), block, top)
-         upper(v) = system%vertex(2, v) >= top - on_top*size_of_all
+      corner(:, :size(road%block)) = road%left
+      corner(:, size(road%block) + 1:) = road%right
+      do k = 1, size(upper)
+         call find_top(road, corner(1, k), edge, top)
+         upper(k) = corner(2, k) >= top - on_top*road%size
       end do
-      allocate (x, source=pack(system%vertex(1, :), upper))
+      allocate (x, source=pack(corner(1, :), upper))
       x = x(sorted_order(spread(0, 1, size(x)), x))
+      x = pack(x, [.true., x(2:) > x(:size(x) - 1)])
    end function upper_corners
 end module dda_vehicle

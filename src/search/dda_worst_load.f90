@@ -1,0 +1,256 @@
+!> Which of many live loads is carried at the least factor
+!>
+!> The loads lie on arcs along which they are quadratic in a share of the way. A mechanism of one
+!> load says how much power all others have on it, and so which of them is carried at a smaller
+!> factor still. That none has been missed is proven by forces, arc by arc: the loads of an arc lie
+!> within the triangle of its ends and the point where its tangents meet, and what carries these
+!> three carries all of them.
+module dda_worst_load
+   use dda_interior_state, only : no_limit
+   use dda_joint_graph, only : joint_graph_t
+   use dda_kinds, only : wp
+   use dda_limit_decision, only : load_state
+   use dda_limit_load, only : find_limit, limit_load_t, limit_state
+   use dda_load_walk, only : begin_walk, load_walk_t, walk_to
+   implicit none
+   private
+
+   public :: load_arc_t, least_factor_t, seek_least_factor
+
+   !> Live loads that are quadratic in the share of the way from one place to another
+   type :: load_arc_t
+      !> The two places [m]
+      real(wp) :: from = 0.0_wp, to = 0.0_wp
+      !> Blocks with a load, by their numbers in the graph: (n)
+      integer, allocatable :: block(:)
+      !> Loads at the beginning, half way and at the end: (3, n, 3) [N/m, N/m, N]
+      real(wp), allocatable :: load(:, :, :)
+   end type load_arc_t
+
+   !> The least factor found, and where
+   type :: least_factor_t
+      !> The factor
+      real(wp) :: factor = no_limit
+      !> The place [m]
+      real(wp) :: place = 0.0_wp
+   end type least_factor_t
+
+   !> What a search works on
+   type :: chase_t
+      !> The joints
+      type(joint_graph_t) :: graph
+      !> Loads at a factor of zero: (3, n_block) [N/m, N/m, N]
+      real(wp), allocatable :: dead(:, :)
+      !> Whether they are carried
+      logical :: stands = .false.
+      !> Arcs shorter than this are not halved [m]
+      real(wp) :: near = 0.0_wp
+      !> Forces that go from load to load
+      type(load_walk_t) :: walk
+   end type chase_t
+
+   !> Relative gap of a limit
+   real(wp), parameter :: gap = 1.0e-9_wp
+   !> A factor that is smaller by less than this share is none
+   real(wp), parameter :: smaller = 1.0e-5_wp
+
+contains
+
+   !> Seek the least factor of the loads of all arcs
+   pure subroutine seek_least_factor(graph, dead, arc, stands, near, least)
+      !> The joints
+      type(joint_graph_t), intent(in) :: graph
+      !> Loads at a factor of zero: (3, n_block) [N/m, N/m, N]
+      real(wp), intent(in) :: dead(:, :)
+      !> The live loads: (n)
+      type(load_arc_t), intent(in) :: arc(:)
+      !> Whether the dead load is taken to stand
+      logical, intent(in) :: stands
+      !> How near the place is to be [m]
+      real(wp), intent(in) :: near
+      !> The least factor so far in, with these arcs out
+      type(least_factor_t), intent(inout) :: least
+      type(chase_t) :: chase
+      integer :: k, stride
+
+      chase%graph = graph
+      chase%dead = dead
+      chase%stands = stands
+      chase%near = near
+      stride = size(arc)
+      do while (least%factor >= no_limit .and. stride > 0)
+         stride = stride/2
+         do k = max(1, stride), size(arc), 2*max(1, stride)
+            call descend(arc, k, 0.5_wp, chase, least)
+            if (least%factor < no_limit) exit
+         end do
+      end do
+      if (least%factor >= no_limit) return
+      call begin_walk(graph, dead, chase%walk)
+      do k = 1, size(arc)
+         call pass(arc, k, 0.0_wp, chase, least)
+         call pass(arc, k, 1.0_wp, chase, least)
+         call pass_between(arc, k, 0.0_wp, 1.0_wp, chase, least)
+      end do
+   end subroutine seek_least_factor
+
+   !> Pass a load: carry it at the least factor so far, or go down from it
+   pure subroutine pass(arc, k, share, chase, least)
+      !> The live loads: (n)
+      type(load_arc_t), intent(in) :: arc(:)
+      !> Number of its arc
+      integer, intent(in) :: k
+      !> Share of the way along it
+      real(wp), intent(in) :: share
+      !> What the search works on
+      type(chase_t), intent(inout) :: chase
+      !> The least factor
+      type(least_factor_t), intent(inout) :: least
+      logical :: carried
+
+      call carry(arc(k), weights(share), least%factor, chase, carried)
+      if (.not. carried) call descend(arc, k, share, chase, least)
+   end subroutine pass
+
+   !> Pass the loads between two of an arc that are passed
+   pure recursive subroutine pass_between(arc, k, from, to, chase, least)
+      !> The live loads: (n)
+      type(load_arc_t), intent(in) :: arc(:)
+      !> Number of their arc
+      integer, intent(in) :: k
+      !> Shares of the way along it
+      real(wp), intent(in) :: from, to
+      !> What the search works on
+      type(chase_t), intent(inout) :: chase
+      !> The least factor
+      type(least_factor_t), intent(inout) :: least
+      real(wp) :: middle
+      logical :: carried
+
+      middle = 0.5_wp*(from + to)
+      call carry(arc(k), 2.0_wp*weights(middle) - 0.5_wp*(weights(from) + weights(to)), &
+         & least%factor, chase, carried)
+      if (carried .or. (to - from)*(arc(k)%to - arc(k)%from) <= chase%near) return
+      call pass(arc, k, middle, chase, least)
+      call pass_between(arc, k, from, middle, chase, least)
+      call pass_between(arc, k, middle, to, chase, least)
+   end subroutine pass_between
+
+   !> Whether a load of an arc is carried at a factor but for a small share of it
+   pure subroutine carry(arc, weight, factor, chase, carried)
+      !> The arc
+      type(load_arc_t), intent(in) :: arc
+      !> Shares of its three loads
+      real(wp), intent(in) :: weight(3)
+      !> The factor
+      real(wp), intent(in) :: factor
+      !> What the search works on
+      type(chase_t), intent(inout) :: chase
+      !> Whether it is
+      logical, intent(out) :: carried
+      real(wp) :: load(3, size(chase%dead, 2))
+      integer :: state
+
+      load = chase%dead
+      call add_live((1.0_wp - smaller)*factor*weight, arc, load)
+      call walk_to(load, chase%walk, state)
+      carried = state == load_state%stands
+   end subroutine carry
+
+   !> The factor of a load of an arc; if it is smaller than the least so far go on to the load that
+   !> has most power on the mechanism, and so on
+   pure subroutine descend(arc, k, share, chase, least)
+      !> The live loads: (n)
+      type(load_arc_t), intent(in) :: arc(:)
+      !> Number of the arc
+      integer, intent(in) :: k
+      !> Share of the way along it
+      real(wp), intent(in) :: share
+      !> What the search works on
+      type(chase_t), intent(in) :: chase
+      !> The least factor
+      type(least_factor_t), intent(inout) :: least
+      type(limit_load_t) :: limit
+      real(wp) :: live(3, size(chase%dead, 2)), at, power
+      integer :: i
+
+      i = k
+      at = share
+      do
+         live = 0.0_wp
+         call add_live(weights(at), arc(i), live)
+         if (.not. maxval(abs(live)) > 0.0_wp) return
+         call find_limit(chase%graph, chase%dead, live, gap, limit, chase%stands)
+         if (limit%state /= limit_state%found) return
+         if (.not. 0.5_wp*(limit%lower + limit%upper) < least%factor) return
+         least%factor = 0.5_wp*(limit%lower + limit%upper)
+         least%place = arc(i)%from + at*(arc(i)%to - arc(i)%from)
+         power = sum(live*limit%velocity(1:3, :))
+         call find_most_power(arc, limit%velocity, (1.0_wp + 2.0_wp*gap)*power, i, at)
+         if (i == 0) return
+      end do
+   end subroutine descend
+
+   !> The load of all arcs with most power on a mechanism
+   pure subroutine find_most_power(arc, velocity, least, k, share)
+      !> The live loads: (n)
+      type(load_arc_t), intent(in) :: arc(:)
+      !> Velocities of the mechanism: (3, n_block)
+      real(wp), intent(in) :: velocity(:, :)
+      !> Power that it must have more than
+      real(wp), intent(in) :: least
+      !> Number of its arc; 0 where none has
+      integer, intent(out) :: k
+      !> Share of the way along it
+      real(wp), intent(out) :: share
+      real(wp) :: most, power(3), place(3), slope, bend
+      integer :: i, j
+
+      most = least
+      k = 0
+      share = 0.0_wp
+      do i = 1, size(arc)
+         do j = 1, 3
+            power(j) = sum(arc(i)%load(:, :, j)*velocity(1:3, arc(i)%block))
+         end do
+         slope = 4.0_wp*power(2) - 3.0_wp*power(1) - power(3)
+         bend = 2.0_wp*(power(1) - 2.0_wp*power(2) + power(3))
+         place = [0.0_wp, 0.5_wp, 1.0_wp]
+         if (bend < 0.0_wp) place(2) = min(1.0_wp, max(0.0_wp, -0.5_wp*slope/bend))
+         do j = 1, 3
+            if (.not. power(1) + place(j)*(slope + place(j)*bend) > most) cycle
+            most = power(1) + place(j)*(slope + place(j)*bend)
+            k = i
+            share = place(j)
+         end do
+      end do
+   end subroutine find_most_power
+
+   !> Add a load of an arc to others
+   pure subroutine add_live(weight, arc, load)
+      !> Factors of its three loads
+      real(wp), intent(in) :: weight(3)
+      !> The arc
+      type(load_arc_t), intent(in) :: arc
+      !> Loads, to which its are added: (3, n_block) [N/m, N/m, N]
+      real(wp), intent(inout) :: load(:, :)
+      integer :: i, j
+
+      do j = 1, 3
+         do i = 1, size(arc%block)
+            load(:, arc%block(i)) = load(:, arc%block(i)) + weight(j)*arc%load(:, i, j)
+         end do
+      end do
+   end subroutine add_live
+
+   !> Shares of the three loads of an arc in that at a share of the way
+   pure function weights(share)
+      !> Share of the way
+      real(wp), intent(in) :: share
+      !> Shares of the loads
+      real(wp) :: weights(3)
+
+      weights = [(1.0_wp - share)*(1.0_wp - 2.0_wp*share), 4.0_wp*share*(1.0_wp - share), &
+         & share*(2.0_wp*share - 1.0_wp)]
+   end function weights
+end module dda_worst_load

@@ -1,0 +1,161 @@
+!> Forces that are carried from load to load
+!>
+!> Of many loads most differ little from another one. Forces well inside the cones of all joints
+!> that carry one load carry those near it after one correction, the smallest in units of how far
+!> each force is from its bound; to loads farther away they are led by the interior-point method,
+!> which ends as soon as forces or velocities prove something.
+!>
+!>    A X X A' v = load + A x,    x - X X A' v >= 0
+!>
+!> A: arms of the rays, x: forces along them, X: their diagonal
+module dda_load_walk
+   use dda_interior_state, only : interior_point_t, size_of_load
+   use dda_interior_turn, only : lift
+   use dda_joint_graph, only : crushes, joint_graph_t
+   use dda_joint_rays, only : add_ray_forces, joint_rays_t, n_side, scale_load, set_rays
+   use dda_kinds, only : wp
+   use dda_limit_decision, only : begin_inside, decide_load, go_on_to_load, load_decision_t, &
+      & load_state, state_at_end, unit_of_force
+   use dda_ray_matrix, only : plan_matrix, ray_matrix_t, set_springs, solve_springs
+   implicit none
+   private
+
+   public :: load_walk_t, begin_walk, walk_to
+
+   !> Forces of an assembly on their way
+   type :: load_walk_t
+      private
+      !> The joints
+      type(joint_graph_t) :: graph
+      !> Their rays
+      type(joint_rays_t) :: rays
+      !> Springs that tell how far the forces are from their bounds
+      type(ray_matrix_t) :: springs
+      !> Masses, none: (3, 0:n_block)
+      real(wp), allocatable :: mass(:, :)
+      !> Forces along the rays that carry a load; unallocated where none has been carried yet:
+      !> (n_side, n_joint)
+      real(wp), allocatable :: x(:, :)
+      !> Unit of force: [N/m]
+      real(wp) :: unit = 1.0_wp
+   end type load_walk_t
+
+   !> Steps that draw forces away from their bounds where a load is carried, and the longest of them
+   integer, parameter :: n_centring = 2
+   real(wp), parameter :: most_of_way = 0.9_wp
+   !> Stiffness of free rays over that of the others in the mean
+   real(wp), parameter :: stiffness_of_free = 1.0e8_wp
+   !> Gap at which a way to a load ends that neither reaches it nor shows that nothing does
+   real(wp), parameter :: resolution = 1.0e-8_wp
+   !> Imbalance of forces that carry a load, over its largest part
+   real(wp), parameter :: balanced = 1.0e-11_wp
+
+contains
+
+   !> Begin with an assembly
+   pure subroutine begin_walk(graph, load, walk)
+      !> The joints
+      type(joint_graph_t), intent(in) :: graph
+      !> A load of the size of those to come: (3, n_block) [N/m, N/m, N]
+      real(wp), intent(in) :: load(:, :)
+      !> The walk
+      type(load_walk_t), intent(out) :: walk
+
+      walk%graph = graph
+      walk%unit = unit_of_force(load)
+      call set_rays(graph, walk%rays)
+      call plan_matrix(walk%rays, walk%springs)
+      allocate (walk%mass(3, 0:graph%n_block), source=0.0_wp)
+   end subroutine begin_walk
+
+   !> Go on to a load
+   pure subroutine walk_to(load, walk, state)
+      !> The load: (3, n_block) [N/m, N/m, N]
+      real(wp), intent(in) :: load(:, :)
+      !> The walk; its forces are those of the last load that took more than a correction
+      type(load_walk_t), intent(inout) :: walk
+      !> One of load_state
+      integer, intent(out) :: state
+      type(interior_point_t) :: point
+      type(load_decision_t) :: decision
+      real(wp) :: scaled(3, 0:walk%graph%n_block)
+      logical :: carried
+
+      if (crushes(walk%graph)) then
+         call decide_load(walk%graph, load, decision)
+         state = decision%state
+         return
+      end if
+      call scale_load(walk%rays, load, walk%unit, scaled)
+      state = load_state%stands
+      carried = .false.
+      if (allocated(walk%x)) then
+         if (walk%springs%usable) call try_correction(scaled, walk, carried)
+         if (carried) return
+         point%x = walk%x
+         call go_on_to_load(walk%rays, scaled, resolution, walk%springs, point)
+         state = state_at_end(point)
+      end if
+      if (.not. allocated(walk%x) .or. state == load_state%undecided) then
+         ! forces that many loads have led near their bounds may lead no further
+         call begin_inside(walk%rays, scaled, point)
+         call go_on_to_load(walk%rays, scaled, resolution, walk%springs, point)
+         state = state_at_end(point)
+      end if
+      if (state == load_state%stands) walk%x = point%x
+      if (allocated(walk%x)) call centre(merge(n_centring, 0, state == load_state%stands), &
+         & size_of_load(scaled), walk)
+   end subroutine walk_to
+
+   !> Whether a correction carries the forces to a load
+   pure subroutine try_correction(scaled, walk, carried)
+      !> The load in the units of the rays: (3, 0:n_block)
+      real(wp), intent(in) :: scaled(:, 0:)
+      !> The walk, whose springs are those of its forces
+      type(load_walk_t), intent(inout) :: walk
+      !> Whether forces inside all bounds balance the load
+      logical, intent(out) :: carried
+      real(wp) :: motion(3, 0:walk%graph%n_block), rest(3, 0:walk%graph%n_block)
+      real(wp) :: rate(n_side, size(walk%x, 2)), x(n_side, size(walk%x, 2))
+
+      rest = scaled
+      call add_ray_forces(walk%rays, walk%x, rest)
+      call solve_springs(walk%rays, walk%springs, rest, motion, rate)
+      x = walk%x - walk%springs%stiffness*rate
+      carried = all(x*walk%rays%bounded >= 0.0_wp)
+      if (.not. carried) return
+      rest = scaled
+      call add_ray_forces(walk%rays, x, rest)
+      carried = maxval(abs(rest)) <= balanced*maxval(abs(scaled))
+   end subroutine try_correction
+
+   !> Draw the forces away from their bounds, and factor the springs that tell how far they are from
+   !> them. Forces that hold one another could grow without end: none is drawn beyond a size
+   pure subroutine centre(n_step, largest, walk)
+      !> Steps
+      integer, intent(in) :: n_step
+      !> The size
+      real(wp), intent(in) :: largest
+      !> The walk
+      type(load_walk_t), intent(inout) :: walk
+      real(wp) :: motion(3, 0:walk%graph%n_block), push(3, 0:walk%graph%n_block)
+      real(wp) :: rate(n_side, size(walk%x, 2)), change(n_side, size(walk%x, 2))
+      integer :: i
+
+      do i = 0, n_step
+         associate (x => walk%x, bounded => walk%rays%bounded)
+            walk%springs%stiffness = bounded*x**2 + walk%rays%free*stiffness_of_free &
+               & *sum(bounded*x**2)/real(max(1, walk%rays%n_bounded), wp)
+            call set_springs(walk%rays, walk%mass, lift, walk%springs)
+            if (i == n_step .or. .not. walk%springs%usable) exit
+            push = 0.0_wp
+            change = x*bounded*(1.0_wp - x/largest)
+            call add_ray_forces(walk%rays, change, push)
+            call solve_springs(walk%rays, walk%springs, push, motion, rate)
+            change = change - walk%springs%stiffness*rate
+            x = x + min(1.0_wp, most_of_way/max(tiny(1.0_wp), maxval(-change*bounded &
+               & /(x*bounded + (1.0_wp - bounded)))))*change
+         end associate
+      end do
+   end subroutine centre
+end module dda_load_walk
