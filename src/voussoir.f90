@@ -6,7 +6,8 @@
 !> All else is of the program's own, and may change.
 module voussoir
    use couplet_heyman_discrete, only : discrete_critical_equal, discrete_solution_t
-   use dda_case, only : case_t, compute_case, prepare_case
+   use dda_case, only : case_t, prepare_case
+   use dda_compute_case, only : compute_case
    use dda_case_rows, only : tell_case
    use dda_deck, only : deck_t
    use dda_deck_sweep, only : n_cases, turn_to_case

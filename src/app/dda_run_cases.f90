@@ -1,6 +1,7 @@
 !> The cases of a deck, one after another: prepared, computed, written down
 module dda_run_cases
-   use dda_case, only : case_t, compute_case, prepare_case
+   use dda_case, only : case_t, prepare_case
+   use dda_compute_case, only : compute_case
    use dda_case_rows, only : tell_case
    use dda_case_table, only : add_case, case_table_t
    use dda_command_line, only : command_t

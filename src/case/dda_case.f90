@@ -1,46 +1,25 @@
-!> One case of a deck: prepared and computed
+!> One case of a deck, ready to be computed
 module dda_case
-   use, intrinsic :: iso_fortran_env, only : int64
-   use dda_arch_chain, only : arch_rays
-   use dda_arch_scene, only : arch_resolution, chain_resolution, exact_thickness, search_start
-   use dda_block_system, only : block_system_t
-   use dda_case_proof, only : proof_t, prove_decision, prove_search
-   use dda_chain, only : chain_t
-   use dda_chain_decision, only : decide_chain
-   use dda_chain_unfold, only : unfold
-   use dda_contact_detection, only : contacts_t
+   use dda_arch_scene, only : arch_resolution, chain_resolution, search_start
+   use dda_case_proof, only : proof_t
    use dda_search, only : critical_t, search_t
-   use dda_critical, only : find_critical
    use dda_decision, only : decision_t
-   use dda_deck, only : deck_t, file_beside, flag_of, has_group, integer_of, is_given, &
-      & parameter_t, real_of, scene_kind, text_of, word_of
+   use dda_deck, only : deck_t, file_beside, has_group, is_given, parameter_t, real_of, &
+      & scene_kind, text_of, word_of
    use dda_deck_check, only : search_bracket
    use dda_deck_parameter, only : find_parameter, parameter_name
    use dda_deck_keys, only : key_index
-   use dda_deck_set, only : put_number
-   use dda_deck_scene, only : deck_family_t, deck_scene, new_family
+   use dda_deck_scene, only : deck_family_t, new_family
    use dda_error, only : error_t
-   use dda_forward, only : outcome_t, run_to_verdict
    use dda_frames, only : album_t
-   use dda_reactions, only : supports_of
-   use dda_restart, only : load_restart
    use dda_step_context, only : march_t
    use dda_kinds, only : wp
-   use dda_load_clock, only : has_path, load_clock_t, new_load_clock
-   use dda_limerick_decision, only : decide_limerick
-   use dda_limerick_search, only : find_limerick_critical, repeat_with_pictures
-   use dda_mechanism, only : follow_collapse
    use dda_scene, only : scene_t
    use dda_scene_plan, only : plan_scene, scene_plan_t
-   use dda_settings, only : settings_t
-   use dda_shared_forces, only : share_forces
-   use dda_stages, only : decide_in_stages
-   use dda_verdict, only : verdict
-   use dda_worst_position, only : find_worst_position
    implicit none
    private
 
-   public :: case_t, prepare_case, compute_case, searched_name
+   public :: case_t, prepare_case, searched_name
 
    !> One case in three stages: prepared, computed, told. Only the second may run beside other
    !> cases: the others make texts, and gfortran keeps the length of a text that a function returns
@@ -86,16 +65,12 @@ module dda_case
       real(wp) :: seconds = 0.0_wp
    end type case_t
 
-   !> The thrust of an arch of more joints than this is reported only where it is asked for
-   integer, parameter :: most_thrust_joints = 2001
-
 contains
 
    !> Make a case ready to be computed
    pure subroutine prepare_case(deck, this)
       !> The deck with the values of the case
       type(deck_t), intent(in) :: deck
-      !> The case
       type(case_t), intent(out) :: this
       character(len=:), allocatable :: searched
 
@@ -114,237 +89,6 @@ contains
       this%exact_known = (searched == "" .or. searched == "thickness_ratio") &
          & .and. scene_kind(deck) == "arch"
    end subroutine prepare_case
-
-   !> Compute a case
-   subroutine compute_case(this)
-      !> The case, prepared
-      type(case_t), intent(inout) :: this
-      type(error_t), allocatable :: error
-      integer(int64) :: start, finish, rate
-
-      if (this%exact_known) call exact_thickness(this%deck, this%exact, this%exact_known)
-      call system_clock(start, rate)
-      call plan_album(this)
-      if (this%family%chains) call arch_rays(this%family%numbers, this%family%rays)
-      if (this%searches .and. this%limerick) then
-         ! the limit of this scheme lies somewhat above the exact value
-         if (this%exact_known .and. .not. this%search%check_far_end) &
-            & this%search%start = min(max(this%exact, this%search%low), this%search%high)
-         call find_limerick_critical(this%family, this%search, this%critical)
-         if (allocated(this%critical%fallen)) &
-            & call this%family%build(this%critical%falls, this%scene, error)
-      else if (this%searches) then
-         if (flag_of(this%deck, "vehicle", "worst")) call place_vehicle(this)
-         call find_critical(this%family, this%search, this%critical)
-         if (allocated(this%critical%fallen)) &
-            & call see_collapse(this, this%critical%falls, this%critical%fallen)
-      else if (this%limerick) then
-         call deck_scene(this%deck, this%scene)
-         call decide_limerick(this%deck, this%decision, this%album)
-      else
-         call compute_decision(this)
-         if (.not. allocated(this%error)) call see_collapse(this, &
-            & real_of(this%deck, "arch", "thickness_ratio"), this%decision)
-      end if
-      if (this%searches .and. .not. this%family%decides_chains &
-         & .and. .not. allocated(this%critical%fallen) .and. allocated(this%critical%standing)) &
-         & call this%family%build(this%critical%stands, this%scene, error)
-      if (this%plan%shared_forces) call share_told_forces(this)
-      if (this%searches .and. integer_of(this%deck, "output", "frames") > 0) then
-         if (this%limerick) call repeat_with_pictures(this%family, this%critical, this%album)
-         if (.not. this%limerick) call take_pictures(this)
-      end if
-      call system_clock(finish)
-      this%seconds = real(finish - start, wp)/real(rate, wp)
-      if (this%proves .and. .not. (this%limerick .or. this%plan%velocities &
-         & .or. allocated(this%error))) call prove_case(this)
-   end subroutine compute_case
-
-   !> Put the vehicle where the least load factor is carried
-   pure subroutine place_vehicle(this)
-      !> The case, prepared
-      type(case_t), intent(inout) :: this
-      type(scene_t) :: scene
-      type(error_t), allocatable :: error
-      type(parameter_t) :: position
-      real(wp) :: value
-
-      position%key = key_index("vehicle", "position")
-      call deck_scene(this%deck, scene)
-      call find_worst_position(this%deck, scene, value, this%has_worst)
-      if (.not. this%has_worst) return
-      call put_number(this%deck, position, value, this%deck%value(position%key)%place, error)
-      this%family%deck = this%deck
-   end subroutine place_vehicle
-
-   !> Prove the verdict of a case by limit analysis
-   pure subroutine prove_case(this)
-      !> The case, decided
-      type(case_t), intent(inout) :: this
-      integer :: joint
-
-      if (this%searches) then
-         call prove_search(this%family, this%critical, this%proof)
-      else if (allocated(this%scene%contacts%joint)) then
-         joint = integer_of(this%deck, "output", "thrust_joint")
-         if (joint == 0 .and. size(this%scene%joint_angle_deg) > 0 &
-            & .and. size(this%scene%joint_angle_deg) <= most_thrust_joints) &
-            & joint = minloc(abs(this%scene%joint_angle_deg), dim=1)
-         joint = merge(joint, this%scene%crown_joint, joint > 0)
-         call prove_decision(this%scene, this%decision, joint, &
-            & integer_of(this%deck, "output", "thrust_bar"), this%proof)
-      end if
-   end subroutine prove_case
-
-   !> Decide the scene: as a chain if it needs no more, else from its beginning or from where an
-   !> earlier run has ended
-   subroutine compute_decision(this)
-      !> The case
-      type(case_t), intent(inout) :: this
-      type(block_system_t) :: system
-      type(contacts_t) :: contacts
-      type(settings_t) :: settings
-      type(chain_t) :: chain
-      logical :: decided
-
-      ! tables tell displacements, which a chain does not keep
-      decided = this%family%decides_chains .and. .not. this%tells_tables
-      if (decided) call this%family%link(real_of(this%deck, "arch", "thickness_ratio"), settings, &
-         & chain, decided)
-      if (decided) call decide_chain(settings, chain, this%decision, decided)
-      ! a chain proves that it falls; how it does is told by all of its blocks
-      if (decided) decided = this%decision%outcome%verdict /= verdict%collapsed
-      if (decided) return
-      call deck_scene(this%deck, this%scene)
-      call plan_fall(this)
-      system = this%scene%system
-      contacts = this%scene%contacts
-      if (is_given(this%deck, "analysis", "restart")) then
-         call load_restart(this%restart_file, this%scene%settings, system, contacts, this%onward, &
-            & this%error)
-         if (allocated(this%error)) return
-      end if
-      if (this%scene%settings%dynamic .and. flag_of(this%deck, "output", "reactions")) &
-         & this%album%support = supports_of(system, this%scene%settings%boundary)
-      call decide_in_stages(this%scene, system, contacts, this%decision, this%album, this%onward)
-   end subroutine compute_decision
-
-   !> Make the scene of a decision where a chain has done without it and it is wanted now: for
-   !> tables of joints, for pictures, or to follow a sliding collapse
-   pure subroutine see_collapse(this, value, decision)
-      !> The case
-      type(case_t), intent(inout) :: this
-      !> Value of the parameter that was decided
-      real(wp), intent(in) :: value
-      !> Its decision
-      type(decision_t), intent(inout) :: decision
-      type(error_t), allocatable :: error
-      logical :: collapsed, wanted
-      if (this%family%decides_chains) this%scene%joint_angle_deg = this%family%joint_angle_deg
-      collapsed = decision%outcome%verdict == verdict%collapsed
-      wanted = merge(this%tells_tables .or. integer_of(this%deck, "output", "frames") > 0, &
-         & this%searches, this%family%decides_chains)
-      if (wanted .or. collapsed) call unfold(decision)
-      if (collapsed) wanted = wanted .or. any(decision%contacts%face%slip /= 0)
-      if (wanted .and. .not. allocated(this%scene%contacts%joint)) &
-         & call this%family%build(value, this%scene, error)
-      if (collapsed) call follow_collapse(this%scene, decision, this%album)
-      if (allocated(this%scene%contacts%joint) .and. .not. allocated(decision%contacts%joint)) &
-         & decision%contacts%joint = this%scene%contacts%joint
-   end subroutine see_collapse
-
-   !> What the album of the case is to hold
-   pure subroutine plan_album(this)
-      !> The case
-      type(case_t), intent(inout) :: this
-      integer :: frames
-
-      frames = integer_of(this%deck, "output", "frames")
-      allocate (this%album%point(0))
-      if (frames > 0 .and. this%plan%velocities) &
-         & this%album%interval = real_of(this%deck, "analysis", "duration")/real(frames, wp)
-      if (frames > 0 .and. this%plan%velocities .and. .not. this%album%interval > 0.0_wp) &
-         & this%album%every = max(1, integer_of(this%deck, "analysis", "steps")/frames)
-      if (this%searches) return
-      this%album%audit%wanted = flag_of(this%deck, "output", "energy") .and. this%plan%velocities
-      if (allocated(this%deck%plan%boundary%measured)) &
-         & this%album%point = this%deck%plan%boundary%measured
-   end subroutine plan_album
-
-   !> Share out the joint forces of the arch nearest to critical that was found to stand
-   pure subroutine share_told_forces(this)
-      !> The case, decided
-      type(case_t), intent(inout) :: this
-      type(scene_t) :: scene
-      type(error_t), allocatable :: error
-
-      if (.not. allocated(this%critical%standing)) return
-      call this%family%build(this%critical%stands, scene, error)
-      call share_forces(scene, this%critical%standing)
-      if (.not. allocated(this%critical%standing%contacts%joint)) &
-         & this%critical%standing%contacts%joint = scene%contacts%joint
-   end subroutine share_told_forces
-
-   !> Let the pictures of a static run lie evenly on the way of a collapse, until a corner has moved
-   !> a tenth of the radius, or of the size of the blocks; or on the path of its histories
-   pure subroutine plan_fall(this)
-      !> The case, with its scene
-      type(case_t), intent(inout) :: this
-      type(load_clock_t) :: clock
-      integer :: frames
-
-      frames = integer_of(this%deck, "output", "frames")
-      if (frames == 0 .or. this%scene%settings%dynamic) return
-      this%album%follow = this%scene%settings%collapse_displacement
-      if (.not. this%album%follow > 0.0_wp) this%album%follow = 0.1_wp*scene_size(this)
-      this%album%spacing = this%album%follow/real(frames, wp)
-      clock = new_load_clock(this%scene%settings)
-      if (.not. has_path(clock)) return
-      this%album%spacing = scene_size(this)/real(frames, wp)
-      this%album%begin = clock%bend(1)
-      this%album%interval = (clock%bend(size(clock%bend)) - clock%bend(1))/real(frames, wp)
-   end subroutine plan_fall
-
-   !> Repeat the run nearest to critical that a search has found to fall, else to stand, for its
-   !> pictures
-   pure subroutine take_pictures(this)
-      !> The case, searched
-      type(case_t), intent(inout) :: this
-      type(error_t), allocatable :: error
-      type(outcome_t) :: outcome
-      type(settings_t) :: settings
-      type(block_system_t) :: system
-      type(contacts_t) :: contacts
-
-      if (allocated(this%critical%fallen)) then
-         call this%family%build(this%critical%falls, this%scene, error)
-         settings = this%scene%settings
-         settings%flow = this%critical%fallen%flow
-      else if (allocated(this%critical%standing)) then
-         call this%family%build(this%critical%stands, this%scene, error)
-         settings = this%scene%settings
-         settings%flow = this%critical%standing%flow
-      else
-         return
-      end if
-      call plan_fall(this)
-      system = this%scene%system
-      contacts = this%scene%contacts
-      call run_to_verdict(settings, system, contacts, outcome, this%album)
-   end subroutine take_pictures
-
-   !> Radius of an arch, half size of what was cut, or mean size of the blocks that move [m]
-   pure real(wp) function scene_size(this)
-      !> The case
-      type(case_t), intent(in) :: this
-
-      associate (system => this%scene%system)
-         scene_size = sqrt(sum(system%area, mask=system%equation > 0) &
-            & /real(max(1, count(system%equation > 0)), wp))
-      end associate
-      if (scene_kind(this%deck) == "arch") scene_size = real_of(this%deck, "arch", "radius")
-      if (allocated(this%deck%cut)) scene_size = this%deck%cut%scale%size
-   end function scene_size
 
    !> Name of the searched parameter, empty if nothing is searched
    pure function searched_name(deck) result(name)
@@ -369,9 +113,7 @@ contains
       type(scene_plan_t), intent(in) :: plan
       !> Name of the searched parameter
       character(len=*), intent(in) :: searched
-      !> Its scenes
       type(deck_family_t), intent(out) :: family
-      !> The search
       type(search_t), intent(out) :: search
       type(parameter_t) :: parameter
       character(len=:), allocatable :: problem

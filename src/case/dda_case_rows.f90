@@ -361,7 +361,13 @@ contains
       type(result_row_t), intent(inout) :: row
       type(mechanism_t) :: mechanism
 
-      call mechanism_of(fallen_contacts(fallen), joint_angle_deg, mechanism, fallen%outcome%motion)
+      associate (outcome => fallen%outcome)
+         if (allocated(outcome%fallen)) then
+            call mechanism_of(outcome%fallen, joint_angle_deg, mechanism, outcome%motion)
+         else
+            call mechanism_of(fallen%contacts, joint_angle_deg, mechanism, outcome%motion)
+         end if
+      end associate
       row%collapse_mode = mechanism%mode
       row%sliding_share = some_number(mechanism%sliding_share)
       row%intrados_hinge_deg = mechanism%intrados_deg

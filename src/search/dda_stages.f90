@@ -37,36 +37,40 @@ contains
 
    !> Decide a scene stage by stage, or at once where nothing is built or taken away: the first
    !> stage that falls is the last
-   pure subroutine decide_in_stages(scene, system, contacts, decision, album, onward)
+   pure subroutine decide_in_stages(scene, decision, album, onward, system, contacts)
       !> The scene; blocks and contacts become those of the last stage, where they were at the
       !> beginning
       type(scene_t), intent(inout) :: scene
-      !> Its blocks to begin with
-      type(block_system_t), intent(in) :: system
-      !> Their contacts
-      type(contacts_t), intent(in) :: contacts
       !> The decision of the last stage; its counts are those of all
       type(decision_t), intent(out) :: decision
       !> Receives pictures
       type(album_t), intent(inout) :: album
       !> Where a dynamic run goes on and where it ended
       type(march_t), intent(inout) :: onward
+      !> Blocks and contacts where an earlier run has left them; without them they are the scene's
+      type(block_system_t), intent(in), optional :: system
+      type(contacts_t), intent(in), optional :: contacts
       real(wp), allocatable :: time(:)
       real(wp) :: last
 
       associate (settings => scene%settings)
-         if (.not. allocated(settings%boundary%change)) then
+         if (.not. (allocated(settings%boundary%change) .or. present(system))) then
+            call decide(settings, scene%system, scene%contacts, decision, album, onward)
+            return
+         else if (.not. allocated(settings%boundary%change)) then
             call decide(settings, system, contacts, decision, album, onward)
             return
          end if
          time = stage_times(settings%boundary)
          time = [0.0_wp, pack(time, time > 0.0_wp), huge(1.0_wp)]
-         decision%system = system
-         decision%contacts = contacts
+         decision%system = scene%system
+         decision%contacts = scene%contacts
+         if (present(system)) decision%system = system
+         if (present(contacts)) decision%contacts = contacts
          last = 0.0_wp
          if (settings%dynamic .and. settings%current) then
             call move_through(settings, time, decision, album, onward, last)
-         else if (decides_as_graph(settings, contacts)) then
+         else if (decides_as_graph(settings, decision%contacts)) then
             call decide_at_rest(settings, time, decision, last)
          else
             decision%outcome%reason = "stages need friction alone and geometry = 'reference' " &
