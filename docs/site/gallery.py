@@ -32,6 +32,13 @@ voussoir plot 01_semicircle
 ```
 
 This page is written by `cmake --build build --target gallery`.
+
+## Every shape
+
+What `&arch shape` draws, on abutments, a pier or buttresses, each with the line of thrust that `dda` finds under its
+weight (drawn by `docs/site/shape_gallery.py`, where their keys stand).
+
+![Arches of every shape with their lines of thrust](images/shapes.svg)
 """
 
 

@@ -12,17 +12,21 @@ from voussoir.plot.case_picture import draw_ring_thrust, draw_supports
 from voussoir.plot.case_scene import scene_of
 from voussoir.plot.figure_style import STONE, house_style
 
+#: Title, then keys of each
 SHAPES = {
-    "segmental": "span = 6, rise = 1.5, thickness = 0.5, voussoirs = 21",
-    "pointed": "span = 5, rise = 4, thickness = 0.6, voussoirs = 24",
-    "elliptic": "span = 8, rise = 3, thickness = 0.9, voussoirs = 29",
-    "basket": "span = 8, rise = 2.6, crown_thickness = 0.7, springing_thickness = 1.1, voussoirs = 29",
-    "parabolic": "span = 6, rise = 3, right_rise = 1.5, thickness = 0.5, voussoirs = 23",
-    "catenary": "span = 6, rise = 4, thickness = 0.3, voussoirs = 27",
-    "flat": "span = 2, thickness = 0.5, voussoirs = 9",
-    "circular": "radius = 3, half_angle_deg = 70, thickness_ratio = 0.2, voussoirs = 24, rings = 2, spans = 2,"
-    " pier_width = 1.5, pier_height = 2, pier_courses = 3",
-    "circular ": "radius = 3, voussoirs = 20, buttress_width = 1.6, buttress_height = 3, pier_courses = 3",
+    "segmental": "shape = 'segmental', span = 6, rise = 1.5, thickness = 0.5, voussoirs = 21",
+    "pointed": "shape = 'pointed', span = 5, rise = 4, thickness = 0.6, voussoirs = 24",
+    "elliptic": "shape = 'elliptic', span = 8, rise = 3, thickness = 0.9, voussoirs = 29",
+    "basket": "shape = 'basket', span = 8, rise = 2.6, crown_thickness = 0.7, springing_thickness = 1.1,"
+    " voussoirs = 29",
+    "parabolic, on unequal springings": "shape = 'parabolic', span = 6, rise = 3, right_rise = 1.5,"
+    " thickness = 0.5, voussoirs = 23",
+    "catenary": "shape = 'catenary', span = 6, rise = 4, thickness = 0.3, voussoirs = 27",
+    "flat": "shape = 'flat', span = 2, thickness = 0.5, voussoirs = 9",
+    "two spans of two rings": "radius = 3, half_angle_deg = 70, thickness_ratio = 0.2, voussoirs = 24, rings = 2,"
+    " spans = 2, pier_width = 1.5, pier_height = 2, pier_courses = 3",
+    "semicircular, on buttresses": "radius = 3, voussoirs = 20, buttress_width = 1.6, buttress_height = 3,"
+    " pier_courses = 3",
 }
 
 
@@ -30,8 +34,8 @@ def main() -> None:
     """Draw."""
     with house_style():
         figure, grid = plt.subplots(3, 3, figsize=(10.0, 9.0), layout="constrained")
-        for axes, (shape, keys) in zip(grid.flat, SHAPES.items()):
-            run = voussoir.run(f"&arch shape = '{shape.strip()}', {keys} /\n&joint friction_deg = 60 /\n")
+        for axes, (title, keys) in zip(grid.flat, SHAPES.items()):
+            run = voussoir.run(f"&arch {keys} /\n&joint friction_deg = 60 /\n")
             scene = scene_of(run, 1)
             draw_supports(axes, [block.corners for block in scene.supports])
             axes.add_collection(PolyCollection(scene.shapes(0.0), facecolor=STONE, edgecolor="#777777", linewidth=0.6))
@@ -39,7 +43,7 @@ def main() -> None:
             axes.autoscale_view()
             axes.set_aspect("equal")
             axes.set_axis_off()
-            axes.set_title(f"{shape.strip()}: {run.case(1)['verdict']}", fontsize=10)
+            axes.set_title(f"{title}: {run.case(1)['verdict']}", fontsize=10)
         figure.savefig(Path(__file__).parents[1] / "images" / "shapes.svg", metadata={"Date": None})
 
 

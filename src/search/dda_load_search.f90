@@ -293,10 +293,8 @@ contains
    pure subroutine conclude(search, low, high, scene, right, left, critical)
       !> What is searched
       type(search_t), intent(in) :: search
-      !> Low end of the range, from where the coefficient does nothing
-      real(wp), intent(in) :: low
-      !> High end, likewise
-      real(wp), intent(in) :: high
+      !> Ends of the range, from where the coefficient does nothing
+      real(wp), intent(in) :: low, high
       type(scene_t), intent(in) :: scene
       !> Where it falls to the right
       type(side_t), intent(in) :: right
@@ -309,13 +307,11 @@ contains
       falls_right = right%end == path_end%collapsed
       falls_left = left%end == path_end%collapsed
       if (right%end == path_end%undecided) then
+         call keep_limit(search, low, high, right, critical)
          critical%reason = right%proof%reason
-         critical%undecided_at = search%low &
-            & + (right%value - low)*(search%high - search%low)/(high - low)
       else if (left%end == path_end%undecided) then
+         call keep_limit(search, low, high, left, critical)
          critical%reason = left%proof%reason
-         critical%undecided_at = search%low &
-            & + (left%value - low)*(search%high - search%low)/(high - low)
       else if (falls_right .and. .not. right%value - right%half > low) then
          critical%verdict = verdict%collapsed
          critical%falls = search%low
@@ -344,12 +340,9 @@ contains
 
    !> The bracket about the value at which it falls to one side
    pure subroutine close_bracket(search, low, high, scene, side, outward, critical)
-      !> What is searched
       type(search_t), intent(in) :: search
-      !> Low end of the range, from where the coefficient does nothing
-      real(wp), intent(in) :: low
-      !> High end, likewise
-      real(wp), intent(in) :: high
+      !> Ends of the range, from where the coefficient does nothing
+      real(wp), intent(in) :: low, high
       type(scene_t), intent(in) :: scene
       type(side_t), intent(in) :: side
       !> 1 to the right, -1 to the left
@@ -368,22 +361,36 @@ contains
       call keep_collapse(scene, side, critical)
       allocate (critical%standing)
       call record_rest(scene%settings, scene%system, scene%contacts, side%proof, critical%standing)
+      call keep_limit(search, low, high, side, critical)
+   end subroutine close_bracket
+
+   !> Keep the associated limit of a side, and how far its path was followed
+   pure subroutine keep_limit(search, low, high, side, critical)
+      type(search_t), intent(in) :: search
+      !> Ends of the range, from where the coefficient does nothing
+      real(wp), intent(in) :: low, high
+      type(side_t), intent(in) :: side
+      !> Receives them
+      type(critical_t), intent(inout) :: critical
+      real(wp) :: scale
+
+      scale = (search%high - search%low)/(high - low)
+      critical%undecided_at = search%low + (side%value - low)*scale
       critical%has_limit = side%has_limit
       critical%limit = search%low + (side%limit - low)*scale
-      if (side%has_limit) then
+      if (side%has_limit .and. critical%verdict == verdict%found) then
          critical%limit_force = side%force
          critical%limit_velocity = side%velocity
          critical%limit_live = side%live
       end if
       critical%jumps = side%proof%n_jump
       critical%largest_jump = side%proof%largest_jump
-   end subroutine close_bracket
+   end subroutine keep_limit
 
    !> Keep how it falls
    pure subroutine keep_collapse(scene, side, critical)
       type(scene_t), intent(in) :: scene
       type(side_t), intent(in) :: side
-      !> Receives the collapse
       type(critical_t), intent(inout) :: critical
 
       allocate (critical%fallen)

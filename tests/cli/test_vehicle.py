@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import csv
 from pathlib import Path
 
 import pytest
@@ -79,6 +80,25 @@ def test_the_worst_position_of_a_symmetric_arch_has_a_mirror_image(tmp_path: Pat
     for row in mirrored:
         assert float(row["critical"]) == pytest.approx(float(worst["critical"]), rel=1e-6)
     assert "the least load factor" not in (tmp_path / "x" / "log.txt").read_text()
+
+
+def test_a_search_without_an_answer_tells_its_limit_and_how_far_it_came(tmp_path: Path) -> None:
+    """Three rings that slide below fill: jumps of the path may not converge, but limit analysis bounds the factor."""
+    deck = (
+        "&arch shape = 'segmental', span = 8, rise = 2, thickness = 0.75, voussoirs = 24, rings = 3 /\n"
+        "&joint friction_deg = 35 /\n&fill height = 0.3, unit_weight = 20e3, passive_coefficient = 1.0 /\n"
+        "&vehicle axles = 60e3, 100e3, spacings = 2.5, position = -4.666779879376229 /\n" + SEARCH
+    )
+    (limit,) = rows(tmp_path, deck + "&analysis flow = 'associated' /\n", head="")
+    (tmp_path / "x.nml").write_text(deck)
+    status = run_dda("run", "x.nml", "--quiet", cwd=tmp_path).returncode
+    with (tmp_path / "x" / "results.csv").open(newline="") as lines:
+        (row,) = csv.DictReader(lines)
+    assert float(row["exact_high"]) == pytest.approx(float(limit["critical"]), rel=1e-9)
+    assert status == (3 if row["verdict"] == "undecided" else 0)
+    if row["verdict"] == "undecided":
+        reached = (tmp_path / "x" / "log.txt").read_text().split(" at ")[1].split()[0]
+        assert 1.0 < float(reached) <= float(row["exact_high"])
 
 
 REFUSED = {

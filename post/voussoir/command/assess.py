@@ -130,11 +130,23 @@ def thickness_safety(text: str, own: dict[str, Any]) -> tuple[float, str]:
             return math.nan, f"not found: {error}"
         if row["verdict"] == "found":
             return value / row["critical"], (
-                f"under dead load; the critical {name} lies between {row['critical_low']:.8g} "
-                f"and {row['critical_high']:.8g}"
+                f"under dead load; the critical {name} lies between "
+                f"{ends_of(row['critical_low'], row['critical_high'])}"
             )
         return math.nan, f"under dead load {row['verdict']} at any smaller {name} down to a thousandth"
     return math.nan, "not searched: the thickness is no single number"
+
+
+def ends_of(low: float, high: float) -> str:
+    """The ends of an interval with as many digits as tell them apart.
+
+    Examples
+    --------
+    >>> ends_of(0.25, 0.2500001)
+    '0.25 and 0.2500001'
+    """
+    digits = next((n for n in range(6, 17) if f"{low:.{n}g}" != f"{high:.{n}g}"), 17)
+    return f"{low:.{digits}g} and {high:.{digits}g}"
 
 
 def verdict_of(own: dict[str, Any], factor: dict[str, Any] | None) -> tuple[str, bool]:
@@ -230,17 +242,13 @@ def _numbers(
     rows = [("Geometrical safety", f"{safety:.4g}: {note}" if not math.isnan(safety) else note)]
     if factor is None:
         rows.append(("Load factor", "no live loads"))
-    elif factor["verdict"] == "found":
-        rows.append(
-            (
-                "Load factor",
-                f"{factor['critical']:.6g}, between {factor['critical_low']:.8g} and "
-                f"{factor['critical_high']:.8g}; limit analysis (associated): {factor['exact_low']:.8g} to "
-                f"{factor['exact_high']:.8g}",
-            )
-        )
     else:
-        rows.append(("Load factor", f"{factor['verdict']}"))
+        text = str(factor["verdict"])
+        if factor["verdict"] == "found":
+            text = f"{factor['critical']:.6g}, between {ends_of(factor['critical_low'], factor['critical_high'])}"
+        if not math.isnan(factor["exact_high"]):
+            text += f"; limit analysis (associated): between {ends_of(factor['exact_low'], factor['exact_high'])}"
+        rows.append(("Load factor", text))
     if factor is not None and not math.isnan(factor.get("worst_position", math.nan)):
         rows.append(("Worst position", f"first axle at {factor['worst_position']:.4f} m"))
     least, most = own.get("thrust_min", math.nan), own.get("thrust_max", math.nan)
