@@ -231,11 +231,6 @@ contains
       live = sign(1.0_wp, last)*added_loads(varied, settings, scene, graph)
       tolerance = min(path_resolution, max(least_gap, 1.0e-2_wp*search%tolerance))
       call find_limit(graph, dead, live, tolerance, limit)
-      do while (limit%state == limit_state%not_converged .and. tolerance < path_resolution)
-         ! where rounding keeps the two proofs apart they are as near as it lets them be
-         tolerance = min(path_resolution, 10.0_wp*tolerance)
-         call find_limit(graph, dead, live, tolerance, limit)
-      end do
       side%has_limit = limit%state == limit_state%found
       if (limit%state == limit_state%no_dead_equilibrium) side%beyond = dead
       if (.not. side%has_limit) return
