@@ -249,12 +249,10 @@ def test_a_model_far_away_is_told_where_it_is(tmp_path: Path, mode: str) -> None
     assert corners >= {*ground, *block}
 
 
-@pytest.mark.parametrize("kind", ["lines", "blocks"])
-def test_export_refuses_what_is_no_arch_with_its_line(tmp_path: Path, kind: str) -> None:
-    (tmp_path / "a.lines").write_text(SQUARE)
+def test_export_refuses_what_is_a_file_already_with_its_line(tmp_path: Path) -> None:
     (tmp_path / "a.blocks").write_text("block fixed\n0 0\n1 0\n1 1\n")
-    (tmp_path / "a.nml").write_text(f"&scene\n kind='{kind}', geometry='a.{kind}' /\n")
+    (tmp_path / "a.nml").write_text("&scene\n kind='blocks', geometry='a.blocks' /\n")
     done = run_dda("export", "a.nml", cwd=tmp_path)
     assert done.returncode == 2
-    assert done.stderr.startswith(f"a.nml:2: error: dda export needs scene%kind = 'arch', got '{kind}'")
+    assert done.stderr.startswith("a.nml:2: error: dda export needs scene%kind 'arch' or 'lines', got 'blocks'")
     assert not (tmp_path / "a.geo").exists()
