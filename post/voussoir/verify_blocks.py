@@ -121,8 +121,8 @@ def _take(entry: list[str], rows: list[list[float]], source: Source, deck: Deck)
         if "compressive_strength" in keys:
             source.strengths[number] = deck.read(keys["compressive_strength"].replace("d", "e"))
     elif entry[0] == "joint":
-        if any(float(keys.get(name, "0")) > 0.0 for name in ("cohesion", "tension")):
-            raise VerifyError("joints with cohesion or tension have no proof")
+        if "residual_deg" in keys or any(float(keys.get(name, "0")) > 0.0 for name in ("cohesion", "tension")):
+            raise VerifyError("joints that lose strength by slip have no proof")
         if "friction_deg" in keys:
             pair = sorted((int(entry[1]), int(entry[2])))
             source.friction_deg[pair[0], pair[1]] = deck.read(keys["friction_deg"])

@@ -75,7 +75,8 @@ contains
       if (len_trim(problem%text) > 0) return
       assembly%plan%materials = [material_plan_t(number=of_supports)]
       if (form%no_slip) assembly%plan%laws = [law_plan_t(material=[1, of_supports], &
-         & value=[no_slip_deg, 0.0_wp, 0.0_wp], given=[.true., .false., .false.])]
+         & value=[no_slip_deg, spread(0.0_wp, 1, 4)], &
+         & given=[.true., spread(.false., 1, 4)])]
    end subroutine assemble_arch
 
    !> Number of blocks that can move

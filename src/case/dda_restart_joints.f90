@@ -13,11 +13,11 @@ module dda_restart_joints
    public :: n_joint_whole, n_joint_number, pack_joints, unpack_joints
 
    !> Whole numbers of a joint: contacts; of both contacts which block owns the edge, corner, edge,
-   !> whether it is open; direction of sliding; of both contacts whether it is broken
-   integer, parameter :: n_joint_whole = 12
+   !> whether it is open; direction of sliding
+   integer, parameter :: n_joint_whole = 10
    !> Numbers of a joint: length; of both contacts length, share, lock and height at which it is
-   !> closed; past slip; trial force, force, gap and increment
-   integer, parameter :: n_joint_number = 22
+   !> closed; past slip; trial force, force, gap and increment; share of strength of both contacts
+   integer, parameter :: n_joint_number = 24
 
 contains
 
@@ -40,12 +40,11 @@ contains
             whole(:, j) = [joint%n_contact, joint%contact%edge_side, &
                & (vertex_number(system, joint%contact(k)%vertex_block, joint%contact(k)%vertex), &
                & k=1, 2), (vertex_number(system, joint%contact(k)%edge_block, &
-               & joint%contact(k)%edge), k=1, 2), merge(1, 0, face%open), face%slip, &
-               & merge(1, 0, contacts%broken(:, j))]
+               & joint%contact(k)%edge), k=1, 2), merge(1, 0, face%open), face%slip]
             number(:, j) = [joint%length, joint%contact%length, joint%contact%share, &
                & joint%contact%lock, joint%contact%closed_at, contacts%past_slip(j), &
                & contacts%trial(:, j), contacts%force(:, j), contacts%gap(:, j), &
-               & contacts%increment(:, j)]
+               & contacts%increment(:, j), contacts%intact(:, j)]
          end associate
       end do
    end subroutine pack_joints
@@ -71,7 +70,7 @@ contains
       integer :: j
 
       sound = all(whole(8:9, :) == 0 .or. whole(8:9, :) == 1) .and. all(abs(whole(10, :)) <= 1) &
-         & .and. all(whole(11:12, :) == 0 .or. whole(11:12, :) == 1)
+         & .and. all(number(23:24, :) >= 0.0_wp .and. number(23:24, :) <= 1.0_wp)
       if (.not. sound) return
       if (contacts%searched .and. settings%current) then
          allocate (joint(size(whole, 2)))
@@ -87,12 +86,12 @@ contains
       do j = 1, size(whole, 2)
          contacts%face(j)%open = whole(8:9, j) == 1
          contacts%face(j)%slip = whole(10, j)
-         contacts%broken(:, j) = whole(11:12, j) == 1
          contacts%past_slip(j) = number(10, j)
          contacts%trial(:, j) = number(11:13, j)
          contacts%force(:, j) = number(14:16, j)
          contacts%gap(:, j) = number(17:19, j)
          contacts%increment(:, j) = number(20:22, j)
+         contacts%intact(:, j) = number(23:24, j)
       end do
       call set_strength(contacts)
    end subroutine unpack_joints

@@ -30,8 +30,9 @@ module dda_contact_detection
       real(wp), allocatable :: increment(:, :)
       !> Slip that is past and done, where blocks move: (n_joint) [m]
       real(wp), allocatable :: past_slip(:)
-      !> Contacts whose cohesion and tensile strength are spent: (2, n_joint)
-      logical, allocatable :: broken(:, :)
+      !> Share that is left of each contact's strength: 1 is whole, 0 has slid or parted:
+      !> (2, n_joint)
+      real(wp), allocatable :: intact(:, :)
       !> Whether blocks that move are searched for new contacts; otherwise the joints stay as given
       logical :: searched = .false.
       !> Whether found contacts remember their slip; in time what sticks has no speed to slip with
@@ -85,11 +86,11 @@ contains
 
       n = size(joint)
       call move_alloc(joint, contacts%joint)
-      if (allocated(contacts%face)) deallocate (contacts%face, contacts%broken)
+      if (allocated(contacts%face)) deallocate (contacts%face, contacts%intact)
       if (allocated(contacts%trial)) deallocate (contacts%past_slip, contacts%trial, &
          & contacts%force, contacts%gap, contacts%increment)
       allocate (contacts%face(n), contacts%past_slip(n))
-      allocate (contacts%broken(2, n), source=.false.)
+      allocate (contacts%intact(2, n), source=1.0_wp)
       allocate (contacts%trial(3, n), source=0.0_wp)
       allocate (contacts%force, contacts%gap, contacts%increment, source=contacts%trial)
       contacts%past_slip = 0.0_wp
@@ -126,19 +127,19 @@ contains
       contacts%gap = old%gap(:, k)
       contacts%increment = old%increment(:, k)
       contacts%past_slip = old%past_slip(k)
-      contacts%broken = old%broken(:, k)
+      contacts%intact = old%intact(:, k)
       contacts%springs%cone = old%springs%cone(k)
       contacts%springs%shift = old%springs%shift(:, k)
    end subroutine keep_contacts
 
-   !> Bounds of the forces by what is left of cohesion and tensile strength
+   !> Bounds of the forces by what is left of the joints' strength
    pure subroutine set_strength(contacts)
       !> The contacts
       type(contacts_t), intent(inout) :: contacts
       integer :: j
 
       do j = 1, size(contacts%joint)
-         call mohr_coulomb(contacts%joint(j), contacts%broken(:, j), contacts%springs%cone(j), &
+         call mohr_coulomb(contacts%joint(j), contacts%intact(:, j), contacts%springs%cone(j), &
             & contacts%springs%shift(:, j))
       end do
    end subroutine set_strength

@@ -82,7 +82,7 @@ contains
          call take_over_slip(system, past, taken, .not. contacts%remember, joint(j))
       end do
       call move_alloc(contacts%face, before%face)
-      call move_alloc(contacts%broken, before%broken)
+      call move_alloc(contacts%intact, before%intact)
       call set_joints(system, system%motion, joint, penalty_ratio, n_dof, contacts)
       do j = 1, size(contacts%joint)
          call take_over_state(before, past, source(:, j), j, contacts)
@@ -275,13 +275,14 @@ contains
       type(contacts_t), intent(inout) :: contacts
       integer :: k
 
-      contacts%broken(:, j) = .true.
+      ! what meets anew has nothing to lose
+      contacts%intact(:, j) = 0.0_wp
       do k = 1, contacts%joint(j)%n_contact
          if (source(k) == 0) cycle
          associate (old => past(source(k)))
             contacts%force(k, j) = old%force(1)
             contacts%force(3, j) = contacts%force(3, j) + old%force(2)
-            contacts%broken(k, j) = before%broken(old%place, old%joint)
+            contacts%intact(k, j) = before%intact(old%place, old%joint)
             if (before%face(old%joint)%slip /= 0) &
                & contacts%face(j)%slip = before%face(old%joint)%slip
          end associate

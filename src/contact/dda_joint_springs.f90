@@ -8,6 +8,7 @@ module dda_joint_springs
    use dda_deformation, only : tangent_matrix
    use dda_friction_cone, only : cone_t
    use dda_kinds, only : wp
+   use dda_material, only : friction_left
    implicit none
    private
 
@@ -70,7 +71,7 @@ contains
                & motion(:, second), n_dof)
          end associate
          springs%stiffness(j) = penalty_ratio*block_stiffness(system, centroid, joint(j))
-         call mohr_coulomb(joint(j), [.false., .false.], springs%cone(j), springs%shift(:, j))
+         call mohr_coulomb(joint(j), [1.0_wp, 1.0_wp], springs%cone(j), springs%shift(:, j))
       end do
       if (n > 0 .and. .not. springs%give) &
          & springs%stiffness = min(springs%stiffness, stiffest*minval(springs%stiffness))
@@ -138,12 +139,13 @@ contains
    end function block_stiffness
 
    !> Bounds of a joint's force and the tension that its contacts carry. The tension is at most that
-   !> at the apex of the Mohr-Coulomb cone; a broken contact has neither cohesion nor tension
-   pure subroutine mohr_coulomb(joint, broken, cone, shift)
+   !> at the apex of the Mohr-Coulomb cone; a contact that has slid or parted has neither cohesion
+   !> nor tension, and a joint of which none is whole its residual friction
+   pure subroutine mohr_coulomb(joint, intact, cone, shift)
       !> The joint
       type(joint_t), intent(in) :: joint
-      !> Contacts whose cohesion and tensile strength are spent: (2)
-      logical, intent(in) :: broken(2)
+      !> Share that is left of each contact's strength: (2)
+      real(wp), intent(in) :: intact(2)
       !> Bounds of the force, with the cone moved by the tension
       type(cone_t), intent(out) :: cone
       !> Tension of each contact and a zero for the shear force: (3) [N/m]
@@ -151,13 +153,13 @@ contains
       real(wp) :: whole(2), cohesion
 
       cone%single = joint%n_contact == 1
-      whole = merge(0.0_wp, joint%contact%length, broken)
+      whole = intact*joint%contact%length
       shift = [joint%law%tension*whole, 0.0_wp]
       if (joint%law%no_slip) then
          cone%limit = huge(1.0_wp)
          return
       end if
-      cone%friction = joint%law%friction
+      cone%friction = friction_left(joint%law, maxval(intact(:joint%n_contact)))
       cohesion = joint%law%cohesion*sum(whole)
       if (cone%friction*sum(shift) > cohesion) shift = shift*(cohesion/(cone%friction*sum(shift)))
       cone%limit = max(0.0_wp, cohesion - cone%friction*sum(shift))

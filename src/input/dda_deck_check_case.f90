@@ -34,6 +34,7 @@ contains
 
       call check_model(deck, searched, error)
       if (.not. allocated(error)) call check_use(deck, error)
+      call check_slip(deck, error)
       if (.not. allocated(error)) call check_live(deck, searched, error)
       if (.not. allocated(error)) call check_ground(deck, searched, error)
       if (.not. allocated(error)) call check_strength(deck, searched, error)
@@ -137,6 +138,28 @@ contains
       end if
       if (key > 0) call deck_error(error, problem, deck, place_of(deck, key))
    end subroutine check_use
+
+   !> Check that joints may lose strength by slip
+   pure subroutine check_slip(deck, error)
+      !> The deck
+      type(deck_t), intent(in) :: deck
+      !> A model in which they do not
+      type(error_t), allocatable, intent(inout) :: error
+      character(len=*), parameter :: name(2) = ["residual_deg", "slip_length "]
+      integer :: i
+
+      if (allocated(error)) return
+      do i = 1, size(name)
+         if (.not. is_given(deck, "joint", trim(name(i)))) cycle
+         if (any(word_of(deck, "scene", "kind") == ["lines ", "blocks"]) &
+            .and. word_of(deck, "analysis", "mode") /= "limerick" &
+            .and. word_of(deck, "analysis", "flow") /= "associated") cycle
+         call deck_error(error, "joint%"//trim(name(i))//" needs scene%kind = 'lines' or "// &
+            "'blocks', mode = 'static' or 'dynamic' and flow = 'coulomb'; remove it", deck, &
+            place_of(deck, key_index("joint", trim(name(i)))))
+         return
+      end do
+   end subroutine check_slip
 
    !> Check the joints of the arch
    pure subroutine check_shape(deck, error)

@@ -118,8 +118,8 @@ contains
       end do
    end subroutine check_keys
 
-   !> Check a deck against its file of blocks: the ground has one motion, and the point that means
-   !> collapse is measured
+   !> Check a deck against its file of blocks: the ground has one motion, the point that means
+   !> collapse is measured, and strength goes by slip only where slip is followed
    pure subroutine check_block_file(deck, error)
       !> The deck, its files read
       type(deck_t), intent(in) :: deck
@@ -137,6 +137,8 @@ contains
             & deck, place_of(deck, key_index("analysis", "collapse_point")))
          return
       end if
+      call check_wear(deck, error)
+      if (allocated(error)) return
       gives = is_given(deck, "ground", "pulse") .or. allocated(deck%ground_record)
       do s = 1, size(deck%sweep)
          gives = gives .or. deck%sweep(s)%parameter%key == key_index("ground", "pulse")
@@ -150,6 +152,29 @@ contains
             & "moves the ground, got none; give one", deck, deck%group(group_index("ground")))
       end if
    end subroutine check_block_file
+
+   !> Check that joints may lose strength by slip where the file says so
+   pure subroutine check_wear(deck, error)
+      !> The deck, its files read
+      type(deck_t), intent(in) :: deck
+      !> Limit analysis, or the scheme of the original
+      type(error_t), allocatable, intent(inout) :: error
+      character(len=:), allocatable :: key
+      integer :: i
+
+      key = ""
+      if (word_of(deck, "analysis", "mode") == "limerick") key = "mode"
+      if (word_of(deck, "analysis", "flow") == "associated") key = "flow"
+      if (key == "") return
+      do i = 1, size(deck%plan%laws)
+         if (.not. any(deck%plan%laws(i)%given(4:5))) cycle
+         call deck_error(error, "analysis%"//key//" needs joints without residual_deg and " &
+            & //"slip_length, got line "//to_text(deck%plan%laws(i)%line)//" of " &
+            & //"the file of blocks; change one of the two", deck, &
+            & place_of(deck, key_index("analysis", key)))
+         return
+      end do
+   end subroutine check_wear
 
    !> Check what a search in time needs
    pure subroutine check_search_in_time(deck, error)

@@ -60,10 +60,12 @@ contains
       integer :: i
 
       has_bond = real_of(deck, "joint", "cohesion") > 0.0_wp &
-         & .or. real_of(deck, "joint", "tension") > 0.0_wp
+         & .or. real_of(deck, "joint", "tension") > 0.0_wp &
+         & .or. is_given(deck, "joint", "residual_deg")
       do i = 1, size(deck%plan%laws)
          associate (law => deck%plan%laws(i))
-            has_bond = has_bond .or. any(law%given(2:) .and. law%value(2:) > 0.0_wp)
+            has_bond = has_bond .or. any(law%given(2:3) .and. law%value(2:3) > 0.0_wp) &
+               & .or. law%given(4)
          end associate
       end do
    end function has_bond

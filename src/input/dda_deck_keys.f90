@@ -68,7 +68,13 @@ module dda_deck_keys
             at_least=0.0_wp, at_most=1.0e30_wp, meaning="Shear strength without normal force."), &
       key_t(group="joint", name="tension", unit="Pa", default="0.0", &
             at_least=0.0_wp, at_most=1.0e30_wp, &
-            meaning="Tensile strength; at most cohesion/tan(friction_deg) counts.")]
+            meaning="Tensile strength; at most cohesion/tan(friction_deg) counts."), &
+      key_t(group="joint", name="residual_deg", unit="deg", without="friction_deg", &
+            at_least=0.0_wp, at_most=90.0_wp, &
+            meaning="Friction angle of joints that have slid or parted."), &
+      key_t(group="joint", name="slip_length", unit="m", default="0.0", &
+            at_least=0.0_wp, at_most=1.0e9_wp, &
+            meaning="Slip over which strength goes to what remains; 0: the first slip takes all.")]
 
    !> Keys of &load
    type(key_t), parameter :: load_keys(*) = [ &

@@ -57,7 +57,7 @@ module dda_model_table
       model_t("limerick", "current", of_original, "dda export writes such arches as blocks")]
 
    !> All keys that have real values
-   type(search_t), parameter :: search(18) = [ &
+   type(search_t), parameter :: search(19) = [ &
       search_t("arch", "abutment_size abutment_overhang", "", "", "arch", &
          "abutments are blocks with mode = 'limerick' alone"), &
       search_t("arch", "span rise right_rise thickness crown_thickness springing_thickness "// &
@@ -71,6 +71,8 @@ module dda_model_table
       search_t("material", "", all_kinds, of_original, of_original), &
       search_t("joint", "cohesion tension", all_kinds, of_original, "", &
          "joints of the original begin open: bonds are lost"), &
+      search_t("joint", "residual_deg slip_length", "", "", "", &
+         "what has slid may stand or not on both sides: sweep them"), &
       search_t("joint", "", all_kinds, of_original, of_original), &
       search_t("load", "displacement_factor", "blocks", "blocks", "", &
          "only files of blocks prescribe displacements"), &

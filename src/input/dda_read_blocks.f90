@@ -24,8 +24,8 @@ module dda_read_blocks
    character(len=word_size), parameter :: material_key(5) = [character(len=word_size) :: &
       & "density", "unit_weight", "young", "poisson", "compressive_strength"]
    !> Keys that a joint may have
-   character(len=word_size), parameter :: law_key(3) = [character(len=word_size) :: &
-      & "friction_deg", "cohesion", "tension"]
+   character(len=word_size), parameter :: law_key(5) = [character(len=word_size) :: &
+      & "friction_deg", "cohesion", "tension", "residual_deg", "slip_length"]
    !> Least density, unit weight and Young's modulus, as in decks
    real(wp), parameter :: least_property = 1.0e-12_wp
    !> Words that begin an entry
@@ -329,7 +329,8 @@ contains
       end if
    end subroutine add_material
 
-   !> Take in a law: joint I J [friction_deg f] [cohesion c] [tension t]
+   !> Take in a law: joint I J [friction_deg f] [cohesion c] [tension t] [residual_deg r]
+   !> [slip_length d]
    pure subroutine add_law(line, growing, error)
       !> The line
       type(line_t), intent(in) :: line
@@ -354,6 +355,9 @@ contains
       if (any(law%value < 0.0_wp) .or. law%value(1) > 90.0_wp) then
          call fatal_error(error, "expected 0 <= friction_deg <= 90 and no negative strength", &
             & line=line%number)
+      else if (law%given(1) .and. law%value(4) > law%value(1)) then
+         call fatal_error(error, "residual_deg must be at most friction_deg, " &
+            & //to_text(law%value(1))//", got "//to_text(law%value(4)), line=line%number)
       else
          law%line = line%number
          call add_law_plan(growing, law)

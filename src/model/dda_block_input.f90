@@ -26,10 +26,11 @@ module dda_block_input
    type :: law_plan_t
       !> Numbers of the two materials: (2)
       integer :: material(2) = 0
-      !> Friction angle, cohesion, tensile strength: (3) [deg, Pa, Pa]
-      real(wp) :: value(3) = 0.0_wp
-      !> Which of them are given: (3)
-      logical :: given(3) = .false.
+      !> Friction angle, cohesion, tensile strength, friction angle of what has slid, slip over
+      !> which strength goes: (5) [deg, Pa, Pa, deg, m]
+      real(wp) :: value(5) = 0.0_wp
+      !> Which of them are given: (5)
+      logical :: given(5) = .false.
       !> Line of the file
       integer :: line = 0
    end type law_plan_t

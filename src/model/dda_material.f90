@@ -6,6 +6,7 @@ module dda_material
    private
 
    public :: material_t, joint_law_t, elasticity_matrix, friction_coefficient
+   public :: friction_left, loses_strength
 
    !> What a block is made of
    type :: material_t
@@ -31,6 +32,11 @@ module dda_material
       real(wp) :: cohesion = 0.0_wp
       !> Tensile strength [Pa]
       real(wp) :: tension = 0.0_wp
+      !> Coefficient of friction of a joint that has slid or parted; huge where it stays as it was
+      real(wp) :: residual = huge(1.0_wp)
+      !> Slip over which cohesion, tensile strength and friction go to what remains of them; 0 where
+      !> the first slip takes all [m]
+      real(wp) :: slip_length = 0.0_wp
       !> Compressive strength of the weaker of the two blocks; huge where none is crushed [Pa]
       real(wp) :: strength = huge(1.0_wp)
    end type joint_law_t
@@ -58,6 +64,26 @@ contains
       d(2, 1) = d(1, 2)
       d(3, 3) = young/(2.0_wp*(1.0_wp + poisson))
    end function elasticity_matrix
+
+   !> Whether a joint that slides or parts is weaker afterwards
+   elemental logical function loses_strength(law)
+      !> The law
+      type(joint_law_t), intent(in) :: law
+
+      loses_strength = law%cohesion > 0.0_wp .or. law%tension > 0.0_wp &
+         & .or. law%residual < law%friction
+   end function loses_strength
+
+   !> Coefficient of friction of a joint that has lost some of its strength
+   elemental real(wp) function friction_left(law, intact)
+      !> The law
+      type(joint_law_t), intent(in) :: law
+      !> Share of the strength that is left
+      real(wp), intent(in) :: intact
+
+      friction_left = law%friction &
+         & - (1.0_wp - intact)*max(0.0_wp, law%friction - law%residual)
+   end function friction_left
 
    !> Coefficient of friction of a friction angle
    elemental function friction_coefficient(friction_deg) result(coefficient)

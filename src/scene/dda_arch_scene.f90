@@ -110,6 +110,9 @@ contains
       if (.not. law%no_slip) law%friction = friction_coefficient(friction_deg)
       law%cohesion = real_of(deck, "joint", "cohesion")
       law%tension = real_of(deck, "joint", "tension")
+      if (is_given(deck, "joint", "residual_deg")) law%residual = friction_coefficient( &
+         & min(real_of(deck, "joint", "residual_deg"), no_slip_deg))
+      law%slip_length = real_of(deck, "joint", "slip_length")
    end function joint_law
 
    !> Joints of one half of the arch, from the crown

@@ -21,8 +21,9 @@ module dda_block_scene
       real(wp) :: unit_weight = 0.0_wp
       !> Acceleration of gravity, for materials with a density of their own [m/s2]
       real(wp) :: gravity = 9.81_wp
-      !> Friction angle, cohesion, tensile strength of the joints: (3) [deg, Pa, Pa]
-      real(wp) :: law(3) = [50.0_wp, 0.0_wp, 0.0_wp]
+      !> Friction angle, cohesion, tensile strength of the joints, friction angle of those that have
+      !> slid, slip over which strength goes: (5) [deg, Pa, Pa, deg, m]
+      real(wp) :: law(5) = [50.0_wp, 0.0_wp, 0.0_wp, 90.0_wp, 0.0_wp]
       !> By how much all lines of heads have risen [m]
       real(wp) :: water_rise = 0.0_wp
    end type base_t
@@ -144,7 +145,7 @@ contains
       integer, intent(in) :: n
       !> The laws: (n, n)
       type(joint_law_t) :: law(n, n)
-      real(wp) :: value(3)
+      real(wp) :: value(5)
       integer :: i
 
       law = law_of(base%law)
@@ -192,13 +193,16 @@ contains
 
    !> A law of joints that may open
    pure function law_of(value) result(law)
-      !> Friction angle, cohesion, tensile strength: (3) [deg, Pa, Pa]
-      real(wp), intent(in) :: value(3)
+      !> Friction angle, cohesion, tensile strength, friction angle after slip, slip over which
+      !> strength goes: (5) [deg, Pa, Pa, deg, m]
+      real(wp), intent(in) :: value(5)
       !> The law
       type(joint_law_t) :: law
 
       law%friction = friction_coefficient(min(value(1), most_friction_deg))
       law%cohesion = value(2)
       law%tension = value(3)
+      if (value(4) < value(1)) law%residual = friction_coefficient(value(4))
+      law%slip_length = value(5)
    end function law_of
 end module dda_block_scene

@@ -215,7 +215,9 @@ contains
       base%unit_weight = unit_weight(deck)
       base%gravity = real_of(deck, "load", "gravity")
       base%law = [real_of(deck, "joint", "friction_deg"), real_of(deck, "joint", "cohesion"), &
-         & real_of(deck, "joint", "tension")]
+         & real_of(deck, "joint", "tension"), 90.0_wp, real_of(deck, "joint", "slip_length")]
+      if (is_given(deck, "joint", "residual_deg")) base%law(4) = real_of(deck, "joint", &
+         & "residual_deg")
       base%water_rise = real_of(deck, "load", "water_rise")
       scene%settings = settings_of(deck, pi/2.0_wp, size(plan%fixed))
       call block_scene(plan, base, scene)

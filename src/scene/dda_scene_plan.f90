@@ -80,7 +80,8 @@ contains
       plan%velocities = word_of(deck, "analysis", "mode") == "dynamic"
       plan%moving = word_of(deck, "analysis", "geometry") == "current"
       plan%strength = real_of(deck, "joint", "cohesion") > 0.0 &
-         & .or. real_of(deck, "joint", "tension") > 0.0
+         & .or. real_of(deck, "joint", "tension") > 0.0 &
+         & .or. is_given(deck, "joint", "residual_deg")
       if (is_given(deck, "analysis", "unknowns")) then
          plan%reason = strain_reason%forced
          plan%unknowns = integer_of(deck, "analysis", "unknowns")

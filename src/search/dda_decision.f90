@@ -294,6 +294,11 @@ contains
       type(album_t), intent(inout), optional :: album
       type(settings_t) :: convex
 
+      if (any(contacts%joint%law%residual < contacts%joint%law%friction)) then
+         ! what slides as it opens wears another way, so that its fall proves nothing
+         call follow_coulomb(settings, system, contacts, decision, album)
+         return
+      end if
       convex = settings
       convex%flow = flow_rule%associated
       decision%flow = convex%flow

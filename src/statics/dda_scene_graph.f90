@@ -9,6 +9,7 @@ module dda_scene_graph
    use dda_inertia, only : mass_matrix
    use dda_joint_graph, only : joint_graph_t, joint_kind
    use dda_kinds, only : wp
+   use dda_material, only : loses_strength
    use dda_settings, only : settings_t
    implicit none
    private
@@ -181,13 +182,12 @@ contains
       end do
    end function block_compliance
 
-   !> Whether no joint has cohesion or tensile strength, which would be spent along the way
+   !> Whether no joint has cohesion, tensile strength or friction that would be spent along the way
    pure logical function has_pure_friction(contacts)
       !> The contacts
       type(contacts_t), intent(in) :: contacts
 
-      has_pure_friction = .not. (any(contacts%joint%law%cohesion > 0.0_wp) &
-         & .or. any(contacts%joint%law%tension > 0.0_wp))
+      has_pure_friction = .not. any(loses_strength(contacts%joint%law))
    end function has_pure_friction
 
    !> Held points of blocks that could move

@@ -5,7 +5,7 @@ module dda_block_update
    use dda_deformation, only : moved_point, turned_tensor
    use dda_joint_springs, only : mohr_coulomb
    use dda_kinds, only : wp
-   use dda_material, only : elasticity_matrix
+   use dda_material, only : elasticity_matrix, loses_strength
    use dda_settings, only : flow_rule, settings_t
    use dda_step_context, only : step_context_t
    implicit none
@@ -107,9 +107,9 @@ contains
       type(settings_t), intent(in) :: settings
       !> The contacts
       type(contacts_t), intent(inout) :: contacts
-      !> Whether a contact lost its cohesion or tensile strength in this step
+      !> Whether a contact lost strength in this step
       logical, intent(out) :: breaks
-      logical :: fails(2)
+      real(wp) :: left(2)
       integer :: j
 
       contacts%face = step%state%face
@@ -131,16 +131,29 @@ contains
       end if
       breaks = .false.
       do j = 1, size(contacts%joint)
-         associate (law => contacts%joint(j)%law)
-            if (.not. (law%cohesion > 0.0_wp .or. law%tension > 0.0_wp)) cycle
-         end associate
-         fails = (contacts%face(j)%open .or. contacts%face(j)%slip /= 0) &
-            & .and. .not. contacts%broken(:, j)
-         if (.not. any(fails)) cycle
+         if (.not. loses_strength(contacts%joint(j)%law)) cycle
+         left = contacts%intact(:, j)
+         if (contacts%face(j)%slip /= 0) left = worn(left, abs(contacts%increment(3, j)), &
+            & contacts%joint(j)%law%slip_length)
+         where (contacts%face(j)%open) left = 0.0_wp
+         if (.not. any(left < contacts%intact(:, j))) cycle
          breaks = .true.
-         contacts%broken(:, j) = contacts%broken(:, j) .or. fails
-         call mohr_coulomb(contacts%joint(j), contacts%broken(:, j), contacts%springs%cone(j), &
+         contacts%intact(:, j) = left
+         call mohr_coulomb(contacts%joint(j), contacts%intact(:, j), contacts%springs%cone(j), &
             & contacts%springs%shift(:, j))
       end do
    end subroutine update_contacts
+
+   !> Share of strength that slip leaves
+   elemental real(wp) function worn(intact, slip, slip_length)
+      !> Share that was left before
+      real(wp), intent(in) :: intact
+      !> The slip [m]
+      real(wp), intent(in) :: slip
+      !> Slip that takes all of it; 0 where any does [m]
+      real(wp), intent(in) :: slip_length
+
+      worn = 0.0_wp
+      if (slip < intact*slip_length) worn = intact - slip/slip_length
+   end function worn
 end module dda_block_update

@@ -136,7 +136,7 @@ contains
       type(base_t) :: base
 
       base%unit_weight = base%material%density*base%gravity
-      base%law = law
+      base%law(:3) = law
       scene%settings%dynamic = dynamic
       scene%settings%current = current
       scene%settings%flow = merge(flow_rule%coulomb, flow_rule%associated, dynamic)
