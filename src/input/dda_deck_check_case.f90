@@ -116,6 +116,10 @@ contains
       else if (is_given(deck, "analysis", "restart") .and. mode /= "dynamic") then
          key = key_index("analysis", "restart")
          problem = "analysis%restart needs mode = 'dynamic': a static run comes to rest by itself"
+      else if (word_of(deck, "analysis", "start") == "static" .and. (mode /= "dynamic" &
+         .or. is_given(deck, "analysis", "restart"))) then
+         key = key_index("analysis", "start")
+         problem = "start = 'static' needs mode = 'dynamic' and a run from its beginning; remove it"
       else if (word_of(deck, "analysis", "flow") == "associated" .and. mode /= "static") then
          key = key_index("analysis", "flow")
          problem = "flow = 'associated' needs mode = 'static', got '"//mode// &

@@ -206,6 +206,9 @@ module dda_deck_keys
       key_t(group="analysis", name="restart", kind=key_kind%text, varies=.false., &
             without="the run begins at the beginning", &
             meaning="Restart file that a dynamic run continues; steps counts those before."), &
+      key_t(group="analysis", name="start", kind=key_kind%word, default="'unloaded'", &
+            words="unloaded static", &
+            meaning="Forces that a dynamic run begins with: none, or those of a static one."), &
       key_t(group="analysis", name="unknowns", kind=key_kind%whole, &
             without="what the scene needs", at_least=3.0_wp, at_most=6.0_wp, &
             meaning="Unknowns of a block: 6, or 3 for blocks without strain.")]

@@ -7,7 +7,8 @@ module dda_boundary
 
    public :: absorbing_point_t, boundary_t, bounded_force_t, held_point_t, history_t
    public :: loaded_point_t, measured_point_t, stage_change_t, stage_times, present_at
-   public :: constant_history, led_displacement, mean_over, rate_at, records_before, value_at
+   public :: constant_history, held_at_start, led_displacement, mean_over, rate_at
+   public :: records_before, value_at
 
    !> A vector given at some times, linear between them, constant before the first and after the
    !> last of them; zero if nothing is given
@@ -130,6 +131,28 @@ contains
       allocate (history%value(2, 1))
       history%value(:, 1) = value
    end function constant_history
+
+   !> What acts and leads at time 0, for good, on a ground at rest
+   pure function held_at_start(boundary) result(held)
+      !> The boundary
+      type(boundary_t), intent(in) :: boundary
+      !> The same without histories
+      type(boundary_t) :: held
+      integer :: i
+
+      held = boundary
+      held%base_acceleration = history_t()
+      if (allocated(held%loaded)) then
+         do i = 1, size(held%loaded)
+            held%loaded(i)%force = constant_history(value_at(boundary%loaded(i)%force, 0.0_wp))
+         end do
+      end if
+      if (.not. allocated(held%held)) return
+      do i = 1, size(held%held)
+         if (allocated(boundary%held(i)%path%time)) held%held(i)%path = &
+            & constant_history(value_at(boundary%held(i)%path, 0.0_wp))
+      end do
+   end function held_at_start
 
    !> Times at which blocks are built or taken away
    pure function stage_times(boundary) result(time)

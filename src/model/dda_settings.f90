@@ -44,6 +44,8 @@ module dda_settings
       real(wp) :: restitution = 0.0_wp
       !> Rate at which velocities decay by damping in proportion to mass [1/s]
       real(wp) :: damping = 0.0_wp
+      !> Whether a dynamic run begins with the forces of a static one
+      logical :: settles = .false.
       !> Time at which a dynamic run ends; 0 to end with its last step [s]
       real(wp) :: duration = 0.0_wp
       !> Time of the histories at which this stage of a run begins [s]

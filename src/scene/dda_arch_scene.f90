@@ -199,6 +199,7 @@ contains
       settings%collapse_point = integer_of(deck, "analysis", "collapse_point")
       settings%restitution = real_of(deck, "analysis", "restitution")
       settings%damping = real_of(deck, "analysis", "damping")
+      settings%settles = word_of(deck, "analysis", "start") == "static"
       settings%max_displacement_ratio = real_of(deck, "analysis", "max_displacement_ratio")
       settings%verdict_flow = merge(flow_rule%associated, flow_rule%coulomb, &
          & word_of(deck, "analysis", "flow") == "associated")

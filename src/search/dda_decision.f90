@@ -7,6 +7,7 @@
 !> shared out.
 module dda_decision
    use dda_block_system, only : block_system_t
+   use dda_boundary, only : held_at_start
    use dda_contact_detection, only : contacts_t
    use dda_coulomb_law, only : coulomb_state_t, face
    use dda_dead_rest, only : fall_at_once, rest_under_dead_loads
@@ -24,8 +25,10 @@ module dda_decision
    private
 
    public :: decision_t, decide, decide_by_steps, follow_coulomb, record_collapse, record_rest
-   public :: share_elastically
+   public :: run_in_time, share_elastically
 
+   !> Steps that the static beginning of a dynamic run may take, at the least
+   integer, parameter :: least_static_steps = 400
    !> A joint slides against friction if its force is more than this share of the largest
    real(wp), parameter :: felt = 1.0e-9_wp
 
@@ -71,7 +74,7 @@ contains
       bare = .false.
       if (present(verdict_only)) bare = verdict_only
       if (settings%dynamic) then
-         call follow_coulomb(settings, system, contacts, decision, album, onward)
+         call run_in_time(settings, system, contacts, decision, album, onward)
       else if (decides_as_graph(settings, contacts)) then
          call decide_by_graph(settings, system, contacts, bare, decision, album)
       else
@@ -311,6 +314,56 @@ contains
       if (present(album)) album = blank_album(album)
       call follow_coulomb(settings, system, contacts, decision, album)
    end subroutine decide_by_steps
+
+   !> Run in time from the beginning, or from where a run has ended. Where it is to begin in balance
+   !> a static run leads there, under what acts at time 0 on a ground at rest; velocities are those
+   !> that the blocks were given
+   pure subroutine run_in_time(settings, system, contacts, decision, album, onward)
+      !> Settings of the run
+      type(settings_t), intent(in) :: settings
+      !> The blocks at the beginning
+      type(block_system_t), intent(in) :: system
+      !> The contacts at the beginning
+      type(contacts_t), intent(in) :: contacts
+      !> The decision; the counts of the run are added to those that it has
+      type(decision_t), intent(inout) :: decision
+      !> Receives pictures
+      type(album_t), intent(inout), optional :: album
+      !> Where the run goes on and where it ended
+      type(march_t), intent(inout), optional :: onward
+      type(settings_t) :: static
+      type(decision_t) :: settled
+      type(march_t) :: rest, march
+      logical :: begins
+
+      begins = settings%settles
+      if (present(onward)) begins = begins .and. onward%steps == 0
+      if (.not. begins) then
+         call follow_coulomb(settings, system, contacts, decision, album, onward)
+         return
+      end if
+      static = settings
+      static%dynamic = .false.
+      static%time_step = 0.0_wp
+      static%duration = 0.0_wp
+      static%collapse_displacement = 0.0_wp
+      static%max_steps = max(least_static_steps, settings%max_steps)
+      static%boundary = held_at_start(settings%boundary)
+      call follow_coulomb(static, system, contacts, settled, onward=rest)
+      if (settled%outcome%verdict /= verdict%stable) then
+         decision = settled
+         if (.not. allocated(decision%outcome%reason)) decision%outcome%reason = &
+            & "the blocks collapse under their loads at time 0"
+         decision%outcome%reason = "start = 'static' found no rest: "//decision%outcome%reason
+         decision%outcome%verdict = verdict%undecided
+         return
+      end if
+      settled%system%velocity = system%velocity
+      decision%outcome = settled%outcome
+      march%held_force = rest%held_force
+      call follow_coulomb(settings, settled%system, settled%contacts, decision, album, march)
+      if (present(onward)) onward = march
+   end subroutine run_in_time
 
    !> Run a structure under Coulomb friction from its beginning
    pure subroutine follow_coulomb(settings, system, contacts, decision, album, onward)

@@ -11,7 +11,7 @@ module dda_stages
    use dda_contact_search, only : forget_pairs
    use dda_coulomb_joints, only : coulomb_joints_t, new_coulomb_joints
    use dda_coulomb_law, only : coulomb_state_t, unloaded_state
-   use dda_decision, only : decide, decision_t, follow_coulomb, record_collapse, record_rest
+   use dda_decision, only : decide, decision_t, record_collapse, record_rest, run_in_time
    use dda_forward, only : outcome_t
    use dda_frames, only : album_t
    use dda_graph_decision, only : decide_graph, decides_as_graph
@@ -130,7 +130,7 @@ contains
       contacts = decision%contacts
       ! counts of a run that goes on are those since its beginning
       decision%outcome = begun
-      call follow_coulomb(stage, system, contacts, decision, album, onward)
+      call run_in_time(stage, system, contacts, decision, album, onward)
    end subroutine move_on
 
    !> Follow the loading path through all stages

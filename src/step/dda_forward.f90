@@ -285,9 +285,8 @@ contains
       type(equations_t), intent(inout) :: equations
 
       march = onward
-      if (march%steps == 0) return
-      call measure_scales(system, settings, equations, march)
-      march%dt = min(march%dt, march%longest)
+      if (march%steps > 0) call measure_scales(system, settings, equations, march)
+      if (march%steps > 0) march%dt = min(march%dt, march%longest)
       if (.not. allocated(march%held_force)) return
       if (size(march%held_force) == size(equations%fixed%force)) &
          & equations%fixed%force = march%held_force

@@ -1,0 +1,94 @@
+"""Dynamic runs that begin in balance."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+from block_scene import block, on_slope, rows_of, run_blocks
+from dda_command import run_dda
+
+TIME = "&analysis mode = 'dynamic', geometry = '{}', time_step = 1e-3, duration = 0.2, steps = 100000, start = '{}' /\n"
+TABLES = "&output energy = .true., reactions = .true. /\n"
+WEIGHT = 5 * 2240 * 9.81
+
+
+def column() -> str:
+    """Five cubes on a base."""
+    blocks = "".join(block([(0.0, k), (1.0, k), (1.0, k + 1.0), (0.0, k + 1.0)]) for k in range(5))
+    return block([(-5.0, -1.0), (5.0, -1.0), (5.0, 0.0), (-5.0, 0.0)], "fixed") + blocks
+
+
+@pytest.mark.parametrize("geometry", ["reference", "current"])
+def test_an_elastic_column_in_balance_does_not_swing(tmp_path: Path, geometry: str) -> None:
+    most = {}
+    for start in ("unloaded", "static"):
+        row = run_blocks(tmp_path, column(), "&material young = 1e7 /\n" + TIME.format(geometry, start) + TABLES)
+        assert row["verdict"] == "completed"
+        most[start] = max(float(line["kinetic"]) for line in rows_of(tmp_path / "out" / "energy.csv"))
+    assert most["static"] < 1e-9 < 100.0 < most["unloaded"]
+    reactions = [float(line["fy"]) for line in rows_of(tmp_path / "out" / "reactions.csv")]
+    assert reactions == pytest.approx([WEIGHT] * len(reactions), rel=1e-6)
+
+
+def test_the_blocks_begin_with_their_velocities(tmp_path: Path) -> None:
+    scene = column().replace("block \n0.0 4", "block velocity 0.3 0 0\n0.0 4")
+    assert "velocity" in scene
+    run_blocks(tmp_path, scene, "&material young = 1e8 /\n" + TIME.format("current", "static") + TABLES)
+    first = rows_of(tmp_path / "out" / "energy.csv")[0]
+    assert float(first["kinetic"]) == pytest.approx(0.5 * 2240 * 0.3**2, rel=0.1)
+
+
+def test_loads_are_those_of_time_0_and_the_ground_is_at_rest(tmp_path: Path) -> None:
+    """A pull on the upmost cube that is there from the beginning; a ground that is jerked at time 0."""
+    scene = column() + "load 1 4.5\n0 2000 0\n0.1 2000 0\n0.11 0 0\n"
+    keys = "&material young = 1e7 /\n" + TIME.format("current", "static") + TABLES
+    run_blocks(tmp_path, scene, keys)
+    rows = [line for line in rows_of(tmp_path / "out" / "reactions.csv") if float(line["time"]) < 0.0995]
+    assert [float(line["fx"]) for line in rows] == pytest.approx([-2000.0] * len(rows), rel=1e-5)
+    late = rows_of(tmp_path / "out" / "reactions.csv")[-1]
+    assert abs(float(late["fx"]) + 2000.0) > 100.0
+    run_blocks(tmp_path, scene + "base_acceleration\n0 0.5 0\n0.1 0 0\n", keys)
+    # the first step moves what is at rest relative to the ground by its jerk alone
+    first = rows_of(tmp_path / "out" / "energy.csv")[0]
+    assert float(first["kinetic"]) < 0.5 * 5 * 2240 * (0.5 * 1e-3) ** 2
+
+
+def test_stages_begin_in_balance_too(tmp_path: Path) -> None:
+    scene = column() + block([(3.0, 0.0), (4.0, 0.0), (4.0, 1.0), (3.0, 1.0)])
+    scene += "remove block 7 at 0.1\nmeasure 0.5 5\n"
+    row = run_blocks(tmp_path, scene, "&material young = 1e7 /\n" + TIME.format("current", "static"))
+    assert row["verdict"] == "completed"
+    heights = [float(line["y"]) for line in rows_of(tmp_path / "out" / "points.csv")]
+    assert heights[0] < 4.98
+    assert heights == pytest.approx([heights[0]] * len(heights), abs=1e-8)
+
+
+def test_what_does_not_stand_is_told(tmp_path: Path) -> None:
+    row = run_blocks(tmp_path, on_slope(40.0), "&joint friction_deg = 30 /\n" + TIME.format("current", "static"))
+    assert row["verdict"] == "undecided"
+    log = (tmp_path / "out" / "log.txt").read_text()
+    assert "start = 'static' found no rest: the blocks collapse under their loads at time 0" in log
+
+
+def test_a_search_in_time_begins_in_balance(tmp_path: Path) -> None:
+    """A block 0.25 wide on a base that is jerked: it rocks over for pulses beyond b/h."""
+    scene = block([(-5.0, -1.0), (5.0, -1.0), (5.0, 0.0), (-5.0, 0.0)], "fixed") + block(
+        [(0.0, 0.0), (0.25, 0.0), (0.25, 1.0), (0.0, 1.0)]
+    )
+    keys = (
+        "&joint friction_deg = 80 /\n&ground pulse = 'rectangular', duration = 5.0 /\n"
+        "&analysis mode = 'dynamic', geometry = 'current', time_step = 5e-3, duration = 4.0, steps = 100000, "
+        "start = 'static' /\n&search parameter = 'amplitude', low = 1.0, high = 5.0, tolerance = 1e-2 /\n"
+    )
+    row = run_blocks(tmp_path, scene, keys)
+    assert row["verdict"] == "found"
+    assert float(row["critical"]) == pytest.approx(9.81 * 0.25, rel=0.03)
+
+
+@pytest.mark.parametrize("keys", ["mode = 'static'", "mode = 'limerick'", "mode = 'dynamic', restart = 'x.restart'"])
+def test_only_dynamic_runs_from_their_beginning_have_a_start(tmp_path: Path, keys: str) -> None:
+    (tmp_path / "deck.nml").write_text(f"&analysis {keys}, start = 'static' /\n")
+    done = run_dda("check", "deck.nml", cwd=tmp_path)
+    assert done.returncode == 2
+    assert "deck.nml:1: error: start = 'static' needs mode = 'dynamic'" in done.stderr
