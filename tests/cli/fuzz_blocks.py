@@ -36,7 +36,7 @@ block material 2 velocity 0.1 0 0 stress -1e4 0 0
    1  2
    0  2
 material 2 density 2500 young 1e10 poisson 0.25
-joint 1 2 friction_deg 35 cohesion 1e3 tension 0
+joint 1 2 friction_deg 35 cohesion 1e3 tension 0 residual_deg 20 slip_length 0.01
 measure 1 2
 load 0.5 1.5
   0 0 0

@@ -105,8 +105,8 @@ def test_another_geometry_is_refused(tmp_path: Path) -> None:
     assert "another geometry" in done.stderr
 
 
-#: Numbers of 2 blocks with 8 corners and one joint of two contacts: 9 counts and 12 of the joint;
-#: 16 of the corners, 12 of motions, 12 of velocities, 6 of stresses, 2 reaches, 12 of the march, 22
+#: Numbers of 2 blocks with 8 corners and one joint of two contacts: 9 counts and 10 of the joint;
+#: 16 of the corners, 12 of motions, 12 of velocities, 6 of stresses, 2 reaches, 12 of the march, 24
 #: of the joint
 MADE_UP = {
     "another number of joints": (lambda whole, number: whole.__setitem__(5, 2), "counts"),
@@ -121,7 +121,8 @@ MADE_UP = {
     "edge of its own block": (lambda whole, number: whole.__setitem__(14, whole[12]), "joints"),
     "neither open nor closed": (lambda whole, number: whole.__setitem__(16, 2), "joints"),
     "slides sideways": (lambda whole, number: whole.__setitem__(18, 7), "joints"),
-    "half broken": (lambda whole, number: whole.__setitem__(19, -1), "joints"),
+    "weaker than nothing": (lambda whole, number: number.__setitem__(82, -1e-3), "joints"),
+    "stronger than whole": (lambda whole, number: number.__setitem__(83, 1.5), "joints"),
     "other corners": (lambda whole, number: number.__setitem__(3, 0.5), "other blocks"),
     "a fixed block that moves": (lambda whole, number: number.__setitem__(16, 1.0), "fixed blocks"),
     "no number": (lambda whole, number: number.__setitem__(22, float("nan")), "none"),
@@ -165,7 +166,7 @@ def test_numbers_that_are_not_changed_are_taken(tmp_path: Path) -> None:
     assert (tmp_path / "first" / "case_1.restart").read_bytes() == before
     assert go_on(tmp_path).returncode == 0
     whole, number = numbers_of(before)
-    assert (whole[:9], len(whole), len(number)) == ([2, 8, 6, 1, 1, 1, 0, 5, whole[8]], 21, 82)
+    assert (whole[:9], len(whole), len(number)) == ([2, 8, 6, 1, 1, 1, 0, 5, whole[8]], 19, 84)
 
 
 def test_a_case_of_many_that_cannot_go_on_says_why(tmp_path: Path) -> None:
