@@ -153,6 +153,7 @@ contains
          plan%stress = from%stress(:, :n)
          plan%materials = from%materials
          plan%laws = from%laws(:growing%n_law)
+         plan%water = from%water
       end associate
    end subroutine close_plan
 
