@@ -76,8 +76,7 @@ class Kind:
             "-" if self.worst is None else f"{self.worst:.0e}",
             f"{undecided} ({100.0 * undecided / total:.1f} %)" if undecided else "0",
             str(self.count[WRONG]),
-            f"{1e3 * self.median:.3g}",
-            f"{1e3 * self.longest:.3g}",
+            *(f"{1e3 * time:.3g}" if time < 1.0 else f"{1e3 * time:.0f}" for time in (self.median, self.longest)),
         ]
 
 

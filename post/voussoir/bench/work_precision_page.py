@@ -188,7 +188,7 @@ def _draw_panel(axes: Axes, panel: Panel, span: tuple[float, float]) -> list[Lin
     axes.minorticks_off()
     if decades == 16:
         axes.axhspan(bottom, ALL_DIGITS, color="#eeeeee", zorder=0)
-        _note(axes, "rounding", ALL_DIGITS, -11)
+        _note(axes, "rounding", ALL_DIGITS, -11, right=True)
     if panel.gap:
         axes.axhline(panel.gap, color=_QUIET, linewidth=0.9, linestyle=(0, (1, 2)))
         _note(axes, f"the associated limit is {_share(panel.gap)} above\nwhat stands under Coulomb friction",
@@ -208,8 +208,9 @@ def _tick(error: float) -> str:
     return f"{100.0 * error:g} %" if power >= -4 else f"$10^{{{power}}}$"
 
 
-def _note(axes: Axes, text: str, error: float, below: float) -> None:
-    """Words at the left end of the axes, so many points below an error."""
+def _note(axes: Axes, text: str, error: float, below: float, right: bool = False) -> None:
+    """Words at the left or right end of the axes, so many points below an error."""
     box = {"facecolor": "white", "edgecolor": "none", "pad": 0.5, "alpha": 0.85} if "\n" in text else None
-    axes.annotate(text, (0.02, error), xycoords=("axes fraction", "data"), xytext=(0, below), bbox=box,
+    place, side = (0.98, "right") if right else (0.02, "left")
+    axes.annotate(text, (place, error), xycoords=("axes fraction", "data"), xytext=(0, below), bbox=box, ha=side,
                   textcoords="offset points", fontsize=8.5, color=_QUIET, linespacing=1.1, zorder=4)
