@@ -127,3 +127,40 @@ def test_water_that_rises_in_time_brings_the_wall_down_at_its_level(tmp_path: Pa
     assert row["verdict"] == "stable"
     row = run_blocks(tmp_path, scene.replace("10 10\n", f"10 {level + 1e-4}\n"), deck)
     assert row["verdict"] == "collapsed"
+
+
+def layers(columns: int, courses: int, shift: float) -> tuple[str, float]:
+    """Slabs on a plane of 25 degrees, cut across, under a line of heads along the plane; their length."""
+    sine, cosine = math.sin(math.radians(25.0)), math.cos(math.radians(25.0))
+
+    def at(along: float, above: float) -> tuple[float, float]:
+        return along * cosine + above * sine, -along * sine + above * cosine
+
+    total = 4.0 * columns
+    text = block([at(-5.0, -5.0), at(total + 5.0, -5.0), at(total + 5.0, 0.0), at(-5.0, 0.0)], "fixed")
+    for course in range(courses):
+        moved = shift * (course % 2)
+        cuts = sorted({0.0, total, *(4.0 * (k + moved) for k in range(columns))})
+        for left, right in zip(cuts, cuts[1:]):
+            text += block([at(left, course), at(right, course), at(right, course + 1.0), at(left, course + 1.0)])
+    ends = (*at(-10.0, 0.0), *at(total + 10.0, 0.0))
+    return text + "water " + " ".join(map(repr, ends)) + "\n", total
+
+
+@pytest.mark.parametrize(("columns", "shift"), [(20, 0.0), (20, 0.5), (200, 0.0)])
+def test_water_rises_in_a_slope_until_it_slides_on_its_plane(tmp_path: Path, columns: int, shift: float) -> None:
+    """Heads r above the plane press it by gw r, both ends and the joints by what stands above: all slides at once."""
+    courses, friction, weight, water = 5, math.tan(math.radians(35.0)), 25000.0, 9810.0
+    scene, length = layers(columns, courses, shift)
+    sine, cosine = math.sin(math.radians(25.0)), math.cos(math.radians(25.0))
+    # the pressure gw (r - y/cos) grows towards the plane; ends balance but for their heights: alike at both of them
+    row = run_blocks(
+        tmp_path,
+        scene,
+        f"&material unit_weight = {weight} /\n&joint friction_deg = 35 /\n"
+        "&search parameter = 'water_rise', low = -1, high = 10, tolerance = 1e-8 /\n",
+    )
+    assert row["verdict"] == "found"
+    down = weight * courses * length * sine
+    needed = weight * courses * length * cosine - down / friction
+    assert float(row["critical"]) == pytest.approx(needed / (water * length), rel=1e-8)
