@@ -311,6 +311,21 @@ def test_loads_held_points_materials_and_numbers_are_drawn_where_they_are(tmp_pa
     assert len(tints) == 2
 
 
+def test_water_is_drawn_at_the_end_of_its_rise(tmp_path: Path) -> None:
+    (tmp_path / "two.blocks").write_text(
+        LOADED + "water -30 0.25 0 0.25 90 0 factor 0\n0 0\n1 0.5\nabsorb -1 -1 2 -1 x\n"
+    )
+    head = "&scene kind = 'blocks', geometry = 'two.blocks' /\n"
+    with house_style():
+        figure = draw_case(compute(tmp_path, head + "&load water_rise = 0.125 /\n"), 1)
+        (heads,) = [line for line in figure.axes[0].lines if line.get_linestyle() == "-."]
+        assert heads.get_xydata().tolist() == [[-30, 0.875], [0, 0.875], [90, 0.625]]
+        assert figure.axes[0].get_xlim()[1] < 20  # what is beside the blocks is not shown
+        assert "line of heads" in legend_of(figure) and "face that lets waves out" in legend_of(figure)
+        swept = compute(tmp_path, head + "&sweep parameter = 'water_rise', values = 0, 0.1 /\n")
+        assert "not drawn: the rise of the water, which varies" in legend_of(draw_case(swept, 2))
+
+
 def test_live_loads_of_an_arch_are_drawn_unless_they_are_swept(tmp_path: Path) -> None:
     deck = "&arch radius = 5 /\n&live x = 0.3, y = 4.7, fy = -1000 /\n"
     with house_style():

@@ -70,7 +70,26 @@ def draw_held(axes: Axes, source: Source) -> list[Artist]:
         axes.plot(*zip(*ends), color=INK[2], linewidth=1.8, marker="o", markersize=3, zorder=7)
     if source.bars:
         entries.append(entry("bar", linestyle="-", color=INK[2], marker="o", markersize=3))
+    entries += draw_water(axes, source)
     entries += [entry(f"not drawn: {what}") for what in source.missing]
+    return entries
+
+
+def draw_water(axes: Axes, source: Source) -> list[Artist]:
+    """Draw lines of heads, and faces that let waves out; gives the entries of the legend."""
+    limits = axes.axis()
+    styles = (
+        (source.water, "line of heads", {"color": "#1f77b4", "linewidth": 1.6, "linestyle": "-."}),
+        (source.absorbing, "face that lets waves out", {"color": INK[0], "linewidth": 2.2, "linestyle": ":"}),
+    )
+    entries = []
+    for lines, words, style in styles:
+        for points in lines:
+            axes.plot(*zip(*points), zorder=6, **style)
+        if lines:
+            entries.append(entry(words, **style))
+    # a line of heads may run far beyond the blocks
+    axes.axis(limits)
     return entries
 
 

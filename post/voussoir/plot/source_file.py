@@ -24,6 +24,10 @@ class Source:
         Points and lines that are held: both ends [m], and "x", "y" or "" for both directions.
     bars : list of (point, point)
         Ends of bolts, anchors and ties [m].
+    water : list of list of point
+        Lines of heads at the end of their histories [m].
+    absorbing : list of (point, point)
+        Lines of faces that let waves out [m].
     missing : list of str
         What is not known, for its file is not there or not read.
     """
@@ -32,6 +36,8 @@ class Source:
     loads: list[tuple[Point, Point, bool]] = field(default_factory=list)
     held: list[tuple[Point, Point, str]] = field(default_factory=list)
     bars: list[tuple[Point, Point]] = field(default_factory=list)
+    water: list[list[Point]] = field(default_factory=list)
+    absorbing: list[tuple[Point, Point]] = field(default_factory=list)
     missing: list[str] = field(default_factory=list)
 
 
@@ -57,10 +63,23 @@ def source_of(run: Results) -> Source:
     text = file.read_text(encoding="utf-8", errors="replace")
     if run.kind == "blocks":
         _read(text, source)
+        _raise_water(run, source)
     else:  # of a plain file of lines, rows of seven numbers are bolts
         rows = [_numbers(line.split()) for line in text.splitlines()]
         source.bars += [((row[0], row[1]), (row[2], row[3])) for row in rows if len(row) == 7]
     return source
+
+
+def _raise_water(run: Results, source: Source) -> None:
+    """Raise all lines of heads by what the deck says; where that is searched or swept they are as the file has them."""
+    if not source.water:
+        return
+    names = {name.rpartition("%")[2] for name in (*run.swept, run.setting("search%parameter") or "")}
+    if "water_rise" in names:
+        source.missing.append("the rise of the water, which varies")
+        return
+    rise = float(run.setting("load%water_rise") or 0.0)
+    source.water = [[(x, y + rise) for x, y in line] for line in source.water]
 
 
 def _lists(run: Results, source: Source, group: str, *keys: str) -> list[list[float]]:
@@ -114,3 +133,8 @@ def _take(entry: list[str], last: list[float], source: Source) -> None:
         source.held.append(((values[0], values[1]), (ends[0], ends[1]), along))
     elif name == "bar" and len(values) >= 4:
         source.bars.append(((values[0], values[1]), (values[2], values[3])))
+    elif name == "absorb" and len(values) >= 4:
+        source.absorbing.append(((values[0], values[1]), (values[2], values[3])))
+    elif name == "water":
+        rise = last[1] if len(last) > 1 else 0.0
+        source.water.append([(x, y + rise) for x, y in zip(values[::2], values[1::2])])
