@@ -1,0 +1,158 @@
+"""`voussoir view`: blocks in a window that turns, steps through the pictures and tells of the block that is picked."""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from pathlib import Path
+from types import ModuleType
+from typing import Any
+
+import numpy as np
+
+from voussoir import results
+from voussoir.extras import MissingPackage, load
+from voussoir.results import Frame, Results
+
+#: Depth that the blocks are drawn with, over the size of the scene
+DEPTH = 0.08
+#: Colours of blocks that can move, of supports, and of the block that is picked
+STONE, SUPPORT, PICKED = "#e4dccb", "#9a9a9a", "#d1632a"
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Add the options of the subcommand."""
+    parser.description = (
+        "Open a window (pyvista) with the blocks of one case: it turns with the mouse, the slider goes through the "
+        "frames or the collapse as it grows, and the right button picks a block and tells its number and its way."
+    )
+    parser.add_argument("folder", metavar="DIR", type=Path, help="folder of the results")
+    parser.add_argument("--case", metavar="N", type=int, default=1, help="the case that is shown")
+    parser.add_argument("--out", metavar="FILE", type=Path, help="write the last picture as a .png instead")
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Show.
+
+    Exit status: 0, 2 for results that cannot be shown or a missing package, 4 for a file that cannot be written.
+    """
+    try:
+        read = results.read(arguments.folder)
+        read.case(arguments.case)
+        pictures = pictures_of_case(read, arguments.case)
+        window = load("pyvista", "a window that turns")
+    except results.DamagedTable as error:
+        sys.stderr.write(f"{error}\n")
+        return 2
+    except (MissingPackage, FileNotFoundError, KeyError, ValueError) as error:
+        words = error.args[0] if isinstance(error, KeyError) else error
+        sys.stderr.write(f"{arguments.folder}:1: error: {words}\n")
+        return 2
+    try:
+        show(window, read, arguments.case, pictures, arguments.out)
+    except OSError as error:
+        sys.stderr.write(f"{arguments.out}:1: error: the file cannot be written: {error}; choose another --out\n")
+        return 4
+    return 0
+
+
+def pictures_of_case(read: Results, number: int) -> list[Frame]:
+    """What is shown: the pictures of the motion, or the blocks as they stand."""
+    from voussoir.plot.collapse_picture import pictures_of
+
+    told = read.blocks_of(number)
+    return pictures_of(read, number) or [Frame(0, 0, 0.0, [block.corners for block in told], results.Table({}))]
+
+
+def block_at(shapes: list[np.ndarray], point: np.ndarray) -> int:
+    """The number of the block that a point of the plane lies in, or else is nearest to."""
+
+    def distance(corners: np.ndarray) -> float:
+        start, end = corners, np.roll(corners, -1, axis=0)
+        edge, way = end - start, point - start
+        share = np.clip((way * edge).sum(axis=1) / (edge**2).sum(axis=1), 0.0, 1.0)
+        crossing = (start[:, 1] > point[1]) != (end[:, 1] > point[1])
+        with np.errstate(divide="ignore", invalid="ignore"):
+            left = point[0] < start[:, 0] + (point[1] - start[:, 1]) * edge[:, 0] / edge[:, 1]
+        if np.count_nonzero(crossing & left) % 2:
+            return -1.0
+        return float(np.hypot(*(way - share[:, None] * edge).T).min())
+
+    return 1 + int(np.argmin([distance(corners) for corners in shapes]))
+
+
+def words_of(read: Results, number: int, pictures: list[Frame], frame: Frame, block: int) -> str:
+    """What is told of a block that was picked."""
+    told = read.blocks_of(number)[block - 1]
+    way = frame.blocks[block - 1] - pictures[0].blocks[block - 1]
+    if told.state == "fixed":
+        return f"block {block}: does not move"
+    return f"block {block}: a corner is {np.hypot(*way.T).max():.4g} m from where it was"
+
+
+def show(window: ModuleType, read: Results, number: int, pictures: list[Frame], file: Path | None) -> None:
+    """Open the window, or write its last picture.
+
+    Parameters
+    ----------
+    window : module
+        pyvista.
+    file : Path or None
+        Where the picture goes instead.
+    """
+    from voussoir.plot.case_title import title_of
+
+    told = read.blocks_of(number)
+    depth = DEPTH * float(np.ptp(np.vstack(pictures[0].blocks), axis=0).max())
+    plotter: Any = window.Plotter(off_screen=file is not None, window_size=(1200, 800))
+    shown = {"frame": pictures[-1], "block": 0}
+
+    def draw() -> None:
+        frame: Frame = shown["frame"]
+        parts: dict[str, list[Any]] = {}
+        for block, corners in zip(told, frame.blocks):
+            colour = PICKED if block.number == shown["block"] else SUPPORT if block.state == "fixed" else STONE
+            parts.setdefault(colour, []).append(prism(window, corners, depth))
+        for colour in (STONE, SUPPORT, PICKED):
+            plotter.remove_actor(colour, render=False)
+            plotter.remove_actor(colour + "edges", render=False)
+            if colour in parts:
+                solids = window.merge([solid for solid, _ in parts[colour]])
+                plotter.add_mesh(solids, color=colour, name=colour, reset_camera=False)
+                edges = window.merge([edge for _, edge in parts[colour]])
+                plotter.add_mesh(edges, color="black", name=colour + "edges", pickable=False, reset_camera=False)
+
+    def go(value: float) -> None:
+        shown["frame"] = pictures[round(value)]
+        draw()
+
+    def pick(point: np.ndarray) -> None:
+        shown["block"] = block_at(shown["frame"].blocks, np.asarray(point)[:2])
+        draw()
+        plotter.add_text(words_of(read, number, pictures, shown["frame"], shown["block"]), position="lower_left", font_size=12,
+                         name="picked")
+
+    draw()
+    plotter.add_text(title_of(read.case(number), read), position="upper_left", font_size=12, name="title")
+    plotter.view_xy()
+    if file is not None:
+        file.parent.mkdir(parents=True, exist_ok=True)
+        plotter.screenshot(str(file))
+        plotter.close()
+        print(file)
+        return
+    plotter.enable_surface_point_picking(callback=pick, show_message=False, show_point=False)
+    if len(pictures) > 1:
+        plotter.add_slider_widget(go, (0, len(pictures) - 1), len(pictures) - 1, title="picture", fmt="%.0f")
+    plotter.show()
+
+
+def prism(window: ModuleType, corners: np.ndarray, depth: float) -> tuple[Any, Any]:
+    """A block with a depth, and the edges of its two faces."""
+    count = len(corners)
+    points = np.column_stack([corners, np.zeros(count)])
+    face = window.PolyData(points, faces=[count, *range(count)])
+    ring = [count + 1, *range(count), 0]
+    behind = [count + 1, *(count + place for place in ring[1:])]
+    edges = window.PolyData(np.vstack([points, points + [0, 0, depth]]), lines=[*ring, *behind])
+    return face.triangulate().extrude((0.0, 0.0, depth), capping=True), edges
