@@ -129,8 +129,8 @@ def show(window: ModuleType, read: Results, number: int, pictures: list[Frame], 
     def pick(point: np.ndarray) -> None:
         shown["block"] = block_at(shown["frame"].blocks, np.asarray(point)[:2])
         draw()
-        plotter.add_text(words_of(read, number, pictures, shown["frame"], shown["block"]), position="lower_left", font_size=12,
-                         name="picked")
+        words = words_of(read, number, pictures, shown["frame"], shown["block"])
+        plotter.add_text(words, position="lower_left", font_size=12, name="picked")
 
     draw()
     plotter.add_text(title_of(read.case(number), read), position="upper_left", font_size=12, name="title")
