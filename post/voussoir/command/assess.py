@@ -123,7 +123,7 @@ def thickness_safety(text: str, own: dict[str, Any]) -> tuple[float, str]:
         if match is None:
             continue
         value = float(match[1].lower().replace("d", "e"))
-        ends = f"low = {value * THINNEST!r}, high = {value!r}"
+        ends = f"low = {float(value * THINNEST)!r}, high = {float(value)!r}"
         try:
             row = run_deck(dead + f"\n&search parameter = '{name}', {ends} /\n").case(1)
         except DdaError as error:
@@ -215,7 +215,7 @@ def _at_position(text: str, place: float, deck: Path) -> str:
         return text
     if math.isnan(place):
         raise ValueError(f"{deck}:1: error: expected a worst position, got none; give vehicle%position")
-    return _TRUE.sub(f"position = {place!r}", text)
+    return _TRUE.sub(f"position = {float(place)!r}", text)
 
 
 def _positions(text: str, x: np.ndarray, steps: list[float]) -> Table | None:
@@ -224,7 +224,7 @@ def _positions(text: str, x: np.ndarray, steps: list[float]) -> Table | None:
     # axles that only the ground carries are refused: the ends are drawn in until all stand on the arch
     for inset in (0.02, 0.05, 0.1):
         reach = inset * (float(x.max()) - float(x.min()))
-        sweep = f"first = {low + reach!r}, last = {high - reach!r}, count = {POSITIONS}"
+        sweep = f"first = {float(low + reach)!r}, last = {float(high - reach)!r}, count = {POSITIONS}"
         try:
             return run_deck(
                 f"{text}\n&search parameter = 'load_factor' /\n&sweep parameter = 'position', {sweep} /\n"

@@ -169,7 +169,7 @@ class Blocks(Deck):
             for piece, number in zip(shape.pieces, own.of(shape)):
                 lines.append("block fixed" if shape.fixed else "block")
                 lines[-1] += f" material {number}" if number != 1 else ""
-                lines += [f"  {x!r} {y!r}" for x, y in piece]
+                lines += [f"  {float(x)!r} {float(y)!r}" for x, y in piece]
         numbers = {shape.material for shape in self.shapes} | set(self._materials) | set(own.origin)
         for number in sorted(numbers - {1}):
             words = self._materials.get(own.origin.get(number, number), "")

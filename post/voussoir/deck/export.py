@@ -72,7 +72,7 @@ def write_geojson(outlines: list[Outline], file: Path) -> str:
 def write_wkt(outlines: list[Outline], file: Path) -> str:
     """A polygon a line, its layer and a semicolon before it."""
     lines = [
-        f"{outline.layer}; POLYGON ((" + ", ".join(f"{x!r} {y!r}" for x, y in _ring(outline)) + "))"
+        f"{outline.layer}; POLYGON ((" + ", ".join(f"{float(x)!r} {float(y)!r}" for x, y in _ring(outline)) + "))"
         for outline in outlines
     ]
     file.write_text("\n".join(lines) + "\n", encoding="utf-8")
