@@ -131,7 +131,12 @@ contains
       call carry(arc(k), 2.0_wp*weights(middle) - 0.5_wp*(weights(from) + weights(to)), &
          & least%factor, chase, carried)
       if (carried .or. (to - from)*(arc(k)%to - arc(k)%from) <= chase%near) return
-      call pass(arc, k, middle, chase, least)
+      if (to - from < 1.0_wp) then
+         call pass(arc, k, middle, chase, least)
+      else
+         ! so near to the least its own least is looked for
+         call descend(arc, k, middle, chase, least)
+      end if
       call pass_between(arc, k, from, middle, chase, least)
       call pass_between(arc, k, middle, to, chase, least)
    end subroutine pass_between
@@ -157,8 +162,8 @@ contains
       carried = state == load_state%stands
    end subroutine carry
 
-   !> The factor of a load of an arc; if it is smaller than the least so far go on to the load that
-   !> has most power on the mechanism, and so on
+   !> The factor of a load of an arc; then that of the load with most power on its mechanism, if the
+   !> mechanism lets that load be carried at less than the least so far, and so on
    pure subroutine descend(arc, k, share, chase, least)
       !> The live loads: (n)
       type(load_arc_t), intent(in) :: arc(:)
@@ -182,10 +187,11 @@ contains
          if (.not. maxval(abs(live)) > 0.0_wp) return
          call find_limit(chase%graph, chase%dead, live, gap, limit, chase%stands)
          if (limit%state /= limit_state%found) return
-         if (.not. 0.5_wp*(limit%lower + limit%upper) < least%factor) return
-         least%factor = 0.5_wp*(limit%lower + limit%upper)
-         least%place = arc(i)%from + at*(arc(i)%to - arc(i)%from)
-         power = sum(live*limit%velocity(1:3, :))
+         if (0.5_wp*(limit%lower + limit%upper) < least%factor) then
+            least%factor = 0.5_wp*(limit%lower + limit%upper)
+            least%place = arc(i)%from + at*(arc(i)%to - arc(i)%from)
+         end if
+         power = sum(live*limit%velocity(1:3, :))*limit%upper/least%factor
          call find_most_power(arc, limit%velocity, (1.0_wp + 2.0_wp*gap)*power, i, at)
          if (i == 0) return
       end do
