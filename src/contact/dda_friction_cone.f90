@@ -14,7 +14,7 @@ module dda_friction_cone
    private
 
    public :: joint_face_t, cone_t, project, apply_face, is_stuck
-   public :: contact_state, contact_state_enum
+   public :: contact_state, contact_state_enum, shear_bound
 
    !> Face of the cone on which the force of a joint lies
    type :: joint_face_t
@@ -114,6 +114,21 @@ contains
       end if
       force(3) = real(face%slip, wp)*(abs(trial(3)) - multiplier)
    end subroutine return_to_limit
+
+   !> Largest shear force that a joint carries; one that cannot slide can part
+   pure real(wp) function shear_bound(cone, normal)
+      !> Bounds of the force
+      type(cone_t), intent(in) :: cone
+      !> Normal forces beyond the tension that the contacts carry: (3), the third not used [N/m]
+      real(wp), intent(in) :: normal(3)
+
+      shear_bound = cone%limit
+      if (cone%limit < huge(1.0_wp)) then
+         shear_bound = cone%limit + cone%friction*(normal(1) + normal(2))
+      else if (.not. (normal(1) > 0.0_wp .or. normal(2) > 0.0_wp)) then
+         shear_bound = 0.0_wp
+      end if
+   end function shear_bound
 
    !> Whether a face is the inside of the cone
    elemental logical function is_stuck(face)

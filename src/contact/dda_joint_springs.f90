@@ -12,7 +12,7 @@ module dda_joint_springs
    implicit none
    private
 
-   public :: joint_springs_t, new_joint_springs, mohr_coulomb
+   public :: joint_springs_t, new_joint_springs, mohr_coulomb, unbounded
 
    !> Springs of all joints, as the solver wants them
    type :: joint_springs_t
@@ -27,10 +27,17 @@ module dda_joint_springs
       type(cone_t), allocatable :: cone(:)
       !> Tension that the contacts carry, by which the cone is moved, and a zero: (3, n_joint) [N/m]
       real(wp), allocatable :: shift(:, :)
+      !> How much openings and slip follow their forces, where they do: (3, n_joint) [m/(N/m)]
+      real(wp), allocatable :: soft(:, :)
+      !> Forces that they follow none of, where they do: (3, n_joint) [N/m]
+      real(wp), allocatable :: rest(:, :)
       !> Whether the springs give for good: joints that were found may be more than the blocks can
       !> follow, and forces without give would then not be unique
       logical :: give = .false.
    end type joint_springs_t
+
+   !> A tension, or a force, that nothing bounds [N/m]
+   real(wp), parameter :: unbounded = sqrt(huge(1.0_wp))
 
    !> A block counts as no smaller across a joint than this share of the root of its area
    real(wp), parameter :: least_size = 0.1_wp

@@ -11,32 +11,34 @@
 !> 1992). It begins with the forces of the step before.
 module dda_contact_interior
    use dda_assembly, only : equations_t
-   use dda_block_factor, only : substitute
    use dda_contact_view, only : contact_view_t
-   use dda_interior_problem, only : answer, compliance, factor_springs, interior_t, move_joints
-   use dda_interior_problem, only : pose, problem_t, push_blocks, see_bounds, see_openings
+   use dda_face_passes, only : settle_faces
+   use dda_interior_problem, only : factor_springs, interior_t, pose, problem_t, respond
+   use dda_interior_problem, only : see_bounds, see_lack, see_openings
    use dda_joint_springs, only : joint_springs_t
    use dda_kinds, only : wp
    implicit none
    private
 
-   public :: solve_interior
+   public :: keep_to_faces, solve_interior
 
    !> What slack and flow begin with at the least, over the size of a force
-   real(wp), parameter :: lift(2) = [1.0e-4_wp, 1.0e-1_wp]
+   real(wp), parameter :: lift = 1.0e-4_wp, highest = 1.0e-1_wp
    !> Forces across gaps, and by openings, that are left, over the size of a force
    real(wp), parameter :: tolerance = 3.0e-7_wp
    !> A step shorter than this share of the whole is stuck at a bound
    real(wp), parameter :: stuck = 0.2_wp
    !> Most iterations
-   integer, parameter :: max_iterations = 24
+   integer, parameter :: max_iterations = 40
    !> Iterations without progress that end the search
    integer, parameter :: patience = 12
 
 contains
 
-   !> Forces of some joints, from those of the step before
-   pure subroutine solve_interior(equations, springs, view, joint, force, motion, passes)
+   !> Forces of some joints if these keep nearly to the faces that they had: of all forces that stop
+   !> the blocks those nearest to the ones before
+   pure subroutine keep_to_faces(equations, springs, view, joint, before, moved, force, passes, &
+      & agreed)
       !> Blocks assembled
       type(equations_t), intent(in) :: equations
       !> The springs of the joints
@@ -45,25 +47,82 @@ contains
       type(contact_view_t), intent(in) :: view
       !> Numbers of the joints: (n)
       integer, intent(in) :: joint(:)
-      !> Forces of all joints: (3, n_joint) [N/m]
+      !> Forces of all joints in the step before: (3, n_joint) [N/m]
+      real(wp), intent(in) :: before(:, :)
+      !> Motion of all blocks by these: (n_dof, n_equation) [m]
+      real(wp), intent(in) :: moved(:, :)
+      !> Forces of all joints; those of these joints are set if they agree: (3, n_joint) [N/m]
       real(wp), intent(inout) :: force(:, :)
-      !> Motion of all blocks: (n_dof, n_equation) [m]
+      !> Factorisations so far
+      integer, intent(inout) :: passes
+      !> Whether forces and faces agree
+      logical, intent(out) :: agreed
+      type(problem_t) :: p
+      type(interior_t) :: x
+
+      call pose(equations, springs, view, joint, before, moved, p)
+      call begin(springs, view, before, moved, lift, p, x)
+      call settle_faces(equations, springs, view, p, x, passes, agreed)
+      if (agreed) call take_forces(equations, springs, view, x, p, force)
+   end subroutine keep_to_faces
+
+   !> Forces of some joints, wherever the search for them begins
+   pure subroutine solve_interior(equations, springs, view, joint, before, force, motion, passes, &
+      & agreed)
+      !> Blocks assembled
+      type(equations_t), intent(in) :: equations
+      !> The springs of the joints
+      type(joint_springs_t), intent(in) :: springs
+      !> What the joints see
+      type(contact_view_t), intent(in) :: view
+      !> Numbers of the joints: (n)
+      integer, intent(in) :: joint(:)
+      !> Forces of all joints in the step before: (3, n_joint) [N/m]
+      real(wp), intent(in) :: before(:, :)
+      !> Forces of all joints to begin with, and those found: (3, n_joint) [N/m]
+      real(wp), intent(inout) :: force(:, :)
+      !> Motion of all blocks by these: (n_dof, n_equation) [m]
       real(wp), intent(in) :: motion(:, :)
       !> Factorisations so far
       integer, intent(inout) :: passes
+      !> Whether forces and faces agree
+      logical, intent(out) :: agreed
       type(problem_t) :: p
-      type(interior_t) :: x, best
-      real(wp) :: length, mean, merit, least
+      type(interior_t) :: on_faces, x
+
+      call pose(equations, springs, view, joint, before, motion, p)
+      call begin(springs, view, force, motion, lift, p, x)
+      call iterate(equations, springs, view, p, x, passes)
+      on_faces = x
+      call settle_faces(equations, springs, view, p, on_faces, passes, agreed)
+      if (agreed) x = on_faces
+      call take_forces(equations, springs, view, x, p, force)
+   end subroutine solve_interior
+
+   !> Iterate from slack and flow, as near to the law of contact as that comes
+   pure subroutine iterate(equations, springs, view, p, x, passes)
+      !> Blocks assembled
+      type(equations_t), intent(in) :: equations
+      !> The springs of the joints
+      type(joint_springs_t), intent(in) :: springs
+      !> What the joints see
+      type(contact_view_t), intent(in) :: view
+      !> The problem
+      type(problem_t), intent(inout) :: p
+      !> The iterate to begin with, and the best one
+      type(interior_t), intent(inout) :: x
+      !> Factorisations so far
+      integer, intent(inout) :: passes
+      type(interior_t) :: best
+      real(wp) :: least, length, mean, merit
       integer :: i, waited
       logical :: near
 
-      call pose(equations, springs, view, joint, force, motion, p)
-      call begin(springs, view, motion, lift(1), p, x)
       best = x
       least = huge(least)
+      length = 1.0_wp
       waited = 0
       near = .true.
-      length = 1.0_wp
       do i = 1, max_iterations
          call find_rest(equations, springs, view, p, x, mean, merit)
          waited = waited + 1
@@ -76,16 +135,31 @@ contains
          if (length < stuck .and. near) then
             ! too near to a corner of the bounds: begin farther away
             near = .false.
-            call begin(springs, view, motion, lift(2), p, x)
+            waited = 0
+            least = huge(least)
+            call begin_afar(p, x)
             call find_rest(equations, springs, view, p, x, mean, merit)
          end if
-         call factor_springs(equations, springs, p, x)
+         p%yield = x%flow/x%slack
+         call factor_springs(equations, springs, p)
          passes = passes + 1
          if (.not. p%factor%usable) exit
          call improve(springs, mean, merit, p, x, length)
       end do
-      call keep_forces(springs, p, best, force)
-   end subroutine solve_interior
+      x = best
+   end subroutine iterate
+
+   !> Slack and flow in the middle, whatever the forces are
+   pure subroutine begin_afar(p, x)
+      !> The problem
+      type(problem_t), intent(in) :: p
+      !> The iterate
+      type(interior_t), intent(inout) :: x
+
+      x%slack = merge(p%size, 1.0_wp, p%bounded)
+      x%flow(:3, :) = merge(p%size*p%unit, 0.0_wp, p%bounded(:3, :))
+      x%flow(4, :) = merge(p%size*p%unit(3, :), 0.0_wp, p%bounded(4, :))
+   end subroutine begin_afar
 
    !> One step from an iterate: a predictor, and a corrector towards equal products
    pure subroutine improve(springs, mean, merit, p, x, length)
@@ -118,11 +192,13 @@ contains
    end subroutine improve
 
    !> The forces of the step before, and the motion that they make, lifted off the bounds
-   pure subroutine begin(springs, view, motion, shallow, p, x)
+   pure subroutine begin(springs, view, force, motion, shallow, p, x)
       !> The springs of the joints
       type(joint_springs_t), intent(in) :: springs
       !> What the joints see
       type(contact_view_t), intent(in) :: view
+      !> Forces of all joints: (3, n_joint) [N/m]
+      real(wp), intent(in) :: force(:, :)
       !> Motion of all blocks: (n_dof, n_equation) [m]
       real(wp), intent(in) :: motion(:, :)
       !> How far off the bounds at the least, over the size of a force
@@ -135,15 +211,15 @@ contains
       integer :: i, k
 
       x%motion = motion(:size(p%balance, 1), p%equation)
-      x%force = p%before
+      x%force = force(:, p%joint)
       allocate (x%slack(4, size(p%joint)), x%flow(4, size(p%joint)))
       call see_openings(springs, view, p, x%motion, opening)
-      p%size = sum(max(p%before(1:2, :), -opening(1:2, :)/p%unit(1:2, :), 0.0_wp), &
-         & p%given(1:2, :)) &
-         & /real(max(1, count(p%given(1:2, :))), wp)
+      where (p%follows) opening = opening + p%soft*(x%force - p%before)
+      p%size = sum(max(x%force(1:2, :), -opening(1:2, :)/p%unit(1:2, :), 0.0_wp), &
+         & p%given(1:2, :))/real(max(1, count(p%given(1:2, :))), wp)
       p%size = max(p%size, tiny(1.0_wp)/epsilon(1.0_wp))
       call see_bounds(springs, p, x%force, x%slack)
-      least = p%size*min(lift(2), max(shallow, 10.0_wp*sum(abs(min(x%slack(:2, :), &
+      least = p%size*min(highest, max(shallow, 10.0_wp*sum(abs(min(x%slack(:2, :), &
          & opening(:2, :)/p%unit(:2, :))), p%given(:2, :)) &
          & /(p%size*real(max(1, count(p%given(:2, :))), wp))))
       do i = 1, size(p%joint)
@@ -178,18 +254,8 @@ contains
       real(wp), intent(out) :: mean
       !> Forces that are wrong, over the size of a force
       real(wp), intent(out) :: merit
-      integer :: b, n
 
-      n = size(p%balance, 1)
-      do b = 1, size(p%equation)
-         associate (e => p%equation(b))
-            p%balance(:, b) = equations%load(:n, e) &
-               & - matmul(equations%base(:n, :n, e), x%motion(:, b))
-         end associate
-      end do
-      call push_blocks(springs, p, x%force, p%balance)
-      call see_openings(springs, view, p, x%motion, p%opening)
-      p%opening = -p%opening - compliance*p%unit*(x%force - p%before)
+      call see_lack(equations, springs, view, x, p)
       p%opening(1:2, :) = p%opening(1:2, :) + x%flow(1:2, :)
       p%opening(3, :) = p%opening(3, :) + x%flow(3, :) - x%flow(4, :)
       where (.not. p%given) p%opening = 0.0_wp
@@ -207,7 +273,7 @@ contains
       type(interior_t), intent(in) :: x
       !> The step
       type(interior_t), intent(inout) :: step
-      real(wp) :: drive(3, size(p%joint)), moved(3, size(p%joint)), rest(4), slack(4), source(4)
+      real(wp) :: drive(3, size(p%joint)), rest(4), slack(4), source(4)
       real(wp) :: bound
       integer :: i
 
@@ -216,14 +282,9 @@ contains
          source = (p%product(:, i) - x%flow(:, i)*rest)/x%slack(:, i)
          drive(1:2, i) = p%opening(1:2, i) + source(1:2)
          drive(3, i) = p%opening(3, i) + source(3) - source(4)
-         step%force(:, i) = answer(springs, p, x, i, drive(:, i))
       end do
-      step%motion = p%balance
-      call push_blocks(springs, p, step%force, step%motion)
-      call substitute(p%factor, step%motion)
-      call move_joints(springs, p, step%motion, moved)
+      call respond(springs, p, drive, step%force, step%motion)
       do i = 1, size(p%joint)
-         step%force(:, i) = answer(springs, p, x, i, drive(:, i) - moved(:, i))
          associate (f => step%force(:, i))
             bound = springs%cone(p%joint(i))%friction*(f(1) + f(2))
             slack = [f(1), f(2), bound + f(3), bound - f(3)]
@@ -307,28 +368,33 @@ contains
    end function longest
 
    !> Forces of an iterate, those of open contacts none, and no shear force beyond its bound
-   pure subroutine keep_forces(springs, p, x, force)
+   pure subroutine take_forces(equations, springs, view, x, p, force)
+      !> Blocks assembled
+      type(equations_t), intent(in) :: equations
       !> The springs of the joints
       type(joint_springs_t), intent(in) :: springs
-      !> The problem
-      type(problem_t), intent(in) :: p
+      !> What the joints see
+      type(contact_view_t), intent(in) :: view
       !> The iterate
       type(interior_t), intent(in) :: x
+      !> The problem; what is lacking is set
+      type(problem_t), intent(inout) :: p
       !> Receives the forces: (3, n_joint of all) [N/m]
       real(wp), intent(inout) :: force(:, :)
       real(wp) :: bound
       integer :: i
 
+      call see_lack(equations, springs, view, x, p)
       do i = 1, size(p%joint)
          associate (f => force(:, p%joint(i)), shift => springs%shift(:, p%joint(i)), &
             & cone => springs%cone(p%joint(i)))
             where (p%given(:, i)) f = x%force(:, i)
-            where (p%bounded(1:2, i) .and. (x%slack(1:2, i)*p%unit(1:2, i) < x%flow(1:2, i) &
-               & .or. f(1:2) < -shift(1:2))) f(1:2) = -shift(1:2)
+            where (p%bounded(1:2, i) .and. (p%unit(1:2, i)*(f(1:2) + shift(1:2)) &
+               & < -p%opening(1:2, i) .or. f(1:2) < -shift(1:2))) f(1:2) = -shift(1:2)
             if (.not. p%bounded(3, i)) cycle
             bound = cone%limit + cone%friction*sum(f(1:2) + shift(1:2))
             f(3) = max(-bound, min(bound, f(3)))
          end associate
       end do
-   end subroutine keep_forces
+   end subroutine take_forces
 end module dda_contact_interior

@@ -16,8 +16,13 @@ module dda_contact_view
       real(wp), allocatable :: lower(:, :, :)
       !> Motion of the two blocks by a unit of each force: (n_dof, 3, 2, n_joint) [m/(N/m)]
       real(wp), allocatable :: answer(:, :, :, :)
-      !> Openings and slip of the joint by a unit of each of its forces: (3, 3, n_joint) [m/(N/m)]
+      !> Openings and slip of the joint and its blocks by a unit of each of its forces:
+      !> (3, 3, n_joint) [m/(N/m)]
       real(wp), allocatable :: give(:, :, :)
+      !> How much openings and slip follow their forces: (3, n_joint) [m/(N/m)]
+      real(wp), allocatable :: soft(:, :)
+      !> Forces that they follow none of: (3, n_joint) [N/m]
+      real(wp), allocatable :: rest(:, :)
       !> Gaps before the motion: (3, n_joint) [m]
       real(wp), allocatable :: gap(:, :)
    end type contact_view_t
@@ -51,7 +56,14 @@ contains
       allocate (view%answer, mold=springs%row)
       allocate (view%give(3, 3, size(springs%stiffness)), source=0.0_wp)
       allocate (view%gap, mold=state%start)
+      allocate (view%soft(3, size(springs%stiffness)), view%rest(3, size(springs%stiffness)), &
+         & source=0.0_wp)
+      if (allocated(springs%soft)) view%soft = springs%soft
+      if (allocated(springs%rest)) view%rest = springs%rest
       do j = 1, size(springs%stiffness)
+         do k = 1, 3
+            view%give(k, k, j) = view%soft(k, j)
+         end do
          view%gap(:, j) = (state%multiplier(:, j) - state%start(:, j))/springs%stiffness(j)
          do side = 1, 2
             e = springs%equation(side, j)

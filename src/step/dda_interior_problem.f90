@@ -1,16 +1,16 @@
 !> Joints and blocks whose contact forces interior springs find, and the matrix of these springs
 module dda_interior_problem
    use dda_assembly, only : equations_t
-   use dda_block_factor, only : block_factor_t, factorise, plan_factor
+   use dda_block_factor, only : block_factor_t, factorise, plan_factor, substitute
    use dda_block_matrix, only : block_matrix_t, set_pattern
    use dda_contact_view, only : contact_view_t
-   use dda_joint_springs, only : joint_springs_t
+   use dda_joint_springs, only : joint_springs_t, unbounded
    use dda_kinds, only : wp
    implicit none
    private
 
-   public :: answer, compliance, factor_springs, interior_t, move_joints, pose, problem_t
-   public :: push_blocks, see_bounds, see_openings
+   public :: factor_springs, interior_t, pose, problem_t, respond, see_bounds, see_lack
+   public :: see_openings
 
    !> One iterate, or a step from it
    type :: interior_t
@@ -40,10 +40,16 @@ module dda_interior_problem
       logical, allocatable :: bounded(:, :)
       !> What the blocks give to each force, which measures openings: (3, n_joint) [m/(N/m)]
       real(wp), allocatable :: unit(:, :)
-      !> Forces of the step before: (3, n_joint) [N/m]
+      !> Compliance of the springs: (3, n_joint) [m/(N/m)]
+      real(wp), allocatable :: soft(:, :)
+      !> Which openings follow their forces for good: (3, n_joint)
+      logical, allocatable :: follows(:, :)
+      !> Forces of the step before, or those without opening: (3, n_joint) [N/m]
       real(wp), allocatable :: before(:, :)
       !> Size of a force [N/m]
       real(wp) :: size = 0.0_wp
+      !> Compliance that each bound adds to its spring: (4, n_joint) [m/(N/m)]
+      real(wp), allocatable :: yield(:, :)
       !> Matrix with the springs
       type(block_matrix_t) :: matrix
       !> Its factor
@@ -56,8 +62,9 @@ module dda_interior_problem
       real(wp), allocatable :: product(:, :)
    end type problem_t
 
-   !> Compliance of the springs over that of the blocks
-   real(wp), parameter :: compliance = 1.0e-9_wp
+   !> Compliance of the springs over that of the blocks, and at the most over that of typical ones:
+   !> slivers give too easily to be a measure
+   real(wp), parameter :: compliance = 1.0e-4_wp
 
 contains
 
@@ -86,7 +93,7 @@ contains
       if (.not. any(abs(springs%row(4:, :, :, joint)) > 0.0_wp)) n_dof = 3
       p%joint = joint
       allocate (p%block(2, n), p%entry(n), p%bounded(4, n), p%unit(3, n), p%before(3, n))
-      allocate (p%opening(3, n), p%product(4, n), p%given(3, n))
+      allocate (p%opening(3, n), p%product(4, n), p%given(3, n), p%yield(4, n))
       number = 0
       e = 0
       k = 0
@@ -111,17 +118,36 @@ contains
       call set_pattern(p%matrix, n_dof, e, pair(:, :k), symmetric=.false.)
       call plan_factor(p%matrix, p%factor)
       allocate (p%balance(n_dof, e))
-      do i = 1, n
-         associate (j => joint(i), given => p%given(:, i))
+      call pose_springs(springs, view, force, p)
+   end subroutine pose
+
+   !> What the forces of the joints may be, and how they are measured
+   pure subroutine pose_springs(springs, view, force, p)
+      !> The springs of the joints
+      type(joint_springs_t), intent(in) :: springs
+      !> What the joints see
+      type(contact_view_t), intent(in) :: view
+      !> Forces of all joints in the step before: (3, n_joint) [N/m]
+      real(wp), intent(in) :: force(:, :)
+      !> The problem
+      type(problem_t), intent(inout) :: p
+      integer :: i, k
+
+      do i = 1, size(p%joint)
+         associate (j => p%joint(i), given => p%given(:, i))
             p%unit(:, i) = [(view%give(k, k, j), k=1, 3)]
             given = p%unit(:, i) > 0.0_wp
             where (.not. given) p%unit(:, i) = 1.0_wp
-            p%bounded(1:2, i) = given(1:2)
+            p%bounded(1:2, i) = given(1:2) .and. springs%shift(1:2, j) < unbounded
             p%bounded(3:4, i) = given(3) .and. springs%cone(j)%limit < huge(1.0_wp)
             p%before(:, i) = force(:, j)
          end associate
       end do
-   end subroutine pose
+      p%follows = view%soft(:, p%joint) > 0.0_wp
+      where (p%follows) p%before = view%rest(:, p%joint)
+      p%soft = compliance*min(p%unit, count(p%given)/sum(1.0_wp/p%unit, p%given))
+      where (p%follows) p%soft = view%soft(:, p%joint)
+   end subroutine pose_springs
 
    !> Openings and slips after a motion, from the gaps before it
    pure subroutine see_openings(springs, view, p, motion, opening)
@@ -197,6 +223,59 @@ contains
       end do
    end subroutine push_blocks
 
+   !> What forces and motion lack of balance, and of openings that are closed
+   pure subroutine see_lack(equations, springs, view, x, p)
+      !> Blocks assembled
+      type(equations_t), intent(in) :: equations
+      !> The springs of the joints
+      type(joint_springs_t), intent(in) :: springs
+      !> What the joints see
+      type(contact_view_t), intent(in) :: view
+      !> Forces and motion
+      type(interior_t), intent(in) :: x
+      !> The problem; balance and openings are set
+      type(problem_t), intent(inout) :: p
+      integer :: b, n
+
+      n = size(p%balance, 1)
+      do b = 1, size(p%equation)
+         associate (e => p%equation(b))
+            p%balance(:, b) = equations%load(:n, e) &
+               & - matmul(equations%base(:n, :n, e), x%motion(:, b))
+         end associate
+      end do
+      call push_blocks(springs, p, x%force, p%balance)
+      call see_openings(springs, view, p, x%motion, p%opening)
+      p%opening = merge(-p%opening - p%soft*(x%force - p%before), 0.0_wp, p%given)
+   end subroutine see_lack
+
+   !> Forces and motion that give what is lacking
+   pure subroutine respond(springs, p, drive, force, motion)
+      !> The springs of the joints
+      type(joint_springs_t), intent(in) :: springs
+      !> The problem, factored, with what it lacks of balance
+      type(problem_t), intent(in) :: p
+      !> By how much the springs are pressed together: (3, n_joint) [m]
+      real(wp), intent(in) :: drive(:, :)
+      !> The forces: (3, n_joint) [N/m]
+      real(wp), intent(out) :: force(:, :)
+      !> The motion: (n_dof, n_block) [m]
+      real(wp), intent(out) :: motion(:, :)
+      real(wp) :: moved(3, size(p%joint))
+      integer :: i
+
+      do i = 1, size(p%joint)
+         force(:, i) = answer(springs, p, i, drive(:, i))
+      end do
+      motion = p%balance
+      call push_blocks(springs, p, force, motion)
+      call substitute(p%factor, motion)
+      call move_joints(springs, p, motion, moved)
+      do i = 1, size(p%joint)
+         force(:, i) = answer(springs, p, i, drive(:, i) - moved(:, i))
+      end do
+   end subroutine respond
+
    !> Distance of the forces from their bounds
    pure subroutine see_bounds(springs, p, force, slack)
       !> The springs of the joints
@@ -220,16 +299,14 @@ contains
       end do
    end subroutine see_bounds
 
-   !> The matrix with the springs of an iterate, and its factor
-   pure subroutine factor_springs(equations, springs, p, x)
+   !> The matrix with the springs as their bounds yield, and its factor
+   pure subroutine factor_springs(equations, springs, p)
       !> Blocks assembled
       type(equations_t), intent(in) :: equations
       !> The springs of the joints
       type(joint_springs_t), intent(in) :: springs
       !> The problem; matrix and factor are made anew
       type(problem_t), intent(inout) :: p
-      !> The iterate
-      type(interior_t), intent(in) :: x
       real(wp), dimension(size(p%balance, 1), 3, 2) :: steep
       real(wp) :: unit(3)
       integer :: b, c, d, first, i, k, n, one
@@ -244,7 +321,7 @@ contains
             do k = 1, 3
                unit = 0.0_wp
                unit(k) = 1.0_wp
-               unit = answer(springs, p, x, i, unit)
+               unit = answer(springs, p, i, unit)
                do one = 1, 2
                   steep(:, k, one) = row(:, 1, one)*unit(1) + row(:, 2, one)*unit(2) &
                      & + row(:, 3, one)*unit(3)
@@ -275,27 +352,25 @@ contains
    end subroutine factor_springs
 
    !> Forces of a joint's springs that are pressed together
-   pure function answer(springs, p, x, i, drive) result(force)
+   pure function answer(springs, p, i, drive) result(force)
       !> The springs of the joints
       type(joint_springs_t), intent(in) :: springs
       !> The problem
       type(problem_t), intent(in) :: p
-      !> The iterate
-      type(interior_t), intent(in) :: x
       !> Place of the joint in the problem
       integer, intent(in) :: i
       !> By how much: (3) [m]
       real(wp), intent(in) :: drive(3)
       !> The forces: (3) [N/m]
       real(wp) :: force(3)
-      real(wp) :: ratio(4)
 
-      ratio = x%flow(:, i)/x%slack(:, i)
-      force(1:2) = merge(drive(1:2)/(compliance*p%unit(1:2, i) + ratio(1:2)), 0.0_wp, &
-         & p%given(1:2, i))
-      force(3) = 0.0_wp
-      if (.not. p%given(3, i)) return
-      force(3) = (drive(3) - springs%cone(p%joint(i))%friction*(ratio(3) - ratio(4)) &
-         & *(force(1) + force(2)))/(compliance*p%unit(3, i) + ratio(3) + ratio(4))
+      associate (yield => p%yield(:, i))
+         force(1:2) = merge(drive(1:2)/(p%soft(1:2, i) + yield(1:2)), 0.0_wp, &
+            & p%given(1:2, i))
+         force(3) = 0.0_wp
+         if (.not. p%given(3, i)) return
+         force(3) = (drive(3) - springs%cone(p%joint(i))%friction*(yield(3) - yield(4)) &
+            & *(force(1) + force(2)))/(p%soft(3, i) + yield(3) + yield(4))
+      end associate
    end function answer
 end module dda_interior_problem

@@ -6,6 +6,8 @@
 !> which they change a little to the end counts.
 module dda_settle_in_time
    use dda_assembly, only : equations_t
+   use dda_bar_springs, only : add_bars, couple_bars, judge_bars
+   use dda_bars_in_time, only : append_bars, drop_bars
    use dda_contact_sweeps, only : sweep_contacts
    use dda_fixed_points, only : correct_fixed_forces
    use dda_friction, only : accelerated, coulomb_bound
@@ -23,6 +25,8 @@ module dda_settle_in_time
    integer, parameter :: max_passes = 100
    !> Most corrections of the bounds
    integer, parameter :: max_corrections = 40
+   !> Joints of more than so many that did not settle are rather tried in a shorter step
+   integer, parameter :: most_joints = 300
    !> Corrections remembered by the acceleration
    integer, parameter :: memory = 6
    !> Change of a force that counts as none, over the sum of all that bear on the blocks
@@ -60,10 +64,9 @@ contains
          return
       end if
       ! glue hands on waves of strain, which are finer than what sweeps leave
-      if (size(equations%fixed%point) == 0 .and. .not. any(springs%shift > 0.0_wp) &
-         & .and. .not. any(equations%bars%entry > 0)) then
-         call sweep_contacts(equations, springs, state)
-         if (state%settled) return
+      if (size(equations%fixed%point) == 0 .and. .not. any(springs%shift > 0.0_wp)) then
+         call sweep_with_bars(equations, springs, state)
+         if (state%settled .or. size(springs%stiffness) > most_joints) return
          if (present(in_vain)) then
             if (in_vain) return
          end if
@@ -111,6 +114,34 @@ contains
          end do
       end function bounds_now
    end subroutine settle_in_time
+
+   !> Sweep the contacts, and in a motion with them the bars
+   pure subroutine sweep_with_bars(equations, springs, state)
+      !> Blocks assembled, with their bars in a motion; the conditions of the bars are set
+      type(equations_t), intent(inout) :: equations
+      !> The springs of the joints
+      type(joint_springs_t), intent(in) :: springs
+      !> The step
+      type(step_state_t), intent(inout) :: state
+      type(joint_springs_t) :: with_bars
+      type(step_state_t) :: whole
+      real(wp) :: load(size(equations%load, 1), size(equations%load, 2))
+      logical :: agreed
+
+      if (state%rates .or. size(equations%bars%entry) == 0) then
+         call sweep_contacts(equations, springs, state)
+         return
+      end if
+      call add_bars(equations%bars, -1.0_wp, equations%base, equations%load)
+      load = equations%load
+      call append_bars(equations%bars, springs, state, with_bars, whole, equations%load)
+      call sweep_contacts(equations, with_bars, whole)
+      call drop_bars(whole, state)
+      equations%load = load
+      call judge_bars(equations%bars, state%motion, .false., agreed)
+      call add_bars(equations%bars, 1.0_wp, equations%base, equations%load)
+      call couple_bars(equations%bars, equations%matrix%pair, .true., equations%matrix%coupling)
+   end subroutine sweep_with_bars
 
    !> Settle the multipliers and the forces at the held points for given cones
    pure subroutine settle_multipliers(settings, target, opening, equations, springs, state)

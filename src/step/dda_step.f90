@@ -30,6 +30,8 @@ module dda_step
 
    !> Most cuts of one step's length
    integer, parameter :: max_retries = 40
+   !> Opening against the law of contact that many blocks may leave, over twice the fall in a step
+   real(wp), parameter :: unseen = 1.0e-3_wp
    !> Shortest step in time: stiffness that grows with its inverse square overflows [s]
    real(wp), parameter :: shortest_step = 1.0e-40_wp
 
@@ -166,6 +168,7 @@ contains
       if (in_time) call stiffen_contacts(system, step%dt, contacts)
       if (in_time) call take_springs(equations)
       call begin_step(contacts, size(equations%weight, 1), size(equations%weight, 2), step%state)
+      step%state%unseen = unseen*march%free_acceleration*step%dt**2
       call assemble_blocks(system, settings, step%dt, equations, &
          & merge(march%time, march%clock%now, settings%dynamic))
       call settle_joints(settings, equations, contacts%springs, step%state)

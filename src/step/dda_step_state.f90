@@ -30,6 +30,11 @@ module dda_step_state
       type(cone_t), allocatable :: cone(:)
       !> How much smaller than usual gaps must be that sweeps leave
       real(wp) :: fineness = 1.0_wp
+      !> Opening or slip against the law of contact that many blocks may leave [m]
+      real(wp) :: unseen = 0.0_wp
+      !> Whether velocities are sought: then it does not matter which of all forces that stop the
+      !> blocks are found, in a motion those nearest to the ones before count
+      logical :: rates = .false.
       !> Work of what the bounds of the shear forces would still change by [J/m]
       real(wp) :: unsettled_work = 0.0_wp
       !> Passes of the loop so far

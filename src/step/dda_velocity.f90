@@ -117,6 +117,8 @@ contains
       state = step%state
       ! what a speed leaves of a gap counts as in the longest step
       state%fineness = finer*step%dt/step%longest
+      state%unseen = 10.0_wp*step%state%unseen
+      state%rates = .true.
       springs = contacts%springs
       do j = 1, size(contacts%joint)
          springs%stiffness(j) = over_inertia*joint_mass(system, contacts%joint(j)%block)/step%dt**2

@@ -210,3 +210,28 @@ def test_a_tie_holds_an_arch_within_the_range_of_its_force(
             strong = scene + f" strength {weight * least * factor!r}"
             strong = strong.replace("1e3\n", "1e3")
             assert run_blocks(tmp_path, strong, deck)["verdict"] == wanted
+
+
+def test_a_tunnel_stands_by_its_bolts_in_time(tmp_path: Path) -> None:
+    """A case of 115 blocks and nine bolts; elastic bolts let the roof sag by their give alone."""
+    (tmp_path / "map.nml").write_text(
+        "&lines seed = 3 /\n"
+        "&outline left = -10, right = 10, bottom = -8, top = 10, fixed = 'left', 'right', 'bottom' /\n"
+        "&opening shape = 'horseshoe', width = 5, wall = 2, y = -2, sides = 12 /\n"
+        "&joint_set dip_deg = 0, spacing = 1.5, spacing_law = 'uniform', spacing_randomness = 0.2 /\n"
+        "&joint_set dip_deg = 70, spacing = 1.7 /\n"
+        "&bolts number = 9, from_deg = 0, to_deg = 180, length = 5, stiffness = 1e8, strength = 5e5 /\n"
+    )
+    (tmp_path / "tunnel.nml").write_text(
+        "&scene kind = 'lines', geometry = 'tunnel.geo' /\n&material density = 2600, young = 5e9 /\n"
+        "&joint friction_deg = 35 /\n"
+        "&analysis mode = 'dynamic', geometry = 'current', time_step = 5e-3, duration = 0.2, damping = 20 /\n"
+    )
+    assert run_dda("lines", str(tmp_path / "map.nml"), "--out", str(tmp_path / "tunnel.geo")).returncode == 0
+    out = tmp_path / "out"
+    assert run_dda("run", str(tmp_path / "tunnel.nml"), "--out", str(out)).returncode == 0
+    row = rows_of(out / "results.csv")[0]
+    assert row["verdict"] == "completed"
+    # with bolts in the matrix each step took hundreds of factorisations
+    assert int(row["open_close_iterations"]) < 25 * int(row["steps"])
+    assert max(bar_forces(tmp_path)) > 1e3

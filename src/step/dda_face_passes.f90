@@ -1,0 +1,200 @@
+!> Contact forces of joints that keep to their faces: open, sliding or stuck, each a linear law
+!>
+!> Coulomb's law is piecewise linear. With the faces known, forces and motion are one solution of
+!> linear equations, unsymmetric where joints slide; joints that disagree change their faces, all at
+!> once. Near the answer that ends after one to three passes and leaves rounding; far from it, it
+!> may go round in circles, and interior springs find the way (`dda_contact_interior`).
+module dda_face_passes
+   use dda_assembly, only : equations_t
+   use dda_contact_view, only : contact_view_t
+   use dda_friction_cone, only : joint_face_t, shear_bound
+   use dda_interior_problem, only : factor_springs, interior_t, problem_t
+   use dda_interior_problem, only : respond, see_lack
+   use dda_joint_springs, only : joint_springs_t
+   use dda_kinds, only : wp
+   implicit none
+   private
+
+   public :: settle_faces
+
+   !> Compliance of a force that does not follow its opening, over that of the blocks
+   real(wp), parameter :: free = 1.0e20_wp
+   !> Forces across gaps, and by openings, that are left, over the size of a force
+   real(wp), parameter :: tolerance = 1.0e-6_wp
+   !> Change of a force by its spring at the end, over the same
+   real(wp), parameter :: remains = 1.0e-7_wp
+   !> Most passes; fewer where not half as many faces change as in the pass before
+   integer, parameter :: max_passes = 5
+   !> Most solutions
+   integer, parameter :: max_turns = 24
+
+contains
+
+   !> Find forces and motion whose faces agree, from those of an iterate
+   pure subroutine settle_faces(equations, springs, view, p, x, passes, agreed)
+      !> Blocks assembled
+      type(equations_t), intent(in) :: equations
+      !> The springs of the joints
+      type(joint_springs_t), intent(in) :: springs
+      !> What the joints see
+      type(contact_view_t), intent(in) :: view
+      !> The problem; the size of a force is given
+      type(problem_t), intent(inout) :: p
+      !> Forces and motion
+      type(interior_t), intent(inout) :: x
+      !> Factorisations so far
+      integer, intent(inout) :: passes
+      !> Whether the faces agree
+      logical, intent(out) :: agreed
+      type(joint_face_t) :: face(size(p%joint))
+      integer :: changes, i, last, pass, turn
+      logical :: held
+
+      agreed = .false.
+      call see_lack(equations, springs, view, x, p)
+      do i = 1, size(face)
+         call read_face(springs, p, x, i, face(i))
+      end do
+      held = .false.
+      last = size(face)/2
+      pass = 0
+      do turn = 1, max_turns
+         if (.not. held) then
+            if (pass == max_passes) return
+            pass = pass + 1
+            passes = passes + 1
+            call hold_faces(springs, face, p, x)
+            call factor_springs(equations, springs, p)
+            if (.not. p%factor%usable) return
+         end if
+         call move_on(equations, springs, view, p, x)
+         call change_faces(springs, p, x, face, changes)
+         held = changes == 0
+         if (held) then
+            agreed = maxval(p%soft/p%unit*abs(x%force - p%before), .not. p%follows) &
+               & <= remains*p%size
+            if (agreed) return
+            where (.not. p%follows) p%before = x%force
+            changes = huge(changes)
+         else if (2*changes > last) then
+            return
+         end if
+         last = changes
+      end do
+   end subroutine settle_faces
+
+   !> Add what forces and motion lack, but to forces that their faces give
+   pure subroutine move_on(equations, springs, view, p, x)
+      !> Blocks assembled
+      type(equations_t), intent(in) :: equations
+      !> The springs of the joints
+      type(joint_springs_t), intent(in) :: springs
+      !> What the joints see
+      type(contact_view_t), intent(in) :: view
+      !> The problem, factored; what is lacking afterwards is set
+      type(problem_t), intent(inout) :: p
+      !> Forces and motion
+      type(interior_t), intent(inout) :: x
+      real(wp) :: force(3, size(p%joint)), motion(size(p%balance, 1), size(p%equation))
+
+      call see_lack(equations, springs, view, x, p)
+      where (p%yield(:3, :) > 0.0_wp) p%opening = 0.0_wp
+      where (p%yield(4, :) > 0.0_wp) p%opening(3, :) = 0.0_wp
+      call respond(springs, p, p%opening, force, motion)
+      x%force = x%force + force
+      x%motion = x%motion + motion
+      call see_lack(equations, springs, view, x, p)
+   end subroutine move_on
+
+   !> The face that force and opening of a joint speak for
+   pure subroutine read_face(springs, p, x, i, face)
+      !> The springs of the joints
+      type(joint_springs_t), intent(in) :: springs
+      !> The problem, for the openings
+      type(problem_t), intent(in) :: p
+      !> The forces
+      type(interior_t), intent(in) :: x
+      !> Place of the joint
+      integer, intent(in) :: i
+      !> Its face
+      type(joint_face_t), intent(out) :: face
+      real(wp) :: trial(3)
+
+      associate (j => p%joint(i), cone => springs%cone(p%joint(i)))
+         trial = x%force(:, i) + springs%shift(:, j) + p%opening(:, i)/p%unit(:, i)
+         face%open = .not. (p%given(1:2, i) .and. trial(1:2) >= 0.0_wp)
+         if (abs(trial(3)) > shear_bound(cone, max(0.0_wp, x%force(:, i) + springs%shift(:, j))) &
+            & .or. all(face%open)) face%slip = merge(1, -1, trial(3) > 0.0_wp)
+         if (.not. p%given(3, i)) face%slip = 0
+      end associate
+   end subroutine read_face
+
+   !> Put the forces onto their faces, and let the springs keep them there
+   pure subroutine hold_faces(springs, face, p, x)
+      !> The springs of the joints
+      type(joint_springs_t), intent(in) :: springs
+      !> Faces: (n_joint)
+      type(joint_face_t), intent(in) :: face(:)
+      !> The problem; how the bounds yield is set
+      type(problem_t), intent(inout) :: p
+      !> The forces
+      type(interior_t), intent(inout) :: x
+      integer :: i
+
+      p%yield = 0.0_wp
+      do i = 1, size(face)
+         associate (shift => springs%shift(:, p%joint(i)), cone => springs%cone(p%joint(i)), &
+            & slip => face(i)%slip, force => x%force(:, i))
+            where (face(i)%open .and. p%given(1:2, i))
+               force(1:2) = -shift(1:2)
+               p%yield(1:2, i) = free*p%unit(1:2, i)
+            end where
+            if (slip == 0) cycle
+            force(3) = slip*shear_bound(cone, force + shift)
+            p%yield(merge(4, 3, slip > 0), i) = free*p%unit(3, i)
+         end associate
+      end do
+   end subroutine hold_faces
+
+   !> Let joints that disagree with their faces change them
+   pure subroutine change_faces(springs, p, x, face, changes)
+      !> The springs of the joints
+      type(joint_springs_t), intent(in) :: springs
+      !> The problem, for the openings
+      type(problem_t), intent(in) :: p
+      !> The forces
+      type(interior_t), intent(in) :: x
+      !> Faces: (n_joint)
+      type(joint_face_t), intent(inout) :: face(:)
+      !> How many forces disagree
+      integer, intent(out) :: changes
+      real(wp) :: force(3), excess, opening(3), least
+      integer :: i, k
+
+      changes = 0
+      least = tolerance*p%size
+      do i = 1, size(face)
+         force = x%force(:, i) + springs%shift(:, p%joint(i))
+         ! of open contacts and sliding joints, over what the blocks give; others have none
+         opening = -p%opening(:, i)/p%unit(:, i)
+         do k = 1, 2
+            if (.not. p%given(k, i)) cycle
+            if (merge(opening(k), force(k), face(i)%open(k)) >= -least) cycle
+            face(i)%open(k) = .not. face(i)%open(k)
+            changes = changes + 1
+         end do
+         if (.not. p%given(3, i)) cycle
+         excess = abs(force(3)) - shear_bound(springs%cone(p%joint(i)), max(0.0_wp, force))
+         if (all(face(i)%open)) then
+            if (face(i)%slip == 0) changes = changes + 1
+            if (face(i)%slip == 0) face(i)%slip = 1
+         else if (face(i)%slip == 0 .and. excess > least) then
+            face(i)%slip = merge(1, -1, force(3) > 0.0_wp)
+            changes = changes + 1
+         else if (face(i)%slip*opening(3) > least) then
+            face(i)%slip = 0
+            changes = changes + 1
+         end if
+      end do
+   end subroutine change_faces
+end module dda_face_passes

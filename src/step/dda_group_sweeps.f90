@@ -1,0 +1,321 @@
+!> Sweeps over the joints of one group of blocks (Gauss and Seidel): each joint in turn takes the
+!> forces that close its gaps and stop its slip, as far as the law of contact allows
+!>
+!> Equation (M5) of docs/method.md
+module dda_group_sweeps
+   use dda_contact_view, only : contact_view_t
+   use dda_friction_cone, only : shear_bound
+   use dda_joint_springs, only : joint_springs_t
+   use dda_kinds, only : wp
+   implicit none
+   private
+
+   public :: sweep_group, sweeps_for, coarsest
+
+   !> Few blocks settle to rounding in so many sweeps
+   integer, parameter :: strictly = 64
+   !> Change of a force that counts as none, over the largest of its group
+   real(wp), parameter :: no_force = 1.0e-7_wp
+   !> Multiple of a change that counts as none that will do where more sweeps bring no less
+   real(wp), parameter :: coarse = 1.0e2_wp
+   !> The same where they bring no less without haste either, or where many joints move
+   real(wp), parameter :: coarsest = 1.0e4_wp
+   !> After this many sweeps a change that falls no more ends them
+   integer, parameter :: plain_sweeps = 1000
+   !> Most sweeps
+   integer, parameter :: max_sweeps = 4000
+   !> After this many sweeps the joints without force are looked at again
+   integer, parameter :: round = 8
+   !> After this many sweeps the change must have fallen noticeably
+   integer, parameter :: patience = 100
+   !> What counts as noticeable
+   real(wp), parameter :: falling = 0.8_wp
+   !> Sweeps that cost as much as interior springs of few joints
+   integer, parameter :: worth = 32
+   !> Joints swept, again and again, before what is left is no more to be swept
+   integer, parameter :: most_work = 400000
+   !> Multiple of what no step notices that may be left then
+   real(wp), parameter :: last_resort = 3.0e1_wp
+   !> Groups of more joints than this end so wherever they are swept: interior springs would take
+   !> many times as long
+   integer, parameter :: vast = 2000
+
+   !> What a group is swept for
+   type :: sweeps_for_enum
+      !> To see whether its forces stay
+      integer :: a_look = 0
+      !> To rounding
+      integer :: rounding = 1
+      !> To see whether it settles soon
+      integer :: haste = 2
+      !> Until no step notices what is left
+      integer :: patience = 3
+      !> To make good what interior springs leave
+      integer :: the_rest = 4
+      !> The same where more may be left
+      integer :: the_last = 5
+   end type sweeps_for_enum
+
+   !> Names of what a group is swept for
+   type(sweeps_for_enum), parameter :: sweeps_for = sweeps_for_enum()
+
+contains
+
+   !> Sweep one group until nothing changes, or until that is seen to take too long
+   pure subroutine sweep_group(joint, purpose, springs, view, noise, enough, force, motion, settled)
+      !> Joints of the group: (n)
+      integer, intent(in) :: joint(:)
+      !> One of sweeps_for
+      integer, intent(in) :: purpose
+      !> The springs of the joints
+      type(joint_springs_t), intent(in) :: springs
+      !> What the joints see
+      type(contact_view_t), intent(in) :: view
+      !> Gap that rounding can make [m]
+      real(wp), intent(in) :: noise
+      !> Changes that count as none, of a force [N/m] and of a gap [m]: (2)
+      real(wp), intent(in) :: enough(2)
+      !> Forces of all joints: (3, n_joint) [N/m]
+      real(wp), intent(inout) :: force(:, :)
+      !> Motion of the blocks, of those that do not move first: (n_dof, 0:n_equation)
+      real(wp), intent(inout) :: motion(:, 0:)
+      !> Whether it is settled
+      logical, intent(out) :: settled
+      real(wp) :: before(3, size(joint)), change(2), last, lately, square
+      real(wp) :: way(3, size(joint))
+      logical :: active(size(joint)), ended, hasty
+      integer :: sweep
+
+      last = huge(last)
+      lately = huge(last)
+      square = 0.0_wp
+      way = 0.0_wp
+      hasty = .true.
+      settled = .false.
+      do sweep = 0, max_sweeps
+         change = 0.0_wp
+         if (modulo(sweep, round) == 0) active = .true.
+         before = force(:, joint)
+         call sweep_twice(joint, springs, view, noise, active, force, motion, change)
+         if (modulo(sweep, round) == 0) then
+            call judge(purpose, size(joint), sweep, maxval(abs(force(:, joint))), enough, change, &
+               & lately, settled, ended)
+            if (ended) exit
+         end if
+         if (modulo(sweep, patience) == 0 .and. sweep > 0) then
+            if (.not. change(2) < falling*last) then
+               settled = change(2) <= merge(coarse, coarsest, hasty)*enough(2)
+               if (settled .or. sweep >= plain_sweeps) exit
+               hasty = .false.
+            end if
+            last = change(2)
+         end if
+         ! not before an end: the forces that it goes on to need not be admissible
+         if (hasty) call go_on(joint, springs, view, force(:, joint) - before, square, way, force, &
+            & motion)
+      end do
+   end subroutine sweep_group
+
+   !> Whether a group is settled after some sweeps, or what is left is no more to be swept
+   pure subroutine judge(purpose, n, sweep, largest, enough, change, lately, settled, ended)
+      !> What the group is swept for
+      integer, intent(in) :: purpose
+      !> Joints of the group
+      integer, intent(in) :: n
+      !> Sweeps so far
+      integer, intent(in) :: sweep
+      !> Largest force of the group [N/m]
+      real(wp), intent(in) :: largest
+      !> Changes that count as none, of a force [N/m] and of a gap [m]: (2)
+      real(wp), intent(in) :: enough(2)
+      !> Changes of the last sweep, likewise: (2)
+      real(wp), intent(in) :: change(2)
+      !> Change over what counts as none, a round before in and now out
+      real(wp), intent(inout) :: lately
+      !> Whether the group is settled
+      logical, intent(out) :: settled
+      !> Whether it is swept no more
+      logical, intent(out) :: ended
+      real(wp) :: wanted(2)
+
+      wanted = [max(enough(1), no_force*largest), enough(2)]
+      if (purpose >= sweeps_for%patience .and. sweep > 0) wanted = coarsest*wanted
+      settled = change(1) <= enough(1) .or. all(change <= wanted) &
+         & .and. (purpose /= sweeps_for%rounding .or. sweep >= strictly)
+      ended = settled .or. purpose == sweeps_for%a_look
+      if (ended) return
+      if (purpose == sweeps_for%haste .and. sweep > 0) &
+         & ended = takes_long(maxval(change/wanted), lately)
+      if (purpose >= sweeps_for%patience .and. sweep*n > most_work) then
+         settled = (purpose == sweeps_for%the_last .or. n > vast) &
+            & .and. change(2) <= last_resort*wanted(2)
+         ended = .true.
+      end if
+      lately = maxval(change/wanted)
+   end subroutine judge
+
+   !> Whether a change that falls as it did in the last round needs more sweeps than are worth it
+   pure logical function takes_long(change, lately)
+      !> The change over what counts as none
+      real(wp), intent(in) :: change
+      !> That of a round before
+      real(wp), intent(in) :: lately
+
+      takes_long = .not. change < lately
+      if (.not. takes_long) takes_long = -log(change) < worth/round*log(change/lately)
+   end function takes_long
+
+   !> One sweep over the joints forwards and one backwards
+   pure subroutine sweep_twice(joint, springs, view, noise, active, force, motion, change)
+      !> The joints: (n)
+      integer, intent(in) :: joint(:)
+      !> The springs of the joints
+      type(joint_springs_t), intent(in) :: springs
+      !> What the sweeps need of the joints
+      type(contact_view_t), intent(in) :: view
+      !> Gap that rounding can make [m]
+      real(wp), intent(in) :: noise
+      !> Joints that are looked at; after it, those that carry a force: (n)
+      logical, intent(inout) :: active(:)
+      !> Forces of all joints: (3, n_joint) [N/m]
+      real(wp), intent(inout) :: force(:, :)
+      !> Motion of the blocks, of those that do not move first: (n_dof, 0:n_equation)
+      real(wp), intent(inout) :: motion(:, 0:)
+      !> Largest change of a force [N/m] and of a gap [m]: (2)
+      real(wp), intent(inout) :: change(2)
+      integer :: i, j, k
+
+      do i = 1, 2*size(joint)
+         k = merge(i, 2*size(joint) + 1 - i, i <= size(joint))
+         if (.not. active(k)) cycle
+         j = joint(k)
+         call relax(size(motion, 1), springs, view, j, noise, force(:, j), motion, change)
+         active(k) = any(abs(force(:, j)) > 0.0_wp)
+      end do
+   end subroutine sweep_twice
+
+   !> Go on in the direction of the sweeps so far, as conjugate gradients do, unless the last sweep
+   !> has changed more than the one before
+   pure subroutine go_on(joint, springs, view, change, square, way, force, motion)
+      !> Joints of the group: (n)
+      integer, intent(in) :: joint(:)
+      !> The springs of the joints
+      type(joint_springs_t), intent(in) :: springs
+      !> What the joints see
+      type(contact_view_t), intent(in) :: view
+      !> What the sweep has changed: (3, n) [N/m]
+      real(wp), intent(in) :: change(:, :)
+      !> Its square; that of the sweep before in
+      real(wp), intent(inout) :: square
+      !> The direction: (3, n) [N/m]
+      real(wp), intent(inout) :: way(:, :)
+      !> Forces of all joints: (3, n_joint) [N/m]
+      real(wp), intent(inout) :: force(:, :)
+      !> Motion of the blocks: (n_dof, 0:n_equation)
+      real(wp), intent(inout) :: motion(:, 0:)
+      real(wp) :: ratio, last
+      integer :: j
+
+      last = square
+      square = sum(change**2)
+      if (.not. square < last) then
+         way = change
+         return
+      end if
+      ratio = square/last
+      ! open contacts have no way to go on; fading away, theirs would become denormal
+      where (.not. abs(change) > 0.0_wp) way = 0.0_wp
+      do j = 1, size(change, 2)
+         if (.not. any(abs(way(:, j)) > 0.0_wp)) cycle
+         force(:, joint(j)) = force(:, joint(j)) + ratio*way(:, j)
+         call push(size(motion, 1), springs, view, joint(j), ratio*way(:, j), motion)
+      end do
+      way = ratio*way + change
+   end subroutine go_on
+
+   !> Let one joint take the forces that the law of contact asks for. Column 0 of the motion stands
+   !> for all that cannot move
+   pure subroutine relax(n_dof, springs, view, j, noise, force, motion, change)
+      !> Unknowns of one block
+      integer, intent(in) :: n_dof
+      !> The springs of the joints
+      type(joint_springs_t), intent(in) :: springs
+      !> What the joints see
+      type(contact_view_t), intent(in) :: view
+      !> Number of the joint
+      integer, intent(in) :: j
+      !> Gaps that rounding makes: they ask for no force, which could grow without end [m]
+      real(wp), intent(in) :: noise
+      !> Its forces: (3) [N/m]
+      real(wp), intent(inout) :: force(3)
+      !> Motion of the blocks: (n_dof, 0:n_equation)
+      real(wp), intent(inout) :: motion(n_dof, 0:*)
+      !> Largest change so far: of a force, and of an opening or slip by it: (2) [N/m, m]
+      real(wp), intent(inout) :: change(2)
+      real(wp) :: before(3), gap(3), wanted
+      integer :: a, b, i, k
+
+      a = springs%equation(1, j)
+      b = springs%equation(2, j)
+      gap = view%gap(:, j) + view%soft(:, j)*(force - view%rest(:, j))
+      ! three unknowns at a time, so that the compiler knows the length
+      do i = 1, n_dof, 3
+         do k = 1, 3
+            gap(k) = gap(k) + springs%row(i, k, 1, j)*motion(i, a) &
+               & + springs%row(i + 1, k, 1, j)*motion(i + 1, a) &
+               & + springs%row(i + 2, k, 1, j)*motion(i + 2, a) &
+               & + springs%row(i, k, 2, j)*motion(i, b) &
+               & + springs%row(i + 1, k, 2, j)*motion(i + 1, b) &
+               & + springs%row(i + 2, k, 2, j)*motion(i + 2, b)
+         end do
+      end do
+      before = force
+      do k = 1, 3
+         if (.not. view%give(k, k, j) > 0.0_wp) cycle
+         if (k < 3) then
+            wanted = sign(max(0.0_wp, abs(gap(k)) - noise), gap(k))
+            wanted = max(-springs%shift(k, j), force(k) - wanted/view%give(k, k, j))
+         else
+            wanted = shear_bound(springs%cone(j), force + springs%shift(:, j))
+            wanted = max(-wanted, min(wanted, force(k) - gap(k)/view%give(k, k, j)))
+         end if
+         gap = gap + (wanted - force(k))*view%give(:, k, j)
+         force(k) = wanted
+      end do
+      do k = 1, 3
+         wanted = force(k) - before(k)
+         if (.not. abs(wanted) > 0.0_wp) cycle
+         change(1) = max(change(1), abs(wanted))
+         change(2) = max(change(2), abs(wanted)*view%give(k, k, j))
+      end do
+      call push(n_dof, springs, view, j, force - before, motion)
+   end subroutine relax
+
+   !> Let the two blocks of a joint answer a change of its forces
+   pure subroutine push(n_dof, springs, view, j, change, motion)
+      !> Unknowns of one block
+      integer, intent(in) :: n_dof
+      !> The springs of the joints
+      type(joint_springs_t), intent(in) :: springs
+      !> What the joints see
+      type(contact_view_t), intent(in) :: view
+      !> Number of the joint
+      integer, intent(in) :: j
+      !> The change: (3) [N/m]
+      real(wp), intent(in) :: change(3)
+      !> Motion of the blocks: (n_dof, 0:n_equation)
+      real(wp), intent(inout) :: motion(n_dof, 0:*)
+      integer :: a, b, i, k
+
+      a = springs%equation(1, j)
+      b = springs%equation(2, j)
+      do i = 1, n_dof, 3
+         do k = i, i + 2
+            motion(k, a) = motion(k, a) + change(1)*view%answer(k, 1, 1, j) &
+               & + change(2)*view%answer(k, 2, 1, j) + change(3)*view%answer(k, 3, 1, j)
+            motion(k, b) = motion(k, b) + change(1)*view%answer(k, 1, 2, j) &
+               & + change(2)*view%answer(k, 2, 2, j) + change(3)*view%answer(k, 3, 2, j)
+         end do
+      end do
+   end subroutine push
+end module dda_group_sweeps
