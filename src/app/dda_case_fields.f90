@@ -86,7 +86,6 @@ contains
 
    !> What a case has in a column
    pure function field_of(column, row, swept) result(text)
-      !> The column
       type(column_t), intent(in) :: column
       !> Row of the case
       type(result_row_t), intent(in) :: row
@@ -123,7 +122,6 @@ contains
 
    !> A number, if it is known
    pure function shown_number(number, width) result(text)
-      !> The number
       type(number_t), intent(in) :: number
       !> Width of its column
       integer, intent(in) :: width
@@ -161,7 +159,6 @@ contains
    pure function shown_value(value, column) result(text)
       !> The value as the tables have it
       character(len=*), intent(in) :: value
-      !> The column
       type(column_t), intent(in) :: column
       !> The text
       character(len=:), allocatable :: text
@@ -205,7 +202,6 @@ contains
 
    !> A field in its column, with the gap behind it
    pure function padded(column, text) result(field)
-      !> The column
       type(column_t), intent(in) :: column
       !> The text
       character(len=*), intent(in) :: text

@@ -54,11 +54,9 @@ contains
    subroutine new_case_table(screen, deck, chosen, table)
       !> Where it goes
       type(screen_t), intent(in) :: screen
-      !> The deck
       type(deck_t), intent(in) :: deck
       !> Cases that will be computed: (n)
       logical, intent(in) :: chosen(:)
-      !> The table
       type(case_table_t), intent(out) :: table
 
       table%screen = screen
@@ -73,7 +71,6 @@ contains
 
    !> The columns that the scenes of a deck have
    pure subroutine choose_columns(deck, column)
-      !> The deck
       type(deck_t), intent(in) :: deck
       !> Receives the columns
       type(column_t), allocatable, intent(inout) :: column(:)
@@ -107,7 +104,6 @@ contains
 
    !> Width of the longest value of a sweep, as far as it is shown
    pure integer function longest(sweep)
-      !> The sweep
       type(deck_sweep_t), intent(in) :: sweep
       integer :: i
 
@@ -121,9 +117,7 @@ contains
 
    !> Take a computed case; its lines are printed when all before it are computed
    subroutine add_case(table, deck, row, remark)
-      !> The table
       type(case_table_t), intent(inout) :: table
-      !> The deck
       type(deck_t), intent(in) :: deck
       !> Row of the case
       type(result_row_t), intent(in) :: row
@@ -148,7 +142,6 @@ contains
 
    !> Print what still waits, if the run ends before its cases
    subroutine end_case_table(table)
-      !> The table
       type(case_table_t), intent(inout) :: table
 
       call print_waiting(table, table%n_waiting)
@@ -156,9 +149,7 @@ contains
 
    !> Lines of a case, parted by line ends
    pure function row_lines(table, deck, row, remark) result(lines)
-      !> The table
       type(case_table_t), intent(in) :: table
-      !> The deck
       type(deck_t), intent(in) :: deck
       !> Row of the case
       type(result_row_t), intent(in) :: row
@@ -180,7 +171,6 @@ contains
 
    !> Put the lines of a case among those that wait
    pure subroutine let_wait(table, number, lines)
-      !> The table
       type(case_table_t), intent(inout) :: table
       !> Number of the case
       integer, intent(in) :: number
@@ -218,7 +208,6 @@ contains
 
    !> Print the first of what waits
    subroutine print_waiting(table, printed)
-      !> The table
       type(case_table_t), intent(inout) :: table
       !> How many cases
       integer, intent(in) :: printed

@@ -221,7 +221,6 @@ contains
       type(screen_t), intent(in) :: screen
       !> The deck of the case
       type(deck_t), intent(in) :: deck
-      !> Its scene
       type(scene_t), intent(in) :: scene
       type(limerick_model_t) :: model
       integer :: n
@@ -247,7 +246,6 @@ contains
 
    !> The joints and how long they last
    pure function joints_text(scene) result(text)
-      !> The scene
       type(scene_t), intent(in) :: scene
       !> The text
       character(len=:), allocatable :: text

@@ -69,7 +69,6 @@ contains
 
    !> Print what a reader warns of
    subroutine print_warnings(warnings)
-      !> The warnings
       type(warnings_t), intent(in) :: warnings
       integer :: i
 
@@ -85,7 +84,6 @@ contains
    subroutine write_cut(file, cut, error)
       !> Name of the file
       character(len=*), intent(in) :: file
-      !> The blocks
       type(cut_model_t), intent(in) :: cut
       !> Allocated if it cannot be written
       type(error_t), allocatable, intent(out) :: error
@@ -103,7 +101,6 @@ contains
       type(screen_t), intent(in) :: screen
       !> Lines and points
       type(line_model_t), intent(in) :: model
-      !> The blocks
       type(cut_model_t), intent(in) :: cut
       integer :: smallest, largest
 
@@ -136,7 +133,6 @@ contains
    subroutine print_blocks(screen, cut)
       !> Where it goes
       type(screen_t), intent(in) :: screen
-      !> The blocks
       type(cut_model_t), intent(in) :: cut
       type(area_moments_t) :: moments
       character(len=24) :: columns
@@ -160,7 +156,6 @@ contains
       type(screen_t), intent(in) :: screen
       !> Lines and points
       type(line_model_t), intent(in) :: model
-      !> The blocks
       type(cut_model_t), intent(in) :: cut
       logical, allocatable :: unused(:)
       integer :: i
@@ -188,9 +183,7 @@ contains
    pure function remark_text(model, cut, remark) result(text)
       !> Lines and points
       type(line_model_t), intent(in) :: model
-      !> The blocks
       type(cut_model_t), intent(in) :: cut
-      !> The remark
       type(cut_remark_t), intent(in) :: remark
       !> One line
       character(len=:), allocatable :: text
@@ -223,7 +216,6 @@ contains
 
    !> A point in the file's coordinates
    pure function point_text(cut, point) result(text)
-      !> The blocks
       type(cut_model_t), intent(in) :: cut
       !> The point, from the origin of the cut: (2) [m]
       real(wp), intent(in) :: point(2)

@@ -144,7 +144,6 @@ contains
       character(len=*), intent(in) :: stem
       !> Lines and points
       type(line_model_t), intent(in) :: model
-      !> The analysis
       type(limerick_analysis_t), intent(in) :: analysis
       !> Allocated if they cannot be written
       type(error_t), allocatable, intent(out) :: error

@@ -78,7 +78,6 @@ contains
 
    !> Length of all lines behind the first ones
    pure real(wp) function total_length(line, first)
-      !> The lines
       type(entities_t), intent(in) :: line
       !> Lines that do not count
       integer, intent(in) :: first
@@ -129,7 +128,6 @@ contains
 
    !> Write rows of one role
    subroutine write_rows(table, role, entities, first, last, error)
-      !> The table
       type(table_file_t), intent(inout) :: table
       !> Their role
       character(len=*), intent(in) :: role

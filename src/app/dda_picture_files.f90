@@ -33,7 +33,6 @@ contains
       type(block_system_t), intent(in) :: system
       !> Where the origin of their coordinates is: (2) [m]
       real(wp), intent(in) :: origin(2)
-      !> The pictures
       type(album_t), intent(in) :: album
       !> frames.csv
       type(table_file_t), intent(inout) :: frames
@@ -132,7 +131,6 @@ contains
       type(block_system_t), intent(in) :: system
       !> Where the origin of their coordinates is: (2) [m]
       real(wp), intent(in) :: origin(2)
-      !> The picture
       type(frame_t), intent(in) :: frame
       !> Its joints: (n_joint)
       type(frame_joint_row_t), intent(in) :: row(:)

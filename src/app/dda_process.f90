@@ -48,7 +48,6 @@ module dda_process
          integer(c_int), intent(in), value :: descriptor
          !> What is asked
          integer(c_long), intent(in), value :: request
-         !> The answer
          type(terminal_size_t), intent(inout) :: answer
          !> 0 if there is one
          integer(c_int) :: failed

@@ -105,11 +105,9 @@ contains
 
    !> Name the tables that a deck wants; no file is touched
    subroutine name_tables(deck, folder, tables)
-      !> The deck
       type(deck_t), intent(in) :: deck
       !> Name of the folder
       character(len=*), intent(in) :: folder
-      !> The tables
       type(result_tables_t), intent(out) :: tables
       character(len=:), allocatable :: names
       integer :: s
@@ -158,7 +156,6 @@ contains
 
       !> Name one table
       subroutine name_table(this, name, header)
-         !> The table
          type(result_table_t), intent(inout) :: this
          !> Name of its file in the folder
          character(len=*), intent(in) :: name
@@ -184,7 +181,6 @@ contains
    !> Which tables are not written because there are many cases, and what writes them; empty if all
    !> are
    pure function left_out(deck) result(text)
-      !> The deck
       type(deck_t), intent(in) :: deck
       !> The text
       character(len=:), allocatable :: text
@@ -238,7 +234,6 @@ contains
 
    !> Write down what was asked for
    subroutine write_record(tables, record, error)
-      !> The tables
       type(result_tables_t), intent(in) :: tables
       !> What was asked for
       character(len=*), intent(in) :: record
@@ -252,7 +247,6 @@ contains
 
    !> Bring all tables to the disk, results.csv last, and write down how long it is
    subroutine sync_tables(tables, error)
-      !> The tables
       type(result_tables_t), intent(inout) :: tables
       !> Allocated if they cannot be written
       type(error_t), allocatable, intent(inout) :: error
@@ -272,7 +266,6 @@ contains
 
    !> Bring all tables to the disk if the last time is long ago
    subroutine sync_when_due(tables, error)
-      !> The tables
       type(result_tables_t), intent(inout) :: tables
       !> Allocated if they cannot be written
       type(error_t), allocatable, intent(inout) :: error
@@ -284,7 +277,6 @@ contains
 
    !> Bring all tables to the disk and close them
    subroutine close_tables(tables, error)
-      !> The tables
       type(result_tables_t), intent(inout) :: tables
       !> Allocated if they cannot be written
       type(error_t), allocatable, intent(inout) :: error
@@ -298,7 +290,6 @@ contains
 
    !> Values of the swept parameters that have no column of their own, each with a comma behind it
    function swept_fields(deck, number) result(fields)
-      !> The deck
       type(deck_t), intent(in) :: deck
       !> Number of the case
       integer, intent(in) :: number
@@ -343,13 +334,11 @@ contains
    !> Write the rows of one case, of which pictures, points and proofs are written already: how many
    !> bytes they are, and last that of results.csv, so that a case with a row is whole
    subroutine write_case(tables, row, joint_row, blocks, remark, error)
-      !> The tables
       type(result_tables_t), intent(inout) :: tables
       !> Row of the case
       type(result_row_t), intent(in) :: row
       !> Rows of its joints
       type(joint_row_t), intent(in) :: joint_row(:)
-      !> Its blocks
       type(told_blocks_t), intent(in) :: blocks
       !> What goes to the log
       character(len=*), intent(in) :: remark

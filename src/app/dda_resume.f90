@@ -106,7 +106,6 @@ contains
 
    !> Add the bytes that each case has in a table, and the check sums of its lines
    subroutine add_bytes(this, bytes)
-      !> The table
       type(result_table_t), intent(in) :: this
       !> Bytes and sum: (2, n)
       integer(int64), intent(inout) :: bytes(:, :)
@@ -131,7 +130,6 @@ contains
 
    !> Read which cases have a whole row in results.csv
    subroutine read_results(this, length, whole, finished)
-      !> The table
       type(result_table_t), intent(in) :: this
       !> Length up to which its rows count [bytes]
       integer(int64), intent(in) :: length

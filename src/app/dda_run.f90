@@ -69,7 +69,6 @@ contains
       type(command_t), intent(in) :: command
       !> Number of the deck
       integer, intent(in) :: number
-      !> The deck
       type(deck_t), intent(out) :: deck
       !> Allocated if it is not to be run
       type(error_t), allocatable, intent(out) :: error
@@ -178,7 +177,6 @@ contains
       type(command_t), intent(in) :: command
       !> Name of the deck
       character(len=*), intent(in) :: name
-      !> The deck
       type(deck_t), intent(in) :: deck
       !> Number of cases
       integer, intent(in) :: total

@@ -131,7 +131,6 @@ contains
       type(deck_t), intent(inout) :: case_of_deck
       !> Where the results go
       type(result_tables_t), intent(in) :: tables
-      !> The case
       type(case_t), intent(out) :: this
       type(error_t), allocatable :: problem
 
@@ -184,7 +183,6 @@ contains
       type(deck_t), intent(in) :: deck
       !> Number of the case
       integer, intent(in) :: number
-      !> The case
       type(case_t), intent(in) :: this
       !> Where the results go
       type(result_tables_t), intent(inout) :: tables

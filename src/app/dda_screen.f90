@@ -26,7 +26,6 @@ contains
 
    !> Take over standard output; one that is closed is no failure: nobody wants to read it
    subroutine open_screen(screen)
-      !> The screen
       type(screen_t), intent(out) :: screen
       type(error_t), allocatable :: error
 
@@ -51,7 +50,6 @@ contains
 
    !> Print one line
    subroutine print_line(screen, line)
-      !> The screen
       type(screen_t), intent(in) :: screen
       !> The line
       character(len=*), intent(in) :: line
@@ -61,7 +59,6 @@ contains
 
    !> Print text as it is; whatever fails is reported when the screen is closed
    subroutine print_text(screen, text)
-      !> The screen
       type(screen_t), intent(in) :: screen
       !> The text
       character(len=*), intent(in) :: text
@@ -74,7 +71,6 @@ contains
    !> Columns that a line of a table may have: those of the terminal, or where it does not know,
    !> what the environment says
    integer function screen_width(screen)
-      !> The screen
       type(screen_t), intent(in) :: screen
       character(len=12) :: text
       integer :: stat
@@ -91,7 +87,6 @@ contains
 
    !> End printing
    subroutine close_screen(screen, error)
-      !> The screen
       type(screen_t), intent(inout) :: screen
       !> Allocated if anything could not be printed
       type(error_t), allocatable, intent(out) :: error

@@ -55,7 +55,6 @@ contains
 
    !> Corners of the arch's sections from the crown to the springing
    pure subroutine half_sections(shape, angle, is_joint)
-      !> The arch
       type(arch_shape_t), intent(in) :: shape
       !> Angles of all sections from the crown, the first >= 0: (m) [rad]
       real(wp), allocatable, intent(out) :: angle(:)
@@ -95,7 +94,6 @@ contains
    !> Directions of the sections of the left half, seen from the centre, from the springing to the
    !> crown
    pure subroutine left_directions(shape, direction, is_joint)
-      !> The arch
       type(arch_shape_t), intent(in) :: shape
       !> Unit vectors; the last is the crown's if there is a section: (2, m)
       real(wp), allocatable, intent(out) :: direction(:, :)
@@ -118,7 +116,6 @@ contains
    !> Directions of the sections of the whole arch, seen from the centre, from the left springing to
    !> the right one; mirrored to the last bit
    pure subroutine section_directions(shape, direction, is_joint)
-      !> The arch
       type(arch_shape_t), intent(in) :: shape
       !> Unit vectors: (2, m)
       real(wp), allocatable, intent(out) :: direction(:, :)
@@ -142,7 +139,6 @@ contains
    !> Voussoirs from left to right, then the left and the right springing, which are fixed blocks;
    !> and the pairs of edges that lie together, from left to right
    pure subroutine arch_blocks(shape, material, system, edge_pair)
-      !> The arch
       type(arch_shape_t), intent(in) :: shape
       !> Material of the voussoirs
       type(material_t), intent(in) :: material

@@ -48,9 +48,7 @@ contains
 
    !> Make the blocks of a form
    pure subroutine assemble_arch(form, assembly, problem)
-      !> The form
       type(arch_form_t), intent(in) :: form
-      !> Its blocks
       type(arch_assembly_t), intent(out) :: assembly
       !> What makes no arch
       type(form_problem_t), intent(out) :: problem
@@ -81,7 +79,6 @@ contains
 
    !> Number of blocks that can move
    pure integer function n_movable(form)
-      !> The form
       type(arch_form_t), intent(in) :: form
 
       n_movable = form%spans*form%rings*form%voussoirs + form%courses*(form%spans - 1)
@@ -90,7 +87,6 @@ contains
 
    !> The voussoirs of one span
    pure subroutine add_voussoirs(form, sections, shift, span, assembly)
-      !> The form
       type(arch_form_t), intent(in) :: form
       !> Sections of the first span
       type(arch_sections_t), intent(in) :: sections
@@ -139,7 +135,6 @@ contains
 
    !> Piers, buttresses and what is fixed
    pure subroutine add_supports(form, sections, assembly, problem)
-      !> The form
       type(arch_form_t), intent(in) :: form
       !> Sections of the first span
       type(arch_sections_t), intent(in) :: sections
@@ -205,7 +200,6 @@ contains
 
    !> A pier from the ground up, in courses; the uppermost carries the springings
    pure subroutine add_pier(form, left, right, height, assembly, problem)
-      !> The form
       type(arch_form_t), intent(in) :: form
       !> Intrados and extrados of the springing of the arch on its left, or its upper left corner
       !> twice: (2, 2) [m]

@@ -64,9 +64,7 @@ contains
 
    !> Sections of an arch of any thickness
    pure subroutine arch_rays(numbers, rays)
-      !> The arch
       type(arch_numbers_t), intent(in) :: numbers
-      !> Its sections
       type(arch_rays_t), intent(out) :: rays
       logical, allocatable :: is_joint(:)
       integer :: b, i, n
@@ -102,7 +100,6 @@ contains
    !> Let the left half of an arch end on its plane of symmetry, where the direction is the mean of
    !> those on either side
    pure subroutine meet_plane(rays, is_joint)
-      !> The sections
       type(arch_rays_t), intent(inout) :: rays
       !> Which sections are joints; the plane counts as one
       logical, allocatable, intent(inout) :: is_joint(:)
@@ -155,13 +152,10 @@ contains
 
    !> The arch of one thickness ratio
    pure subroutine arch_chain(numbers, rays, thickness_ratio, chain)
-      !> The arch
       type(arch_numbers_t), intent(in) :: numbers
-      !> Its sections
       type(arch_rays_t), intent(in) :: rays
       !> Thickness over radius
       real(wp), intent(in) :: thickness_ratio
-      !> The chain
       type(chain_t), intent(out) :: chain
       real(wp) :: area, centre(2), radius, thickness, way(2)
       integer :: b, first, last, n
@@ -207,7 +201,6 @@ contains
    pure subroutine add_plane(rays, chain)
       !> Sections of the left half
       type(arch_rays_t), intent(in) :: rays
-      !> The chain
       type(chain_t), intent(inout) :: chain
       integer :: last
 

@@ -92,7 +92,6 @@ contains
 
    !> Length of the line [m]
    pure real(wp) function curve_length(curve)
-      !> The line
       type(curve_t), intent(in) :: curve
 
       curve_length = curve%length(size(curve%piece))
@@ -100,7 +99,6 @@ contains
 
    !> The place at a length along the line; at a bend, that of the left or of the right piece
    pure function station_at(curve, length, from_right) result(station)
-      !> The line
       type(curve_t), intent(in) :: curve
       !> Length from the left end [m]
       real(wp), intent(in) :: length
@@ -127,7 +125,6 @@ contains
 
    !> A point of a piece with its first two derivatives
    pure subroutine see_piece(piece, u, point, rate, bend)
-      !> The piece
       type(piece_t), intent(in) :: piece
       !> Parameter
       real(wp), intent(in) :: u
@@ -161,7 +158,6 @@ contains
 
    !> Length of a piece between two parameters [m]
    pure real(wp) function length_between(piece, from, to) result(length)
-      !> The piece
       type(piece_t), intent(in) :: piece
       !> First parameter
       real(wp), intent(in) :: from
@@ -189,7 +185,6 @@ contains
 
    !> Parameter of a piece at a length from its left end, by Newton's method
    pure real(wp) function parameter_at(piece, length, whole) result(u)
-      !> The piece
       type(piece_t), intent(in) :: piece
       !> The length [m]
       real(wp), intent(in) :: length

@@ -57,9 +57,7 @@ contains
 
    !> The line of a form: the intrados, or the middle of what is made by radius and angle
    pure subroutine form_curve(form, curve, problem)
-      !> The form
       type(arch_form_t), intent(in) :: form
-      !> Its line
       type(curve_t), intent(out) :: curve
       !> What makes no line
       type(form_problem_t), intent(out) :: problem
@@ -96,7 +94,6 @@ contains
 
    !> The line of a form by span and rise; the left springing is half a span left of the origin
    pure subroutine span_curve(form, curve, problem)
-      !> The form
       type(arch_form_t), intent(in) :: form
       !> Its line, with one piece
       type(curve_t), intent(inout) :: curve
@@ -145,7 +142,6 @@ contains
 
    !> A circular arc over springings that may lie at different heights
    pure subroutine add_arc(form, curve, problem)
-      !> The form
       type(arch_form_t), intent(in) :: form
       !> Receives the arc as its piece
       type(curve_t), intent(inout) :: curve
@@ -194,7 +190,6 @@ contains
 
    !> The three-centred arch whose radii differ by the least factor
    pure subroutine add_basket(form, curve, problem)
-      !> The form
       type(arch_form_t), intent(in) :: form
       !> Receives three arcs
       type(curve_t), intent(inout) :: curve
@@ -257,7 +252,6 @@ contains
 
    !> Where the crown is along the line: its highest point, or the middle of a flat one
    pure subroutine find_crown(form, curve)
-      !> The form
       type(arch_form_t), intent(in) :: form
       !> The line, measured
       type(curve_t), intent(inout) :: curve

@@ -29,9 +29,7 @@ contains
 
    !> The sections of a form
    pure subroutine arch_sections(form, sections, problem)
-      !> The form
       type(arch_form_t), intent(in) :: form
-      !> Its sections
       type(arch_sections_t), intent(out) :: sections
       !> What makes no arch
       type(form_problem_t), intent(out) :: problem
@@ -54,9 +52,7 @@ contains
 
    !> Lengths at which there are sections: joints of equal voussoirs, a bend, chords in between
    pure subroutine place_sections(form, curve, at, is_joint)
-      !> The form
       type(arch_form_t), intent(in) :: form
-      !> Its line
       type(curve_t), intent(in) :: curve
       !> The lengths, rising: (n) [m]
       real(wp), allocatable, intent(out) :: at(:)
@@ -83,9 +79,7 @@ contains
 
    !> Add sections up to a joint, so many that no chord spans too large an angle
    pure subroutine add_chords(form, curve, from, to, at, is_joint)
-      !> The form
       type(arch_form_t), intent(in) :: form
-      !> Its line
       type(curve_t), intent(in) :: curve
       !> Length where they begin, a section already [m]
       real(wp), intent(in) :: from
@@ -132,9 +126,7 @@ contains
 
    !> Ends of a section
    pure subroutine cut_section(form, curve, at, intrados, extrados)
-      !> The form
       type(arch_form_t), intent(in) :: form
-      !> Its line
       type(curve_t), intent(in) :: curve
       !> Length along the line [m]
       real(wp), intent(in) :: at
@@ -181,11 +173,8 @@ contains
    !> a catenary, the middle between the springings; of a flat arch, where its skewbacks meet. The
    !> joint of a flat arch reaches to the level extrados
    pure function from_centre(form, curve, station) result(across)
-      !> The form
       type(arch_form_t), intent(in) :: form
-      !> Its line
       type(curve_t), intent(in) :: curve
-      !> The place
       type(station_t), intent(in) :: station
       !> Direction; a unit vector but for flat arches: (2)
       real(wp) :: across(2)
@@ -225,7 +214,6 @@ contains
 
    !> Check that no two joints cross
    pure subroutine check_sections(sections, problem)
-      !> The sections
       type(arch_sections_t), intent(in) :: sections
       !> Joints that do
       type(form_problem_t), intent(inout) :: problem

@@ -19,7 +19,6 @@ contains
 
    !> Make an error
    pure subroutine fatal_error(error, message, file, line)
-      !> The failure
       type(error_t), allocatable, intent(out) :: error
       !> What was wanted and what was found
       character(len=*), intent(in) :: message
@@ -48,7 +47,6 @@ contains
 
    !> The line a user sees: FILE:LINE: error: message
    pure function error_line(error) result(line)
-      !> The failure
       type(error_t), intent(in) :: error
       !> One line of text
       character(len=:), allocatable :: line

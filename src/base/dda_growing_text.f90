@@ -37,7 +37,6 @@ contains
 
    !> The lines, parted by line ends, none behind the last
    pure function lines_of(lines) result(text)
-      !> The lines
       type(growing_text_t), intent(in) :: lines
       !> The text; empty if there are none
       character(len=:), allocatable :: text

@@ -20,7 +20,6 @@ contains
 
    !> A set without numbers
    pure subroutine new_key_set(set, most)
-      !> The set
       type(key_set_t), intent(out) :: set
       !> How many numbers it will hold at most
       integer, intent(in) :: most
@@ -35,7 +34,6 @@ contains
 
    !> Whether a number is in a set
    pure logical function has_key(set, key)
-      !> The set
       type(key_set_t), intent(in) :: set
       !> The number, above 0
       integer(int64), intent(in) :: key
@@ -55,7 +53,6 @@ contains
 
    !> Where a number is, or would be
    pure integer function place_of(set, key)
-      !> The set
       type(key_set_t), intent(in) :: set
       !> The number
       integer(int64), intent(in) :: key

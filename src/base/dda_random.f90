@@ -31,7 +31,6 @@ contains
       integer, intent(in) :: seed
       !> Number of the sequence among those of the seed
       integer, intent(in) :: stream
-      !> The generator
       type(random_t), intent(out) :: random
       integer(int64) :: x
       integer :: i, k
@@ -59,7 +58,6 @@ contains
 
    !> The next number between 0 and 1, neither of them
    pure subroutine draw(random, number)
-      !> The generator
       type(random_t), intent(inout) :: random
       !> The number
       real(wp), intent(out) :: number
@@ -76,7 +74,6 @@ contains
 
    !> The next number of the standard normal law (Box and Muller)
    pure subroutine draw_normal(random, number)
-      !> The generator
       type(random_t), intent(inout) :: random
       !> The number
       real(wp), intent(out) :: number

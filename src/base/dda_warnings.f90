@@ -28,7 +28,6 @@ contains
 
    !> Add a warning
    pure subroutine add_warning(warnings, message, file, line)
-      !> The list
       type(warnings_t), intent(inout) :: warnings
       !> What was found, and what was made of it
       character(len=*), intent(in) :: message
@@ -62,7 +61,6 @@ contains
 
    !> The line a user sees: FILE:LINE: warning: message
    pure function warning_line(warning) result(line)
-      !> The warning
       type(warning_t), intent(in) :: warning
       !> One line of text
       character(len=:), allocatable :: line

@@ -55,7 +55,6 @@ contains
 
    !> Time at the end of a case
    pure real(wp) function end_time(this, last)
-      !> The case
       type(case_t), intent(in) :: this
       !> Time of its last picture [s]
       real(wp), intent(in) :: last

@@ -79,9 +79,7 @@ contains
 
    !> Fill the columns of the proof
    pure subroutine tell_proof(proof, row)
-      !> The proof
       type(proof_t), intent(in) :: proof
-      !> The row
       type(result_row_t), intent(inout) :: row
 
       if (allocated(proof%force)) row%imbalance = some_number(proof%imbalance)
@@ -96,9 +94,7 @@ contains
 
    !> Fill the columns that are known before anything is computed
    pure subroutine describe(this, row)
-      !> The case
       type(case_t), intent(in) :: this
-      !> The row
       type(result_row_t), intent(inout) :: row
       character(len=:), allocatable :: searched
 
@@ -152,13 +148,10 @@ contains
 
    !> Tell a case that searches nothing
    pure subroutine tell_decision(this, row, joint_row, blocks, remark)
-      !> The case
       type(case_t), intent(in) :: this
-      !> Its row
       type(result_row_t), intent(inout) :: row
       !> Rows of the joints
       type(joint_row_t), allocatable, intent(inout) :: joint_row(:)
-      !> Its blocks
       type(told_blocks_t), intent(inout) :: blocks
       !> Why the verdict is undecided
       character(len=:), allocatable, intent(inout) :: remark
@@ -190,9 +183,7 @@ contains
 
    !> Tell the blocks at the end of a decision
    pure subroutine tell_end(this, blocks)
-      !> The case
       type(case_t), intent(in) :: this
-      !> Its blocks
       type(told_blocks_t), intent(inout) :: blocks
       logical :: moves
 
@@ -207,14 +198,11 @@ contains
 
    !> Tell the search of a case
    pure subroutine tell_search(this, row, joint_row, blocks, remark)
-      !> The case
       type(case_t), intent(in) :: this
-      !> Its row
       type(result_row_t), intent(inout) :: row
       !> Rows of the joints: of the decision nearest to critical that stands, else of that which
       !> falls
       type(joint_row_t), allocatable, intent(inout) :: joint_row(:)
-      !> Its blocks
       type(told_blocks_t), intent(inout) :: blocks
       !> Why the verdict is undecided
       character(len=:), allocatable, intent(inout) :: remark
@@ -251,11 +239,9 @@ contains
 
    !> Joints and blocks of the decision nearest to critical that stands, else of that which falls
    pure subroutine tell_nearest(this, joint_row, blocks)
-      !> The case
       type(case_t), intent(in) :: this
       !> Rows of the joints
       type(joint_row_t), allocatable, intent(inout) :: joint_row(:)
-      !> The blocks
       type(told_blocks_t), intent(inout) :: blocks
       type(scene_t) :: scene
       type(joint_t), allocatable :: joint(:)
@@ -285,7 +271,6 @@ contains
 
    !> Displacements of the blocks in the collapse nearest to critical
    pure subroutine tell_fall(fallen, scene, blocks)
-      !> The collapse
       type(decision_t), intent(in) :: fallen
       !> The scene that is told, at the value that stands if one does
       type(scene_t), intent(in) :: scene
@@ -305,7 +290,6 @@ contains
    pure subroutine tell_condition(outcome, row)
       !> How the decision ended
       type(outcome_t), intent(in) :: outcome
-      !> The row
       type(result_row_t), intent(inout) :: row
 
       if (outcome%condition > 0.0_wp .and. outcome%condition < huge(1.0_wp)) &
@@ -318,7 +302,6 @@ contains
    pure subroutine tell_bracket(critical, row)
       !> What was found
       type(critical_t), intent(in) :: critical
-      !> The row
       type(result_row_t), intent(inout) :: row
 
       real(wp) :: middle, half, off
@@ -353,11 +336,9 @@ contains
 
    !> Fill the columns of a collapse
    pure subroutine tell_mechanism(fallen, joint_angle_deg, row)
-      !> The collapse
       type(decision_t), intent(in) :: fallen
       !> Angle of each joint from the crown: (n_joint) [deg]
       real(wp), intent(in) :: joint_angle_deg(:)
-      !> The row
       type(result_row_t), intent(inout) :: row
       type(mechanism_t) :: mechanism
 

@@ -21,7 +21,6 @@ contains
    pure function frame_joint_rows(system, frame) result(row)
       !> The blocks, for their shapes
       type(block_system_t), intent(in) :: system
-      !> The picture
       type(frame_t), intent(in) :: frame
       !> The rows: (n_joint)
       type(frame_joint_row_t) :: row(size(frame%joint))
@@ -47,7 +46,6 @@ contains
 
    !> States of the two contacts of a joint: whether it slides is seen in the last step
    pure function contact_states(frame, joint) result(states)
-      !> The picture
       type(frame_t), intent(in) :: frame
       !> Number of the joint
       integer, intent(in) :: joint

@@ -18,7 +18,6 @@ contains
 
    !> Rows of all joints
    pure function joint_rows(contacts, joint_angle_deg, origin) result(row)
-      !> The contacts
       type(contacts_t), intent(in) :: contacts
       !> Angle of each joint from the crown, or none: (n_joint) or (0) [deg]
       real(wp), intent(in) :: joint_angle_deg(:)
@@ -49,13 +48,11 @@ contains
 
    !> Where a joint is, and the force that its first block puts on its second
    pure subroutine tell_forces(joint, force, origin, row)
-      !> The joint
       type(joint_t), intent(in) :: joint
       !> Its force N1, N2, T: (3) [N/m]
       real(wp), intent(in) :: force(3)
       !> Where the origin of the blocks' coordinates is: (2) [m]
       real(wp), intent(in) :: origin(2)
-      !> The row
       type(joint_row_t), intent(inout) :: row
 
       row%block = joint%block
@@ -113,7 +110,6 @@ contains
    pure integer function place_in(joints, joint, guess)
       !> The joints of the other run
       type(joint_t), intent(in) :: joints(:)
-      !> The joint
       type(joint_t), intent(in) :: joint
       !> Where it may be
       integer, intent(in) :: guess

@@ -30,7 +30,6 @@ contains
    pure subroutine decide_limerick(deck, decision, album)
       !> The deck of one case, checked
       type(deck_t), intent(in) :: deck
-      !> The decision
       type(decision_t), intent(out) :: decision
       !> Receives the ways of its points, if it has some
       type(album_t), intent(inout), optional :: album
@@ -67,7 +66,6 @@ contains
       integer, intent(in) :: frames
       !> Constants of the scheme
       type(limerick_constants_t), intent(in) :: constants
-      !> The album
       type(album_t), intent(inout) :: album
 
       album%interval = 0.0_wp
@@ -81,11 +79,8 @@ contains
 
    !> Run a model and keep its pictures
    pure subroutine run_with_pictures(deck, scene, model, run, outcome, album)
-      !> The deck
       type(deck_t), intent(in) :: deck
-      !> Its scene
       type(scene_t), intent(in) :: scene
-      !> The model
       type(limerick_model_t), intent(in) :: model
       !> The run as it ended
       type(limerick_run_t), intent(out) :: run
@@ -118,17 +113,11 @@ contains
 
    !> The scene's blocks and joints as a run has left them
    pure subroutine report_state(deck, scene, model, run, system, contacts)
-      !> The deck
       type(deck_t), intent(in) :: deck
-      !> Its scene
       type(scene_t), intent(in) :: scene
-      !> The model
       type(limerick_model_t), intent(in) :: model
-      !> The run
       type(limerick_run_t), intent(in) :: run
-      !> The blocks
       type(block_system_t), intent(out) :: system
-      !> Their joints
       type(contacts_t), intent(out) :: contacts
       integer :: n
 
@@ -146,7 +135,6 @@ contains
 
    !> Keep the ways of the measured points
    pure subroutine keep_ways(outcome, album)
-      !> The outcome
       type(limerick_outcome_t), intent(in) :: outcome
       !> Receives them
       type(album_t), intent(inout) :: album
@@ -191,7 +179,6 @@ contains
    pure subroutine tell_joints(scene, model, run, now, contacts)
       !> The scene at the beginning
       type(scene_t), intent(in) :: scene
-      !> The model
       type(limerick_model_t), intent(in) :: model
       !> The run at its end
       type(limerick_run_t), intent(in) :: run
@@ -220,7 +207,6 @@ contains
 
    !> Forces and open corners of the joints from the contacts between their blocks
    pure subroutine tell_forces(model, run, contacts)
-      !> The model
       type(limerick_model_t), intent(in) :: model
       !> The run at its end
       type(limerick_run_t), intent(in) :: run
@@ -255,7 +241,6 @@ contains
 
    !> The corner of a joint between two blocks that lies nearest to a point
    pure subroutine find_corner(contacts, block, point, joint, corner)
-      !> The joints
       type(contacts_t), intent(in) :: contacts
       !> Numbers of the blocks: (2)
       integer, intent(in) :: block(2)
@@ -286,11 +271,9 @@ contains
 
    !> Normal force and force along the edge on the edge's block
    pure function contact_force(model, run, contact) result(force)
-      !> The model
       type(limerick_model_t), intent(in) :: model
       !> The run at its end
       type(limerick_run_t), intent(in) :: run
-      !> A closed contact
       type(limerick_contact_t), intent(in) :: contact
       !> Compression, and force on the edge's block in the direction of slip: (2) [N/m]
       real(wp) :: force(2)

@@ -35,7 +35,6 @@ contains
       integer, intent(in) :: number
       !> Value of what is searched as text; empty if nothing is
       character(len=*), intent(in) :: value
-      !> The proof
       type(proof_t), intent(in) :: proof
       !> Rows, parted by line ends
       character(len=:), allocatable :: lines
@@ -65,7 +64,6 @@ contains
    pure subroutine add_held(start, proof, n, rows)
       !> First fields of a row
       character(len=*), intent(in) :: start
-      !> The proof
       type(proof_t), intent(in) :: proof
       !> Number of the last joint before them; theirs are added
       integer, intent(inout) :: n
@@ -94,7 +92,6 @@ contains
    pure subroutine add_bounded(start, proof, n, rows)
       !> First fields of a row
       character(len=*), intent(in) :: start
-      !> The proof
       type(proof_t), intent(in) :: proof
       !> Number of the last joint before them; theirs are added
       integer, intent(inout) :: n
@@ -124,7 +121,6 @@ contains
    pure subroutine add_bars(start, proof, rows)
       !> First fields of a row
       character(len=*), intent(in) :: start
-      !> The proof
       type(proof_t), intent(in) :: proof
       !> Receives the rows
       type(growing_text_t), intent(inout) :: rows
@@ -149,7 +145,6 @@ contains
       integer, intent(in) :: number
       !> Value of what is searched as text; empty if nothing is
       character(len=*), intent(in) :: value
-      !> The proof
       type(proof_t), intent(in) :: proof
       !> Rows, parted by line ends
       character(len=:), allocatable :: lines

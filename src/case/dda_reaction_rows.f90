@@ -57,7 +57,6 @@ contains
 
    !> Reactions of blocks at rest
    pure subroutine find_reactions(this, time, support, reaction)
-      !> The case
       type(case_t), intent(in) :: this
       !> Time of the loads [s]
       real(wp), intent(in) :: time
@@ -83,11 +82,9 @@ contains
    !> Reactions of the points of a block: what its joints and loads leave to them, shared by the
    !> least forces
    pure subroutine share_among_points(settings, system, contacts, time, support, block, reaction)
-      !> Settings of the run
       type(settings_t), intent(in) :: settings
       !> The blocks at rest
       type(block_system_t), intent(in) :: system
-      !> The contacts
       type(contacts_t), intent(in) :: contacts
       !> Time of the loads [s]
       real(wp), intent(in) :: time
@@ -183,9 +180,7 @@ contains
 
    !> Sum of all loads on a block, and their moment about the origin of coordinates
    pure function outer_force(settings, system, time, block) result(wrench)
-      !> Settings of the run
       type(settings_t), intent(in) :: settings
-      !> The blocks
       type(block_system_t), intent(in) :: system
       !> The time [s]
       real(wp), intent(in) :: time

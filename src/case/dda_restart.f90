@@ -72,13 +72,9 @@ contains
    subroutine save_restart(file, settings, system, contacts, march, error)
       !> Name of the file
       character(len=*), intent(in) :: file
-      !> Settings of the run
       type(settings_t), intent(in) :: settings
-      !> The blocks
       type(block_system_t), intent(in) :: system
-      !> The contacts
       type(contacts_t), intent(in) :: contacts
-      !> The march
       type(march_t), intent(in) :: march
       !> Allocated if it cannot be written
       type(error_t), allocatable, intent(out) :: error
@@ -115,11 +111,9 @@ contains
    subroutine load_restart(file, settings, system, contacts, march, error)
       !> Name of the file
       character(len=*), intent(in) :: file
-      !> Settings of the run
       type(settings_t), intent(in) :: settings
       !> The blocks at their beginning in, those of the file out
       type(block_system_t), intent(inout) :: system
-      !> The contacts likewise
       type(contacts_t), intent(inout) :: contacts
       !> The march of the file
       type(march_t), intent(out) :: march
@@ -173,11 +167,8 @@ contains
 
    !> What a file must have in common with the run that goes on from it
    pure function owner_of(settings, system, contacts) result(owner)
-      !> Settings of the run
       type(settings_t), intent(in) :: settings
-      !> The blocks
       type(block_system_t), intent(in) :: system
-      !> The contacts
       type(contacts_t), intent(in) :: contacts
       !> The first of its whole numbers: (5)
       integer(int32) :: owner(5)
@@ -200,11 +191,9 @@ contains
 
    !> Check what a file says of its owner and of its lengths
    pure subroutine check_counts(settings, system, contacts, whole, n_number, fault)
-      !> Settings of the run
       type(settings_t), intent(in) :: settings
       !> The blocks at their beginning
       type(block_system_t), intent(in) :: system
-      !> The contacts likewise
       type(contacts_t), intent(in) :: contacts
       !> Whole numbers of the file: (:)
       integer(int32), intent(in) :: whole(:)
@@ -295,7 +284,6 @@ contains
    !> Put the blocks where they were; where blocks move, their corners and stresses are made from
    !> their motion, as each step makes them
    pure subroutine take_blocks(settings, state, system, fault)
-      !> Settings of the run
       type(settings_t), intent(in) :: settings
       !> The state, finite
       type(state_t), intent(in) :: state
@@ -367,13 +355,10 @@ contains
 
    !> The march of a file
    pure subroutine take_march(settings, contacts, state, march, fault)
-      !> Settings of the run
       type(settings_t), intent(in) :: settings
-      !> The contacts
       type(contacts_t), intent(in) :: contacts
       !> The state, finite
       type(state_t), intent(in) :: state
-      !> The march
       type(march_t), intent(out) :: march
       !> What is wrong; left as it is if nothing is
       character(len=*), intent(inout) :: fault

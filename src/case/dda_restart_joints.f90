@@ -23,9 +23,7 @@ contains
 
    !> Joints as numbers
    pure subroutine pack_joints(system, contacts, whole, number)
-      !> The blocks
       type(block_system_t), intent(in) :: system
-      !> The contacts
       type(contacts_t), intent(in) :: contacts
       !> Their whole numbers: (n_joint_whole, n_joint)
       integer(int32), allocatable, intent(out) :: whole(:, :)
@@ -52,7 +50,6 @@ contains
    !> Joints from numbers that are finite: found ones made anew where blocks move, given ones with
    !> the state that they had
    pure subroutine unpack_joints(settings, system, whole, number, contacts, sound)
-      !> Settings of the run
       type(settings_t), intent(in) :: settings
       !> The blocks where they are
       type(block_system_t), intent(in) :: system
@@ -98,7 +95,6 @@ contains
 
    !> Joints that a search had found, where the blocks are
    pure subroutine make_joints(system, contacts, whole, number, joint, sound)
-      !> The blocks
       type(block_system_t), intent(in) :: system
       !> Hold the laws
       type(contacts_t), intent(in) :: contacts
@@ -145,7 +141,6 @@ contains
 
    !> Whether numbers are those of a joint of two blocks, of which one moves
    pure logical function is_joint(system, outline, whole, number)
-      !> The blocks
       type(block_system_t), intent(in) :: system
       !> Their corners by number
       type(outline_t), intent(in) :: outline

@@ -53,7 +53,6 @@ contains
 
    !> Check that live loads act on blocks that move, and that the load factor has loads
    pure subroutine check_live_cases(deck, error)
-      !> The deck
       type(deck_t), intent(in) :: deck
       !> What cannot be
       type(error_t), allocatable, intent(out) :: error
@@ -90,7 +89,6 @@ contains
 
    !> Whether a file of blocks leads a point
    pure logical function leads_points(deck)
-      !> The deck
       type(deck_t), intent(in) :: deck
       integer :: i
 
@@ -106,7 +104,6 @@ contains
 
    !> Where a factor is given, swept or searched
    pure function factor_place(deck, name) result(place)
-      !> The deck
       type(deck_t), intent(in) :: deck
       !> Its key in &load
       character(len=*), intent(in) :: name
@@ -210,7 +207,6 @@ contains
 
    !> Check the file that a run goes on from: a single case must be able to, of many each finds out
    subroutine check_start(deck, error)
-      !> The deck
       type(deck_t), intent(in) :: deck
       !> No file, or one that a single case cannot go on from
       type(error_t), allocatable, intent(out) :: error
@@ -237,7 +233,6 @@ contains
    pure subroutine check_loads(deck, scene, error)
       !> The deck of a case
       type(deck_t), intent(in) :: deck
-      !> Its scene
       type(scene_t), intent(in) :: scene
       !> Allocated if nothing does
       type(error_t), allocatable, intent(out) :: error
@@ -266,7 +261,6 @@ contains
    pure subroutine check_support(deck, scene, error)
       !> The deck of a case
       type(deck_t), intent(in) :: deck
-      !> Its scene
       type(scene_t), intent(in) :: scene
       !> Allocated if nothing holds a block
       type(error_t), allocatable, intent(out) :: error
@@ -314,7 +308,6 @@ contains
    pure subroutine check_widths(deck, scene, error)
       !> The deck of a case
       type(deck_t), intent(in) :: deck
-      !> Its scene
       type(scene_t), intent(in) :: scene
       !> Allocated if a joint has no width
       type(error_t), allocatable, intent(out) :: error
@@ -336,7 +329,6 @@ contains
    pure subroutine doubt_scene(deck, scene, warnings)
       !> The deck of a case
       type(deck_t), intent(in) :: deck
-      !> Its scene
       type(scene_t), intent(in) :: scene
       !> Receives the warnings
       type(warnings_t), intent(inout) :: warnings
@@ -358,7 +350,6 @@ contains
    pure subroutine doubt_units(deck, scene, warnings)
       !> The deck of a case
       type(deck_t), intent(in) :: deck
-      !> Its scene
       type(scene_t), intent(in) :: scene
       !> Receives the warning
       type(warnings_t), intent(inout) :: warnings

@@ -14,7 +14,6 @@ contains
 
    !> Tell the blocks as they are at the beginning
    pure subroutine tell_blocks(scene, blocks)
-      !> The scene
       type(scene_t), intent(in) :: scene
       !> The blocks, without displacements
       type(told_blocks_t), intent(out) :: blocks
@@ -71,7 +70,6 @@ contains
 
    !> Displacements at the end of a run
    pure subroutine tell_total_motion(system, moves, blocks)
-      !> The blocks at the end
       type(block_system_t), intent(in) :: system
       !> Whether corners follow the motion; otherwise displacements are small
       logical, intent(in) :: moves
@@ -87,7 +85,6 @@ contains
 
    !> Displacements of all corners in a motion without second-order terms
    pure function small_displacements(system, motion) result(displacement)
-      !> The blocks
       type(block_system_t), intent(in) :: system
       !> Motion of all blocks: (6, n_block)
       real(wp), intent(in) :: motion(:, :)

@@ -88,7 +88,6 @@ contains
       type(deck_t), intent(in) :: deck
       !> Its scene with a vehicle anywhere
       type(scene_t), intent(in) :: scene
-      !> The bridge
       type(bridge_t), intent(out) :: bridge
       type(arch_assembly_t) :: assembly
       type(form_problem_t) :: problem
@@ -117,7 +116,6 @@ contains
    !> Whether a bridge stands without live loads, and without leaning against fill, which could only
    !> help
    pure logical function stands_alone(scene)
-      !> The scene
       type(scene_t), intent(in) :: scene
       type(load_decision_t) :: decision
       type(joint_graph_t) :: graph
@@ -134,7 +132,6 @@ contains
    !> Stretches of the road along which the loads change smoothly and the bridge leans against the
    !> same fill
    pure function stretches(bridge) result(at)
-      !> The bridge
       type(bridge_t), intent(in) :: bridge
       !> Beginning and end of each, one after the other: (2 n) [m]
       real(wp), allocatable :: at(:)
@@ -163,7 +160,6 @@ contains
 
    !> Position between two others at which the bridge begins to lean against other fill
    pure real(wp) function turning_point(bridge, from, to) result(middle)
-      !> The bridge
       type(bridge_t), intent(in) :: bridge
       !> The two positions [m]
       real(wp), intent(in) :: from, to
@@ -183,7 +179,6 @@ contains
 
    !> Whether the bridge leans against the same fill at two positions
    pure logical function lean_alike(bridge, one, other)
-      !> The bridge
       type(bridge_t), intent(in) :: bridge
       !> The two positions [m]
       real(wp), intent(in) :: one, other
@@ -217,7 +212,6 @@ contains
 
    !> Loads of the vehicle at a position
    pure function axles_at(bridge, position) result(axles)
-      !> The bridge
       type(bridge_t), intent(in) :: bridge
       !> The position [m]
       real(wp), intent(in) :: position
@@ -232,7 +226,6 @@ contains
 
    !> Seek the least factor on stretches on which the bridge leans against the same fill
    pure subroutine seek_on_side(bridge, at, least)
-      !> The bridge
       type(bridge_t), intent(in) :: bridge
       !> Beginning and end of each stretch: (2 n) [m]
       real(wp), intent(in) :: at(:)
@@ -258,7 +251,6 @@ contains
 
    !> Live loads with the vehicle on a stretch
    pure function arc_of(bridge, from, to, other) result(arc)
-      !> The bridge
       type(bridge_t), intent(in) :: bridge
       !> Beginning and end of the stretch [m]
       real(wp), intent(in) :: from, to

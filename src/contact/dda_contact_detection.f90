@@ -46,7 +46,6 @@ contains
    !> Joints of the pairs of edges that lie together in the reference shape, closed and free of
    !> force
    pure subroutine find_contacts(system, edge_pair, law, penalty_ratio, n_dof, contacts)
-      !> The blocks
       type(block_system_t), intent(in) :: system
       !> Block and edge, block and edge of each joint: (4, n_joint)
       integer, intent(in) :: edge_pair(:, :)
@@ -56,7 +55,6 @@ contains
       real(wp), intent(in) :: penalty_ratio
       !> Unknowns of one block
       integer, intent(in) :: n_dof
-      !> The contacts
       type(contacts_t), intent(out) :: contacts
       type(joint_t), allocatable :: joint(:)
       integer :: j
@@ -70,7 +68,6 @@ contains
 
    !> Take these joints, closed, whole and free of force
    pure subroutine set_joints(system, motion, joint, penalty_ratio, n_dof, contacts)
-      !> The blocks
       type(block_system_t), intent(in) :: system
       !> How they have moved where the joints are placed: (6, n_block)
       real(wp), intent(in) :: motion(:, :)
@@ -100,7 +97,6 @@ contains
 
    !> Keep some of the joints with what they carry; blocks may have other numbers in the equations
    pure subroutine keep_contacts(system, kept, penalty_ratio, n_dof, contacts)
-      !> The blocks
       type(block_system_t), intent(in) :: system
       !> Which: (n_joint)
       logical, intent(in) :: kept(:)
@@ -108,7 +104,6 @@ contains
       real(wp), intent(in) :: penalty_ratio
       !> Unknowns of one block
       integer, intent(in) :: n_dof
-      !> The contacts
       type(contacts_t), intent(inout) :: contacts
       type(contacts_t) :: old
       type(joint_t), allocatable :: joint(:)
@@ -134,7 +129,6 @@ contains
 
    !> Bounds of the forces by what is left of the joints' strength
    pure subroutine set_strength(contacts)
-      !> The contacts
       type(contacts_t), intent(inout) :: contacts
       integer :: j
 
@@ -147,7 +141,6 @@ contains
    !> Joints where the blocks are now: rows anew, openings measured, and the forces of the step
    !> before as multipliers, so that the springs only carry what changes
    pure subroutine follow_contacts(system, penalty_ratio, n_dof, contacts)
-      !> The blocks
       type(block_system_t), intent(in) :: system
       !> Contact stiffness over the stiffness of the block across the joint
       real(wp), intent(in) :: penalty_ratio

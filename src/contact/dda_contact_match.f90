@@ -33,7 +33,6 @@ contains
 
    !> Keys of contacts
    pure function contact_keys(system, contact) result(key)
-      !> The blocks
       type(block_system_t), intent(in) :: system
       !> The contacts: (n)
       type(contact_t), intent(in) :: contact(:)
@@ -51,7 +50,6 @@ contains
    !> Find for each contact the one of the step before that it goes on: the same corner and edge, or
    !> else the nearest of the same two blocks
    pure subroutine match_contacts(system, joint, reach, past, source)
-      !> The blocks
       type(block_system_t), intent(in) :: system
       !> The joints
       type(joint_t), intent(in) :: joint(:)
@@ -108,7 +106,6 @@ contains
 
    !> The nearest contact of the same blocks that none has taken over and that carried a force, or 0
    pure integer function next_contact(system, past, order, past_pair, contact, pair, reach)
-      !> The blocks
       type(block_system_t), intent(in) :: system
       !> The contacts of the step before
       type(past_contact_t), intent(in) :: past(:)

@@ -37,7 +37,6 @@ contains
 
    !> Search for the joints of a system
    pure function new_joint_search(system, law) result(search)
-      !> The blocks
       type(block_system_t), intent(in) :: system
       !> Law of the joints between two materials: (n_material, n_material)
       type(joint_law_t), intent(in) :: law(:, :)
@@ -50,7 +49,6 @@ contains
 
    !> Look everywhere again: blocks have come or gone
    pure subroutine forget_pairs(search)
-      !> The search
       type(joint_search_t), intent(inout) :: search
 
       search%near = edge_pairs_t()
@@ -58,9 +56,7 @@ contains
 
    !> Joints of blocks that touch in the reference shape
    pure subroutine touching_joints(search, system, joint)
-      !> The search
       type(joint_search_t), intent(in) :: search
-      !> The blocks
       type(block_system_t), intent(in) :: system
       !> The joints, in the order of their blocks: (n_joint)
       type(joint_t), allocatable, intent(out) :: joint(:)
@@ -78,7 +74,6 @@ contains
    !> The least reach of all blocks that a block meets, its own among them: a sheet between two
    !> blocks is thicker than its own reach, not than theirs
    pure function least_beside(system, reach) result(least)
-      !> The blocks
       type(block_system_t), intent(in) :: system
       !> How far each block can reach: (n_block) [m]
       real(wp), intent(in) :: reach(:)
@@ -106,9 +101,7 @@ contains
 
    !> Look around for edges that may come near one another in this step and those that follow
    pure subroutine look_around(search, system, reach)
-      !> The search
       type(joint_search_t), intent(inout) :: search
-      !> The blocks
       type(block_system_t), intent(in) :: system
       !> Most that the corners of each block may move in this step: (n_block) [m]
       real(wp), intent(in) :: reach(:)
@@ -119,9 +112,7 @@ contains
 
    !> Joints of blocks that touch where they are now, or come as near as they may in a step
    pure subroutine near_joints(search, system, travel, closed, reach, in_time, joint)
-      !> The search
       type(joint_search_t), intent(in) :: search
-      !> The blocks
       type(block_system_t), intent(in) :: system
       !> How the corners are about to move; only directions and ratios count: (2, n_vertex) [m]
       real(wp), intent(in) :: travel(:, :)
@@ -144,7 +135,6 @@ contains
 
    !> Drop the pairs of edges of blocks that are not there
    pure subroutine drop_absent(search, block, pair)
-      !> The search
       type(joint_search_t), intent(in) :: search
       !> Block of each edge: (n_vertex)
       integer, intent(in) :: block(:)
@@ -158,9 +148,7 @@ contains
 
    !> Joints of all pairs of blocks whose edges come near one another
    pure subroutine find_joints(search, system, reach, near, joint, beside)
-      !> The search
       type(joint_search_t), intent(in) :: search
-      !> The blocks
       type(block_system_t), intent(in) :: system
       !> How far each block can reach; of two the smaller counts at the beginning, later the sum:
       !> (n_block) [m]

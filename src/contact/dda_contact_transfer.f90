@@ -24,7 +24,6 @@ contains
 
    !> Contacts of blocks that touch in the reference shape: closed, whole and free of force
    pure subroutine search_contacts(system, penalty_ratio, n_dof, contacts)
-      !> The blocks
       type(block_system_t), intent(in) :: system
       !> Contact stiffness over the stiffness of the block across the joint
       real(wp), intent(in) :: penalty_ratio
@@ -50,7 +49,6 @@ contains
 
    !> Contacts where the blocks are now; their springs carry what openings and slip make of them
    pure subroutine renew_contacts(system, travel, reach, penalty_ratio, n_dof, contacts)
-      !> The blocks
       type(block_system_t), intent(in) :: system
       !> How the corners are about to move; only directions and ratios count: (2, n_vertex) [m]
       real(wp), intent(in) :: travel(:, :)
@@ -99,7 +97,6 @@ contains
 
    !> The contacts of the step before in the order of their keys, and the keys of the closed ones
    pure subroutine list_past(system, contacts, past, closed)
-      !> The blocks
       type(block_system_t), intent(in) :: system
       !> The contacts of the step before
       type(contacts_t), intent(in) :: contacts
@@ -141,7 +138,6 @@ contains
 
       !> Whether a contact of the step before carried a force or touched
       pure logical function is_closed(old)
-         !> The contact
          type(past_contact_t), intent(in) :: old
 
          is_closed = .not. contacts%face(old%joint)%open(old%place)
@@ -150,7 +146,6 @@ contains
 
    !> Let a joint start with the slip that its contacts had, and measure it where it is closed
    pure subroutine take_over_slip(system, past, source, in_time, joint)
-      !> The blocks
       type(block_system_t), intent(in) :: system
       !> The contacts of the step before
       type(past_contact_t), intent(in) :: past(:)
@@ -158,7 +153,6 @@ contains
       integer, intent(in) :: source(2)
       !> Whether blocks move in time: then each step allows anew for what lies inside
       logical, intent(in) :: in_time
-      !> The joint
       type(joint_t), intent(inout) :: joint
       real(wp) :: gap(3), apart(2), length
       integer :: k
@@ -187,7 +181,6 @@ contains
 
    !> Let the shear force stay the same where the stiffness does not
    pure subroutine keep_shear(system, past, source, stiffness, joint)
-      !> The blocks
       type(block_system_t), intent(in) :: system
       !> The contacts of the step before
       type(past_contact_t), intent(in) :: past(:)
@@ -195,7 +188,6 @@ contains
       integer, intent(in) :: source(2)
       !> Stiffness now [N/m per metre depth]
       real(wp), intent(in) :: stiffness
-      !> The joint
       type(joint_t), intent(inout) :: joint
       integer :: k
 
@@ -211,9 +203,7 @@ contains
    !> Let a corner that is inside its neighbour go no deeper, and come out slowly: pushing it out
    !> would bring in energy
    pure subroutine stay_inside(system, joint, gap)
-      !> The blocks
       type(block_system_t), intent(in) :: system
-      !> The joint
       type(joint_t), intent(inout) :: joint
       !> Opening at the two contacts, and slip: (3) [m]
       real(wp), intent(inout) :: gap(3)
@@ -230,11 +220,9 @@ contains
 
    !> Let a joint have no slip where it is
    pure subroutine lock_joint(system, vertex, joint)
-      !> The blocks
       type(block_system_t), intent(in) :: system
       !> Corners: (2, n_vertex) [m]
       real(wp), intent(in) :: vertex(:, :)
-      !> The joint
       type(joint_t), intent(inout) :: joint
       real(wp) :: edge(2)
       integer :: k
@@ -251,9 +239,7 @@ contains
 
    !> Length of a contact's edge where it is now [m]
    pure real(wp) function edge_size(system, contact)
-      !> The blocks
       type(block_system_t), intent(in) :: system
-      !> The contact
       type(contact_t), intent(in) :: contact
 
       edge_size = norm2(system%moved(:, vertex_number(system, contact%edge_block, &
@@ -295,7 +281,6 @@ contains
       integer, intent(in) :: source(2)
       !> Number of the joint
       integer, intent(in) :: j
-      !> The contacts
       type(contacts_t), intent(inout) :: contacts
 
       associate (face => contacts%face(j), trial => contacts%trial(:, j))

@@ -66,7 +66,6 @@ contains
 
    !> Place of a block's vertex among all vertices; counts on past the last vertex
    pure integer function vertex_number(system, block, vertex)
-      !> The blocks
       type(block_system_t), intent(in) :: system
       !> Number of the block
       integer, intent(in) :: block
@@ -82,7 +81,6 @@ contains
    elemental logical function same_joint(a, b)
       !> One joint
       type(joint_t), intent(in) :: a
-      !> The other
       type(joint_t), intent(in) :: b
 
       same_joint = all(a%block == b%block) .and. a%n_contact == b%n_contact &
@@ -95,7 +93,6 @@ contains
    !> Joint of two edges that coincide and run against each other: both vertices of the second
    !> block's edge touch the first block's edge
    pure function edge_to_edge_joint(system, edge_pair, law) result(joint)
-      !> The blocks
       type(block_system_t), intent(in) :: system
       !> Block and edge of the first, block and edge of the second: (4)
       integer, intent(in) :: edge_pair(4)
@@ -122,7 +119,6 @@ contains
 
    !> Where a joint is, and how far it is open
    pure subroutine place_joint(system, vertex, joint, gap)
-      !> The blocks
       type(block_system_t), intent(in) :: system
       !> Their corners: (2, n_vertex) [m]
       real(wp), intent(in) :: vertex(:, :)
@@ -169,11 +165,9 @@ contains
 
    !> How far the joint's second block has slipped at a contact, along the edges of the first
    pure real(wp) function slip_at(system, vertex, contact)
-      !> The blocks
       type(block_system_t), intent(in) :: system
       !> Their corners: (2, n_vertex) [m]
       real(wp), intent(in) :: vertex(:, :)
-      !> The contact
       type(contact_t), intent(in) :: contact
       real(wp) :: edge(2), way(2)
 

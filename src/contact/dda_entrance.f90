@@ -66,7 +66,6 @@ contains
 
    !> Add the joints of two blocks
    pure subroutine add_joints(near, edge_pair, reach, list)
-      !> The neighbourhood
       type(neighbourhood_t), intent(in) :: near
       !> Edges near one another, of the first block and of the second: (2, n_pair)
       integer, intent(in) :: edge_pair(:, :)
@@ -92,7 +91,6 @@ contains
 
    !> Join two edges that lie together: the overlap ends at a corner of the one or of the other
    pure subroutine join_edges(near, pair, reach, taken, list)
-      !> The neighbourhood
       type(neighbourhood_t), intent(in) :: near
       !> Edge of the first block, edge of the second: (2)
       integer, intent(in) :: pair(2)
@@ -147,7 +145,6 @@ contains
    !> Which corner ends the overlap of two edges: the inner one; where they have met, the one that
    !> touched before
    pure subroutine choose_end(near, of_first, of_second, ahead, zone, corner, edge)
-      !> The neighbourhood
       type(neighbourhood_t), intent(in) :: near
       !> Corner of the first block and edge of the second: (2)
       integer, intent(in) :: of_first(2)
@@ -175,7 +172,6 @@ contains
 
    !> Join a corner and an edge that it points to, away from the edge's own corners
    pure subroutine join_corner(near, corner, edge, edge_side, reach, taken, list)
-      !> The neighbourhood
       type(neighbourhood_t), intent(in) :: near
       !> Number of the corner
       integer, intent(in) :: corner
@@ -206,7 +202,6 @@ contains
    !> Join two corners: of the edges beside them, the one that the other corner would cross last is
    !> the entrance. Corners that touch and nothing else have none
    pure subroutine join_corners(near, pair, reach, taken, list)
-      !> The neighbourhood
       type(neighbourhood_t), intent(in) :: near
       !> Corner of the first block, corner of the second: (2)
       integer, intent(in) :: pair(2)
@@ -259,7 +254,6 @@ contains
    !> When a corner crosses the line of an edge, in lengths of its travel: never if it stays
    !> outside, before all times if it is inside and stays there
    pure real(wp) function crossing_time(near, corner, edge, view, slack)
-      !> The neighbourhood
       type(neighbourhood_t), intent(in) :: near
       !> Number of the corner
       integer, intent(in) :: corner
@@ -282,7 +276,6 @@ contains
 
    !> How near to the ends of an edge a corner has met them, where they stick out [m]
    pure function meeting_zone(near, corner, edge) result(zone)
-      !> The neighbourhood
       type(neighbourhood_t), intent(in) :: near
       !> Number of the corner
       integer, intent(in) :: corner
@@ -299,7 +292,6 @@ contains
 
    !> Whether a contact was closed before
    pure logical function was_closed(near, corner, edge)
-      !> The neighbourhood
       type(neighbourhood_t), intent(in) :: near
       !> Number of the corner
       integer, intent(in) :: corner
@@ -316,7 +308,6 @@ contains
 
    !> Add the joint of one corner and one edge
    pure subroutine add_single(near, corner, edge, edge_side, taken, list)
-      !> The neighbourhood
       type(neighbourhood_t), intent(in) :: near
       !> Number of the corner
       integer, intent(in) :: corner
@@ -343,7 +334,6 @@ contains
 
    !> A contact of a corner and an edge
    pure function new_contact(near, corner, edge, edge_side, length) result(contact)
-      !> The neighbourhood
       type(neighbourhood_t), intent(in) :: near
       !> Number of the corner
       integer, intent(in) :: corner
@@ -368,13 +358,11 @@ contains
 
    !> Put a joint into the list
    pure subroutine add_joint(near, pair, joint, list)
-      !> The neighbourhood
       type(neighbourhood_t), intent(in) :: near
       !> A corner or edge of the first block and one of the second: (2)
       integer, intent(in) :: pair(2)
       !> The joint; its blocks are set
       type(joint_t), intent(inout) :: joint
-      !> The list
       type(joint_list_t), intent(inout) :: list
       type(joint_t), allocatable :: longer(:)
 

@@ -59,7 +59,6 @@ contains
       real(wp), intent(in) :: trial(3)
       !> Admissible force: (3) [N/m]
       real(wp), intent(out) :: force(3)
-      !> Its face
       type(joint_face_t), intent(out) :: face
       real(wp) :: excess
 
@@ -90,7 +89,6 @@ contains
       real(wp), intent(in) :: trial(3)
       !> Admissible force: (3) [N/m]
       real(wp), intent(out) :: force(3)
-      !> Its face
       type(joint_face_t), intent(out) :: face
       real(wp) :: mu, multiplier, excess, high, low
 
@@ -132,7 +130,6 @@ contains
 
    !> Whether a face is the inside of the cone
    elemental logical function is_stuck(face)
-      !> The face
       type(joint_face_t), intent(in) :: face
 
       is_stuck = face%slip == 0 .and. .not. any(face%open)
@@ -142,7 +139,6 @@ contains
    pure subroutine apply_face(cone, face, tangent, constant)
       !> Bounds of the force
       type(cone_t), intent(in) :: cone
-      !> The face
       type(joint_face_t), intent(in) :: face
       !> Projector onto the face's directions: symmetric (3, 3)
       real(wp), intent(out) :: tangent(3, 3)

@@ -49,7 +49,6 @@ contains
 
    !> Springs of all joints
    pure subroutine new_joint_springs(system, motion, joint, penalty_ratio, n_dof, springs)
-      !> The blocks
       type(block_system_t), intent(in) :: system
       !> How they have moved where the joints are placed: (6, n_block)
       real(wp), intent(in) :: motion(:, :)
@@ -59,7 +58,6 @@ contains
       real(wp), intent(in) :: penalty_ratio
       !> Unknowns of one block
       integer, intent(in) :: n_dof
-      !> The springs
       type(joint_springs_t), intent(out) :: springs
       real(wp) :: centroid(2, size(system%area))
       integer :: j, n
@@ -86,7 +84,6 @@ contains
 
    !> What the joint sees of one block's unknowns
    pure function joint_rows(joint, side, centroid, motion, n_dof) result(row)
-      !> The joint
       type(joint_t), intent(in) :: joint
       !> 1 or 2, which of the joint's blocks
       integer, intent(in) :: side
@@ -117,11 +114,9 @@ contains
    !> size across it, t that along it; of given edges t is their length, of found ones l is twice
    !> the way from the centre
    pure function block_stiffness(system, centroid, joint) result(stiffness)
-      !> The blocks
       type(block_system_t), intent(in) :: system
       !> Their centres of gravity: (2, n_block) [m]
       real(wp), intent(in) :: centroid(:, :)
-      !> The joint
       type(joint_t), intent(in) :: joint
       !> The stiffness [N/m per metre depth]
       real(wp) :: stiffness
@@ -149,7 +144,6 @@ contains
    !> at the apex of the Mohr-Coulomb cone; a contact that has slid or parted has neither cohesion
    !> nor tension, and a joint of which none is whole its residual friction
    pure subroutine mohr_coulomb(joint, intact, cone, shift)
-      !> The joint
       type(joint_t), intent(in) :: joint
       !> Share that is left of each contact's strength: (2)
       real(wp), intent(in) :: intact(2)

@@ -48,7 +48,6 @@ contains
 
    !> The outline of a system
    pure function outline_of(system) result(outline)
-      !> The blocks
       type(block_system_t), intent(in) :: system
       !> The outline
       type(outline_t) :: outline
@@ -92,7 +91,6 @@ contains
 
    !> See a corner from an edge
    pure function view_corner(outline, vertex, corner, edge, reach) result(view)
-      !> The outline
       type(outline_t), intent(in) :: outline
       !> Corners: (2, n_vertex) [m]
       real(wp), intent(in) :: vertex(:, :)
@@ -120,7 +118,6 @@ contains
 
    !> Whether a corner is no notch
    pure logical function is_convex(outline, vertex, corner)
-      !> The outline
       type(outline_t), intent(in) :: outline
       !> Corners: (2, n_vertex) [m]
       real(wp), intent(in) :: vertex(:, :)
@@ -136,7 +133,6 @@ contains
 
    !> Unit vector along an edge
    pure function edge_direction(outline, vertex, edge) result(direction)
-      !> The outline
       type(outline_t), intent(in) :: outline
       !> Corners: (2, n_vertex) [m]
       real(wp), intent(in) :: vertex(:, :)
@@ -154,7 +150,6 @@ contains
 
    !> Length of an edge [m]
    pure real(wp) function edge_length(outline, vertex, edge)
-      !> The outline
       type(outline_t), intent(in) :: outline
       !> Corners: (2, n_vertex) [m]
       real(wp), intent(in) :: vertex(:, :)

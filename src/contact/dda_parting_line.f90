@@ -78,7 +78,6 @@ contains
    !> Add the one joint of two convex blocks: the other block's edge or corner before the line that
    !> parts them
    pure subroutine add_parted_joint(near, edge_pair, reach, list)
-      !> The neighbourhood
       type(neighbourhood_t), intent(in) :: near
       !> Edges near one another, of the first block and of the second: (2, n_pair)
       integer, intent(in) :: edge_pair(:, :)
@@ -105,7 +104,6 @@ contains
    !> The edge whose line parts two blocks: the one that did while they touched; else, of those that
    !> part them now, the one that the other block would cross last
    pure function parting_line(near, edge_pair, reach) result(best)
-      !> The neighbourhood
       type(neighbourhood_t), intent(in) :: near
       !> Edges near one another: (2, n_pair)
       integer, intent(in) :: edge_pair(:, :)
@@ -133,7 +131,6 @@ contains
 
    !> One edge and the other block
    pure function line_of(near, edge, block) result(line)
-      !> The neighbourhood
       type(neighbourhood_t), intent(in) :: near
       !> Number of the edge
       integer, intent(in) :: edge
@@ -166,9 +163,7 @@ contains
 
    !> Edge at the nearest corner of a line that looks at it most squarely
    pure integer function facing_edge(near, line)
-      !> The neighbourhood
       type(neighbourhood_t), intent(in) :: near
-      !> The line
       type(line_t), intent(in) :: line
       real(wp) :: direction(2)
 
@@ -184,7 +179,6 @@ contains
 
    !> Length of an edge [m]
    pure real(wp) function edge_size(near, edge)
-      !> The neighbourhood
       type(neighbourhood_t), intent(in) :: near
       !> Number of the edge
       integer, intent(in) :: edge

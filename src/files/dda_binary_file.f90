@@ -138,7 +138,6 @@ contains
    subroutine open_binary(name, file, error, keep)
       !> Name of the file; one that exists is replaced
       character(len=*), intent(in) :: name
-      !> The file
       type(binary_file_t), intent(out) :: file
       !> Allocated if it cannot be written
       type(error_t), allocatable, intent(out) :: error
@@ -170,7 +169,6 @@ contains
 
    !> The system's number of a file; negative for one that is not open
    integer function descriptor_of(file)
-      !> The file
       type(binary_file_t), intent(in) :: file
 
       descriptor_of = -1
@@ -179,7 +177,6 @@ contains
 
    !> Write so that all up to here survives the end of the program
    subroutine flush_binary(file, error)
-      !> The file
       type(binary_file_t), intent(in) :: file
       !> Allocated if anything could not be written since the file was opened
       type(error_t), allocatable, intent(out) :: error
@@ -205,7 +202,6 @@ contains
 
    !> Bytes written so far, 0 of a file that is not open
    integer(int64) function position_of(file)
-      !> The file
       type(binary_file_t), intent(in) :: file
 
       position_of = 0
@@ -230,7 +226,6 @@ contains
 
    !> Go on writing at another place; a place beyond the end is not for this
    subroutine go_to(file, place)
-      !> The file
       type(binary_file_t), intent(in) :: file
       !> Bytes before the place
       integer, intent(in) :: place
@@ -241,7 +236,6 @@ contains
 
    !> Write characters as they are
    subroutine append_text(file, text)
-      !> The file
       type(binary_file_t), intent(in) :: file
       !> The characters
       character(len=*), intent(in), target :: text
@@ -251,7 +245,6 @@ contains
 
    !> Write numbers in the machine's own form
    subroutine append_reals(file, values)
-      !> The file
       type(binary_file_t), intent(in) :: file
       !> The numbers: (:, :)
       real(wp), intent(in), target, contiguous :: values(:, :)
@@ -262,7 +255,6 @@ contains
 
    !> Write integers of 32 bits in the machine's own form
    subroutine append_integers(file, values)
-      !> The file
       type(binary_file_t), intent(in) :: file
       !> The integers: (:)
       integer(int32), intent(in), target, contiguous :: values(:)
@@ -273,7 +265,6 @@ contains
 
    !> Write one integer of 64 bits in the machine's own form
    subroutine append_length(file, length)
-      !> The file
       type(binary_file_t), intent(in) :: file
       !> The integer
       integer(int64), intent(in), target :: length

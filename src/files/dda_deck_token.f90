@@ -72,7 +72,6 @@ contains
 
    !> Text of a token: names in lower case, doubled quotes made single
    pure function token_text(scan, i) result(text)
-      !> A scanned text
       type(deck_scan_t), intent(in) :: scan
       !> Place of the token
       integer, intent(in) :: i

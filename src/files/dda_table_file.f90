@@ -52,7 +52,6 @@ contains
       character(len=*), intent(in) :: file
       !> First line
       character(len=*), intent(in) :: header
-      !> The table
       type(table_file_t), intent(out) :: table
       !> Allocated if the file cannot be written
       type(error_t), allocatable, intent(out) :: error
@@ -63,7 +62,6 @@ contains
 
    !> Write one line, or several, so that it survives the end of the program; nothing is no line
    subroutine append_line(table, line, error)
-      !> The table
       type(table_file_t), intent(inout) :: table
       !> The line
       character(len=*), intent(in) :: line
@@ -88,7 +86,6 @@ contains
 
    !> Length of an open table, 0 of one that is not open [bytes]
    integer(int64) function length_of(table)
-      !> The table
       type(table_file_t), intent(in) :: table
 
       length_of = position_of(table%file)
@@ -96,7 +93,6 @@ contains
 
    !> Check sum of the lines that were appended to a table since it was opened, modulo 2**32
    pure integer(int64) function sum_of(table)
-      !> The table
       type(table_file_t), intent(in) :: table
 
       sum_of = table%lines
@@ -120,7 +116,6 @@ contains
       character(len=*), intent(in) :: file
       !> First line
       character(len=*), intent(in) :: header
-      !> The table
       type(table_file_t), intent(out) :: table
       !> Allocated if the file cannot be written
       type(error_t), allocatable, intent(out) :: error
@@ -140,7 +135,6 @@ contains
 
    !> Write one line that need not be safe yet
    subroutine keep_line(table, line)
-      !> The table
       type(table_file_t), intent(in) :: table
       !> The line
       character(len=*), intent(in) :: line
@@ -152,7 +146,6 @@ contains
    subroutine settle_part(file, table, error)
       !> Name of the table
       character(len=*), intent(in) :: file
-      !> The table
       type(table_file_t), intent(in) :: table
       !> Allocated if the file cannot be written
       type(error_t), allocatable, intent(out) :: error

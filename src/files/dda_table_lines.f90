@@ -30,7 +30,6 @@ contains
    subroutine open_lines(file, lines, most)
       !> Name of the file
       character(len=*), intent(in) :: file
-      !> Its lines
       type(table_lines_t), intent(out) :: lines
       !> How much of it is read at most [bytes]; all of it without this
       integer(int64), intent(in), optional :: most
@@ -46,7 +45,6 @@ contains
 
    !> The next line that has its end; what follows the last line end was cut off and is no line
    subroutine next_line(lines, line, found)
-      !> The lines
       type(table_lines_t), intent(inout) :: lines
       !> The line without its end
       character(len=:), allocatable, intent(out) :: line
@@ -69,7 +67,6 @@ contains
 
    !> Read more of the file
    subroutine read_ahead(lines)
-      !> The lines
       type(table_lines_t), intent(inout) :: lines
       character(len=:), allocatable :: more
       integer :: stat
@@ -87,7 +84,6 @@ contains
 
    !> End reading
    subroutine close_lines(lines)
-      !> The lines
       type(table_lines_t), intent(inout) :: lines
 
       if (lines%is_open) close (lines%unit)

@@ -54,7 +54,6 @@ contains
       character(len=*), intent(in) :: file
       !> Line of the file where the text begins
       integer, intent(in) :: first_row
-      !> The words
       type(word_list_t), intent(out) :: words
       !> Characters that part words besides blanks, tabs and line ends
       character(len=*), intent(in), optional :: also_blank
@@ -91,7 +90,6 @@ contains
 
    !> Number of words that were not taken
    pure integer function words_left(words)
-      !> The words
       type(word_list_t), intent(in) :: words
 
       words_left = words%n - words%next + 1
@@ -99,7 +97,6 @@ contains
 
    !> The next word, which stays
    pure function this_word(words) result(word)
-      !> The words
       type(word_list_t), intent(in) :: words
       !> The word; empty at the end
       character(len=:), allocatable :: word
@@ -110,7 +107,6 @@ contains
 
    !> Line of the next word, or of the end of the text
    pure integer function this_row(words)
-      !> The words
       type(word_list_t), intent(in) :: words
 
       this_row = words%row(min(words%next, words%n + 1))
@@ -118,7 +114,6 @@ contains
 
    !> Take a number
    pure subroutine take_number(words, what, value, error)
-      !> The words
       type(word_list_t), intent(inout) :: words
       !> What the number is, for the message
       character(len=*), intent(in) :: what
@@ -143,7 +138,6 @@ contains
 
    !> Take numbers that belong together, all within a bound
    pure subroutine take_word_numbers(words, what, bound, value, error)
-      !> The words
       type(word_list_t), intent(inout) :: words
       !> What each of them is, for the message
       character(len=*), intent(in) :: what
@@ -170,7 +164,6 @@ contains
 
    !> Take a number from 0 to 1e30
    pure subroutine take_property(words, what, value, error)
-      !> The words
       type(word_list_t), intent(inout) :: words
       !> What the number is, for the message
       character(len=*), intent(in) :: what
@@ -190,7 +183,6 @@ contains
 
    !> Take a whole number within bounds; 3.0 is one too
    pure subroutine take_whole(words, what, low, high, value, error)
-      !> The words
       type(word_list_t), intent(inout) :: words
       !> What the number is, for the message
       character(len=*), intent(in) :: what
@@ -220,7 +212,6 @@ contains
 
    !> Take the number of a material
    pure subroutine take_material(words, what, value, error)
-      !> The words
       type(word_list_t), intent(inout) :: words
       !> What the number is, for the message
       character(len=*), intent(in) :: what

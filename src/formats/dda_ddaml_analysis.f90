@@ -27,7 +27,6 @@ contains
    pure subroutine read_ddaml_analysis(tree, analysis, warnings, error)
       !> The file's elements; those that are not read are marked
       type(xml_tree_t), intent(inout) :: tree
-      !> The analysis
       type(limerick_analysis_t), intent(out) :: analysis
       !> Receives what the reader ignores
       type(warnings_t), intent(inout) :: warnings
@@ -57,7 +56,6 @@ contains
 
    !> Read one child of Analysis
    pure subroutine read_element(tree, at, analysis, warnings, error)
-      !> The file's elements
       type(xml_tree_t), intent(in) :: tree
       !> Place of the child
       integer, intent(in) :: at
@@ -65,7 +63,6 @@ contains
       type(limerick_analysis_t), intent(inout) :: analysis
       !> Receives what the reader ignores
       type(warnings_t), intent(inout) :: warnings
-      !> What is wrong
       type(error_t), allocatable, intent(out) :: error
 
       associate (element => tree%element(at))
@@ -99,7 +96,6 @@ contains
 
    !> Read an element that chooses
    pure subroutine read_switch(tree, at, analysis, warnings, error)
-      !> The file's elements
       type(xml_tree_t), intent(in) :: tree
       !> Place of the element
       integer, intent(in) :: at
@@ -107,7 +103,6 @@ contains
       type(limerick_analysis_t), intent(inout) :: analysis
       !> Receives what the reader ignores
       type(warnings_t), intent(inout) :: warnings
-      !> What is wrong
       type(error_t), allocatable, intent(out) :: error
       logical :: turned_on
 
@@ -138,13 +133,11 @@ contains
 
    !> Read the phase that turns gravity on
    pure subroutine read_gravity(tree, at, analysis, error)
-      !> The file's elements
       type(xml_tree_t), intent(in) :: tree
       !> Place of the element
       integer, intent(in) :: at
       !> Receives its steps and tolerances
       type(limerick_analysis_t), intent(inout) :: analysis
-      !> What is wrong
       type(error_t), allocatable, intent(out) :: error
       character(len=*), parameter :: tolerance(2) = ["Normaltolerance", "Sheartolerance "]
       integer :: child, i
@@ -162,7 +155,6 @@ contains
 
    !> Read the materials of blocks and joints
    pure subroutine read_properties(tree, part, analysis, warnings, error)
-      !> The file's elements
       type(xml_tree_t), intent(in) :: tree
       !> Place of Analysis
       integer, intent(in) :: part
@@ -170,7 +162,6 @@ contains
       type(limerick_analysis_t), intent(inout) :: analysis
       !> Receives what the reader ignores
       type(warnings_t), intent(inout) :: warnings
-      !> What is wrong
       type(error_t), allocatable, intent(out) :: error
       integer :: at, n_blocks, n_joints
       logical :: has_bolt
@@ -201,13 +192,11 @@ contains
 
    !> Read what bolts are like: the first of these elements counts for all, as in the original
    pure subroutine read_bolt(tree, at, property, error)
-      !> The file's elements
       type(xml_tree_t), intent(in) :: tree
       !> Place of the element
       integer, intent(in) :: at
       !> Stiffness, strength and prestress: (3)
       real(wp), intent(out) :: property(3)
-      !> What is wrong
       type(error_t), allocatable, intent(out) :: error
       character(len=*), parameter :: what(3) = [character(len=9) :: "stiffness", "strength", &
          & "prestress"]
@@ -224,7 +213,6 @@ contains
 
    !> Materials are counted in the order of the file, whatever their type says
    pure subroutine check_type(tree, at, number, warnings)
-      !> The file's elements
       type(xml_tree_t), intent(in) :: tree
       !> Place of the material
       integer, intent(in) :: at
@@ -243,13 +231,11 @@ contains
 
    !> Read the forces on load points
    pure subroutine read_loads(tree, part, analysis, error)
-      !> The file's elements
       type(xml_tree_t), intent(in) :: tree
       !> Place of Analysis
       integer, intent(in) :: part
       !> Receives them
       type(limerick_analysis_t), intent(inout) :: analysis
-      !> What is wrong
       type(error_t), allocatable, intent(out) :: error
       integer :: list, at, n, pass
 
@@ -274,13 +260,11 @@ contains
 
    !> Read the constants of the scheme
    pure subroutine read_constants(tree, at, analysis, error)
-      !> The file's elements
       type(xml_tree_t), intent(in) :: tree
       !> Place of AConstants
       integer, intent(in) :: at
       !> Receives them
       type(limerick_analysis_t), intent(inout) :: analysis
-      !> What is wrong
       type(error_t), allocatable, intent(out) :: error
       integer :: child
 
@@ -307,11 +291,9 @@ contains
 
    !> Whether all is there that an analysis needs
    pure subroutine check_complete(tree, part, analysis, warnings, error)
-      !> The file's elements
       type(xml_tree_t), intent(in) :: tree
       !> Place of Analysis
       integer, intent(in) :: part
-      !> The analysis
       type(limerick_analysis_t), intent(in) :: analysis
       !> Receives what was assumed
       type(warnings_t), intent(inout) :: warnings

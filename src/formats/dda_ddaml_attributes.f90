@@ -18,13 +18,11 @@ contains
 
    !> The words of an attribute that must be there
    pure subroutine attribute_words(tree, at, name, words, error)
-      !> The file's elements
       type(xml_tree_t), intent(in) :: tree
       !> Place of the element
       integer, intent(in) :: at
       !> Name of the attribute
       character(len=*), intent(in) :: name
-      !> Its words
       type(word_list_t), intent(out) :: words
       !> It is not there
       type(error_t), allocatable, intent(out) :: error
@@ -40,7 +38,6 @@ contains
 
    !> Read an attribute that chooses between two meanings
    pure subroutine choose(tree, at, name, words_for_yes, word_for_no, yes, error)
-      !> The file's elements
       type(xml_tree_t), intent(in) :: tree
       !> Place of the element
       integer, intent(in) :: at
@@ -65,7 +62,6 @@ contains
 
    !> Read an attribute that is a number
    pure subroutine number_attribute(tree, at, name, low, value, error)
-      !> The file's elements
       type(xml_tree_t), intent(in) :: tree
       !> Place of the element
       integer, intent(in) :: at
@@ -75,7 +71,6 @@ contains
       real(wp), intent(in) :: low
       !> The number
       real(wp), intent(inout) :: value
-      !> What is wrong
       type(error_t), allocatable, intent(out) :: error
       type(word_list_t) :: words
       real(wp) :: number(1)
@@ -91,7 +86,6 @@ contains
 
    !> Read an attribute that is a whole number
    pure subroutine whole_attribute(tree, at, name, low, value, error)
-      !> The file's elements
       type(xml_tree_t), intent(in) :: tree
       !> Place of the element
       integer, intent(in) :: at
@@ -101,7 +95,6 @@ contains
       integer, intent(in) :: low
       !> The number
       integer, intent(inout) :: value
-      !> What is wrong
       type(error_t), allocatable, intent(out) :: error
       type(word_list_t) :: words
 

@@ -91,7 +91,6 @@ contains
 
    !> Find the part of a file that is wanted: inside the root, or the root itself
    pure subroutine find_part(tree, name, part, error)
-      !> The file's elements
       type(xml_tree_t), intent(in) :: tree
       !> Name of the part
       character(len=*), intent(in) :: name
@@ -109,7 +108,6 @@ contains
 
    !> Check every element of a file and mark those that are not read
    pure subroutine check_elements(tree, part, form, warnings, error)
-      !> The file's elements
       type(xml_tree_t), intent(inout) :: tree
       !> Place of the part that is read
       integer, intent(in) :: part
@@ -155,7 +153,6 @@ contains
 
    !> Entry of an element in a form: 0 for the part itself, -1 if it has none
    pure integer function entry_of(tree, at, part, form)
-      !> The file's elements
       type(xml_tree_t), intent(in) :: tree
       !> Place of the element
       integer, intent(in) :: at
@@ -182,7 +179,6 @@ contains
 
    !> Refuse an element among numbers, warn of one elsewhere
    pure subroutine refuse_element(tree, at, outer, form, warnings, error)
-      !> The file's elements
       type(xml_tree_t), intent(in) :: tree
       !> Place of the element
       integer, intent(in) :: at
@@ -212,11 +208,9 @@ contains
 
    !> Refuse the second of what may be there once
    pure subroutine refuse_second(tree, at, error)
-      !> The file's elements
       type(xml_tree_t), intent(in) :: tree
       !> Place of the element
       integer, intent(in) :: at
-      !> The failure
       type(error_t), allocatable, intent(inout) :: error
 
       associate (element => tree%element(at), around => tree%element(tree%element(at)%parent))
@@ -228,7 +222,6 @@ contains
 
    !> Warn of attributes without a meaning, refuse one that is given twice
    pure subroutine check_attributes(tree, at, form, warnings, error)
-      !> The file's elements
       type(xml_tree_t), intent(in) :: tree
       !> Place of the element
       integer, intent(in) :: at
@@ -260,7 +253,6 @@ contains
 
    !> Warn of text in an element that holds none
    pure subroutine check_text(tree, at, warnings)
-      !> The file's elements
       type(xml_tree_t), intent(in) :: tree
       !> Place of the element
       integer, intent(in) :: at

@@ -67,7 +67,6 @@ contains
 
    !> Read one child of Geometry
    pure subroutine read_list(tree, at, model, boundary, warnings, error)
-      !> The file's elements
       type(xml_tree_t), intent(in) :: tree
       !> Place of the child
       integer, intent(in) :: at
@@ -77,7 +76,6 @@ contains
       type(entities_t), intent(inout) :: boundary
       !> Receives what the reader ignores
       type(warnings_t), intent(inout) :: warnings
-      !> What is wrong
       type(error_t), allocatable, intent(out) :: error
 
       associate (element => tree%element(at))
@@ -112,13 +110,11 @@ contains
 
    !> Read Shi's e00
    pure subroutine read_ratio(tree, at, ratio, error)
-      !> The file's elements
       type(xml_tree_t), intent(in) :: tree
       !> Place of the element
       integer, intent(in) :: at
       !> The ratio
       real(wp), intent(inout) :: ratio
-      !> What is wrong
       type(error_t), allocatable, intent(out) :: error
       type(word_list_t) :: words
 
@@ -132,7 +128,6 @@ contains
 
    !> Read the elements of a list
    pure subroutine read_entities(tree, list, type, entities, warnings, error)
-      !> The file's elements
       type(xml_tree_t), intent(in) :: tree
       !> Place of the list
       integer, intent(in) :: list
@@ -142,7 +137,6 @@ contains
       type(entities_t), intent(inout) :: entities
       !> Receives what the reader ignores
       type(warnings_t), intent(inout) :: warnings
-      !> What is wrong
       type(error_t), allocatable, intent(out) :: error
       integer :: at
 
@@ -155,7 +149,6 @@ contains
 
    !> Read bolts; what they are like may stand in attributes of ours, else the analysis file says it
    pure subroutine read_bolts(tree, list, model, warnings, error)
-      !> The file's elements
       type(xml_tree_t), intent(in) :: tree
       !> Place of the list
       integer, intent(in) :: list
@@ -163,7 +156,6 @@ contains
       type(line_model_t), intent(inout) :: model
       !> Receives what the reader ignores
       type(warnings_t), intent(inout) :: warnings
-      !> What is wrong
       type(error_t), allocatable, intent(out) :: error
       character(len=*), parameter :: name(3) = [character(len=10) :: "stiffness", "strength", &
          & "pretension"]
@@ -191,7 +183,6 @@ contains
 
    !> Read one element of a list
    pure subroutine read_entity(tree, at, type, entities, warnings, error)
-      !> The file's elements
       type(xml_tree_t), intent(in) :: tree
       !> Place of the element
       integer, intent(in) :: at
@@ -201,7 +192,6 @@ contains
       type(entities_t), intent(inout) :: entities
       !> Receives what the reader ignores
       type(warnings_t), intent(inout) :: warnings
-      !> What is wrong
       type(error_t), allocatable, intent(out) :: error
       type(word_list_t) :: words
       real(wp) :: place(4)

@@ -22,17 +22,14 @@ contains
 
    !> Read a Blockmaterial
    pure subroutine read_material(tree, at, gravity, material, warnings, error)
-      !> The file's elements
       type(xml_tree_t), intent(in) :: tree
       !> Place of the element
       integer, intent(in) :: at
       !> Acceleration of gravity, for a weight that is not given
       real(wp), intent(in) :: gravity
-      !> The material
       type(analysis_material_t), intent(out) :: material
       !> Receives what the reader ignores
       type(warnings_t), intent(inout) :: warnings
-      !> What is wrong
       type(error_t), allocatable, intent(out) :: error
       real(wp) :: one(1), unused(1)
 
@@ -64,13 +61,11 @@ contains
 
    !> The original weighs a block by unit mass times gravity, whatever the unit weight says
    pure subroutine check_weight(tree, at, gravity, material, warnings)
-      !> The file's elements
       type(xml_tree_t), intent(in) :: tree
       !> Place of the element
       integer, intent(in) :: at
       !> Acceleration of gravity
       real(wp), intent(in) :: gravity
-      !> The material
       type(analysis_material_t), intent(inout) :: material
       !> Receives a unit weight that is not taken
       type(warnings_t), intent(inout) :: warnings
@@ -86,15 +81,12 @@ contains
 
    !> Read a Jointproperties
    pure subroutine read_joint(tree, at, joint, warnings, error)
-      !> The file's elements
       type(xml_tree_t), intent(in) :: tree
       !> Place of the element
       integer, intent(in) :: at
-      !> The material
       type(limerick_joint_t), intent(out) :: joint
       !> Receives what the reader ignores
       type(warnings_t), intent(inout) :: warnings
-      !> What is wrong
       type(error_t), allocatable, intent(out) :: error
       real(wp) :: one(1)
 
@@ -113,7 +105,6 @@ contains
 
    !> Read the numbers of an element inside another
    pure subroutine read_child(tree, at, name, needed, value, warnings, error)
-      !> The file's elements
       type(xml_tree_t), intent(in) :: tree
       !> Place of the outer element
       integer, intent(in) :: at
@@ -125,7 +116,6 @@ contains
       real(wp), intent(inout) :: value(:)
       !> Receives what the reader ignores
       type(warnings_t), intent(inout) :: warnings
-      !> What is wrong
       type(error_t), allocatable, intent(out) :: error
       type(word_list_t) :: words
       real(wp) :: number(size(value))
@@ -148,13 +138,10 @@ contains
 
    !> Read a Loadpoint: records of time and force, parted by semicolons
    pure subroutine read_history(tree, at, history, error)
-      !> The file's elements
       type(xml_tree_t), intent(in) :: tree
       !> Place of the element
       integer, intent(in) :: at
-      !> The history
       type(load_history_t), intent(out) :: history
-      !> What is wrong
       type(error_t), allocatable, intent(out) :: error
       type(word_list_t) :: words
       integer, parameter :: most_records = 10000000

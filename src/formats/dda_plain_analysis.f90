@@ -27,7 +27,6 @@ contains
       character(len=*), intent(in) :: text
       !> Name of the file
       character(len=*), intent(in) :: file
-      !> The analysis
       type(limerick_analysis_t), intent(out) :: analysis
       !> Receives what the reader ignores
       type(warnings_t), intent(inout) :: warnings
@@ -66,7 +65,6 @@ contains
       type(word_list_t), intent(inout) :: words
       !> Receives them
       type(limerick_analysis_t), intent(inout) :: analysis
-      !> What is wrong
       type(error_t), allocatable, intent(out) :: error
       real(wp) :: value(1)
 
@@ -85,7 +83,6 @@ contains
       integer, intent(in) :: n
       !> Receives them
       type(limerick_analysis_t), intent(inout) :: analysis
-      !> What is wrong
       type(error_t), allocatable, intent(out) :: error
       type(analysis_material_t), allocatable :: list(:)
       real(wp) :: value(13)
@@ -119,7 +116,6 @@ contains
       integer, intent(in) :: n
       !> Receives them
       type(limerick_analysis_t), intent(inout) :: analysis
-      !> What is wrong
       type(error_t), allocatable, intent(out) :: error
       type(limerick_joint_t), allocatable :: list(:)
       real(wp) :: value(3)
@@ -146,13 +142,11 @@ contains
 
    !> Whether a block material can exist
    pure subroutine check_material(material, file, row, error)
-      !> The material
       type(analysis_material_t), intent(in) :: material
       !> Name of the file
       character(len=*), intent(in) :: file
       !> Line of the file
       integer, intent(in) :: row
-      !> What is wrong
       type(error_t), allocatable, intent(out) :: error
 
       if (.not. material%density > 0.0_wp) then
@@ -172,13 +166,11 @@ contains
 
    !> Whether a joint material can exist
    pure subroutine check_joint(joint, file, row, error)
-      !> The material
       type(limerick_joint_t), intent(in) :: joint
       !> Name of the file
       character(len=*), intent(in) :: file
       !> Line of the file
       integer, intent(in) :: row
-      !> What is wrong
       type(error_t), allocatable, intent(out) :: error
 
       if (joint%friction_deg < 0.0_wp .or. joint%friction_deg > 90.0_wp) then
@@ -192,13 +184,11 @@ contains
 
    !> Whether the bounds of a step make sense
    pure subroutine check_steps(analysis, file, row, error)
-      !> The analysis
       type(limerick_analysis_t), intent(in) :: analysis
       !> Name of the file
       character(len=*), intent(in) :: file
       !> Line of the file
       integer, intent(in) :: row
-      !> What is wrong
       type(error_t), allocatable, intent(out) :: error
 
       if (.not. analysis%displacement_ratio > 0.0_wp .or. analysis%displacement_ratio > 1.0_wp) then

@@ -84,9 +84,7 @@ contains
    pure subroutine read_counts(words, n, error)
       !> The words of the file
       type(word_list_t), intent(inout) :: words
-      !> The counts
       type(counts_t), intent(out) :: n
-      !> What is wrong
       type(error_t), allocatable, intent(out) :: error
       integer, parameter :: most = 100000000
 
@@ -115,7 +113,6 @@ contains
       integer, intent(in) :: n
       !> Receives them
       type(line_model_t), intent(inout) :: model
-      !> What is wrong
       type(error_t), allocatable, intent(out) :: error
       character(len=*), parameter :: what(3) = [character(len=9) :: "stiffness", "strength", &
          & "prestress"]
@@ -147,9 +144,7 @@ contains
       integer, intent(in) :: n_number
       !> Whether a material follows
       logical, intent(in) :: has_material
-      !> The records
       type(entities_t), intent(out) :: entities
-      !> What is wrong
       type(error_t), allocatable, intent(out) :: error
       character(len=:), allocatable :: name
       real(wp) :: place(4)

@@ -64,7 +64,6 @@ contains
    subroutine read_analysis(file, analysis, warnings, error)
       !> Name of the file
       character(len=*), intent(in) :: file
-      !> The analysis
       type(limerick_analysis_t), intent(out) :: analysis
       !> Receives what the reader ignores
       type(warnings_t), intent(inout) :: warnings
@@ -90,7 +89,6 @@ contains
    pure subroutine check_materials(model, analysis, warnings, error)
       !> Lines and points
       type(line_model_t), intent(in) :: model
-      !> The analysis
       type(limerick_analysis_t), intent(in) :: analysis
       !> Receives load points without a force
       type(warnings_t), intent(inout) :: warnings
@@ -114,7 +112,6 @@ contains
 
    !> Whether all materials of a list exist
    pure subroutine check_numbers(entities, what, n, file, analysis_file, error)
-      !> The list
       type(entities_t), intent(in) :: entities
       !> What the materials are for
       character(len=*), intent(in) :: what
@@ -165,7 +162,6 @@ contains
       character(len=*), intent(in) :: text
       !> Name of the file
       character(len=*), intent(in) :: file
-      !> The failure
       type(error_t), allocatable, intent(out) :: error
 
       if (form_of(text) == form%blank) then

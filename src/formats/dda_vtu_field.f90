@@ -106,7 +106,6 @@ contains
 
    !> The contract of a field: a column of the right height for each point or cell
    pure subroutine check_field(field, n, error)
-      !> The field
       type(field_t), intent(in) :: field
       !> Number of points or cells
       integer, intent(in) :: n
@@ -136,7 +135,6 @@ contains
 
    !> What the file's header says of a field
    pure function field_attributes(field) result(text)
-      !> The field
       type(field_t), intent(in) :: field
       !> Attributes, each with a blank before it
       character(len=:), allocatable :: text
@@ -152,7 +150,6 @@ contains
 
    !> Room that the numbers of a field take in the file
    pure function field_bytes(field) result(n)
-      !> The field
       type(field_t), intent(in) :: field
       !> Bytes, without the length before them
       integer(int64) :: n
@@ -163,9 +160,7 @@ contains
 
    !> Write the length of a field and its numbers
    subroutine append_field(file, field)
-      !> The file
       type(binary_file_t), intent(in) :: file
-      !> The field
       type(field_t), intent(in) :: field
 
       call append_length(file, field_bytes(field))
@@ -180,7 +175,6 @@ contains
 
    !> Write plane vectors with z = 0
    subroutine append_vectors(file, values)
-      !> The file
       type(binary_file_t), intent(in) :: file
       !> Components x and y: (2, n)
       real(wp), intent(in) :: values(:, :)
@@ -197,7 +191,6 @@ contains
 
    !> Write whole numbers
    subroutine append_states(file, values)
-      !> The file
       type(binary_file_t), intent(in) :: file
       !> The numbers: (1, n)
       real(wp), intent(in) :: values(:, :)

@@ -57,7 +57,6 @@ contains
 
    !> Records of one kind in the plain form
    pure function records(entities, n_number, has_material) result(text)
-      !> The list
       type(entities_t), intent(in) :: entities
       !> Coordinates of each, 2 or 4
       integer, intent(in) :: n_number
@@ -208,7 +207,6 @@ contains
 
    !> An analysis in the plain form, which has no place for constants, flags and loads
    pure function plain_analysis(analysis) result(text)
-      !> The analysis
       type(limerick_analysis_t), intent(in) :: analysis
       !> The file without its last line end
       character(len=:), allocatable :: text
@@ -233,7 +231,6 @@ contains
 
    !> An analysis in DDAML
    pure function ddaml_analysis(analysis) result(text)
-      !> The analysis
       type(limerick_analysis_t), intent(in) :: analysis
       !> The file without its last line end
       character(len=:), allocatable :: text
@@ -257,7 +254,6 @@ contains
 
    !> The elements that choose and bound
    pure function switches(analysis) result(text)
-      !> The analysis
       type(limerick_analysis_t), intent(in) :: analysis
       !> Elements, each with its line end
       character(len=:), allocatable :: text
@@ -280,7 +276,6 @@ contains
 
    !> The phase that turns gravity on
    pure function gravity_phase(analysis) result(text)
-      !> The analysis
       type(limerick_analysis_t), intent(in) :: analysis
       !> Its element
       character(len=:), allocatable :: text
@@ -298,7 +293,6 @@ contains
 
    !> The constants of the scheme
    pure function constants(analysis) result(text)
-      !> The analysis
       type(limerick_analysis_t), intent(in) :: analysis
       !> Elements, each with its line end
       character(len=:), allocatable :: text
@@ -313,7 +307,6 @@ contains
 
    !> A block material
    pure function material_element(material, number) result(text)
-      !> The material
       type(analysis_material_t), intent(in) :: material
       !> Its number
       integer, intent(in) :: number
@@ -332,7 +325,6 @@ contains
 
    !> The forces on load points
    pure function load_elements(analysis) result(text)
-      !> The analysis
       type(limerick_analysis_t), intent(in) :: analysis
       !> The list with its line end
       character(len=:), allocatable :: text

@@ -37,7 +37,6 @@ contains
       character(len=*), intent(in) :: text
       !> Name of the file
       character(len=*), intent(in) :: file
-      !> The builder
       type(xml_builder_t), intent(out) :: builder
       !> What is refused before it is parsed
       type(error_t), allocatable, intent(out) :: error
@@ -50,7 +49,6 @@ contains
 
    !> Add an element inside the one that is open, and open it
    pure subroutine open_element(builder, name, attribute)
-      !> The builder
       type(xml_builder_t), intent(inout) :: builder
       !> Name of the element
       character(len=*), intent(in) :: name
@@ -83,7 +81,6 @@ contains
 
    !> Line of the tag that was read last
    pure integer function tag_row(builder, side)
-      !> The builder
       type(xml_builder_t), intent(in) :: builder
       !> 1 for its beginning, 2 for its end
       integer, intent(in) :: side
@@ -94,7 +91,6 @@ contains
 
    !> Add text behind the last tag
    pure subroutine add_text(builder, text)
-      !> The builder
       type(xml_builder_t), intent(inout) :: builder
       !> The text
       character(len=*), intent(in) :: text
@@ -115,7 +111,6 @@ contains
    !> Give the text behind the last tag to the open element, if it is the first that is not blank,
    !> and go on to the next tag
    pure subroutine end_piece(builder)
-      !> The builder
       type(xml_builder_t), intent(inout) :: builder
 
       if (builder%length > 0) then
@@ -133,7 +128,6 @@ contains
 
    !> Close the element that is open
    pure subroutine close_element(builder)
-      !> The builder
       type(xml_builder_t), intent(inout) :: builder
       logical :: has_end_tag
 

@@ -65,7 +65,6 @@ contains
       character(len=*), intent(in) :: text
       !> Name of its file, for messages
       character(len=*), intent(in) :: file
-      !> Its tags
       type(xml_tags_t), intent(out) :: tags
       !> Entities, declarations, too many attributes
       type(error_t), allocatable, intent(out) :: error
@@ -149,7 +148,6 @@ contains
       integer, intent(in) :: last
       !> Where the scan is
       type(scan_t), intent(inout) :: scan
-      !> An entity
       type(error_t), allocatable, intent(out) :: error
       integer :: first, length
 

@@ -49,7 +49,6 @@ contains
 
    !> The first element inside another that is read; 0 if there is none
    pure integer function first_child(tree, at)
-      !> The tree
       type(xml_tree_t), intent(in) :: tree
       !> Place of the outer element
       integer, intent(in) :: at
@@ -59,7 +58,6 @@ contains
 
    !> The element that follows another inside the same one and is read; 0 if there is none
    pure integer function next_sibling(tree, at)
-      !> The tree
       type(xml_tree_t), intent(in) :: tree
       !> Place of the element
       integer, intent(in) :: at
@@ -73,7 +71,6 @@ contains
 
    !> The first of some neighbours that is read; 0 if there is none
    pure integer function first_read(tree, first, last)
-      !> The tree
       type(xml_tree_t), intent(in) :: tree
       !> Place of the first neighbour
       integer, intent(in) :: first
@@ -90,7 +87,6 @@ contains
 
    !> The first element of a name inside another
    pure integer function find_child(tree, at, name)
-      !> The tree
       type(xml_tree_t), intent(in) :: tree
       !> Place of the outer element
       integer, intent(in) :: at
@@ -106,7 +102,6 @@ contains
 
    !> How many elements of a name are inside another
    pure integer function count_children(tree, at, name)
-      !> The tree
       type(xml_tree_t), intent(in) :: tree
       !> Place of the outer element
       integer, intent(in) :: at
@@ -124,7 +119,6 @@ contains
 
    !> Where an element has an attribute: the first of this name; 0 if there is none
    pure integer function attribute_place(tree, at, name)
-      !> The tree
       type(xml_tree_t), intent(in) :: tree
       !> Place of the element
       integer, intent(in) :: at
@@ -142,7 +136,6 @@ contains
 
    !> Value of an attribute
    pure function attribute_of(tree, at, name) result(value)
-      !> The tree
       type(xml_tree_t), intent(in) :: tree
       !> Place of the element
       integer, intent(in) :: at

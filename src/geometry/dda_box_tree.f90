@@ -75,7 +75,6 @@ contains
 
    !> Boxes that overlap or touch another box, or meet a segment
    pure subroutine find_boxes(tree, low, high, found, n, above, last, segment, margin)
-      !> The tree
       type(box_tree_t), intent(in) :: tree
       !> Lower left corner of the other box: (2) [m]
       real(wp), intent(in) :: low(2)
@@ -131,7 +130,6 @@ contains
 
    !> The least value of the boxes that overlap or touch another one, of which it is the first guess
    pure subroutine least_nearby(tree, least, low, high, value)
-      !> The tree
       type(box_tree_t), intent(in) :: tree
       !> Least value below each node: (2*n_leaf - 1)
       real(wp), intent(in) :: least(:)
@@ -161,7 +159,6 @@ contains
 
    !> Least value of the boxes below each node; huge where there is none
    pure subroutine least_values(tree, value, least)
-      !> The tree
       type(box_tree_t), intent(in) :: tree
       !> Value of each box: (n)
       real(wp), intent(in) :: value(:)
@@ -180,7 +177,6 @@ contains
 
    !> Boxes that a segment meets, or a point where both its ends are one, in rising order
    pure function boxes_along(tree, segment) result(box)
-      !> The tree
       type(box_tree_t), intent(in) :: tree
       !> Ends of the segment: (4) [m]
       real(wp), intent(in) :: segment(4)
@@ -198,7 +194,6 @@ contains
 
    !> Distance of a point from the box of a node; huge if it has none [m]
    pure real(wp) function box_distance(tree, node, point)
-      !> The tree
       type(box_tree_t), intent(in) :: tree
       !> Number of the node
       integer, intent(in) :: node
@@ -234,7 +229,6 @@ contains
       real(wp), intent(in) :: low(:, :)
       !> Upper right corners: (2, n) [m]
       real(wp), intent(in) :: high(:, :)
-      !> The tree
       type(box_tree_t), intent(out) :: tree
       real(wp), allocatable :: centre(:, :)
       integer, allocatable :: item(:)
@@ -266,7 +260,6 @@ contains
 
    !> Largest number of a box below each node, of the boxes that count; 0 if there is none
    pure subroutine last_numbers(tree, counts, last)
-      !> The tree
       type(box_tree_t), intent(in) :: tree
       !> Which boxes count: (n)
       logical, intent(in) :: counts(:)

@@ -36,7 +36,6 @@ contains
       real(wp), intent(in) :: segment(:, :)
       !> A segment also belongs to cells closer than this [m]
       real(wp), intent(in) :: margin
-      !> The grid
       type(cell_grid_t), intent(out) :: grid
       real(wp) :: box(2, 2), side(2), span
       integer(int64) :: n, pairs, entries
@@ -67,7 +66,6 @@ contains
 
    !> Number of the cell that holds a point; the nearest one for points outside
    pure integer function cell_of(grid, point)
-      !> The grid
       type(cell_grid_t), intent(in) :: grid
       !> The point: (2) [m]
       real(wp), intent(in) :: point(2)
@@ -79,7 +77,6 @@ contains
 
    !> Column and row of a point
    pure function place_of(grid, point) result(at)
-      !> The grid
       type(cell_grid_t), intent(in) :: grid
       !> The point: (2) [m]
       real(wp), intent(in) :: point(2)
@@ -113,7 +110,6 @@ contains
       real(wp), intent(in) :: segment(4)
       !> Room around it [m]
       real(wp), intent(in) :: margin
-      !> The grid
       type(cell_grid_t), intent(in) :: grid
       !> First column
       integer, intent(out) :: from
@@ -133,7 +129,6 @@ contains
       real(wp), intent(in) :: segment(4)
       !> Room around it [m]
       real(wp), intent(in) :: margin
-      !> The grid
       type(cell_grid_t), intent(in) :: grid
       !> The column
       integer, intent(in) :: column

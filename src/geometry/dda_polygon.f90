@@ -83,7 +83,6 @@ contains
    pure subroutine edge_tree(vertex, tree)
       !> Corners in order: (2, n) [m]
       real(wp), intent(in) :: vertex(:, :)
-      !> The tree
       type(box_tree_t), intent(out) :: tree
       real(wp) :: next(2, size(vertex, 2))
 
@@ -136,7 +135,6 @@ contains
       real(wp), intent(in) :: vertex(:, :)
       !> The point: (2) [m]
       real(wp), intent(in) :: point(2)
-      !> The edges
       type(box_tree_t), intent(in) :: tree
       !> Number of the nearest
       integer, intent(out) :: edge
@@ -315,7 +313,6 @@ contains
       integer, allocatable, intent(inout) :: near(:)
       !> How many there are
       integer, intent(out) :: n
-      !> The edges
       type(box_tree_t), intent(in), optional :: tree
       integer :: i
 

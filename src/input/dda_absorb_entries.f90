@@ -22,7 +22,6 @@ contains
    !> Take in absorb x1 y1 x2 y2 [x or y] [p_speed V] [s_speed V]: two points of its part along each
    !> block, those of Gauss, at which forces that are linear along it have their exact work
    pure subroutine take_absorbing(entry, plan, site, error)
-      !> The entry
       type(entry_t), intent(in) :: entry
       !> Receives the points
       type(block_plan_t), intent(inout) :: plan
@@ -72,11 +71,9 @@ contains
 
    !> What waves it absorbs
    pure subroutine take_words(entry, first, point, error)
-      !> The entry
       type(entry_t), intent(in) :: entry
       !> Place of the first word
       integer, intent(in) :: first
-      !> The point
       type(absorbing_point_t), intent(inout) :: point
       !> Anything wrong
       type(error_t), allocatable, intent(out) :: error

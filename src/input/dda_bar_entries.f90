@@ -20,7 +20,6 @@ contains
    !> Take in a bar:
    !> bar x1 y1 x2 y2 (stiffness S | ea V) [strength T] [prestress P] [slack] [breaks]
    pure subroutine take_bar(entry, plan, site, file, warnings, error)
-      !> The entry
       type(entry_t), intent(in) :: entry
       !> Receives it
       type(block_plan_t), intent(inout) :: plan
@@ -67,13 +66,11 @@ contains
 
    !> What a bar is like
    pure subroutine take_properties(entry, first, length, bar, error)
-      !> The entry
       type(entry_t), intent(in) :: entry
       !> Place of the first word
       integer, intent(in) :: first
       !> Length of the bar [m]
       real(wp), intent(in) :: length
-      !> The bar
       type(bar_t), intent(inout) :: bar
       !> Anything wrong
       type(error_t), allocatable, intent(out) :: error
@@ -122,7 +119,6 @@ contains
 
    !> Take in water: water x y x y ... [unit_weight W] [factor F], and rows of time and rise below
    pure subroutine take_water(entry, plan, error)
-      !> The entry
       type(entry_t), intent(in) :: entry
       !> Receives it
       type(block_plan_t), intent(inout) :: plan
@@ -177,11 +173,9 @@ contains
 
    !> What the water is like
    pure subroutine take_water_words(entry, first, water, error)
-      !> The entry
       type(entry_t), intent(in) :: entry
       !> Place of the first word
       integer, intent(in) :: first
-      !> The water
       type(water_t), intent(inout) :: water
       !> Anything wrong
       type(error_t), allocatable, intent(out) :: error

@@ -59,7 +59,6 @@ contains
 
    !> Put an entry behind those that wait
    pure subroutine keep_entry(entry, later, n)
-      !> The entry
       type(entry_t), intent(in) :: entry
       !> Entries that wait: (n or more)
       type(waiting_entry_t), allocatable, intent(inout) :: later(:)
@@ -91,7 +90,6 @@ contains
    pure subroutine take_entry(waiting, entry)
       !> The entry that has waited; its rows go
       type(waiting_entry_t), intent(inout) :: waiting
-      !> The entry
       type(entry_t), intent(out) :: entry
 
       entry%head%number = waiting%number
@@ -109,7 +107,6 @@ contains
       character(len=*), intent(in) :: text
       !> Its number
       integer, intent(in) :: number
-      !> The words
       type(line_t), intent(out) :: line
       !> Too many or too long words, or a quote without end
       type(error_t), allocatable, intent(out) :: error
@@ -179,7 +176,6 @@ contains
 
    !> Read the numbers behind a word
    pure subroutine take_numbers(line, i, number, error)
-      !> The line
       type(line_t), intent(in) :: line
       !> Place of the word; then the place after the numbers
       integer, intent(inout) :: i
@@ -208,7 +204,6 @@ contains
 
    !> Read words with a number each
    pure subroutine take_keys(line, first, key, value, given, error)
-      !> The line
       type(line_t), intent(in) :: line
       !> Place of the first word
       integer, intent(in) :: first

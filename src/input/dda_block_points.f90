@@ -103,7 +103,6 @@ contains
 
    !> Take in the motion of the ground
    pure subroutine take_ground(entry, plan, error)
-      !> The entry
       type(entry_t), intent(in) :: entry
       !> Receives it
       type(block_plan_t), intent(inout) :: plan
@@ -147,7 +146,6 @@ contains
 
    !> Hold a line: the ends of its part in each block that it crosses or runs along
    pure subroutine hold_line(entry, plan, site, error)
-      !> The entry
       type(entry_t), intent(in) :: entry
       !> Receives the held points
       type(block_plan_t), intent(inout) :: plan
@@ -190,7 +188,6 @@ contains
 
    !> Take in a point of a block
    pure subroutine take_point(entry, plan, site, file, warnings, error)
-      !> The entry
       type(entry_t), intent(in) :: entry
       !> Receives it
       type(block_plan_t), intent(inout) :: plan
@@ -251,9 +248,7 @@ contains
 
    !> Read where a point is: [block N] x y; without a number it belongs to the block that holds it
    pure subroutine take_place(entry, plan, site, i, block, point, error)
-      !> The entry
       type(entry_t), intent(in) :: entry
-      !> The blocks
       type(block_plan_t), intent(in) :: plan
       !> Where they are
       type(site_t), intent(in) :: site
@@ -299,7 +294,6 @@ contains
 
    !> Warn of a point that lies on several blocks, and name them
    pure subroutine warn_of_rivals(entry, block, rival, file, warnings)
-      !> The entry
       type(entry_t), intent(in) :: entry
       !> The block that the point belongs to
       integer, intent(in) :: block
@@ -325,7 +319,6 @@ contains
 
    !> Directions in which something is held: both, or the one that is named
    pure subroutine take_directions(entry, i, along, error)
-      !> The entry
       type(entry_t), intent(in) :: entry
       !> Place of the word after the numbers
       integer, intent(in) :: i
@@ -345,13 +338,11 @@ contains
 
    !> A vector in time: one value behind the word, or rows of time and components below it
    pure subroutine read_history(entry, has_value, value, history, error)
-      !> The entry
       type(entry_t), intent(in) :: entry
       !> Whether there is one value behind the word
       logical, intent(in) :: has_value
       !> That value: (2)
       real(wp), intent(in) :: value(2)
-      !> The history
       type(history_t), intent(out) :: history
       !> Neither or both, or times that do not increase
       type(error_t), allocatable, intent(out) :: error

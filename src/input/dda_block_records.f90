@@ -16,7 +16,6 @@ contains
    !> Put the rows of the record that an entry names below it, and leave its words out; an entry
    !> that names none stays as it is
    subroutine take_record(entry, file, marks, error)
-      !> The entry
       type(entry_t), intent(inout) :: entry
       !> Name of the file of blocks, beside which the record is
       character(len=*), intent(in) :: file
@@ -51,7 +50,6 @@ contains
 
    !> Take the words from 'file' on
    pure subroutine take_words(entry, first, column, scale, error)
-      !> The entry
       type(entry_t), intent(in) :: entry
       !> Place of that word
       integer, intent(in) :: first

@@ -42,7 +42,6 @@ contains
 
    !> Know where the blocks are
    pure subroutine survey(plan, site)
-      !> The blocks
       type(block_plan_t), intent(in) :: plan
       !> Where they are
       type(site_t), intent(out) :: site
@@ -73,7 +72,6 @@ contains
 
    !> Block that holds a point most deeply or has it on its outline; 0 if none does
    pure integer function block_at(plan, site, point)
-      !> The plan
       type(block_plan_t), intent(in) :: plan
       !> Where its blocks are
       type(site_t), intent(in) :: site
@@ -96,7 +94,6 @@ contains
 
    !> Blocks that have a point on their outlines together with a block, as far as rounding tells
    pure function rivals_at(plan, site, point, block) result(rival)
-      !> The plan
       type(block_plan_t), intent(in) :: plan
       !> Where its blocks are
       type(site_t), intent(in) :: site
@@ -126,7 +123,6 @@ contains
 
    !> Whether a block holds a point or has it on its outline
    pure logical function holds_point(plan, site, block, point)
-      !> The plan
       type(block_plan_t), intent(in) :: plan
       !> Where its blocks are
       type(site_t), intent(in) :: site
@@ -140,7 +136,6 @@ contains
 
    !> How deep a point lies in a block, negative outside [m]
    pure real(wp) function depth_of(plan, site, block, point)
-      !> The plan
       type(block_plan_t), intent(in) :: plan
       !> Where its blocks are
       type(site_t), intent(in) :: site
@@ -167,7 +162,6 @@ contains
 
    !> Add a held point, unless others hold the block in its way
    pure subroutine add_held(held, plan, site, error)
-      !> The point
       type(held_point_t), intent(in) :: held
       !> Receives it
       type(block_plan_t), intent(inout) :: plan

@@ -20,7 +20,6 @@ contains
    !> Take in remove|add block N ... at T, or remove|add polygon at T with its corners below: the
    !> blocks whose centre of gravity lies inside
    pure subroutine take_change(entry, plan, error)
-      !> The entry
       type(entry_t), intent(in) :: entry
       !> Receives a change for each of its blocks
       type(block_plan_t), intent(inout) :: plan
@@ -63,7 +62,6 @@ contains
 
    !> The blocks that an entry numbers
    pure subroutine blocks_of(entry, n_block, block, error)
-      !> The entry
       type(entry_t), intent(in) :: entry
       !> Number of blocks
       integer, intent(in) :: n_block
@@ -92,9 +90,7 @@ contains
 
    !> The blocks whose centre of gravity lies in the polygon of an entry
    pure subroutine blocks_inside(entry, plan, block, error)
-      !> The entry
       type(entry_t), intent(in) :: entry
-      !> The blocks
       type(block_plan_t), intent(in) :: plan
       !> Their numbers: (n)
       integer, allocatable, intent(out) :: block(:)

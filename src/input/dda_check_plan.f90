@@ -28,7 +28,6 @@ contains
 
    !> Check a plan as a whole and move its origin to where coordinates keep their digits
    pure subroutine check_plan(plan, file, warnings, error)
-      !> The plan
       type(block_plan_t), intent(inout) :: plan
       !> Name of the file, for warnings
       character(len=*), intent(in) :: file
@@ -58,7 +57,6 @@ contains
 
    !> Whether all materials of blocks are given; a law of others is of no use
    pure subroutine check_materials(plan, file, warnings, error)
-      !> The plan
       type(block_plan_t), intent(in) :: plan
       !> Name of the file, for warnings
       character(len=*), intent(in) :: file
@@ -86,9 +84,7 @@ contains
 
    !> Whether two materials have one law
    pure subroutine check_laws(plan, error)
-      !> The plan
       type(block_plan_t), intent(in) :: plan
-      !> A second one
       type(error_t), allocatable, intent(out) :: error
       integer(int64) :: key(size(plan%laws))
       integer :: order(size(plan%laws)), i
@@ -112,7 +108,6 @@ contains
 
    !> Whether no two blocks overlap; two fixed ones may
    subroutine check_overlaps(plan, site, error, watch)
-      !> The plan
       type(block_plan_t), intent(in) :: plan
       !> Where its blocks are
       type(site_t), intent(in) :: site
@@ -152,7 +147,6 @@ contains
 
    !> Warn of coordinates so large that their spacing shows in a block
    pure subroutine check_digits(plan, file, warnings)
-      !> The plan
       type(block_plan_t), intent(in) :: plan
       !> Name of the file
       character(len=*), intent(in) :: file
@@ -185,7 +179,6 @@ contains
 
    !> Say which blocks overlap and where
    pure subroutine refuse_overlap(plan, block, inside, point, error)
-      !> The plan
       type(block_plan_t), intent(in) :: plan
       !> The two blocks
       integer, intent(in) :: block(2)
@@ -193,7 +186,6 @@ contains
       integer, intent(in) :: inside
       !> A point that both hold: (2) [m]
       real(wp), intent(in) :: point(2)
-      !> The failure
       type(error_t), allocatable, intent(out) :: error
       character(len=60) :: where_to
 

@@ -107,7 +107,6 @@ contains
 
    !> A deck of defaults
    pure subroutine new_deck(deck, file)
-      !> The deck
       type(deck_t), intent(out) :: deck
       !> Name that errors will show
       character(len=*), intent(in) :: file
@@ -124,7 +123,6 @@ contains
 
    !> Give a value its default
    pure subroutine put_default(value, i)
-      !> The value
       type(deck_value_t), intent(inout) :: value
       !> Place of its key in the registry
       integer, intent(in) :: i
@@ -150,7 +148,6 @@ contains
 
    !> A number of the deck
    pure function real_of(deck, group, key) result(value)
-      !> The deck
       type(deck_t), intent(in) :: deck
       !> Name of the group
       character(len=*), intent(in) :: group
@@ -164,7 +161,6 @@ contains
 
    !> A whole number of the deck
    pure function integer_of(deck, group, key) result(value)
-      !> The deck
       type(deck_t), intent(in) :: deck
       !> Name of the group
       character(len=*), intent(in) :: group
@@ -178,7 +174,6 @@ contains
 
    !> A word of the deck
    pure function word_of(deck, group, key) result(value)
-      !> The deck
       type(deck_t), intent(in) :: deck
       !> Name of the group
       character(len=*), intent(in) :: group
@@ -196,7 +191,6 @@ contains
 
    !> A text of the deck
    pure function text_of(deck, group, key) result(value)
-      !> The deck
       type(deck_t), intent(in) :: deck
       !> Name of the group
       character(len=*), intent(in) :: group
@@ -213,7 +207,6 @@ contains
 
    !> A flag of the deck
    pure function flag_of(deck, group, key) result(value)
-      !> The deck
       type(deck_t), intent(in) :: deck
       !> Name of the group
       character(len=*), intent(in) :: group
@@ -227,7 +220,6 @@ contains
 
    !> A list of numbers of the deck
    pure function list_of(deck, group, key) result(value)
-      !> The deck
       type(deck_t), intent(in) :: deck
       !> Name of the group
       character(len=*), intent(in) :: group
@@ -244,7 +236,6 @@ contains
 
    !> Whether the deck, a --set or a sweep gives a key
    pure function is_given(deck, group, key) result(given)
-      !> The deck
       type(deck_t), intent(in) :: deck
       !> Name of the group
       character(len=*), intent(in) :: group
@@ -258,7 +249,6 @@ contains
 
    !> Whether a group is there: in the deck, or because a --set names one of its keys
    pure function has_group(deck, group) result(yes)
-      !> The deck
       type(deck_t), intent(in) :: deck
       !> Name of the group
       character(len=*), intent(in) :: group
@@ -327,7 +317,6 @@ contains
 
    !> Line where a key was given
    pure function line_of(deck, group, key) result(line)
-      !> The deck
       type(deck_t), intent(in) :: deck
       !> Name of the group
       character(len=*), intent(in) :: group
@@ -341,7 +330,6 @@ contains
 
    !> Where a key was given, or else its group
    pure function place_of(deck, key) result(place)
-      !> The deck
       type(deck_t), intent(in) :: deck
       !> Place of the key in the registry
       integer, intent(in) :: key
@@ -354,11 +342,9 @@ contains
 
    !> Make an error that names the deck and the line, or --set and its number
    pure subroutine deck_error(error, message, deck, place)
-      !> The failure
       type(error_t), allocatable, intent(out) :: error
       !> What was wanted and what was found
       character(len=*), intent(in) :: message
-      !> The deck
       type(deck_t), intent(in) :: deck
       !> Where it was found
       type(deck_place_t), intent(in) :: place
@@ -374,7 +360,6 @@ contains
    pure subroutine add_file_mark(mark, deck)
       !> Mark of the file
       character(len=*), intent(in) :: mark
-      !> The deck
       type(deck_t), intent(inout) :: deck
 
       if (.not. allocated(deck%file_marks)) deck%file_marks = ""
@@ -383,7 +368,6 @@ contains
 
    !> Name of a file that a deck names: beside the deck unless it begins with a slash
    pure function file_beside(deck, name) result(path)
-      !> The deck
       type(deck_t), intent(in) :: deck
       !> The name in the deck
       character(len=*), intent(in) :: name

@@ -20,7 +20,6 @@ contains
 
    !> Check a deck and all cases of its sweeps, before anything is computed
    pure subroutine check_deck(deck, error)
-      !> The deck
       type(deck_t), intent(in) :: deck
       !> The first thing that is wrong
       type(error_t), allocatable, intent(out) :: error
@@ -37,7 +36,6 @@ contains
 
    !> Check that the deck says where its blocks come from, once
    pure subroutine check_kind(deck, error)
-      !> The deck
       type(deck_t), intent(in) :: deck
       !> A file that is missing or has no use, or an arch beside it
       type(error_t), allocatable, intent(out) :: error
@@ -89,7 +87,6 @@ contains
 
    !> Check what is searched
    pure subroutine check_search(deck, searched, error)
-      !> The deck
       type(deck_t), intent(in) :: deck
       !> The parameter; key 0 if the deck has no &search
       type(parameter_t), intent(out) :: searched
@@ -119,7 +116,6 @@ contains
 
    !> Check one sweep against those before it and against the search
    pure subroutine check_sweep(deck, s, searched, error)
-      !> The deck
       type(deck_t), intent(in) :: deck
       !> Number of the sweep
       integer, intent(in) :: s
@@ -153,7 +149,6 @@ contains
 
    !> Check that a linked sweep is as long as the one before it
    pure subroutine check_link(deck, s, problem)
-      !> The deck
       type(deck_t), intent(in) :: deck
       !> Number of the sweep
       integer, intent(in) :: s
@@ -173,9 +168,7 @@ contains
 
    !> Check that varying a parameter has an effect and does not undo a --set
    pure subroutine check_varied(deck, parameter, how, place, error)
-      !> The deck
       type(deck_t), intent(in) :: deck
-      !> The parameter
       type(parameter_t), intent(in) :: parameter
       !> swept or searched
       character(len=*), intent(in) :: how
@@ -217,7 +210,6 @@ contains
 
    !> Check every case of the sweeps
    pure subroutine check_cases(deck, searched, error)
-      !> The deck
       type(deck_t), intent(in) :: deck
       !> What is searched; key 0 if nothing is
       type(parameter_t), intent(in) :: searched

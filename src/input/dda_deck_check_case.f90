@@ -145,7 +145,6 @@ contains
 
    !> Check that joints may lose strength by slip
    pure subroutine check_slip(deck, error)
-      !> The deck
       type(deck_t), intent(in) :: deck
       !> A model in which they do not
       type(error_t), allocatable, intent(inout) :: error
@@ -226,7 +225,6 @@ contains
    pure subroutine check_half_angle(deck, error)
       !> The deck of one case, with two angles in joints_deg or more
       type(deck_t), intent(in) :: deck
-      !> The two differ
       type(error_t), allocatable, intent(out) :: error
       real(wp) :: half_angle, last
 
@@ -243,7 +241,6 @@ contains
 
    !> Where the later one of two keys of &arch was given; a --set is later than the deck
    pure function later(deck, a, b) result(place)
-      !> The deck
       type(deck_t), intent(in) :: deck
       !> Name of the first key
       character(len=*), intent(in) :: a
@@ -316,9 +313,7 @@ contains
 
    !> Where the search for a parameter begins and ends
    pure subroutine bracket_of(deck, searched, low, high)
-      !> The deck
       type(deck_t), intent(in) :: deck
-      !> The parameter
       type(parameter_t), intent(in) :: searched
       !> Lower end; -huge if there is none
       real(wp), intent(out) :: low

@@ -18,7 +18,6 @@ contains
 
    !> Read the values of one key
    pure subroutine read_values(scan, first, last, parameter, place, deck, error)
-      !> The scanned text
       type(deck_scan_t), intent(in) :: scan
       !> First token of the values
       integer, intent(in) :: first
@@ -28,7 +27,6 @@ contains
       type(parameter_t), intent(in) :: parameter
       !> Where the key stands
       type(deck_place_t), intent(in) :: place
-      !> The deck
       type(deck_t), intent(inout) :: deck
       !> Wrong type, wrong number of values, or a value out of range
       type(error_t), allocatable, intent(out) :: error
@@ -57,7 +55,6 @@ contains
 
    !> Whether the values of a key are of its kind and not too many
    pure subroutine check_values(scan, first, last, parameter, place, deck, error)
-      !> The scanned text
       type(deck_scan_t), intent(in) :: scan
       !> First token of the values
       integer, intent(in) :: first
@@ -67,7 +64,6 @@ contains
       type(parameter_t), intent(in) :: parameter
       !> Where the key stands
       type(deck_place_t), intent(in) :: place
-      !> The deck
       type(deck_t), intent(in) :: deck
       !> Wrong type or wrong number of values
       type(error_t), allocatable, intent(out) :: error
@@ -103,7 +99,6 @@ contains
 
    !> What a token is instead of a value of a key
    pure function mismatch(scan, i, key) result(found)
-      !> The scanned text
       type(deck_scan_t), intent(in) :: scan
       !> Place of the token
       integer, intent(in) :: i
@@ -139,7 +134,6 @@ contains
 
    !> Why there may be a second value where one was wanted
    pure function hint(scan, i, group) result(text)
-      !> The scanned text
       type(deck_scan_t), intent(in) :: scan
       !> Place of the second value
       integer, intent(in) :: i
@@ -161,7 +155,6 @@ contains
 
    !> Where a token stands
    pure function place_at(scan, i, place) result(at)
-      !> The scanned text
       type(deck_scan_t), intent(in) :: scan
       !> Place of the token; past the end if there is none
       integer, intent(in) :: i
@@ -178,7 +171,6 @@ contains
 
    !> Number that a token stands for
    pure function number_at(scan, i) result(number)
-      !> The scanned text
       type(deck_scan_t), intent(in) :: scan
       !> Place of a token that is a number
       integer, intent(in) :: i
@@ -191,7 +183,6 @@ contains
 
    !> Numbers that tokens stand for, repeat counts written out
    pure function all_numbers(scan, first, last) result(numbers)
-      !> The scanned text
       type(deck_scan_t), intent(in) :: scan
       !> First token
       integer, intent(in) :: first
@@ -211,7 +202,6 @@ contains
 
    !> Words that tokens stand for, repeat counts written out
    pure function all_texts(scan, first, last) result(texts)
-      !> The scanned text
       type(deck_scan_t), intent(in) :: scan
       !> First token
       integer, intent(in) :: first

@@ -47,11 +47,9 @@ contains
 
    !> An error without a line speaks of a file that cannot be read: the line of the deck helps more
    pure subroutine name_key(deck, key, error)
-      !> The deck
       type(deck_t), intent(in) :: deck
       !> The key of &scene that names the file
       character(len=*), intent(in) :: key
-      !> The error
       type(error_t), allocatable, intent(inout) :: error
       character(len=:), allocatable :: message
 

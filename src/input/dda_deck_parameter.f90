@@ -80,7 +80,6 @@ contains
 
    !> Name of a parameter as a column is headed
    pure function parameter_name(parameter) result(name)
-      !> The parameter
       type(parameter_t), intent(in) :: parameter
       !> Key, with its group only if the key alone would be ambiguous, and with its item
       character(len=:), allocatable :: name

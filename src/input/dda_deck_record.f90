@@ -49,7 +49,6 @@ contains
       type(growing_text_t), intent(inout) :: lines
       !> Place of the key in the registry
       integer, intent(in) :: key
-      !> Its value
       type(deck_value_t), intent(in) :: value
       integer :: i
 
@@ -72,7 +71,6 @@ contains
    pure subroutine add_sweep(lines, sweep)
       !> The record so far
       type(growing_text_t), intent(inout) :: lines
-      !> The sweep
       type(deck_sweep_t), intent(in) :: sweep
       integer :: i
 

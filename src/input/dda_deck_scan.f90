@@ -21,7 +21,6 @@ contains
    pure subroutine scan_deck(text, scan, error)
       !> Text of the deck, lines ended by line feeds
       character(len=*), intent(in) :: text
-      !> The tokens
       type(deck_scan_t), intent(out) :: scan
       !> What the grammar does not allow, with its line
       type(error_t), allocatable, intent(out) :: error

@@ -19,7 +19,6 @@ contains
 
    !> Give a parameter a number by name
    pure subroutine set_number(deck, name, value, error)
-      !> The deck
       type(deck_t), intent(inout) :: deck
       !> Name of a key that may vary: friction_deg, joints_deg(2), arch%radius
       character(len=*), intent(in) :: name
@@ -40,7 +39,6 @@ contains
 
    !> Give a parameter a word by name
    pure subroutine set_text(deck, name, value, error)
-      !> The deck
       type(deck_t), intent(inout) :: deck
       !> Name of a key that may vary: springing, analysis%geometry
       character(len=*), intent(in) :: name
@@ -61,7 +59,6 @@ contains
 
    !> Put a number into a key or into one item of its list
    pure subroutine put_number(deck, parameter, value, place, error)
-      !> The deck
       type(deck_t), intent(inout) :: deck
       !> The key, with the item if it is a list
       type(parameter_t), intent(in) :: parameter
@@ -101,7 +98,6 @@ contains
 
    !> Put a list of numbers into a key
    pure subroutine put_numbers(deck, key, values, place, error)
-      !> The deck
       type(deck_t), intent(inout) :: deck
       !> Place of the key in the registry
       integer, intent(in) :: key
@@ -128,9 +124,7 @@ contains
 
    !> Put a text, a word or the text of a flag into a key
    pure subroutine put_text(deck, parameter, text, place, error)
-      !> The deck
       type(deck_t), intent(inout) :: deck
-      !> The key
       type(parameter_t), intent(in) :: parameter
       !> The text
       character(len=*), intent(in) :: text
@@ -265,7 +259,6 @@ contains
 
    !> Half angle and number of voussoirs follow joints_deg where they are not given
    pure subroutine follow_joints(deck)
-      !> The deck
       type(deck_t), intent(inout) :: deck
       integer :: n
 

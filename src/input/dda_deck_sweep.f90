@@ -65,7 +65,6 @@ contains
    pure subroutine append(list, sweep)
       !> The list: (n), then (n + 1)
       type(deck_sweep_t), allocatable, intent(inout) :: list(:)
-      !> The sweep
       type(deck_sweep_t), intent(in) :: sweep
       type(deck_sweep_t), allocatable :: longer(:)
       integer :: n
@@ -79,7 +78,6 @@ contains
 
    !> Put a key of &sweep back to its default, ready for the next &sweep
    pure subroutine forget(value)
-      !> The value
       type(deck_value_t), intent(inout) :: value
 
       value%given = .false.
@@ -92,7 +90,6 @@ contains
    pure subroutine take_values(deck, sweep, error)
       !> The deck, the keys of &sweep filled
       type(deck_t), intent(in) :: deck
-      !> The sweep
       type(deck_sweep_t), intent(inout) :: sweep
       !> None of them or more than one
       type(error_t), allocatable, intent(out) :: error
@@ -136,7 +133,6 @@ contains
    pure subroutine space_evenly(deck, sweep, error)
       !> The deck, the keys of &sweep filled
       type(deck_t), intent(in) :: deck
-      !> The sweep
       type(deck_sweep_t), intent(inout) :: sweep
       !> One value for two ends
       type(error_t), allocatable, intent(out) :: error
@@ -159,9 +155,7 @@ contains
 
    !> Whether the parameter of a sweep can take all of its values
    pure subroutine check_values(deck, sweep, error)
-      !> The deck
       type(deck_t), intent(in) :: deck
-      !> The sweep
       type(deck_sweep_t), intent(in) :: sweep
       !> Words for numbers, numbers for words, or a value out of range
       type(error_t), allocatable, intent(out) :: error
@@ -197,7 +191,6 @@ contains
 
    !> Number of values of a sweep
    pure function n_values(sweep) result(n)
-      !> The sweep
       type(deck_sweep_t), intent(in) :: sweep
       !> How many
       integer :: n
@@ -207,7 +200,6 @@ contains
 
    !> Number of cases of a deck
    pure function n_cases(deck) result(n)
-      !> The deck
       type(deck_t), intent(in) :: deck
       !> Product over the sweeps that are not linked; 1 without a sweep; at most huge(1)
       integer :: n
@@ -226,7 +218,6 @@ contains
 
    !> Which value each sweep has in a case
    pure function positions(deck, number) result(position)
-      !> The deck
       type(deck_t), intent(in) :: deck
       !> Number of the case, from 1 to n_cases
       integer, intent(in) :: number
@@ -322,7 +313,6 @@ contains
 
    !> Names of the swept parameters
    pure function swept_names(deck) result(names)
-      !> The deck
       type(deck_t), intent(in) :: deck
       !> One name a sweep, such as friction_deg or joints_deg(2): (n)
       character(len=word_length) :: names(size(deck%sweep))
@@ -335,7 +325,6 @@ contains
 
    !> Values of the swept parameters in a case, as text
    pure function swept_texts(deck, number) result(texts)
-      !> The deck
       type(deck_t), intent(in) :: deck
       !> Number of the case, from 1 to n_cases
       integer, intent(in) :: number

@@ -75,7 +75,6 @@ contains
 
    !> Part ground%columns into the columns of time, x and y
    pure subroutine split_columns(deck, column, error)
-      !> The deck
       type(deck_t), intent(in) :: deck
       !> The columns; 0 for none: (3)
       character(len=column_size), intent(out) :: column(3)

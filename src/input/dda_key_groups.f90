@@ -74,7 +74,6 @@ contains
 
    !> Read one group
    pure subroutine read_group(scan, first, last, groups, keys, group, error)
-      !> The scanned text
       type(deck_scan_t), intent(in) :: scan
       !> Token with its name
       integer, intent(in) :: first
@@ -131,15 +130,12 @@ contains
 
    !> Read and check the values of one key
    pure subroutine read_value(scan, first, last, key, value, error)
-      !> The scanned text
       type(deck_scan_t), intent(in) :: scan
       !> Token with its name
       integer, intent(in) :: first
       !> Last token of its values
       integer, intent(in) :: last
-      !> The key
       type(key_t), intent(in) :: key
-      !> The values
       type(key_value_t), intent(out) :: value
       !> Not what the key takes
       type(error_t), allocatable, intent(out) :: error
@@ -169,7 +165,6 @@ contains
 
    !> Whether a text is a value of a key
    pure logical function fits(key, text, kind)
-      !> The key
       type(key_t), intent(in) :: key
       !> The text
       character(len=*), intent(in) :: text
@@ -209,7 +204,6 @@ contains
 
    !> Numbers of a key; the default where it is not given, none where there is none
    pure function numbers_in(group, name) result(number)
-      !> The group
       type(key_group_t), intent(in) :: group
       !> Name of the key
       character(len=*), intent(in) :: name
@@ -232,7 +226,6 @@ contains
 
    !> One number of a key
    pure real(wp) function number_in(group, name, without)
-      !> The group
       type(key_group_t), intent(in) :: group
       !> Name of the key
       character(len=*), intent(in) :: name
@@ -248,7 +241,6 @@ contains
 
    !> One whole number of a key
    pure integer function whole_in(group, name, without)
-      !> The group
       type(key_group_t), intent(in) :: group
       !> Name of the key
       character(len=*), intent(in) :: name
@@ -264,7 +256,6 @@ contains
 
    !> A word of a key, in lower case
    pure function word_in(group, name) result(word)
-      !> The group
       type(key_group_t), intent(in) :: group
       !> Name of the key
       character(len=*), intent(in) :: name
@@ -283,7 +274,6 @@ contains
 
    !> Words of a list
    pure function texts_in(group, name) result(text)
-      !> The group
       type(key_group_t), intent(in) :: group
       !> Name of the key
       character(len=*), intent(in) :: name
@@ -303,7 +293,6 @@ contains
 
    !> A truth value
    pure logical function flag_in(group, name)
-      !> The group
       type(key_group_t), intent(in) :: group
       !> Name of the key
       character(len=*), intent(in) :: name
@@ -316,11 +305,9 @@ contains
 
    !> An error that speaks of a group
    pure subroutine group_error(group, message, error)
-      !> The group
       type(key_group_t), intent(in) :: group
       !> What was expected, what was found
       character(len=*), intent(in) :: message
-      !> The error
       type(error_t), allocatable, intent(out) :: error
 
       call fatal_error(error, "&"//trim(group%name)//": "//message, line=group%row)

@@ -79,7 +79,6 @@ contains
 
    !> The surface of the ground from the left side to the right one
    pure subroutine take_surface(group, left, right, surface, error)
-      !> The group
       type(key_group_t), intent(in) :: group
       !> The two sides [m]
       real(wp), intent(in) :: left, right
@@ -123,7 +122,6 @@ contains
 
    !> Points of two lists
    pure subroutine take_points(group, x_name, y_name, least, point, error)
-      !> The group
       type(key_group_t), intent(in) :: group
       !> Names of the keys
       character(len=*), intent(in) :: x_name, y_name
@@ -148,7 +146,6 @@ contains
 
    !> A polygon of two lists, anticlockwise whichever way it was given
    pure subroutine take_polygon(group, x_name, y_name, corner, error)
-      !> The group
       type(key_group_t), intent(in) :: group
       !> Names of the keys
       character(len=*), intent(in) :: x_name, y_name
@@ -167,7 +164,6 @@ contains
 
    !> Whether a polygon is simple and has an area
    pure subroutine check_polygon(group, corner, error)
-      !> The group
       type(key_group_t), intent(in) :: group
       !> Its corners: (2, n) [m]
       real(wp), intent(in) :: corner(:, :)
@@ -191,7 +187,6 @@ contains
 
    !> An opening
    pure subroutine take_opening(group, map, error)
-      !> The group
       type(key_group_t), intent(in) :: group
       !> Receives it
       type(joint_map_t), intent(inout) :: map

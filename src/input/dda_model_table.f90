@@ -133,7 +133,6 @@ contains
 
    !> Kinds in which keys are searched with a mode
    pure function kinds_of(rule, mode) result(list)
-      !> The keys
       type(search_t), intent(in) :: rule
       !> Word of analysis%mode
       character(len=*), intent(in) :: mode
@@ -191,7 +190,6 @@ contains
 
    !> Names of keys that are searched alike
    pure function name_of(rule, quote) result(text)
-      !> The keys
       type(search_t), intent(in) :: rule
       !> What stands before and after a name
       character(len=*), intent(in) :: quote
@@ -242,7 +240,6 @@ contains
 
    !> Modes in which keys are searched in scenes of a kind
    pure function modes_of(rule, kind) result(text)
-      !> The keys
       type(search_t), intent(in) :: rule
       !> Word of scene%kind
       character(len=*), intent(in) :: kind

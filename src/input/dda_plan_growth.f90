@@ -121,7 +121,6 @@ contains
    pure subroutine add_law_plan(growing, law)
       !> Receives the law
       type(growing_plan_t), intent(inout) :: growing
-      !> The law
       type(law_plan_t), intent(in) :: law
       type(law_plan_t), allocatable :: longer(:)
 
@@ -140,7 +139,6 @@ contains
    pure subroutine close_plan(growing, plan)
       !> The plan that has grown
       type(growing_plan_t), intent(in) :: growing
-      !> The plan
       type(block_plan_t), intent(out) :: plan
 
       associate (from => growing%plan, n => growing%n_block)
@@ -180,7 +178,6 @@ contains
 
    !> Name of the block that comes next
    pure function next_name(growing) result(name)
-      !> The plan
       type(growing_plan_t), intent(in) :: growing
       !> Such as: block 3
       character(len=:), allocatable :: name

@@ -58,7 +58,6 @@ contains
       character(len=*), intent(in) :: text
       !> Name that errors will show
       character(len=*), intent(in) :: file
-      !> The blocks
       type(block_plan_t), intent(out) :: plan
       !> Receives what is doubtful
       type(warnings_t), intent(inout) :: warnings
@@ -112,7 +111,6 @@ contains
 
    !> Take a line: the beginning of an entry, or a row of the one before
    pure subroutine take_line(line, reading, warnings, error)
-      !> The line
       type(line_t), intent(in) :: line
       !> What has been read so far
       type(reading_t), intent(inout) :: reading
@@ -158,7 +156,6 @@ contains
 
    !> What a row below an entry ought to be
    pure function row_wanted(entry) result(text)
-      !> The entry
       type(entry_t), intent(in) :: entry
       !> The text
       character(len=:), allocatable :: text
@@ -176,7 +173,6 @@ contains
 
    !> Whether a line begins an entry
    pure subroutine check_entry(line, error)
-      !> The line
       type(line_t), intent(in) :: line
       !> No such entry
       type(error_t), allocatable, intent(out) :: error
@@ -188,9 +184,7 @@ contains
 
    !> Begin an entry
    pure subroutine open_entry(line, entry)
-      !> Its first line
       type(line_t), intent(in) :: line
-      !> The entry
       type(entry_t), intent(inout) :: entry
 
       entry%head = line
@@ -292,7 +286,6 @@ contains
    !> Take in a material:
    !> material N [density d] [unit_weight w] [young e] [poisson p] [compressive_strength s]
    pure subroutine add_material(line, plan, error)
-      !> The line
       type(line_t), intent(in) :: line
       !> Receives the material
       type(block_plan_t), intent(inout) :: plan
@@ -332,7 +325,6 @@ contains
    !> Take in a law: joint I J [friction_deg f] [cohesion c] [tension t] [residual_deg r]
    !> [slip_length d]
    pure subroutine add_law(line, growing, error)
-      !> The line
       type(line_t), intent(in) :: line
       !> Receives the law
       type(growing_plan_t), intent(inout) :: growing

@@ -39,7 +39,6 @@ contains
       character(len=*), intent(in) :: file
       !> The --set values: group%key=value: (n)
       character(len=*), intent(in) :: settings(:)
-      !> The deck
       type(deck_t), intent(out) :: deck
       !> Bad input, with file and line, or with --set and its number
       type(error_t), allocatable, intent(out) :: error
@@ -69,7 +68,6 @@ contains
 
    !> Name of the file of blocks: beside the deck unless it begins with a slash
    pure function geometry_file(deck) result(path)
-      !> The deck
       type(deck_t), intent(in) :: deck
       !> The name
       character(len=:), allocatable :: path
@@ -85,7 +83,6 @@ contains
       character(len=*), intent(in) :: file
       !> The --set values: group%key=value: (n)
       character(len=*), intent(in) :: settings(:)
-      !> The deck
       type(deck_t), intent(out) :: deck
       !> Bad input, with file and line, or with --set and its number
       type(error_t), allocatable, intent(out) :: error
@@ -122,11 +119,9 @@ contains
 
    !> Read one group
    pure subroutine read_group(scan, i, deck, error)
-      !> The scanned deck
       type(deck_scan_t), intent(in) :: scan
       !> Token of the group; then the token after the group
       integer, intent(inout) :: i
-      !> The deck
       type(deck_t), intent(inout) :: deck
       !> Unknown or repeated group, or anything wrong inside
       type(error_t), allocatable, intent(out) :: error
@@ -157,13 +152,11 @@ contains
 
    !> Read one key and its values
    pure subroutine read_entry(scan, i, group, deck, error)
-      !> The scanned deck
       type(deck_scan_t), intent(in) :: scan
       !> Token of the key; then the token after its values
       integer, intent(inout) :: i
       !> Name of the group
       character(len=*), intent(in) :: group
-      !> The deck
       type(deck_t), intent(inout) :: deck
       !> Unknown or repeated key, or a value it cannot take
       type(error_t), allocatable, intent(out) :: error
@@ -193,7 +186,6 @@ contains
 
    !> Whether a token stands for a value, be it an empty one
    pure function is_value(scan, i) result(yes)
-      !> The scanned deck
       type(deck_scan_t), intent(in) :: scan
       !> Place of the token
       integer, intent(in) :: i
@@ -239,7 +231,6 @@ contains
       character(len=*), intent(in) :: setting
       !> Its number on the command line
       type(deck_place_t), intent(in) :: place
-      !> The deck
       type(deck_t), intent(inout) :: deck
       !> Anything wrong with name or value
       type(error_t), allocatable, intent(out) :: error
@@ -284,7 +275,6 @@ contains
       type(parameter_t), intent(in) :: parameter
       !> Number of the --set
       type(deck_place_t), intent(in) :: place
-      !> The deck
       type(deck_t), intent(inout) :: deck
       !> A value that the key cannot take
       type(error_t), allocatable, intent(out) :: error

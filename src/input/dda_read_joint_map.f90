@@ -23,7 +23,6 @@ contains
    subroutine read_joint_map(file, map, is_ddaml, error)
       !> Name of the file
       character(len=*), intent(in) :: file
-      !> The map
       type(joint_map_t), intent(out) :: map
       !> Whether lines are to be written in DDAML
       logical, intent(out) :: is_ddaml
@@ -42,7 +41,6 @@ contains
       character(len=*), intent(in) :: text
       !> Name that errors show
       character(len=*), intent(in) :: file
-      !> The map
       type(joint_map_t), intent(out) :: map
       !> Whether lines are to be written in DDAML
       logical, intent(out) :: is_ddaml
@@ -90,7 +88,6 @@ contains
 
    !> A set of joints
    pure subroutine take_set(group, seed, map, error)
-      !> The group
       type(key_group_t), intent(in) :: group
       !> Seed of the map
       integer, intent(in) :: seed
@@ -120,7 +117,6 @@ contains
 
    !> A length with its law
    pure type(length_t) function length_in(group, name)
-      !> The group
       type(key_group_t), intent(in) :: group
       !> Name of the key
       character(len=*), intent(in) :: name
@@ -139,7 +135,6 @@ contains
 
    !> Lines or points placed by hand
    pure subroutine take_lines(group, map, error)
-      !> The group
       type(key_group_t), intent(in) :: group
       !> Receives them
       type(joint_map_t), intent(inout) :: map
@@ -169,7 +164,6 @@ contains
 
    !> Bolts around an opening
    pure subroutine take_bolts(group, map)
-      !> The group
       type(key_group_t), intent(in) :: group
       !> Receives them
       type(joint_map_t), intent(inout) :: map
@@ -189,7 +183,6 @@ contains
    pure subroutine check_bolts(group, map, error)
       !> All groups
       type(key_group_t), intent(in) :: group(:)
-      !> The map
       type(joint_map_t), intent(in) :: map
       !> One that is not
       type(error_t), allocatable, intent(out) :: error

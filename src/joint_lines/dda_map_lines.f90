@@ -20,7 +20,6 @@ contains
 
    !> Lines and points of a map
    pure subroutine map_lines(map, model, error)
-      !> The map
       type(joint_map_t), intent(in) :: map
       !> Lines and points
       type(line_model_t), intent(out) :: model
@@ -56,7 +55,6 @@ contains
 
    !> Whether all openings lie apart inside the outline
    pure subroutine check_openings(map, error)
-      !> The map
       type(joint_map_t), intent(in) :: map
       !> One that does not
       type(error_t), allocatable, intent(out) :: error
@@ -102,7 +100,6 @@ contains
 
    !> Hold the blocks along sides of the outline
    pure subroutine hold_sides(map, model)
-      !> The map
       type(joint_map_t), intent(in) :: map
       !> Receives a line a side
       type(line_model_t), intent(inout) :: model
@@ -126,7 +123,6 @@ contains
 
    !> Draw a set of joints
    pure subroutine add_set(map, i, model, error)
-      !> The map
       type(joint_map_t), intent(in) :: map
       !> Number of the set
       integer, intent(in) :: i
@@ -157,7 +153,6 @@ contains
 
    !> Keep what of some lines lies in rock
    pure subroutine clip_to_rock(map, line, n)
-      !> The map
       type(joint_map_t), intent(in) :: map
       !> Columns of ends: (4, n or more) [m]
       real(wp), allocatable, intent(inout) :: line(:, :)
@@ -173,9 +168,7 @@ contains
 
    !> Add a line or a point that is placed by hand
    pure subroutine add_line(map, line, model, error)
-      !> The map
       type(joint_map_t), intent(in) :: map
-      !> The line
       type(map_line_t), intent(in) :: line
       !> Receives it
       type(line_model_t), intent(inout) :: model
@@ -212,9 +205,7 @@ contains
 
    !> Add the bolts of a pattern
    pure subroutine add_bolts(map, bolts, model, error)
-      !> The map
       type(joint_map_t), intent(in) :: map
-      !> The pattern
       type(bolts_t), intent(in) :: bolts
       !> Receives them
       type(line_model_t), intent(inout) :: model

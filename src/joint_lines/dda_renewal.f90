@@ -15,7 +15,6 @@ contains
 
    !> A length by its law
    pure subroutine draw_length(length, random, value)
-      !> The law
       type(length_t), intent(in) :: length
       !> Random numbers
       type(random_t), intent(inout) :: random
@@ -42,7 +41,6 @@ contains
 
    !> A length that covers a given point: long ones do so more often
    pure subroutine draw_covering_length(length, random, value)
-      !> The law
       type(length_t), intent(in) :: length
       !> Random numbers
       type(random_t), intent(inout) :: random

@@ -34,7 +34,6 @@ contains
 
    !> How many joints a set has across a circle, about
    pure real(wp) function joint_count(set, radius)
-      !> The set
       type(joint_set_t), intent(in) :: set
       !> Radius of the circle [m]
       real(wp), intent(in) :: radius
@@ -46,7 +45,6 @@ contains
 
    !> Traces of a set that meet a circle
    pure subroutine set_traces(set, centre, radius, trace, n)
-      !> The set
       type(joint_set_t), intent(in) :: set
       !> Centre of the circle: (2) [m]
       real(wp), intent(in) :: centre(2)
@@ -87,7 +85,6 @@ contains
 
    !> Add the traces of one joint
    pure subroutine add_joint(set, centre, radius, distance, number, trace, n)
-      !> The set
       type(joint_set_t), intent(in) :: set
       !> Centre of the circle: (2) [m]
       real(wp), intent(in) :: centre(2)
@@ -123,13 +120,10 @@ contains
 
    !> Traces and bridges from the foot of a joint outwards
    pure subroutine add_traces(set, axis, number, random, trace, n)
-      !> The set
       type(joint_set_t), intent(in) :: set
-      !> The joint
       type(axis_t), intent(in) :: axis
       !> Its number
       integer, intent(in) :: number
-      !> Its random numbers
       type(random_t), intent(inout) :: random
       !> Receives the traces: (4, n or more) [m]
       real(wp), allocatable, intent(inout) :: trace(:, :)
@@ -165,7 +159,6 @@ contains
 
    !> The law of traces or of bridges
    pure type(length_t) function part_law(set, is_trace)
-      !> The set
       type(joint_set_t), intent(in) :: set
       !> Whether it is a trace
       logical, intent(in) :: is_trace
@@ -176,7 +169,6 @@ contains
 
    !> Add the part of a joint between two places, as far as it is in the window
    pure subroutine add_part(axis, part, trace, n)
-      !> The joint
       type(axis_t), intent(in) :: axis
       !> Where the part begins and ends along it: (2) [m]
       real(wp), intent(in) :: part(2)

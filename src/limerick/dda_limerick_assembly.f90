@@ -47,7 +47,6 @@ contains
       type(contact_list_t), intent(in) :: contacts
       !> Number of blocks
       integer, intent(in) :: n_block
-      !> The equations
       type(limerick_equations_t), intent(inout) :: equations
       !> Springs of the contacts; their entries are set: (at least contacts%n)
       type(contact_spring_t), intent(inout) :: spring(:)
@@ -93,9 +92,7 @@ contains
 
    !> Inertia, elasticity, stress, weight, fixed and loaded points
    pure subroutine assemble_limerick(model, blocks, march, equations)
-      !> The model
       type(limerick_model_t), intent(in) :: model
-      !> The blocks
       type(limerick_blocks_t), intent(in) :: blocks
       !> The march; its time step is the step's
       type(limerick_march_t), intent(in) :: march
@@ -123,13 +120,9 @@ contains
 
    !> Springs at the fixed points, which pull back what has drifted, and forces at the load points
    pure subroutine add_points(model, blocks, march, equations)
-      !> The model
       type(limerick_model_t), intent(in) :: model
-      !> The blocks
       type(limerick_blocks_t), intent(in) :: blocks
-      !> The march
       type(limerick_march_t), intent(in) :: march
-      !> The equations
       type(limerick_equations_t), intent(inout) :: equations
       real(wp) :: row(n_unknown), axis(2)
       integer :: b, i, k
@@ -155,11 +148,8 @@ contains
 
    !> Bolts: their stiffness, and what they pull with
    pure subroutine add_bolts(model, blocks, equations)
-      !> The model
       type(limerick_model_t), intent(in) :: model
-      !> The blocks
       type(limerick_blocks_t), intent(in) :: blocks
-      !> The equations
       type(limerick_equations_t), intent(inout) :: equations
       real(wp) :: row(n_unknown, 2)
       integer :: b, first, i, side
@@ -186,13 +176,10 @@ contains
 
    !> Matrix and right-hand side with the springs and the friction of the contacts' states
    pure subroutine add_contacts(model, contacts, spring, march, first_pass, equations)
-      !> The model
       type(limerick_model_t), intent(in) :: model
-      !> The contacts
       type(contact_list_t), intent(in) :: contacts
       !> Their springs: (at least contacts%n)
       type(contact_spring_t), intent(in) :: spring(:)
-      !> The march
       type(limerick_march_t), intent(in) :: march
       !> Whether nothing was solved in this step yet
       logical, intent(in) :: first_pass
@@ -238,7 +225,6 @@ contains
 
    !> One spring between two blocks, and a damper beside it (Ke 1995)
    pure subroutine add_spring(contact, spring, stiffness, damper, row, start, equations)
-      !> The contact
       type(limerick_contact_t), intent(in) :: contact
       !> Where it stands in the matrix
       type(contact_spring_t), intent(in) :: spring
@@ -250,7 +236,6 @@ contains
       real(wp), intent(in) :: row(:, :)
       !> Its length at the beginning of the step [m]
       real(wp), intent(in) :: start
-      !> The equations
       type(limerick_equations_t), intent(inout) :: equations
       real(wp) :: both
 
@@ -287,11 +272,8 @@ contains
 
    !> Friction of a sliding contact against its last slip, from the last penetration
    pure subroutine add_friction(model, contact, spring, penalty, load)
-      !> The model
       type(limerick_model_t), intent(in) :: model
-      !> The contact
       type(limerick_contact_t), intent(in) :: contact
-      !> Its springs
       type(contact_spring_t), intent(in) :: spring
       !> Stiffness of the contacts in the last solution [N/m2]
       real(wp), intent(in) :: penalty

@@ -14,7 +14,6 @@ contains
 
    !> Number of bolts
    pure integer function n_bolts(model)
-      !> The model
       type(limerick_model_t), intent(in) :: model
 
       n_bolts = 0
@@ -23,9 +22,7 @@ contains
 
    !> Elongation of a bolt per unknown of its two blocks; nothing for the ground
    pure function bolt_rows(model, blocks, i) result(row)
-      !> The model
       type(limerick_model_t), intent(in) :: model
-      !> The blocks
       type(limerick_blocks_t), intent(in) :: blocks
       !> Number of the bolt
       integer, intent(in) :: i
@@ -47,7 +44,6 @@ contains
 
    !> Elongation of a bolt in a step
    pure real(wp) function bolt_elongation(model, blocks, i, motion)
-      !> The model
       type(limerick_model_t), intent(in) :: model
       !> The blocks at the beginning of the step
       type(limerick_blocks_t), intent(in) :: blocks

@@ -71,9 +71,7 @@ contains
 
    !> Append a contact; the list grows by doubling
    pure subroutine append_contact(list, contact)
-      !> The list
       type(contact_list_t), intent(inout) :: list
-      !> The contact
       type(limerick_contact_t), intent(in) :: contact
       type(limerick_contact_t), allocatable :: longer(:)
 
@@ -112,11 +110,8 @@ contains
    !> Normal springs of all lines, and the shear spring of a vertex and an edge (Shi 1988, 4.11 to
    !> 4.18)
    pure subroutine place_springs(blocks, contact, spring)
-      !> The blocks
       type(limerick_blocks_t), intent(in) :: blocks
-      !> The contact
       type(limerick_contact_t), intent(in) :: contact
-      !> Its springs
       type(contact_spring_t), intent(inout) :: spring
       real(wp), dimension(2) :: p1, p2, p3, edge
       real(wp) :: length
@@ -146,7 +141,6 @@ contains
    !> The shear spring between the vertex and the point of the edge where it was set (Ke 1995, 56 to
    !> 59)
    pure subroutine place_shear_spring(blocks, contact, spring)
-      !> The blocks
       type(limerick_blocks_t), intent(in) :: blocks
       !> The contact of a vertex and an edge
       type(limerick_contact_t), intent(in) :: contact

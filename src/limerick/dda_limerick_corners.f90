@@ -22,9 +22,7 @@ contains
 
    !> Directions, inner angles and lengths of all corners
    pure subroutine measure_corners(blocks, corners)
-      !> The blocks
       type(limerick_blocks_t), intent(in) :: blocks
-      !> Their corners
       type(corners_t), intent(out) :: corners
       real(wp) :: edge(2)
       integer :: v, n
@@ -79,9 +77,7 @@ contains
 
    !> The two lines that a pair of corners may cross, the steeper first: mirrored meshes stay so
    pure function entrance_lines(blocks, corners, i, j, overlap_deg) result(line)
-      !> The blocks
       type(limerick_blocks_t), intent(in) :: blocks
-      !> Their corners
       type(corners_t), intent(in) :: corners
       !> Vertex of the first block
       integer, intent(in) :: i

@@ -16,7 +16,6 @@ contains
 
    !> All contacts of the blocks where they are now, open, pair of blocks by pair of blocks
    pure subroutine find_limerick_contacts(blocks, reach, overlap_deg, order, list)
-      !> The blocks
       type(limerick_blocks_t), intent(in) :: blocks
       !> Distance within which contacts are sought [m]
       real(wp), intent(in) :: reach
@@ -24,7 +23,6 @@ contains
       real(wp), intent(in) :: overlap_deg
       !> Blocks from left to right, as near as the step before left them: (n_block)
       integer, intent(inout) :: order(:)
-      !> The contacts
       type(contact_list_t), intent(inout) :: list
       type(corners_t) :: corners
       real(wp) :: low(2, size(order)), high(2, size(order))
@@ -71,9 +69,7 @@ contains
 
    !> Contacts of two blocks whose boxes are near
    pure subroutine meet_blocks(blocks, corners, a, b, reach, overlap_deg, list)
-      !> The blocks
       type(limerick_blocks_t), intent(in) :: blocks
-      !> Their corners
       type(corners_t), intent(in) :: corners
       !> First block
       integer, intent(in) :: a
@@ -103,7 +99,6 @@ contains
 
    !> Whether two vertices lie near one another
    pure logical function near(blocks, i, j, reach)
-      !> The blocks
       type(limerick_blocks_t), intent(in) :: blocks
       !> First vertex
       integer, intent(in) :: i
@@ -118,9 +113,7 @@ contains
 
    !> Whether a vertex, not near an edge's first end, is near the edge and far from its second end
    pure logical function above_edge(blocks, corners, i, j, reach)
-      !> The blocks
       type(limerick_blocks_t), intent(in) :: blocks
-      !> Their corners
       type(corners_t), intent(in) :: corners
       !> The vertex
       integer, intent(in) :: i
@@ -142,9 +135,7 @@ contains
    !> Two vertices near one another: two convex corners, or a corner in a concave one, which meets
    !> both its edges
    pure subroutine meet_vertices(blocks, corners, i, j, overlap_deg, list)
-      !> The blocks
       type(limerick_blocks_t), intent(in) :: blocks
-      !> Their corners
       type(corners_t), intent(in) :: corners
       !> Vertex of the first block
       integer, intent(in) :: i
@@ -169,9 +160,7 @@ contains
    !> A vertex and an edge become a contact unless the corner would have to lie inside the edge's
    !> block
    pure subroutine meet_edge(blocks, corners, i, j, overlap_deg, list)
-      !> The blocks
       type(limerick_blocks_t), intent(in) :: blocks
-      !> Their corners
       type(corners_t), intent(in) :: corners
       !> The vertex
       integer, intent(in) :: i
@@ -196,9 +185,7 @@ contains
    !> Two convex corners: where edges of theirs lie together, a vertex and an edge each; otherwise a
    !> contact of two corners
    pure subroutine meet_corner(blocks, corners, i, j, overlap_deg, list)
-      !> The blocks
       type(limerick_blocks_t), intent(in) :: blocks
-      !> Their corners
       type(corners_t), intent(in) :: corners
       !> Vertex of the first block
       integer, intent(in) :: i
@@ -237,7 +224,6 @@ contains
 
    !> Of two edges that lie together, the vertex whose foot lies on the other edge makes the contact
    pure subroutine settle_pair(blocks, contact, list)
-      !> The blocks
       type(limerick_blocks_t), intent(in) :: blocks
       !> The contact, either line first
       type(limerick_contact_t), intent(in) :: contact
@@ -259,9 +245,7 @@ contains
 
    !> Append a contact with its blocks
    pure subroutine settle(blocks, contact, list)
-      !> The blocks
       type(limerick_blocks_t), intent(in) :: blocks
-      !> The contact
       type(limerick_contact_t), intent(in) :: contact
       !> Receives the contact
       type(contact_list_t), intent(inout) :: list

@@ -27,7 +27,6 @@ contains
    !> Length of the next step from the largest acceleration (Shi: step); no step passes over a
    !> record of a load
    pure subroutine choose_interval(model, march)
-      !> The model
       type(limerick_model_t), intent(in) :: model
       !> The march; its time step is set
       type(limerick_march_t), intent(inout) :: march
@@ -61,7 +60,6 @@ contains
 
    !> Largest initial stress of a material [Pa]
    pure real(wp) function largest_stress(model)
-      !> The model
       type(limerick_model_t), intent(in) :: model
       integer :: m
 
@@ -73,7 +71,6 @@ contains
 
    !> Largest initial velocity of a material [m/s]
    pure real(wp) function largest_velocity(model)
-      !> The model
       type(limerick_model_t), intent(in) :: model
       integer :: m
 
@@ -85,7 +82,6 @@ contains
 
    !> Largest component of the loads at a time or of all that are tabulated [N/m]
    pure real(wp) function largest_load(model, time, ever)
-      !> The model
       type(limerick_model_t), intent(in) :: model
       !> The time [s]
       real(wp), intent(in) :: time
@@ -105,9 +101,7 @@ contains
 
    !> Whether a step is accepted; if not, its length or the penalty is changed
    pure subroutine judge_limerick_step(model, contacts, settled, march, accepted)
-      !> The model
       type(limerick_model_t), intent(in) :: model
-      !> The contacts
       type(contact_list_t), intent(in) :: contacts
       !> Whether they settled
       logical, intent(in) :: settled
@@ -136,9 +130,7 @@ contains
    !> The penalty goes, down to a third at the most, to where the penetration is what is aimed at
    !> (Shi: spri)
    pure subroutine adapt_penalty(model, contacts, march)
-      !> The model
       type(limerick_model_t), intent(in) :: model
-      !> The contacts
       type(contact_list_t), intent(in) :: contacts
       !> The march; penalty and penetration are set
       type(limerick_march_t), intent(inout) :: march

@@ -95,7 +95,6 @@ contains
 
    !> Half the larger side of the box around all blocks: the original's scale of length (Shi: df01)
    pure real(wp) function half_size(model)
-      !> The model
       type(limerick_model_t), intent(in) :: model
 
       half_size = maxval(maxval(model%vertex, dim=2) - minval(model%vertex, dim=2))/2.0_wp
@@ -103,7 +102,6 @@ contains
 
    !> The scheme knows friction alone: a joint that cannot slide has the most of it
    elemental function finite_law(given) result(law)
-      !> A law
       type(joint_law_t), intent(in) :: given
       !> The law of the scheme
       type(joint_law_t) :: law
@@ -114,7 +112,6 @@ contains
 
    !> Law of a corner on an edge: that of the edge, for corners of the block's kind
    pure function contact_law(model, block, edge) result(law)
-      !> The model
       type(limerick_model_t), intent(in) :: model
       !> Block of the corner
       integer, intent(in) :: block
@@ -128,7 +125,6 @@ contains
 
    !> Force on a load point at a time: linear between the records (Shi: df09)
    pure function force_at(model, point, time) result(force)
-      !> The model
       type(limerick_model_t), intent(in) :: model
       !> Number of the load point
       integer, intent(in) :: point
@@ -153,7 +149,6 @@ contains
 
    !> Time of the last record of all loads that change: before it nothing is at rest for good
    pure real(wp) function loads_end(model)
-      !> The model
       type(limerick_model_t), intent(in) :: model
       integer :: i, n
 
@@ -169,7 +164,6 @@ contains
 
    !> Time of the first record of any load after a time; huge if there is none
    pure real(wp) function next_record(model, time)
-      !> The model
       type(limerick_model_t), intent(in) :: model
       !> The time [s]
       real(wp), intent(in) :: time

@@ -26,15 +26,12 @@ contains
    !> Solve and judge until no contact opens or closes
    pure subroutine open_and_close(model, blocks, contacts, spring, march, first_pass, &
       & equations, settled)
-      !> The model
       type(limerick_model_t), intent(in) :: model
-      !> The blocks
       type(limerick_blocks_t), intent(in) :: blocks
       !> The contacts; their states are changed
       type(contact_list_t), intent(inout) :: contacts
       !> Their springs; a shear spring is set anew where a contact closes: (at least contacts%n)
       type(contact_spring_t), intent(inout) :: spring(:)
-      !> The march
       type(limerick_march_t), intent(inout) :: march
       !> Whether nothing was solved in this step yet; then it was
       logical, intent(inout) :: first_pass
@@ -68,17 +65,12 @@ contains
 
    !> The state of one contact after a solution
    pure subroutine judge_contact(model, blocks, motion, march, contact, spring)
-      !> The model
       type(limerick_model_t), intent(in) :: model
-      !> The blocks
       type(limerick_blocks_t), intent(in) :: blocks
       !> Motion of the blocks: (6, n_block)
       real(wp), intent(in) :: motion(:, :)
-      !> The march
       type(limerick_march_t), intent(in) :: march
-      !> The contact
       type(limerick_contact_t), intent(inout) :: contact
-      !> Its springs
       type(contact_spring_t), intent(inout) :: spring
       real(wp) :: gap(2)
 
@@ -104,7 +96,6 @@ contains
       type(limerick_constants_t), intent(in) :: constants
       !> Law of the joint
       type(joint_law_t), intent(in) :: law
-      !> The march
       type(limerick_march_t), intent(in) :: march
       !> Opening at both lines: (2) [m]
       real(wp), intent(in) :: gap(2)
@@ -135,7 +126,6 @@ contains
       type(limerick_constants_t), intent(in) :: constants
       !> Law of the joint
       type(joint_law_t), intent(in) :: law
-      !> The march
       type(limerick_march_t), intent(in) :: march
       !> Slip since the shear spring was set [m]
       real(wp), intent(in) :: slip
@@ -162,7 +152,6 @@ contains
 
    !> A contact that closes gets its shear spring where the vertex meets the edge
    pure subroutine set_shear_spring(blocks, motion, half_size, contact, spring)
-      !> The blocks
       type(limerick_blocks_t), intent(in) :: blocks
       !> Motion of the blocks: (6, n_block)
       real(wp), intent(in) :: motion(:, :)

@@ -63,9 +63,7 @@ contains
 
    !> A run before its first step
    pure subroutine begin_run(model, run)
-      !> The model
       type(limerick_model_t), intent(in) :: model
-      !> The run
       type(limerick_run_t), intent(out) :: run
       integer :: b, n
 
@@ -81,7 +79,6 @@ contains
 
    !> Run a model to its verdict
    pure subroutine run_limerick(model, run, outcome, n_track)
-      !> The model
       type(limerick_model_t), intent(in) :: model
       !> The run as it ended
       type(limerick_run_t), intent(out) :: run
@@ -105,13 +102,11 @@ contains
 
    !> What is known before the first step; gravity is turned on where the model asks for it
    pure subroutine begin_outcome(model, run, n_track, outcome)
-      !> The model
       type(limerick_model_t), intent(in) :: model
       !> The run, begun
       type(limerick_run_t), intent(inout) :: run
       !> Of how many measured points the way is kept
       integer, intent(in) :: n_track
-      !> The outcome
       type(limerick_outcome_t), intent(out) :: outcome
       type(error_t), allocatable :: error
 
@@ -123,9 +118,7 @@ contains
 
    !> One step of a run, or its end
    pure subroutine next_step(model, run, outcome, ended)
-      !> The model
       type(limerick_model_t), intent(in) :: model
-      !> The run
       type(limerick_run_t), intent(inout) :: run
       !> What is known of it; complete at the end
       type(limerick_outcome_t), intent(inout) :: outcome
@@ -170,7 +163,6 @@ contains
    !> The phase that turns gravity on: steps from rest, in joints that cannot slide, until contact
    !> forces change no more; time begins after it (MacLaughlin 1997)
    pure subroutine turn_gravity_on(model, run, error)
-      !> The model
       type(limerick_model_t), intent(in) :: model
       !> The run, begun
       type(limerick_run_t), intent(inout) :: run
@@ -209,9 +201,7 @@ contains
    !> Whether the last step went no farther than a small part of a free fall from rest: blocks that
    !> have not met their neighbours yet have no forces that could change
    pure logical function falls_no_more(model, run)
-      !> The model
       type(limerick_model_t), intent(in) :: model
-      !> The run
       type(limerick_run_t), intent(in) :: run
       real(wp) :: fall
 
@@ -226,9 +216,7 @@ contains
 
    !> Normal and shear forces of the contacts
    pure function contact_forces(model, run) result(force)
-      !> The model
       type(limerick_model_t), intent(in) :: model
-      !> The run
       type(limerick_run_t), intent(in) :: run
       !> The forces, zero where a contact is open or slides: (2, n_contact) [N/m]
       real(wp), allocatable :: force(:, :)
@@ -262,7 +250,6 @@ contains
 
    !> Keep where the measured points are at the end of a step
    pure subroutine keep_track(run, outcome)
-      !> The run
       type(limerick_run_t), intent(in) :: run
       !> Receives the places
       type(limerick_outcome_t), intent(inout) :: outcome
@@ -285,9 +272,7 @@ contains
 
    !> Largest distance of a vertex from where it began [m]
    pure real(wp) function farthest_vertex(model, run)
-      !> The model
       type(limerick_model_t), intent(in) :: model
-      !> The run
       type(limerick_run_t), intent(in) :: run
       integer :: v
 

@@ -95,9 +95,7 @@ contains
 
    !> The blocks at the beginning
    pure subroutine new_blocks(model, blocks)
-      !> The model
       type(limerick_model_t), intent(in) :: model
-      !> The blocks
       type(limerick_blocks_t), intent(out) :: blocks
       integer :: b, i, n, nv, v, first, last
 
@@ -160,9 +158,7 @@ contains
 
    !> Scales of a run before its first step
    pure function new_march(model, blocks) result(march)
-      !> The model
       type(limerick_model_t), intent(in) :: model
-      !> Its blocks
       type(limerick_blocks_t), intent(in) :: blocks
       !> The march
       type(limerick_march_t) :: march

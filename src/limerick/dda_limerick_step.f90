@@ -44,9 +44,7 @@ contains
    !> One step: blocks and contacts change only when it is accepted; the penalty changes at each
    !> attempt
    pure subroutine advance_limerick(model, run, error)
-      !> The model
       type(limerick_model_t), intent(in) :: model
-      !> The run
       type(limerick_run_t), intent(inout) :: run
       !> Allocated if no attempt was accepted
       type(error_t), allocatable, intent(out) :: error
@@ -88,9 +86,7 @@ contains
 
    !> The contacts of the step, with the states of the step before, and their springs
    pure subroutine meet(model, run)
-      !> The model
       type(limerick_model_t), intent(in) :: model
-      !> The run
       type(limerick_run_t), intent(inout) :: run
       type(contact_list_t) :: swap
       integer :: c

@@ -13,7 +13,6 @@ contains
 
    !> Give the contacts of a step the states of the step before; a contact is known by its vertices
    pure subroutine transfer_contacts(blocks, before, now)
-      !> The blocks
       type(limerick_blocks_t), intent(in) :: blocks
       !> Contacts of the step before
       type(contact_list_t), intent(in) :: before
@@ -46,7 +45,6 @@ contains
    pure subroutine inherit(from, to, keeps_place)
       !> The contact of the step before, closed
       type(limerick_contact_t), intent(in) :: from
-      !> The contact
       type(limerick_contact_t), intent(inout) :: to
       !> Becomes true if the shear spring stays where it was set
       logical, intent(inout) :: keeps_place
@@ -77,7 +75,6 @@ contains
 
    !> Half the length along which two edges lie together, and where a new shear spring is set
    pure subroutine measure_line(blocks, contact, keeps_place)
-      !> The blocks
       type(limerick_blocks_t), intent(in) :: blocks
       !> The contact of a vertex and an edge
       type(limerick_contact_t), intent(inout) :: contact
@@ -99,13 +96,11 @@ contains
 
    !> Contacts of the first step: all open in a static run, in a dynamic one those that touch locked
    pure subroutine begin_contacts(blocks, dynamic, touch, list)
-      !> The blocks
       type(limerick_blocks_t), intent(in) :: blocks
       !> Whether velocities are kept
       logical, intent(in) :: dynamic
       !> Distance that counts as touching [m]
       real(wp), intent(in) :: touch
-      !> The contacts
       type(contact_list_t), intent(inout) :: list
       real(wp) :: gap(2)
       integer :: c, line

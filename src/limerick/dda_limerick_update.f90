@@ -14,9 +14,7 @@ contains
 
    !> Corners at the end of the step, and how far the one that moves most goes (Shi: df24)
    pure subroutine move_vertices(model, blocks, motion, march, moved)
-      !> The model
       type(limerick_model_t), intent(in) :: model
-      !> The blocks
       type(limerick_blocks_t), intent(in) :: blocks
       !> Motion of the blocks: (6, n_block)
       real(wp), intent(in) :: motion(:, :)
@@ -44,7 +42,6 @@ contains
 
    !> What a rotation does to an arm: along it and across it
    pure function turning(model, angle) result(turn)
-      !> The model
       type(limerick_model_t), intent(in) :: model
       !> The rotation [rad]
       real(wp), intent(in) :: angle
@@ -74,11 +71,9 @@ contains
 
    !> What an accepted step leaves behind (Shi: df25)
    pure subroutine update(model, motion, blocks, march, moved)
-      !> The model
       type(limerick_model_t), intent(in) :: model
       !> Motion of the blocks: (6, n_block)
       real(wp), intent(in) :: motion(:, :)
-      !> The blocks
       type(limerick_blocks_t), intent(inout) :: blocks
       !> The march; time and steps are set
       type(limerick_march_t), intent(inout) :: march

@@ -164,7 +164,6 @@ contains
       integer, intent(in) :: first
       !> Last place
       integer, intent(in) :: last
-      !> The blocks
       type(dissection_t), intent(inout) :: d
       integer :: head(last - first + 2), i, m, n
 
@@ -191,7 +190,6 @@ contains
       integer, intent(in) :: first
       !> Last place
       integer, intent(in) :: last
-      !> The blocks
       type(dissection_t), intent(inout) :: d
       integer :: block(last - first + 1), part(last - first + 1), i, k
       real :: least

@@ -44,7 +44,6 @@ contains
    !> Factor a matrix; one that is not positive definite, or not symmetric and singular, gives a
    !> factor that is not usable
    pure subroutine factorise(matrix, factor, changed)
-      !> The matrix
       type(block_matrix_t), intent(in) :: matrix
       !> Its factor, laid out for its pattern
       type(block_factor_t), intent(inout) :: factor

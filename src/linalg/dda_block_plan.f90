@@ -55,7 +55,6 @@ contains
    pure subroutine plan_panels(matrix, plan)
       !> The matrix, of which the pattern counts
       type(block_matrix_t), intent(in) :: matrix
-      !> The plan
       type(elimination_plan_t), intent(out) :: plan
       type(elimination_t) :: elimination
       integer :: panel(size(matrix%place)), i
@@ -74,9 +73,7 @@ contains
    !> An order of elimination. The narrow order is eliminated from both ends to the middle; where
    !> that is wide, minimum degree or dissection give the order, whichever takes fewer products
    pure subroutine choose_order(matrix, elimination)
-      !> The matrix
       type(block_matrix_t), intent(in) :: matrix
-      !> The order
       type(elimination_t), intent(out) :: elimination
       type(elimination_t) :: other
       integer :: n
@@ -222,7 +219,6 @@ contains
 
    !> Turn blocks into triples, and lay out the numbers
    pure subroutine count_in_triples(plan)
-      !> The plan
       type(elimination_plan_t), intent(inout) :: plan
       integer :: i, k, height, width
 

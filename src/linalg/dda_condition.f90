@@ -17,9 +17,7 @@ contains
    !> Condition number in the one-norm of the matrix scaled to a unit diagonal, so that neither the
    !> unit of length nor the size of a block shows; huge if the factor is not usable
    pure function factored_condition(matrix, factor) result(condition)
-      !> The matrix
       type(block_matrix_t), intent(in) :: matrix
-      !> Its factor
       type(block_factor_t), intent(in) :: factor
       !> Estimate of the condition number, at least 1
       real(wp) :: condition
@@ -65,7 +63,6 @@ contains
    !> One-norm of the inverse of the scaled matrix from below, by Hager's ascent with Higham's
    !> safeguard (ACM Transactions on Mathematical Software 14, 1988, 381)
    pure function inverse_norm(factor, root) result(norm)
-      !> The factor
       type(block_factor_t), intent(in) :: factor
       !> Roots of the matrix's diagonal: (n_dof, n_block)
       real(wp), intent(in) :: root(:, :)
@@ -94,7 +91,6 @@ contains
 
    !> Solution with the scaled matrix
    pure function scaled_solution(factor, root, load) result(x)
-      !> The factor
       type(block_factor_t), intent(in) :: factor
       !> Roots of the matrix's diagonal: (n_dof, n_block)
       real(wp), intent(in) :: root(:, :)

@@ -30,7 +30,6 @@ contains
       integer, intent(in) :: place(:)
       !> Coupled blocks: (2, n_entry)
       integer, intent(in) :: pair(:, :)
-      !> The elimination
       type(elimination_t), intent(out) :: elimination
 
       allocate (elimination%place, source=place)
@@ -41,7 +40,6 @@ contains
 
    !> Products of two blocks that a factorisation takes
    pure real(wp) function products(elimination)
-      !> The elimination
       type(elimination_t), intent(in) :: elimination
       integer :: j
 

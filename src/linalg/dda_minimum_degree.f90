@@ -93,7 +93,6 @@ contains
       integer, intent(in) :: neighbour(:)
       !> Blocks that wait: (n_block)
       logical, intent(in) :: late(:)
-      !> The graph
       type(quotient_t), intent(out) :: q
       integer :: b, i, n
 
@@ -126,7 +125,6 @@ contains
 
    !> Eliminate a block, and with it all that are left without other neighbours than its own
    pure subroutine eliminate(q, p, least)
-      !> The graph
       type(quotient_t), intent(inout) :: q
       !> The block
       integer, intent(in) :: p
@@ -166,7 +164,6 @@ contains
 
    !> The neighbours of a block that goes become a group; its own groups are part of that
    pure subroutine gather(q, p)
-      !> The graph
       type(quotient_t), intent(inout) :: q
       !> The block
       integer, intent(in) :: p
@@ -215,7 +212,6 @@ contains
    !> Groups, neighbours and degree of a member of the newest group; the group itself is left out of
    !> the degree
    pure subroutine renew(q, p, b)
-      !> The graph
       type(quotient_t), intent(inout) :: q
       !> The newest group
       integer, intent(in) :: p
@@ -260,7 +256,6 @@ contains
 
    !> Blocks of the newest group with the same groups and neighbours become one
    pure subroutine join_same(q, member)
-      !> The graph
       type(quotient_t), intent(inout) :: q
       !> Members of the newest group
       integer, intent(in) :: member(:)
@@ -305,7 +300,6 @@ contains
 
    !> Let a block stand for another one
    pure subroutine join(q, a, b)
-      !> The graph
       type(quotient_t), intent(inout) :: q
       !> The block that stands for both
       integer, intent(in) :: a
@@ -319,7 +313,6 @@ contains
 
    !> Put a block into the list of its degree
    pure subroutine put_in(q, b)
-      !> The graph
       type(quotient_t), intent(inout) :: q
       !> The block
       integer, intent(in) :: b
@@ -334,7 +327,6 @@ contains
 
    !> Take a block out of the list of its degree
    pure subroutine take_out(q, b)
-      !> The graph
       type(quotient_t), intent(inout) :: q
       !> The block
       integer, intent(in) :: b

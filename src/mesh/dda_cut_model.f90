@@ -91,7 +91,6 @@ contains
 
    !> Corners of one block
    pure function block_vertices(cut, block) result(vertex)
-      !> The blocks
       type(cut_model_t), intent(in) :: cut
       !> Number of the block
       integer, intent(in) :: block

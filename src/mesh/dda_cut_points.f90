@@ -30,7 +30,6 @@ contains
 
    !> Boxes around all blocks
    pure function block_boxes(cut) result(boxes)
-      !> The blocks
       type(cut_model_t), intent(in) :: cut
       !> Their boxes
       type(boxes_t) :: boxes
@@ -51,9 +50,7 @@ contains
    !> The block that holds a point; if none does, the nearest one within the distance in which nodes
    !> may have been moved. 0 if there is none
    pure integer function block_around(cut, boxes, point)
-      !> The blocks
       type(cut_model_t), intent(in) :: cut
-      !> Their boxes
       type(boxes_t), intent(in) :: boxes
       !> The point, from the origin of the cut: (2) [m]
       real(wp), intent(in) :: point(2)
@@ -179,7 +176,6 @@ contains
       integer, intent(in) :: i
       !> Boxes of the blocks
       type(boxes_t), intent(in) :: boxes
-      !> The blocks
       type(cut_model_t), intent(in) :: cut
       !> Receives the point
       type(block_point_t), allocatable, intent(inout) :: point(:)
@@ -207,7 +203,6 @@ contains
       integer, intent(in) :: source
       !> Boxes of the blocks
       type(boxes_t), intent(in) :: boxes
-      !> The blocks
       type(cut_model_t), intent(in) :: cut
       !> Receives the points
       type(block_point_t), allocatable, intent(inout) :: point(:)
@@ -320,7 +315,6 @@ contains
    pure logical function misses(segment, boxes, block)
       !> Ends of the segment: (4) [m]
       real(wp), intent(in) :: segment(4)
-      !> The boxes
       type(boxes_t), intent(in) :: boxes
       !> Number of the block
       integer, intent(in) :: block
@@ -335,7 +329,6 @@ contains
       type(block_point_t), allocatable, intent(inout) :: point(:)
       !> Number of points
       integer, intent(inout) :: n
-      !> The point
       type(block_point_t), intent(in) :: new
       type(block_point_t), allocatable :: longer(:)
 
@@ -350,7 +343,6 @@ contains
 
    !> Say that a thing lies in no block
    pure subroutine no_block(error, what, model, entities, i)
-      !> The failure
       type(error_t), allocatable, intent(out) :: error
       !> What the thing is called
       character(len=*), intent(in) :: what

@@ -51,7 +51,6 @@ contains
 
    !> Add a remark
    pure subroutine add_remark(remarks, line, reason, other, place)
-      !> The list
       type(cut_remarks_t), intent(inout) :: remarks
       !> Number of the line
       integer, intent(in) :: line

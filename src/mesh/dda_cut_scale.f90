@@ -25,7 +25,6 @@ contains
 
    !> The scales of a model with at least one line that has a length
    pure function cut_scale(model) result(scale)
-      !> The model
       type(line_model_t), intent(in) :: model
       !> Its scales
       type(cut_scale_t) :: scale

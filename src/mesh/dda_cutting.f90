@@ -24,7 +24,6 @@ contains
    pure subroutine cut_blocks(model, cut, error)
       !> Lines and points
       type(line_model_t), intent(in) :: model
-      !> The blocks
       type(cut_model_t), intent(out) :: cut
       !> What keeps the lines from making blocks
       type(error_t), allocatable, intent(out) :: error
@@ -52,7 +51,6 @@ contains
       type(line_model_t), intent(in) :: model
       !> Receives the scales and what was dropped
       type(cut_model_t), intent(inout) :: cut
-      !> The network
       type(network_t), intent(out) :: network
       !> No lines, or too many crossings, or boundary lines that cross
       type(error_t), allocatable, intent(out) :: error

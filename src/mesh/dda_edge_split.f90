@@ -24,7 +24,6 @@ contains
 
    !> The same blocks with corners wherever a joint begins or ends
    pure subroutine split_edges(cut, split)
-      !> The blocks
       type(cut_model_t), intent(in) :: cut
       !> The blocks with more corners; edges of a pair have the same ends
       type(cut_model_t), intent(out) :: split
@@ -56,9 +55,7 @@ contains
 
    !> The corners that are there, and those where joints begin and end
    pure subroutine collect_corners(cut, corners)
-      !> The blocks
       type(cut_model_t), intent(in) :: cut
-      !> The corners
       type(corners_t), intent(out) :: corners
       integer :: room, i, k
 
@@ -82,7 +79,6 @@ contains
 
    !> A corner on an edge, unless it is at one of its ends
    pure subroutine add_corner(cut, side, point, corners)
-      !> The blocks
       type(cut_model_t), intent(in) :: cut
       !> Block and edge: (2)
       integer, intent(in) :: side(2)
@@ -107,7 +103,6 @@ contains
 
    !> Bring the corners into their order around the blocks, each once
    pure subroutine sort_corners(corners, reach)
-      !> The corners
       type(corners_t), intent(inout) :: corners
       !> Distance within which things touch [m]
       real(wp), intent(in) :: reach

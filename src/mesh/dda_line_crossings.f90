@@ -32,7 +32,6 @@ contains
       real(wp), intent(in) :: line(:, :)
       !> Distance within which things touch [m]
       real(wp), intent(in) :: reach
-      !> The crossings
       type(crossings_t), intent(out) :: crossings
       !> Allocated if there are too many
       type(error_t), allocatable, intent(out) :: error
@@ -92,7 +91,6 @@ contains
 
    !> Add a crossing
    pure subroutine add_crossing(crossings, i, j, point)
-      !> The crossings
       type(crossings_t), intent(inout) :: crossings
       !> One line
       integer, intent(in) :: i

@@ -52,7 +52,6 @@ contains
 
    !> An empty list with room
    pure subroutine new_entities(entities, room)
-      !> The list
       type(entities_t), intent(out) :: entities
       !> How many are expected
       integer, intent(in) :: room
@@ -62,7 +61,6 @@ contains
 
    !> A model without lines
    pure subroutine new_line_model(model)
-      !> The model
       type(line_model_t), intent(out) :: model
 
       call new_entities(model%line, 64)
@@ -94,7 +92,6 @@ contains
 
    !> Add a segment or a point
    pure subroutine add_entity(entities, place, material, row)
-      !> The list
       type(entities_t), intent(inout) :: entities
       !> Its ends: (4) [m]
       real(wp), intent(in) :: place(4)

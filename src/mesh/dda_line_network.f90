@@ -39,7 +39,6 @@ contains
       type(cut_scale_t), intent(in) :: scale
       !> The crossings in their order
       type(crossings_t), intent(in) :: crossings
-      !> The network
       type(network_t), intent(out) :: network
       !> Receives the lines that make no edge, and edges that are there twice
       type(cut_remarks_t), intent(inout) :: remarks
@@ -53,7 +52,6 @@ contains
 
    !> Ends of an edge
    pure function edge_place(network, edge) result(place)
-      !> The network
       type(network_t), intent(in) :: network
       !> Number of the edge
       integer, intent(in) :: edge
@@ -66,7 +64,6 @@ contains
 
    !> Drop an edge and say why
    pure subroutine drop_edge(network, edge, reason, other, remarks)
-      !> The network
       type(network_t), intent(inout) :: network
       !> Number of the edge
       integer, intent(in) :: edge
@@ -86,7 +83,6 @@ contains
    pure subroutine merge_nodes(scale, crossings, network, node_of)
       !> Scales of the cut
       type(cut_scale_t), intent(in) :: scale
-      !> The crossings
       type(crossings_t), intent(in) :: crossings
       !> Receives the nodes
       type(network_t), intent(inout) :: network
@@ -116,7 +112,6 @@ contains
    pure subroutine chain_lines(line, crossings, node_of, network, remarks)
       !> Ends of the lines: (4, n_line) [m]
       real(wp), intent(in) :: line(:, :)
-      !> The crossings
       type(crossings_t), intent(in) :: crossings
       !> Node of each crossing: (n)
       integer, intent(in) :: node_of(:)
@@ -166,7 +161,6 @@ contains
    pure subroutine tell_loose_lines(line, network, remarks)
       !> Ends of the lines: (4, n_line) [m]
       real(wp), intent(in) :: line(:, :)
-      !> The network
       type(network_t), intent(in) :: network
       !> Receives the lines
       type(cut_remarks_t), intent(inout) :: remarks
@@ -187,7 +181,6 @@ contains
 
    !> Of edges between the same two nodes the one of the first line stays: lines that lie together
    pure subroutine drop_doubled(network, remarks)
-      !> The network
       type(network_t), intent(inout) :: network
       !> Receives what is dropped
       type(cut_remarks_t), intent(inout) :: remarks

@@ -17,9 +17,7 @@ contains
 
    !> Blocks of the loops that run around an area; scales, points and materials are left to others
    pure subroutine blocks_of_loops(network, loops, joint, cut)
-      !> The network
       type(network_t), intent(in) :: network
-      !> Its loops
       type(loops_t), intent(in) :: loops
       !> Joint material of each line: (n_line)
       integer, intent(in) :: joint(:)
@@ -62,7 +60,6 @@ contains
    !> Places in a loop where it turns: a node is no corner if it lies on the straight way from the
    !> corner before it to the next node (Shi: dc09)
    pure subroutine corners_of_loop(network, half_edge, reach, corner)
-      !> The network
       type(network_t), intent(in) :: network
       !> The half-edges of the loop: (n)
       integer, intent(in) :: half_edge(:)
@@ -133,7 +130,6 @@ contains
 
    !> Store the corners of a block and tell its half-edges which edge they belong to
    pure subroutine add_corners(network, half_edge, corner, joint, block, n_vertex, cut, owner)
-      !> The network
       type(network_t), intent(in) :: network
       !> The half-edges of the loop: (n)
       integer, intent(in) :: half_edge(:)
@@ -168,7 +164,6 @@ contains
 
    !> Pairs of edges that the same edges of the network are parts of
    pure subroutine find_pairs(network, owner, joint, cut)
-      !> The network
       type(network_t), intent(in) :: network
       !> Block and edge of each half-edge, 0 for none: (2, n_half_edge)
       integer, intent(in) :: owner(:, :)
@@ -215,7 +210,6 @@ contains
 
    !> Let a pair of edges reach over one more part
    pure subroutine join_parts(pair, place)
-      !> The pair
       type(edge_pair_t), intent(inout) :: pair
       !> Ends of the part, in the same direction: (4) [m]
       real(wp), intent(in) :: place(4)

@@ -20,11 +20,9 @@ contains
    pure subroutine check_areas(loops, cut, file, error)
       !> All loops
       type(loops_t), intent(in) :: loops
-      !> The blocks
       type(cut_model_t), intent(in) :: cut
       !> Name of the geometry file
       character(len=*), intent(in) :: file
-      !> The areas differ
       type(error_t), allocatable, intent(out) :: error
       real(wp) :: enclosed, room
 
@@ -41,7 +39,6 @@ contains
    pure subroutine check_nesting(model, network, loops, cut, error)
       !> Lines and points
       type(line_model_t), intent(in) :: model
-      !> The network
       type(network_t), intent(in) :: network
       !> All loops
       type(loops_t), intent(in) :: loops
@@ -81,17 +78,14 @@ contains
    pure subroutine tell_nested(model, network, loops, inner, cut, block, error)
       !> Lines and points
       type(line_model_t), intent(in) :: model
-      !> The network
       type(network_t), intent(in) :: network
       !> All loops
       type(loops_t), intent(in) :: loops
       !> Number of the loop around the inner group
       integer, intent(in) :: inner
-      !> The blocks
       type(cut_model_t), intent(in) :: cut
       !> Number of the outer block
       integer, intent(in) :: block
-      !> The failure
       type(error_t), allocatable, intent(out) :: error
       integer :: h, line
 

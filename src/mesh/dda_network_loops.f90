@@ -27,7 +27,6 @@ contains
    pure subroutine trace_loops(network, loops)
       !> The network, free of loose ends
       type(network_t), intent(in) :: network
-      !> Its loops
       type(loops_t), intent(out) :: loops
       integer, allocatable :: next(:)
       logical, allocatable :: seen(:)
@@ -60,7 +59,6 @@ contains
 
    !> Node where a half-edge starts
    pure integer function half_edge_start(network, half_edge)
-      !> The network
       type(network_t), intent(in) :: network
       !> Number of the half-edge
       integer, intent(in) :: half_edge
@@ -79,7 +77,6 @@ contains
    !> The half-edge that follows each one in its loop: around the node at its end, the first one
    !> clockwise from the way back (Shi: dc07)
    pure subroutine link_half_edges(network, next)
-      !> The network
       type(network_t), intent(in) :: network
       !> Number of the next half-edge; 0 for dropped ones: (2 n_edge)
       integer, allocatable, intent(out) :: next(:)
@@ -118,7 +115,6 @@ contains
 
    !> Area inside a loop, by triangles seen from its first node
    pure real(wp) function loop_area(network, half_edge)
-      !> The network
       type(network_t), intent(in) :: network
       !> The half-edges of the loop: (n)
       integer, intent(in) :: half_edge(:)

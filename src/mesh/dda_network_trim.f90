@@ -16,7 +16,6 @@ contains
 
    !> Drop edges that end in nothing, until none is left: trees hang on no block (Shi: dc05)
    pure subroutine cut_trees(network, remarks)
-      !> The network
       type(network_t), intent(inout) :: network
       !> Receives what is dropped
       type(cut_remarks_t), intent(inout) :: remarks
@@ -48,7 +47,6 @@ contains
 
    !> The living edges of each node
    pure subroutine edges_of_nodes(network, first, item)
-      !> The network
       type(network_t), intent(in) :: network
       !> First item of each node, and one beyond the last: (n_node + 1)
       integer, allocatable, intent(out) :: first(:)
@@ -81,7 +79,6 @@ contains
    !> Drop one of two edges that cross between their nodes, as happens when nodes were merged: the
    !> one that is no boundary, else that of the later line (Shi: dc06)
    pure subroutine drop_crossing_edges(network, scale, remarks, crossing)
-      !> The network
       type(network_t), intent(inout) :: network
       !> Scales of the cut
       type(cut_scale_t), intent(in) :: scale
@@ -117,7 +114,6 @@ contains
 
    !> Pairs of edges that cross between their nodes; a pair may come several times
    pure subroutine crossing_pairs(network, reach, number, place, grid, pair)
-      !> The network
       type(network_t), intent(in) :: network
       !> Distance within which things touch [m]
       real(wp), intent(in) :: reach
@@ -154,7 +150,6 @@ contains
 
    !> Whether two edges cross between their nodes
    pure logical function edges_cross(network, reach, edge, first, second)
-      !> The network
       type(network_t), intent(in) :: network
       !> Distance within which things touch [m]
       real(wp), intent(in) :: reach
@@ -180,7 +175,6 @@ contains
 
    !> Drop joints that pass a node of other lines closer than e00 w0 (Shi: dc06)
    pure subroutine drop_close_edges(network, scale, remarks)
-      !> The network
       type(network_t), intent(inout) :: network
       !> Scales of the cut
       type(cut_scale_t), intent(in) :: scale
@@ -216,7 +210,6 @@ contains
 
    !> Edges that were not dropped
    pure subroutine living_edges(network, number, place)
-      !> The network
       type(network_t), intent(in) :: network
       !> Their numbers: (n)
       integer, allocatable, intent(out) :: number(:)

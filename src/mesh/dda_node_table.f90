@@ -29,7 +29,6 @@ contains
       integer, intent(in) :: room
       !> Largest distance at which a node will be looked for [m]
       real(wp), intent(in) :: side
-      !> The table
       type(node_table_t), intent(out) :: table
 
       allocate (table%point(2, room), table%next(room))
@@ -39,7 +38,6 @@ contains
 
    !> Add a node; the table must have room
    pure subroutine add_node(table, point)
-      !> The table
       type(node_table_t), intent(inout) :: table
       !> Its place: (2) [m]
       real(wp), intent(in) :: point(2)
@@ -54,7 +52,6 @@ contains
 
    !> The node nearest to a point within a distance; the older of two
    pure integer function nearest_node(table, point, distance)
-      !> The table
       type(node_table_t), intent(in) :: table
       !> The point: (2) [m]
       real(wp), intent(in) :: point(2)
@@ -85,7 +82,6 @@ contains
 
    !> The square that holds a point
    pure function square_of(table, point) result(square)
-      !> The table
       type(node_table_t), intent(in) :: table
       !> The point: (2) [m]
       real(wp), intent(in) :: point(2)
@@ -97,7 +93,6 @@ contains
 
    !> The chain that a square belongs to; several squares share one
    pure integer function chain_of(table, square)
-      !> The table
       type(node_table_t), intent(in) :: table
       !> Column and row: (2)
       integer(int64), intent(in) :: square(2)

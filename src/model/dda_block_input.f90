@@ -73,7 +73,6 @@ contains
 
    !> A plan without blocks
    pure subroutine new_plan(plan)
-      !> The plan
       type(block_plan_t), intent(out) :: plan
 
       allocate (plan%first_vertex(1), source=1)

@@ -134,7 +134,6 @@ contains
 
    !> What acts and leads at time 0, for good, on a ground at rest
    pure function held_at_start(boundary) result(held)
-      !> The boundary
       type(boundary_t), intent(in) :: boundary
       !> The same without histories
       type(boundary_t) :: held
@@ -156,7 +155,6 @@ contains
 
    !> Times at which blocks are built or taken away
    pure function stage_times(boundary) result(time)
-      !> The boundary
       type(boundary_t), intent(in) :: boundary
       !> The times, ascending, each once: (n) [s]
       real(wp), allocatable :: time(:)
@@ -171,7 +169,6 @@ contains
 
    !> Which blocks are there after the changes of a time
    pure function present_at(boundary, n_block, time) result(present)
-      !> The boundary
       type(boundary_t), intent(in) :: boundary
       !> Number of blocks
       integer, intent(in) :: n_block
@@ -195,7 +192,6 @@ contains
 
    !> Value of a history at a time
    pure function value_at(history, time) result(value)
-      !> The history
       type(history_t), intent(in) :: history
       !> The time [s]
       real(wp), intent(in) :: time
@@ -219,7 +215,6 @@ contains
 
    !> Displacement of a led point: where its path begins is reached in the second before time zero
    pure function led_displacement(path, time) result(displacement)
-      !> Its path
       type(history_t), intent(in) :: path
       !> The time, not before that second [s]
       real(wp), intent(in) :: time
@@ -231,7 +226,6 @@ contains
 
    !> Mean of a history over a time, so that short pulses bring in their whole impulse
    pure function mean_over(history, start, finish) result(mean)
-      !> The history
       type(history_t), intent(in) :: history
       !> Beginning of the time [s]
       real(wp), intent(in) :: start
@@ -264,7 +258,6 @@ contains
 
    !> Rate of a history just before a time
    pure function rate_at(history, time) result(rate)
-      !> The history
       type(history_t), intent(in) :: history
       !> The time [s]
       real(wp), intent(in) :: time

@@ -56,7 +56,6 @@ contains
    pure subroutine new_chain(n, chain)
       !> Number of blocks
       integer, intent(in) :: n
-      !> The chain
       type(chain_t), intent(out) :: chain
 
       allocate (chain%centroid(2, n), chain%mass(n), chain%inertia(n), chain%weight(2, n))
@@ -67,7 +66,6 @@ contains
 
    !> Set the sums and bounds that depend on all blocks and joints, from these
    pure subroutine weigh(chain)
-      !> The chain
       type(chain_t), intent(inout) :: chain
       real(wp) :: mass, load, fastest, stiffest
       integer :: b, n

@@ -23,7 +23,6 @@ contains
       type(held_point_t), intent(in) :: held(:)
       !> Those of the same block that have told something: (n)
       integer, intent(in) :: other(:)
-      !> The point
       type(held_point_t), intent(in) :: more
       !> Size of its block [m]
       real(wp), intent(in) :: size_of_block
@@ -64,7 +63,6 @@ contains
       integer, intent(in) :: other(:)
       !> Their shares: (m)
       real(wp), intent(in) :: share(:)
-      !> The point
       type(held_point_t), intent(in) :: more
       !> Direction, 1 or 2 for x or y
       integer, intent(in) :: axis
@@ -93,7 +91,6 @@ contains
 
    !> Times of a history; none if nothing is given
    pure function times_of(history) result(time)
-      !> The history
       type(history_t), intent(in) :: history
       !> The times: (n) [s]
       real(wp), allocatable :: time(:)

@@ -86,7 +86,6 @@ contains
 
    !> Whether a joint may be crushed
    pure logical function crushes(graph)
-      !> The joints
       type(joint_graph_t), intent(in) :: graph
 
       crushes = allocated(graph%crush)
@@ -97,7 +96,6 @@ contains
    pure subroutine keep_joints(kept, graph)
       !> Which: (n_joint)
       logical, intent(in) :: kept(:)
-      !> The joints
       type(joint_graph_t), intent(inout) :: graph
       integer :: k(count(kept)), j
 
@@ -114,7 +112,6 @@ contains
 
    !> Opening at both corners and slip of every joint
    pure subroutine joint_motion(graph, motion, opening)
-      !> The joints
       type(joint_graph_t), intent(in) :: graph
       !> Motion of the blocks: (n_dof, n_block)
       real(wp), intent(in) :: motion(:, :)
@@ -176,7 +173,6 @@ contains
 
    !> Add what joint forces do to the blocks
    pure subroutine add_joint_forces(graph, force, load)
-      !> The joints
       type(joint_graph_t), intent(in) :: graph
       !> N1, N2, T of each joint: (3, n_joint) [N/m]
       real(wp), intent(in) :: force(:, :)

@@ -67,7 +67,6 @@ contains
 
    !> Whether a joint that slides or parts is weaker afterwards
    elemental logical function loses_strength(law)
-      !> The law
       type(joint_law_t), intent(in) :: law
 
       loses_strength = law%cohesion > 0.0_wp .or. law%tension > 0.0_wp &
@@ -76,7 +75,6 @@ contains
 
    !> Coefficient of friction of a joint that has lost some of its strength
    elemental real(wp) function friction_left(law, intact)
-      !> The law
       type(joint_law_t), intent(in) :: law
       !> Share of the strength that is left
       real(wp), intent(in) :: intact

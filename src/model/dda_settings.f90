@@ -81,7 +81,6 @@ contains
    !> Body force per unit of weight. The four main directions of gravity are free of rounding, so
    !> that what is symmetric stays so
    pure function load_direction(settings) result(direction)
-      !> The settings
       type(settings_t), intent(in) :: settings
       !> Components to the right and up: (2)
       real(wp) :: direction(2)
@@ -92,7 +91,6 @@ contains
 
    !> Horizontal force over the weight, the load factor in it where it is live
    pure real(wp) function full_push(settings)
-      !> The settings
       type(settings_t), intent(in) :: settings
 
       full_push = settings%push
@@ -101,9 +99,7 @@ contains
 
    !> What the force on a point is multiplied by
    pure real(wp) function factor_of(settings, loaded)
-      !> The settings
       type(settings_t), intent(in) :: settings
-      !> The point
       type(loaded_point_t), intent(in) :: loaded
 
       factor_of = merge(settings%load_factor, 1.0_wp, loaded%live)

@@ -36,7 +36,6 @@ contains
 
    !> Forces at both ends of a part of an edge whose block lies on its left
    pure function edge_forces(water, rise, part) result(force)
-      !> The water
       type(water_t), intent(in) :: water
       !> By how much the line of heads has risen [m]
       real(wp), intent(in) :: rise
@@ -71,7 +70,6 @@ contains
 
    !> Add the pressure below one leg of the line of heads
    pure subroutine add_leg(water, rise, part, leg, share, force)
-      !> The water
       type(water_t), intent(in) :: water
       !> By how much the line of heads has risen [m]
       real(wp), intent(in) :: rise

@@ -35,7 +35,6 @@ contains
    pure function block_lines(number, blocks) result(lines)
       !> Number of the case
       integer, intent(in) :: number
-      !> The blocks
       type(told_blocks_t), intent(in) :: blocks
       !> The rows, parted by line ends
       character(len=:), allocatable :: lines

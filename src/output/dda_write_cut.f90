@@ -22,7 +22,6 @@ contains
    subroutine write_cut_table(file, cut, error)
       !> Name of the file; one that exists is replaced
       character(len=*), intent(in) :: file
-      !> The blocks
       type(cut_model_t), intent(in) :: cut
       !> Allocated if it cannot be written
       type(error_t), allocatable, intent(out) :: error
@@ -52,7 +51,6 @@ contains
 
    !> The row of a block
    pure function block_line(cut, block, held) result(line)
-      !> The blocks
       type(cut_model_t), intent(in) :: cut
       !> Number of the block
       integer, intent(in) :: block
@@ -87,7 +85,6 @@ contains
    subroutine write_cut_vtu(file, cut, error)
       !> Name of the file; one that exists is replaced
       character(len=*), intent(in) :: file
-      !> The blocks
       type(cut_model_t), intent(in) :: cut
       !> Allocated if it cannot be written
       type(error_t), allocatable, intent(out) :: error

@@ -32,7 +32,6 @@ contains
    subroutine open_index(name, index, error)
       !> Name of the file; one that exists is replaced
       character(len=*), intent(in) :: name
-      !> The index
       type(pvd_index_t), intent(out) :: index
       !> Allocated if it cannot be written
       type(error_t), allocatable, intent(out) :: error
@@ -48,7 +47,6 @@ contains
 
    !> Add a file, which must be whole by now
    subroutine add_to_index(index, time, part, shown, error)
-      !> The index
       type(pvd_index_t), intent(inout) :: index
       !> Time that the file shows, or number of the step
       real(wp), intent(in) :: time

@@ -166,7 +166,6 @@ contains
 
    !> One row of results.csv
    pure function results_line(row) result(line)
-      !> The row
       type(result_row_t), intent(in) :: row
       !> The line
       character(len=:), allocatable :: line
@@ -203,7 +202,6 @@ contains
 
    !> One row of joints.csv
    pure function joint_line(row) result(line)
-      !> The row
       type(joint_row_t), intent(in) :: row
       !> The line
       character(len=:), allocatable :: line
@@ -222,7 +220,6 @@ contains
 
    !> A number as text, nothing if it is unknown
    pure function number_text(number) result(text)
-      !> The number
       type(number_t), intent(in) :: number
       !> The text
       character(len=:), allocatable :: text

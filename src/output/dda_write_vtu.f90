@@ -129,7 +129,6 @@ contains
 
    !> Write which points the cells own, where each ends and what it is
    subroutine append_cells(vtu, kind, n_point, next_point)
-      !> The file
       type(binary_file_t), intent(in) :: vtu
       !> One of cell_type
       integer, intent(in) :: kind

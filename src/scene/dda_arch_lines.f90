@@ -34,7 +34,6 @@ contains
    pure subroutine arch_lines(deck, model, error)
       !> The deck of a case, with an arch
       type(deck_t), intent(in) :: deck
-      !> The lines
       type(line_model_t), intent(out) :: model
       !> Abutments that are too large to lie side by side
       type(error_t), allocatable, intent(out) :: error
@@ -176,7 +175,6 @@ contains
 
    !> Joint material of the springings: another one where they alone cannot slide
    pure integer function face_material(deck)
-      !> The deck
       type(deck_t), intent(in) :: deck
 
       face_material = 1
@@ -186,7 +184,6 @@ contains
    !> An edge-node distance ratio that merges no two nodes of the arch: Shi's 0.01, or less where
    !> edges are short
    pure real(wp) function edge_node_ratio(model)
-      !> The lines
       type(line_model_t), intent(in) :: model
       real(wp) :: shortest, height, width
       integer :: i

@@ -29,7 +29,6 @@ contains
    pure subroutine arch_scene(deck, scene)
       !> The deck, checked
       type(deck_t), intent(in) :: deck
-      !> The scene
       type(scene_t), intent(out) :: scene
       type(joint_law_t), allocatable :: law(:)
       integer, allocatable :: edge_pair(:, :)
@@ -67,7 +66,6 @@ contains
 
    !> Angles of all joints from the crown, positive to the right
    pure function joint_angles_deg(deck) result(angle)
-      !> The deck
       type(deck_t), intent(in) :: deck
       !> The angles, from left to right: (n_joint) [deg]
       real(wp), allocatable :: angle(:)
@@ -84,7 +82,6 @@ contains
 
    !> The blocks' material
    pure function material_of(deck) result(material)
-      !> The deck
       type(deck_t), intent(in) :: deck
       !> The material
       type(material_t) :: material
@@ -99,7 +96,6 @@ contains
 
    !> The law of the joints
    pure function joint_law(deck) result(law)
-      !> The deck
       type(deck_t), intent(in) :: deck
       !> The law
       type(joint_law_t) :: law
@@ -117,7 +113,6 @@ contains
 
    !> Joints of one half of the arch, from the crown
    pure function half_joints_deg(deck) result(joints)
-      !> The deck
       type(deck_t), intent(in) :: deck
       !> Angles from the crown: (n) [deg]
       real(wp), allocatable :: joints(:)
@@ -132,7 +127,6 @@ contains
 
    !> The shape of the arch
    pure function arch_shape(deck) result(shape)
-      !> The deck
       type(deck_t), intent(in) :: deck
       !> The shape
       type(arch_shape_t) :: shape
@@ -155,7 +149,6 @@ contains
 
    !> Weight per volume [N/m3]
    pure real(wp) function unit_weight(deck)
-      !> The deck
       type(deck_t), intent(in) :: deck
 
       unit_weight = real_of(deck, "material", "density")*real_of(deck, "load", "gravity")
@@ -166,7 +159,6 @@ contains
    !> Settings of the runs. The acceleration that counts as rest follows the tolerance of the search
    !> and the arch: a shallow arch that lacks the same share of its thickness accelerates less
    pure function settings_of(deck, half_angle, joints) result(settings)
-      !> The deck
       type(deck_t), intent(in) :: deck
       !> Angle from the crown to a springing; a right angle for what is no arch [rad]
       real(wp), intent(in) :: half_angle

@@ -77,7 +77,6 @@ contains
    !> The first movable block that no chain of joints ties to a fixed one or to a held point; 0 if
    !> there is none
    pure integer function floating_block(scene)
-      !> The scene
       type(scene_t), intent(in) :: scene
       logical :: fixed(size(scene%system%area))
       integer, allocatable :: pair(:, :)
@@ -107,7 +106,6 @@ contains
 
    !> Materials by number; what the plan leaves out is that of the deck
    pure subroutine materials_of(plan, base, material, unit_weight)
-      !> The plan
       type(block_plan_t), intent(in) :: plan
       !> What the deck says
       type(base_t), intent(in) :: base
@@ -137,7 +135,6 @@ contains
 
    !> Laws of the joints between any two materials
    pure function laws_of(plan, base, n) result(law)
-      !> The plan
       type(block_plan_t), intent(in) :: plan
       !> What the deck says
       type(base_t), intent(in) :: base

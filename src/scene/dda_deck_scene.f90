@@ -62,7 +62,6 @@ contains
       type(scene_plan_t), intent(in) :: plan
       !> The parameter that varies
       type(parameter_t), intent(in) :: parameter
-      !> The family
       type(deck_family_t), intent(out) :: family
 
       family%deck = deck
@@ -85,13 +84,10 @@ contains
 
    !> Make the chain of one thickness ratio
    pure subroutine link_arch(family, value, settings, chain, linked)
-      !> The family
       class(deck_family_t), intent(in) :: family
       !> The thickness ratio
       real(wp), intent(in) :: value
-      !> Settings of the run
       type(settings_t), intent(out) :: settings
-      !> The chain
       type(chain_t), intent(out) :: chain
       !> Whether the scenes are chains, and one has this value
       logical, intent(out) :: linked
@@ -105,11 +101,9 @@ contains
 
    !> Make the scene of one value of the parameter
    pure subroutine build_deck_scene(family, value, scene, error)
-      !> The family
       class(deck_family_t), intent(in) :: family
       !> Value of its parameter
       real(wp), intent(in) :: value
-      !> The scene
       type(scene_t), intent(out) :: scene
       !> Allocated if the parameter cannot have the value
       type(error_t), allocatable, intent(out) :: error
@@ -137,7 +131,6 @@ contains
    pure subroutine deck_scene(deck, scene)
       !> The deck, checked
       type(deck_t), intent(in) :: deck
-      !> The scene
       type(scene_t), intent(out) :: scene
 
       select case (scene_kind(deck))
@@ -204,9 +197,7 @@ contains
    pure subroutine file_scene(deck, plan, scene)
       !> The deck, checked
       type(deck_t), intent(in) :: deck
-      !> The blocks
       type(block_plan_t), intent(in) :: plan
-      !> The scene
       type(scene_t), intent(out) :: scene
       type(base_t) :: base
       integer :: i

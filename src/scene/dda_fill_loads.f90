@@ -40,7 +40,6 @@ contains
    pure function fill_of(deck, assembly) result(fill)
       !> The deck of the case, with &fill
       type(deck_t), intent(in) :: deck
-      !> Its arch
       type(arch_assembly_t), intent(in) :: assembly
       !> The fill
       type(fill_t) :: fill
@@ -69,7 +68,6 @@ contains
 
    !> Put the weight of the fill on the blocks below it: of what stands above each chord
    pure subroutine add_fill_weight(fill, scene)
-      !> The fill
       type(fill_t), intent(in) :: fill
       !> The scene; the loads are added
       type(scene_t), intent(inout) :: scene
@@ -89,9 +87,7 @@ contains
 
    !> Weight of the fill and the backing above a chord, and where it acts
    pure subroutine weigh(fill, chord, weight, x)
-      !> The fill
       type(fill_t), intent(in) :: fill
-      !> The chord
       type(top_chord_t), intent(in) :: chord
       !> The weight [N/m]
       real(wp), intent(out) :: weight
@@ -152,7 +148,6 @@ contains
    !> What the arch can lean against: the backing, whatever the force, and the fill on the side away
    !> from the live load of a span, on both sides of a span without
    pure subroutine press_fill(fill, scene)
-      !> The fill
       type(fill_t), intent(in) :: fill
       !> The scene with its live loads; its bounded forces are set
       type(scene_t), intent(inout) :: scene
@@ -191,7 +186,6 @@ contains
 
    !> Span that is nearest to a place
    pure integer function loaded_span(fill, x)
-      !> The fill
       type(fill_t), intent(in) :: fill
       !> The place [m]
       real(wp), intent(in) :: x
@@ -201,7 +195,6 @@ contains
 
    !> Where the resultant of the live loads on points is
    pure subroutine find_live(scene, x, is_loaded)
-      !> The scene
       type(scene_t), intent(in) :: scene
       !> The place [m]
       real(wp), intent(out) :: x

@@ -37,7 +37,6 @@ contains
    !> A pulse. What is constant before its beginning and after its end is no time of the run, and
    !> nothing
    pure function pulse_of(deck) result(pulse)
-      !> The deck
       type(deck_t), intent(in) :: deck
       !> The pulse
       type(history_t) :: pulse
@@ -76,7 +75,6 @@ contains
 
    !> Unit vector of the direction of a pulse; the four main ones are free of rounding
    pure function direction_of(deck) result(direction)
-      !> The deck
       type(deck_t), intent(in) :: deck
       !> Components along x and y: (2)
       real(wp) :: direction(2)
@@ -89,7 +87,6 @@ contains
    !> The record of the case as an acceleration, turned, and brought to its amplitude if one is
    !> given; none before its first time and after its last
    pure function record_of(deck) result(acceleration)
-      !> The deck
       type(deck_t), intent(in) :: deck
       !> The acceleration
       type(history_t) :: acceleration

@@ -23,7 +23,6 @@ contains
    pure subroutine blocks_model(plan, scene, model)
       !> The plan, checked
       type(block_plan_t), intent(in) :: plan
-      !> Its scene
       type(scene_t), intent(in) :: scene
       !> The model; its parts but for the direction of the weight are set
       type(limerick_model_t), intent(inout) :: model
@@ -54,7 +53,6 @@ contains
 
    !> The plan's points, and those that hold its fixed blocks
    pure subroutine take_points(plan, load_factor, boundary)
-      !> The plan
       type(block_plan_t), intent(in) :: plan
       !> What live loads are multiplied by
       real(wp), intent(in) :: load_factor
@@ -100,7 +98,6 @@ contains
    !> Whether the original's scheme can run a plan: it holds points where they are, in both
    !> directions, knows no motion of the ground, and begins every static step at rest
    pure subroutine check_limerick_blocks(plan, file, dynamic, error)
-      !> The plan
       type(block_plan_t), intent(in) :: plan
       !> Name of its file
       character(len=*), intent(in) :: file

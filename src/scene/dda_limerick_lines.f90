@@ -20,7 +20,6 @@ contains
    pure subroutine lines_model(deck, scene, model)
       !> The deck of one case, with its blocks; checked
       type(deck_t), intent(in) :: deck
-      !> Its scene
       type(scene_t), intent(in) :: scene
       !> The model; its parts but for the direction of the weight are set
       type(limerick_model_t), intent(inout) :: model
@@ -41,9 +40,7 @@ contains
 
    !> Materials with their weights and states at the beginning
    pure subroutine set_materials(deck, scene, model)
-      !> The deck
       type(deck_t), intent(in) :: deck
-      !> The blocks
       type(scene_t), intent(in) :: scene
       !> The model; its materials are set
       type(limerick_model_t), intent(inout) :: model
@@ -69,11 +66,9 @@ contains
    !> Points that are held, loaded and measured; among the last the corners of the scene's blocks,
    !> from which its joints are told
    pure subroutine take_points(deck, scene, boundary)
-      !> The deck
       type(deck_t), intent(in) :: deck
       !> The scene; edges that lie together in part are parted there
       type(scene_t), intent(in) :: scene
-      !> The points
       type(boundary_t), intent(out) :: boundary
       integer :: n(3), b, i, v
 
@@ -109,7 +104,6 @@ contains
 
    !> Force on a load point; one of which the analysis says nothing has none
    pure function force_of(deck, source) result(force)
-      !> The deck
       type(deck_t), intent(in) :: deck
       !> Number of the load point
       integer, intent(in) :: source

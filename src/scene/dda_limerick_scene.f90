@@ -25,9 +25,7 @@ contains
    pure subroutine limerick_scene(deck, scene, model)
       !> The deck, checked
       type(deck_t), intent(in) :: deck
-      !> Its scene
       type(scene_t), intent(in) :: scene
-      !> The model
       type(limerick_model_t), intent(out) :: model
       real(wp) :: acceleration
 
@@ -87,7 +85,6 @@ contains
 
    !> How large the abutments are
    pure subroutine abutment_sides(deck, depth, overhang)
-      !> The deck
       type(deck_t), intent(in) :: deck
       !> Depth, away from the springing joint [m]
       real(wp), intent(out) :: depth
@@ -104,7 +101,6 @@ contains
 
    !> Make an abutment as large as the deck says
    pure subroutine widen(deck, vertex)
-      !> The deck
       type(deck_t), intent(in) :: deck
       !> Corners, counter-clockwise; the last edge contains the springing joint: (2, 4) [m]
       real(wp), intent(inout) :: vertex(:, :)
@@ -121,7 +117,6 @@ contains
 
    !> Laws of the edges: the first for all joints, the second for springings that cannot slide
    pure subroutine set_laws(scene, n, nv, model)
-      !> The arch
       type(scene_t), intent(in) :: scene
       !> Number of voussoirs
       integer, intent(in) :: n
@@ -142,7 +137,6 @@ contains
 
    !> Constants of the scheme that the deck gives
    pure subroutine set_constants(deck, constants)
-      !> The deck
       type(deck_t), intent(in) :: deck
       !> The constants; those that the deck does not give are left as they are
       type(limerick_constants_t), intent(inout) :: constants

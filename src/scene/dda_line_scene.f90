@@ -32,7 +32,6 @@ contains
    pure subroutine line_scene(deck, scene)
       !> The deck of a case, with its blocks; checked
       type(deck_t), intent(in) :: deck
-      !> The scene
       type(scene_t), intent(out) :: scene
       type(cut_model_t) :: split
       type(joint_law_t), allocatable :: law(:)
@@ -60,9 +59,7 @@ contains
 
    !> Bolts as bars. The stiffness of old files is that of a bar of length one
    pure function bars_of(deck, cut) result(bar)
-      !> The deck
       type(deck_t), intent(in) :: deck
-      !> The blocks
       type(cut_model_t), intent(in) :: cut
       !> The bars: (n)
       type(bar_t), allocatable :: bar(:)
@@ -123,11 +120,9 @@ contains
 
    !> The blocks with their materials, weights and states at the beginning
    pure subroutine line_system(deck, cut, system)
-      !> The deck
       type(deck_t), intent(in) :: deck
       !> The blocks, perhaps with more corners than the deck's
       type(cut_model_t), intent(in) :: cut
-      !> The system
       type(block_system_t), intent(out) :: system
       integer :: b, m
 
@@ -154,7 +149,6 @@ contains
 
    !> Whether the deck itself says what the blocks weigh
    pure logical function weight_is_given(deck)
-      !> The deck
       type(deck_t), intent(in) :: deck
 
       weight_is_given = is_given(deck, "material", "unit_weight") &
@@ -163,7 +157,6 @@ contains
 
    !> A material of the analysis file; keys that the deck gives go before
    pure function file_material(deck, listed) result(material)
-      !> The deck
       type(deck_t), intent(in) :: deck
       !> What the file says
       type(analysis_material_t), intent(in) :: listed
@@ -180,7 +173,6 @@ contains
 
    !> The law of a joint; keys that the deck gives go before the analysis file
    pure function law_of_joint(deck, number) result(law)
-      !> The deck
       type(deck_t), intent(in) :: deck
       !> Number of the joint's material
       integer, intent(in) :: number
@@ -202,7 +194,6 @@ contains
 
    !> Whether forces act on load points
    pure logical function has_forces(deck)
-      !> The deck
       type(deck_t), intent(in) :: deck
       integer :: i
 
@@ -215,7 +206,6 @@ contains
 
    !> A block with fixed points in one place only, which may turn about it; 0 if there is none
    pure integer function pinned_block(cut)
-      !> The blocks
       type(cut_model_t), intent(in) :: cut
       logical :: held(size(cut%area))
       integer :: i
@@ -230,7 +220,6 @@ contains
 
    !> Blocks that cannot move: those with two fixed points apart from one another
    pure function held_blocks(cut) result(held)
-      !> The blocks
       type(cut_model_t), intent(in) :: cut
       !> Whether each is held: (n_block)
       logical :: held(size(cut%area))

@@ -66,7 +66,6 @@ contains
 
    !> Friction, cohesion and tension of a law
    pure function numbers_of(law) result(number)
-      !> The law
       type(joint_law_t), intent(in) :: law
       !> The numbers: (3)
       real(wp) :: number(3)
@@ -77,7 +76,6 @@ contains
    !> Add the blocks, each with its corners. Material 1 is that of the deck, so those of the lines
    !> are counted from 2
    pure subroutine add_blocks(cut, system, lines)
-      !> The blocks
       type(cut_model_t), intent(in) :: cut
       !> What they are made of, and how they begin
       type(block_system_t), intent(in) :: system
@@ -105,7 +103,6 @@ contains
 
    !> Add the materials of the blocks
    pure subroutine add_materials(system, lines)
-      !> The blocks
       type(block_system_t), intent(in) :: system
       !> Receives the lines
       type(growing_text_t), intent(inout) :: lines
@@ -124,7 +121,6 @@ contains
 
    !> Add one law for the joints of all materials
    pure subroutine add_laws(law, n, lines)
-      !> The law
       type(joint_law_t), intent(in) :: law
       !> Number of materials
       integer, intent(in) :: n
@@ -146,7 +142,6 @@ contains
 
    !> Add what is held, loaded and measured; blocks that two points hold are fixed
    pure subroutine add_points(deck, lines)
-      !> The deck
       type(deck_t), intent(in) :: deck
       !> Receives the lines
       type(growing_text_t), intent(inout) :: lines
@@ -171,7 +166,6 @@ contains
 
    !> Add a force with its history
    pure subroutine add_load(load, at, lines)
-      !> The force
       type(load_history_t), intent(in) :: load
       !> Where it acts
       character(len=*), intent(in) :: at

@@ -42,7 +42,6 @@ contains
    pure function loads_of_live(deck, scene) result(of_live)
       !> The deck of the case
       type(deck_t), intent(in) :: deck
-      !> The scene
       type(scene_t), intent(in) :: scene
       !> The forces; those in no block are left out: (n)
       type(loaded_point_t), allocatable :: of_live(:)
@@ -89,7 +88,6 @@ contains
    !> Block that moves and holds a point most deeply or has it on its outline, else one that is
    !> fixed and does; 0 if none does
    pure integer function block_at(system, point)
-      !> The blocks
       type(block_system_t), intent(in) :: system
       !> The point: (2) [m]
       real(wp), intent(in) :: point(2)
@@ -100,7 +98,6 @@ contains
 
    !> Block of some that holds a point most deeply or has it on its outline; 0 if none does
    pure integer function deepest_block(system, of, point)
-      !> The blocks
       type(block_system_t), intent(in) :: system
       !> Which of them: (n_block)
       logical, intent(in) :: of(:)

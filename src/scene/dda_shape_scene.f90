@@ -23,7 +23,6 @@ contains
    pure subroutine shape_form(deck, form, problem)
       !> The deck of the case
       type(deck_t), intent(in) :: deck
-      !> The form
       type(arch_form_t), intent(out) :: form
       !> Keys that do not go together
       type(form_problem_t), intent(out) :: problem
@@ -61,7 +60,6 @@ contains
    pure subroutine check_lines(deck, form, problem)
       !> The deck of the case
       type(deck_t), intent(in) :: deck
-      !> Its form
       type(arch_form_t), intent(in) :: form
       !> Keys that do not go together
       type(form_problem_t), intent(inout) :: problem
@@ -104,7 +102,6 @@ contains
    pure subroutine check_supports(deck, form, problem)
       !> The deck of the case
       type(deck_t), intent(in) :: deck
-      !> Its form
       type(arch_form_t), intent(in) :: form
       !> Keys that do not go together
       type(form_problem_t), intent(inout) :: problem
@@ -174,7 +171,6 @@ contains
    pure subroutine shape_assembly(deck, assembly, problem)
       !> The deck of the case
       type(deck_t), intent(in) :: deck
-      !> The blocks
       type(arch_assembly_t), intent(out) :: assembly
       !> What makes no arch
       type(form_problem_t), intent(out) :: problem
@@ -188,7 +184,6 @@ contains
    pure subroutine add_loads(more, scene)
       !> The loads
       type(loaded_point_t), intent(in) :: more(:)
-      !> The scene
       type(scene_t), intent(inout) :: scene
       type(loaded_point_t), allocatable :: loaded(:)
       integer :: before
@@ -203,7 +198,6 @@ contains
 
    !> Number of the joint between two voussoirs that is nearest to the crown of the first span
    pure subroutine find_crown_joint(assembly, scene)
-      !> The blocks
       type(arch_assembly_t), intent(in) :: assembly
       !> Their scene; the number is set
       type(scene_t), intent(inout) :: scene
@@ -251,7 +245,6 @@ contains
 
    !> Integrals of abs(x), abs(x) x and abs(x) y over a block
    pure function wedge_sums(system, block) result(sums)
-      !> The blocks
       type(block_system_t), intent(in) :: system
       !> Number of the block
       integer, intent(in) :: block

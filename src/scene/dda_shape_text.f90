@@ -54,7 +54,6 @@ contains
 
    !> Add the blocks, each with its corners
    pure subroutine add_blocks(plan, lines)
-      !> The blocks
       type(block_plan_t), intent(in) :: plan
       !> Receives the lines
       type(growing_text_t), intent(inout) :: lines
@@ -71,7 +70,6 @@ contains
 
    !> Add a force on a point
    pure subroutine add_load(loaded, origin, lines)
-      !> The force
       type(loaded_point_t), intent(in) :: loaded
       !> Where the origin of its coordinates is: (2) [m]
       real(wp), intent(in) :: origin(2)
@@ -85,7 +83,6 @@ contains
 
    !> Add a bar
    pure subroutine add_bar(bar, origin, lines)
-      !> The bar
       type(bar_t), intent(in) :: bar
       !> Where the origin of its coordinates is: (2) [m]
       real(wp), intent(in) :: origin(2)

@@ -72,7 +72,6 @@ contains
 
    !> The edges that axles may stand on
    pure function road_of(system) result(road)
-      !> The blocks
       type(block_system_t), intent(in) :: system
       !> Their upper edges
       type(road_t) :: road
@@ -100,7 +99,6 @@ contains
 
    !> Live loads of the axles; what is not above a block that moves is left out
    pure function axle_loads(vehicle, road, origin) result(loaded)
-      !> The vehicle
       type(vehicle_t), intent(in) :: vehicle
       !> What it stands on
       type(road_t), intent(in) :: road
@@ -148,7 +146,6 @@ contains
 
    !> Half the length over which an axle is spread [m]
    pure real(wp) function half_length(vehicle, road, origin, x) result(half)
-      !> The vehicle
       type(vehicle_t), intent(in) :: vehicle
       !> What it stands on
       type(road_t), intent(in) :: road
@@ -165,7 +162,6 @@ contains
    !> Positions between which the loads of all axles change smoothly: where an end of one passes a
    !> corner of an upper face, or its middle, where what it is spread over is another length beyond
    pure function passages(vehicle, road, origin) result(at)
-      !> The vehicle
       type(vehicle_t), intent(in) :: vehicle
       !> What it stands on
       type(road_t), intent(in) :: road

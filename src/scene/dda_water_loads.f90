@@ -22,7 +22,6 @@ contains
 
    !> Add the forces of all water to the loaded points
    pure subroutine add_water_loads(plan, rise, boundary)
-      !> The blocks
       type(block_plan_t), intent(in) :: plan
       !> By how much all lines of heads have risen [m]
       real(wp), intent(in) :: rise
@@ -71,7 +70,6 @@ contains
 
    !> Times at which the forces are recorded
    pure subroutine times_of(water, time)
-      !> The water
       type(water_t), intent(in) :: water
       !> The times: (n) [s]
       real(wp), allocatable, intent(out) :: time(:)
@@ -93,7 +91,6 @@ contains
 
    !> By how much a line of heads has risen at a time
    pure real(wp) function rise_at(water, time)
-      !> The water
       type(water_t), intent(in) :: water
       !> The time [s]
       real(wp), intent(in) :: time
@@ -114,7 +111,6 @@ contains
    pure subroutine add_part(plan, water, rise, time, part, covered, edge, at_start, at_end)
       !> The blocks, for their origin
       type(block_plan_t), intent(in) :: plan
-      !> The water
       type(water_t), intent(in) :: water
       !> By how much all lines of heads have risen [m]
       real(wp), intent(in) :: rise
@@ -149,9 +145,7 @@ contains
 
    !> Boxes of all blocks
    pure subroutine edge_boxes(plan, tree)
-      !> The blocks
       type(block_plan_t), intent(in) :: plan
-      !> The boxes
       type(box_tree_t), intent(out) :: tree
       real(wp) :: low(2, size(plan%fixed)), high(2, size(plan%fixed))
       integer :: b
@@ -167,7 +161,6 @@ contains
 
    !> Parts of an edge between the corners of other blocks on it, and which of them are joints
    pure subroutine split_edge(plan, tree, block, edge, part, covered)
-      !> The blocks
       type(block_plan_t), intent(in) :: plan
       !> Boxes of the blocks
       type(box_tree_t), intent(in) :: tree

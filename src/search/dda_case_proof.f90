@@ -67,13 +67,11 @@ contains
    pure subroutine prove_decision(scene, decision, thrust_joint, thrust_bar, proof)
       !> Its scene at the beginning
       type(scene_t), intent(in) :: scene
-      !> The decision
       type(decision_t), intent(in) :: decision
       !> Joint whose range of thrust is wanted, 0 for none
       integer, intent(in) :: thrust_joint
       !> Bar whose range of force is wanted, 0 for none
       integer, intent(in) :: thrust_bar
-      !> The proof
       type(proof_t), intent(out) :: proof
       type(joint_graph_t) :: graph
       type(limit_load_t) :: limit
@@ -103,11 +101,9 @@ contains
 
    !> Prove both sides of what a search has found
    pure subroutine prove_search(family, critical, proof)
-      !> The scenes
       class(family_t), intent(in) :: family
       !> What was found
       type(critical_t), intent(in) :: critical
-      !> The proof
       type(proof_t), intent(out) :: proof
       type(joint_graph_t) :: graph
       type(proof_t) :: other
@@ -143,7 +139,6 @@ contains
 
    !> Least and greatest force of a bar with which the blocks stand: a pair of forces in its place
    pure subroutine find_bar_range(scene, bar, proof)
-      !> The scene
       type(scene_t), intent(in) :: scene
       !> Number of the bar
       integer, intent(in) :: bar
@@ -189,9 +184,7 @@ contains
 
    !> Forces that carry the load of a scene, or a mechanism that it drives
    pure subroutine prove_state(scene, graph, wanted, proof)
-      !> The scene
       type(scene_t), intent(in) :: scene
-      !> Its joints
       type(joint_graph_t), intent(in) :: graph
       !> The verdict that is to be proven: stable or collapsed
       integer, intent(in) :: wanted
@@ -219,11 +212,9 @@ contains
 
    !> The two proofs of the limit of a load coefficient
    pure subroutine prove_limit(family, critical, proof)
-      !> The scenes
       class(family_t), intent(in) :: family
       !> What was found
       type(critical_t), intent(in) :: critical
-      !> The proof
       type(proof_t), intent(inout) :: proof
       type(joint_graph_t) :: graph
       type(error_t), allocatable :: error

@@ -25,9 +25,7 @@ contains
 
    !> Decide a chain
    pure subroutine decide_chain(settings, chain, decision, decided)
-      !> Settings of the run
       type(settings_t), intent(in) :: settings
-      !> The chain
       type(chain_t), intent(in) :: chain
       !> The decision, without blocks and springs; of the left half alone if the chain is halved
       type(decision_t), intent(out) :: decision
@@ -86,7 +84,6 @@ contains
 
    !> Whether openings close the row again at its end: no forces in balance do work on them
    pure logical function closes_row(chain, beyond)
-      !> The chain
       type(chain_t), intent(in) :: chain
       !> The part of the forces that the cones do not let pass: (3, n + 1) [N/m]
       real(wp), intent(in) :: beyond(:, :)
@@ -107,11 +104,9 @@ contains
 
    !> Faces of the joints of a chain that stands
    pure subroutine see_sliding(chain, load, thrust, noise, face)
-      !> The chain
       type(chain_t), intent(in) :: chain
       !> Sums of the loads: (3, n + 1)
       real(wp), intent(in) :: load(:, :)
-      !> The forces
       type(thrust_t), intent(inout) :: thrust
       !> Their rounding [N/m]
       real(wp), intent(in) :: noise
@@ -132,7 +127,6 @@ contains
 
    !> Faces, openings and motion of a collapse, and its largest acceleration over that of free fall
    pure subroutine show_mechanism(chain, force, beyond, decision)
-      !> The chain
       type(chain_t), intent(in) :: chain
       !> Forces in balance with the loads: (3, n + 1) [N/m]
       real(wp), intent(in) :: force(:, :)
@@ -169,7 +163,6 @@ contains
    !> Let only those joints open that fail more than their neighbours, where that is a mechanism: a
    !> structure opens joint by joint
    pure subroutine concentrate(chain, beyond, face, opening, power)
-      !> The chain
       type(chain_t), intent(in) :: chain
       !> The part of the forces that the cones do not let pass: (3, n + 1) [N/m]
       real(wp), intent(in) :: beyond(:, :)
@@ -210,7 +203,6 @@ contains
    !> Motion of the blocks from the left springing on, one joint after the other; the last joint
    !> gets the openings that close the row
    pure subroutine move_blocks(chain, opening, motion)
-      !> The chain
       type(chain_t), intent(in) :: chain
       !> Opening 1, opening 2 and slip of each joint; those of the last are set: (3, n + 1) [m]
       real(wp), intent(inout) :: opening(:, :)

@@ -14,7 +14,6 @@ contains
    !> Make the decision of a halved chain that of the whole one; any other stays as it is. A smooth
    !> plane of symmetry is the joint there, which does not slide and opens on both sides
    elemental subroutine unfold(decision)
-      !> The decision
       type(decision_t), intent(inout) :: decision
       type(joint_face_t), allocatable :: face(:)
       integer :: m, n
@@ -55,7 +54,6 @@ contains
    pure subroutine fold(chain, decision, face)
       !> Half the chain
       type(chain_t), intent(in) :: chain
-      !> The collapse
       type(decision_t), intent(in) :: decision
       !> Faces of its joints: (m)
       type(joint_face_t), allocatable, intent(out) :: face(:)
@@ -68,7 +66,6 @@ contains
 
    !> Number of joints that a decision is of, folded or not
    elemental integer function whole_joints(decision)
-      !> The decision
       type(decision_t), intent(in) :: decision
 
       whole_joints = size(decision%contacts%face)

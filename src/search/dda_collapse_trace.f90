@@ -62,7 +62,6 @@ contains
    !> Trace the last collapse to where it stops, by the secant method on the power of the loads;
    !> from the third value on the parabola through three tells what the secant leaves
    pure subroutine trace(family, search, limit, critical, proposal)
-      !> The family
       class(family_t), intent(in) :: family
       !> What is searched
       type(search_t), intent(in) :: search
@@ -120,11 +119,9 @@ contains
 
    !> Where a mechanism stops, and how near to that to decide
    pure subroutine propose(family, search, mechanism, next, coarse_slope, noise, critical, proposal)
-      !> The family
       class(family_t), intent(in) :: family
       !> What is searched
       type(search_t), intent(in) :: search
-      !> The mechanism
       type(frozen_t), intent(in) :: mechanism
       !> Where it stops
       real(wp), intent(in) :: next
@@ -134,7 +131,6 @@ contains
       real(wp), intent(inout) :: noise
       !> What was found so far; the factorisations are counted
       type(critical_t), intent(inout) :: critical
-      !> The proposal
       type(proposal_t), intent(inout) :: proposal
 
       proposal%usable = .true.
@@ -155,7 +151,6 @@ contains
 
    !> Freeze the last collapse
    pure function frozen(family, critical) result(mechanism)
-      !> The family
       class(family_t), intent(in) :: family
       !> What was found so far, a collapse among it
       type(critical_t), intent(in) :: critical
@@ -199,9 +194,7 @@ contains
    !> Where rounding leaves more than the tolerance: the mean of many roots, as each value of the
    !> parameter rounds the coordinates otherwise
    pure subroutine average_root(family, mechanism, slope, critical, proposal)
-      !> The family
       class(family_t), intent(in) :: family
-      !> The mechanism
       type(frozen_t), intent(in) :: mechanism
       !> Change of the power with the value
       real(wp), intent(in) :: slope
@@ -226,9 +219,7 @@ contains
 
    !> Rounding in the solution of the equations: what another length of the step makes of the power
    pure subroutine refine_noise(family, mechanism, value, critical, noise)
-      !> The family
       class(family_t), intent(in) :: family
-      !> The mechanism
       type(frozen_t), intent(in) :: mechanism
       !> The value
       real(wp), intent(in) :: value
@@ -265,9 +256,7 @@ contains
 
    !> Power of the loads on a frozen mechanism at one value
    pure subroutine power_at(family, mechanism, value, critical, power, noise, usable)
-      !> The family
       class(family_t), intent(in) :: family
-      !> The mechanism
       type(frozen_t), intent(in) :: mechanism
       !> The value
       real(wp), intent(in) :: value

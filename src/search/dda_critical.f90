@@ -41,7 +41,6 @@ contains
 
    !> Search the critical value of a family of scenes
    pure subroutine find_critical(family, search, critical)
-      !> The family
       class(family_t), intent(in) :: family
       !> What is searched
       type(search_t), intent(in) :: search
@@ -62,7 +61,6 @@ contains
 
    !> Close the bracket around the value
    pure subroutine close_bracket(family, search, critical)
-      !> The family
       class(family_t), intent(in) :: family
       !> What is searched
       type(search_t), intent(in) :: search
@@ -117,7 +115,6 @@ contains
 
    !> Go to the first collapse: from the start towards the low end, or else at the high end
    pure subroutine find_collapse(family, search, limit, critical)
-      !> The family
       class(family_t), intent(in) :: family
       !> What is searched
       type(search_t), intent(in) :: search
@@ -149,7 +146,6 @@ contains
 
    !> Go up from an undecided value to the first decided one
    pure subroutine ascend(family, search, value, critical, answer)
-      !> The family
       class(family_t), intent(in) :: family
       !> What is searched
       type(search_t), intent(in) :: search
@@ -170,7 +166,6 @@ contains
 
    !> Decide one value and keep the decision on its side of the bracket
    pure subroutine decide_at(family, value, critical, answer)
-      !> The family
       class(family_t), intent(in) :: family
       !> The value
       real(wp), intent(in) :: value
@@ -220,7 +215,6 @@ contains
 
    !> Share out the forces of what stands nearest to critical, which its proof alone does not tell
    pure subroutine share_forces(family, critical)
-      !> The family
       class(family_t), intent(in) :: family
       !> What was found, its decision that stands among it
       type(critical_t), intent(inout) :: critical
@@ -243,7 +237,6 @@ contains
    !> Give back what a search does not ask a kept decision for: its springs, and its blocks but for
    !> their bars, which the family makes anew at any value
    pure subroutine shed(decision)
-      !> The decision
       type(decision_t), intent(inout) :: decision
       type(bar_state_t), allocatable :: bar(:)
 

@@ -55,13 +55,11 @@ contains
 
    !> Decide a static structure, or run a dynamic one
    pure subroutine decide(settings, system, contacts, decision, album, onward, verdict_only)
-      !> Settings of the run
       type(settings_t), intent(in) :: settings
       !> The blocks at the beginning
       type(block_system_t), intent(in) :: system
       !> The contacts at the beginning
       type(contacts_t), intent(in) :: contacts
-      !> The decision
       type(decision_t), intent(out) :: decision
       !> Receives pictures of the run that decides
       type(album_t), intent(inout), optional :: album
@@ -84,15 +82,11 @@ contains
 
    !> Decide by the joint graph
    pure subroutine decide_by_graph(settings, system, contacts, bare, decision, album)
-      !> Settings of the run
       type(settings_t), intent(in) :: settings
-      !> The blocks
       type(block_system_t), intent(in) :: system
-      !> The contacts
       type(contacts_t), intent(in) :: contacts
       !> Whether forces and motions of what stands are not asked for
       logical, intent(in) :: bare
-      !> The decision
       type(decision_t), intent(out) :: decision
       !> Receives pictures of the state that is told
       type(album_t), intent(inout), optional :: album
@@ -148,9 +142,7 @@ contains
    !> Whether a run of steps can tell what the graph does not: steps know neither bounded forces nor
    !> strength
    pure logical function may_run(settings, contacts)
-      !> Settings of the run
       type(settings_t), intent(in) :: settings
-      !> The contacts
       type(contacts_t), intent(in) :: contacts
 
       may_run = .not. (allocated(settings%boundary%bounded) &
@@ -160,11 +152,8 @@ contains
    !> How the blocks of what stands share out the forces: as elastic blocks do, or where joints
    !> slide, as the loading path leaves them
    pure subroutine share_forces(settings, system, contacts, proof, decision, album)
-      !> Settings of the run
       type(settings_t), intent(in) :: settings
-      !> The blocks
       type(block_system_t), intent(in) :: system
-      !> The contacts
       type(contacts_t), intent(in) :: contacts
       !> That it stands
       type(graph_verdict_t), intent(in) :: proof
@@ -184,9 +173,7 @@ contains
 
    !> Share out the forces of what stands as elastic blocks do
    pure subroutine share_elastically(settings, system, contacts, decision, shared, album)
-      !> Settings of the run
       type(settings_t), intent(in) :: settings
-      !> The blocks
       type(block_system_t), intent(in) :: system
       !> The contacts, with the faces to begin with
       type(contacts_t), intent(in) :: contacts
@@ -211,11 +198,8 @@ contains
 
    !> Blocks and contacts of what stands, as its proof has them
    pure subroutine record_rest(settings, system, contacts, proof, decision)
-      !> Settings of the run
       type(settings_t), intent(in) :: settings
-      !> The blocks
       type(block_system_t), intent(in) :: system
-      !> The contacts
       type(contacts_t), intent(in) :: contacts
       !> That it stands
       type(graph_verdict_t), intent(in) :: proof
@@ -232,11 +216,8 @@ contains
    !> Blocks and contacts of what falls. Limit analysis proves that it does by any mechanism that
    !> will do; where it does not know the first one a run tells it
    pure subroutine record_collapse(settings, system, contacts, proof, decision, album)
-      !> Settings of the run
       type(settings_t), intent(in) :: settings
-      !> The blocks
       type(block_system_t), intent(in) :: system
-      !> The contacts
       type(contacts_t), intent(in) :: contacts
       !> That it falls
       type(graph_verdict_t), intent(in) :: proof
@@ -270,9 +251,7 @@ contains
 
    !> Where the measured points are in a state that no run has led to
    pure subroutine show_end(settings, decision, album)
-      !> Settings of the run
       type(settings_t), intent(in) :: settings
-      !> The state
       type(decision_t), intent(in) :: decision
       !> Receives it alone
       type(album_t), intent(inout) :: album
@@ -285,13 +264,11 @@ contains
 
    !> Decide by steps to rest or collapse
    pure subroutine decide_by_steps(settings, system, contacts, decision, album)
-      !> Settings of the run
       type(settings_t), intent(in) :: settings
       !> The blocks at the beginning
       type(block_system_t), intent(in) :: system
       !> The contacts at the beginning
       type(contacts_t), intent(in) :: contacts
-      !> The decision
       type(decision_t), intent(out) :: decision
       !> Receives pictures of the run that decides
       type(album_t), intent(inout), optional :: album
@@ -319,7 +296,6 @@ contains
    !> a static run leads there, under what acts at time 0 on a ground at rest; velocities are those
    !> that the blocks were given
    pure subroutine run_in_time(settings, system, contacts, decision, album, onward)
-      !> Settings of the run
       type(settings_t), intent(in) :: settings
       !> The blocks at the beginning
       type(block_system_t), intent(in) :: system
@@ -367,7 +343,6 @@ contains
 
    !> Run a structure under Coulomb friction from its beginning
    pure subroutine follow_coulomb(settings, system, contacts, decision, album, onward)
-      !> Settings of the run
       type(settings_t), intent(in) :: settings
       !> The blocks at the beginning
       type(block_system_t), intent(in) :: system

@@ -35,7 +35,6 @@ contains
    !> more solutions with its own inertia as the load leave of that motion the mechanism alone,
    !> which is then measured by the mechanism's motion at the value where it was found
    pure subroutine mechanism_power(mechanism, scene, power, noise, usable)
-      !> The mechanism
       type(frozen_mechanism_t), intent(in) :: mechanism
       !> Scene of the value wanted
       type(scene_t), intent(in) :: scene
@@ -91,9 +90,7 @@ contains
 
    !> Whether a scene has the blocks and joints of a mechanism, in the same order
    pure logical function is_of(mechanism, scene)
-      !> The mechanism
       type(frozen_mechanism_t), intent(in) :: mechanism
-      !> The scene
       type(scene_t), intent(in) :: scene
 
       is_of = size(mechanism%motion, 2) == maxval(scene%system%equation) &
@@ -118,7 +115,6 @@ contains
 
    !> Relative error of a block's area by the rounding of its corners' coordinates
    pure function area_rounding(system, block) result(error)
-      !> The blocks
       type(block_system_t), intent(in) :: system
       !> Number of the block
       integer, intent(in) :: block

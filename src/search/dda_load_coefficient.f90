@@ -44,7 +44,6 @@ contains
 
    !> Settings whose push is not live
    pure function with_dead_push(settings) result(other)
-      !> Settings of the run
       type(settings_t), intent(in) :: settings
       !> The settings
       type(settings_t) :: other
@@ -56,7 +55,6 @@ contains
 
    !> Whether nothing but weight acts, so that gravity that tilts is a push of fixed weight
    pure logical function only_weight(settings)
-      !> Settings of the run
       type(settings_t), intent(in) :: settings
 
       only_weight = .not. allocated(settings%boundary%loaded)
@@ -68,7 +66,6 @@ contains
    pure real(wp) function coefficient(load, settings)
       !> One of searched_load
       integer, intent(in) :: load
-      !> Settings of the run
       type(settings_t), intent(in) :: settings
 
       coefficient = settings%load_factor
@@ -78,7 +75,6 @@ contains
 
    !> Settings with another value of what is searched
    pure function with_coefficient(settings, load, value) result(other)
-      !> Settings of the run
       type(settings_t), intent(in) :: settings
       !> One of searched_load
       integer, intent(in) :: load
@@ -103,9 +99,7 @@ contains
    pure function full_loads(settings, scene, graph) result(load)
       !> Settings of the run, without histories
       type(settings_t), intent(in) :: settings
-      !> The scene
       type(scene_t), intent(in) :: scene
-      !> Its joints
       type(joint_graph_t), intent(in) :: graph
       !> The loads: (3, n_block) [N/m, N/m, N]
       real(wp) :: load(3, graph%n_block)
@@ -123,9 +117,7 @@ contains
       integer, intent(in) :: load
       !> Settings of the run, without histories
       type(settings_t), intent(in) :: settings
-      !> The scene
       type(scene_t), intent(in) :: scene
-      !> Its joints
       type(joint_graph_t), intent(in) :: graph
       !> The loads: (3, n_block) [N/m, N/m, N]
       real(wp) :: live(3, graph%n_block)

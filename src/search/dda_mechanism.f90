@@ -89,7 +89,6 @@ contains
       type(contacts_t), intent(in) :: contacts
       !> Angle of each joint from the crown, or none where there is no arch: (n_joint) or (0) [deg]
       real(wp), intent(in) :: joint_angle_deg(:)
-      !> The mechanism
       type(mechanism_t), intent(out) :: mechanism
       !> Motion of the blocks in the step, where it is known: (n_dof, n_equation)
       real(wp), intent(in), optional :: motion(:, :)

@@ -60,11 +60,9 @@ module dda_scene
       !> Make the scene of one value
       pure subroutine build_scene(family, value, scene, error)
          import :: error_t, family_t, scene_t, wp
-         !> The family
          class(family_t), intent(in) :: family
          !> Value of its parameter
          real(wp), intent(in) :: value
-         !> The scene
          type(scene_t), intent(out) :: scene
          !> Allocated if no scene has this value
          type(error_t), allocatable, intent(out) :: error
@@ -75,13 +73,10 @@ contains
 
    !> Scenes that are no chains
    pure subroutine link_nothing(family, value, settings, chain, linked)
-      !> The family
       class(family_t), intent(in) :: family
       !> Value of its parameter
       real(wp), intent(in) :: value
-      !> Settings of the run
       type(settings_t), intent(out) :: settings
-      !> The chain
       type(chain_t), intent(out) :: chain
       !> Whether there is one
       logical, intent(out) :: linked

@@ -82,7 +82,6 @@ contains
 
    !> Move from stage to stage
    pure subroutine move_through(settings, time, decision, album, onward, last)
-      !> Settings of the run
       type(settings_t), intent(in) :: settings
       !> Times at which stages begin, and the end: (n_stage + 1) [s]
       real(wp), intent(in) :: time(:)
@@ -135,7 +134,6 @@ contains
 
    !> Follow the loading path through all stages
    pure subroutine decide_at_rest(settings, time, decision, last)
-      !> Settings of the run
       type(settings_t), intent(in) :: settings
       !> Times at which stages begin, and the end: (n_stage + 1) [s]
       real(wp), intent(in) :: time(:)
@@ -188,13 +186,11 @@ contains
 
    !> Blocks and contacts of the last stage
    pure subroutine record_stage(settings, stage, system, contacts, proof, slid, decision)
-      !> Settings of the run
       type(settings_t), intent(in) :: settings
       !> Those of the stage
       type(settings_t), intent(in) :: stage
       !> The blocks that are there
       type(block_system_t), intent(in) :: system
-      !> Their contacts
       type(contacts_t), intent(in) :: contacts
       !> How the stage ended
       type(graph_verdict_t), intent(in) :: proof
@@ -229,7 +225,6 @@ contains
 
    !> Which joints have slid against friction since a state, or since there was no load
    pure function has_slid(after, n, before) result(slid)
-      !> The state
       type(coulomb_state_t), intent(in) :: after
       !> Number of joints that are asked for, the first ones
       integer, intent(in) :: n
@@ -248,11 +243,9 @@ contains
 
    !> Which blocks and contacts there are from a time on
    pure subroutine enter_stage(settings, time, system, contacts)
-      !> Settings of the run
       type(settings_t), intent(in) :: settings
       !> The time [s]
       real(wp), intent(in) :: time
-      !> The blocks
       type(block_system_t), intent(inout) :: system
       !> Their contacts, those of the stage before or of all blocks
       type(contacts_t), intent(inout) :: contacts
@@ -278,19 +271,16 @@ contains
    !> The state that the next stage begins with: joints of blocks that stay keep what they carry;
    !> what the others carried is a load on those that stay
    pure subroutine hand_over(settings, time, system, contacts, all, proof, start)
-      !> Settings of the run
       type(settings_t), intent(in) :: settings
       !> Time at which the next stage begins [s]
       real(wp), intent(in) :: time
       !> The blocks of the stage that has ended
       type(block_system_t), intent(in) :: system
-      !> Its contacts
       type(contacts_t), intent(in) :: contacts
       !> The contacts of all blocks
       type(contacts_t), intent(in) :: all
       !> How it ended
       type(graph_verdict_t), intent(in) :: proof
-      !> The state
       type(coulomb_state_t), allocatable, intent(out) :: start
       type(joint_graph_t) :: before, after
       type(block_system_t) :: next
@@ -339,7 +329,6 @@ contains
    !> A number for each joint of a stage that is the same in all stages: that of the joint between
    !> all blocks, then of the held point, then of the bar
    pure function labels(settings, system, all, graph) result(label)
-      !> Settings of the run
       type(settings_t), intent(in) :: settings
       !> The blocks of the stage
       type(block_system_t), intent(in) :: system

@@ -42,7 +42,6 @@ contains
 
    !> Search the critical value
    pure subroutine find_critical_in_time(family, search, critical)
-      !> The scenes
       class(family_t), intent(in) :: family
       !> What is searched
       type(search_t), intent(in) :: search
@@ -104,7 +103,6 @@ contains
 
    !> Halve the first change till its neighbours are as near as was asked for
    pure subroutine close_bracket(family, search, runs, critical)
-      !> The scenes
       class(family_t), intent(in) :: family
       !> What is searched
       type(search_t), intent(in) :: search
@@ -138,7 +136,6 @@ contains
 
    !> Have the decisions of the two neighbours, which may be none of the last
    pure subroutine keep_decisions(family, runs, critical)
-      !> The scenes
       class(family_t), intent(in) :: family
       !> What has been run
       type(runs_t), intent(inout) :: runs
@@ -171,7 +168,6 @@ contains
 
    !> Run one value
    pure subroutine run_value(family, value, runs, critical, answer)
-      !> The scenes
       class(family_t), intent(in) :: family
       !> The value
       real(wp), intent(in) :: value

@@ -58,7 +58,6 @@ contains
 
    !> Seek the least factor of the loads of all arcs
    pure subroutine seek_least_factor(graph, dead, arc, stands, near, least)
-      !> The joints
       type(joint_graph_t), intent(in) :: graph
       !> Loads at a factor of zero: (3, n_block) [N/m, N/m, N]
       real(wp), intent(in) :: dead(:, :)
@@ -104,7 +103,6 @@ contains
       real(wp), intent(in) :: share
       !> What the search works on
       type(chase_t), intent(inout) :: chase
-      !> The least factor
       type(least_factor_t), intent(inout) :: least
       logical :: carried
 
@@ -122,7 +120,6 @@ contains
       real(wp), intent(in) :: from, to
       !> What the search works on
       type(chase_t), intent(inout) :: chase
-      !> The least factor
       type(least_factor_t), intent(inout) :: least
       real(wp) :: middle
       logical :: carried
@@ -143,7 +140,6 @@ contains
 
    !> Whether a load of an arc is carried at a factor but for a small share of it
    pure subroutine carry(arc, weight, factor, chase, carried)
-      !> The arc
       type(load_arc_t), intent(in) :: arc
       !> Shares of its three loads
       real(wp), intent(in) :: weight(3)
@@ -173,7 +169,6 @@ contains
       real(wp), intent(in) :: share
       !> What the search works on
       type(chase_t), intent(in) :: chase
-      !> The least factor
       type(least_factor_t), intent(inout) :: least
       type(limit_load_t) :: limit
       real(wp) :: live(3, size(chase%dead, 2)), at, power
@@ -236,7 +231,6 @@ contains
    pure subroutine add_live(weight, arc, load)
       !> Factors of its three loads
       real(wp), intent(in) :: weight(3)
-      !> The arc
       type(load_arc_t), intent(in) :: arc
       !> Loads, to which its are added: (3, n_block) [N/m, N/m, N]
       real(wp), intent(inout) :: load(:, :)

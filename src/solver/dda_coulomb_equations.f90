@@ -66,9 +66,7 @@ contains
 
    !> Pattern of the equations
    pure subroutine new_coulomb_equations(joints, equations)
-      !> The joints
       type(coulomb_joints_t), intent(in) :: joints
-      !> Receives it
       type(coulomb_equations_t), intent(out) :: equations
       integer :: n_joint
 
@@ -82,9 +80,7 @@ contains
 
    !> Make the equations those of a set of faces: by few changes of the factor, or by a new one
    pure subroutine use_faces(equations, joints, faces, damping)
-      !> The equations
       type(coulomb_equations_t), intent(inout) :: equations
-      !> The joints
       type(coulomb_joints_t), intent(in) :: joints
       !> What corners and joints do: (3, n_joint)
       integer, intent(in) :: faces(:, :)
@@ -102,9 +98,7 @@ contains
 
    !> Factor the matrix of the faces
    pure subroutine factor_faces(equations, joints)
-      !> The equations
       type(coulomb_equations_t), intent(inout) :: equations
-      !> The joints
       type(coulomb_joints_t), intent(in) :: joints
       real(wp) :: stiffness(3, 3, size(equations%place))
       integer :: j
@@ -123,9 +117,7 @@ contains
 
    !> List what differs from the factor, and find the answers that this takes
    pure subroutine note_changes(equations, joints, few)
-      !> The equations
       type(coulomb_equations_t), intent(inout) :: equations
-      !> The joints
       type(coulomb_joints_t), intent(in) :: joints
       !> Whether there was room for them
       logical, intent(out) :: few
@@ -161,9 +153,7 @@ contains
 
    !> Answer of the blocks to a unit force at a joint
    pure subroutine find_answer(equations, joints, place, part)
-      !> The equations
       type(coulomb_equations_t), intent(inout) :: equations
-      !> The joints
       type(coulomb_joints_t), intent(in) :: joints
       !> Place of the joint among those that have changed
       integer, intent(in) :: place
@@ -193,7 +183,6 @@ contains
 
    !> How one joint opens and slips with a motion
    pure function opening_of(joints, j, motion) result(opening)
-      !> The joints
       type(coulomb_joints_t), intent(in) :: joints
       !> Number of the joint
       integer, intent(in) :: j
@@ -215,7 +204,6 @@ contains
 
    !> The small full matrix of the answers in use: unity and differences times openings
    pure subroutine factor_capacity(equations, regular)
-      !> The equations
       type(coulomb_equations_t), intent(inout) :: equations
       !> Whether it has factors
       logical, intent(out) :: regular
@@ -248,7 +236,6 @@ contains
    pure subroutine solve_equations(equations, joints, load, motion, opening)
       !> Usable equations; their matrix is factored again where changes have made them inexact
       type(coulomb_equations_t), intent(inout) :: equations
-      !> The joints
       type(coulomb_joints_t), intent(in) :: joints
       !> The load: (n_dof, n_block)
       real(wp), intent(in) :: load(:, :)
@@ -284,9 +271,7 @@ contains
 
    !> Substitute with the factor and its changes
    pure subroutine substitute_changes(equations, joints, x)
-      !> The equations
       type(coulomb_equations_t), intent(in) :: equations
-      !> The joints
       type(coulomb_joints_t), intent(in) :: joints
       !> Load in, motion out: (n_dof, n_block)
       real(wp), intent(inout) :: x(:, :)

@@ -23,7 +23,6 @@ contains
 
    !> Velocities of the fall, the largest one
    pure subroutine find_coulomb_fall(graph, load, force, most, velocity, found, n_factorisation)
-      !> The joints
       type(joint_graph_t), intent(in) :: graph
       !> The load: (n_dof, n_block) [N/m, N/m, N ...]
       real(wp), intent(in) :: load(:, :)
@@ -62,11 +61,9 @@ contains
 
    !> The state of joints with given forces; what is next to nothing is nothing
    pure subroutine begin_at(joints, force, state)
-      !> The joints
       type(coulomb_joints_t), intent(in) :: joints
       !> N1, N2, T of each: (3, n_joint)
       real(wp), intent(in) :: force(:, :)
-      !> The state
       type(coulomb_state_t), intent(out) :: state
       real(wp) :: bound, least
       integer :: j

@@ -55,9 +55,7 @@ contains
 
    !> Motion under a load from rest without forces; false in settled if it was not found
    pure subroutine interior_motion(joints, matrix, load, damping, tolerance, x, settled)
-      !> The joints
       type(coulomb_joints_t), intent(in) :: joints
-      !> Their matrix
       type(coulomb_matrix_t), intent(inout) :: matrix
       !> The load: (n_dof, n_block)
       real(wp), intent(in) :: load(:, :)
@@ -114,7 +112,6 @@ contains
 
    !> Which faces the forces of each joint have
    pure subroutine list_faces(joints, face)
-      !> The joints
       type(coulomb_joints_t), intent(in) :: joints
       !> Whether there is a face: (4, n_joint)
       logical, intent(out) :: face(:, :)
@@ -126,13 +123,11 @@ contains
 
    !> An iterate in the middle of the cones
    pure subroutine begin(joints, load, face, x)
-      !> The joints
       type(coulomb_joints_t), intent(in) :: joints
       !> The load: (n_dof, n_block)
       real(wp), intent(in) :: load(:, :)
       !> Whether there is a face: (4, n_joint)
       logical, intent(in) :: face(:, :)
-      !> The iterate
       type(coulomb_interior_t), intent(out) :: x
       real(wp) :: push
       integer :: n_joint
@@ -154,7 +149,6 @@ contains
 
    !> Distance of forces from the faces
    pure subroutine add_faces(joints, force, slack)
-      !> The joints
       type(coulomb_joints_t), intent(in) :: joints
       !> N1, N2, T: (3, n_joint)
       real(wp), intent(in) :: force(:, :)
@@ -169,7 +163,6 @@ contains
 
    !> What an iterate leaves of the equations
    pure subroutine find_rest(joints, load, damping, face, x, rest)
-      !> The joints
       type(coulomb_joints_t), intent(in) :: joints
       !> The load: (n_dof, n_block)
       real(wp), intent(in) :: load(:, :)
@@ -177,7 +170,6 @@ contains
       real(wp), intent(in) :: damping
       !> Whether there is a face: (4, n_joint)
       logical, intent(in) :: face(:, :)
-      !> The iterate
       type(coulomb_interior_t), intent(in) :: x
       !> What is left
       type(rest_t), intent(inout) :: rest
@@ -201,15 +193,12 @@ contains
 
    !> Assemble the springs of an iterate and factor their equations
    pure subroutine factor_springs(joints, matrix, damping, face, x)
-      !> The joints
       type(coulomb_joints_t), intent(in) :: joints
-      !> Their matrix
       type(coulomb_matrix_t), intent(inout) :: matrix
       !> Multiple of the mass
       real(wp), intent(in) :: damping
       !> Whether there is a face: (4, n_joint)
       logical, intent(in) :: face(:, :)
-      !> The iterate
       type(coulomb_interior_t), intent(in) :: x
       real(wp) :: ratio(4), spring(3, 3, size(face, 2))
       integer :: i, j
@@ -233,7 +222,6 @@ contains
 
    !> The step that brings what is left to nothing, corrected until forces balance
    pure subroutine find_step(joints, matrix, damping, face, x, rest, step)
-      !> The joints
       type(coulomb_joints_t), intent(in) :: joints
       !> Their matrix, factored
       type(coulomb_matrix_t), intent(in) :: matrix
@@ -241,11 +229,9 @@ contains
       real(wp), intent(in) :: damping
       !> Whether there is a face: (4, n_joint)
       logical, intent(in) :: face(:, :)
-      !> The iterate
       type(coulomb_interior_t), intent(in) :: x
       !> What is left of the equations
       type(rest_t), intent(in) :: rest
-      !> The step
       type(coulomb_interior_t), intent(inout) :: step
       integer, parameter :: max_correction = 3
       real(wp), parameter :: rounding = 1.0e-15_wp
@@ -287,7 +273,6 @@ contains
    !> Forces of the springs under a drive, and what they add to the slacks, as sums that cancel
    !> nothing
    pure subroutine answer_joints(joints, face, ratio, drive, part)
-      !> The joints
       type(coulomb_joints_t), intent(in) :: joints
       !> Whether there is a face: (4, n_joint)
       logical, intent(in) :: face(:, :)
@@ -324,9 +309,7 @@ contains
    pure real(wp) function longest(face, x, step, share)
       !> Whether there is a face: (4, n_joint)
       logical, intent(in) :: face(:, :)
-      !> The iterate
       type(coulomb_interior_t), intent(in) :: x
-      !> The step
       type(coulomb_interior_t), intent(in) :: step
       !> How much of the way to the first zero is gone
       real(wp), intent(in) :: share

@@ -87,7 +87,6 @@ contains
 
    !> Choose the unit of force, and with it that of motion; not by a load that is zero
    pure subroutine set_force_unit(joints, load)
-      !> The joints
       type(coulomb_joints_t), intent(inout) :: joints
       !> What they carry: (n_dof, n_block) [N/m, N/m, N ...]
       real(wp), intent(in) :: load(:, :)
@@ -142,7 +141,6 @@ contains
 
    !> Loads in the units of the joints
    pure function in_units(joints, load) result(scaled)
-      !> The joints
       type(coulomb_joints_t), intent(in) :: joints
       !> Loads: (n_dof, n_block) [N/m, N/m, N ...]
       real(wp), intent(in) :: load(:, :)
@@ -155,7 +153,6 @@ contains
 
    !> Loads in SI units
    pure function in_newtons(joints, load) result(newtons)
-      !> The joints
       type(coulomb_joints_t), intent(in) :: joints
       !> Loads in units: (n_dof, n_block)
       real(wp), intent(in) :: load(:, :)
@@ -168,7 +165,6 @@ contains
 
    !> Motion of blocks in the units of the joints
    pure function in_motion_units(joints, motion) result(scaled)
-      !> The joints
       type(coulomb_joints_t), intent(in) :: joints
       !> Motion: (n_dof, n_block) [m, m, 1 ...]
       real(wp), intent(in) :: motion(:, :)
@@ -181,7 +177,6 @@ contains
 
    !> Motion of blocks in SI units
    pure function in_metres(joints, motion) result(metres)
-      !> The joints
       type(coulomb_joints_t), intent(in) :: joints
       !> Motion in units: (n_dof, n_block)
       real(wp), intent(in) :: motion(:, :)

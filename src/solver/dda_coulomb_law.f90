@@ -59,7 +59,6 @@ contains
 
    !> The state of joints that carry nothing
    pure function unloaded_state(joints) result(state)
-      !> The joints
       type(coulomb_joints_t), intent(in) :: joints
       !> No force, no motion; corners are open where they have gaps
       type(coulomb_state_t) :: state
@@ -89,7 +88,6 @@ contains
 
    !> What a joint does along itself, where it can do nothing else
    pure integer function shear_face(joints, j, ends, otherwise)
-      !> The joints
       type(coulomb_joints_t), intent(in) :: joints
       !> Number of the joint
       integer, intent(in) :: j
@@ -110,7 +108,6 @@ contains
 
    !> Forces, gaps and faces after an increment of openings
    pure subroutine apply_law(joints, before, opening, after)
-      !> The joints
       type(coulomb_joints_t), intent(in) :: joints
       !> State before
       type(coulomb_state_t), intent(in) :: before
@@ -159,7 +156,6 @@ contains
 
    !> How the forces of a joint answer its openings: rate of force = -stiffness*rate of opening
    pure function joint_stiffness(joints, j, faces) result(stiffness)
-      !> The joints
       type(coulomb_joints_t), intent(in) :: joints
       !> Number of the joint
       integer, intent(in) :: j
@@ -185,7 +181,6 @@ contains
 
    !> Forces by which the springs of all joints answer openings while the faces stay
    pure subroutine spring_forces(joints, faces, opening, force)
-      !> The joints
       type(coulomb_joints_t), intent(in) :: joints
       !> What corners and joints do: (3, n_joint)
       integer, intent(in) :: faces(:, :)
@@ -214,7 +209,6 @@ contains
 
    !> What is not balanced of a load
    pure subroutine imbalance(joints, load, force, rest)
-      !> The joints
       type(coulomb_joints_t), intent(in) :: joints
       !> The load: (n_dof, n_block)
       real(wp), intent(in) :: load(:, :)
@@ -229,9 +223,7 @@ contains
 
    !> Forces of a state whose joints take other faces, before anything has moved
    pure subroutine force_faces(joints, state, faces, change)
-      !> The joints
       type(coulomb_joints_t), intent(in) :: joints
-      !> The state
       type(coulomb_state_t), intent(in) :: state
       !> What corners and joints are to do: (3, n_joint)
       integer, intent(in) :: faces(:, :)

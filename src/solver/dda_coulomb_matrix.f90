@@ -25,9 +25,7 @@ contains
 
    !> Pattern of the matrix
    pure subroutine new_matrix(joints, matrix)
-      !> The joints
       type(coulomb_joints_t), intent(in) :: joints
-      !> Receives it
       type(coulomb_matrix_t), intent(out) :: matrix
       logical :: couples(size(joints%shear_role))
       integer, allocatable :: pair(:, :)
@@ -44,9 +42,7 @@ contains
 
    !> Assemble and factor
    pure subroutine factor_stiffness(matrix, joints, stiffness, damping)
-      !> The matrix
       type(coulomb_matrix_t), intent(inout) :: matrix
-      !> The joints
       type(coulomb_joints_t), intent(in) :: joints
       !> S of each joint, rows N1, N2, T, columns opening 1, opening 2, slip: (3, 3, n_joint)
       real(wp), intent(in) :: stiffness(:, :, :)
@@ -73,11 +69,9 @@ contains
 
    !> Add the stiffness of a joint to the matrix
    pure subroutine add_stiffness(matrix, entry, joints, j, stiffness)
-      !> The matrix
       type(block_matrix_t), intent(inout) :: matrix
       !> Coupling of the joint, or 0
       integer, intent(in) :: entry
-      !> The joints
       type(coulomb_joints_t), intent(in) :: joints
       !> Number of the joint
       integer, intent(in) :: j

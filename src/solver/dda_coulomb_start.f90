@@ -24,13 +24,10 @@ contains
 
    !> State under a load that is applied at once
    pure subroutine load_at_once(joints, equations, load, state, jump, end)
-      !> The joints
       type(coulomb_joints_t), intent(in) :: joints
-      !> Their equations
       type(coulomb_equations_t), intent(inout) :: equations
       !> The load: (n_dof, n_block)
       real(wp), intent(in) :: load(:, :)
-      !> The state
       type(coulomb_state_t), intent(out) :: state
       !> What a motion tells, where one was needed
       type(jump_t), intent(inout) :: jump
@@ -57,13 +54,10 @@ contains
 
    !> Largest displacement where no joint opens or slides
    pure subroutine find_elastic_motion(joints, equations, load, state, largest)
-      !> The joints
       type(coulomb_joints_t), intent(in) :: joints
-      !> Their equations
       type(coulomb_equations_t), intent(inout) :: equations
       !> The load: (n_dof, n_block)
       real(wp), intent(in) :: load(:, :)
-      !> The joints unloaded
       type(coulomb_state_t), intent(in) :: state
       !> The displacement
       real(wp), intent(out) :: largest
@@ -76,15 +70,12 @@ contains
 
    !> Interior springs at a damping, then the open-close loop at ever less of it
    pure subroutine try_interior(joints, equations, load, first, state, stands)
-      !> The joints
       type(coulomb_joints_t), intent(in) :: joints
-      !> Their equations
       type(coulomb_equations_t), intent(inout) :: equations
       !> The load: (n_dof, n_block)
       real(wp), intent(in) :: load(:, :)
       !> Damping to begin with
       real(wp), intent(in) :: first
-      !> The state
       type(coulomb_state_t), intent(out) :: state
       !> Whether its forces balance the load
       logical, intent(out) :: stands
@@ -127,9 +118,7 @@ contains
 
    !> One damped step to a load: faces are chosen until they agree with the motion
    pure subroutine settle_faces(joints, equations, load, damping, most, before, after, left, passes)
-      !> The joints
       type(coulomb_joints_t), intent(in) :: joints
-      !> Their equations
       type(coulomb_equations_t), intent(inout) :: equations
       !> The load: (n_dof, n_block)
       real(wp), intent(in) :: load(:, :)
@@ -177,9 +166,7 @@ contains
    !> Faces by interior springs
    pure subroutine take_interior(joints, equations, load, damping, tolerance, unloaded, inner, &
       & state, settled)
-      !> The joints
       type(coulomb_joints_t), intent(in) :: joints
-      !> Their equations
       type(coulomb_equations_t), intent(inout) :: equations
       !> The load: (n_dof, n_block)
       real(wp), intent(in) :: load(:, :)

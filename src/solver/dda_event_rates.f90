@@ -39,7 +39,6 @@ contains
 
    !> Room for rates, of a state that does not change
    pure function new_rates(state) result(rates)
-      !> The state
       type(coulomb_state_t), intent(in) :: state
       !> Its rates
       type(rates_t) :: rates
@@ -56,9 +55,7 @@ contains
    !> assembly drop however slowly the load grows: there are none
    pure subroutine find_rates(joints, equations, state, load_rate, opening_rate, damping, rates, &
       & found)
-      !> The joints
       type(coulomb_joints_t), intent(in) :: joints
-      !> Their equations
       type(coulomb_equations_t), intent(inout) :: equations
       !> Where the assembly is
       type(coulomb_state_t), intent(in) :: state
@@ -68,7 +65,6 @@ contains
       real(wp), intent(in) :: opening_rate(:, :)
       !> Multiple of the mass
       real(wp), intent(in) :: damping
-      !> The rates
       type(rates_t), intent(inout) :: rates
       !> Whether they agree with their faces
       logical, intent(out) :: found
@@ -95,13 +91,11 @@ contains
 
    !> Give back what damping has taken from the rates of an assembly that does not move
    pure subroutine undamp_rates(joints, equations, load_rate, rates)
-      !> The joints
       type(coulomb_joints_t), intent(in) :: joints
       !> Their equations, those of the rates
       type(coulomb_equations_t), intent(inout) :: equations
       !> Rate of the load: (n_dof, n_block)
       real(wp), intent(in) :: load_rate(:, :)
-      !> The rates
       type(rates_t), intent(inout) :: rates
       integer, parameter :: max_turn = 5
       real(wp), parameter :: exact = 1.0e-12_wp
@@ -123,9 +117,7 @@ contains
 
    !> Rates while the faces stay
    pure subroutine solve_rates(joints, equations, load_rate, opening_rate, damping, rates)
-      !> The joints
       type(coulomb_joints_t), intent(in) :: joints
-      !> Their equations
       type(coulomb_equations_t), intent(inout) :: equations
       !> Rate of the load: (n_dof, n_block)
       real(wp), intent(in) :: load_rate(:, :)

@@ -25,7 +25,6 @@ contains
 
    !> Accelerations, the largest one
    pure subroutine find_first_motion(graph, load, motion, force, found, n_factorisation)
-      !> The joints
       type(joint_graph_t), intent(in) :: graph
       !> Loads: (n_dof, n_block) [N/m, N/m, N ...]
       real(wp), intent(in) :: load(:, :)
@@ -60,11 +59,9 @@ contains
 
    !> Springs of equal stiffness beside the masses; forces and rates are then pushed inside
    pure subroutine begin(rays, path, springs, point)
-      !> The rays
       type(joint_rays_t), intent(in) :: rays
       !> The load and the masses
       type(load_path_t), intent(in) :: path
-      !> The matrix
       type(ray_matrix_t), intent(inout) :: springs
       !> Where the iteration begins
       type(interior_point_t), intent(out) :: point

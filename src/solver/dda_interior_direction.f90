@@ -47,11 +47,8 @@ contains
 
    !> Response of the springs to the live load
    pure subroutine respond_to_live_load(rays, path, springs, turn)
-      !> The rays
       type(joint_rays_t), intent(in) :: rays
-      !> The loads
       type(load_path_t), intent(in) :: path
-      !> The matrix
       type(ray_matrix_t), intent(inout) :: springs
       !> Receives it
       type(turn_t), intent(inout) :: turn
@@ -64,13 +61,9 @@ contains
    !> Direction to balance, compatibility and the aim; where that leaves too much, by a factor with
    !> more digits
    pure subroutine direct(rays, path, point, springs, turn)
-      !> The rays
       type(joint_rays_t), intent(in) :: rays
-      !> The loads
       type(load_path_t), intent(in) :: path
-      !> The point
       type(interior_point_t), intent(in) :: point
-      !> The matrix
       type(ray_matrix_t), intent(inout) :: springs
       !> Aim in, direction out
       type(turn_t), intent(inout) :: turn
@@ -82,13 +75,9 @@ contains
 
    !> The same by a factor with more digits
    pure subroutine direct_wide(rays, path, point, springs, turn)
-      !> The rays
       type(joint_rays_t), intent(in) :: rays
-      !> The loads
       type(load_path_t), intent(in) :: path
-      !> The point
       type(interior_point_t), intent(in) :: point
-      !> The matrix
       type(ray_matrix_t), intent(inout) :: springs
       !> Aim in, direction out
       type(turn_t), intent(inout) :: turn
@@ -101,11 +90,8 @@ contains
 
    !> Direction to balance, compatibility and the aim
    pure subroutine find_direction(rays, path, point, enough, springs, turn)
-      !> The rays
       type(joint_rays_t), intent(in) :: rays
-      !> The loads
       type(load_path_t), intent(in) :: path
-      !> The point
       type(interior_point_t), intent(in) :: point
       !> Imbalance that needs no correction
       real(wp), intent(in) :: enough
@@ -124,17 +110,13 @@ contains
 
    !> Balance a direction again until the imbalance that is left no longer halves
    pure subroutine refine_direction(rays, path, point, enough, springs, turn)
-      !> The rays
       type(joint_rays_t), intent(in) :: rays
-      !> The loads
       type(load_path_t), intent(in) :: path
-      !> The point
       type(interior_point_t), intent(in) :: point
       !> Imbalance that needs no correction
       real(wp), intent(in) :: enough
       !> The matrix with a usable factor
       type(ray_matrix_t), intent(inout) :: springs
-      !> The direction
       type(turn_t), intent(inout) :: turn
       integer, parameter :: max_correction = 3
       real(wp) :: before
@@ -153,9 +135,7 @@ contains
 
    !> What a direction leaves of the balance
    pure subroutine see_rest(rays, path, turn)
-      !> The rays
       type(joint_rays_t), intent(in) :: rays
-      !> The loads
       type(load_path_t), intent(in) :: path
       !> The direction; receives the rest
       type(turn_t), intent(inout) :: turn
@@ -168,15 +148,10 @@ contains
    !> mechanism is the factor's alone: taken out first, it leads to no large motion that would have
    !> to cancel
    pure subroutine balance_direction(rays, path, point, springs, turn)
-      !> The rays
       type(joint_rays_t), intent(in) :: rays
-      !> The loads
       type(load_path_t), intent(in) :: path
-      !> The point
       type(interior_point_t), intent(in) :: point
-      !> The matrix
       type(ray_matrix_t), intent(inout) :: springs
-      !> The direction
       type(turn_t), intent(inout) :: turn
       real(wp) :: step, taken
 

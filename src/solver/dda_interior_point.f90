@@ -38,11 +38,8 @@ contains
    !> Springs of equal stiffness carry the dead load; all forces and rates are then pushed inside
    !> their bounds by the same amount (Mehrotra)
    pure subroutine start_by_springs(rays, path, springs, point)
-      !> The rays
       type(joint_rays_t), intent(in) :: rays
-      !> The loads
       type(load_path_t), intent(in) :: path
-      !> The matrix
       type(ray_matrix_t), intent(inout) :: springs
       !> Where the iteration begins
       type(interior_point_t), intent(out) :: point
@@ -72,13 +69,10 @@ contains
 
    !> Largest factor, or motion of masses, from a point inside the bounds
    pure subroutine solve_cones(rays, path, goal, springs, point)
-      !> The rays
       type(joint_rays_t), intent(in) :: rays
-      !> The loads
       type(load_path_t), intent(in) :: path
       !> What is asked for
       type(interior_goal_t), intent(in) :: goal
-      !> The matrix
       type(ray_matrix_t), intent(inout) :: springs
       !> Where it begins and ends
       type(interior_point_t), intent(inout) :: point
@@ -118,7 +112,6 @@ contains
 
    !> The worst of the three figures
    pure real(wp) function worst(point)
-      !> The point
       type(interior_point_t), intent(in) :: point
 
       worst = max(point%gap, point%imbalance, point%violation)
@@ -126,11 +119,9 @@ contains
 
    !> Whether the iteration ends here
    pure subroutine judge(path, goal, turn, idle, point)
-      !> The loads
       type(load_path_t), intent(in) :: path
       !> What is asked for
       type(interior_goal_t), intent(in) :: goal
-      !> The turn
       type(turn_t), intent(in) :: turn
       !> Turns without progress
       integer, intent(in) :: idle

@@ -94,7 +94,6 @@ contains
       real(wp), intent(in) :: dead(:, 0:)
       !> What a factor of one adds: (3, 0:n_block)
       real(wp), intent(in) :: live(:, 0:)
-      !> The path
       type(load_path_t), intent(out) :: path
 
       allocate (path%dead(3, 0:ubound(dead, 2)), path%live(3, 0:ubound(dead, 2)))

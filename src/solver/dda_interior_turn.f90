@@ -37,13 +37,10 @@ contains
 
    !> Work space of the turns
    pure subroutine begin_turns(rays, path, goal, turn)
-      !> The rays
       type(joint_rays_t), intent(in) :: rays
-      !> The loads
       type(load_path_t), intent(in) :: path
       !> What is asked for
       type(interior_goal_t), intent(in) :: goal
-      !> The work space
       type(turn_t), intent(out) :: turn
 
       allocate (turn%lack, turn%rest, turn%unit_response, turn%response, turn%dv, &
@@ -55,9 +52,7 @@ contains
 
    !> Balance, compatibility and the gap at a point
    pure subroutine see_residuals(rays, path, point, turn)
-      !> The rays
       type(joint_rays_t), intent(in) :: rays
-      !> The loads
       type(load_path_t), intent(in) :: path
       !> The point; receives the figures
       type(interior_point_t), intent(inout) :: point
@@ -95,9 +90,7 @@ contains
    !> Power that forces put into rates that they forbid, each with the rounding of its own blocks:
    !> forces that hold one another may be large where nothing moves
    pure real(wp) function power_against(rays, point, rate) result(power)
-      !> The rays
       type(joint_rays_t), intent(in) :: rays
-      !> The point
       type(interior_point_t), intent(in) :: point
       !> Rates along the rays: (n_side, n_joint)
       real(wp), intent(in) :: rate(:, :)
@@ -115,13 +108,9 @@ contains
 
    !> Factor the springs and find the direction to x*s = 0
    pure subroutine predict(rays, path, springs, point, turn)
-      !> The rays
       type(joint_rays_t), intent(in) :: rays
-      !> The loads
       type(load_path_t), intent(in) :: path
-      !> The matrix
       type(ray_matrix_t), intent(inout) :: springs
-      !> The point
       type(interior_point_t), intent(in) :: point
       !> Receives the direction
       type(turn_t), intent(inout) :: turn
@@ -141,9 +130,7 @@ contains
 
    !> Stiffness of the springs along all rays
    pure subroutine set_stiffness(rays, point, springs)
-      !> The rays
       type(joint_rays_t), intent(in) :: rays
-      !> The point
       type(interior_point_t), intent(in) :: point
       !> Receives it
       type(ray_matrix_t), intent(inout) :: springs
@@ -157,15 +144,11 @@ contains
    !> would be far smaller or far larger than the others at the end of somewhat longer steps are led
    !> back (Gondzio 1996)
    pure subroutine correct(rays, path, goal, springs, point, turn)
-      !> The rays
       type(joint_rays_t), intent(in) :: rays
-      !> The loads
       type(load_path_t), intent(in) :: path
       !> What is asked for
       type(interior_goal_t), intent(in) :: goal
-      !> The matrix
       type(ray_matrix_t), intent(inout) :: springs
-      !> The point
       type(interior_point_t), intent(in) :: point
       !> Predictor in, direction out
       type(turn_t), intent(inout) :: turn
@@ -196,13 +179,10 @@ contains
 
    !> The product x*s that a turn aims at
    pure real(wp) function aimed_product(rays, goal, point, turn, reach) result(product)
-      !> The rays
       type(joint_rays_t), intent(in) :: rays
       !> What is asked for
       type(interior_goal_t), intent(in) :: goal
-      !> The point
       type(interior_point_t), intent(in) :: point
-      !> The predictor
       type(turn_t), intent(in) :: turn
       !> Steps along it
       real(wp), intent(in) :: reach(2)
@@ -222,17 +202,12 @@ contains
    !> Change the aim of a direction, and take as much of that as makes the steps longest
    !> (Colombo and Gondzio 2008)
    pure subroutine add_correction(rays, path, change, springs, point, turn, reach)
-      !> The rays
       type(joint_rays_t), intent(in) :: rays
-      !> The loads
       type(load_path_t), intent(in) :: path
       !> Change of x that is aimed at: (n_side, n_joint)
       real(wp), intent(in) :: change(:, :)
-      !> The matrix
       type(ray_matrix_t), intent(inout) :: springs
-      !> The point
       type(interior_point_t), intent(in) :: point
-      !> The direction
       type(turn_t), intent(inout) :: turn
       !> Steps along it
       real(wp), intent(out) :: reach(2)
@@ -288,7 +263,6 @@ contains
    !> Longest steps of forces and of rates along the direction, at most 1, that keep them inside
    !> their bounds
    pure function longest_steps(turn) result(reach)
-      !> The turn
       type(turn_t), intent(in) :: turn
       !> Steps
       real(wp) :: reach(2)
@@ -305,13 +279,9 @@ contains
 
    !> Move along the direction, almost to the border
    pure subroutine move(rays, path, turn, point)
-      !> The rays
       type(joint_rays_t), intent(in) :: rays
-      !> The loads
       type(load_path_t), intent(in) :: path
-      !> The direction
       type(turn_t), intent(in) :: turn
-      !> The point
       type(interior_point_t), intent(inout) :: point
       real(wp) :: reach(2)
 

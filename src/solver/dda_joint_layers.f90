@@ -59,7 +59,6 @@ contains
 
    !> Add tangents where forces lie beyond the parabolas
    pure subroutine touch_parabola(graph, force, most, layers, touched)
-      !> The joints
       type(joint_graph_t), intent(in) :: graph
       !> N1, N2, T of each: (3, n_joint) [N/m]
       real(wp), intent(in) :: force(:, :)
@@ -86,7 +85,6 @@ contains
 
    !> Bound the forces of all joints by their strengths
    pure subroutine bound_all(graph, layers)
-      !> The joints
       type(joint_graph_t), intent(in) :: graph
       !> Receives the tangents
       type(joint_layers_t), intent(inout) :: layers
@@ -118,7 +116,6 @@ contains
    !> The joints with their layers, two joints each, behind the others. The last block of a layer is
    !> the plate of the layer before, or the joint's own second block
    pure subroutine add_layers(graph, layers, layered, couple)
-      !> The joints
       type(joint_graph_t), intent(in) :: graph
       !> Tangents of their parabolas
       type(joint_layers_t), intent(in) :: layers
@@ -149,7 +146,6 @@ contains
 
    !> What a loading path needs of layers: springs that hardly give, plates that hardly weigh
    pure subroutine add_springs(graph, layers, layered)
-      !> The joints
       type(joint_graph_t), intent(in) :: graph
       !> Tangents of their parabolas
       type(joint_layers_t), intent(in) :: layers

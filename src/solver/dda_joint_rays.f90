@@ -42,9 +42,7 @@ contains
 
    !> The rays of all joints of a graph; of blocks that strain, the motion as rigid bodies
    pure subroutine set_rays(graph, rays)
-      !> The joints
       type(joint_graph_t), intent(in) :: graph
-      !> Their rays
       type(joint_rays_t), intent(out) :: rays
       integer :: i, j, k, n, side
 
@@ -126,7 +124,6 @@ contains
 
    !> Loads of the blocks in the units of the rays
    pure subroutine scale_load(rays, load, unit, scaled)
-      !> The rays
       type(joint_rays_t), intent(in) :: rays
       !> Loads: (n_dof, n_block) [N/m, N/m, N ...]
       real(wp), intent(in) :: load(:, :)
@@ -142,7 +139,6 @@ contains
 
    !> Rate at which motion opens the joints along each ray
    pure subroutine ray_rates(rays, v, rate)
-      !> The rays
       type(joint_rays_t), intent(in) :: rays
       !> Motion: (3, 0:n_block)
       real(wp), intent(in) :: v(:, 0:)
@@ -164,7 +160,6 @@ contains
 
    !> Add what the forces along the rays do to the blocks
    pure subroutine add_ray_forces(rays, x, load)
-      !> The rays
       type(joint_rays_t), intent(in) :: rays
       !> Their factors: (n_side, n_joint)
       real(wp), intent(in), contiguous :: x(:, :)
@@ -188,7 +183,6 @@ contains
 
    !> Forces of the joints from the factors of their rays
    pure subroutine forces_of_rays(rays, x, unit, force)
-      !> The rays
       type(joint_rays_t), intent(in) :: rays
       !> Their factors: (n_side, n_joint)
       real(wp), intent(in) :: x(:, :)

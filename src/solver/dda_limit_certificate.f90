@@ -22,7 +22,6 @@ contains
 
    !> Half the mean length of the joints; one without joints
    pure real(wp) function unit_of_length(graph) result(unit)
-      !> The joints
       type(joint_graph_t), intent(in) :: graph
 
       unit = 1.0_wp
@@ -32,7 +31,6 @@ contains
 
    !> Factor of the live load that forces carry best beside the dead load
    pure real(wp) function carried_factor(graph, dead, live, force) result(factor)
-      !> The joints
       type(joint_graph_t), intent(in) :: graph
       !> Loads at factor zero: (n_dof, n_block) [N/m, N/m, N ...]
       real(wp), intent(in) :: dead(:, :)
@@ -72,7 +70,6 @@ contains
 
    !> How far forces are from balance with a load and from the law of the joints
    pure subroutine check_forces(graph, load, force, imbalance, violation)
-      !> The joints
       type(joint_graph_t), intent(in) :: graph
       !> Loads: (n_dof, n_block) [N/m, N/m, N ...]
       real(wp), intent(in) :: load(:, :)
@@ -102,7 +99,6 @@ contains
    !> power a factor that they carry may be too large, as the mechanism is the factor's slope in any
    !> load
    pure real(wp) function balance_margin(graph, load, force, velocity) result(margin)
-      !> The joints
       type(joint_graph_t), intent(in) :: graph
       !> Loads: (n_dof, n_block) [N/m, N/m, N ...]
       real(wp), intent(in) :: load(:, :)
@@ -121,7 +117,6 @@ contains
    !> much per unit of the live load's power a factor that the velocities stop may be too small, as
    !> the forces are the factor's slope in any gap
    pure real(wp) function flow_margin(graph, force, velocity) result(margin)
-      !> The joints
       type(joint_graph_t), intent(in) :: graph
       !> N1, N2, T of each joint: (3, n_joint) [N/m]
       real(wp), intent(in) :: force(:, :)
@@ -161,7 +156,6 @@ contains
 
    !> Whether a joint has a strength
    pure logical function is_crushed(graph, joint)
-      !> The joints
       type(joint_graph_t), intent(in) :: graph
       !> Number of the joint
       integer, intent(in) :: joint
@@ -173,7 +167,6 @@ contains
    !> Power that joints take up at most as velocities crush them: their strength times the rate at
    !> which fibres along them close, as far as they do; sliding opens a joint by its friction
    pure real(wp) function crushing_power(graph, velocity) result(power)
-      !> The joints
       type(joint_graph_t), intent(in) :: graph
       !> Velocities: (n_dof, n_block) [m/s, m/s, 1/s ...]
       real(wp), intent(in) :: velocity(:, :)
@@ -201,7 +194,6 @@ contains
 
    !> Largest force or moment on a block that moves as a rigid body
    pure real(wp) function larger_load(graph, load) result(largest)
-      !> The joints
       type(joint_graph_t), intent(in) :: graph
       !> Loads: (n_dof, n_block)
       real(wp), intent(in) :: load(:, :)
@@ -241,7 +233,6 @@ contains
 
    !> How far velocities are from a mechanism, and the power of a load on them
    pure subroutine check_velocities(graph, load, velocity, violation, power)
-      !> The joints
       type(joint_graph_t), intent(in) :: graph
       !> Loads: (n_dof, n_block) [N/m, N/m, N ...]
       real(wp), intent(in) :: load(:, :)

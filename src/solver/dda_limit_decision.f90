@@ -72,11 +72,9 @@ contains
 
    !> Whether a load can be carried
    pure subroutine decide_load(graph, load, decision)
-      !> The joints
       type(joint_graph_t), intent(in) :: graph
       !> Loads: (n_dof, n_block) [N/m, N/m, N ...]
       real(wp), intent(in) :: load(:, :)
-      !> The decision
       type(load_decision_t), intent(out) :: decision
 
       if (crushes(graph)) then
@@ -89,11 +87,9 @@ contains
    !> Whether joints that crush can carry a load: tangents of their parabolas are added until forces
    !> keep them, or none reach the load
    pure subroutine decide_crushing(graph, load, decision)
-      !> The joints
       type(joint_graph_t), intent(in) :: graph
       !> Loads: (3, n_block) [N/m, N/m, N]
       real(wp), intent(in) :: load(:, :)
-      !> The decision
       type(load_decision_t), intent(out) :: decision
       type(joint_graph_t) :: layered
       type(joint_layers_t) :: layers
@@ -130,11 +126,9 @@ contains
 
    !> Whether joints that do not crush can carry a load
    pure subroutine decide_cones(graph, load, decision)
-      !> The joints
       type(joint_graph_t), intent(in) :: graph
       !> Loads: (n_dof, n_block) [N/m, N/m, N ...]
       real(wp), intent(in) :: load(:, :)
-      !> The decision
       type(load_decision_t), intent(out) :: decision
       type(joint_rays_t) :: rays
       type(ray_matrix_t) :: springs
@@ -157,11 +151,9 @@ contains
 
    !> Follow the path from a load that strictly admissible forces carry to a given one
    pure subroutine go_to_load(rays, load, springs, point)
-      !> The rays
       type(joint_rays_t), intent(in) :: rays
       !> Loads: (n_dof, n_block) [N/m, N/m, N ...]
       real(wp), intent(in) :: load(:, :)
-      !> The matrix
       type(ray_matrix_t), intent(inout) :: springs
       !> Where the path ends; the load is at factor one
       type(interior_point_t), intent(out) :: point
@@ -174,7 +166,6 @@ contains
 
    !> Forces that are equal along all rays, of the size of a load
    pure subroutine begin_inside(rays, load, point)
-      !> The rays
       type(joint_rays_t), intent(in) :: rays
       !> The load in the units of the rays: (3, 0:n_block)
       real(wp), intent(in) :: load(:, 0:)
@@ -186,13 +177,11 @@ contains
 
    !> Follow the path from the load that given forces carry to another one
    pure subroutine go_on_to_load(rays, finish, tolerance, springs, point)
-      !> The rays
       type(joint_rays_t), intent(in) :: rays
       !> The load in the units of the rays: (3, 0:n_block)
       real(wp), intent(in) :: finish(:, 0:)
       !> Gap at which a decision that is not made ends
       real(wp), intent(in) :: tolerance
-      !> The matrix
       type(ray_matrix_t), intent(inout) :: springs
       !> Forces inside their bounds in, where the path ends out; the load is at factor one
       type(interior_point_t), intent(inout) :: point
@@ -235,7 +224,6 @@ contains
 
    !> Velocities in the user's units, the largest one
    pure subroutine keep_velocities(rays, v, velocity)
-      !> The rays
       type(joint_rays_t), intent(in) :: rays
       !> In the units of the rays: (3, 0:n_block)
       real(wp), intent(in) :: v(:, 0:)
@@ -271,7 +259,6 @@ contains
 
    !> The decision, and the figures that prove it
    pure subroutine conclude(graph, load, point, decision)
-      !> The joints
       type(joint_graph_t), intent(in) :: graph
       !> Loads: (n_dof, n_block) [N/m, N/m, N ...]
       real(wp), intent(in) :: load(:, :)

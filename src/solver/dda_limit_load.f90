@@ -74,7 +74,6 @@ contains
 
    !> The limit load
    pure subroutine find_limit(graph, dead, live, tolerance, limit, stands)
-      !> The joints
       type(joint_graph_t), intent(in) :: graph
       !> Loads at factor zero: (n_dof, n_block) [N/m, N/m, N ...]
       real(wp), intent(in) :: dead(:, :)
@@ -82,7 +81,6 @@ contains
       real(wp), intent(in) :: live(:, :)
       !> Relative gap of the two factors
       real(wp), intent(in) :: tolerance
-      !> The limit
       type(limit_load_t), intent(out) :: limit
       !> Whether the dead load is taken to stand
       logical, intent(in), optional :: stands
@@ -100,7 +98,6 @@ contains
    !> The limit load of joints that crush: tangents of their parabolas are added until the forces
    !> keep them
    pure subroutine limit_crushing(graph, dead, live, tolerance, decided, limit)
-      !> The joints
       type(joint_graph_t), intent(in) :: graph
       !> Loads at factor zero: (3, n_block) [N/m, N/m, N]
       real(wp), intent(in) :: dead(:, :)
@@ -110,7 +107,6 @@ contains
       real(wp), intent(in) :: tolerance
       !> Whether the dead load is taken to stand
       logical, intent(in) :: decided
-      !> The limit
       type(limit_load_t), intent(out) :: limit
       type(load_decision_t) :: decision
       type(joint_layers_t) :: layers
@@ -154,7 +150,6 @@ contains
 
    !> The limit load of joints with layers for the parabolas of those that crush
    pure subroutine limit_layers(graph, layers, dead, live, tolerance, limit)
-      !> The joints
       type(joint_graph_t), intent(in) :: graph
       !> Tangents of their parabolas
       type(joint_layers_t), intent(in) :: layers
@@ -180,7 +175,6 @@ contains
 
    !> Whether two factors agree, and the forces keep the law of joints that crush
    pure logical function agree(limit, gap, violation)
-      !> The limit
       type(limit_load_t), intent(in) :: limit
       !> Relative gap
       real(wp), intent(in) :: gap
@@ -193,7 +187,6 @@ contains
 
    !> The limit load of joints that do not crush
    pure subroutine limit_cones(graph, dead, live, tolerance, stands, limit)
-      !> The joints
       type(joint_graph_t), intent(in) :: graph
       !> Loads at factor zero: (n_dof, n_block) [N/m, N/m, N ...]
       real(wp), intent(in) :: dead(:, :)
@@ -203,7 +196,6 @@ contains
       real(wp), intent(in) :: tolerance
       !> Whether the dead load is taken to stand
       logical, intent(in) :: stands
-      !> The limit
       type(limit_load_t), intent(out) :: limit
       type(joint_rays_t) :: rays
       type(ray_matrix_t) :: springs
@@ -236,7 +228,6 @@ contains
 
    !> Raise the live load beside a dead load that stands
    pure subroutine raise_live_load(rays, dead, live, tolerance, ceiling, springs, point)
-      !> The rays
       type(joint_rays_t), intent(in) :: rays
       !> Loads at factor zero: (n_dof, n_block) [N/m, N/m, N ...]
       real(wp), intent(in) :: dead(:, :)
@@ -246,9 +237,7 @@ contains
       real(wp), intent(in) :: tolerance
       !> Live loads so many times as large as the dead load are beyond bounds
       real(wp), intent(in) :: ceiling
-      !> The matrix
       type(ray_matrix_t), intent(inout) :: springs
-      !> The limit
       type(interior_point_t), intent(out) :: point
       type(load_path_t) :: path
       type(interior_goal_t) :: goal
@@ -266,11 +255,9 @@ contains
 
    !> A live load that is carried alone is carried at any factor
    pure subroutine try_live_load_alone(rays, live, springs, unit, point, limit)
-      !> The rays
       type(joint_rays_t), intent(in) :: rays
       !> What a factor of one adds: (n_dof, n_block) [N/m, N/m, N ...]
       real(wp), intent(in) :: live(:, :)
-      !> The matrix
       type(ray_matrix_t), intent(inout) :: springs
       !> Unit of force, that of the live load where it is carried: [N/m]
       real(wp), intent(inout) :: unit
@@ -289,7 +276,6 @@ contains
 
    !> Factors and figures from forces and velocities alone
    pure subroutine certify(graph, dead, live, limit)
-      !> The joints
       type(joint_graph_t), intent(in) :: graph
       !> Loads at factor zero: (n_dof, n_block) [N/m, N/m, N ...]
       real(wp), intent(in) :: dead(:, :)

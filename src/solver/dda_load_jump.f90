@@ -71,15 +71,12 @@ contains
    !> motion that is damped enough has rates: damping rises until it has, and falls again with every
    !> step that meets no event
    pure subroutine jump_to_balance(joints, equations, load, state, jump, end)
-      !> The joints
       type(coulomb_joints_t), intent(in) :: joints
-      !> Their equations
       type(coulomb_equations_t), intent(inout) :: equations
       !> The load: (n_dof, n_block)
       real(wp), intent(in) :: load(:, :)
       !> The state; where it is in balance it carries the load
       type(coulomb_state_t), intent(inout) :: state
-      !> The jump
       type(jump_t), intent(inout) :: jump
       !> How it ends, one of motion_end
       integer, intent(out) :: end
@@ -134,7 +131,6 @@ contains
    !> How far rates lead, in steps that would bring balance if nothing were damped: while the forces
    !> that they leave of the load are the same but for a factor
    pure real(wp) function stride(joints, rest, rates)
-      !> The joints
       type(coulomb_joints_t), intent(in) :: joints
       !> What the forces leave of the load: (n_dof, n_block)
       real(wp), intent(in) :: rest(:, :)
@@ -154,15 +150,12 @@ contains
    !> Whether a motion has come to balance, or far. If a far one is not seen to have no end, the
    !> blocks have fallen by all that it went
    pure subroutine see_end(joints, equations, rest, start, state, jump, end)
-      !> The joints
       type(coulomb_joints_t), intent(in) :: joints
-      !> Their equations
       type(coulomb_equations_t), intent(inout) :: equations
       !> What the forces leave of the load: (n_dof, n_block)
       real(wp), intent(in) :: rest(:, :)
       !> Motion where it began: (n_dof, n_block)
       real(wp), intent(in) :: start(:, :)
-      !> The state
       type(coulomb_state_t), intent(in) :: state
       !> Receives the mechanism
       type(jump_t), intent(inout) :: jump
@@ -187,9 +180,7 @@ contains
 
    !> Follow a motion whose forces stay as they are: to the next gap that closes, or without end
    pure subroutine see_ray(joints, state, rest, rates, event, jump, end)
-      !> The joints
       type(coulomb_joints_t), intent(in) :: joints
-      !> The state
       type(coulomb_state_t), intent(in) :: state
       !> What the forces leave of the load: (n_dof, n_block)
       real(wp), intent(in) :: rest(:, :)

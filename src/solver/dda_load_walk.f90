@@ -54,11 +54,9 @@ contains
 
    !> Begin with an assembly
    pure subroutine begin_walk(graph, load, walk)
-      !> The joints
       type(joint_graph_t), intent(in) :: graph
       !> A load of the size of those to come: (3, n_block) [N/m, N/m, N]
       real(wp), intent(in) :: load(:, :)
-      !> The walk
       type(load_walk_t), intent(out) :: walk
 
       walk%graph = graph
@@ -136,7 +134,6 @@ contains
       integer, intent(in) :: n_step
       !> The size
       real(wp), intent(in) :: largest
-      !> The walk
       type(load_walk_t), intent(inout) :: walk
       real(wp) :: motion(3, 0:walk%graph%n_block), push(3, 0:walk%graph%n_block)
       real(wp) :: rate(n_side, size(walk%x, 2)), change(n_side, size(walk%x, 2))

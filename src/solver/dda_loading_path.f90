@@ -127,9 +127,7 @@ contains
 
    !> Nothing grows
    pure subroutine new_rate(graph, rate)
-      !> The joints
       type(joint_graph_t), intent(in) :: graph
-      !> The rate
       type(path_rate_t), intent(out) :: rate
 
       allocate (rate%load(graph%n_dof, graph%n_block), rate%opening(3, size(graph%kind)))
@@ -139,11 +137,9 @@ contains
 
    !> What is made once for an assembly
    pure subroutine new_path(graph, load, path)
-      !> The joints
       type(joint_graph_t), intent(in) :: graph
       !> A load that it carries, for the scale of forces: (n_dof, n_block) [N/m, N/m, N ...]
       real(wp), intent(in) :: load(:, :)
-      !> The path
       type(loading_path_t), intent(out) :: path
 
       call new_coulomb_joints(graph, load, path%joints)
@@ -152,7 +148,6 @@ contains
 
    !> The state under the dead load
    pure subroutine begin_path(graph, dead_load, path, state, result)
-      !> The joints
       type(joint_graph_t), intent(in) :: graph
       !> Load that is there from the beginning: (n_dof, n_block) [N/m, N/m, N ...]
       real(wp), intent(in) :: dead_load(:, :)
@@ -233,7 +228,6 @@ contains
    pure subroutine follow(path, state, way, h_end, result)
       !> What was made once
       type(loading_path_t), intent(inout) :: path
-      !> The state
       type(coulomb_state_t), intent(inout) :: state
       !> What grows, in units of the joints; the largest force is one
       type(path_rate_t), intent(in) :: way

@@ -45,7 +45,6 @@ contains
    !> Rates of a motion that goes on with forces that stay as they are: what moves does so a million
    !> times as fast as joints deform, and the rounding of its openings is no force
    pure subroutine hold_forces(rates)
-      !> The rates
       type(rates_t), intent(inout) :: rates
       real(wp), parameter :: rounding = 1.0e-8_wp
       real(wp) :: largest
@@ -58,11 +57,9 @@ contains
 
    !> The next event, or none within a distance
    pure function next_event(joints, state, rates, longest) result(event)
-      !> The joints
       type(coulomb_joints_t), intent(in) :: joints
       !> Where the assembly is
       type(coulomb_state_t), intent(in) :: state
-      !> Its rates
       type(rates_t), intent(in) :: rates
       !> Distance within which an event counts
       real(wp), intent(in) :: longest
@@ -113,13 +110,11 @@ contains
 
    !> Move a state on to its next event and let that happen
    pure subroutine move_on(joints, rates, event, state)
-      !> The joints
       type(coulomb_joints_t), intent(in) :: joints
       !> Rates of the state
       type(rates_t), intent(in) :: rates
       !> The event, or the end of the way
       type(event_t), intent(in) :: event
-      !> The state
       type(coulomb_state_t), intent(inout) :: state
       real(wp) :: shear
       integer :: i, j
@@ -165,7 +160,6 @@ contains
 
    !> Set the shear force of a joint as what it does allows
    pure subroutine take_shear(joints, j, does, trial, state)
-      !> The joints
       type(coulomb_joints_t), intent(in) :: joints
       !> Number of the joint
       integer, intent(in) :: j
@@ -173,7 +167,6 @@ contains
       integer, intent(in) :: does
       !> The force if it sticks
       real(wp), intent(in) :: trial
-      !> The state
       type(coulomb_state_t), intent(inout) :: state
       real(wp) :: bound
 

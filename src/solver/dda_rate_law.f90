@@ -46,11 +46,8 @@ contains
 
    !> The law of a state
    pure subroutine set_rate_law(joints, state, law)
-      !> The joints
       type(coulomb_joints_t), intent(in) :: joints
-      !> The state
       type(coulomb_state_t), intent(in) :: state
-      !> Its law
       type(rate_law_t), intent(out) :: law
       real(wp) :: bound
       integer :: i, j
@@ -76,9 +73,7 @@ contains
 
    !> What joints do with rates of opening
    pure subroutine follow_law(joints, law, opening, faces)
-      !> The joints
       type(coulomb_joints_t), intent(in) :: joints
-      !> The law
       type(rate_law_t), intent(in) :: law
       !> Rates of opening 1, opening 2, slip: (3, n_joint)
       real(wp), intent(in) :: opening(:, :)
@@ -106,7 +101,6 @@ contains
 
    !> How fast a joint that sticks would go beyond its limits
    pure function beyond_limit(joints, j, ends, opening) result(beyond)
-      !> The joints
       type(coulomb_joints_t), intent(in) :: joints
       !> Number of the joint
       integer, intent(in) :: j
@@ -124,9 +118,7 @@ contains
 
    !> The first bend of the law on a line of rates of opening
    pure function next_break(joints, law, faces, opening, change) result(first)
-      !> The joints
       type(coulomb_joints_t), intent(in) :: joints
-      !> The law
       type(rate_law_t), intent(in) :: law
       !> What the joints do: (3, n_joint)
       integer, intent(in) :: faces(:, :)
@@ -181,9 +173,7 @@ contains
 
    !> How fast what decides a bend rises along a line
    pure real(wp) function break_rate(joints, break, faces, change)
-      !> The joints
       type(coulomb_joints_t), intent(in) :: joints
-      !> The bend
       type(break_t), intent(in) :: break
       !> What the joints do: (3, n_joint)
       integer, intent(in) :: faces(:, :)
@@ -203,9 +193,7 @@ contains
 
    !> Faces of a joint beyond a bend
    pure subroutine cross_break(joints, break, opening, faces)
-      !> The joints
       type(coulomb_joints_t), intent(in) :: joints
-      !> The bend
       type(break_t), intent(in) :: break
       !> Rates of opening there: (3, n_joint)
       real(wp), intent(in) :: opening(:, :)

@@ -24,9 +24,7 @@ contains
 
    !> Lead a motion over to a load
    pure subroutine pivot_to_load(joints, equations, law, load, drive, motion, opening, faces, found)
-      !> The joints
       type(coulomb_joints_t), intent(in) :: joints
-      !> Their equations
       type(coulomb_equations_t), intent(inout) :: equations
       !> The law for rates
       type(rate_law_t), intent(in) :: law

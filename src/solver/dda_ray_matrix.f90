@@ -44,7 +44,6 @@ contains
 
    !> Pattern of the matrix and of its factor
    pure subroutine plan_matrix(rays, springs)
-      !> The rays
       type(joint_rays_t), intent(in) :: rays
       !> The matrix, without numbers
       type(ray_matrix_t), intent(out) :: springs
@@ -72,7 +71,6 @@ contains
 
    !> Assemble springs and masses, and factor their matrix
    pure subroutine set_springs(rays, mass, lift, springs)
-      !> The rays
       type(joint_rays_t), intent(in) :: rays
       !> Masses: (3, 0:n_block)
       real(wp), intent(in) :: mass(:, 0:)
@@ -99,7 +97,6 @@ contains
 
    !> Assemble and factor the same springs and masses with more digits
    pure subroutine set_wide_springs(rays, mass, springs)
-      !> The rays
       type(joint_rays_t), intent(in) :: rays
       !> Masses: (3, 0:n_block)
       real(wp), intent(in) :: mass(:, 0:)
@@ -115,7 +112,6 @@ contains
 
    !> Sum of all springs
    pure subroutine assemble(rays, springs)
-      !> The rays
       type(joint_rays_t), intent(in) :: rays
       !> Stiffness in, matrix out
       type(ray_matrix_t), intent(inout) :: springs
@@ -165,7 +161,6 @@ contains
 
    !> Motion of the blocks by loads
    pure subroutine solve_springs(rays, springs, load, motion, rate)
-      !> The rays
       type(joint_rays_t), intent(in) :: rays
       !> The matrix with a usable factor
       type(ray_matrix_t), intent(inout) :: springs

@@ -22,7 +22,6 @@ contains
 
    !> The range of thrust of a joint
    pure subroutine find_thrust_range(graph, load, force, joint, thrust, known)
-      !> The joints
       type(joint_graph_t), intent(in) :: graph
       !> Loads: (3, n_block) [N/m, N/m, N]
       real(wp), intent(in) :: load(:, :)
@@ -63,7 +62,6 @@ contains
 
    !> The same joints, with a block without weight between one of them and one of its blocks
    pure subroutine split_graph(graph, joint, side, split)
-      !> The joints
       type(joint_graph_t), intent(in) :: graph
       !> Number of the joint
       integer, intent(in) :: joint

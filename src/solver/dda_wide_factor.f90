@@ -26,7 +26,6 @@ contains
 
    !> Assemble springs along all rays and masses, and factor
    pure subroutine factorise_wide(rays, stiffness, mass, matrix, entry, plan, wide)
-      !> The rays
       type(joint_rays_t), intent(in) :: rays
       !> Stiffness of each: (n_side, n_joint)
       real(wp), intent(in) :: stiffness(:, :)
@@ -38,7 +37,6 @@ contains
       integer, intent(in) :: entry(:)
       !> Plan of its factor
       type(elimination_plan_t), intent(in) :: plan
-      !> The factor
       type(wide_factor_t), intent(inout) :: wide
       real(qp), allocatable :: diagonal(:, :, :), coupling(:, :, :)
       real(qp) :: arm(3, 2), pushed(3)
@@ -74,11 +72,9 @@ contains
    !> Solve for one right-hand side, and find the rates at which the solution opens the rays: they
    !> may be small differences of large motions
    pure subroutine substitute_wide(rays, plan, wide, x, rate)
-      !> The rays
       type(joint_rays_t), intent(in) :: rays
       !> Plan of the factor
       type(elimination_plan_t), intent(in) :: plan
-      !> The factor
       type(wide_factor_t), intent(in) :: wide
       !> Right-hand side in, solution out: (3, n_block)
       real(wp), intent(inout) :: x(:, :)

@@ -24,7 +24,6 @@ contains
 
    !> Nodes of the bars that yield
    pure subroutine add_nodes(settings, graph)
-      !> Settings of the run
       type(settings_t), intent(in) :: settings
       !> Receives them
       type(joint_graph_t), intent(inout) :: graph
@@ -39,7 +38,6 @@ contains
 
    !> Joints that the bars are made of: one for each, three where it yields
    pure integer function n_bar_joints(settings)
-      !> Settings of the run
       type(settings_t), intent(in) :: settings
 
       n_bar_joints = 0
@@ -52,9 +50,7 @@ contains
    !> One that yields pulls between its first block and a node, which is loaded by the strength and
    !> leans on the ground with what the bar leaves of it; the node hands the pull on to the second
    pure subroutine add_bar_joints(settings, system, first, graph)
-      !> Settings of the run
       type(settings_t), intent(in) :: settings
-      !> The blocks
       type(block_system_t), intent(in) :: system
       !> Joints before those of the bars
       integer, intent(in) :: first
@@ -100,7 +96,6 @@ contains
 
    !> The joint that is a bar
    pure integer function bar_joint(settings, n_joint, bar)
-      !> Settings of the run
       type(settings_t), intent(in) :: settings
       !> Number of joints of the graph
       integer, intent(in) :: n_joint
@@ -113,7 +108,6 @@ contains
 
    !> Forces of the bars from those of the joints
    pure subroutine keep_bar_forces(settings, force, system)
-      !> Settings of the run
       type(settings_t), intent(in) :: settings
       !> N1, N2, T of all joints: (3, n_joint) [N/m]
       real(wp), intent(in) :: force(:, :)

@@ -18,7 +18,6 @@ contains
 
    !> Set strains and stresses of the blocks that can move: area*stress = moment of the forces
    pure subroutine strain_blocks(settings, time, force, pin_force, contacts, system)
-      !> Settings of the run
       type(settings_t), intent(in) :: settings
       !> Time of the histories [s]
       real(wp), intent(in) :: time
@@ -64,11 +63,9 @@ contains
 
    !> Add what held points do; one that is held along one axis is so by both of its forces
    pure subroutine add_pins(settings, pin_force, system, moment)
-      !> Settings of the run
       type(settings_t), intent(in) :: settings
       !> Their forces: (3, n_pin) [N/m]
       real(wp), intent(in) :: pin_force(:, :)
-      !> The blocks
       type(block_system_t), intent(in) :: system
       !> Forces on the unknowns of all blocks: (6, n_block)
       real(wp), intent(inout) :: moment(:, :)

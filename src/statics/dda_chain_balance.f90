@@ -15,7 +15,6 @@ contains
 
    !> Bounds of the force of one joint
    pure function cone_of(chain, j) result(cone)
-      !> The chain
       type(chain_t), intent(in) :: chain
       !> Number of the joint
       integer, intent(in) :: j
@@ -28,7 +27,6 @@ contains
 
    !> Sums of the loads before each joint, or of half a chain, less the sums of those behind it
    pure subroutine sum_loads(chain, load)
-      !> The chain
       type(chain_t), intent(in) :: chain
       !> The sums: (3, n + 1)
       real(wp), intent(out) :: load(:, :)
@@ -53,7 +51,6 @@ contains
 
    !> Load of one block: force, and moment about the origin
    pure function load_of(chain, b) result(load)
-      !> The chain
       type(chain_t), intent(in) :: chain
       !> Number of the block
       integer, intent(in) :: b
@@ -66,7 +63,6 @@ contains
 
    !> Force N1, N2, T of one joint
    pure function joint_force(chain, load, reaction, j) result(force)
-      !> The chain
       type(chain_t), intent(in) :: chain
       !> Sums of the loads: (3, n + 1)
       real(wp), intent(in) :: load(:, :)
@@ -88,7 +84,6 @@ contains
 
    !> What each unknown makes of the force of one joint
    pure function influence(chain, j) result(g)
-      !> The chain
       type(chain_t), intent(in) :: chain
       !> Number of the joint
       integer, intent(in) :: j
@@ -105,7 +100,6 @@ contains
 
    !> Whether a force lies inside the cone of a joint
    pure logical function holds(chain, force, j)
-      !> The chain
       type(chain_t), intent(in) :: chain
       !> N1, N2, T [N/m]
       real(wp), intent(in) :: force(3)
@@ -119,7 +113,6 @@ contains
    !> Forces of all joints, each from that of its neighbour by the balance of the block between: the
    !> moment of a shallow arch, seen from afar, would lose its digits
    pure subroutine carry_forces(chain, load, reaction, force)
-      !> The chain
       type(chain_t), intent(in) :: chain
       !> Sums of the loads: (3, n + 1)
       real(wp), intent(in) :: load(:, :)
@@ -155,7 +148,6 @@ contains
 
    !> Rounding of forces that are carried from joint to joint
    pure real(wp) function rounding_of_forces(chain, force) result(noise)
-      !> The chain
       type(chain_t), intent(in) :: chain
       !> The forces: (3, n + 1) [N/m]
       real(wp), intent(in) :: force(:, :)

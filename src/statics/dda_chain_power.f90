@@ -32,7 +32,6 @@ contains
       type(chain_t), intent(in) :: chain
       !> Faces of its joints: (n + 1)
       type(joint_face_t), intent(in) :: face(:)
-      !> The mechanism
       type(chain_mechanism_t), intent(out) :: mechanism
       type(joint_face_t) :: held(size(face))
       real(wp) :: tangent(3, 3), constant(3), force(3, size(face)), carried
@@ -67,9 +66,7 @@ contains
    !> weights times their motions are not; and openings that do not quite close the row in this
    !> shape do no harm
    pure subroutine chain_power(mechanism, chain, power, noise, usable)
-      !> The mechanism
       type(chain_mechanism_t), intent(in) :: mechanism
-      !> The chain
       type(chain_t), intent(in) :: chain
       !> Power over the mass: positive where the mechanism moves by itself
       real(wp), intent(out) :: power
@@ -97,9 +94,7 @@ contains
 
    !> Forces in balance with the loads that least hinder a mechanism
    pure subroutine find_forces(mechanism, chain, force, noise)
-      !> The mechanism
       type(chain_mechanism_t), intent(in) :: mechanism
-      !> The chain
       type(chain_t), intent(in) :: chain
       !> Forces of its joints; of the others not to the last digit: (3, n + 1) [N/m]
       real(wp), intent(out) :: force(:, :)
@@ -126,9 +121,7 @@ contains
 
    !> Change of the unknowns that brings the forces nearest to what the open joints let pass
    pure subroutine find_reaction(mechanism, chain, force, change)
-      !> The mechanism
       type(chain_mechanism_t), intent(in) :: mechanism
-      !> The chain
       type(chain_t), intent(in) :: chain
       !> Forces of the joints; those of the mechanism count: (3, n + 1) [N/m]
       real(wp), intent(in) :: force(:, :)

@@ -50,9 +50,7 @@ contains
 
    !> Find the forces
    pure subroutine find_thrust(chain, thrust, load)
-      !> The chain
       type(chain_t), intent(in) :: chain
-      !> The forces
       type(thrust_t), intent(out) :: thrust
       !> Sums of the loads, force and moment: (3, n + 1)
       real(wp), intent(out) :: load(:, :)
@@ -82,7 +80,6 @@ contains
 
    !> Find the forces by all joints
    pure subroutine refine_thrust(chain, load, thrust)
-      !> The chain
       type(chain_t), intent(in) :: chain
       !> Sums of the loads: (3, n + 1)
       real(wp), intent(in) :: load(:, :)
@@ -99,7 +96,6 @@ contains
 
    !> Joints around those that fail, or are nearer to it than their neighbours
    pure function around_weak(chain, load, reaction, stride, coarse) result(around)
-      !> The chain
       type(chain_t), intent(in) :: chain
       !> Sums of the loads: (3, n + 1)
       real(wp), intent(in) :: load(:, :)
@@ -131,7 +127,6 @@ contains
 
    !> Newton's method on the energy of some joints
    pure subroutine descend(chain, load, glued, watched, thrust)
-      !> The chain
       type(chain_t), intent(in) :: chain
       !> Sums of the loads: (3, n + 1)
       real(wp), intent(in) :: load(:, :)
@@ -139,7 +134,6 @@ contains
       type(chain_energy_t), intent(in) :: glued
       !> The joints that count
       integer, intent(in) :: watched(:)
-      !> The forces
       type(thrust_t), intent(inout) :: thrust
       type(chain_energy_t) :: here, there
       real(wp) :: bracket(2), direction(3), fall, steepness(2), way
@@ -166,7 +160,6 @@ contains
 
    !> The function that is made least, at one place
    pure subroutine find_energy(chain, load, glued, watched, reaction, energy)
-      !> The chain
       type(chain_t), intent(in) :: chain
       !> Sums of the loads: (3, n + 1)
       real(wp), intent(in) :: load(:, :)
@@ -196,7 +189,6 @@ contains
 
    !> Energy of the springs if no joint could fail, at zero
    pure function glued_energy(chain, load, watched) result(energy)
-      !> The chain
       type(chain_t), intent(in) :: chain
       !> Sums of the loads: (3, n + 1)
       real(wp), intent(in) :: load(:, :)
@@ -234,7 +226,6 @@ contains
 
    !> Half the squared distance of a force from its cone, over the stiffness
    pure subroutine add_failing(chain, force, j, energy, beyond)
-      !> The chain
       type(chain_t), intent(in) :: chain
       !> N1, N2, T [N/m]
       real(wp), intent(in) :: force(3)
@@ -273,7 +264,6 @@ contains
    !> Bring forces in balance as near to the cones as they go. What then lies beyond these is
    !> rounding where admissible forces exist, and else a mechanism: openings that close the row
    pure subroutine approach_cones(chain, thrust, noise, force, beyond, passes)
-      !> The chain
       type(chain_t), intent(in) :: chain
       !> Where the forces come from
       type(thrust_t), intent(in) :: thrust
@@ -317,7 +307,6 @@ contains
 
    !> Forces of all joints after a change of the unknowns
    pure subroutine add_reaction(chain, change, before, after)
-      !> The chain
       type(chain_t), intent(in) :: chain
       !> The change: (3)
       real(wp), intent(in) :: change(3)
@@ -334,13 +323,11 @@ contains
 
    !> What of the forces lies beyond the cones, and half its square over the stiffness
    pure subroutine find_beyond(chain, force, beyond, energy)
-      !> The chain
       type(chain_t), intent(in) :: chain
       !> Forces: (3, n + 1) [N/m]
       real(wp), intent(in) :: force(:, :)
       !> The part that the cones do not let pass: (3, n + 1) [N/m]
       real(wp), intent(out) :: beyond(:, :)
-      !> Its energy
       type(chain_energy_t), intent(out) :: energy
       integer :: j
 

@@ -35,9 +35,7 @@ contains
 
    !> Whether a scene is decided so: at rest, where the blocks are, by friction alone
    pure logical function decides_as_graph(settings, contacts)
-      !> Settings of the run
       type(settings_t), intent(in) :: settings
-      !> The contacts
       type(contacts_t), intent(in) :: contacts
 
       decides_as_graph = .not. (settings%dynamic .or. settings%current &
@@ -47,15 +45,11 @@ contains
 
    !> Decide a scene
    pure subroutine decide_graph(settings, system, contacts, bare, verdict, start)
-      !> Settings of the run
       type(settings_t), intent(in) :: settings
-      !> The blocks
       type(block_system_t), intent(in) :: system
-      !> Their contacts
       type(contacts_t), intent(in) :: contacts
       !> Whether a run of steps tells how it falls
       logical, intent(in) :: bare
-      !> The verdict
       type(graph_verdict_t), intent(out) :: verdict
       !> The state in which a stage before has left these joints, with the load that they balance;
       !> without it the blocks begin unloaded
@@ -108,9 +102,7 @@ contains
 
    !> Whether a collapse has no more power than rounded coordinates make
    pure logical function is_feigned(settings, system, decision)
-      !> Settings of the run
       type(settings_t), intent(in) :: settings
-      !> The blocks
       type(block_system_t), intent(in) :: system
       !> What limit analysis has found
       type(load_decision_t), intent(in) :: decision
@@ -123,9 +115,7 @@ contains
    !> What all weights and forces could do if each went along with the motion: beside it, power that
    !> rounded coordinates make is nothing
    pure real(wp) function power_of_all(settings, system, velocity) result(power)
-      !> Settings of the run
       type(settings_t), intent(in) :: settings
-      !> The blocks
       type(block_system_t), intent(in) :: system
       !> Velocities of the blocks: (3, n_block)
       real(wp), intent(in) :: velocity(:, :)
@@ -154,11 +144,8 @@ contains
    !> How what has fallen begins to fall: in the mechanism in which it fell first, as what is live
    !> grew to its value, or by what is dead
    pure subroutine find_first(settings, system, graph, stations, load, verdict)
-      !> Settings of the run
       type(settings_t), intent(in) :: settings
-      !> The blocks
       type(block_system_t), intent(in) :: system
-      !> Their joints
       type(joint_graph_t), intent(in) :: graph
       !> Stations of the loading path
       type(load_stations_t), intent(in) :: stations
@@ -186,9 +173,7 @@ contains
 
    !> How blocks begin to fall by a load from rest
    pure subroutine see_fall(settings, graph, load, verdict)
-      !> Settings of the run
       type(settings_t), intent(in) :: settings
-      !> The joints
       type(joint_graph_t), intent(in) :: graph
       !> The load: (3, n_block)
       real(wp), intent(in) :: load(:, :)
@@ -211,9 +196,7 @@ contains
    !> Under Coulomb friction joints slide along themselves. Where that takes more than a few
    !> factorisations, or joints are crushed, it falls as limit analysis has it
    pure subroutine slide_along(settings, graph, load, force, verdict)
-      !> Settings of the run
       type(settings_t), intent(in) :: settings
-      !> The joints
       type(joint_graph_t), intent(in) :: graph
       !> The load: (3, n_block)
       real(wp), intent(in) :: load(:, :)
@@ -234,7 +217,6 @@ contains
 
    !> Whether friction has a say: where joints cannot slide, or slide freely, both rules are one
    pure logical function has_friction(graph)
-      !> The joints
       type(joint_graph_t), intent(in) :: graph
 
       has_friction = any(rubs(graph%kind, graph%friction))

@@ -27,9 +27,7 @@ contains
    !> slides opens by its friction; what it opens beyond that is a hinge. A corner that has opened
    !> on the loading path is open whatever it does in the end
    pure subroutine show_mechanism(settings, system, verdict, contacts)
-      !> Settings of the run
       type(settings_t), intent(in) :: settings
-      !> The blocks
       type(block_system_t), intent(in) :: system
       !> The verdict, a collapse
       type(graph_verdict_t), intent(in) :: verdict
@@ -65,7 +63,6 @@ contains
 
    !> Forces, openings and faces of the joints of what stands, and motion and strain of its blocks
    pure subroutine show_state(settings, verdict, system, contacts)
-      !> Settings of the run
       type(settings_t), intent(in) :: settings
       !> The verdict of what stands
       type(graph_verdict_t), intent(in) :: verdict

@@ -42,7 +42,6 @@ contains
 
    !> The clock of a static run at the beginning of its path
    pure function new_load_clock(settings) result(clock)
-      !> Settings of the run
       type(settings_t), intent(in) :: settings
       !> The clock
       type(load_clock_t) :: clock
@@ -60,7 +59,6 @@ contains
 
    !> Whether anything is live
    pure logical function has_path(clock)
-      !> The clock
       type(load_clock_t), intent(in) :: clock
 
       has_path = .false.
@@ -69,7 +67,6 @@ contains
 
    !> Whether the path goes on where the clock is
    pure logical function goes_on_at(clock)
-      !> The clock
       type(load_clock_t), intent(in) :: clock
 
       goes_on_at = .false.
@@ -80,7 +77,6 @@ contains
    pure subroutine set_forward(growth, clock)
       !> By what the stride grows, or shrinks
       real(wp), intent(in) :: growth
-      !> The clock
       type(load_clock_t), intent(inout) :: clock
 
       if (clock%now >= clock%fails) clock%fails = huge(1.0_wp)
@@ -94,7 +90,6 @@ contains
    pure subroutine set_back(falls, clock, shorter)
       !> Whether the blocks do not come to rest at the present time
       logical, intent(in) :: falls
-      !> The clock
       type(load_clock_t), intent(inout) :: clock
       !> Whether there is a shorter stride
       logical, intent(out) :: shorter
@@ -110,7 +105,6 @@ contains
    !> The time to which the stride leads: no farther than the next bend, and half the way to where
    !> the blocks are known to fall
    pure subroutine set_now(clock)
-      !> The clock
       type(load_clock_t), intent(inout) :: clock
       real(wp) :: least, leg
       integer :: n_leg
@@ -130,7 +124,6 @@ contains
 
    !> Number of the leg that begins, or goes on, at the last rest
    pure integer function leg_of(clock)
-      !> The clock
       type(load_clock_t), intent(in) :: clock
 
       leg_of = min(count(clock%bend <= clock%rested), size(clock%bend) - 1)
@@ -138,7 +131,6 @@ contains
 
    !> Length of that leg [s]
    pure real(wp) function leg_length(clock)
-      !> The clock
       type(load_clock_t), intent(in) :: clock
 
       leg_length = clock%bend(leg_of(clock) + 1) - clock%bend(leg_of(clock))

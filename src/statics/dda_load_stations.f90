@@ -39,7 +39,6 @@ contains
 
    !> Stations of a scene, or of a later stage of it: histories alone go on there
    pure function load_stations(settings, upright) result(stations)
-      !> Settings of the run
       type(settings_t), intent(in) :: settings
       !> Whether gravity is upright at first and then tilts; otherwise it is dead as it is
       logical, intent(in) :: upright
@@ -92,13 +91,10 @@ contains
 
    !> Loads on the blocks and displacements of their supports at a station
    pure subroutine loads_at(stations, station, settings, system, graph, load, opening)
-      !> The stations
       type(load_stations_t), intent(in) :: stations
       !> Number of the station, from 0
       integer, intent(in) :: station
-      !> Settings of the run
       type(settings_t), intent(in) :: settings
-      !> The blocks
       type(block_system_t), intent(in) :: system
       !> Their joints, then the pins of held points, then those of bounded forces
       type(joint_graph_t), intent(in) :: graph
@@ -143,9 +139,7 @@ contains
 
    !> Loads of the carriers of bounded forces, the last blocks of a graph
    pure subroutine press_carriers(settings, system, load)
-      !> Settings of the run
       type(settings_t), intent(in) :: settings
-      !> The blocks
       type(block_system_t), intent(in) :: system
       !> Loads; theirs are set: (n_dof, n_block) [N/m, N/m, N]
       real(wp), intent(inout) :: load(:, :)
@@ -164,15 +158,11 @@ contains
 
    !> What led points make of their pins
    pure subroutine lead_pins(stations, station, settings, system, graph, opening)
-      !> The stations
       type(load_stations_t), intent(in) :: stations
       !> Number of the station
       integer, intent(in) :: station
-      !> Settings of the run
       type(settings_t), intent(in) :: settings
-      !> The blocks
       type(block_system_t), intent(in) :: system
-      !> Their joints
       type(joint_graph_t), intent(in) :: graph
       !> Opening of the joints; that of the pins is set: (3, n_joint) [m]
       real(wp), intent(inout) :: opening(:, :)
@@ -196,7 +186,6 @@ contains
 
    !> Whether something live acts before histories begin
    pure logical function bears_live_load(settings)
-      !> Settings of the run
       type(settings_t), intent(in) :: settings
       integer :: i
 
@@ -214,7 +203,6 @@ contains
 
    !> Whether a support is led from the first moment on
    pure logical function leads_at_once(settings)
-      !> Settings of the run
       type(settings_t), intent(in) :: settings
       integer :: i
 
@@ -228,7 +216,6 @@ contains
 
    !> Times at which a history bends, after the beginning
    pure function history_times(settings) result(time)
-      !> Settings of the run
       type(settings_t), intent(in) :: settings
       !> The times, ascending, each once: (n) [s]
       real(wp), allocatable :: time(:)
@@ -262,7 +249,6 @@ contains
 
    !> Add the times of one history to a list
    pure subroutine take_times(history, time, n)
-      !> The history
       type(history_t), intent(in) :: history
       !> The list, with room for them: (:) [s]
       real(wp), intent(inout) :: time(:)
@@ -276,7 +262,6 @@ contains
 
    !> Number of times that a history is given at; one time is no change
    elemental integer function bends(history)
-      !> The history
       type(history_t), intent(in) :: history
 
       bends = 0
@@ -286,7 +271,6 @@ contains
 
    !> Time at which the last history of a scene ends, 0 where there is none [s]
    pure real(wp) function last_history_time(settings)
-      !> Settings of the run
       type(settings_t), intent(in) :: settings
 
       last_history_time = maxval([settings%from, history_times(settings)])

@@ -64,13 +64,9 @@ contains
 
    !> Follow the loading path from its dead loads to its end or its collapse
    pure subroutine follow_stations(settings, system, graph, stations, verdict, start)
-      !> Settings of the run
       type(settings_t), intent(in) :: settings
-      !> The blocks
       type(block_system_t), intent(in) :: system
-      !> Their joints
       type(joint_graph_t), intent(in) :: graph
-      !> The stations
       type(load_stations_t), intent(in) :: stations
       !> How it ended
       type(graph_verdict_t), intent(out) :: verdict
@@ -107,13 +103,10 @@ contains
 
    !> Loads and openings at a station, of layers too
    pure subroutine load_joints(stations, station, settings, system, graph, couple, load, opening)
-      !> The stations
       type(load_stations_t), intent(in) :: stations
       !> Number of the station
       integer, intent(in) :: station
-      !> Settings of the run
       type(settings_t), intent(in) :: settings
-      !> The blocks
       type(block_system_t), intent(in) :: system
       !> Their joints without layers
       type(joint_graph_t), intent(in) :: graph
@@ -136,7 +129,6 @@ contains
    pure subroutine take_layers_away(graph, verdict)
       !> The joints without layers
       type(joint_graph_t), intent(in) :: graph
-      !> The verdict
       type(graph_verdict_t), intent(inout) :: verdict
 
       associate (state => verdict%state, b => graph%n_block, n => size(graph%kind))
@@ -153,9 +145,7 @@ contains
 
    !> Follow the path of joints some of which may have layers
    pure subroutine follow_joints(settings, system, graph, layered, couple, stations, verdict, start)
-      !> Settings of the run
       type(settings_t), intent(in) :: settings
-      !> The blocks
       type(block_system_t), intent(in) :: system
       !> Their joints without layers
       type(joint_graph_t), intent(in) :: graph
@@ -163,7 +153,6 @@ contains
       type(joint_graph_t), intent(in) :: layered
       !> Loads by the couples of the layers: (3, n_block of layered)
       real(wp), intent(in) :: couple(:, :)
-      !> The stations
       type(load_stations_t), intent(in) :: stations
       !> How it ended
       type(graph_verdict_t), intent(out) :: verdict

@@ -33,11 +33,8 @@ contains
    pure subroutine scene_graph(settings, system, contacts, graph)
       !> Settings of the run, for held points and bounded forces
       type(settings_t), intent(in) :: settings
-      !> The blocks
       type(block_system_t), intent(in) :: system
-      !> Their contacts
       type(contacts_t), intent(in) :: contacts
-      !> The graph
       type(joint_graph_t), intent(out) :: graph
       type(held_point_t), allocatable :: pin(:)
       real(wp) :: full(6, 6), compliance
@@ -93,7 +90,6 @@ contains
 
    !> Bounded forces of a scene that have a bound: each has a carrier without weight in the graph
    pure integer function n_carrier(settings)
-      !> Settings of the run
       type(settings_t), intent(in) :: settings
 
       n_carrier = 0
@@ -103,7 +99,6 @@ contains
 
    !> Joints that bounded forces are made from
    pure integer function n_bounded_joint(settings)
-      !> Settings of the run
       type(settings_t), intent(in) :: settings
 
       n_bounded_joint = 2*n_carrier(settings)
@@ -117,9 +112,7 @@ contains
    !> is. What the block does not take the stop does, so that its force has any value up to the
    !> bound. The joint with the block is soft: at rest the stop carries it all
    pure subroutine add_bounded(settings, system, compliance, before, graph)
-      !> Settings of the run
       type(settings_t), intent(in) :: settings
-      !> The blocks
       type(block_system_t), intent(in) :: system
       !> Compliance of a pin [m2/N]
       real(wp), intent(in) :: compliance
@@ -162,9 +155,7 @@ contains
    !> Compliance l/(E t) of what lies between two centres of gravity, l across the joint and t along
    !> it: rigid blocks have that of their halves in the joints
    pure real(wp) function block_compliance(system, joint) result(compliance)
-      !> The blocks
       type(block_system_t), intent(in) :: system
-      !> The joint
       type(joint_t), intent(in) :: joint
       real(wp) :: across, least, length
       integer :: side
@@ -184,7 +175,6 @@ contains
 
    !> Whether no joint has cohesion, tensile strength or friction that would be spent along the way
    pure logical function has_pure_friction(contacts)
-      !> The contacts
       type(contacts_t), intent(in) :: contacts
 
       has_pure_friction = .not. any(loses_strength(contacts%joint%law))
@@ -192,9 +182,7 @@ contains
 
    !> Held points of blocks that could move
    pure function pins(settings, system) result(pin)
-      !> Settings of the run
       type(settings_t), intent(in) :: settings
-      !> The blocks
       type(block_system_t), intent(in) :: system
       !> The points: (n_pin)
       type(held_point_t), allocatable :: pin(:)
@@ -208,7 +196,6 @@ contains
 
    !> What a pin sees of its block; one that holds along one axis alone does so with both forces
    pure function pin_rows(pin, centroid) result(row)
-      !> The held point
       type(held_point_t), intent(in) :: pin
       !> Centre of gravity of its block: (2) [m]
       real(wp), intent(in) :: centroid(2)
@@ -230,7 +217,6 @@ contains
    pure subroutine allocate_joints(n, graph)
       !> How many
       integer, intent(in) :: n
-      !> The graph
       type(joint_graph_t), intent(inout) :: graph
 
       allocate (graph%block(2, n), graph%kind(n))

@@ -82,13 +82,10 @@ contains
 
    !> Equations of a system at rest: pattern, mass, stiffness and weight
    pure subroutine new_equations(system, springs, settings, equations)
-      !> The blocks
       type(block_system_t), intent(in) :: system
       !> The springs of the joints
       type(joint_springs_t), intent(in) :: springs
-      !> Settings of the run
       type(settings_t), intent(in) :: settings
-      !> The equations
       type(equations_t), intent(out) :: equations
       type(held_point_t) :: none(0)
       real(wp) :: full(6, 6), load(6)
@@ -145,7 +142,6 @@ contains
       integer, intent(in) :: before(:, :)
       !> The springs of the joints now
       type(joint_springs_t), intent(in) :: springs
-      !> The equations
       type(equations_t), intent(inout) :: equations
       logical :: same
 
@@ -157,7 +153,6 @@ contains
 
    !> Springs whose rows have changed while the coupled pairs have not are to be taken over
    pure subroutine take_springs(equations)
-      !> The equations
       type(equations_t), intent(inout) :: equations
 
       equations%new_numbers = .true.
@@ -316,11 +311,9 @@ contains
 
    !> Whether the matrix is that of a joint's face
    pure logical function holds(equations, cone, face, j)
-      !> The equations
       type(equations_t), intent(in) :: equations
       !> Bounds of the joint's force
       type(cone_t), intent(in) :: cone
-      !> Its face
       type(joint_face_t), intent(in) :: face
       !> Number of the joint
       integer, intent(in) :: j

@@ -26,7 +26,6 @@ contains
 
    !> Largest acceleration that the loads would give to free blocks
    pure real(wp) function free_acceleration(system, equations)
-      !> The blocks
       type(block_system_t), intent(in) :: system
       !> The equations, with all loads
       type(equations_t), intent(in) :: equations
@@ -36,7 +35,6 @@ contains
 
    !> Sizes of the loads from outside on each block: forces, and moments over its radius of gyration
    pure function own_load(system, equations) result(own)
-      !> The blocks
       type(block_system_t), intent(in) :: system
       !> The equations, with all loads
       type(equations_t), intent(in) :: equations
@@ -54,11 +52,9 @@ contains
    !> Whether rounded coordinates press a block with far more than its load: its contacts then tell
    !> nothing of it
    pure logical function is_drowned(system, joint, springs, equations)
-      !> The blocks
       type(block_system_t), intent(in) :: system
       !> The joints, placed: (n_joint)
       type(joint_t), intent(in) :: joint(:)
-      !> Their springs
       type(joint_springs_t), intent(in) :: springs
       !> The equations, with all loads
       type(equations_t), intent(in) :: equations
@@ -85,7 +81,6 @@ contains
 
    !> Radius of gyration of a block
    pure real(wp) function gyration(system, b)
-      !> The blocks
       type(block_system_t), intent(in) :: system
       !> Number of the block
       integer, intent(in) :: b
@@ -177,7 +172,6 @@ contains
       type(joint_springs_t), intent(in) :: springs
       !> The equations of the step
       type(equations_t), intent(in) :: equations
-      !> The step
       type(step_context_t), intent(in) :: step
       !> The forces: (n_dof, n_equation)
       real(wp) :: around(size(equations%felt, 1), size(equations%felt, 2))

@@ -17,11 +17,9 @@ contains
 
    !> The joints of a step and behind them its bars
    pure subroutine append_bars(bars, contacts, step, springs, state, load)
-      !> The bars
       type(bar_springs_t), intent(in) :: bars
       !> The springs of the joints
       type(joint_springs_t), intent(in) :: contacts
-      !> The step
       type(step_state_t), intent(in) :: step
       !> Springs of joints and bars
       type(joint_springs_t), intent(out) :: springs
@@ -65,7 +63,6 @@ contains
 
    !> One bar as a joint
    pure subroutine make_joint(bars, i, j, springs, load)
-      !> The bars
       type(bar_springs_t), intent(in) :: bars
       !> Number of the bar
       integer, intent(in) :: i
@@ -113,7 +110,6 @@ contains
    pure subroutine drop_bars(state, step)
       !> The step with bars
       type(step_state_t), intent(in) :: state
-      !> The step
       type(step_state_t), intent(inout) :: step
       integer :: n
 

@@ -27,9 +27,7 @@ contains
    !> Block part of matrix and load of one step of length dt. Forces that change with time are their
    !> mean over a dynamic step, those of the time of a static one
    pure subroutine assemble_blocks(system, settings, dt, equations, time)
-      !> The blocks
       type(block_system_t), intent(in) :: system
-      !> Settings of the run
       type(settings_t), intent(in) :: settings
       !> Length of the step [s]
       real(wp), intent(in) :: dt
@@ -81,7 +79,6 @@ contains
 
    !> Rate of mass damping in a dynamic step: never more than what would stop a block within it
    pure real(wp) function damping_rate(settings, dt)
-      !> Settings of the run
       type(settings_t), intent(in) :: settings
       !> Length of the step [s]
       real(wp), intent(in) :: dt
@@ -92,7 +89,6 @@ contains
 
    !> Masses of blocks that have turned; only strain rates feel it
    pure subroutine turn_masses(system, equations)
-      !> The blocks
       type(block_system_t), intent(in) :: system
       !> Receives the masses
       type(equations_t), intent(inout) :: equations
@@ -153,7 +149,6 @@ contains
 
    !> Velocities as the equations have them
    pure function packed_velocity(system, n_dof) result(velocity)
-      !> The blocks
       type(block_system_t), intent(in) :: system
       !> Unknowns of a block
       integer, intent(in) :: n_dof
@@ -170,7 +165,6 @@ contains
    !> Blocks whose strain follows their load, as a step does not resolve its swinging. The fastest
    !> is that across the narrow side of the block: A D11/(rho S)
    pure function strain_follows(system, dt) result(follows)
-      !> The blocks
       type(block_system_t), intent(in) :: system
       !> Length of the longest step [s]
       real(wp), intent(in) :: dt

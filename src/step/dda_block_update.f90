@@ -19,11 +19,8 @@ contains
    !> law of impact. Where blocks move, strain is kept in the block's own frame and the corners are
    !> built anew from it
    pure subroutine update_blocks(step, settings, system)
-      !> The accepted step
       type(step_context_t), intent(in) :: step
-      !> Settings of the run
       type(settings_t), intent(in) :: settings
-      !> The blocks
       type(block_system_t), intent(inout) :: system
       real(wp) :: d(3, 3), motion(6)
       integer :: b, e, nd
@@ -52,9 +49,7 @@ contains
 
    !> Blocks where a motion carries them, where blocks move; velocities stay
    pure function displaced_blocks(system, settings, motion) result(after)
-      !> The blocks
       type(block_system_t), intent(in) :: system
-      !> Settings of the run
       type(settings_t), intent(in) :: settings
       !> The motion: (n_dof, n_equation)
       real(wp), intent(in) :: motion(:, :)
@@ -82,7 +77,6 @@ contains
       real(wp), intent(in) :: motion(6)
       !> Hooke's law: (3, 3) [Pa]
       real(wp), intent(in) :: d(3, 3)
-      !> The blocks
       type(block_system_t), intent(inout) :: system
       integer :: v
 
@@ -101,11 +95,8 @@ contains
    !> springs start anew from the shear force that they could carry. Springs that give keep as much
    !> of it as carries that force. Where blocks move in time no slip is kept
    pure subroutine update_contacts(step, settings, contacts, breaks)
-      !> The accepted step
       type(step_context_t), intent(in) :: step
-      !> Settings of the run
       type(settings_t), intent(in) :: settings
-      !> The contacts
       type(contacts_t), intent(inout) :: contacts
       !> Whether a contact lost strength in this step
       logical, intent(out) :: breaks

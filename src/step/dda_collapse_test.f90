@@ -19,7 +19,6 @@ contains
 
    !> Whether anything means collapse in a dynamic run
    pure logical function tests_collapse(settings)
-      !> Settings of the run
       type(settings_t), intent(in) :: settings
 
       tests_collapse = settings%dynamic .and. settings%current &
@@ -28,9 +27,7 @@ contains
 
    !> Whether the blocks have gone as far as means collapse; keeps how far they have
    pure subroutine has_collapsed(settings, system, march, collapsed)
-      !> Settings of the run
       type(settings_t), intent(in) :: settings
-      !> The blocks
       type(block_system_t), intent(in) :: system
       !> The march; receives how far the blocks have gone
       type(march_t), intent(inout) :: march
@@ -55,9 +52,7 @@ contains
 
    !> Displacement of the measured point that is asked for [m]
    pure real(wp) function displacement_of_point(settings, system)
-      !> Settings of the run
       type(settings_t), intent(in) :: settings
-      !> The blocks
       type(block_system_t), intent(in) :: system
 
       associate (measured => settings%boundary%measured(settings%collapse_point))
@@ -70,9 +65,7 @@ contains
    !> Whether the blocks are farther at the end of a run than before its last part, so that it does
    !> not say whether they come back
    pure logical function still_moves_away(settings, march)
-      !> Settings of the run
       type(settings_t), intent(in) :: settings
-      !> The march
       type(march_t), intent(in) :: march
 
       still_moves_away = .false.

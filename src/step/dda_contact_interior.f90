@@ -107,7 +107,6 @@ contains
       type(joint_springs_t), intent(in) :: springs
       !> What the joints see
       type(contact_view_t), intent(in) :: view
-      !> The problem
       type(problem_t), intent(inout) :: p
       !> The iterate to begin with, and the best one
       type(interior_t), intent(inout) :: x
@@ -151,9 +150,7 @@ contains
 
    !> Slack and flow in the middle, whatever the forces are
    pure subroutine begin_afar(p, x)
-      !> The problem
       type(problem_t), intent(in) :: p
-      !> The iterate
       type(interior_t), intent(inout) :: x
 
       x%slack = merge(p%size, 1.0_wp, p%bounded)
@@ -171,7 +168,6 @@ contains
       real(wp), intent(in) :: merit
       !> The problem, factored
       type(problem_t), intent(inout) :: p
-      !> The iterate
       type(interior_t), intent(inout) :: x
       !> How much of the step was gone
       real(wp), intent(out) :: length
@@ -205,7 +201,6 @@ contains
       real(wp), intent(in) :: shallow
       !> The problem; the size of a force is set
       type(problem_t), intent(inout) :: p
-      !> The iterate
       type(interior_t), intent(out) :: x
       real(wp) :: opening(3, size(p%joint)), flow, least, unit
       integer :: i, k
@@ -248,7 +243,6 @@ contains
       type(contact_view_t), intent(in) :: view
       !> The problem; the rests are set
       type(problem_t), intent(inout) :: p
-      !> The iterate
       type(interior_t), intent(in) :: x
       !> Mean product of slack and flow, in squares of a force
       real(wp), intent(out) :: mean
@@ -269,9 +263,7 @@ contains
       type(joint_springs_t), intent(in) :: springs
       !> The problem, factored
       type(problem_t), intent(in) :: p
-      !> The iterate
       type(interior_t), intent(in) :: x
-      !> The step
       type(interior_t), intent(inout) :: step
       real(wp) :: drive(3, size(p%joint)), rest(4), slack(4), source(4)
       real(wp) :: bound
@@ -317,7 +309,6 @@ contains
 
    !> Mean of slack times flow, over what the blocks give: in squares of a force
    pure real(wp) function mean_product(p, slack, flow)
-      !> The problem
       type(problem_t), intent(in) :: p
       !> Slacks: (4, n_joint) [N/m]
       real(wp), intent(in) :: slack(:, :)
@@ -331,7 +322,6 @@ contains
 
    !> A product that is the same for all bounds, as each joint has it
    pure function weighted(p, mean) result(product_of)
-      !> The problem
       type(problem_t), intent(in) :: p
       !> The product in squares of a force
       real(wp), intent(in) :: mean
@@ -345,11 +335,8 @@ contains
 
    !> The longest step, 1 at most, that keeps a share of every slack and flow
    pure real(wp) function longest(p, x, step, share)
-      !> The problem
       type(problem_t), intent(in) :: p
-      !> The iterate
       type(interior_t), intent(in) :: x
-      !> The step
       type(interior_t), intent(in) :: step
       !> How much of the way to the first zero is gone
       real(wp), intent(in) :: share
@@ -375,7 +362,6 @@ contains
       type(joint_springs_t), intent(in) :: springs
       !> What the joints see
       type(contact_view_t), intent(in) :: view
-      !> The iterate
       type(interior_t), intent(in) :: x
       !> The problem; what is lacking is set
       type(problem_t), intent(inout) :: p

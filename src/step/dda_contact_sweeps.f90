@@ -193,7 +193,6 @@ contains
 
    !> Forces and motion where the sweeps have ended, as the open-close loop knows them
    pure subroutine keep_forces(equations, springs, view, force, state)
-      !> The equations
       type(equations_t), intent(in) :: equations
       !> The springs of the joints
       type(joint_springs_t), intent(in) :: springs

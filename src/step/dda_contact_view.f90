@@ -37,7 +37,6 @@ contains
       type(joint_springs_t), intent(in) :: springs
       !> The step, for the gaps
       type(step_state_t), intent(in) :: state
-      !> The view
       type(contact_view_t), intent(out) :: view
       real(wp) :: inverse(size(state%motion, 1), size(state%motion, 1), size(state%motion, 2))
       real(wp) :: sum_of(3), unit(size(inverse, 1))

@@ -29,7 +29,6 @@ contains
    !> Settle the contacts again with what the gaps really are at the end of the step, until closed
    !> contacts have none
    pure subroutine follow_curves(settings, system, contacts, equations, step)
-      !> Settings of the run
       type(settings_t), intent(in) :: settings
       !> The blocks before the step
       type(block_system_t), intent(in) :: system
@@ -37,7 +36,6 @@ contains
       type(contacts_t), intent(in) :: contacts
       !> Blocks assembled; matrix and factor are made anew
       type(equations_t), intent(inout) :: equations
-      !> The settled step
       type(step_context_t), intent(inout) :: step
       type(block_system_t) :: after
       type(joint_t) :: joint

@@ -28,7 +28,6 @@ contains
    !> Energies after a step, and what it took and brought added to what the steps before did; what
    !> is left unexplained is numerical dissipation. A step of no length begins the audit
    pure subroutine audit_step(settings, system, equations, contacts, step, time, energy)
-      !> Settings of the run
       type(settings_t), intent(in) :: settings
       !> The blocks after the step
       type(block_system_t), intent(in) :: system
@@ -36,7 +35,6 @@ contains
       type(equations_t), intent(in) :: equations
       !> The contacts after the step
       type(contacts_t), intent(in) :: contacts
-      !> The step
       type(step_context_t), intent(in) :: step
       !> Time after it [s]
       real(wp), intent(in) :: time
@@ -54,13 +52,10 @@ contains
 
    !> Energy that is in the blocks and in the springs of the joints
    pure subroutine store_energy(settings, system, equations, contacts, energy)
-      !> Settings of the run
       type(settings_t), intent(in) :: settings
-      !> The blocks
       type(block_system_t), intent(in) :: system
       !> The equations, for masses and weights
       type(equations_t), intent(in) :: equations
-      !> The contacts
       type(contacts_t), intent(in) :: contacts
       !> Receives the energies
       type(energy_t), intent(inout) :: energy
@@ -86,13 +81,10 @@ contains
 
    !> Add what a step brought in and took
    pure subroutine spend_energy(settings, equations, step, energy)
-      !> Settings of the run
       type(settings_t), intent(in) :: settings
       !> The equations of the step
       type(equations_t), intent(in) :: equations
-      !> The step
       type(step_context_t), intent(in) :: step
-      !> The sums
       type(energy_t), intent(inout) :: energy
       integer :: e
 
@@ -115,7 +107,6 @@ contains
 
    !> What would stay the same without numerical dissipation
    pure real(wp) function total(energy)
-      !> The energies
       type(energy_t), intent(in) :: energy
 
       total = energy%kinetic + energy%elastic + energy%contact + energy%gravity - energy%work &
@@ -124,7 +115,6 @@ contains
 
    !> Keep the energies after a step
    pure subroutine keep_energy(energy, audit)
-      !> The energies
       type(energy_t), intent(in) :: energy
       !> Receives them if they are wanted
       type(audit_t), intent(inout) :: audit

@@ -24,13 +24,11 @@ contains
    !> Check that a search at the end of a step finds no corners deeper inside than they were at its
    !> beginning, where a block with a notch is one of the two
    pure function check_penetration(settings, system, contacts, march, step) result(outcome)
-      !> Settings of the run
       type(settings_t), intent(in) :: settings
       !> The blocks before the step
       type(block_system_t), intent(in) :: system
       !> The contacts before the step
       type(contacts_t), intent(in) :: contacts
-      !> The march
       type(march_t), intent(in) :: march
       !> The settled step with its velocities
       type(step_context_t), intent(in) :: step
@@ -54,9 +52,7 @@ contains
 
    !> How deep the deepest corner is, over the size of the smaller block
    pure real(wp) function depth(system, contacts)
-      !> The blocks
       type(block_system_t), intent(in) :: system
-      !> The contacts
       type(contacts_t), intent(in) :: contacts
       integer :: j
 

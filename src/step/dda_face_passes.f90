@@ -112,11 +112,9 @@ contains
       type(joint_springs_t), intent(in) :: springs
       !> The problem, for the openings
       type(problem_t), intent(in) :: p
-      !> The forces
       type(interior_t), intent(in) :: x
       !> Place of the joint
       integer, intent(in) :: i
-      !> Its face
       type(joint_face_t), intent(out) :: face
       real(wp) :: trial(3)
 
@@ -137,7 +135,6 @@ contains
       type(joint_face_t), intent(in) :: face(:)
       !> The problem; how the bounds yield is set
       type(problem_t), intent(inout) :: p
-      !> The forces
       type(interior_t), intent(inout) :: x
       integer :: i
 
@@ -162,7 +159,6 @@ contains
       type(joint_springs_t), intent(in) :: springs
       !> The problem, for the openings
       type(problem_t), intent(in) :: p
-      !> The forces
       type(interior_t), intent(in) :: x
       !> Faces: (n_joint)
       type(joint_face_t), intent(inout) :: face(:)

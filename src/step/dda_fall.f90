@@ -74,7 +74,6 @@ contains
 
    !> How far the smaller of two blocks has left the place to which the larger would carry it
    pure real(wp) function parted(system, pair)
-      !> The blocks
       type(block_system_t), intent(in) :: system
       !> The two blocks: (2)
       integer, intent(in) :: pair(2)

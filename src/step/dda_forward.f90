@@ -66,7 +66,6 @@ contains
 
    !> Run a static analysis to its verdict, a dynamic one to its end
    pure subroutine run_to_verdict(settings, system, contacts, outcome, album, onward)
-      !> Settings of the run
       type(settings_t), intent(in) :: settings
       !> The blocks: at the beginning in, at the end out
       type(block_system_t), intent(inout) :: system
@@ -139,7 +138,6 @@ contains
 
    !> What the end of a run says
    pure subroutine conclude(settings, march, error, outcome)
-      !> Settings of the run
       type(settings_t), intent(in) :: settings
       !> Where it ended
       type(march_t), intent(in) :: march
@@ -174,17 +172,11 @@ contains
    !> One step and what it says of the blocks
    pure subroutine take_step(settings, system, contacts, equations, march, step, rest, neighbours, &
       & answer, error, album)
-      !> Settings of the run
       type(settings_t), intent(in) :: settings
-      !> The blocks
       type(block_system_t), intent(inout) :: system
-      !> The contacts
       type(contacts_t), intent(inout) :: contacts
-      !> The equations
       type(equations_t), intent(inout) :: equations
-      !> The march
       type(march_t), intent(inout) :: march
-      !> The step
       type(step_context_t), intent(inout) :: step
       !> The last rest on a path; not allocated before the first
       type(rest_t), allocatable, intent(in) :: rest
@@ -225,19 +217,12 @@ contains
    !> and back where they do not come to rest, or leap
    pure subroutine follow_path(settings, system, contacts, equations, march, step, rest, answer, &
       & error, album)
-      !> Settings of the run
       type(settings_t), intent(in) :: settings
-      !> The blocks
       type(block_system_t), intent(inout) :: system
-      !> The contacts
       type(contacts_t), intent(inout) :: contacts
-      !> The equations
       type(equations_t), intent(inout) :: equations
-      !> The march
       type(march_t), intent(inout) :: march
-      !> The last step
       type(step_context_t), intent(in) :: step
-      !> The last rest
       type(rest_t), allocatable, intent(inout) :: rest
       !> One of verdict; becomes undecided where the run goes on
       integer, intent(inout) :: answer
@@ -273,13 +258,10 @@ contains
    !> Take over the march of a run that goes on, and the forces at its held points; points that are
    !> held otherwise than before begin without force. Scales are those of the run as it is now
    pure subroutine go_on(settings, system, onward, march, equations)
-      !> Settings of the run
       type(settings_t), intent(in) :: settings
-      !> The blocks
       type(block_system_t), intent(in) :: system
       !> Where the run ended
       type(march_t), intent(in) :: onward
-      !> The march
       type(march_t), intent(out) :: march
       !> Receives the forces
       type(equations_t), intent(inout) :: equations
@@ -295,17 +277,11 @@ contains
    !> Follow a collapse beyond its verdict as far as the album wants to see it, and keep a picture
    !> of the end
    pure subroutine end_pictures(settings, system, contacts, equations, march, step, outcome, album)
-      !> Settings of the run
       type(settings_t), intent(in) :: settings
-      !> The blocks
       type(block_system_t), intent(inout) :: system
-      !> The contacts
       type(contacts_t), intent(inout) :: contacts
-      !> The equations
       type(equations_t), intent(inout) :: equations
-      !> The march
       type(march_t), intent(inout) :: march
-      !> The last step
       type(step_context_t), intent(inout) :: step
       !> How the run ended; receives the contacts of a collapse that is followed
       type(outcome_t), intent(inout) :: outcome

@@ -93,7 +93,6 @@ contains
 
    !> An album of the same kind without pictures, for another run
    pure function blank_album(album) result(blank)
-      !> The album
       type(album_t), intent(in) :: album
       !> The blank one
       type(album_t) :: blank
@@ -110,13 +109,9 @@ contains
 
    !> Keep a picture if one is due, and where the measured points are
    pure subroutine keep_pictures(settings, system, contacts, march, farthest, last, album)
-      !> Settings of the run
       type(settings_t), intent(in) :: settings
-      !> The blocks
       type(block_system_t), intent(in) :: system
-      !> The contacts
       type(contacts_t), intent(in) :: contacts
-      !> The march
       type(march_t), intent(in) :: march
       !> Largest motion of a point in the last step [m]
       real(wp), intent(in) :: farthest
@@ -140,7 +135,6 @@ contains
       real(wp), intent(in) :: displacement
       !> Whether the run ends here, so that a picture is due anyway
       logical, intent(in) :: last
-      !> The album
       type(album_t), intent(in) :: album
 
       is_due = .false.
@@ -160,7 +154,6 @@ contains
       real(wp), intent(in) :: time
       !> Farthest that a corner has moved [m]
       real(wp), intent(in) :: displacement
-      !> The album
       type(album_t), intent(in) :: album
 
       progress = displacement
@@ -169,9 +162,7 @@ contains
 
    !> Keep a picture if one is due
    pure subroutine keep_frame(system, contacts, step, time, displacement, farthest, last, album)
-      !> The blocks
       type(block_system_t), intent(in) :: system
-      !> The contacts
       type(contacts_t), intent(in) :: contacts
       !> Accepted steps so far
       integer, intent(in) :: step
@@ -218,7 +209,6 @@ contains
 
    !> Keep where the measured points are
    pure subroutine keep_track(system, current, step, time, album)
-      !> The blocks
       type(block_system_t), intent(in) :: system
       !> Whether they move; otherwise displacements are small
       logical, intent(in) :: current
@@ -252,7 +242,6 @@ contains
 
    !> Velocity of a point of a block
    pure function speed_of(system, current, block, place, point) result(speed)
-      !> The blocks
       type(block_system_t), intent(in) :: system
       !> Whether they move
       logical, intent(in) :: current
@@ -279,7 +268,6 @@ contains
    pure subroutine make_room_for_track(n, album)
       !> Number of steps
       integer, intent(in) :: n
-      !> The album
       type(album_t), intent(inout) :: album
       real(wp), allocatable :: when(:, :), track(:, :, :), speed(:, :, :), reaction(:, :, :)
       integer :: before, room

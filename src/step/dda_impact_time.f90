@@ -25,7 +25,6 @@ contains
    !> Check that no open contact closes fast within the step; a step in which one does ends when the
    !> two blocks, if nothing else touched them, would be near enough to count as touching
    pure function check_impact(settings, system, contacts, equations, step) result(outcome)
-      !> Settings of the run
       type(settings_t), intent(in) :: settings
       !> The blocks before the step
       type(block_system_t), intent(in) :: system
@@ -33,7 +32,6 @@ contains
       type(contacts_t), intent(in) :: contacts
       !> The equations of the step
       type(equations_t), intent(in) :: equations
-      !> The settled step
       type(step_context_t), intent(in) :: step
       !> What the check says
       type(step_outcome_t) :: outcome

@@ -82,7 +82,6 @@ contains
       real(wp), intent(in) :: force(:, :)
       !> Motion of all blocks: (n_dof, n_equation) [m]
       real(wp), intent(in) :: motion(:, :)
-      !> The problem
       type(problem_t), intent(out) :: p
       integer :: e, i, k, n, n_dof, side, number(0:size(equations%load, 2))
       integer :: pair(2, size(joint)), equation(2*size(joint))
@@ -129,7 +128,6 @@ contains
       type(contact_view_t), intent(in) :: view
       !> Forces of all joints in the step before: (3, n_joint) [N/m]
       real(wp), intent(in) :: force(:, :)
-      !> The problem
       type(problem_t), intent(inout) :: p
       integer :: i, k
 
@@ -155,7 +153,6 @@ contains
       type(joint_springs_t), intent(in) :: springs
       !> What the joints see
       type(contact_view_t), intent(in) :: view
-      !> The problem
       type(problem_t), intent(in) :: p
       !> The motion: (n_dof, n_block) [m]
       real(wp), intent(in) :: motion(:, :)
@@ -173,7 +170,6 @@ contains
    pure subroutine move_joints(springs, p, motion, opening)
       !> The springs of the joints
       type(joint_springs_t), intent(in) :: springs
-      !> The problem
       type(problem_t), intent(in) :: p
       !> The motion: (n_dof, n_block) [m]
       real(wp), intent(in) :: motion(:, :)
@@ -201,7 +197,6 @@ contains
    pure subroutine push_blocks(springs, p, force, load)
       !> The springs of the joints
       type(joint_springs_t), intent(in) :: springs
-      !> The problem
       type(problem_t), intent(in) :: p
       !> The forces: (3, n_joint) [N/m]
       real(wp), intent(in) :: force(:, :)
@@ -280,7 +275,6 @@ contains
    pure subroutine see_bounds(springs, p, force, slack)
       !> The springs of the joints
       type(joint_springs_t), intent(in) :: springs
-      !> The problem
       type(problem_t), intent(in) :: p
       !> The forces: (3, n_joint) [N/m]
       real(wp), intent(in) :: force(:, :)
@@ -355,7 +349,6 @@ contains
    pure function answer(springs, p, i, drive) result(force)
       !> The springs of the joints
       type(joint_springs_t), intent(in) :: springs
-      !> The problem
       type(problem_t), intent(in) :: p
       !> Place of the joint in the problem
       integer, intent(in) :: i

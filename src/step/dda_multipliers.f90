@@ -28,7 +28,6 @@ contains
    !> Settle the joints of one step: once in reference geometry, where the penalty has no influence,
    !> and where springs give for good; until the multipliers stay the same where blocks move
    pure subroutine settle_joints(settings, equations, springs, state)
-      !> Settings of the run
       type(settings_t), intent(in) :: settings
       !> Blocks assembled; matrix and factor are made anew
       type(equations_t), intent(inout) :: equations
@@ -55,7 +54,6 @@ contains
 
    !> Settle the joints for given conditions of the bars
    pure subroutine settle_with_bars(settings, equations, springs, state)
-      !> Settings of the run
       type(settings_t), intent(in) :: settings
       !> Blocks assembled; matrix and factor are made anew
       type(equations_t), intent(inout) :: equations
@@ -75,7 +73,6 @@ contains
 
    !> Settle the joints until neither the multipliers nor the forces at the held points change
    pure subroutine settle_exactly(settings, equations, springs, state)
-      !> Settings of the run
       type(settings_t), intent(in) :: settings
       !> Blocks assembled; matrix and factor are made anew
       type(equations_t), intent(inout) :: equations
@@ -107,7 +104,6 @@ contains
 
    !> Whether the forces of the joints are multipliers; otherwise their springs are real
    pure logical function multiplies(settings, springs)
-      !> Settings of the run
       type(settings_t), intent(in) :: settings
       !> The springs of the joints
       type(joint_springs_t), intent(in) :: springs
@@ -117,7 +113,6 @@ contains
 
    !> Settle the joints for given multipliers
    pure subroutine settle_once(settings, equations, springs, state)
-      !> Settings of the run
       type(settings_t), intent(in) :: settings
       !> Blocks assembled; matrix and factor are made anew
       type(equations_t), intent(inout) :: equations

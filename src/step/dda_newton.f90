@@ -29,7 +29,6 @@ contains
       type(equations_t), intent(inout) :: equations
       !> The springs of the joints
       type(joint_springs_t), intent(in) :: springs
-      !> The step
       type(step_state_t), intent(inout) :: state
       type(joint_face_t) :: wanted(size(state%face))
       real(wp) :: gap(size(state%face))

@@ -87,7 +87,6 @@ contains
 
    !> Change the faces of a motion once: where to begin, if the motion is nearly that of a step
    pure subroutine change_faces(equations, springs, state)
-      !> The equations
       type(equations_t), intent(in) :: equations
       !> The springs of the joints
       type(joint_springs_t), intent(in) :: springs

@@ -30,15 +30,12 @@ contains
    !> motion; if blocks still enter one another the step is cut, and if some are still held off in
    !> thin air, they are
    pure function check_axes(settings, system, contacts, march, step) result(outcome)
-      !> Settings of the run
       type(settings_t), intent(in) :: settings
       !> The blocks before the step
       type(block_system_t), intent(in) :: system
       !> The contacts of the step
       type(contacts_t), intent(in) :: contacts
-      !> The march
       type(march_t), intent(in) :: march
-      !> The settled step
       type(step_context_t), intent(in) :: step
       !> What the check says
       type(step_outcome_t) :: outcome

@@ -20,9 +20,7 @@ contains
 
    !> All supports: fixed blocks first, then points that are held of others
    pure function supports_of(system, boundary) result(support)
-      !> The blocks
       type(block_system_t), intent(in) :: system
-      !> The held points
       type(boundary_t), intent(in) :: boundary
       !> Block, and number of the held point or 0: (2, n)
       integer, allocatable :: support(:, :)
@@ -52,7 +50,6 @@ contains
 
    !> Force of a joint on one of its blocks, and its moment about the origin of coordinates
    pure function force_on(joint, force, side) result(wrench)
-      !> The joint
       type(joint_t), intent(in) :: joint
       !> Its force N1, N2, T: (3) [N/m]
       real(wp), intent(in) :: force(3)
@@ -75,7 +72,6 @@ contains
 
    !> What fixed blocks put on those that move
    pure function forces_of_blocks(system, joint, force, support) result(reaction)
-      !> The blocks
       type(block_system_t), intent(in) :: system
       !> The joints: (n_joint)
       type(joint_t), intent(in) :: joint(:)
@@ -104,7 +100,6 @@ contains
    !> Keep the reactions of a dynamic step: the mean over it of what changes the momentum of the
    !> blocks
    pure subroutine keep_reactions(settings, system, contacts, equations, step, album)
-      !> Settings of the run
       type(settings_t), intent(in) :: settings
       !> The blocks after the step
       type(block_system_t), intent(in) :: system
@@ -112,7 +107,6 @@ contains
       type(contacts_t), intent(in) :: contacts
       !> The equations of the step
       type(equations_t), intent(in) :: equations
-      !> The step
       type(step_context_t), intent(in) :: step
       !> Receives the reactions
       type(album_t), intent(inout) :: album

@@ -45,9 +45,7 @@ contains
 
    !> Whether the blocks have moved in a stride by more than the stride before lets expect
    pure logical function leaps(settings, march)
-      !> Settings of the run
       type(settings_t), intent(in) :: settings
-      !> The march
       type(march_t), intent(in) :: march
 
       leaps = settings%current .and. march%moved > max(small*march%allowed_motion, &
@@ -57,15 +55,10 @@ contains
    !> Go on from a rest: keep it, and let the clock stride as far as the motion of the last stride
    !> lets expect
    pure subroutine leave_rest(settings, system, contacts, equations, march, rest, album)
-      !> Settings of the run
       type(settings_t), intent(in) :: settings
-      !> The blocks
       type(block_system_t), intent(in) :: system
-      !> The contacts
       type(contacts_t), intent(in) :: contacts
-      !> The equations
       type(equations_t), intent(in) :: equations
-      !> The march
       type(march_t), intent(inout) :: march
       !> Receives the rest
       type(rest_t), allocatable, intent(inout) :: rest
@@ -96,17 +89,12 @@ contains
    !> for a shorter stride of the clock
    pure subroutine return_to_rest(settings, rest, falls, system, contacts, equations, march, &
       & returned, album)
-      !> Settings of the run
       type(settings_t), intent(in) :: settings
-      !> The rest
       type(rest_t), intent(in) :: rest
       !> Whether they do not come to rest
       logical, intent(in) :: falls
-      !> The blocks
       type(block_system_t), intent(inout) :: system
-      !> The contacts
       type(contacts_t), intent(inout) :: contacts
-      !> The equations
       type(equations_t), intent(inout) :: equations
       !> The march; its counts are kept
       type(march_t), intent(inout) :: march
@@ -140,9 +128,7 @@ contains
 
    !> Begin with the loads of another time
    pure subroutine begin_stride(settings, march)
-      !> Settings of the run
       type(settings_t), intent(in) :: settings
-      !> The march
       type(march_t), intent(inout) :: march
 
       march%begun = march%steps
@@ -157,7 +143,6 @@ contains
    !> Length of the first static step with the loads of another time: that of the last step at rest,
    !> or longer where points are led
    pure subroutine set_interval(settings, march)
-      !> Settings of the run
       type(settings_t), intent(in) :: settings
       !> The march, its clock gone on; the length of the next step is set
       type(march_t), intent(inout) :: march

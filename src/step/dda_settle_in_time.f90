@@ -40,7 +40,6 @@ contains
 
    !> Settle multipliers and bounds
    pure subroutine settle_in_time(settings, target, equations, springs, state, in_vain)
-      !> Settings of the run
       type(settings_t), intent(in) :: settings
       !> How far the held points must go: (n_fixed) [m]
       real(wp), intent(in) :: target(:)
@@ -121,7 +120,6 @@ contains
       type(equations_t), intent(inout) :: equations
       !> The springs of the joints
       type(joint_springs_t), intent(in) :: springs
-      !> The step
       type(step_state_t), intent(inout) :: state
       type(joint_springs_t) :: with_bars
       type(step_state_t) :: whole
@@ -145,7 +143,6 @@ contains
 
    !> Settle the multipliers and the forces at the held points for given cones
    pure subroutine settle_multipliers(settings, target, opening, equations, springs, state)
-      !> Settings of the run
       type(settings_t), intent(in) :: settings
       !> How far the held points must go: (n_fixed) [m]
       real(wp), intent(in) :: target(:)

@@ -17,7 +17,6 @@ contains
       type(joint_springs_t), intent(in) :: springs
       !> Bounds of the joint's force
       type(cone_t), intent(in) :: cone
-      !> Its face
       type(joint_face_t), intent(in) :: face
       !> Side of the joint, 1 or 2
       integer, intent(in) :: side
@@ -54,7 +53,6 @@ contains
       type(joint_springs_t), intent(in) :: springs
       !> Bounds of the joint's force
       type(cone_t), intent(in) :: cone
-      !> Its face
       type(joint_face_t), intent(in) :: face
       !> Its trial force before the motion: (3) [N/m]
       real(wp), intent(in) :: trial(3)

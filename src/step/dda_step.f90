@@ -39,17 +39,12 @@ contains
 
    !> One step: blocks and contacts change only when it is accepted
    pure subroutine advance(settings, system, contacts, equations, march, step, error)
-      !> Settings of the run
       type(settings_t), intent(in) :: settings
-      !> The blocks
       type(block_system_t), intent(inout) :: system
-      !> The contacts
       type(contacts_t), intent(inout) :: contacts
-      !> The equations
       type(equations_t), intent(inout) :: equations
       !> What is carried from step to step
       type(march_t), intent(inout) :: march
-      !> The step
       type(step_context_t), intent(inout) :: step
       !> Allocated if no step, however short, settles
       type(error_t), allocatable, intent(inout) :: error
@@ -82,9 +77,7 @@ contains
 
    !> What a step begins with: masses as the blocks have turned, and how corners are about to move
    pure subroutine predict(settings, system, contacts, equations, march, step)
-      !> Settings of the run
       type(settings_t), intent(in) :: settings
-      !> The blocks
       type(block_system_t), intent(in) :: system
       !> The contacts; whether they remember their slip is set
       type(contacts_t), intent(inout) :: contacts
@@ -92,7 +85,6 @@ contains
       type(equations_t), intent(inout) :: equations
       !> What is carried from step to step
       type(march_t), intent(in) :: march
-      !> The step
       type(step_context_t), intent(inout) :: step
 
       contacts%remember = .not. (settings%dynamic .and. settings%current)
@@ -109,9 +101,7 @@ contains
 
    !> Whether a step in time is too short for its stiffness, or for time to go on
    pure logical function too_short(settings, march)
-      !> Settings of the run
       type(settings_t), intent(in) :: settings
-      !> The march
       type(march_t), intent(in) :: march
 
       too_short = settings%dynamic .and. settings%current &
@@ -120,13 +110,9 @@ contains
 
    !> Carry an accepted step over
    pure subroutine commit(settings, system, contacts, equations, march, step)
-      !> Settings of the run
       type(settings_t), intent(in) :: settings
-      !> The blocks
       type(block_system_t), intent(inout) :: system
-      !> The contacts
       type(contacts_t), intent(inout) :: contacts
-      !> The equations
       type(equations_t), intent(in) :: equations
       !> What is carried from step to step
       type(march_t), intent(inout) :: march
@@ -149,17 +135,12 @@ contains
 
    !> The motion of one try, measured
    pure subroutine find_motion(settings, system, contacts, equations, march, step)
-      !> Settings of the run
       type(settings_t), intent(in) :: settings
-      !> The blocks
       type(block_system_t), intent(in) :: system
-      !> The contacts
       type(contacts_t), intent(inout) :: contacts
-      !> The equations
       type(equations_t), intent(inout) :: equations
       !> The march; passes are counted
       type(march_t), intent(inout) :: march
-      !> The step
       type(step_context_t), intent(inout) :: step
       logical :: in_time
 
@@ -181,9 +162,7 @@ contains
 
    !> Contacts where the blocks are now: those that were given, or those that a search finds
    pure subroutine place_contacts(settings, system, travel, kept, march, contacts, equations)
-      !> Settings of the run
       type(settings_t), intent(in) :: settings
-      !> The blocks
       type(block_system_t), intent(in) :: system
       !> How the corners are about to move: (2, n_vertex) [m]
       real(wp), intent(in) :: travel(:, :)
@@ -191,9 +170,7 @@ contains
       type(contacts_t), allocatable, intent(in) :: kept
       !> The march; its reach is set where it was not
       type(march_t), intent(inout) :: march
-      !> The contacts
       type(contacts_t), intent(inout) :: contacts
-      !> The equations
       type(equations_t), intent(inout) :: equations
       integer, allocatable :: before(:, :)
 
@@ -212,13 +189,11 @@ contains
 
    !> The state that a step starts from: the joints as they are, no motion
    pure subroutine begin_step(contacts, n_dof, n_equation, state)
-      !> The contacts
       type(contacts_t), intent(in) :: contacts
       !> Unknowns of one block
       integer, intent(in) :: n_dof
       !> Number of movable blocks
       integer, intent(in) :: n_equation
-      !> The state
       type(step_state_t), intent(inout) :: state
       integer :: n
 

@@ -21,7 +21,6 @@ contains
    !> Check the motion of a try: settled, short enough, within its margins, without an impact
    !> inside, by the right axes
    pure function check_motion(settings, system, contacts, equations, march, step) result(outcome)
-      !> Settings of the run
       type(settings_t), intent(in) :: settings
       !> The blocks before the step
       type(block_system_t), intent(in) :: system
@@ -29,9 +28,7 @@ contains
       type(contacts_t), intent(in) :: contacts
       !> The equations of the step
       type(equations_t), intent(in) :: equations
-      !> The march
       type(march_t), intent(in) :: march
-      !> The try
       type(step_context_t), intent(in) :: step
       !> What the first check says that it does not pass
       type(step_outcome_t) :: outcome
@@ -48,15 +45,12 @@ contains
 
    !> Check the velocities of a try: settled, and no corner inside a neighbour
    pure function check_end_velocities(settings, system, contacts, march, step) result(outcome)
-      !> Settings of the run
       type(settings_t), intent(in) :: settings
       !> The blocks before the step
       type(block_system_t), intent(in) :: system
       !> The contacts before the step
       type(contacts_t), intent(in) :: contacts
-      !> The march
       type(march_t), intent(in) :: march
-      !> The try
       type(step_context_t), intent(in) :: step
       !> What the first check says that it does not pass
       type(step_outcome_t) :: outcome

@@ -56,11 +56,9 @@ contains
    !> Scales of the problem and the length of the first step: long enough that inertia does not
    !> hide the elastic motion, which is found by gluing all joints
    pure subroutine first_interval(system, springs, settings, equations, state, march, error)
-      !> The blocks
       type(block_system_t), intent(in) :: system
       !> The springs of the joints
       type(joint_springs_t), intent(in) :: springs
-      !> Settings of the run
       type(settings_t), intent(in) :: settings
       !> The equations; matrix and factor are made anew
       type(equations_t), intent(inout) :: equations
@@ -113,13 +111,10 @@ contains
    !> The blocks with the loads that scales are measured by: those of the beginning, or the first
    !> that come where there are none. Points that are led do not move
    pure subroutine assemble_first_loads(system, settings, march, equations)
-      !> The blocks
       type(block_system_t), intent(in) :: system
-      !> Settings of the run
       type(settings_t), intent(in) :: settings
       !> The march, for the length of the step and its clock
       type(march_t), intent(in) :: march
-      !> The equations
       type(equations_t), intent(inout) :: equations
       type(settings_t) :: unled
       integer :: i
@@ -136,9 +131,7 @@ contains
 
    !> Scales of the problem; they do not change as it goes on
    pure subroutine measure_scales(system, settings, equations, march)
-      !> The blocks
       type(block_system_t), intent(in) :: system
-      !> Settings of the run
       type(settings_t), intent(in) :: settings
       !> The equations, for masses and weights
       type(equations_t), intent(in) :: equations
@@ -203,7 +196,6 @@ contains
    !> a block, and that moves its far end by the block's aspect ratio times as much; errors of many
    !> blocks add up by chance
    pure function feigned_motion(system) result(motion)
-      !> The blocks
       type(block_system_t), intent(in) :: system
       !> The motion [m]
       real(wp) :: motion
@@ -227,9 +219,7 @@ contains
    !> one that was asked for, unless blocks would move in it by a good part of their size: what is
    !> met in such a step depends on where it is looked for
    pure function dynamic_step(settings, march) result(dt)
-      !> Settings of the run
       type(settings_t), intent(in) :: settings
-      !> The march
       type(march_t), intent(in) :: march
       !> The length [s]
       real(wp) :: dt
@@ -249,7 +239,6 @@ contains
 
    !> Shorten a dynamic step that would move too far, or beyond the end of the run
    pure subroutine fit_interval(settings, speed, march)
-      !> Settings of the run
       type(settings_t), intent(in) :: settings
       !> Speed of the fastest point [m/s]
       real(wp), intent(in) :: speed
@@ -268,9 +257,7 @@ contains
    !> Check that a try has settled and, where blocks move, has not moved too far for a linear step
    !> (Shi: df24)
    pure function check_length(settings, march, step) result(outcome)
-      !> Settings of the run
       type(settings_t), intent(in) :: settings
-      !> The march
       type(march_t), intent(in) :: march
       !> The step, its motion measured
       type(step_context_t), intent(in) :: step
@@ -296,7 +283,6 @@ contains
 
    !> Most that a step may move where blocks move
    pure real(wp) function longest_motion(march)
-      !> The march
       type(march_t), intent(in) :: march
 
       longest_motion = merge(on_path, too_far, march%begun > 0)*march%allowed_motion
@@ -305,13 +291,9 @@ contains
    !> Length of the step that follows an accepted one. Where blocks move it aims at the motion that
    !> a step may make, and shrinks where blocks rattle to and fro
    pure subroutine next_interval(settings, system, step, march)
-      !> Settings of the run
       type(settings_t), intent(in) :: settings
-      !> The blocks
       type(block_system_t), intent(in) :: system
-      !> The accepted step
       type(step_context_t), intent(in) :: step
-      !> The march
       type(march_t), intent(inout) :: march
       real(wp) :: factor, alike
 
@@ -345,7 +327,6 @@ contains
 
    !> Largest motion of a point at the radius of gyration by the strain of its block
    pure function straining_motion(system, motion) result(largest)
-      !> The blocks
       type(block_system_t), intent(in) :: system
       !> Motion of the blocks: (n_dof, n_equation)
       real(wp), intent(in) :: motion(:, :)
@@ -364,7 +345,6 @@ contains
    !> Largest motion of the points of all blocks: of the centre, and of a point at the radius of
    !> gyration by rotation
    pure function largest_motion(system, motion) result(largest)
-      !> The blocks
       type(block_system_t), intent(in) :: system
       !> Motion of the blocks: (n_dof, n_equation)
       real(wp), intent(in) :: motion(:, :)

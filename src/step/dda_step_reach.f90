@@ -22,9 +22,7 @@ contains
 
    !> Reach of the blocks before anything has moved: what speed and free fall make of a first step
    pure function first_reach(system, settings, march) result(reach)
-      !> The blocks
       type(block_system_t), intent(in) :: system
-      !> Settings of the run
       type(settings_t), intent(in) :: settings
       !> The march, with the length of the step
       type(march_t), intent(in) :: march
@@ -48,9 +46,7 @@ contains
 
    !> Reach in the step that follows an accepted one
    pure subroutine next_reach(system, step, march)
-      !> The blocks
       type(block_system_t), intent(in) :: system
-      !> The accepted step
       type(step_context_t), intent(in) :: step
       !> Receives the reach
       type(march_t), intent(inout) :: march
@@ -67,9 +63,7 @@ contains
       type(block_system_t), intent(in) :: system
       !> The contacts of the step
       type(contacts_t), intent(in) :: contacts
-      !> The march
       type(march_t), intent(in) :: march
-      !> The step
       type(step_context_t), intent(in) :: step
       !> What the check says
       type(step_outcome_t) :: outcome
@@ -95,7 +89,6 @@ contains
 
    !> Let blocks reach as far as a motion takes them
    pure subroutine widen_margins(system, motion, reach)
-      !> The blocks
       type(block_system_t), intent(in) :: system
       !> The motion: (n_dof, n_equation)
       real(wp), intent(in) :: motion(:, :)
@@ -109,7 +102,6 @@ contains
 
    !> Most that a corner of each block moves
    pure function corner_motion(system, motion) result(way)
-      !> The blocks
       type(block_system_t), intent(in) :: system
       !> Motion of the blocks: (n_dof, n_equation)
       real(wp), intent(in) :: motion(:, :)
@@ -134,11 +126,8 @@ contains
    !> How the corners are about to move: as their speed and the loads have it, or as they did in the
    !> step before
    pure function travel_of(system, settings, march) result(travel)
-      !> The blocks
       type(block_system_t), intent(in) :: system
-      !> Settings of the run
       type(settings_t), intent(in) :: settings
-      !> The march
       type(march_t), intent(in) :: march
       !> The motion: (2, n_vertex) [m]
       real(wp) :: travel(2, size(system%vertex, 2))
@@ -162,7 +151,6 @@ contains
 
    !> How a motion of the blocks moves their corners
    pure function travel_by(system, motion) result(travel)
-      !> The blocks
       type(block_system_t), intent(in) :: system
       !> The motion: (n_dof, n_equation)
       real(wp), intent(in) :: motion(:, :)

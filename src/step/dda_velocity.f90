@@ -50,7 +50,6 @@ contains
    !> less of it. What contacts have done to the energy of the motion is no part of what is allowed;
    !> without contacts only held points change it, which turn with their blocks
    pure subroutine settle_velocities(settings, system, contacts, equations, step)
-      !> Settings of the run
       type(settings_t), intent(in) :: settings
       !> The blocks before the step
       type(block_system_t), intent(in) :: system
@@ -91,7 +90,6 @@ contains
 
    !> Velocities for given speeds at which the contacts must part
    pure subroutine settle_impulses(settings, system, contacts, closed, part, equations, step)
-      !> Settings of the run
       type(settings_t), intent(in) :: settings
       !> The blocks before the step
       type(block_system_t), intent(in) :: system
@@ -140,11 +138,9 @@ contains
    !> Contacts that are closed at the end of a step: those that carry a force, and those without a
    !> gap
    pure function closed_contacts(system, contacts, step) result(closed)
-      !> The blocks
       type(block_system_t), intent(in) :: system
       !> The contacts before the step
       type(contacts_t), intent(in) :: contacts
-      !> The step
       type(step_context_t), intent(in) :: step
       !> For each contact of each joint: (2, n_joint)
       logical :: closed(2, size(contacts%joint))
@@ -163,7 +159,6 @@ contains
    !> Speed at which the contacts must part: restitution times the speed at which they have met, if
    !> they have met at the very end of the step and faster than weight makes resting contacts meet
    pure function parting_speed(settings, system, contacts, closed, step) result(speed)
-      !> Settings of the run
       type(settings_t), intent(in) :: settings
       !> The blocks before the step
       type(block_system_t), intent(in) :: system
@@ -171,7 +166,6 @@ contains
       type(contacts_t), intent(in) :: contacts
       !> Contacts that are closed at its end: (2, n_joint)
       logical, intent(in) :: closed(:, :)
-      !> The step
       type(step_context_t), intent(in) :: step
       !> The speeds: (2, n_joint) [m/s]
       real(wp) :: speed(2, size(contacts%joint))
@@ -193,13 +187,11 @@ contains
 
    !> Equations of the velocities, as motions v1*dt: M/dt**2 (v1 dt) = M v0/dt + f
    pure subroutine assemble_rates(settings, system, follows, step, equations)
-      !> Settings of the run
       type(settings_t), intent(in) :: settings
       !> The blocks before the step
       type(block_system_t), intent(in) :: system
       !> Blocks without strain rates: (n_block)
       logical, intent(in) :: follows(:)
-      !> The step
       type(step_context_t), intent(in) :: step
       !> Receives base and load
       type(equations_t), intent(inout) :: equations
@@ -255,7 +247,6 @@ contains
       logical, intent(in) :: follows(2)
       !> Number of the joint
       integer, intent(in) :: j
-      !> The springs
       type(joint_springs_t), intent(inout) :: springs
       !> The state that the search for the velocities begins with
       type(step_state_t), intent(inout) :: state
@@ -329,7 +320,6 @@ contains
    !> Springs of contacts whose forces are multipliers: stiff beside inertia however short the step,
    !> and without memory of slip, which would bring in work. What sticks has no speed to slip with
    pure subroutine stiffen_contacts(system, dt, contacts)
-      !> The blocks
       type(block_system_t), intent(in) :: system
       !> Length of the step [s]
       real(wp), intent(in) :: dt
@@ -347,7 +337,6 @@ contains
 
    !> Gap below which two blocks count as touching
    pure real(wp) function near_gap(system, pair)
-      !> The blocks
       type(block_system_t), intent(in) :: system
       !> The two blocks: (2)
       integer, intent(in) :: pair(2)
@@ -357,7 +346,6 @@ contains
 
    !> Mass of the lighter of the movable blocks of a pair [kg per metre depth]
    pure real(wp) function joint_mass(system, pair)
-      !> The blocks
       type(block_system_t), intent(in) :: system
       !> The two blocks: (2)
       integer, intent(in) :: pair(2)

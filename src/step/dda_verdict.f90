@@ -115,7 +115,6 @@ contains
       type(march_t), intent(in) :: march
       !> The last step, measured
       type(step_context_t), intent(in) :: step
-      !> Settings of the run
       type(settings_t), intent(in) :: settings
       !> One of verdict
       integer :: answer
@@ -171,7 +170,6 @@ contains
 
    !> Whether a joint slides at the end of a step
    pure logical function slides(step)
-      !> The step
       type(step_context_t), intent(in) :: step
 
       slides = .false.
@@ -180,7 +178,6 @@ contains
 
    !> Farthest that a corner has moved since the beginning
    pure function largest_displacement(system, current, since) result(largest)
-      !> The blocks
       type(block_system_t), intent(in) :: system
       !> Whether they move
       logical, intent(in) :: current

@@ -13,9 +13,7 @@ contains
 
    !> Rows of a bar where nothing has moved: its elongation by the motion of the blocks at its ends
    pure function reference_rows(system, bar) result(row)
-      !> The blocks
       type(block_system_t), intent(in) :: system
-      !> The bar
       type(bar_t), intent(in) :: bar
       !> For both ends: (6, 2)
       real(wp) :: row(6, 2)
@@ -34,11 +32,9 @@ contains
 
    !> Rows and elongation of one bar
    pure subroutine place_bar(system, current, bar, row, elongation, inverse_length)
-      !> The blocks
       type(block_system_t), intent(in) :: system
       !> Whether the bar goes with the blocks
       logical, intent(in) :: current
-      !> The bar
       type(bar_t), intent(in) :: bar
       !> Rows along and across, for both blocks: (n_dof, 2, 2)
       real(wp), intent(out) :: row(:, :, :)

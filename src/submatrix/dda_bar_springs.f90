@@ -41,9 +41,7 @@ contains
 
    !> Springs of all bars, not yet placed
    pure function new_bar_springs(system, settings, n_dof) result(bars)
-      !> The blocks
       type(block_system_t), intent(in) :: system
-      !> Settings of the run
       type(settings_t), intent(in) :: settings
       !> Unknowns of a block
       integer, intent(in) :: n_dof
@@ -68,11 +66,8 @@ contains
 
    !> Place the bars where the blocks are
    pure subroutine follow_bars(system, settings, bars)
-      !> The blocks
       type(block_system_t), intent(in) :: system
-      !> Settings of the run
       type(settings_t), intent(in) :: settings
-      !> The springs
       type(bar_springs_t), intent(inout) :: bars
       real(wp) :: elongation
       integer :: i
@@ -109,7 +104,6 @@ contains
 
    !> Stiffness of a bar that acts in this step, along and across
    pure function acting(bars, i) result(stiffness)
-      !> The springs
       type(bar_springs_t), intent(in) :: bars
       !> Number of the bar
       integer, intent(in) :: i
@@ -122,7 +116,6 @@ contains
 
    !> Force of a bar that acts in this step before anything moves
    pure real(wp) function acting_force(bars, i) result(force)
-      !> The springs
       type(bar_springs_t), intent(in) :: bars
       !> Number of the bar
       integer, intent(in) :: i
@@ -140,7 +133,6 @@ contains
 
    !> Add the bars to matrix and load of the blocks, or take them away
    pure subroutine add_bars(bars, sign, matrix, load)
-      !> The springs
       type(bar_springs_t), intent(in) :: bars
       !> 1 to add, -1 to take away
       real(wp), intent(in) :: sign
@@ -169,7 +161,6 @@ contains
 
    !> Stiffness between the blocks of the bars
    pure subroutine couple_bars(bars, pair, are_stiff, coupling)
-      !> The springs
       type(bar_springs_t), intent(in) :: bars
       !> Blocks of each entry of the matrix, in the order of its rows and columns: (2, n_entry)
       integer, intent(in) :: pair(:, :)
@@ -198,7 +189,6 @@ contains
 
    !> What the couplings of the bars make of a motion
    pure function bar_motion(bars, motion) result(force)
-      !> The springs
       type(bar_springs_t), intent(in) :: bars
       !> The motion: (n_dof, n_equation)
       real(wp), intent(in) :: motion(:, :)
@@ -224,7 +214,6 @@ contains
 
    !> Elongation of a bar by a motion
    pure real(wp) function elongation_by(bars, motion, i)
-      !> The springs
       type(bar_springs_t), intent(in) :: bars
       !> The motion: (n_dof, n_equation)
       real(wp), intent(in) :: motion(:, :)
@@ -241,7 +230,6 @@ contains
 
    !> Change the conditions of bars that a motion does not agree with
    pure subroutine judge_bars(bars, motion, one_by_one, agreed)
-      !> The springs
       type(bar_springs_t), intent(inout) :: bars
       !> The motion: (n_dof, n_equation)
       real(wp), intent(in) :: motion(:, :)
@@ -270,7 +258,6 @@ contains
 
    !> Forces of bars that have acted in a step, as loads
    pure subroutine push_bars(bars, motion, load)
-      !> The springs
       type(bar_springs_t), intent(in) :: bars
       !> Motion of the step: (n_dof, n_equation)
       real(wp), intent(in) :: motion(:, :)
@@ -298,9 +285,7 @@ contains
 
    !> What an accepted step leaves of the bars
    pure subroutine keep_bars(bars, settings, motion, system)
-      !> The springs
       type(bar_springs_t), intent(in) :: bars
-      !> Settings of the run
       type(settings_t), intent(in) :: settings
       !> Motion of the step: (n_dof, n_equation)
       real(wp), intent(in) :: motion(:, :)
@@ -326,7 +311,6 @@ contains
 
    !> How much the softest bar gives to a force
    pure real(wp) function longest_give(bars, force)
-      !> The springs
       type(bar_springs_t), intent(in) :: bars
       !> The force [N]
       real(wp), intent(in) :: force
@@ -341,7 +325,6 @@ contains
 
    !> Energy that elastic bars take in during a step, and work that the forces of others do
    pure function bar_energies(bars, motion) result(energy)
-      !> The springs
       type(bar_springs_t), intent(in) :: bars
       !> Motion of the step: (n_dof, n_equation)
       real(wp), intent(in) :: motion(:, :)

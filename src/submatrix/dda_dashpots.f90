@@ -17,7 +17,6 @@ contains
 
    !> Forces of the dashpots on the blocks per unit rate of the unknowns
    pure function dashpot_matrices(system, boundary, n_dof) result(matrix)
-      !> The blocks
       type(block_system_t), intent(in) :: system
       !> Where their faces let waves out
       type(boundary_t), intent(in) :: boundary
@@ -46,9 +45,7 @@ contains
 
    !> Force of the dashpots of a point per velocity along x and y
    pure function impedance(system, point) result(c)
-      !> The blocks
       type(block_system_t), intent(in) :: system
-      !> The point
       type(absorbing_point_t), intent(in) :: point
       !> Symmetric matrix: (2, 2) [N s/m2]
       real(wp) :: c(2, 2)

@@ -48,7 +48,6 @@ contains
 
    !> Springs of all held points, free of force
    pure function new_fixed_points(system, held, n_dof) result(fixed)
-      !> The blocks
       type(block_system_t), intent(in) :: system
       !> The held points
       type(held_point_t), intent(in) :: held(:)
@@ -78,9 +77,7 @@ contains
 
    !> Rows and targets for one step from where the blocks are
    pure subroutine follow_fixed_points(system, settings, time, dt, fixed)
-      !> The blocks
       type(block_system_t), intent(in) :: system
-      !> Settings of the run
       type(settings_t), intent(in) :: settings
       !> Time of the paths at the end of the step [s]
       real(wp), intent(in) :: time
@@ -115,7 +112,6 @@ contains
 
    !> Add the springs to matrix and load of the blocks
    pure subroutine add_fixed_springs(fixed, target, matrix, load)
-      !> The springs
       type(fixed_points_t), intent(in) :: fixed
       !> How far the points must go: (n) [m]
       real(wp), intent(in) :: target(:)
@@ -141,7 +137,6 @@ contains
    pure subroutine turn_fixed_row(system, settings, i, motion, fixed, load)
       !> The blocks before the step
       type(block_system_t), intent(in) :: system
-      !> Settings of the run
       type(settings_t), intent(in) :: settings
       !> Number of the spring
       integer, intent(in) :: i

@@ -17,9 +17,7 @@ contains
    !> Loads that change with time added to those that do not: their mean over a dynamic step, what
    !> they are at the time of a static one
    pure subroutine outer_loads(system, settings, time, dt, weight, load, felt)
-      !> The blocks
       type(block_system_t), intent(in) :: system
-      !> Settings of the run
       type(settings_t), intent(in) :: settings
       !> Time at the beginning of a dynamic step, or of the loads in a static one [s]
       real(wp), intent(in) :: time
@@ -82,7 +80,6 @@ contains
 
       !> What a history is in the step
       pure function now(history) result(value)
-         !> The history
          type(history_t), intent(in) :: history
          !> Components along x and y: (2)
          real(wp) :: value(2)

@@ -253,7 +253,6 @@ contains
    pure function same_joints(a, b) result(same)
       !> One state
       type(pinch_t), intent(in) :: a
-      !> The other
       type(pinch_t), intent(in) :: b
       !> Equal pairs and the same exhausted friction
       logical :: same

@@ -32,7 +32,6 @@ contains
 
    !> Largest gap over all deficits: tangents from both sides meet at the peak of a concave polygon
    pure subroutine widest_gap(ring, eta, pinch)
-      !> The ring
       type(ring_t), intent(in) :: ring
       !> Thickness ratio [-]
       real(wp), intent(in) :: eta
@@ -78,7 +77,6 @@ contains
 
    !> The joints that leave the least room for the thrust at one deficit
    pure subroutine narrowest_pair(ring, eta, deficit, pair, gap)
-      !> The ring
       type(ring_t), intent(in) :: ring
       !> Thickness ratio [-]
       real(wp), intent(in) :: eta
@@ -112,7 +110,6 @@ contains
 
    !> Gap between the extrados of one joint and the intrados of another
    pure function pair_gap(ring, eta, deficit, pair) result(gap)
-      !> The ring
       type(ring_t), intent(in) :: ring
       !> Thickness ratio [-]
       real(wp), intent(in) :: eta
@@ -134,7 +131,6 @@ contains
 
    !> Derivative of a pair's gap by the deficit
    pure function gap_slope(ring, eta, pair) result(slope)
-      !> The ring
       type(ring_t), intent(in) :: ring
       !> Thickness ratio [-]
       real(wp), intent(in) :: eta
@@ -150,7 +146,6 @@ contains
 
    !> Derivative of a pair's gap by eta
    pure function gap_growth(ring, eta, deficit, pair) result(growth)
-      !> The ring
       type(ring_t), intent(in) :: ring
       !> Thickness ratio [-]
       real(wp), intent(in) :: eta
@@ -169,7 +164,6 @@ contains
 
    !> Where the gaps of two pairs are equal
    pure subroutine meet(ring, eta, left, right, deficit, gap)
-      !> The ring
       type(ring_t), intent(in) :: ring
       !> Thickness ratio [-]
       real(wp), intent(in) :: eta
@@ -190,7 +184,6 @@ contains
    !> Thickness ratio at which the pinching joints just let the thrust through: Newton's method in
    !> eta and deficit
    pure subroutine solve_pinch(ring, start, pinch, eta, solved)
-      !> The ring
       type(ring_t), intent(in) :: ring
       !> Thickness ratio at which the pinch was found [-]
       real(wp), intent(in) :: start
@@ -223,7 +216,6 @@ contains
 
    !> Step towards the vanishing of both gaps, or of one where friction holds the deficit
    pure subroutine newton_step(ring, eta, pinch, eta_step, deficit_step)
-      !> The ring
       type(ring_t), intent(in) :: ring
       !> Thickness ratio [-]
       real(wp), intent(in) :: eta

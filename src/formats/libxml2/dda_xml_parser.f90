@@ -231,7 +231,6 @@ contains
       character(len=*), intent(in) :: text
       !> Name of the file
       character(len=*), intent(in) :: file
-      !> Its elements
       type(xml_tree_t), intent(out) :: tree
       !> What is not XML, with its line
       type(error_t), allocatable, intent(out) :: error
@@ -350,7 +349,6 @@ contains
       character(len=*), intent(in) :: file
       !> Lines of the file before what libxml2 was given
       integer, intent(in) :: skipped
-      !> The error
       type(error_t), allocatable, intent(out) :: error
       type(xml_error_t), target :: said
       character(len=:), allocatable :: message
