@@ -1,0 +1,47 @@
+"""A wall that a slow ground motion pushes lets go where the loading path says."""
+
+from __future__ import annotations
+
+import csv
+from pathlib import Path
+
+import pytest
+from block_scene import block
+from dda_command import run_dda
+
+LEVEL = (0.0, 0.25011638446681367, 0.6035971503472201, 0.9749743829203876, 1.2410130403590103, 1.517347052446026)
+RIGHT = 2.980916829816682
+HEAD = (
+    (0.0, 0.5089523954134982, 1.2388459559879001, 1.827618849894751, 2.4257714090172513, RIGHT),
+    (0.0, 0.6142516297443784, 1.0694881756074128, 1.6225493687385708, 2.3021361816127768, RIGHT),
+    (0.0, 0.7044509932098935, 1.3241338304571888, 2.0237411962082708, 2.525284371631284, RIGHT),
+    (0.0, 0.562420228449706, 1.0033293198816453, 1.5847961194834055, 2.2154233982001355, RIGHT),
+    (0.0, 0.719151459463523, 1.2096433760125158, 1.8923473256720063, 2.3078308962081757, RIGHT),
+)
+#: First collapse on the loading path, over the weight: shear of joints that stick is remembered there
+PATH = 0.6601
+
+
+def box(x0: float, y0: float, x1: float, y1: float) -> list[tuple[float, float]]:
+    """Corners of an upright rectangle."""
+    return [(x0, y0), (x1, y0), (x1, y1), (x0, y1)]
+
+
+@pytest.mark.parametrize("geometry", ["reference", "current"])
+def test_a_wall_on_a_slow_ramp_lets_go_where_its_path_does(tmp_path: Path, geometry: str) -> None:
+    """A push of 1 g in 10 s, damped: the joints remember the shear that they stick with from step to step."""
+    blocks = block(box(-2.0, -1.0, RIGHT + 2.0, 0.0), "fixed")
+    for course, heads in enumerate(HEAD):
+        for left, right in zip(heads, heads[1:]):
+            blocks += block(box(left, LEVEL[course], right, LEVEL[course + 1]))
+    (tmp_path / "x.blocks").write_text(blocks + f"measure {RIGHT - 0.1!r} 1.5\nbase_acceleration\n0 0 0\n10 -9.81 0\n")
+    (tmp_path / "x.nml").write_text(
+        "&scene kind = 'blocks', geometry = 'x.blocks' /\n&material density = 2200.0 /\n&joint friction_deg = 50 /\n"
+        f"&analysis unknowns = 3, mode = 'dynamic', geometry = '{geometry}', time_step = 2e-3, duration = 6.8,\n"
+        "  damping = 50, steps = 200000 /\n")
+    done = run_dda("run", "x.nml", "--quiet", cwd=tmp_path)
+    assert done.returncode == 0, done.stderr
+    with (tmp_path / "x" / "points.csv").open() as table:
+        moved = [(float(row["time"]) / 10.0, abs(float(row["u"]))) for row in csv.DictReader(table)]
+    assert max(way for push, way in moved if push < 0.98 * PATH) < 1e-6
+    assert max(way for push, way in moved if push < 1.02 * PATH) > 1e-5
