@@ -44,7 +44,12 @@ contains
       type(turn_t), intent(out) :: turn
 
       allocate (turn%lack, turn%rest, turn%unit_response, turn%response, turn%dv, &
-         & source=0.0_wp*path%dead)
+         & mold=path%dead)
+      turn%lack = 0.0_wp
+      turn%rest = 0.0_wp
+      turn%unit_response = 0.0_wp
+      turn%response = 0.0_wp
+      turn%dv = 0.0_wp
       allocate (turn%excess, turn%aim, turn%unit_rate, turn%rate, turn%dx, turn%ds, &
          & turn%per_force, turn%per_rate, source=0.0_wp*rays%bounded)
       turn%least_factor = path%negligible/goal%tolerance
