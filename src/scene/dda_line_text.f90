@@ -11,7 +11,7 @@ module dda_line_text
    use dda_line_scene, only : held_blocks, law_of_joint, line_system
    use dda_material, only : joint_law_t
    use dda_scene, only : scene_t
-   use dda_shape_text, only : add_bar, pair_text
+   use dda_shape_text, only : add_bar_lines, pair_text
    use dda_text, only : to_text
    implicit none
    private
@@ -46,7 +46,6 @@ contains
       type(block_system_t) :: system
       type(growing_text_t) :: lines
       type(scene_t) :: scene
-      integer :: i
 
       call line_system(deck, deck%cut, system)
       call deck_scene(deck, scene)
@@ -56,21 +55,17 @@ contains
       if (size(deck%cut%pair) > 0) call add_laws(law_of_joint(deck, deck%cut%pair(1)%joint), &
          & maxval(system%material), lines)
       call add_points(deck, lines)
-      if (allocated(scene%settings%boundary%bar)) then
-         do i = 1, size(scene%settings%boundary%bar)
-            call add_bar(scene%settings%boundary%bar(i), scene%origin, lines)
-         end do
-      end if
+      call add_bar_lines(scene, lines)
       text = lines_of(lines)
    end function line_text
 
-   !> Friction, cohesion and tension of a law
+   !> The numbers that a file of blocks has for a law
    pure function numbers_of(law) result(number)
       type(joint_law_t), intent(in) :: law
-      !> The numbers: (3)
-      real(wp) :: number(3)
+      !> Friction, cohesion, tension, residual friction, slip length: (5)
+      real(wp) :: number(5)
 
-      number = [law%friction, law%cohesion, law%tension]
+      number = [law%friction, law%cohesion, law%tension, law%residual, law%slip_length]
    end function numbers_of
 
    !> Add the blocks, each with its corners. Material 1 is that of the deck, so those of the lines
@@ -126,16 +121,19 @@ contains
       integer, intent(in) :: n
       !> Receives the lines
       type(growing_text_t), intent(inout) :: lines
-      character(len=:), allocatable :: friction
+      character(len=:), allocatable :: friction, residual
       integer :: i, j
 
       friction = to_text(atan(law%friction)/degree)
       if (law%no_slip) friction = "90"
+      residual = ""
+      if (law%residual < huge(law%residual)) residual = " residual_deg " &
+         & //to_text(atan(law%residual)/degree)//" slip_length "//to_text(law%slip_length)
       do j = 1, n
          do i = 1, j
             call add_line(lines, "joint "//to_text(i + 1)//" "//to_text(j + 1)//" friction_deg " &
                & //friction//" cohesion "//to_text(law%cohesion)//" tension " &
-               & //to_text(law%tension))
+               & //to_text(law%tension)//residual)
          end do
       end do
    end subroutine add_laws

@@ -15,7 +15,7 @@ module dda_shape_text
    implicit none
    private
 
-   public :: add_bar, pair_text, shape_losses, shape_text
+   public :: add_bar_lines, pair_text, shape_losses, shape_text
 
 contains
 
@@ -44,11 +44,7 @@ contains
             call add_load(scene%settings%boundary%loaded(i), scene%origin, lines)
          end do
       end if
-      if (allocated(scene%settings%boundary%bar)) then
-         do i = 1, size(scene%settings%boundary%bar)
-            call add_bar(scene%settings%boundary%bar(i), scene%origin, lines)
-         end do
-      end if
+      call add_bar_lines(scene, lines)
       text = lines_of(lines)
    end function shape_text
 
@@ -80,6 +76,19 @@ contains
          & //to_text(loaded%block)//" "//pair_text(loaded%point + origin)//" " &
          & //pair_text(loaded%force%value(:, 1)))
    end subroutine add_load
+
+   !> Add the bars of a scene
+   pure subroutine add_bar_lines(scene, lines)
+      type(scene_t), intent(in) :: scene
+      !> Receives the lines
+      type(growing_text_t), intent(inout) :: lines
+      integer :: i
+
+      if (.not. allocated(scene%settings%boundary%bar)) return
+      do i = 1, size(scene%settings%boundary%bar)
+         call add_bar(scene%settings%boundary%bar(i), scene%origin, lines)
+      end do
+   end subroutine add_bar_lines
 
    !> Add a bar
    pure subroutine add_bar(bar, origin, lines)

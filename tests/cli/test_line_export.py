@@ -116,3 +116,15 @@ def test_a_deck_of_blocks_needs_no_export(tmp_path: Path) -> None:
     done = run_dda("export", "b.nml", cwd=tmp_path)
     assert done.returncode == 2
     assert "b.nml:1: error: dda export needs scene%kind 'arch' or 'lines', got 'blocks'" in done.stderr
+
+
+def test_what_slip_takes_comes_along(tmp_path: Path) -> None:
+    exported(tmp_path, MAP + OPENING)
+    worn = KEYS.replace("friction_deg = 35", "friction_deg = 35, residual_deg = 20, slip_length = 0.002")
+    (tmp_path / "rock.nml").write_text("&scene kind = 'lines', geometry = 'rock.geo' /\n" + worn)
+    run(tmp_path, "export", "rock.nml")
+    laws = [line.split() for line in (tmp_path / "rock.blocks").read_text().splitlines() if line.startswith("joint")]
+    told = [dict(zip(words[3::2], map(float, words[4::2]))) for words in laws]
+    assert told and all(law["residual_deg"] == pytest.approx(20.0) and law["slip_length"] == 0.002 for law in told)
+    row, _ = results(tmp_path, (tmp_path / "rock.blocks").read_text())
+    assert row["verdict"] == "collapsed"
