@@ -19,7 +19,10 @@ module dda_first_motion
    public :: find_first_motion
 
    !> What may be left of equations and products, and what is aimed at
-   real(wp), parameter :: accepted = 1.0e-7_wp, aim = 1.0e-8_wp
+   real(wp), parameter :: accepted = 1.0e-7_wp, aim = 1.0e-12_wp
+
+   !> What a unit of force closes a ray by, in units of the largest mass and of the largest load
+   real(wp), parameter :: compliance = 1.0e-14_wp
 
 contains
 
@@ -49,6 +52,7 @@ contains
       path%mass(:, 1:) = graph%mass(1:3, :)/maxval(graph%mass(1, :))
       path%mass(3, 1:) = path%mass(3, 1:)/rays%length**2
       path%moves = .true.
+      path%compliance = compliance
       call begin(rays, path, springs, point)
       call solve_cones(rays, path, interior_goal_t(tolerance=aim), springs, point)
       found = worst(point) < accepted

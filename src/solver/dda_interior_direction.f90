@@ -102,8 +102,9 @@ contains
 
       turn%dv = 0.0_wp
       turn%dfactor = 0.0_wp
-      turn%ds = -turn%excess
+      turn%ds = path%compliance*turn%aim - turn%excess
       turn%dx = turn%aim - springs%stiffness*turn%ds
+      turn%ds = (1.0_wp - path%compliance*springs%stiffness)*turn%ds
       call balance_direction(rays, path, point, springs, turn)
       call refine_direction(rays, path, point, enough, springs, turn)
    end subroutine find_direction
@@ -166,7 +167,7 @@ contains
       turn%dfactor = turn%dfactor + step - taken
       turn%dv = turn%dv + turn%response
       turn%rate = turn%rate + step*turn%unit_rate
-      turn%ds = turn%ds + turn%rate
+      turn%ds = turn%ds + (1.0_wp - path%compliance*springs%stiffness)*turn%rate
       turn%dx = turn%dx - springs%stiffness*turn%rate
    end subroutine balance_direction
 end module dda_interior_direction

@@ -43,6 +43,8 @@ module dda_interior_state
       real(wp), allocatable :: mass(:, :)
       !> Whether there are any
       logical :: moves = .false.
+      !> What a unit of force closes a ray by: forces that hold one another, of any size, are small
+      real(wp) :: compliance = 0.0_wp
       !> Factor of this path that is one for the caller
       real(wp) :: size = 1.0_wp
       !> Factors whose difference is smaller are taken for equal

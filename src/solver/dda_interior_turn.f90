@@ -72,7 +72,7 @@ contains
       point%imbalance = maxval(abs(turn%lack))/max(path%largest_dead, &
          & abs(point%factor)*path%largest_live, 1.0e-3_wp*maxval(abs(point%x)), tiny(power))
       call ray_rates(rays, point%v, turn%rate)
-      turn%excess = point%s*rays%bounded - turn%rate
+      turn%excess = (point%s - path%compliance*point%x)*rays%bounded - turn%rate
       power = maxval(abs(point%v))
       against = max(maxval(-turn%rate*rays%bounded), maxval(abs(turn%rate*rays%free)))
       point%violation = against/max(power, tiny(power))
@@ -126,7 +126,7 @@ contains
          turn%per_force = 1.0_wp/point%x
          turn%per_rate = 1.0_wp/point%s
       end where
-      call set_stiffness(rays, point, springs)
+      call set_stiffness(rays, path, point, springs)
       call set_springs(rays, path%mass, lift, springs)
       if (springs%usable) call respond_to_live_load(rays, path, springs, turn)
       turn%aim = -point%x*rays%bounded
@@ -134,15 +134,17 @@ contains
    end subroutine predict
 
    !> Stiffness of the springs along all rays
-   pure subroutine set_stiffness(rays, point, springs)
+   pure subroutine set_stiffness(rays, path, point, springs)
       type(joint_rays_t), intent(in) :: rays
+      type(load_path_t), intent(in) :: path
       type(interior_point_t), intent(in) :: point
       !> Receives it
       type(ray_matrix_t), intent(inout) :: springs
       real(wp) :: mean
 
       mean = sum(point%x*rays%bounded)/max(sum(point%s*rays%bounded), tiny(mean))
-      springs%stiffness = rays%bounded*point%x/point%s + rays%free*stiffness_of_free*mean
+      springs%stiffness = rays%bounded*point%x/(point%s + path%compliance*point%x) &
+         & + rays%free*stiffness_of_free*mean
    end subroutine set_stiffness
 
    !> Direction to equal products x*s, with the second order of the predictor; then products that
@@ -216,7 +218,7 @@ contains
       type(turn_t), intent(inout) :: turn
       !> Steps along it
       real(wp), intent(out) :: reach(2)
-      real(wp) :: dx(size(change, 1), size(change, 2)), ds(size(change, 1), size(change, 2))
+      real(wp), dimension(size(change, 1), size(change, 2)) :: dx, ds, soft
       real(wp) :: dv(3, 0:rays%n_block), dfactor, share, steps(2, n_share)
       integer :: i, best
 
@@ -224,7 +226,9 @@ contains
       ds = turn%ds
       dv = turn%dv
       dfactor = turn%dfactor
-      turn%dx = turn%dx + change*rays%bounded
+      soft = change*rays%bounded*(1.0_wp - path%compliance*springs%stiffness)
+      turn%dx = turn%dx + soft
+      turn%ds = turn%ds + path%compliance*soft
       call balance_direction(rays, path, point, springs, turn)
       steps = steps_of_shares(turn, dx, ds)
       best = n_share

@@ -29,7 +29,7 @@ module dda_graph_decision
    character(len=*), parameter :: no_start = "forces balance the dead loads, but no state under " &
       & //"Coulomb friction is found"
    !> Relative gap of the two proofs of a limit whose mechanism is asked for
-   real(wp), parameter :: limit_gap = 1.0e-7_wp
+   real(wp), parameter :: limit_gap = 1.0e-11_wp
 
 contains
 

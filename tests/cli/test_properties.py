@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import os
 from pathlib import Path
 
@@ -10,10 +11,11 @@ from properties import PROPERTIES, Bench
 
 #: Assemblies of three kinds: a wall, a ring, a slope
 SEEDS = (0, 8, 11)
+#: What falls with forces that hold one another in any size, and with corners that hardly open
+WEDGED = (23, 122)
 
 
-@pytest.mark.parametrize("seed", SEEDS)
-@pytest.mark.parametrize("name", PROPERTIES)
+@pytest.mark.parametrize(("name", "seed"), [*itertools.product(PROPERTIES, SEEDS), *(("proof", s) for s in WEDGED)])
 def test_property_holds_of_random_assemblies(tmp_path: Path, name: str, seed: int) -> None:
     if name == "proof":
         pytest.importorskip("voussoir", reason="PYTHONPATH wants the build's python folder")
