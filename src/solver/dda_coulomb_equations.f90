@@ -27,6 +27,8 @@ module dda_coulomb_equations
       type(coulomb_matrix_t) :: base
       !> Whether the equations can be solved
       logical :: usable = .false.
+      !> Pivots that a search for faces may take
+      integer :: most_pivots = 100
       !> Multiple of the mass
       real(wp) :: damping = -1.0_wp
       !> Faces in the factor: (3, n_joint)
@@ -61,6 +63,8 @@ module dda_coulomb_equations
 
    !> Answers that are kept: more cost as much as a new factor
    integer, parameter :: max_answer = 48
+   !> Answers that are worth their cost at once
+   integer, parameter :: max_new = 16
 
 contains
 
@@ -121,9 +125,10 @@ contains
       type(coulomb_joints_t), intent(in) :: joints
       !> Whether there was room for them
       logical, intent(out) :: few
-      integer :: c, j, k
+      integer :: before, c, j, k
 
       few = .false.
+      before = equations%n_answer
       do j = 1, size(equations%place)
          if (all(equations%face(:, j) == equations%base_face(:, j))) cycle
          if (equations%place(j) > 0) cycle
@@ -144,7 +149,7 @@ contains
          do k = 1, 3
             if (.not. any(abs(equations%difference(k, :, c)) > 0.0_wp)) cycle
             if (equations%answer(k, c) > 0) cycle
-            if (equations%n_answer == max_answer) return
+            if (equations%n_answer == min(max_answer, before + max_new)) return
             call find_answer(equations, joints, c, k)
          end do
       end do

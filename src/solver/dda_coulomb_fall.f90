@@ -19,6 +19,9 @@ module dda_coulomb_fall
    !> Forces below this share of the largest are none, joints as near to their limit are at it
    real(wp), parameter :: nothing = 1.0e-6_wp
 
+   !> Pivots after which faces are looked for with more damping
+   integer, parameter :: few_pivots = 10
+
 contains
 
    !> Velocities of the fall, the largest one
@@ -51,6 +54,7 @@ contains
       jump%far = far_factor*max(1.0_wp, maxval(abs(state%force)))
       jump%tolerance = nothing
       jump%most_factorisations = most
+      equations%most_pivots = few_pivots
       call jump_to_balance(joints, equations, in_units(joints, load), state, jump, end)
       n_factorisation = equations%base%n_factorisation
       found = end == motion_end%endless .or. end == motion_end%far

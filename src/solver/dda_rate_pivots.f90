@@ -17,9 +17,6 @@ module dda_rate_pivots
 
    public :: pivot_to_load
 
-   !> Pivots altogether
-   integer, parameter :: max_pivot = 100
-
 contains
 
    !> Lead a motion over to a load
@@ -48,7 +45,7 @@ contains
       found = .false.
       call follow_law(joints, law, opening, faces)
       break%joint = 0
-      do pivot = 1, max_pivot
+      do pivot = 1, equations%most_pivots
          call use_faces(equations, joints, faces, equations%damping)
          if (.not. equations%usable) return
          ! the way to the load while the faces stay
