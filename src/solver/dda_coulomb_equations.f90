@@ -27,8 +27,8 @@ module dda_coulomb_equations
       type(coulomb_matrix_t) :: base
       !> Whether the equations can be solved
       logical :: usable = .false.
-      !> Pivots that a search for faces may take
-      integer :: most_pivots = 100
+      !> Pivots that a search for faces may take, and factorisations of the matrix altogether
+      integer :: most_pivots = 100, most_factorisations = huge(1)
       !> Multiple of the mass
       real(wp) :: damping = -1.0_wp
       !> Faces in the factor: (3, n_joint)
@@ -107,6 +107,8 @@ contains
       real(wp) :: stiffness(3, 3, size(equations%place))
       integer :: j
 
+      equations%usable = equations%base%n_factorisation < equations%most_factorisations
+      if (.not. equations%usable) return
       do j = 1, size(stiffness, 3)
          stiffness(:, :, j) = joint_stiffness(joints, j, equations%face(:, j))
       end do

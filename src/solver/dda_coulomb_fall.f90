@@ -53,7 +53,7 @@ contains
       call apply_law(joints, state, still, state)
       jump%far = far_factor*max(1.0_wp, maxval(abs(state%force)))
       jump%tolerance = nothing
-      jump%most_factorisations = most
+      equations%most_factorisations = most
       equations%most_pivots = few_pivots
       call jump_to_balance(joints, equations, in_units(joints, load), state, jump, end)
       n_factorisation = equations%base%n_factorisation

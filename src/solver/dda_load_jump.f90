@@ -37,8 +37,6 @@ module dda_load_jump
       real(wp) :: tolerance = 0.0_wp
       !> A motion beyond this is far
       real(wp) :: far = huge(1.0_wp)
-      !> Factorisations at most
-      integer :: most_factorisations = huge(1)
       !> Velocities of a motion without end: (n_dof, n_block)
       real(wp), allocatable :: mechanism(:, :)
    end type jump_t
@@ -100,7 +98,7 @@ contains
          call see_end(joints, equations, rest, start, state, jump, end)
          if (end == motion_end%balanced) state%load = load
          if (end /= motion_end%unsettled) return
-         if (equations%base%n_factorisation >= jump%most_factorisations) return
+         if (equations%base%n_factorisation >= equations%most_factorisations) return
          if (calm) damping = max(path_damping, calmer*damping)
          call find_rates(joints, equations, state, rest, still, damping, rates, found)
          if (.not. found) then

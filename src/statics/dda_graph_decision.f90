@@ -29,7 +29,7 @@ module dda_graph_decision
    character(len=*), parameter :: no_start = "forces balance the dead loads, but no state under " &
       & //"Coulomb friction is found"
    !> Relative gap of the two proofs of a limit whose mechanism is asked for
-   real(wp), parameter :: limit_gap = 1.0e-11_wp
+   real(wp), parameter :: limit_gap = 1.0e-9_wp
 
 contains
 
@@ -204,13 +204,14 @@ contains
       real(wp), intent(in) :: force(:, :)
       !> A collapse; its mechanism is set where one is found
       type(graph_verdict_t), intent(inout) :: verdict
-      integer, parameter :: few = 5
+      integer, parameter :: few = 5, all_in_all = 30
       integer :: n
       logical :: found
 
       if (settings%verdict_flow == flow_rule%associated .or. .not. has_friction(graph) &
          & .or. crushes(graph)) return
-      call find_coulomb_fall(graph, load, force, few, verdict%mechanism, found, n)
+      call find_coulomb_fall(graph, load, force, min(few, all_in_all - verdict%n_factorisation), &
+         & verdict%mechanism, found, n)
       verdict%n_factorisation = verdict%n_factorisation + n
       if (found) verdict%flow = flow_rule%coulomb
    end subroutine slide_along
