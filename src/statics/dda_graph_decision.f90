@@ -30,6 +30,8 @@ module dda_graph_decision
       & //"Coulomb friction is found"
    !> Relative gap of the two proofs of a limit whose mechanism is asked for
    real(wp), parameter :: limit_gap = 1.0e-9_wp
+   !> Factorisations that find how joints slide in a fall, and all that the fall of live loads takes
+   integer, parameter :: few = 5, most = 30
 
 contains
 
@@ -164,7 +166,8 @@ contains
             verdict%mechanism = limit%velocity
             verdict%force = limit%force
             verdict%is_told = .true.
-            call slide_along(settings, graph, load, limit%force, verdict)
+            if (verdict%n_factorisation + few <= most) call slide_along(settings, graph, load, &
+               & limit%force, verdict)
             return
          end if
       end if
@@ -204,14 +207,12 @@ contains
       real(wp), intent(in) :: force(:, :)
       !> A collapse; its mechanism is set where one is found
       type(graph_verdict_t), intent(inout) :: verdict
-      integer, parameter :: few = 5, all_in_all = 30
       integer :: n
       logical :: found
 
       if (settings%verdict_flow == flow_rule%associated .or. .not. has_friction(graph) &
          & .or. crushes(graph)) return
-      call find_coulomb_fall(graph, load, force, min(few, all_in_all - verdict%n_factorisation), &
-         & verdict%mechanism, found, n)
+      call find_coulomb_fall(graph, load, force, few, verdict%mechanism, found, n)
       verdict%n_factorisation = verdict%n_factorisation + n
       if (found) verdict%flow = flow_rule%coulomb
    end subroutine slide_along
