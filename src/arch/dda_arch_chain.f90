@@ -59,6 +59,8 @@ module dda_arch_chain
 
    !> Most that the stiffness of two joints may differ by, as for other springs
    real(wp), parameter :: stiffest = 1.0e2_wp
+   !> A block counts as no smaller at a joint than this share of the root of its area
+   real(wp), parameter :: least_size = 0.1_wp
 
 contains
 
@@ -182,7 +184,15 @@ contains
          chain%arm(:, 1, b + 1) = arms(way, rays%direction(:, last))
          chain%stiffness(b + 1) = numbers%penalty_ratio*numbers%young*thickness/rays%length(b)
          chain%stiffness(b) = min(chain%stiffness(b), chain%stiffness(b + 1))
+         if (rays%keystone .and. b == n) cycle
+         call add_compliance(numbers%young, area, chain%arm(2, 2, b), thickness, &
+            & chain%compliance(b))
+         call add_compliance(numbers%young, area, chain%arm(2, 1, b + 1), thickness, &
+            & chain%compliance(b + 1))
       end do
+      if (rays%keystone) call add_compliance(numbers%young, 2.0_wp*area, radius &
+         & *(rays%direction(2, first)*rays%point(1, first)) - rays%direction(1, first) &
+         & *(radius*rays%point(2, first) - chain%centroid(2, n)), thickness, chain%compliance(n))
       last = rays%joint(n + 1)
       chain%tangent(:, n + 1) = rays%direction(:, last)
       chain%middle(:, n + 1) = radius*rays%point(:, last)
@@ -196,6 +206,24 @@ contains
       if (numbers%halved) call add_plane(rays, chain)
       call weigh(chain)
    end subroutine arch_chain
+
+   !> Add the half of a block at a joint to its compliance
+   pure subroutine add_compliance(young, area, across, thickness, compliance)
+      !> Young's modulus [Pa]
+      real(wp), intent(in) :: young
+      !> Area of the block [m2]
+      real(wp), intent(in) :: area
+      !> How far its centre is from the joint, with any sign [m]
+      real(wp), intent(in) :: across
+      !> Length of the joint [m]
+      real(wp), intent(in) :: thickness
+      !> Receives it [m2/N]
+      real(wp), intent(inout) :: compliance
+      real(wp) :: least
+
+      least = least_size*sqrt(area)
+      compliance = compliance + max(abs(across), least)/(young*max(thickness, least))
+   end subroutine add_compliance
 
    !> Make the last joint the plane of symmetry
    pure subroutine add_plane(rays, chain)

@@ -32,6 +32,9 @@ module dda_chain
       real(wp), allocatable :: half(:)
       !> Stiffness of each of the three springs of a joint: (n + 1) [N/m per metre depth]
       real(wp), allocatable :: stiffness(:)
+      !> Compliance l/(E t) of the halves of the blocks on either side of a joint, l across it and t
+      !> along it, or of one half on a plane of symmetry: (n + 1) [m2/N]
+      real(wp), allocatable :: compliance(:)
       !> Coefficients of friction: (n + 1)
       real(wp), allocatable :: friction(:)
       !> Shear force that a joint carries without normal force; huge if it cannot slide:
@@ -60,7 +63,8 @@ contains
 
       allocate (chain%centroid(2, n), chain%mass(n), chain%inertia(n), chain%weight(2, n))
       allocate (chain%middle(2, n + 1), chain%tangent(2, n + 1), chain%half(n + 1))
-      allocate (chain%stiffness(n + 1), chain%friction(n + 1), chain%limit(n + 1))
+      allocate (chain%stiffness(n + 1), chain%compliance(n + 1), source=0.0_wp)
+      allocate (chain%friction(n + 1), chain%limit(n + 1))
       allocate (chain%arm(2, 2, n + 1))
    end subroutine new_chain
 

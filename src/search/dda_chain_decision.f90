@@ -4,8 +4,9 @@ module dda_chain_decision
    use dda_chain, only : chain_t
    use dda_chain_balance, only : carry_forces, cone_of, holds, influence, &
       & rounding_of_forces
+   use dda_chain_path, only : stick_all_along
    use dda_chain_power, only : chain_mechanism_t, chain_power, freeze_mechanism
-   use dda_chain_thrust, only : approach_cones, find_thrust, refine_thrust, thrust_t
+   use dda_chain_thrust, only : approach_cones, find_thrust, thrust_t
    use dda_decision, only : decision_t
    use dda_friction_cone, only : joint_face_t, project
    use dda_kinds, only : wp
@@ -29,8 +30,8 @@ contains
       type(chain_t), intent(in) :: chain
       !> The decision, without blocks and springs; of the left half alone if the chain is halved
       type(decision_t), intent(out) :: decision
-      !> Whether it counts: not where joints of what stands slide, or may have slid on the way to
-      !> its loads, nor where the forces have come neither into the cones nor to a mechanism
+      !> Whether it counts: not where joints of what stands may have slid on the way to its loads,
+      !> nor where the forces have come neither into the cones nor to a mechanism
       logical, intent(out) :: decided
       type(thrust_t) :: thrust
       real(wp) :: beyond(3, size(chain%half)), force(3, size(chain%half)), noise, worst
@@ -65,12 +66,8 @@ contains
             ! the plane of symmetry is smooth
             n = size(chain%half) - merge(1, 0, chain%halved)
             if (settings%verdict_flow == flow_rule%coulomb &
-               & .and. any(chain%limit(:n) <= 0.0_wp)) then
-               call see_sliding(chain, load, thrust, noise, contacts%face)
-               ! what tilts or pushes comes after the weight, and the way there has its say
-               decided = all(contacts%face(:n)%slip == 0) .and. .not. &
-                  & (abs(settings%tilt) > 0.0_wp .or. abs(settings%push) > 0.0_wp)
-            end if
+               & .and. any(chain%limit(:n) <= 0.0_wp)) &
+               & call stick_all_along(chain, settings%tilt, contacts%face, decided)
          end if
          if (chain%free_acceleration > 0.0_wp) outcome%elastic_time &
             & = sqrt(2.0_wp*thrust%elastic_motion/chain%free_acceleration)
@@ -101,29 +98,6 @@ contains
       if (chain%halved) left(2) = 0.0_wp
       closes_row = all(abs(left) <= tie*whole)
    end function closes_row
-
-   !> Faces of the joints of a chain that stands
-   pure subroutine see_sliding(chain, load, thrust, noise, face)
-      type(chain_t), intent(in) :: chain
-      !> Sums of the loads: (3, n + 1)
-      real(wp), intent(in) :: load(:, :)
-      type(thrust_t), intent(inout) :: thrust
-      !> Their rounding [N/m]
-      real(wp), intent(in) :: noise
-      !> The faces: (n + 1)
-      type(joint_face_t), intent(out) :: face(:)
-      type(joint_face_t) :: failing
-      real(wp) :: admissible(3), force(3, size(face))
-      integer :: j
-
-      call refine_thrust(chain, load, thrust)
-      call carry_forces(chain, load, thrust%reaction, force)
-      do j = 1, size(face)
-         if (holds(chain, force(:, j), j)) cycle
-         call project(cone_of(chain, j), force(:, j), admissible, failing)
-         if (maxval(abs(force(:, j) - admissible)) > noise) face(j) = failing
-      end do
-   end subroutine see_sliding
 
    !> Faces, openings and motion of a collapse, and its largest acceleration over that of free fall
    pure subroutine show_mechanism(chain, force, beyond, decision)

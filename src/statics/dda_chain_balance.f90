@@ -7,6 +7,7 @@ module dda_chain_balance
    private
 
    public :: cone_of, sum_loads, joint_force, influence, holds, carry_forces, rounding_of_forces
+   public :: find_failing, see_failing, add_reaction
 
    !> Relative error of a force that is carried from joint to joint
    real(wp), parameter :: rounding = 4.0_wp*epsilon(1.0_wp)
@@ -109,6 +110,67 @@ contains
       holds = force(1) >= 0.0_wp .and. force(2) >= 0.0_wp &
          & .and. abs(force(3)) <= chain%limit(j) + chain%friction(j)*(force(1) + force(2))
    end function holds
+
+   !> Those of some joints whose forces lie outside their cones, with these forces
+   pure subroutine find_failing(chain, load, reaction, watched, n, failing, force)
+      type(chain_t), intent(in) :: chain
+      !> Sums of the loads: (3, n + 1)
+      real(wp), intent(in) :: load(:, :)
+      !> The unknowns
+      real(wp), intent(in) :: reaction(3)
+      !> The joints
+      integer, intent(in) :: watched(:)
+      !> How many fail
+      integer, intent(out) :: n
+      !> Their numbers: (n), with room for all that are watched
+      integer, intent(out) :: failing(:)
+      !> Forces N1, N2, T of them: (3, n), likewise [N/m]
+      real(wp), intent(out) :: force(:, :)
+      integer :: i
+
+      n = 0
+      do i = 1, size(watched)
+         force(:, n + 1) = joint_force(chain, load, reaction, watched(i))
+         if (holds(chain, force(:, n + 1), watched(i))) cycle
+         n = n + 1
+         failing(n) = watched(i)
+      end do
+   end subroutine find_failing
+
+   !> Which joints have forces outside their cones
+   pure subroutine see_failing(chain, force, n, failing)
+      type(chain_t), intent(in) :: chain
+      !> Forces of all joints: (3, n + 1) [N/m]
+      real(wp), intent(in) :: force(:, :)
+      !> How many fail
+      integer, intent(out) :: n
+      !> Their numbers: (n), with room for all
+      integer, intent(out) :: failing(:)
+      integer :: j
+
+      n = 0
+      do j = 1, size(force, 2)
+         if (holds(chain, force(:, j), j)) cycle
+         n = n + 1
+         failing(n) = j
+      end do
+   end subroutine see_failing
+
+   !> Forces of all joints after a change of the unknowns
+   pure subroutine add_reaction(chain, change, before, after)
+      type(chain_t), intent(in) :: chain
+      !> The change: (3)
+      real(wp), intent(in) :: change(3)
+      !> Forces: (3, n + 1) [N/m]
+      real(wp), intent(in) :: before(:, :)
+      !> Forces: (3, n + 1) [N/m]
+      real(wp), intent(out) :: after(:, :)
+      integer :: j
+
+      do j = 1, size(before, 2)
+         after(:, j) = before(:, j) + matmul(influence(chain, j), change)
+      end do
+   end subroutine add_reaction
 
    !> Forces of all joints, each from that of its neighbour by the balance of the block between: the
    !> moment of a shallow arch, seen from afar, would lose its digits

@@ -9,14 +9,15 @@
 !> last passes do without the share, and tell the one from the other to the last digits.
 module dda_chain_thrust
    use dda_chain, only : chain_t
-   use dda_chain_balance, only : cone_of, holds, influence, joint_force, sum_loads
+   use dda_chain_balance, only : add_reaction, cone_of, find_failing, influence, joint_force, &
+      & see_failing, sum_loads
    use dda_friction_cone, only : apply_face, cone_t, joint_face_t, project
    use dda_kinds, only : wp
    use dda_three_unknowns, only : chain_energy_t, hold_upright, is_better, solve_3, try_between
    implicit none
    private
 
-   public :: thrust_t, find_thrust, refine_thrust, approach_cones
+   public :: thrust_t, find_thrust, approach_cones
 
    !> The forces, and what they show
    type :: thrust_t
@@ -77,22 +78,6 @@ contains
       watched = around_weak(chain, load, thrust%reaction, stride, watched)
       call descend(chain, load, glued, watched, thrust)
    end subroutine find_thrust
-
-   !> Find the forces by all joints
-   pure subroutine refine_thrust(chain, load, thrust)
-      type(chain_t), intent(in) :: chain
-      !> Sums of the loads: (3, n + 1)
-      real(wp), intent(in) :: load(:, :)
-      !> The forces, by some joints
-      type(thrust_t), intent(inout) :: thrust
-      type(chain_energy_t) :: glued
-      integer :: j
-
-      if (size(chain%half) < coarse) return
-      glued = glued_energy(chain, load, [(j, j=1, size(chain%half))])
-      glued = chain_energy_t(share*glued%value, share*glued%slope, share*glued%curvature)
-      call descend(chain, load, glued, [(j, j=1, size(chain%half))], thrust)
-   end subroutine refine_thrust
 
    !> Joints around those that fail, or are nearer to it than their neighbours
    pure function around_weak(chain, load, reaction, stride, coarse) result(around)
@@ -171,13 +156,12 @@ contains
       real(wp), intent(in) :: reaction(3)
       !> The function with its derivatives
       type(chain_energy_t), intent(out) :: energy
-      real(wp) :: beyond(3), force(3), slope(3)
-      integer :: i
+      real(wp) :: beyond(3), force(3, size(watched) + 1), slope(3)
+      integer :: failing(size(watched)), i, n
 
-      do i = 1, size(watched)
-         force = joint_force(chain, load, reaction, watched(i))
-         if (.not. holds(chain, force, watched(i))) &
-            & call add_failing(chain, force, watched(i), energy, beyond)
+      call find_failing(chain, load, reaction, watched, n, failing, force)
+      do i = 1, n
+         call add_failing(chain, force(:, i), failing(i), energy, beyond)
       end do
       slope = matmul(glued%curvature, reaction)
       energy%value = energy%value + glued%value &
@@ -305,22 +289,6 @@ contains
       end do
    end subroutine approach_cones
 
-   !> Forces of all joints after a change of the unknowns
-   pure subroutine add_reaction(chain, change, before, after)
-      type(chain_t), intent(in) :: chain
-      !> The change: (3)
-      real(wp), intent(in) :: change(3)
-      !> Forces: (3, n + 1) [N/m]
-      real(wp), intent(in) :: before(:, :)
-      !> Forces: (3, n + 1) [N/m]
-      real(wp), intent(out) :: after(:, :)
-      integer :: j
-
-      do j = 1, size(before, 2)
-         after(:, j) = before(:, j) + matmul(influence(chain, j), change)
-      end do
-   end subroutine add_reaction
-
    !> What of the forces lies beyond the cones, and half its square over the stiffness
    pure subroutine find_beyond(chain, force, beyond, energy)
       type(chain_t), intent(in) :: chain
@@ -329,12 +297,13 @@ contains
       !> The part that the cones do not let pass: (3, n + 1) [N/m]
       real(wp), intent(out) :: beyond(:, :)
       type(chain_energy_t), intent(out) :: energy
-      integer :: j
+      integer :: failing(size(force, 2)), i, j, n
 
-      do j = 1, size(force, 2)
-         beyond(:, j) = 0.0_wp
-         if (.not. holds(chain, force(:, j), j)) &
-            & call add_failing(chain, force(:, j), j, energy, beyond(:, j))
+      call see_failing(chain, force, n, failing)
+      beyond = 0.0_wp
+      do i = 1, n
+         j = failing(i)
+         call add_failing(chain, force(:, j), j, energy, beyond(:, j))
       end do
       if (chain%halved) call hold_upright(energy%slope, energy%curvature)
    end subroutine find_beyond
