@@ -76,7 +76,8 @@ contains
       type(terminal_watch_t) :: watch
 
       watch%shown = error_is_terminal() .and. .not. command%quiet
-      call read_deck(name_of(command, number), command%setting, deck, error, watch)
+      call read_deck(name_of(command, number), command%setting, deck, error, watch, &
+         & command%cases)
       if (.not. allocated(error)) call check_scene(deck, scene, error, watch)
       call end_watch(watch)
    end subroutine read_and_check

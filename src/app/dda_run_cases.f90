@@ -276,7 +276,7 @@ contains
       !> Allocated if it cannot be written
       type(error_t), allocatable, intent(out) :: error
 
-      if (.not. flag_of(this%deck, "output", "restart")) return
+      if (.not. flag_of(this%family%deck, "output", "restart")) return
       if (.not. this%scene%settings%dynamic .or. allocated(this%error)) return
       call save_restart(folder//"/case_"//to_text(number)//".restart", this%scene%settings, &
          & this%decision%system, this%decision%contacts, this%onward, error)

@@ -25,8 +25,6 @@ module dda_case
    !> cases: the others make texts, and gfortran keeps the length of a text that a function returns
    !> in memory that threads share
    type :: case_t
-      !> The deck with the values of the case
-      type(deck_t) :: deck
       !> What its scene needs
       type(scene_plan_t) :: plan
       !> Whether a critical value is searched; whether tables of joints or blocks are told
@@ -74,7 +72,6 @@ contains
       type(case_t), intent(out) :: this
       character(len=:), allocatable :: searched
 
-      this%deck = deck
       this%restart_file = file_beside(deck, text_of(deck, "analysis", "restart"))
       this%plan = plan_scene(deck)
       searched = searched_name(deck)

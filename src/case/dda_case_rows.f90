@@ -57,7 +57,7 @@ contains
          call tell_decision(this, row, joint_row, blocks, remark)
       end if
       if (this%has_worst) row%worst_position = &
-         & some_number(real_of(this%deck, "vehicle", "position"))
+         & some_number(real_of(this%family%deck, "vehicle", "position"))
       if (this%has_worst) remark = position_remark(row%worst_position%value, remark)
       call tell_proof(this%proof, row)
       if (row%verdict == "stable" .and. row%exact%known .and. row%thickness_ratio%known) &
@@ -98,23 +98,23 @@ contains
       type(result_row_t), intent(inout) :: row
       character(len=:), allocatable :: searched
 
-      searched = searched_name(this%deck)
-      row%mode = word_of(this%deck, "analysis", "mode")
-      row%geometry = word_of(this%deck, "analysis", "geometry")
+      searched = searched_name(this%family%deck)
+      row%mode = word_of(this%family%deck, "analysis", "mode")
+      row%geometry = word_of(this%family%deck, "analysis", "geometry")
       if (this%limerick) row%geometry = "current"
-      row%blocks = movable_blocks(this%deck)
-      if (scene_kind(this%deck) == "arch") then
+      row%blocks = movable_blocks(this%family%deck)
+      if (scene_kind(this%family%deck) == "arch") then
          row%springing_hinge = "none"
-         row%half_angle_deg = given_number(this%deck, "arch", "half_angle_deg", searched)
-         row%thickness_ratio = given_number(this%deck, "arch", "thickness_ratio", searched)
+         row%half_angle_deg = given_number(this%family%deck, "arch", "half_angle_deg", searched)
+         row%thickness_ratio = given_number(this%family%deck, "arch", "thickness_ratio", searched)
       end if
-      if (deck_friction_acts(this%deck)) &
-         & row%friction_deg = given_number(this%deck, "joint", "friction_deg", searched)
+      if (deck_friction_acts(this%family%deck)) &
+         & row%friction_deg = given_number(this%family%deck, "joint", "friction_deg", searched)
       row%collapse_mode = "none"
       if (this%exact_known) row%exact = some_number(this%exact)
       row%seconds = this%seconds
       row%unknowns = this%plan%unknowns
-      row%tells_condition = flag_of(this%deck, "output", "condition")
+      row%tells_condition = flag_of(this%family%deck, "output", "condition")
    end subroutine describe
 
    !> Whether the friction of the deck may be that of a joint: those of lines have that of their
@@ -164,7 +164,7 @@ contains
             remark = path_remark(outcome, remark)
          end if
          if (outcome%verdict == verdict%collapsed .and. allocated(outcome%motion) &
-            & .and. .not. this%plan%velocities .and. scene_kind(this%deck) /= "arch") &
+            & .and. .not. this%plan%velocities .and. scene_kind(this%family%deck) /= "arch") &
             & remark = fall_remark(this%scene%system, outcome%motion, remark)
          if (allocated(this%decision%contacts%joint)) joint_row = &
             & joint_rows(this%decision%contacts, this%scene%joint_angle_deg, this%scene%origin)

@@ -48,7 +48,7 @@ contains
       type(error_t), allocatable :: error
       integer(int64) :: start, finish, rate
 
-      if (this%exact_known) call exact_thickness(this%deck, this%exact, this%exact_known)
+      if (this%exact_known) call exact_thickness(this%family%deck, this%exact, this%exact_known)
       call system_clock(start, rate)
       call plan_album(this)
       if (this%family%chains) call arch_rays(this%family%numbers, this%family%rays)
@@ -60,23 +60,23 @@ contains
          if (allocated(this%critical%fallen)) &
             & call this%family%build(this%critical%falls, this%scene, error)
       else if (this%searches) then
-         if (flag_of(this%deck, "vehicle", "worst")) call place_vehicle(this)
+         if (flag_of(this%family%deck, "vehicle", "worst")) call place_vehicle(this)
          call find_critical(this%family, this%search, this%critical)
          if (allocated(this%critical%fallen)) &
             & call see_collapse(this, this%critical%falls, this%critical%fallen)
       else if (this%limerick) then
-         call deck_scene(this%deck, this%scene)
-         call decide_limerick(this%deck, this%decision, this%album)
+         call deck_scene(this%family%deck, this%scene)
+         call decide_limerick(this%family%deck, this%decision, this%album)
       else
          call compute_decision(this)
          if (.not. allocated(this%error)) call see_collapse(this, &
-            & real_of(this%deck, "arch", "thickness_ratio"), this%decision)
+            & real_of(this%family%deck, "arch", "thickness_ratio"), this%decision)
       end if
       if (this%searches .and. .not. this%family%decides_chains &
          & .and. .not. allocated(this%critical%fallen) .and. allocated(this%critical%standing)) &
          & call this%family%build(this%critical%stands, this%scene, error)
       if (this%plan%shared_forces) call share_told_forces(this)
-      if (this%searches .and. integer_of(this%deck, "output", "frames") > 0) then
+      if (this%searches .and. integer_of(this%family%deck, "output", "frames") > 0) then
          if (this%limerick) call repeat_with_pictures(this%family, this%critical, this%album)
          if (.not. this%limerick) call take_pictures(this)
       end if
@@ -96,11 +96,12 @@ contains
       real(wp) :: value
 
       position%key = key_index("vehicle", "position")
-      call deck_scene(this%deck, scene)
-      call find_worst_position(this%deck, scene, value, this%has_worst)
+      call deck_scene(this%family%deck, scene)
+      call find_worst_position(this%family%deck, scene, value, this%has_worst)
       if (.not. this%has_worst) return
-      call put_number(this%deck, position, value, this%deck%value(position%key)%place, error)
-      this%family%deck = this%deck
+      associate (deck => this%family%deck)
+         call put_number(deck, position, value, deck%value(position%key)%place, error)
+      end associate
    end subroutine place_vehicle
 
    !> Prove the verdict of a case by limit analysis
@@ -112,13 +113,13 @@ contains
       if (this%searches) then
          call prove_search(this%family, this%critical, this%proof)
       else if (allocated(this%scene%contacts%joint)) then
-         joint = integer_of(this%deck, "output", "thrust_joint")
+         joint = integer_of(this%family%deck, "output", "thrust_joint")
          if (joint == 0 .and. size(this%scene%joint_angle_deg) > 0 &
             & .and. size(this%scene%joint_angle_deg) <= most_thrust_joints) &
             & joint = minloc(abs(this%scene%joint_angle_deg), dim=1)
          joint = merge(joint, this%scene%crown_joint, joint > 0)
          call prove_decision(this%scene, this%decision, joint, &
-            & integer_of(this%deck, "output", "thrust_bar"), this%proof)
+            & integer_of(this%family%deck, "output", "thrust_bar"), this%proof)
       end if
    end subroutine prove_case
 
@@ -134,15 +135,15 @@ contains
 
       ! tables tell displacements, which a chain does not keep
       decided = this%family%decides_chains .and. .not. this%tells_tables
-      if (decided) call this%family%link(real_of(this%deck, "arch", "thickness_ratio"), settings, &
-         & chain, decided)
+      if (decided) call this%family%link(real_of(this%family%deck, "arch", "thickness_ratio"), &
+         & settings, chain, decided)
       if (decided) call decide_chain(settings, chain, this%decision, decided)
       ! a chain proves that it falls; how it does is told by all of its blocks
       if (decided) decided = this%decision%outcome%verdict /= verdict%collapsed
       if (decided) return
-      call deck_scene(this%deck, this%scene)
+      call deck_scene(this%family%deck, this%scene)
       call plan_fall(this)
-      if (is_given(this%deck, "analysis", "restart")) then
+      if (is_given(this%family%deck, "analysis", "restart")) then
          system = this%scene%system
          contacts = this%scene%contacts
          call load_restart(this%restart_file, this%scene%settings, system, contacts, this%onward, &
@@ -161,7 +162,7 @@ contains
       type(case_t), intent(inout) :: this
       type(block_system_t), intent(in) :: system
 
-      if (this%scene%settings%dynamic .and. flag_of(this%deck, "output", "reactions")) &
+      if (this%scene%settings%dynamic .and. flag_of(this%family%deck, "output", "reactions")) &
          & this%album%support = supports_of(system, this%scene%settings%boundary)
    end subroutine keep_supports
 
@@ -176,7 +177,7 @@ contains
       logical :: collapsed, wanted
       if (this%family%decides_chains) this%scene%joint_angle_deg = this%family%joint_angle_deg
       collapsed = decision%outcome%verdict == verdict%collapsed
-      wanted = merge(this%tells_tables .or. integer_of(this%deck, "output", "frames") > 0, &
+      wanted = merge(this%tells_tables .or. integer_of(this%family%deck, "output", "frames") > 0, &
          & this%searches, this%family%decides_chains)
       if (wanted .or. collapsed) call unfold(decision)
       if (collapsed) wanted = wanted .or. any(decision%contacts%face%slip /= 0)
@@ -192,16 +193,17 @@ contains
       type(case_t), intent(inout) :: this
       integer :: frames
 
-      frames = integer_of(this%deck, "output", "frames")
+      frames = integer_of(this%family%deck, "output", "frames")
       allocate (this%album%point(0))
       if (frames > 0 .and. this%plan%velocities) &
-         & this%album%interval = real_of(this%deck, "analysis", "duration")/real(frames, wp)
+         & this%album%interval = real_of(this%family%deck, "analysis", "duration")/real(frames, wp)
       if (frames > 0 .and. this%plan%velocities .and. .not. this%album%interval > 0.0_wp) &
-         & this%album%every = max(1, integer_of(this%deck, "analysis", "steps")/frames)
+         & this%album%every = max(1, integer_of(this%family%deck, "analysis", "steps")/frames)
       if (this%searches) return
-      this%album%audit%wanted = flag_of(this%deck, "output", "energy") .and. this%plan%velocities
-      if (allocated(this%deck%plan%boundary%measured)) &
-         & this%album%point = this%deck%plan%boundary%measured
+      this%album%audit%wanted = this%plan%velocities &
+         & .and. flag_of(this%family%deck, "output", "energy")
+      if (allocated(this%family%deck%plan%boundary%measured)) &
+         & this%album%point = this%family%deck%plan%boundary%measured
    end subroutine plan_album
 
    !> Share out the joint forces of the arch nearest to critical that was found to stand
@@ -226,7 +228,7 @@ contains
       type(load_clock_t) :: clock
       integer :: frames
 
-      frames = integer_of(this%deck, "output", "frames")
+      frames = integer_of(this%family%deck, "output", "frames")
       if (frames == 0 .or. this%scene%settings%dynamic) return
       this%album%follow = this%scene%settings%collapse_displacement
       if (.not. this%album%follow > 0.0_wp) this%album%follow = 0.1_wp*scene_size(this)
@@ -277,7 +279,9 @@ contains
          scene_size = sqrt(sum(system%area, mask=system%equation > 0) &
             & /real(max(1, count(system%equation > 0)), wp))
       end associate
-      if (scene_kind(this%deck) == "arch") scene_size = real_of(this%deck, "arch", "radius")
-      if (allocated(this%deck%cut)) scene_size = this%deck%cut%scale%size
+      associate (deck => this%family%deck)
+         if (scene_kind(deck) == "arch") scene_size = real_of(deck, "arch", "radius")
+         if (allocated(deck%cut)) scene_size = deck%cut%scale%size
+      end associate
    end function scene_size
 end module dda_compute_case

@@ -1,5 +1,6 @@
 !> Check what a deck searches and sweeps, then every case, before anything is computed
 module dda_deck_check
+   use dda_case_choice, only : choose_cases
    use dda_kinds, only : wp
    use dda_error, only : error_t
    use dda_text, only : to_text
@@ -18,9 +19,11 @@ module dda_deck_check
 
 contains
 
-   !> Check a deck and all cases of its sweeps, before anything is computed
-   pure subroutine check_deck(deck, error)
+   !> Check a deck and the cases of its sweeps, before anything is computed
+   pure subroutine check_deck(deck, cases, error)
       type(deck_t), intent(in) :: deck
+      !> Cases that will be computed, as choose_cases reads them; empty for all
+      character(len=*), intent(in) :: cases
       !> The first thing that is wrong
       type(error_t), allocatable, intent(out) :: error
       type(parameter_t) :: searched
@@ -31,7 +34,7 @@ contains
       do s = 1, size(deck%sweep)
          if (.not. allocated(error)) call check_sweep(deck, s, searched, error)
       end do
-      if (.not. allocated(error)) call check_cases(deck, searched, error)
+      if (.not. allocated(error)) call check_cases(deck, cases, searched, error)
    end subroutine check_deck
 
    !> Check that the deck says where its blocks come from, once
@@ -209,13 +212,16 @@ contains
    end function same
 
    !> Check every case of the sweeps
-   pure subroutine check_cases(deck, searched, error)
+   pure subroutine check_cases(deck, cases, searched, error)
       type(deck_t), intent(in) :: deck
+      !> Cases that will be computed, as choose_cases reads them; empty for all
+      character(len=*), intent(in) :: cases
       !> What is searched; key 0 if nothing is
       type(parameter_t), intent(in) :: searched
       !> The first thing that is wrong, with the number of the case
       type(error_t), allocatable, intent(out) :: error
       type(deck_t) :: work
+      logical, allocatable :: chosen(:)
       integer :: number, n
 
       n = n_cases(deck)
@@ -227,7 +233,10 @@ contains
             deck%sweep(size(deck%sweep))%place)
          return
       end if
+      call choose_cases(cases, n, chosen, error)
+      if (allocated(error)) return
       do number = 1, n
+         if (.not. chosen(number)) cycle
          call turn_to_case(deck, number, work, error)
          if (.not. allocated(error)) call check_case(work, searched, error)
          if (.not. allocated(error)) cycle

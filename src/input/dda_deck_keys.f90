@@ -319,11 +319,16 @@ module dda_deck_keys
             varies=.false., at_least=1.0_wp, at_most=1.0e7_wp, &
             meaning="Most cases that the &sweep groups may make; more is an error.")]
 
-   !> All keys, group by group
+   !> All keys, group by group, in the order of the groups
    type(key_t), parameter :: deck_key(*) = [scene_keys, arch_keys, material_keys, joint_keys, &
       load_keys, live_keys, vehicle_keys, fill_keys, tie_keys, ground_keys, analysis_keys, &
       limerick_keys, &
       search_keys, sweep_keys, output_keys]
+   !> How many keys each group has
+   integer, parameter :: n_keys(*) = [size(scene_keys), size(arch_keys), size(material_keys), &
+      size(joint_keys), size(load_keys), size(live_keys), size(vehicle_keys), size(fill_keys), &
+      size(tie_keys), size(ground_keys), size(analysis_keys), size(limerick_keys), &
+      size(search_keys), size(sweep_keys), size(output_keys)]
 
 contains
 
@@ -335,12 +340,18 @@ contains
       character(len=*), intent(in) :: name
       !> Place in deck_key, counted from 1; 0 if there is no such key
       integer :: i
+      integer :: before, g
 
-      do i = size(deck_key), 1, -1
+      i = 0
+      g = group_index(group)
+      if (g == 0) return
+      before = sum(n_keys(:g - 1))
+      do i = before + n_keys(g), before + 1, -1
          ! the first letter tells most keys apart, and a comparison of texts is a call
          if (deck_key(i)%name(1:1) /= name(1:1)) cycle
-         if (deck_key(i)%name == name .and. deck_key(i)%group == group) return
+         if (deck_key(i)%name == name) return
       end do
+      i = 0
    end function key_index
 
    !> Place of a group in the registry
@@ -351,6 +362,7 @@ contains
       integer :: i
 
       do i = size(deck_group), 1, -1
+         if (deck_group(i)%name(1:1) /= name(1:1)) cycle
          if (deck_group(i)%name == name) return
       end do
    end function group_index

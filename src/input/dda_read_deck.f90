@@ -34,7 +34,7 @@ module dda_read_deck
 contains
 
    !> Read and check a deck and all cases of its sweeps
-   subroutine read_deck(file, settings, deck, error, watch)
+   subroutine read_deck(file, settings, deck, error, watch, cases)
       !> Name of the file
       character(len=*), intent(in) :: file
       !> The --set values: group%key=value: (n)
@@ -44,10 +44,13 @@ contains
       type(error_t), allocatable, intent(out) :: error
       !> Is told how far the reading is
       class(watch_t), intent(inout), optional :: watch
+      !> Cases that will be computed, such as 1-500,812: the others are not checked; without it, or
+      !> empty, all are
+      character(len=*), intent(in), optional :: cases
       character(len=:), allocatable :: text, geometry
 
       call read_text_file(file, text, error)
-      if (.not. allocated(error)) call parse_deck(text, file, settings, deck, error)
+      if (.not. allocated(error)) call parse_deck(text, file, settings, deck, error, cases)
       if (.not. allocated(error)) call read_lines(deck, error)
       if (.not. allocated(error)) call read_ground_records(deck, error)
       if (allocated(error)) return
@@ -76,7 +79,7 @@ contains
    end function geometry_file
 
    !> Read and check a deck from its text
-   pure subroutine parse_deck(text, file, settings, deck, error)
+   pure subroutine parse_deck(text, file, settings, deck, error, cases)
       !> The text, lines ended by line feeds
       character(len=*), intent(in) :: text
       !> Name that errors will show
@@ -86,7 +89,10 @@ contains
       type(deck_t), intent(out) :: deck
       !> Bad input, with file and line, or with --set and its number
       type(error_t), allocatable, intent(out) :: error
+      !> As of read_deck
+      character(len=*), intent(in), optional :: cases
       type(deck_scan_t) :: scan
+      character(len=:), allocatable :: checked
       integer :: i
 
       call new_deck(deck, file)
@@ -100,7 +106,9 @@ contains
          if (allocated(error)) return
          call apply_setting(trim(settings(i)), deck_place_t(i, .true.), deck, error)
       end do
-      if (.not. allocated(error)) call check_deck(deck, error)
+      checked = ""
+      if (present(cases)) checked = cases
+      if (.not. allocated(error)) call check_deck(deck, checked, error)
       do i = 1, size(many_case_tables)
          if (allocated(error)) return
          associate (wanted => deck%value(key_index("output", many_case_tables(i))))

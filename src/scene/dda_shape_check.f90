@@ -29,11 +29,18 @@ contains
       type(error_t), allocatable, intent(out) :: error
       type(deck_t) :: work
       integer :: number, n
+      logical :: one_kind
 
       n = n_cases(deck)
+      ! which keys are given is the same for all cases
+      one_kind = .not. any(deck%sweep%parameter%key == key_index("arch", "shape"))
       do number = 1, n
          call turn_to_case(deck, number, work, error)
-         if (.not. allocated(error)) call check_one(work, error)
+         if (scene_kind(work) == "shape") then
+            if (.not. allocated(error)) call check_one(work, error)
+         else if (one_kind) then
+            return
+         end if
          if (.not. allocated(error)) cycle
          if (n > 1) error%message = error%message//" (case "//to_text(number)//")"
          return
@@ -52,7 +59,6 @@ contains
       type(deck_t) :: trial
       integer :: i
 
-      if (scene_kind(deck) /= "shape") return
       call check_models(deck, error)
       if (allocated(error)) return
       if (has_group(deck, "search")) &
