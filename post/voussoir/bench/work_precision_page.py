@@ -192,7 +192,7 @@ def _draw_panel(axes: Axes, panel: Panel, span: tuple[float, float]) -> list[Lin
     if panel.gap:
         axes.axhline(panel.gap, color=_QUIET, linewidth=0.9, linestyle=(0, (1, 2)))
         _note(axes, f"the associated limit is {_share(panel.gap)} above\nwhat stands under Coulomb friction",
-              panel.gap, -24)
+              panel.gap, -24, right=True)
     return [entries[method] for method in sorted(entries, key=lambda method: _first_time(methods[method]))]
 
 
