@@ -1,10 +1,14 @@
-"""Skipped tests are told with their reasons; where VOUSSOIR_CI is set, one that is not on the list fails the run."""
+"""Every test has a time limit. Skipped ones are told with their reasons; where VOUSSOIR_CI is set, one that is not on
+the list fails the run."""
 
 from __future__ import annotations
 
 import os
+import signal
 from collections import Counter
+from collections.abc import Iterator
 from pathlib import Path
+from types import FrameType
 
 import pytest
 
@@ -28,7 +32,25 @@ MAY_SKIP = (
     "root writes into every folder",
     "is not here",  # files of the original program, which are not ours to publish
 )
+#: Seconds that a test may take; the slowest takes a tenth on an idle machine
+MOST_SECONDS = 300
 skipped: Counter[str] = Counter()
+
+
+@pytest.hookimpl(hookwrapper=True)
+def pytest_runtest_call(item: pytest.Item) -> Iterator[None]:
+    """End a test that hangs; what it has started ends with it, as subprocess.run sees to."""
+
+    def end(number: int, frame: FrameType | None) -> None:
+        pytest.fail(f"{item.nodeid} has taken more than {MOST_SECONDS} s")
+
+    before = signal.signal(signal.SIGALRM, end)
+    signal.alarm(MOST_SECONDS)
+    try:
+        yield
+    finally:
+        signal.alarm(0)
+        signal.signal(signal.SIGALRM, before)
 
 
 def pytest_runtest_logreport(report: pytest.TestReport) -> None:
