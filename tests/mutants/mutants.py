@@ -2,8 +2,8 @@
 """Put single faults into src/, one after the other, and tell which test finds each.
 
 The tree is copied and built once; each fault is built incrementally in the copy. The unit tests of the fault's
-room run first, then those of the other rooms, then the physics, then, if asked, the command-line tests. The table
-has a row for each fault as soon as it is known.
+room run first, then those of the other rooms, then the physics, then, if asked, tests of the command and of Python,
+those first that are about the room. The table has a row for each fault as soon as it is known.
 """
 
 from __future__ import annotations
@@ -24,6 +24,29 @@ from faults import Fault, draw_faults
 PARTS = ("CMakeLists.txt", "CMakePresets.json", "cmake", "src", "tests", "post", "input", "docs", "pyproject.toml",
          "README.md", "CITATION.cff", "LICENSE", "CHANGELOG.md")
 COLUMNS = ("number", "room", "file", "line", "kind", "before", "after", "result", "level", "found_by", "seconds")
+LEVELS = ("room", "unit", "physics", "suite")
+#: Files of tests/cli that are about a room, by the beginning of their names after test_
+ABOUT = {
+    "arch": "arch mechanism_roles paper_tables bad_input",
+    "base": "screen_table results check",
+    "case": "reactions joint_map told_blocks restart resume run results large_limerick limerick scene_columns",
+    "contact": "block fallen wedges pressed ties jointed_slopes",
+    "formats": "limerick cut lines fuzz_limerick large_limerick",
+    "geometry": "cut block wedges tiny_blocks extreme_blocks",
+    "input": "block_files bad_input messages check models joint_map histories bars stages water vehicle",
+    "joint_lines": "joint_map lines jointed_slopes",
+    "limerick": "limerick large_limerick",
+    "linalg": "large_blocks block",
+    "mesh": "cut lines joint_map limerick",
+    "model": "water ground block_files histories held",
+    "output": "results run cut restart",
+    "scene": "fill water vehicle live_loads arch_shapes lines line_export ties limerick_blocks",
+    "search": "stages search_in_time vehicle loading_path path_start live_loads models",
+    "solver": "loading_path residual_friction crushing proofs wedges jointed_slopes live_loads",
+    "statics": "histories pressed_blocks live_loads bars arch_exact",
+    "step": "energy ramp static_start ground absorbing reactions fallen stages displacement_factor",
+    "submatrix": "bars ties water ground energy absorbing",
+}
 
 
 @dataclass
@@ -50,10 +73,17 @@ class Copy:
         command = [str(self.build / "tests" / "bin" / program)]
         return self.finish(command, program, self.build / "tests")
 
-    def run_pytest(self, files: list[str]) -> tuple[str, float]:
-        """Run command-line tests until one fails."""
-        command = [sys.executable, "-m", "pytest", "-x", "-q", "-p", "no:cacheprovider", *files]
-        return self.finish(command, "pytest", self.root)
+    def run_pytest(self, room: str) -> tuple[str, float]:
+        """Run tests of the command and of Python until one fails, first what is about the room."""
+        tests = self.root / "tests"
+        about = tuple(f"test_{word}" for word in ABOUT.get(room, "").split())
+        files = sorted(tests.glob("cli/test_*.py"), key=lambda path: not path.name.startswith(about or "-"))
+        if room == "theory":
+            files = sorted(tests.glob("post/test_theory*.py")) + files
+        else:
+            files += [tests / "post" / f"test_{name}.py" for name in ("verify", "validation", "stability", "vtu")]
+        command = [sys.executable, "-m", "pytest", "-x", "-q", "-p", "no:cacheprovider", *map(str, files)]
+        return self.finish(command, "suite", self.root)
 
     def finish(self, command: list[str], name: str, folder: Path) -> tuple[str, float]:
         """Wait for a command, ten times as long as it takes without a fault at most."""
@@ -90,14 +120,15 @@ def copy_changed(source: Path, target: Path) -> None:
 
 def prepare(source: Path, copy: Copy, asked: argparse.Namespace) -> list[str]:
     """Copy the tree and build all test programs without a fault; the names of those of units."""
-    for part in PARTS:
+    for part in PARTS if source != copy.root else ():
         if (source / part).exists():
             copy_changed(source / part, copy.root / part)
-    subprocess.run(["cmake", "-S", str(copy.root), "-B", str(copy.build), "-G", "Ninja", "-DCMAKE_BUILD_TYPE=Release",
-                    f"-DCMAKE_Fortran_FLAGS_RELEASE={asked.flags}"], check=True, stdout=subprocess.DEVNULL)
+    if not (copy.build / "CMakeCache.txt").exists():
+        subprocess.run(["cmake", "-S", copy.root, "-B", copy.build, "-G", "Ninja", "-DCMAKE_BUILD_TYPE=Release",
+                        f"-DCMAKE_Fortran_FLAGS_RELEASE={asked.flags}"], check=True, stdout=subprocess.DEVNULL)
     listed = (copy.root / "tests" / "CMakeLists.txt").read_text()
     units = re.findall(r"add_pfunit_ctest\((unit_\w+)", listed)
-    if not copy.make(*units, *(["physics"] if "physics" in asked.levels else [])):
+    if not copy.make(*units, "physics", "dda", *(["_theory"] if "suite" in asked.levels else [])):
         raise SystemExit(f"{copy.build}: does not build without a fault")
     return units
 
@@ -119,11 +150,11 @@ def judge(fault: Fault, copy: Copy, units: list[str], asked: argparse.Namespace)
             if test:
                 return {"result": "found", "level": level, "found_by": f"{program}: {test}",
                         "seconds": round(time.monotonic() - start, 1)}
-    if asked.cli:
+    if "suite" in asked.levels:
         copy.make("dda", "_theory")
-        test, _ = copy.run_pytest(asked.cli)
+        test, _ = copy.run_pytest(fault.path.parts[1])
         if test:
-            return {"result": "found", "level": "cli", "found_by": test,
+            return {"result": "found", "level": "suite", "found_by": test,
                     "seconds": round(time.monotonic() - start, 1)}
     return {"result": "survived", "seconds": round(time.monotonic() - start, 1)}
 
@@ -137,10 +168,10 @@ def read_faults(path: Path) -> list[Fault]:
 
 def report(rows: list[dict[str, object]]) -> str:
     """One line a room: how many faults, found where."""
-    lines = ["room          faults   room   unit  physics   cli  survived"]
+    lines = ["room          faults   room   unit  physics suite  survived"]
     for room in [*sorted({str(row["room"]) for row in rows}), "all"]:
         mine = [row for row in rows if room in ("all", row["room"]) and row["result"] != "does not compile"]
-        count = [sum(row.get("level") == level for row in mine) for level in ("room", "unit", "physics", "cli")]
+        count = [sum(row.get("level") == level for row in mine) for level in LEVELS]
         survived = sum(row["result"] == "survived" for row in mine)
         lines.append(f"{room:12}{len(mine):8}{count[0]:7}{count[1]:7}{count[2]:9}{count[3]:6}{survived:10}")
     return "\n".join(lines)
@@ -156,8 +187,8 @@ def arguments() -> argparse.Namespace:
     parser.add_argument("--seed", type=int, default=1, help="where the random numbers begin [1]")
     parser.add_argument("--rooms", nargs="*", help="folders of src/ [all but app and files]")
     parser.add_argument("--again", type=Path, help="a table: judge those of its faults that survived")
-    parser.add_argument("--levels", nargs="*", default=["room", "unit", "physics"], help="which programs run [all]")
-    parser.add_argument("--cli", nargs="*", default=[], help="files of tests/cli for what survives physics [none]")
+    parser.add_argument("--levels", nargs="*", default=LEVELS[:3], choices=LEVELS, help="what runs [all but suite]")
+    parser.add_argument("--in-place", action="store_true", help="the source is itself a copy, and built: no other one")
     parser.add_argument("--list", action="store_true", help="write the table of faults and stop")
     parser.add_argument("--jobs", type=int, default=2, help="compilers at a time [2]")
     parser.add_argument("--flags", default="-O1", help="flags of the compiler [-O1]")
@@ -172,12 +203,12 @@ def main() -> int:
     faults = read_faults(asked.again) if asked.again else draw_faults(asked.source, rooms, asked.count, asked.seed)
     asked.work.mkdir(parents=True, exist_ok=True)
     table = asked.work / "mutants.csv"
-    copy = Copy((asked.work / "tree").resolve(), asked.jobs, 600.0)
+    copy = Copy(asked.source if asked.in_place else (asked.work / "tree").resolve(), asked.jobs, 3600.0)
     units: list[str] = []
     if not asked.list:
         units = prepare(asked.source, copy, asked)
-        for program in [*units, *(["physics"] if "physics" in asked.levels else [])]:
-            test, copy.usual[program] = copy.run(program)
+        for program in [*units, *(level for level in ("physics", "suite") if level in asked.levels)]:
+            test, copy.usual[program] = copy.run_pytest("") if program == "suite" else copy.run(program)
             if test:
                 print(f"{program} fails without a fault: {test}", file=sys.stderr)
                 return 1
