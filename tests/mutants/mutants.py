@@ -68,6 +68,11 @@ class Copy:
         command = ["cmake", "--build", str(self.build), "-j", str(self.jobs), "--target", *targets]
         return subprocess.run(command, capture_output=True).returncode == 0
 
+    def holds(self, program: str, fault: Fault) -> bool:
+        """Whether a test program has procedures of the faulty module; what a constant is goes farther."""
+        mark = f"__{fault.path.stem}_MOD_".encode()
+        return "parameter" in fault.before or mark in (self.build / "tests" / "bin" / program).read_bytes()
+
     def run(self, program: str) -> tuple[str, float]:
         """Run a test program: the test that failed, or nothing, and the seconds it took."""
         command = [str(self.build / "tests" / "bin" / program)]
@@ -140,6 +145,7 @@ def judge(fault: Fault, copy: Copy, units: list[str], asked: argparse.Namespace)
     levels = [("room", [own] if own in units else []), ("unit", [name for name in units if name != own]),
               ("physics", ["physics"])]
     for level, programs in levels:
+        programs = [program for program in programs if copy.holds(program, fault)]
         if level not in asked.levels:
             continue
         if programs and not copy.make(*programs):
