@@ -50,7 +50,7 @@ contains
       energy%numerical = before%numerical + total(before) - total(energy)
    end subroutine audit_step
 
-   !> Energy that is in the blocks and in the springs of the joints
+   !> Energy that is in the blocks, in the springs of the joints, and in bars
    pure subroutine store_energy(settings, system, equations, contacts, energy)
       type(settings_t), intent(in) :: settings
       type(block_system_t), intent(in) :: system
@@ -77,6 +77,8 @@ contains
                & system%initial_stress(:, b) + matmul(d, motion(4:6))/2.0_wp))
          end associate
       end do
+      if (allocated(system%bar)) energy%elastic = energy%elastic &
+         & + sum(system%bar%force**2/settings%boundary%bar%stiffness)/2.0_wp
    end subroutine store_energy
 
    !> Add what a step brought in and took

@@ -107,3 +107,17 @@ def test_a_block_pulled_apart_stores_stress_times_strain_over_two(tmp_path: Path
     assert rows[-1]["kinetic"] == pytest.approx(0.0, abs=EXACT * stored)
     assert sum(rows[-1][name] for name in ("damping", "impact", "numerical")) == pytest.approx(stored, rel=EXACT)
     assert max(abs(total(row)) for row in rows) < EXACT * stored
+
+
+def test_a_bar_stores_half_its_force_times_its_elongation(tmp_path: Path) -> None:
+    """A block flies away from a point of the ground that a bar of 1000 N/m ties its centre to."""
+    scene = block(SQUARE, "velocity 1.5 0 0") + "bar 0.5 0.5 -9.5 0.5 stiffness 1000\nmeasure 0.5 0.5\n"
+    rows = energies(tmp_path, scene, "&material unit_weight = 1e-12 /\n" + DYNAMIC.format(0.01, 2.0, ""))
+    ways = [float(point["u"]) for point in rows_of(tmp_path / "out" / "points.csv")][1:]
+    assert max(ways) > 1.0
+    start = MASS * 1.5**2 / 2.0
+    for row, way in zip(rows, ways):
+        assert row["elastic"] == pytest.approx(1000.0 * way**2 / 2.0, rel=1e-9)
+        assert row["kinetic"] + row["elastic"] == pytest.approx(start, rel=EXACT)
+        for name in ("contact", "work", "friction", "damping", "impact", "numerical"):
+            assert row[name] == pytest.approx(0.0, abs=EXACT * start)
