@@ -1,4 +1,4 @@
-"""Every column of every table beside hand-made numbers of one block: pushed, at its limit, at rest in time, in flight."""
+"""Every column of every table beside numbers by hand of one block: pushed, at its limit, at rest, in flight."""
 
 from __future__ import annotations
 
@@ -83,13 +83,13 @@ def test_a_brick_at_its_limit_turns_about_its_corner(tmp_path: Path) -> None:
 
 def test_a_brick_at_rest_in_time_keeps_its_forces(tmp_path: Path) -> None:
     row = run_blocks(tmp_path, BASE + block(BRICK) + f"load 10 0.5 {PUSH} 0\nmeasure 12 1\n", HEAVY
-                     + "&analysis unknowns = 3, mode = 'dynamic', geometry = 'current', time_step = 0.01, duration = 0.05,"
-                     " steps = 100, start = 'static' /\n&output frames = 5, reactions = .true. /\n")
+                     + "&analysis unknowns = 3, mode = 'dynamic', geometry = 'current', time_step = 0.01,"
+                     " duration = 0.05, steps = 100, start = 'static' /\n&output frames = 5, reactions = .true. /\n")
     assert row["verdict"] == "completed"
     pictures, points, reactions = tables(tmp_path, "frame_joints", "points", "reactions")
     for number, line in enumerate(pictures):
-        check(line, {"case": 1, "frame": number, "joint": 1, "x_1": 12, "y_1": 0, "x_2": 10, "y_2": 0, "x": 11.1, "y": 0,
-                     "force_x": -PUSH, "force_y": WEIGHT, "state_1": "locked", "state_2": "locked"}, 1e-7)
+        check(line, {"case": 1, "frame": number, "joint": 1, "x_1": 12, "y_1": 0, "x_2": 10, "y_2": 0,
+                     "x": 11.1, "y": 0, "force_x": -PUSH, "force_y": WEIGHT, "state_1": "locked", "state_2": "locked"}, 1e-7)
     for number, line in enumerate(points):
         check(line, {"case": 1, "step": number, "time": 0.01 * number, "point": 1, "x": 12, "y": 1, "u": 0, "v": 0,
                      "vx": 0, "vy": 0}, 1e-7)
