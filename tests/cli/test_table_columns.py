@@ -89,7 +89,8 @@ def test_a_brick_at_rest_in_time_keeps_its_forces(tmp_path: Path) -> None:
     pictures, points, reactions = tables(tmp_path, "frame_joints", "points", "reactions")
     for number, line in enumerate(pictures):
         check(line, {"case": 1, "frame": number, "joint": 1, "x_1": 12, "y_1": 0, "x_2": 10, "y_2": 0,
-                     "x": 11.1, "y": 0, "force_x": -PUSH, "force_y": WEIGHT, "state_1": "locked", "state_2": "locked"}, 1e-7)
+                     "x": 11.1, "y": 0, "force_x": -PUSH, "force_y": WEIGHT, "state_1": "locked",
+                     "state_2": "locked"}, 1e-7)
     for number, line in enumerate(points):
         check(line, {"case": 1, "step": number, "time": 0.01 * number, "point": 1, "x": 12, "y": 1, "u": 0, "v": 0,
                      "vx": 0, "vy": 0}, 1e-7)
