@@ -85,8 +85,8 @@ contains
          falls = .not. keeps_velocities(deck) .or. any(swept == "mode" .or. swept == "dynamic")
          column = [column_t("case", source%case, len(to_text(n_cases(deck))))]
          do s = 1, size(swept)
-            column = [column, column_t(swept(s), source%swept, longest(deck%sweep(s)), s, &
-               & size(deck%sweep(s)%texts) > 0)]
+            column = [column, column_t(swept(s), source%swept, longest(deck%sweeps(s)), s, &
+               & size(deck%sweeps(s)%texts) > 0)]
          end do
       end associate
       if (searched /= "") column = [column, column_t(searched, source%searched, 14)]

@@ -3,8 +3,7 @@ module dda_check
    use, intrinsic :: iso_fortran_env, only : error_unit
    use dda_boundary, only : boundary_t
    use dda_command_line, only : command_t, name_of
-   use dda_deck, only : deck_t, flag_of, geometry_of, has_group, integer_of, is_given, &
-      & keeps_velocities, scene_kind, text_of, word_of
+   use dda_deck, only : deck_t, geometry_of, keeps_velocities, scene_kind
    use dda_deck_scene, only : deck_scene
    use dda_deck_sweep, only : case_deck, n_cases, swept_names
    use dda_cut, only : print_warnings
@@ -102,7 +101,7 @@ contains
 
       arch = scene_kind(deck) == "arch"
       call case_deck(deck, 1, first, error)
-      if (word_of(deck, "scene", "kind") /= "blocks") call deck_scene(first, scene)
+      if (deck%scene%kind%word /= "blocks") call deck_scene(first, scene)
       blocks = maxval(scene%system%equation)
       swept = ""
       associate (names => swept_names(deck))
@@ -110,11 +109,11 @@ contains
             swept = swept//" "//trim(names(s))
          end do
       end associate
-      call print_line(screen, name//": "//text_of(deck, "scene", "title"))
+      call print_line(screen, name//": "//deck%scene%title%text)
       call tell(screen, "cases", to_text(n_cases(deck)))
       if (swept /= "") call tell(screen, "swept", swept(2:))
-      if (has_group(deck, "search")) then
-         call tell(screen, "search", text_of(deck, "search", "parameter"))
+      if (deck%search%given) then
+         call tell(screen, "search", deck%search%parameter%text)
       else
          call tell(screen, "search", "none")
       end if
@@ -123,7 +122,7 @@ contains
       if (allocated(error)) call tell(screen, "not to run", error_line(error))
       call print_line(screen, "   the first case:")
       call print_model(screen, first)
-      if (word_of(first, "analysis", "mode") == "limerick") then
+      if (first%analysis%mode%word == "limerick") then
          call print_limerick_plan(screen, first, scene)
          return
       end if
@@ -170,7 +169,7 @@ contains
       character(len=:), allocatable :: kind, mode
 
       kind = trim(scene_kind(deck))
-      mode = trim(word_of(deck, "analysis", "mode"))
+      mode = trim(deck%analysis%mode%word)
       call tell(screen, "model", kind//", "//mode//" "//trim(geometry_of(deck)) &
          & //"; available for "//kind//": "//models_of(kind))
       if (keeps_velocities(deck)) mode = "dynamic"
@@ -200,14 +199,12 @@ contains
       type(deck_t), intent(in) :: deck
       !> The text
       character(len=:), allocatable :: text
-      character(len=9), parameter :: name(4) = [character(len=9) :: "vtu", "energy", &
-         & "condition", "restart"]
-      integer :: i
 
       text = ""
-      do i = 1, size(name)
-         if (flag_of(deck, "output", trim(name(i)))) text = text//", "//trim(name(i))
-      end do
+      if (deck%output%vtu%flag) text = text//", vtu"
+      if (deck%output%energy%flag) text = text//", energy"
+      if (deck%output%condition%flag) text = text//", condition"
+      if (deck%output%restart%flag) text = text//", restart"
       if (text == "") then
          text = "none"
       else
@@ -227,7 +224,7 @@ contains
 
       call limerick_scene(deck, scene, model)
       n = size(model%block_material)
-      if (word_of(deck, "scene", "kind") == "arch") then
+      if (deck%scene%kind%word == "arch") then
          call tell(screen, "blocks", to_text(n - 2)//" and 2 abutments, each fixed at 4 points")
       else
          call tell(screen, "blocks", to_text(n)//", fixed at " &
@@ -290,13 +287,13 @@ contains
          & "none: every step starts at rest, mode is static", plan%velocities)))
       if (plan%shared_forces) then
          call tell(screen, "joints.csv", "joint forces recomputed with deformable blocks")
-      else if (flag_of(deck, "output", "joints")) then
+      else if (deck%output%joints%flag) then
          call tell(screen, "joints.csv", "joint forces of the run itself")
       else
          call tell(screen, "joints.csv", "none: output%joints is "//trim(merge( &
-            & ".false.  ", "not given", is_given(deck, "output", "joints"))))
+            & ".false.  ", "not given", deck%output%joints%given)))
       end if
-      if (integer_of(deck, "output", "frames") > 0) then
+      if (deck%output%frames%whole > 0) then
          call tell(screen, "frames", "the case is run once more for its frames")
       else
          call tell(screen, "frames", "none: output%frames is 0")

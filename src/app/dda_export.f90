@@ -4,7 +4,7 @@ module dda_export
    use, intrinsic :: iso_fortran_env, only : error_unit
    use dda_arch_lines, only : arch_analysis, arch_lines, what_is_lost
    use dda_command_line, only : command_t, name_of
-   use dda_deck, only : deck_error, deck_t, has_group, place_of, scene_kind, word_of
+   use dda_deck, only : deck_error, deck_t, place_of, scene_kind
    use dda_deck_keys, only : key_index
    use dda_deck_sweep, only : case_deck, n_cases
    use dda_error, only : error_line, error_t
@@ -40,7 +40,7 @@ contains
       status = exit_status%success
       do i = 1, size(command%name)
          call read_deck(name_of(command, i), command%setting, deck, error)
-         if (.not. allocated(error) .and. word_of(deck, "scene", "kind") == "blocks") &
+         if (.not. allocated(error) .and. deck%scene%kind%word == "blocks") &
             & call deck_error(error, "dda export needs scene%kind 'arch' or 'lines', got " &
             & //"'blocks'; copy the file that it names", deck, &
             & place_of(deck, key_index("scene", "kind")))
@@ -133,7 +133,7 @@ contains
          call print_line(command%screen, stem//".blocks, for scene%kind = 'blocks'")
          if (losses /= "") call print_line(command%screen, &
             & "   a file of blocks has no place for "//losses)
-         if (has_group(deck, "search")) call print_line(command%screen, &
+         if (deck%search%given) call print_line(command%screen, &
             & "   the search is not written: the file holds the deck's own value of its parameter")
       end if
    end subroutine export_blocks
@@ -171,7 +171,7 @@ contains
          & "step and penalty, plane strain and gravity (only as unit weight over unit mass)")
       if (what_is_lost(deck) /= "") call print_line(screen, &
          & "   neither form has a place for "//what_is_lost(deck))
-      if (has_group(deck, "search")) call print_line(screen, &
+      if (deck%search%given) call print_line(screen, &
          & "   the search is not written: the files hold the deck's own value of its parameter")
    end subroutine tell
 end module dda_export

@@ -2,14 +2,14 @@
 module dda_result_tables
    use, intrinsic :: iso_fortran_env, only : int64
    use dda_bar_rows, only : bars_header
-   use dda_deck, only : deck_t, flag_of, has_group, integer_of, is_given
+   use dda_deck, only : deck_t
    use dda_deck_sweep, only : n_cases, swept_names, swept_texts
    use dda_disk_record, only : write_disk_record
    use dda_error, only : error_t
    use dda_kinds, only : wp
    use dda_line_sum, only : add_sums
    use dda_proof_rows, only : proof_forces_header, proof_motion_header
-   use dda_read_deck, only : few_cases, many_case_tables
+   use dda_read_deck, only : few_cases
    use dda_table_file, only : append_line, close_table, length_of, open_table, remove_file, &
       & sum_of, sync_table, table_file_t
    use dda_text, only : to_text
@@ -121,9 +121,9 @@ contains
       tables%folder = folder
       tables%record_file = folder//"/deck.record"
       tables%disk_file = folder//"/disk.record"
-      tables%has_vtu = flag_of(deck, "output", "vtu")
+      tables%has_vtu = deck%output%vtu%flag
       call name_table(tables%at(table%results), "/results.csv", results_header(names, &
-         & flag_of(deck, "output", "condition")))
+         & deck%output%condition%flag))
       call name_table(tables%at(table%joints), "/joints.csv", joints_header())
       call name_table(tables%at(table%log), "/log.txt", "case verdict remark" &
          & //parenthesis(left_out(deck)))
@@ -133,24 +133,21 @@ contains
       call name_table(tables%at(table%points), "/points.csv", points_header())
       tables%at(table%points)%wanted = .false.
       if (allocated(deck%plan%boundary%measured)) tables%at(table%points)%wanted = &
-         & size(deck%plan%boundary%measured) > 0 .and. .not. has_group(deck, "search")
+         & size(deck%plan%boundary%measured) > 0 .and. .not. deck%search%given
       call name_table(tables%at(table%reactions), "/reactions.csv", reactions_header())
-      tables%at(table%reactions)%wanted = flag_of(deck, "output", "reactions") &
-         & .and. .not. has_group(deck, "search")
+      tables%at(table%reactions)%wanted = deck%output%reactions%flag .and. .not. deck%search%given
       call name_table(tables%at(table%energy), "/energy.csv", energy_header())
-      tables%at(table%energy)%wanted = flag_of(deck, "output", "energy") &
-         & .and. .not. has_group(deck, "search")
+      tables%at(table%energy)%wanted = deck%output%energy%flag .and. .not. deck%search%given
       call name_table(tables%at(table%blocks), "/blocks.csv", blocks_header())
-      tables%at(table%blocks)%wanted = flag_of(deck, "output", "blocks")
-      tables%at(table%joints)%wanted = flag_of(deck, "output", "joints")
+      tables%at(table%blocks)%wanted = deck%output%blocks%flag
+      tables%at(table%joints)%wanted = deck%output%joints%flag
       call name_table(tables%at(table%proof_forces), "/proof_forces.csv", proof_forces_header())
       call name_table(tables%at(table%proof_motion), "/proof_motion.csv", proof_motion_header())
-      tables%at([table%proof_forces, table%proof_motion])%wanted = flag_of(deck, "output", "proof")
+      tables%at([table%proof_forces, table%proof_motion])%wanted = deck%output%proof%flag
       call name_table(tables%at(table%bars), "/bars.csv", bars_header())
-      tables%at(table%bars)%wanted = allocated(deck%plan%boundary%bar) .or. has_group(deck, "tie")
+      tables%at(table%bars)%wanted = allocated(deck%plan%boundary%bar) .or. deck%tie%given
       if (allocated(deck%cut)) tables%at(table%bars)%wanted = size(deck%cut%bolt) > 0
-      tables%at([table%frames, table%frame_joints])%wanted = &
-         & integer_of(deck, "output", "frames") > 0
+      tables%at([table%frames, table%frame_joints])%wanted = deck%output%frames%whole > 0
 
    contains
 
@@ -191,11 +188,14 @@ contains
       if (n_cases(deck) <= few_cases) return
       files = ""
       keys = ""
-      do i = 1, size(many_case_tables)
-         if (is_given(deck, "output", many_case_tables(i))) cycle
-         files = files//" and "//many_case_tables(i)//".csv"
-         keys = keys//", output%"//many_case_tables(i)//" = .true."
-      end do
+      if (.not. deck%output%joints%given) then
+         files = " and joints.csv"
+         keys = ", output%joints = .true."
+      end if
+      if (.not. deck%output%blocks%given) then
+         files = files//" and blocks.csv"
+         keys = keys//", output%blocks = .true."
+      end if
       if (files /= "") text = "no "//files(6:)//" of more than "//to_text(few_cases) &
          & //" cases without "//keys(3:)
    end function left_out

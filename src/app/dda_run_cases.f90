@@ -5,7 +5,7 @@ module dda_run_cases
    use dda_case_rows, only : tell_case
    use dda_case_table, only : add_case, case_table_t
    use dda_command_line, only : command_t
-   use dda_deck, only : deck_t, flag_of
+   use dda_deck, only : deck_t
    use dda_deck_sweep, only : turn_to_case
    use dda_error, only : error_t
    use dda_kinds, only : wp
@@ -276,7 +276,7 @@ contains
       !> Allocated if it cannot be written
       type(error_t), allocatable, intent(out) :: error
 
-      if (.not. flag_of(this%family%deck, "output", "restart")) return
+      if (.not. this%family%deck%output%restart%flag) return
       if (.not. this%scene%settings%dynamic .or. allocated(this%error)) return
       call save_restart(folder//"/case_"//to_text(number)//".restart", this%scene%settings, &
          & this%decision%system, this%decision%contacts, this%onward, error)

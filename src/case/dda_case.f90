@@ -4,10 +4,9 @@ module dda_case
    use dda_case_proof, only : proof_t
    use dda_search, only : critical_t, search_t
    use dda_decision, only : decision_t
-   use dda_deck, only : deck_t, file_beside, has_group, is_given, parameter_t, real_of, &
-      & scene_kind, text_of, word_of
-   use dda_deck_check, only : search_bracket
-   use dda_deck_parameter, only : find_parameter, parameter_name
+   use dda_deck, only : deck_t, file_beside, parameter_t, scene_kind
+   use dda_deck_check_case, only : search_bracket
+   use dda_deck_parameter, only : parameter_name
    use dda_deck_keys, only : key_index
    use dda_deck_scene, only : deck_family_t, new_family
    use dda_error, only : error_t
@@ -72,11 +71,11 @@ contains
       type(case_t), intent(out) :: this
       character(len=:), allocatable :: searched
 
-      this%restart_file = file_beside(deck, text_of(deck, "analysis", "restart"))
+      this%restart_file = file_beside(deck, deck%analysis%restart%text)
       this%plan = plan_scene(deck)
       searched = searched_name(deck)
-      this%searches = has_group(deck, "search")
-      this%limerick = word_of(deck, "analysis", "mode") == "limerick"
+      this%searches = deck%search%given
+      this%limerick = deck%analysis%mode%word == "limerick"
       if (this%searches) then
          call prepare_search(deck, this%plan, searched, this%family, this%search)
       else
@@ -93,13 +92,9 @@ contains
       type(deck_t), intent(in) :: deck
       !> Name of a key
       character(len=:), allocatable :: name
-      type(parameter_t) :: parameter
-      character(len=:), allocatable :: problem
 
       name = ""
-      if (.not. has_group(deck, "search")) return
-      call find_parameter(text_of(deck, "search", "parameter"), parameter, problem)
-      name = trim(parameter_name(parameter))
+      if (deck%search%given) name = trim(parameter_name(deck%searched))
    end function searched_name
 
    !> What a deck asks to be searched
@@ -112,26 +107,22 @@ contains
       character(len=*), intent(in) :: searched
       type(deck_family_t), intent(out) :: family
       type(search_t), intent(out) :: search
-      type(parameter_t) :: parameter
-      character(len=:), allocatable :: problem
 
-      call find_parameter(text_of(deck, "search", "parameter"), parameter, problem)
-      call new_family(deck, plan, parameter, family)
+      call new_family(deck, plan, deck%searched, family)
       call search_bracket(deck, search%low, search%high)
       search%in_time = plan%velocities
-      search%tolerance = real_of(deck, "search", "tolerance")
+      search%tolerance = deck%search%tolerance%number
       ! the original's own verdicts near the limit are no sharper, nor those of a motion in steps
-      if (word_of(deck, "analysis", "mode") /= "static" &
-         & .and. .not. is_given(deck, "search", "tolerance")) search%tolerance = 1.0e-4_wp
+      if (deck%analysis%mode%word /= "static" &
+         & .and. .not. deck%search%tolerance%given) search%tolerance = 1.0e-4_wp
       if (scene_kind(deck) == "arch") search%resolution = arch_resolution(deck)
       search%start = search%low
       if (searched /= "thickness_ratio" .or. plan%velocities) return
       if (family%decides_chains) search%resolution = chain_resolution(deck)
-      if (.not. family%decides_chains) &
-         & search%resolution_at = real_of(deck, "arch", "thickness_ratio")
+      if (.not. family%decides_chains) search%resolution_at = deck%arch%thickness_ratio%number
       search%start = search_start(deck)
-      if (.not. is_given(deck, "search", "low")) search%low = 1.0e-5_wp*search%start
-      search%check_far_end = is_given(deck, "search", "high")
+      if (.not. deck%search%low%given) search%low = 1.0e-5_wp*search%start
+      search%check_far_end = deck%search%high%given
       if (.not. search%check_far_end) search%high = 1.99_wp
       search%start = min(max(search%start, search%low), search%high)
    end subroutine prepare_search

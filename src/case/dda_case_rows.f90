@@ -8,7 +8,7 @@ module dda_case_rows
    use dda_contact_types, only : joint_t
    use dda_search, only : critical_t
    use dda_decision, only : decision_t
-   use dda_deck, only : deck_t, flag_of, is_given, real_of, scene_kind, word_of
+   use dda_deck, only : deck_t, scene_kind
    use dda_deck_scene, only : movable_blocks
    use dda_error, only : error_line, error_t
    use dda_forward, only : outcome_t
@@ -21,7 +21,7 @@ module dda_case_rows
       & tell_total_motion
    use dda_verdict, only : verdict
    use dda_write_blocks, only : told_blocks_t
-   use dda_write_results, only : joint_row_t, number_t, result_row_t, some_number
+   use dda_write_results, only : joint_row_t, result_row_t, some_number
    implicit none
    private
 
@@ -56,8 +56,7 @@ contains
       else
          call tell_decision(this, row, joint_row, blocks, remark)
       end if
-      if (this%has_worst) row%worst_position = &
-         & some_number(real_of(this%family%deck, "vehicle", "position"))
+      if (this%has_worst) row%worst_position = some_number(this%family%deck%vehicle%position%number)
       if (this%has_worst) remark = position_remark(row%worst_position%value, remark)
       call tell_proof(this%proof, row)
       if (row%verdict == "stable" .and. row%exact%known .and. row%thickness_ratio%known) &
@@ -99,22 +98,24 @@ contains
       character(len=:), allocatable :: searched
 
       searched = searched_name(this%family%deck)
-      row%mode = word_of(this%family%deck, "analysis", "mode")
-      row%geometry = word_of(this%family%deck, "analysis", "geometry")
+      row%mode = this%family%deck%analysis%mode%word
+      row%geometry = this%family%deck%analysis%geometry%word
       if (this%limerick) row%geometry = "current"
       row%blocks = movable_blocks(this%family%deck)
       if (scene_kind(this%family%deck) == "arch") then
          row%springing_hinge = "none"
-         row%half_angle_deg = given_number(this%family%deck, "arch", "half_angle_deg", searched)
-         row%thickness_ratio = given_number(this%family%deck, "arch", "thickness_ratio", searched)
+         if (searched /= "half_angle_deg") &
+            & row%half_angle_deg = some_number(this%family%deck%arch%half_angle_deg%number)
+         if (searched /= "thickness_ratio") &
+            & row%thickness_ratio = some_number(this%family%deck%arch%thickness_ratio%number)
       end if
-      if (deck_friction_acts(this%family%deck)) &
-         & row%friction_deg = given_number(this%family%deck, "joint", "friction_deg", searched)
+      if (deck_friction_acts(this%family%deck) .and. searched /= "friction_deg") &
+         & row%friction_deg = some_number(this%family%deck%joint%friction_deg%number)
       row%collapse_mode = "none"
       if (this%exact_known) row%exact = some_number(this%exact)
       row%seconds = this%seconds
       row%unknowns = this%plan%unknowns
-      row%tells_condition = flag_of(this%family%deck, "output", "condition")
+      row%tells_condition = this%family%deck%output%condition%flag
    end subroutine describe
 
    !> Whether the friction of the deck may be that of a joint: those of lines have that of their
@@ -123,28 +124,11 @@ contains
       !> The deck of the case
       type(deck_t), intent(in) :: deck
 
-      deck_friction_acts = is_given(deck, "joint", "friction_deg")
+      deck_friction_acts = deck%joint%friction_deg%given
       if (deck_friction_acts) return
-      deck_friction_acts = .not. allocated(deck%analysis)
-      if (word_of(deck, "scene", "kind") == "blocks") &
-         & deck_friction_acts = lacks_friction(deck%plan)
+      deck_friction_acts = .not. allocated(deck%file_analysis)
+      if (deck%scene%kind%word == "blocks") deck_friction_acts = lacks_friction(deck%plan)
    end function deck_friction_acts
-
-   !> A number of the deck, unknown if it is searched
-   pure function given_number(deck, group, key, searched) result(number)
-      !> The deck of the case
-      type(deck_t), intent(in) :: deck
-      !> Group of the key
-      character(len=*), intent(in) :: group
-      !> The key
-      character(len=*), intent(in) :: key
-      !> Name of the searched parameter
-      character(len=*), intent(in) :: searched
-      !> The number
-      type(number_t) :: number
-
-      if (key /= searched) number = some_number(real_of(deck, group, key))
-   end function given_number
 
    !> Tell a case that searches nothing
    pure subroutine tell_decision(this, row, joint_row, blocks, remark)

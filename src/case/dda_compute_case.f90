@@ -12,7 +12,7 @@ module dda_compute_case
    use dda_contact_detection, only : contacts_t
    use dda_critical, only : find_critical
    use dda_decision, only : decision_t
-   use dda_deck, only : flag_of, integer_of, is_given, parameter_t, real_of, scene_kind
+   use dda_deck, only : parameter_t, scene_kind
    use dda_deck_keys, only : key_index
    use dda_deck_set, only : put_number
    use dda_deck_scene, only : deck_scene
@@ -60,7 +60,7 @@ contains
          if (allocated(this%critical%fallen)) &
             & call this%family%build(this%critical%falls, this%scene, error)
       else if (this%searches) then
-         if (flag_of(this%family%deck, "vehicle", "worst")) call place_vehicle(this)
+         if (this%family%deck%vehicle%worst%flag) call place_vehicle(this)
          call find_critical(this%family, this%search, this%critical)
          if (allocated(this%critical%fallen)) &
             & call see_collapse(this, this%critical%falls, this%critical%fallen)
@@ -70,13 +70,13 @@ contains
       else
          call compute_decision(this)
          if (.not. allocated(this%error)) call see_collapse(this, &
-            & real_of(this%family%deck, "arch", "thickness_ratio"), this%decision)
+            & this%family%deck%arch%thickness_ratio%number, this%decision)
       end if
       if (this%searches .and. .not. this%family%decides_chains &
          & .and. .not. allocated(this%critical%fallen) .and. allocated(this%critical%standing)) &
          & call this%family%build(this%critical%stands, this%scene, error)
       if (this%plan%shared_forces) call share_told_forces(this)
-      if (this%searches .and. integer_of(this%family%deck, "output", "frames") > 0) then
+      if (this%searches .and. this%family%deck%output%frames%whole > 0) then
          if (this%limerick) call repeat_with_pictures(this%family, this%critical, this%album)
          if (.not. this%limerick) call take_pictures(this)
       end if
@@ -113,13 +113,13 @@ contains
       if (this%searches) then
          call prove_search(this%family, this%critical, this%proof)
       else if (allocated(this%scene%contacts%joint)) then
-         joint = integer_of(this%family%deck, "output", "thrust_joint")
+         joint = this%family%deck%output%thrust_joint%whole
          if (joint == 0 .and. size(this%scene%joint_angle_deg) > 0 &
             & .and. size(this%scene%joint_angle_deg) <= most_thrust_joints) &
             & joint = minloc(abs(this%scene%joint_angle_deg), dim=1)
          joint = merge(joint, this%scene%crown_joint, joint > 0)
          call prove_decision(this%scene, this%decision, joint, &
-            & integer_of(this%family%deck, "output", "thrust_bar"), this%proof)
+            & this%family%deck%output%thrust_bar%whole, this%proof)
       end if
    end subroutine prove_case
 
@@ -135,7 +135,7 @@ contains
 
       ! tables tell displacements, which a chain does not keep
       decided = this%family%decides_chains .and. .not. this%tells_tables
-      if (decided) call this%family%link(real_of(this%family%deck, "arch", "thickness_ratio"), &
+      if (decided) call this%family%link(this%family%deck%arch%thickness_ratio%number, &
          & settings, chain, decided)
       if (decided) call decide_chain(settings, chain, this%decision, decided)
       ! a chain proves that it falls; how it does is told by all of its blocks
@@ -143,7 +143,7 @@ contains
       if (decided) return
       call deck_scene(this%family%deck, this%scene)
       call plan_fall(this)
-      if (is_given(this%family%deck, "analysis", "restart")) then
+      if (this%family%deck%analysis%restart%given) then
          system = this%scene%system
          contacts = this%scene%contacts
          call load_restart(this%restart_file, this%scene%settings, system, contacts, this%onward, &
@@ -162,7 +162,7 @@ contains
       type(case_t), intent(inout) :: this
       type(block_system_t), intent(in) :: system
 
-      if (this%scene%settings%dynamic .and. flag_of(this%family%deck, "output", "reactions")) &
+      if (this%scene%settings%dynamic .and. this%family%deck%output%reactions%flag) &
          & this%album%support = supports_of(system, this%scene%settings%boundary)
    end subroutine keep_supports
 
@@ -177,7 +177,7 @@ contains
       logical :: collapsed, wanted
       if (this%family%decides_chains) this%scene%joint_angle_deg = this%family%joint_angle_deg
       collapsed = decision%outcome%verdict == verdict%collapsed
-      wanted = merge(this%tells_tables .or. integer_of(this%family%deck, "output", "frames") > 0, &
+      wanted = merge(this%tells_tables .or. this%family%deck%output%frames%whole > 0, &
          & this%searches, this%family%decides_chains)
       if (wanted .or. collapsed) call unfold(decision)
       if (collapsed) wanted = wanted .or. any(decision%contacts%face%slip /= 0)
@@ -193,15 +193,14 @@ contains
       type(case_t), intent(inout) :: this
       integer :: frames
 
-      frames = integer_of(this%family%deck, "output", "frames")
+      frames = this%family%deck%output%frames%whole
       allocate (this%album%point(0))
       if (frames > 0 .and. this%plan%velocities) &
-         & this%album%interval = real_of(this%family%deck, "analysis", "duration")/real(frames, wp)
+         & this%album%interval = this%family%deck%analysis%duration%number/real(frames, wp)
       if (frames > 0 .and. this%plan%velocities .and. .not. this%album%interval > 0.0_wp) &
-         & this%album%every = max(1, integer_of(this%family%deck, "analysis", "steps")/frames)
+         & this%album%every = max(1, this%family%deck%analysis%steps%whole/frames)
       if (this%searches) return
-      this%album%audit%wanted = this%plan%velocities &
-         & .and. flag_of(this%family%deck, "output", "energy")
+      this%album%audit%wanted = this%plan%velocities .and. this%family%deck%output%energy%flag
       if (allocated(this%family%deck%plan%boundary%measured)) &
          & this%album%point = this%family%deck%plan%boundary%measured
    end subroutine plan_album
@@ -228,7 +227,7 @@ contains
       type(load_clock_t) :: clock
       integer :: frames
 
-      frames = integer_of(this%family%deck, "output", "frames")
+      frames = this%family%deck%output%frames%whole
       if (frames == 0 .or. this%scene%settings%dynamic) return
       this%album%follow = this%scene%settings%collapse_displacement
       if (.not. this%album%follow > 0.0_wp) this%album%follow = 0.1_wp*scene_size(this)
@@ -280,7 +279,7 @@ contains
             & /real(max(1, count(system%equation > 0)), wp))
       end associate
       associate (deck => this%family%deck)
-         if (scene_kind(deck) == "arch") scene_size = real_of(deck, "arch", "radius")
+         if (scene_kind(deck) == "arch") scene_size = deck%arch%radius%number
          if (allocated(deck%cut)) scene_size = deck%cut%scale%size
       end associate
    end function scene_size

@@ -3,7 +3,7 @@ module dda_joint_rows
    use dda_contact_detection, only : contacts_t
    use dda_contact_types, only : joint_t, same_joint
    use dda_kinds, only : wp
-   use dda_mechanism, only : mechanism_role, largest_of, role_of_joint, slides
+   use dda_mechanism, only : largest_of, role_of_joint, slides
    use dda_write_results, only : joint_row_t, some_number
    implicit none
    private

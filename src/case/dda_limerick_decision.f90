@@ -4,7 +4,7 @@ module dda_limerick_decision
    use dda_contact_detection, only : contacts_t
    use dda_contact_types, only : place_joint
    use dda_decision, only : decision_t
-   use dda_deck, only : deck_t, integer_of, word_of
+   use dda_deck, only : deck_t
    use dda_deck_scene, only : deck_scene
    use dda_frames, only : album_t, frame_is_due, keep_frame
    use dda_kinds, only : wp
@@ -41,7 +41,7 @@ contains
       call deck_scene(deck, scene)
       call limerick_scene(deck, scene, model)
       if (present(album)) then
-         call plan_pictures(integer_of(deck, "output", "frames"), model%constants, album)
+         call plan_pictures(deck%output%frames%whole, model%constants, album)
          call run_with_pictures(deck, scene, model, run, outcome, album)
          call keep_ways(outcome, album)
       else
@@ -124,7 +124,7 @@ contains
       system = scene%system
       if (allocated(system%bar)) system%bar%force = run%blocks%bolt_force
       contacts = scene%contacts
-      call place_corners(word_of(deck, "scene", "kind"), run, system)
+      call place_corners(deck%scene%kind%word, run, system)
       call tell_joints(scene, model, run, system%moved, contacts)
       ! blocks of the scheme are those of the scene, in their order
       n = min(size(system%area), size(run%blocks%area))

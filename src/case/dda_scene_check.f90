@@ -1,11 +1,9 @@
 !> Checks of a deck that need its scene: whether its modes can run the blocks
 module dda_scene_check
    use dda_block_scene, only : floating_block
-   use dda_deck, only : deck_error, deck_place_t, deck_t, file_beside, flag_of, has_group, &
-      & is_given, keeps_velocities, parameter_t, place_of, text_of, word_of
+   use dda_deck, only : deck_error, deck_place_t, deck_t, file_beside, keeps_velocities, place_of
    use dda_deck_check_case, only : check_model
    use dda_deck_keys, only : deck_key, key_index
-   use dda_deck_parameter, only : find_parameter
    use dda_deck_scene, only : deck_scene
    use dda_deck_sweep, only : n_cases, turn_to_case
    use dda_error, only : error_t, fatal_error
@@ -44,10 +42,10 @@ contains
       class(watch_t), intent(inout), optional :: watch
 
       if (present(watch)) call watch%tell("looking for joints", -1.0_wp)
-      if (is_given(deck, "analysis", "restart")) call check_start(deck, error)
+      if (deck%analysis%restart%given) call check_start(deck, error)
       if (.not. allocated(error)) call check_shapes(deck, error)
       if (.not. allocated(error)) call check_live_cases(deck, error)
-      if (allocated(error) .or. word_of(deck, "scene", "kind") /= "blocks") return
+      if (allocated(error) .or. deck%scene%kind%word /= "blocks") return
       call check_modes(deck, scene, error)
    end subroutine check_scene
 
@@ -69,10 +67,10 @@ contains
          return
       end if
       place = factor_place(deck, "load_factor")
-      points = has_group(deck, "live") .or. has_group(deck, "vehicle")
+      points = deck%live%given .or. deck%vehicle%given
       if (place%line == 0 .and. .not. points) return
-      reshaped = any(deck_key(deck%sweep%parameter%key)%group == "arch" &
-         & .or. deck_key(deck%sweep%parameter%key)%group == "fill")
+      reshaped = any(deck_key(deck%sweeps%parameter%key)%group == "arch" &
+         & .or. deck_key(deck%sweeps%parameter%key)%group == "fill")
       do number = 1, n_cases(deck)
          call turn_to_case(deck, number, work, error)
          if (allocated(error)) return
@@ -109,18 +107,14 @@ contains
       character(len=*), intent(in) :: name
       !> The place; line 0 if it is not
       type(deck_place_t) :: place
-      type(parameter_t) :: searched
-      character(len=:), allocatable :: problem
       integer :: key, s
 
       key = key_index("load", name)
-      if (is_given(deck, "load", name)) place = deck%value(key)%place
-      do s = 1, size(deck%sweep)
-         if (deck%sweep(s)%parameter%key == key) place = deck%sweep(s)%place
+      if (deck%value(key)%given) place = deck%value(key)%place
+      do s = 1, size(deck%sweeps)
+         if (deck%sweeps(s)%parameter%key == key) place = deck%sweeps(s)%place
       end do
-      if (.not. has_group(deck, "search")) return
-      call find_parameter(text_of(deck, "search", "parameter"), searched, problem)
-      if (searched%key == key) place = place_of(deck, key_index("search", "parameter"))
+      if (deck%searched%key == key) place = place_of(deck, key_index("search", "parameter"))
    end function factor_place
 
    !> Check that the modes of a deck can run the blocks that were cut from its lines
@@ -131,7 +125,7 @@ contains
       type(error_t), allocatable, intent(out) :: error
       type(scene_t) :: scene
 
-      if (word_of(deck, "scene", "kind") == "lines") call check_modes(deck, scene, error)
+      if (deck%scene%kind%word == "lines") call check_modes(deck, scene, error)
    end subroutine check_lines
 
    !> Check the first case of each mode
@@ -151,14 +145,13 @@ contains
          call turn_to_case(deck, number, work, error)
          if (allocated(error)) return
          mode = findloc(["static  ", "dynamic ", "limerick"] == &
-            & word_of(work, "analysis", "mode"), .true., dim=1)
+            & work%analysis%mode%word, .true., dim=1)
          if (mode == 3 .and. keeps_velocities(work)) mode = 4
-         if (number == 1 .and. word_of(work, "scene", "kind") == "blocks") &
-            & call deck_scene(work, scene)
+         if (number == 1 .and. work%scene%kind%word == "blocks") call deck_scene(work, scene)
          if (.not. seen(mode)) call check_mode(work, number == 1, scene, deck%warnings, error)
          seen(mode) = .true.
-         if (allocated(error) .or. all(seen) .or. .not. any(deck%sweep%parameter%key == &
-            & key_index("analysis", "mode") .or. deck%sweep%parameter%key == &
+         if (allocated(error) .or. all(seen) .or. .not. any(deck%sweeps%parameter%key == &
+            & key_index("analysis", "mode") .or. deck%sweeps%parameter%key == &
             & key_index("limerick", "dynamic"))) return
       end do
    end subroutine check_modes
@@ -175,31 +168,26 @@ contains
       type(warnings_t), intent(inout) :: warnings
       !> What it cannot run
       type(error_t), allocatable, intent(out) :: error
-      type(parameter_t) :: searched
-      character(len=:), allocatable :: problem
 
-      select case (word_of(deck, "scene", "kind"))
+      select case (deck%scene%kind%word)
       case ("lines")
          ! the analysis file may ask for velocities
-         if (has_group(deck, "search")) call find_parameter(text_of(deck, "search", "parameter"), &
-            & searched, problem)
-         call check_model(deck, searched, error)
+         call check_model(deck, error)
          if (allocated(error)) return
-         if (word_of(deck, "analysis", "mode") /= "limerick") call check_line_scene(deck, error)
+         if (deck%analysis%mode%word /= "limerick") call check_line_scene(deck, error)
       case ("blocks")
-         if (word_of(deck, "analysis", "mode") == "limerick") call check_limerick_blocks( &
+         if (deck%analysis%mode%word == "limerick") call check_limerick_blocks( &
             & deck%plan, geometry_file(deck), keeps_velocities(deck), error)
          if (allocated(error)) return
          if (allocated(deck%plan%boundary%change)) call check_stages(deck, error)
          if (allocated(error)) return
-         if (word_of(deck, "analysis", "mode") == "static") &
-            & call check_support(deck, scene, error)
+         if (deck%analysis%mode%word == "static") call check_support(deck, scene, error)
          if (.not. allocated(error)) call check_widths(deck, scene, error)
-         if (word_of(deck, "analysis", "mode") == "static" .and. .not. allocated(error)) &
+         if (deck%analysis%mode%word == "static" .and. .not. allocated(error)) &
             & call check_loads(deck, scene, error)
          if (warns .and. .not. allocated(error)) call doubt_scene(deck, scene, warnings)
          if (allocated(deck%plan%boundary%absorbing) .and. .not. allocated(error) &
-            & .and. word_of(deck, "analysis", "mode") == "static") call add_warning(warnings, &
+            & .and. deck%analysis%mode%word == "static") call add_warning(warnings, &
             & "absorb has no effect: mode = 'static' has no time", geometry_file(deck), &
             & deck%plan%boundary%absorbing(1)%line)
       end select
@@ -215,7 +203,7 @@ contains
       type(march_t) :: march
       logical :: exists
 
-      name = text_of(deck, "analysis", "restart")
+      name = deck%analysis%restart%text
       inquire (file=file_beside(deck, name), exist=exists)
       if (.not. exists) then
          call deck_error(error, "there is no restart file '"//name//"'; check the name", deck, &
@@ -281,22 +269,21 @@ contains
       character(len=:), allocatable :: problem
 
       problem = ""
-      if (has_group(deck, "search")) then
+      if (deck%search%given) then
          problem = "a search needs blocks that stay"
-      else if (word_of(deck, "analysis", "mode") == "limerick") then
+      else if (deck%analysis%mode%word == "limerick") then
          problem = "mode = 'limerick' knows no blocks that come or go"
-      else if (flag_of(deck, "output", "energy")) then
+      else if (deck%output%energy%flag) then
          problem = "output%energy needs blocks that stay"
-      else if (is_given(deck, "output", "reactions") .and. flag_of(deck, "output", "reactions") &
-         & .and. word_of(deck, "analysis", "mode") == "dynamic") then
+      else if (deck%output%reactions%given .and. deck%output%reactions%flag &
+         & .and. deck%analysis%mode%word == "dynamic") then
          problem = "output%reactions of a dynamic run needs blocks that stay"
-      else if ((is_given(deck, "material", "compressive_strength") &
-         & .or. any(deck%plan%materials%given(5))) &
-         & .and. word_of(deck, "analysis", "flow") /= "associated") then
+      else if ((deck%material%compressive_strength%given .or. any(deck%plan%materials%given(5))) &
+         & .and. deck%analysis%flow%word /= "associated") then
          problem = "blocks with a compressive_strength need flow = 'associated' where some "// &
             & "come or go"
-      else if ((word_of(deck, "analysis", "mode") == "dynamic") &
-         & .neqv. word_of(deck, "analysis", "geometry") == "current") then
+      else if ((deck%analysis%mode%word == "dynamic") &
+         & .neqv. deck%analysis%geometry%word == "current") then
          problem = "stages need mode = 'static' with geometry = 'reference', or mode = 'dynamic' " &
             & //"with geometry = 'current'"
       end if

@@ -8,7 +8,7 @@ module dda_worst_position
    use dda_arch_assembly, only : arch_assembly_t
    use dda_arch_form, only : form_problem_t
    use dda_boundary, only : bounded_force_t, loaded_point_t, value_at
-   use dda_deck, only : deck_t, has_group
+   use dda_deck, only : deck_t
    use dda_fill_loads, only : fill_of, fill_t, press_fill
    use dda_graph_decision, only : decides_as_graph
    use dda_joint_graph, only : joint_graph_t
@@ -95,7 +95,7 @@ contains
 
       bridge%scene = scene
       bridge%road = road_of(scene%system)
-      if (has_group(deck, "fill")) then
+      if (deck%fill%given) then
          call shape_assembly(deck, assembly, problem)
          allocate (bridge%fill)
          bridge%fill = fill_of(deck, assembly)

@@ -6,11 +6,10 @@ module dda_ddaml_analysis
    use dda_error, only : error_t, fatal_error
    use dda_kinds, only : wp
    use dda_limerick_analysis, only : limerick_analysis_t
-   use dda_plain_analysis, only : check_steps, largest_value
+   use dda_plain_analysis, only : check_steps
    use dda_text, only : to_text
    use dda_warnings, only : add_warning, warnings_t
-   use dda_word_list, only : quoted, split_words, take_word_numbers, take_property, take_whole, &
-      & word_list_t
+   use dda_word_list, only : quoted, split_words, take_property, word_list_t
    use dda_xml_tree, only : attribute_of, attribute_place, count_children, find_child, &
       & first_child, next_sibling, xml_tree_t
    implicit none

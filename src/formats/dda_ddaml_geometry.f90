@@ -10,7 +10,7 @@ module dda_ddaml_geometry
    use dda_warnings, only : add_warning, warnings_t
    use dda_word_list, only : quoted, largest_coordinate, split_words, take_material, take_number, &
       & take_word_numbers, take_property, this_row, this_word, word_list_t, words_left
-   use dda_xml_tree, only : attribute_of, attribute_place, first_child, next_sibling, xml_tree_t
+   use dda_xml_tree, only : attribute_place, first_child, next_sibling, xml_tree_t
    implicit none
    private
 

@@ -1,7 +1,6 @@
 !> Whether two polygons overlap by more than rounded coordinates make them
 module dda_overlap
    use dda_box_tree, only : box_tree_t, find_boxes
-   use dda_growth, only : make_room
    use dda_kinds, only : wp
    use dda_polygon, only : depth_in, edge_ends, edges_near, has_tree
    use dda_sort, only : sorted_order

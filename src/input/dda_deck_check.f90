@@ -7,15 +7,14 @@ module dda_deck_check
    use dda_deck_key, only : key_t, key_kind
    use dda_deck_keys, only : deck_key, key_index, group_index
    use dda_deck_words, only : full_name
-   use dda_deck, only : deck_t, deck_place_t, parameter_t, deck_error, &
-      integer_of, word_of, text_of, is_given, has_group, place_of
+   use dda_deck, only : deck_t, deck_place_t, parameter_t, deck_error, place_of
    use dda_deck_parameter, only : find_parameter, parameter_name
    use dda_deck_sweep, only : n_cases, turn_to_case
-   use dda_deck_check_case, only : check_case, bracket_of
+   use dda_deck_check_case, only : check_case
    implicit none
    private
 
-   public :: check_deck, search_bracket
+   public :: check_deck
 
 contains
 
@@ -26,15 +25,14 @@ contains
       character(len=*), intent(in) :: cases
       !> The first thing that is wrong
       type(error_t), allocatable, intent(out) :: error
-      type(parameter_t) :: searched
       integer :: s
 
       call check_kind(deck, error)
-      if (.not. allocated(error)) call check_search(deck, searched, error)
-      do s = 1, size(deck%sweep)
-         if (.not. allocated(error)) call check_sweep(deck, s, searched, error)
+      if (.not. allocated(error)) call check_search(deck, error)
+      do s = 1, size(deck%sweeps)
+         if (.not. allocated(error)) call check_sweep(deck, s, error)
       end do
-      if (.not. allocated(error)) call check_cases(deck, cases, searched, error)
+      if (.not. allocated(error)) call check_cases(deck, cases, error)
    end subroutine check_deck
 
    !> Check that the deck says where its blocks come from, once
@@ -46,23 +44,23 @@ contains
       character(len=:), allocatable :: kind, problem
       integer :: i
 
-      kind = trim(word_of(deck, "scene", "kind"))
-      if (kind /= "arch" .and. .not. is_given(deck, "scene", "geometry")) then
+      kind = trim(deck%scene%kind%word)
+      if (kind /= "arch" .and. .not. deck%scene%geometry%given) then
          call deck_error(error, "scene%kind = '"//kind//"' needs scene%geometry, a file of "// &
             kind//"; name one", deck, place_of(deck, key_index("scene", "kind")))
-      else if (kind /= "arch" .and. has_group(deck, "arch")) then
+      else if (kind /= "arch" .and. deck%arch%given) then
          call deck_error(error, "&arch has no effect: scene%kind is '"//kind// &
             "'; remove one of the two", deck, deck%group(group_index("arch")))
-      else if (kind /= "arch" .and. has_group(deck, "fill")) then
+      else if (kind /= "arch" .and. deck%fill%given) then
          call deck_error(error, "&fill needs an arch, got scene%kind = '"//kind// &
             "'; remove one of the two", deck, deck%group(group_index("fill")))
-      else if (kind /= "arch" .and. has_group(deck, "tie")) then
+      else if (kind /= "arch" .and. deck%tie%given) then
          call deck_error(error, "&tie needs an arch, got scene%kind = '"//kind// &
             "'; remove it, and add bar lines to a file of blocks", deck, &
             deck%group(group_index("tie")))
       end if
       do i = 1, 2
-         if (allocated(error) .or. .not. is_given(deck, "scene", file_key(i))) cycle
+         if (allocated(error) .or. .not. deck%value(key_index("scene", file_key(i)))%given) cycle
          problem = ""
          if (kind == "arch") problem = "'lines' or 'blocks'"
          if (kind /= "lines" .and. file_key(i) == "analysis") problem = "'lines'"
@@ -73,37 +71,21 @@ contains
       end do
    end subroutine check_kind
 
-   !> Where a search begins and ends
-   pure subroutine search_bracket(deck, low, high)
-      !> A deck with &search that was checked
-      type(deck_t), intent(in) :: deck
-      !> search%low, or else the parameter's own lower end, which may be no value it can take
-      real(wp), intent(out) :: low
-      !> search%high, or else the parameter's own upper end, likewise
-      real(wp), intent(out) :: high
-      type(parameter_t) :: searched
-      character(len=:), allocatable :: problem
-
-      call find_parameter(text_of(deck, "search", "parameter"), searched, problem)
-      call bracket_of(deck, searched, low, high)
-   end subroutine search_bracket
-
    !> Check what is searched
-   pure subroutine check_search(deck, searched, error)
+   pure subroutine check_search(deck, error)
       type(deck_t), intent(in) :: deck
-      !> The parameter; key 0 if the deck has no &search
-      type(parameter_t), intent(out) :: searched
       !> No real-valued key, or one that the search cannot vary
       type(error_t), allocatable, intent(out) :: error
       character(len=:), allocatable :: problem
       type(deck_place_t) :: place
+      type(parameter_t) :: unused
       type(key_t) :: key
 
-      if (.not. has_group(deck, "search")) return
+      if (.not. deck%search%given) return
       place = place_of(deck, key_index("search", "parameter"))
-      call find_parameter(text_of(deck, "search", "parameter"), searched, problem)
+      call find_parameter(deck%search%parameter%text, unused, problem)
       if (len(problem) == 0) then
-         key = deck_key(searched%key)
+         key = deck_key(deck%searched%key)
          if (key%group == "search" .or. &
             .not. any(key%kind == [key_kind%number, key_kind%numbers])) then
             problem = "expected a key with real values, got "//full_name(key)// &
@@ -113,32 +95,30 @@ contains
       if (len(problem) > 0) then
          call deck_error(error, "search%parameter: "//problem, deck, place)
       else
-         call check_varied(deck, searched, "searched", place, error)
+         call check_varied(deck, deck%searched, "searched", place, error)
       end if
    end subroutine check_search
 
    !> Check one sweep against those before it and against the search
-   pure subroutine check_sweep(deck, s, searched, error)
+   pure subroutine check_sweep(deck, s, error)
       type(deck_t), intent(in) :: deck
       !> Number of the sweep
       integer, intent(in) :: s
-      !> What is searched; key 0 if nothing is
-      type(parameter_t), intent(in) :: searched
       !> The same parameter twice, or a link to nothing of the same length
       type(error_t), allocatable, intent(out) :: error
       character(len=:), allocatable :: name, problem
       integer :: other
 
-      associate (sweep => deck%sweep(s))
+      associate (sweep => deck%sweeps(s))
          name = parameter_name(sweep%parameter)
          problem = ""
-         if (same(sweep%parameter, searched)) problem = name// &
+         if (same(sweep%parameter, deck%searched)) problem = name// &
             " is both swept and searched; remove one of the two"
-         if (deck_key(sweep%parameter%key)%group == "search" .and. searched%key == 0) &
+         if (deck_key(sweep%parameter%key)%group == "search" .and. deck%searched%key == 0) &
             problem = name//" is swept, but the deck has no &search; add one"
          do other = 1, s - 1
-            if (same(sweep%parameter, deck%sweep(other)%parameter)) problem = name// &
-               " is swept twice: first in line "//to_text(deck%sweep(other)%place%line)// &
+            if (same(sweep%parameter, deck%sweeps(other)%parameter)) problem = name// &
+               " is swept twice: first in line "//to_text(deck%sweeps(other)%place%line)// &
                "; put all values into one &sweep"
          end do
          if (sweep%linked) call check_link(deck, s, problem)
@@ -163,8 +143,8 @@ contains
          problem = "the first &sweep cannot be linked: there is none before it; remove linked"
          return
       end if
-      here = size(deck%sweep(s)%numbers) + size(deck%sweep(s)%texts)
-      before = size(deck%sweep(s - 1)%numbers) + size(deck%sweep(s - 1)%texts)
+      here = size(deck%sweeps(s)%numbers) + size(deck%sweeps(s)%texts)
+      before = size(deck%sweeps(s - 1)%numbers) + size(deck%sweeps(s - 1)%texts)
       if (here /= before) problem = "a linked &sweep needs as many values as the one before, "// &
          to_text(before)//", got "//to_text(here)//"; make them equal"
    end subroutine check_link
@@ -183,17 +163,16 @@ contains
 
       is_weight = parameter%key == key_index("material", "density") .or. &
          parameter%key == key_index("load", "gravity")
-      if (deck_key(parameter%key)%group == "arch" .and. &
-         word_of(deck, "scene", "kind") /= "arch") then
+      if (deck_key(parameter%key)%group == "arch" .and. deck%scene%kind%word /= "arch") then
          call deck_error(error, full_name(deck_key(parameter%key))//" is "//how// &
             ", but it has no effect: scene%kind is '"// &
-            trim(word_of(deck, "scene", "kind"))//"'; name another key", deck, place)
+            trim(deck%scene%kind%word)//"'; name another key", deck, place)
       else if (deck%value(parameter%key)%place%from_command .and. parameter%item == 0) then
          call deck_error(error, full_name(deck_key(parameter%key))//" cannot be set: it is "// &
             how//" in line "//to_text(place%line)//" of "//deck%file//"; remove the --set", deck, &
             deck%value(parameter%key)%place)
-      else if (is_weight .and. is_given(deck, "material", "unit_weight") .and. &
-         word_of(deck, "analysis", "mode") == "static") then
+      else if (is_weight .and. deck%material%unit_weight%given .and. &
+         deck%analysis%mode%word == "static") then
          call deck_error(error, full_name(deck_key(parameter%key))//" is "//how// &
             ", but it has no effect: material%unit_weight is given; remove that", deck, place)
       end if
@@ -212,12 +191,10 @@ contains
    end function same
 
    !> Check every case of the sweeps
-   pure subroutine check_cases(deck, cases, searched, error)
+   pure subroutine check_cases(deck, cases, error)
       type(deck_t), intent(in) :: deck
       !> Cases that will be computed, as choose_cases reads them; empty for all
       character(len=*), intent(in) :: cases
-      !> What is searched; key 0 if nothing is
-      type(parameter_t), intent(in) :: searched
       !> The first thing that is wrong, with the number of the case
       type(error_t), allocatable, intent(out) :: error
       type(deck_t) :: work
@@ -225,12 +202,10 @@ contains
       integer :: number, n
 
       n = n_cases(deck)
-      if (n > integer_of(deck, "output", "max_cases")) then
-         call deck_error(error, "expected at most "// &
-            to_text(integer_of(deck, "output", "max_cases"))// &
-            " cases, got "//to_text(n)//" or more; raise output%max_cases if they are meant", &
-            deck, &
-            deck%sweep(size(deck%sweep))%place)
+      if (n > deck%output%max_cases%whole) then
+         call deck_error(error, "expected at most "//to_text(deck%output%max_cases%whole) &
+            //" cases, got "//to_text(n)//" or more; raise output%max_cases if they are meant", &
+            deck, deck%sweeps(size(deck%sweeps))%place)
          return
       end if
       call choose_cases(cases, n, chosen, error)
@@ -238,7 +213,7 @@ contains
       do number = 1, n
          if (.not. chosen(number)) cycle
          call turn_to_case(deck, number, work, error)
-         if (.not. allocated(error)) call check_case(work, searched, error)
+         if (.not. allocated(error)) call check_case(work, error)
          if (.not. allocated(error)) cycle
          if (n > 1) error%message = error%message//" (case "//to_text(number)//")"
          return

@@ -4,8 +4,8 @@ module dda_deck_check_case
    use dda_error, only : error_t
    use dda_text, only : to_text
    use dda_deck_keys, only : deck_key, key_index, group_index
-   use dda_deck, only : deck_t, deck_place_t, parameter_t, deck_error, flag_of, geometry_of, &
-      integer_of, keeps_velocities, real_of, scene_kind, word_of, is_given, place_of
+   use dda_deck, only : deck_t, deck_place_t, deck_error, geometry_of, keeps_velocities, &
+      scene_kind, place_of
    use dda_deck_check_ground, only : check_ground
    use dda_deck_check_live, only : check_live
    use dda_deck_check_strength, only : check_strength
@@ -16,7 +16,7 @@ module dda_deck_check_case
    implicit none
    private
 
-   public :: check_case, check_model, bracket_of
+   public :: check_case, check_model, search_bracket
 
    !> Joints closer than this are one joint [deg]
    real(wp), parameter :: same_angle = 1.0e-9_wp
@@ -24,52 +24,46 @@ module dda_deck_check_case
 contains
 
    !> Check what the keys of one case must be to one another
-   pure subroutine check_case(deck, searched, error)
+   pure subroutine check_case(deck, error)
       !> The deck of the case
       type(deck_t), intent(in) :: deck
-      !> What is searched; key 0 if nothing is
-      type(parameter_t), intent(in) :: searched
       !> The first thing that is wrong
       type(error_t), allocatable, intent(out) :: error
 
-      call check_model(deck, searched, error)
+      call check_model(deck, error)
       if (.not. allocated(error)) call check_use(deck, error)
       call check_slip(deck, error)
-      if (.not. allocated(error)) call check_live(deck, searched, error)
-      if (.not. allocated(error)) call check_ground(deck, searched, error)
-      if (.not. allocated(error)) call check_strength(deck, searched, error)
+      if (.not. allocated(error)) call check_live(deck, error)
+      if (.not. allocated(error)) call check_ground(deck, error)
+      if (.not. allocated(error)) call check_strength(deck, error)
       if (allocated(error)) return
       ! files of blocks have loads of their own
-      if (.not. keeps_velocities(deck) .and. .not. (real_of(deck, "load", "gravity") > 0.0_wp .or. &
-         is_given(deck, "material", "unit_weight") .or. is_given(deck, "scene", "analysis") .or. &
-         word_of(deck, "scene", "kind") == "blocks" .and. &
-         word_of(deck, "analysis", "mode") /= "limerick")) then
+      if (.not. keeps_velocities(deck) .and. .not. (deck%load%gravity%number > 0.0_wp &
+         .or. deck%material%unit_weight%given .or. deck%scene%analysis%given &
+         .or. deck%scene%kind%word == "blocks" .and. deck%analysis%mode%word /= "limerick")) then
          call deck_error(error, "a static analysis needs a weight: load%gravity is 0 and "// &
             "material%unit_weight is not given; give one of them", deck, &
             deck%value(key_index("load", "gravity"))%place)
-      else if (is_given(deck, "analysis", "unknowns") .and. &
-         all(integer_of(deck, "analysis", "unknowns") /= [3, 6])) then
+      else if (deck%analysis%unknowns%given .and. all(deck%analysis%unknowns%whole /= [3, 6])) then
          call deck_error(error, "analysis%unknowns must be 3 or 6, got "// &
-            to_text(integer_of(deck, "analysis", "unknowns"))//"; choose one of the two", deck, &
+            to_text(deck%analysis%unknowns%whole)//"; choose one of the two", deck, &
             place_of(deck, key_index("analysis", "unknowns")))
       else
          if (scene_kind(deck) == "arch") call check_shape(deck, error)
-         if (allocated(error) .or. searched%key == 0) return
-         call check_bracket(deck, searched, error)
+         if (allocated(error) .or. deck%searched%key == 0) return
+         call check_bracket(deck, error)
       end if
    end subroutine check_case
 
    !> Check that there is such a model, and that the parameter can be searched in it
-   pure subroutine check_model(deck, searched, error)
+   pure subroutine check_model(deck, error)
       !> The deck of the case
       type(deck_t), intent(in) :: deck
-      !> What is searched; key 0 if nothing is
-      type(parameter_t), intent(in) :: searched
       !> What the table of models does not have
       type(error_t), allocatable, intent(out) :: error
       character(len=:), allocatable :: mode, kind, problem
 
-      mode = trim(word_of(deck, "analysis", "mode"))
+      mode = trim(deck%analysis%mode%word)
       kind = trim(scene_kind(deck))
       problem = model_problem(kind, mode, trim(geometry_of(deck)))
       if (len(problem) > 0) then
@@ -79,13 +73,13 @@ contains
             place_of(deck, key_index("analysis", "geometry")))
          return
       end if
-      if (searched%key == 0) return
-      problem = search_problem(deck_key(searched%key), kind, mode)
+      if (deck%searched%key == 0) return
+      problem = search_problem(deck_key(deck%searched%key), kind, mode)
       if (mode == "limerick" .and. keeps_velocities(deck)) &
          problem = "with velocities it ends 'completed', neither stable nor collapsed"
       if (len(problem) > 0) call deck_error(error, "search%parameter: expected a key that "// &
-         "mode = '"//trim(word_of(deck, "analysis", "mode"))//"' of scene%kind = '"//kind// &
-         "' searches, got "//full_name(deck_key(searched%key))//": "//problem// &
+         "mode = '"//trim(deck%analysis%mode%word)//"' of scene%kind = '"//kind// &
+         "' searches, got "//full_name(deck_key(deck%searched%key))//": "//problem// &
          "; 'dda help models' lists them", deck, &
          place_of(deck, key_index("search", "parameter")))
    end subroutine check_model
@@ -100,42 +94,41 @@ contains
       logical :: moves
       integer :: key
 
-      mode = trim(word_of(deck, "analysis", "mode"))
-      moves = word_of(deck, "analysis", "geometry") == "current"
+      mode = trim(deck%analysis%mode%word)
+      moves = deck%analysis%geometry%word == "current"
       key = 0
-      if (real_of(deck, "analysis", "restitution") > 0.0_wp &
+      if (deck%analysis%restitution%number > 0.0_wp &
          .and. .not. (mode == "dynamic" .and. moves)) then
          key = key_index("analysis", "restitution")
          problem = "restitution needs mode = 'dynamic' and geometry = 'current'"
-      else if (real_of(deck, "analysis", "damping") > 0.0_wp .and. mode /= "dynamic") then
+      else if (deck%analysis%damping%number > 0.0_wp .and. mode /= "dynamic") then
          key = key_index("analysis", "damping")
          problem = "damping needs mode = 'dynamic', got '"//mode//"'; remove one of the two"
-      else if (is_given(deck, "analysis", "duration") .and. mode /= "dynamic") then
+      else if (deck%analysis%duration%given .and. mode /= "dynamic") then
          key = key_index("analysis", "duration")
          problem = "duration needs mode = 'dynamic': a static run has no time"
-      else if (is_given(deck, "analysis", "restart") .and. mode /= "dynamic") then
+      else if (deck%analysis%restart%given .and. mode /= "dynamic") then
          key = key_index("analysis", "restart")
          problem = "analysis%restart needs mode = 'dynamic': a static run comes to rest by itself"
-      else if (word_of(deck, "analysis", "start") == "static" .and. (mode /= "dynamic" &
-         .or. is_given(deck, "analysis", "restart"))) then
+      else if (deck%analysis%start%word == "static" .and. (mode /= "dynamic" &
+         .or. deck%analysis%restart%given)) then
          key = key_index("analysis", "start")
          problem = "start = 'static' needs mode = 'dynamic' and a run from its beginning; remove it"
-      else if (word_of(deck, "analysis", "flow") == "associated" .and. mode /= "static") then
+      else if (deck%analysis%flow%word == "associated" .and. mode /= "static") then
          key = key_index("analysis", "flow")
          problem = "flow = 'associated' needs mode = 'static', got '"//mode// &
             "'; remove one of the two"
-      else if (is_given(deck, "analysis", "unknowns") .and. mode == "limerick") then
+      else if (deck%analysis%unknowns%given .and. mode == "limerick") then
          key = key_index("analysis", "unknowns")
          problem = "analysis%unknowns needs another mode than 'limerick', whose blocks "// &
             "have 6; remove it"
-      else if (flag_of(deck, "output", "energy") .and. mode == "limerick") then
+      else if (deck%output%energy%flag .and. mode == "limerick") then
          key = key_index("output", "energy")
          problem = "output%energy needs mode = 'dynamic', got 'limerick'; remove one of the two"
-      else if (flag_of(deck, "output", "restart") .and. mode == "limerick") then
+      else if (deck%output%restart%flag .and. mode == "limerick") then
          key = key_index("output", "restart")
          problem = "output%restart needs mode = 'dynamic', got 'limerick'; remove one of the two"
-      else if (integer_of(deck, "output", "frames") > 0 .and. .not. (moves &
-         .or. mode == "limerick")) then
+      else if (deck%output%frames%whole > 0 .and. .not. (moves .or. mode == "limerick")) then
          key = key_index("output", "frames")
          problem = "output%frames needs geometry = 'current': in reference geometry no block "// &
             "moves; change one of the two"
@@ -153,10 +146,9 @@ contains
 
       if (allocated(error)) return
       do i = 1, size(name)
-         if (.not. is_given(deck, "joint", trim(name(i)))) cycle
-         if (any(word_of(deck, "scene", "kind") == ["lines ", "blocks"]) &
-            .and. word_of(deck, "analysis", "mode") /= "limerick" &
-            .and. word_of(deck, "analysis", "flow") /= "associated") cycle
+         if (.not. deck%value(key_index("joint", trim(name(i))))%given) cycle
+         if (any(deck%scene%kind%word == ["lines ", "blocks"]) .and. deck%analysis%mode%word &
+            /= "limerick" .and. deck%analysis%flow%word /= "associated") cycle
          call deck_error(error, "joint%"//trim(name(i))//" needs scene%kind = 'lines' or "// &
             "'blocks', mode = 'static' or 'dynamic' and flow = 'coulomb'; remove it", deck, &
             place_of(deck, key_index("joint", trim(name(i)))))
@@ -172,12 +164,12 @@ contains
       type(error_t), allocatable, intent(out) :: error
       real(wp) :: span
 
-      if (is_given(deck, "arch", "joints_deg")) then
+      if (deck%arch%joints_deg%given) then
          call check_joints(deck, error)
          return
       end if
-      span = 2.0_wp*real_of(deck, "arch", "half_angle_deg")/real_of(deck, "arch", "voussoirs")
-      if (span < 180.0_wp .or. is_given(deck, "arch", "facet_deg")) return
+      span = 2.0_wp*deck%arch%half_angle_deg%number/deck%arch%voussoirs%number
+      if (span < 180.0_wp .or. deck%arch%facet_deg%given) return
       call deck_error(error, "one chord per voussoir needs voussoirs of less than 180 degrees, "// &
          "got "//to_text(span)//"; give facet_deg or more voussoirs", deck, &
          later(deck, "half_angle_deg", "voussoirs"))
@@ -203,7 +195,7 @@ contains
          else if (abs(joints(1)) > 0.0_wp) then
             problem = "must begin with 0 (the crown), got "//to_text(joints(1))// &
                "; write the joints of one half only"
-         else if (is_given(deck, "arch", "voussoirs")) then
+         else if (deck%arch%voussoirs%given) then
             problem = "and arch%voussoirs exclude one another; remove one of them"
             place = later(deck, "joints_deg", "voussoirs")
          end if
@@ -228,8 +220,8 @@ contains
       type(error_t), allocatable, intent(out) :: error
       real(wp) :: half_angle, last
 
-      if (.not. is_given(deck, "arch", "half_angle_deg")) return
-      half_angle = real_of(deck, "arch", "half_angle_deg")
+      if (.not. deck%arch%half_angle_deg%given) return
+      half_angle = deck%arch%half_angle_deg%number
       associate (joints => deck%value(key_index("arch", "joints_deg"))%numbers)
          last = joints(size(joints))
       end associate
@@ -259,37 +251,33 @@ contains
    end function later
 
    !> Check the two ends of the search
-   pure subroutine check_bracket(deck, searched, error)
+   pure subroutine check_bracket(deck, error)
       !> The deck of one case
       type(deck_t), intent(in) :: deck
-      !> What is searched
-      type(parameter_t), intent(in) :: searched
       !> An end that is missing, out of range, or on the wrong side
       type(error_t), allocatable, intent(out) :: error
       real(wp) :: low, high
 
-      call bracket_of(deck, searched, low, high)
+      call search_bracket(deck, low, high)
       if (.not. low > -huge(low) .or. .not. high < huge(high)) then
-         call deck_error(error, "a search for "//parameter_name(searched)// &
+         call deck_error(error, "a search for "//parameter_name(deck%searched)// &
             " needs search%low and search%high, which have no default; give both", deck, &
             place_of(deck, key_index("search", "parameter")))
       else if (.not. low < high) then
          call deck_error(error, "search%low must be below search%high, got "//to_text(low)// &
             " and "//to_text(high)//"; make low the smaller one", deck, &
             place_of(deck, key_index("search", &
-            trim(merge("high", "low ", is_given(deck, "search", "high"))))))
+            trim(merge("high", "low ", deck%search%high%given)))))
       else
-         call check_end(deck, searched, "low", error)
-         if (.not. allocated(error)) call check_end(deck, searched, "high", error)
+         call check_end(deck, "low", error)
+         if (.not. allocated(error)) call check_end(deck, "high", error)
       end if
    end subroutine check_bracket
 
    !> Check that the parameter can take one end of the search
-   pure subroutine check_end(deck, searched, name, error)
+   pure subroutine check_end(deck, name, error)
       !> The deck of one case
       type(deck_t), intent(in) :: deck
-      !> What is searched
-      type(parameter_t), intent(in) :: searched
       !> low or high
       character(len=*), intent(in) :: name
       !> Out of range, or an arch that cannot be
@@ -297,32 +285,31 @@ contains
       character(len=:), allocatable :: problem
       type(deck_t) :: trial
 
-      if (.not. is_given(deck, "search", name)) return
-      problem = number_problem(searched%key, real_of(deck, "search", name))
-      if (len(problem) > 0) then
-         call deck_error(error, "search%"//name//": "//problem// &
-            "; choose an end that it can take", deck, &
-            deck%value(key_index("search", name))%place)
-      else if (deck_key(searched%key)%group == "arch" .and. scene_kind(deck) == "arch") then
-         trial = deck
-         call put_number(trial, searched, real_of(deck, "search", name), &
-            deck%value(key_index("search", name))%place, error)
-         if (.not. allocated(error)) call check_shape(trial, error)
-      end if
+      associate (bound => deck%value(key_index("search", name)))
+         if (.not. bound%given) return
+         problem = number_problem(deck%searched%key, bound%number)
+         if (len(problem) > 0) then
+            call deck_error(error, "search%"//name//": "//problem// &
+               "; choose an end that it can take", deck, bound%place)
+         else if (deck_key(deck%searched%key)%group == "arch" .and. scene_kind(deck) == "arch") then
+            trial = deck
+            call put_number(trial, deck%searched, bound%number, bound%place, error)
+            if (.not. allocated(error)) call check_shape(trial, error)
+         end if
+      end associate
    end subroutine check_end
 
    !> Where the search for a parameter begins and ends
-   pure subroutine bracket_of(deck, searched, low, high)
+   pure subroutine search_bracket(deck, low, high)
       type(deck_t), intent(in) :: deck
-      type(parameter_t), intent(in) :: searched
       !> Lower end; -huge if there is none
       real(wp), intent(out) :: low
       !> Upper end; huge if there is none
       real(wp), intent(out) :: high
 
-      low = deck_key(searched%key)%search_low
-      high = deck_key(searched%key)%search_high
-      if (is_given(deck, "search", "low")) low = real_of(deck, "search", "low")
-      if (is_given(deck, "search", "high")) high = real_of(deck, "search", "high")
-   end subroutine bracket_of
+      low = deck_key(deck%searched%key)%search_low
+      high = deck_key(deck%searched%key)%search_high
+      if (deck%search%low%given) low = deck%search%low%number
+      if (deck%search%high%given) high = deck%search%high%number
+   end subroutine search_bracket
 end module dda_deck_check_case

@@ -1,7 +1,6 @@
 !> What a deck says of the ground, and of what means collapse in time
 module dda_deck_check_ground
-   use dda_deck, only : deck_error, deck_place_t, deck_t, has_group, integer_of, is_given, &
-      & parameter_t, place_of, word_of
+   use dda_deck, only : deck_error, deck_place_t, deck_t, place_of
    use dda_deck_keys, only : deck_key, group_index, key_index
    use dda_error, only : error_t
    use dda_text, only : to_text
@@ -13,11 +12,9 @@ module dda_deck_check_ground
 contains
 
    !> Check the motion of the ground in one case
-   pure subroutine check_ground(deck, searched, error)
+   pure subroutine check_ground(deck, error)
       !> The deck of the case
       type(deck_t), intent(in) :: deck
-      !> What is searched; key 0 if nothing is
-      type(parameter_t), intent(in) :: searched
       !> Keys that do not go together, or a mode that has no use for them
       type(error_t), allocatable, intent(out) :: error
       character(len=:), allocatable :: problem
@@ -25,62 +22,58 @@ contains
       integer :: key
 
       call check_collapse(deck, error)
-      if (.not. allocated(error) .and. searched%key > 0) call check_search_in_time(deck, error)
+      if (.not. allocated(error) .and. deck%searched%key > 0) call check_search_in_time(deck, error)
       if (allocated(error)) return
-      if (.not. (has_group(deck, "ground") .or. varies_ground(deck, searched))) return
+      if (.not. (deck%ground%given .or. varies_ground(deck))) return
       place = deck%group(group_index("ground"))
       if (place%line == 0) place = place_of(deck, key_index("search", "parameter"))
       key = 0
       problem = ""
-      if (word_of(deck, "analysis", "mode") /= "dynamic") then
+      if (deck%analysis%mode%word /= "dynamic") then
          problem = "&ground needs mode = 'dynamic', got '" &
-            & //trim(word_of(deck, "analysis", "mode"))//"'; change the one or remove the other"
-      else if (gives(deck, searched, "pulse") .and. gives(deck, searched, "record")) then
+            & //trim(deck%analysis%mode%word)//"'; change the one or remove the other"
+      else if (gives(deck, "pulse") .and. gives(deck, "record")) then
          problem = "&ground needs a pulse or a record, got both; remove one of them"
          key = key_index("ground", "record")
-      else if (.not. (gives(deck, searched, "pulse") .or. gives(deck, searched, "record")) &
-         & .and. word_of(deck, "scene", "kind") /= "blocks") then
+      else if (.not. (gives(deck, "pulse") .or. gives(deck, "record")) &
+         & .and. deck%scene%kind%word /= "blocks") then
          problem = "&ground needs a pulse or a record, got none; give one"
       end if
-      if (len(problem) == 0) call check_keys(deck, searched, problem, key)
+      if (len(problem) == 0) call check_keys(deck, problem, key)
       if (key > 0) place = place_of(deck, key)
       if (len(problem) > 0) call deck_error(error, problem, deck, place)
    end subroutine check_ground
 
    !> Whether the search or a sweep gives a key of &ground
-   pure logical function varies_ground(deck, searched)
+   pure logical function varies_ground(deck)
       !> The deck of the case
       type(deck_t), intent(in) :: deck
-      !> What is searched; key 0 if nothing is
-      type(parameter_t), intent(in) :: searched
       integer :: s
 
       varies_ground = .false.
-      if (searched%key > 0) varies_ground = deck_key(searched%key)%group == "ground"
-      do s = 1, size(deck%sweep)
+      if (deck%searched%key > 0) varies_ground = deck_key(deck%searched%key)%group == "ground"
+      do s = 1, size(deck%sweeps)
          varies_ground = varies_ground &
-            & .or. deck_key(deck%sweep(s)%parameter%key)%group == "ground"
+            & .or. deck_key(deck%sweeps(s)%parameter%key)%group == "ground"
       end do
    end function varies_ground
 
    !> Whether a key of &ground is given, or searched
-   pure logical function gives(deck, searched, name)
+   pure logical function gives(deck, name)
       !> The deck of the case
       type(deck_t), intent(in) :: deck
-      !> What is searched; key 0 if nothing is
-      type(parameter_t), intent(in) :: searched
       !> Name of the key
       character(len=*), intent(in) :: name
+      integer :: key
 
-      gives = is_given(deck, "ground", name) .or. searched%key == key_index("ground", name)
+      key = key_index("ground", name)
+      gives = deck%value(key)%given .or. deck%searched%key == key
    end function gives
 
    !> Check what a pulse or a record needs, and what it has no use for
-   pure subroutine check_keys(deck, searched, problem, key)
+   pure subroutine check_keys(deck, problem, key)
       !> The deck of the case
       type(deck_t), intent(in) :: deck
-      !> What is searched; key 0 if nothing is
-      type(parameter_t), intent(in) :: searched
       !> What is wrong; left as it was if nothing is
       character(len=:), allocatable, intent(inout) :: problem
       !> The key at fault, 0 if one is missing
@@ -93,12 +86,12 @@ contains
 
       needed = .false.
       fits = .false.
-      if (gives(deck, searched, "record")) then
+      if (gives(deck, "record")) then
          what = "a record"
          fits([1, 4, 5, 6, 7]) = .true.
-      else if (.not. gives(deck, searched, "pulse")) then
+      else if (.not. gives(deck, "pulse")) then
          what = "the motion of the file of blocks"
-      else if (word_of(deck, "ground", "pulse") == "sine") then
+      else if (deck%ground%pulse%word == "sine") then
          what = "a sine"
          needed([1, 3]) = .true.
          fits(:4) = .true.
@@ -108,9 +101,9 @@ contains
          fits([1, 2, 4]) = .true.
       end if
       do i = 1, size(name)
-         if (needed(i) .and. .not. gives(deck, searched, trim(name(i)))) then
+         if (needed(i) .and. .not. gives(deck, trim(name(i)))) then
             problem = "&ground needs "//trim(name(i))//" for "//what//", got none; give it"
-         else if (gives(deck, searched, trim(name(i))) .and. .not. fits(i)) then
+         else if (gives(deck, trim(name(i))) .and. .not. fits(i)) then
             problem = "ground%"//trim(name(i))//" has no effect on "//what//"; remove it"
             key = key_index("ground", trim(name(i)))
          end if
@@ -130,7 +123,7 @@ contains
 
       measured = 0
       if (allocated(deck%plan%boundary%measured)) measured = size(deck%plan%boundary%measured)
-      point = integer_of(deck, "analysis", "collapse_point")
+      point = deck%analysis%collapse_point%whole
       if (point > measured) then
          call deck_error(error, "analysis%collapse_point needs a measured point, "// &
             & "from 1 to "//to_text(measured)//", got "//to_text(point)//"; add 'measure' lines", &
@@ -139,15 +132,15 @@ contains
       end if
       call check_wear(deck, error)
       if (allocated(error)) return
-      gives = is_given(deck, "ground", "pulse") .or. allocated(deck%ground_record)
-      do s = 1, size(deck%sweep)
-         gives = gives .or. deck%sweep(s)%parameter%key == key_index("ground", "pulse")
+      gives = deck%ground%pulse%given .or. allocated(deck%ground_record)
+      do s = 1, size(deck%sweeps)
+         gives = gives .or. deck%sweeps(s)%parameter%key == key_index("ground", "pulse")
       end do
       if (gives .and. deck%plan%ground_line > 0) then
          call deck_error(error, "&ground needs a file of blocks whose ground is at rest, got "// &
             & "one that moves it in line "//to_text(deck%plan%ground_line)//"; remove one", &
             & deck, deck%group(group_index("ground")))
-      else if (has_group(deck, "ground") .and. .not. gives .and. deck%plan%ground_line == 0) then
+      else if (deck%ground%given .and. .not. gives .and. deck%plan%ground_line == 0) then
          call deck_error(error, "&ground needs a pulse, a record, or a file of blocks that "// &
             & "moves the ground, got none; give one", deck, deck%group(group_index("ground")))
       end if
@@ -163,8 +156,8 @@ contains
       integer :: i
 
       key = ""
-      if (word_of(deck, "analysis", "mode") == "limerick") key = "mode"
-      if (word_of(deck, "analysis", "flow") == "associated") key = "flow"
+      if (deck%analysis%mode%word == "limerick") key = "mode"
+      if (deck%analysis%flow%word == "associated") key = "flow"
       if (key == "") return
       do i = 1, size(deck%plan%laws)
          if (.not. any(deck%plan%laws(i)%given(4:5))) cycle
@@ -184,17 +177,17 @@ contains
       type(error_t), allocatable, intent(out) :: error
       character(len=:), allocatable :: problem
 
-      if (word_of(deck, "analysis", "mode") /= "dynamic") return
+      if (deck%analysis%mode%word /= "dynamic") return
       problem = ""
-      if (word_of(deck, "analysis", "geometry") /= "current") then
+      if (deck%analysis%geometry%word /= "current") then
          problem = "a search with mode = 'dynamic' needs geometry = 'current', where blocks "// &
             & "move, got 'reference'; change it"
-      else if (.not. is_given(deck, "analysis", "duration")) then
+      else if (.not. deck%analysis%duration%given) then
          problem = "a search with mode = 'dynamic' needs analysis%duration, in which "// &
             & "blocks can collapse, got none; give it"
-      else if (is_given(deck, "analysis", "restart")) then
+      else if (deck%analysis%restart%given) then
          problem = "a search needs a run from its beginning, got analysis%restart; remove it"
-      else if (.not. (is_given(deck, "search", "low") .and. is_given(deck, "search", "high"))) then
+      else if (.not. (deck%search%low%given .and. deck%search%high%given)) then
          problem = "a search with mode = 'dynamic' needs search%low and search%high; give both"
       end if
       if (len(problem) > 0) call deck_error(error, problem, deck, &
@@ -212,20 +205,20 @@ contains
       integer :: i
 
       do i = 1, size(name)
-         if (.not. is_given(deck, "analysis", trim(name(i)))) cycle
-         if (word_of(deck, "analysis", "mode") == "dynamic" &
-            & .and. word_of(deck, "analysis", "geometry") == "current") cycle
+         if (.not. deck%value(key_index("analysis", trim(name(i))))%given) cycle
+         if (deck%analysis%mode%word == "dynamic" &
+            & .and. deck%analysis%geometry%word == "current") cycle
          call deck_error(error, "analysis%"//trim(name(i))//" needs mode = 'dynamic' and "// &
             & "geometry = 'current'; remove it", deck, &
             & place_of(deck, key_index("analysis", trim(name(i)))))
          return
       end do
-      if (.not. is_given(deck, "analysis", "collapse_point")) return
-      if (word_of(deck, "scene", "kind") /= "blocks") then
+      if (.not. deck%analysis%collapse_point%given) return
+      if (deck%scene%kind%word /= "blocks") then
          call deck_error(error, "analysis%collapse_point needs a file of blocks with "// &
-            & "measured points, got kind = '"//trim(word_of(deck, "scene", "kind"))//"'", &
+            & "measured points, got kind = '"//trim(deck%scene%kind%word)//"'", &
             & deck, place_of(deck, key_index("analysis", "collapse_point")))
-      else if (.not. is_given(deck, "analysis", "collapse_displacement")) then
+      else if (.not. deck%analysis%collapse_displacement%given) then
          call deck_error(error, "analysis%collapse_point needs collapse_displacement, the "// &
             & "displacement of that point that means collapse, got none; give it", deck, &
             & place_of(deck, key_index("analysis", "collapse_point")))

@@ -1,7 +1,7 @@
 !> The files that a deck of lines names: read, cut and checked with the deck
 module dda_deck_lines
    use dda_cutting, only : cut_blocks
-   use dda_deck, only : add_file_mark, deck_error, deck_t, file_beside, is_given, text_of, word_of
+   use dda_deck, only : add_file_mark, deck_error, deck_t, file_beside
    use dda_deck_keys, only : key_index
    use dda_error, only : error_t
    use dda_file_mark, only : file_mark
@@ -23,8 +23,8 @@ contains
       type(line_model_t) :: model
       character(len=:), allocatable :: file
 
-      if (word_of(deck, "scene", "kind") /= "lines") return
-      file = file_beside(deck, text_of(deck, "scene", "geometry"))
+      if (deck%scene%kind%word /= "lines") return
+      file = file_beside(deck, deck%scene%geometry%text)
       call read_geometry(file, model, deck%warnings, error)
       if (allocated(error)) then
          call name_key(deck, "geometry", error)
@@ -33,16 +33,16 @@ contains
       call add_file_mark(file_mark(file), deck)
       allocate (deck%cut)
       call cut_blocks(model, deck%cut, error)
-      if (allocated(error) .or. .not. is_given(deck, "scene", "analysis")) return
-      file = file_beside(deck, text_of(deck, "scene", "analysis"))
-      allocate (deck%analysis)
-      call read_analysis(file, deck%analysis, deck%warnings, error)
+      if (allocated(error) .or. .not. deck%scene%analysis%given) return
+      file = file_beside(deck, deck%scene%analysis%text)
+      allocate (deck%file_analysis)
+      call read_analysis(file, deck%file_analysis, deck%warnings, error)
       if (allocated(error)) then
          call name_key(deck, "analysis", error)
          return
       end if
       call add_file_mark(file_mark(file), deck)
-      call check_materials(model, deck%analysis, deck%warnings, error)
+      call check_materials(model, deck%file_analysis, deck%warnings, error)
    end subroutine read_lines
 
    !> An error without a line speaks of a file that cannot be read: the line of the deck helps more
@@ -54,7 +54,8 @@ contains
       character(len=:), allocatable :: message
 
       if (error%line > 0) return
-      message = "scene%"//key//" = '"//text_of(deck, "scene", key)//"': "//error%message
+      message = "scene%"//key//" = '"//deck%value(key_index("scene", key))%text &
+         //"': "//error%message
       call deck_error(error, message, deck, deck%value(key_index("scene", key))%place)
    end subroutine name_key
 end module dda_deck_lines

@@ -1,6 +1,6 @@
 !> What was asked for, as a text: two runs with equal records compute the same cases
 module dda_deck_record
-   use dda_deck, only : deck_sweep_t, deck_t, deck_value_t, has_group
+   use dda_deck, only : deck_sweep_t, deck_t, deck_value_t
    use dda_deck_key, only : key_kind
    use dda_deck_keys, only : deck_group, deck_key
    use dda_deck_parameter, only : parameter_name
@@ -29,15 +29,15 @@ contains
 
       call add_line(lines, maker)
       do i = 1, size(deck_group)
-         if (has_group(deck, trim(deck_group(i)%name)) .and. deck_group(i)%name /= "sweep") &
+         if (deck%group(i)%line > 0 .and. deck_group(i)%name /= "sweep") &
             & call add_line(lines, "&"//trim(deck_group(i)%name))
       end do
       do i = 1, size(deck_key)
          if (deck%value(i)%given .and. deck_key(i)%group /= "sweep") &
             & call add_value(lines, i, deck%value(i))
       end do
-      do i = 1, size(deck%sweep)
-         call add_sweep(lines, deck%sweep(i))
+      do i = 1, size(deck%sweeps)
+         call add_sweep(lines, deck%sweeps(i))
       end do
       if (allocated(deck%file_marks)) call add_line(lines, "files"//deck%file_marks)
       record = lines_of(lines)

@@ -8,6 +8,7 @@ module dda_deck_set
    use dda_deck_words, only : wanted, quoted_words, full_name, near_word, or_leave_out
    use dda_deck_token, only : shown
    use dda_deck, only : deck_t, deck_place_t, parameter_t, deck_error
+   use dda_deck_values, only : name_values
    use dda_deck_parameter, only : find_parameter
    implicit none
    private
@@ -94,6 +95,7 @@ contains
          held%place = place
       end associate
       if (parameter%item > 0) call follow_joints(deck)
+      call name_values(deck)
    end subroutine put_number
 
    !> Put a list of numbers into a key
@@ -120,6 +122,7 @@ contains
       deck%value(key)%given = .true.
       deck%value(key)%place = place
       call follow_joints(deck)
+      call name_values(deck)
    end subroutine put_numbers
 
    !> Put a text, a word or the text of a flag into a key
@@ -152,6 +155,7 @@ contains
          held%given = .true.
          held%place = place
       end associate
+      call name_values(deck)
    end subroutine put_text
 
    !> Why a number cannot be the value of a key

@@ -6,8 +6,8 @@ module dda_deck_sweep
    use dda_deck_key, only : key_kind, word_length
    use dda_deck_keys, only : deck_key, key_index
    use dda_deck_words, only : wanted, full_name
-   use dda_deck, only : deck_t, deck_value_t, deck_sweep_t, deck_place_t, &
-      deck_error, real_of, integer_of, text_of, flag_of, is_given, place_of
+   use dda_deck, only : deck_t, deck_value_t, deck_sweep_t, deck_place_t, deck_error, place_of
+   use dda_deck_values, only : name_values
    use dda_deck_parameter, only : find_parameter, parameter_name
    use dda_deck_set, only : put_number, put_text, number_problem, text_problem, is_numeric
    implicit none
@@ -33,29 +33,30 @@ contains
       character(len=:), allocatable :: problem
       integer :: i
 
+      call name_values(deck)
       sweep%place = place
-      if (size(deck%sweep) == max_sweeps) then
+      if (size(deck%sweeps) == max_sweeps) then
          call deck_error(error, "expected at most "//to_text(max_sweeps)//" &sweep groups, got "// &
             "one more; split the deck", &
             deck, place)
          return
       end if
-      if (.not. is_given(deck, "sweep", "parameter")) then
+      if (.not. deck%sweep%parameter%given) then
          call deck_error(error, "expected sweep%parameter, the name of a key, got none; "// &
             "give it, such as parameter = 'voussoirs'", deck, place)
          return
       end if
-      call find_parameter(text_of(deck, "sweep", "parameter"), sweep%parameter, problem)
+      call find_parameter(deck%sweep%parameter%text, sweep%parameter, problem)
       if (len(problem) > 0) then
          call deck_error(error, "sweep%parameter: "//problem, deck, &
             place_of(deck, key_index("sweep", "parameter")))
          return
       end if
-      sweep%linked = flag_of(deck, "sweep", "linked")
+      sweep%linked = deck%sweep%linked%flag
       call take_values(deck, sweep, error)
       if (.not. allocated(error)) call check_values(deck, sweep, error)
       if (allocated(error)) return
-      call append(deck%sweep, sweep)
+      call append(deck%sweeps, sweep)
       do i = 1, size(deck_key)
          if (deck_key(i)%group == "sweep") call forget(deck%value(i))
       end do
@@ -97,12 +98,10 @@ contains
       character(len=26) :: found
       integer :: i, s
 
-      has_values = is_given(deck, "sweep", "values")
-      has_texts = is_given(deck, "sweep", "texts")
-      has_any = is_given(deck, "sweep", "first") .or. is_given(deck, "sweep", "last") .or. &
-         is_given(deck, "sweep", "count")
-      has_all = is_given(deck, "sweep", "first") .and. is_given(deck, "sweep", "last") .and. &
-         is_given(deck, "sweep", "count")
+      has_values = deck%sweep%values%given
+      has_texts = deck%sweep%texts%given
+      has_any = deck%sweep%first%given .or. deck%sweep%last%given .or. deck%sweep%count%given
+      has_all = deck%sweep%first%given .and. deck%sweep%last%given .and. deck%sweep%count%given
       if (count([has_values, has_texts, has_any]) /= 1 .or. (has_any .neqv. has_all)) then
          found = "more than one"
          if (has_any .and. .not. has_all) found = "one of these three missing"
@@ -139,9 +138,9 @@ contains
       real(wp) :: first, last
       integer :: n, i
 
-      first = real_of(deck, "sweep", "first")
-      last = real_of(deck, "sweep", "last")
-      n = integer_of(deck, "sweep", "count")
+      first = deck%sweep%first%number
+      last = deck%sweep%last%number
+      n = deck%sweep%count%whole
       if (n == 1 .and. abs(last - first) > 0.0_wp) then
          call deck_error(error, "sweep%count = 1 needs the same first and last, got "// &
             to_text(first)//" and "//to_text(last)//"; make them equal, or count larger", deck, &
@@ -206,12 +205,12 @@ contains
       integer :: s
 
       n = 1
-      do s = 1, size(deck%sweep)
-         if (deck%sweep(s)%linked) cycle
-         if (n > huge(1)/max(n_values(deck%sweep(s)), 1)) then
+      do s = 1, size(deck%sweeps)
+         if (deck%sweeps(s)%linked) cycle
+         if (n > huge(1)/max(n_values(deck%sweeps(s)), 1)) then
             n = huge(1)
          else
-            n = n*n_values(deck%sweep(s))
+            n = n*n_values(deck%sweeps(s))
          end if
       end do
    end function n_cases
@@ -222,17 +221,17 @@ contains
       !> Number of the case, from 1 to n_cases
       integer, intent(in) :: number
       !> Place of the value in each sweep: (n)
-      integer :: position(size(deck%sweep))
+      integer :: position(size(deck%sweeps))
       integer :: s, rest
 
       rest = number - 1
-      do s = size(deck%sweep), 1, -1
-         if (deck%sweep(s)%linked) cycle
-         position(s) = mod(rest, n_values(deck%sweep(s))) + 1
-         rest = rest/n_values(deck%sweep(s))
+      do s = size(deck%sweeps), 1, -1
+         if (deck%sweeps(s)%linked) cycle
+         position(s) = mod(rest, n_values(deck%sweeps(s))) + 1
+         rest = rest/n_values(deck%sweeps(s))
       end do
-      do s = 2, size(deck%sweep)
-         if (deck%sweep(s)%linked) position(s) = position(s - 1)
+      do s = 2, size(deck%sweeps)
+         if (deck%sweeps(s)%linked) position(s) = position(s - 1)
       end do
    end function positions
 
@@ -246,7 +245,7 @@ contains
       type(error_t), allocatable, intent(out) :: error
       type(deck_t) :: swept
 
-      swept%sweep = deck%sweep
+      swept%sweeps = deck%sweeps
       call put_case(swept, number, deck, error)
    end subroutine set_case
 
@@ -260,11 +259,11 @@ contains
       type(deck_t), intent(inout) :: deck
       !> As in set_case
       type(error_t), allocatable, intent(out) :: error
-      integer :: position(size(swept%sweep)), s
+      integer :: position(size(swept%sweeps)), s
 
       position = positions(swept, number)
-      do s = 1, size(swept%sweep)
-         associate (sweep => swept%sweep(s))
+      do s = 1, size(swept%sweeps)
+         associate (sweep => swept%sweeps(s))
             if (size(sweep%numbers) > 0) then
                call put_number(deck, sweep%parameter, sweep%numbers(position(s)), &
                   sweep%place, error)
@@ -305,8 +304,8 @@ contains
 
       if (.not. allocated(result%value)) then
          result = deck
-         deallocate (result%sweep)
-         allocate (result%sweep(0))
+         deallocate (result%sweeps)
+         allocate (result%sweeps(0))
       end if
       call put_case(deck, number, result, error)
    end subroutine turn_to_case
@@ -315,11 +314,11 @@ contains
    pure function swept_names(deck) result(names)
       type(deck_t), intent(in) :: deck
       !> One name a sweep, such as friction_deg or joints_deg(2): (n)
-      character(len=word_length) :: names(size(deck%sweep))
+      character(len=word_length) :: names(size(deck%sweeps))
       integer :: s
 
-      do s = 1, size(deck%sweep)
-         names(s) = parameter_name(deck%sweep(s)%parameter)
+      do s = 1, size(deck%sweeps)
+         names(s) = parameter_name(deck%sweeps(s)%parameter)
       end do
    end function swept_names
 
@@ -329,12 +328,12 @@ contains
       !> Number of the case, from 1 to n_cases
       integer, intent(in) :: number
       !> One text a sweep; numbers read back as the same doubles: (n)
-      character(len=word_length) :: texts(size(deck%sweep))
-      integer :: position(size(deck%sweep)), s
+      character(len=word_length) :: texts(size(deck%sweeps))
+      integer :: position(size(deck%sweeps)), s
 
       position = positions(deck, number)
-      do s = 1, size(deck%sweep)
-         associate (sweep => deck%sweep(s))
+      do s = 1, size(deck%sweeps)
+         associate (sweep => deck%sweeps(s))
             if (size(sweep%numbers) > 0) then
                texts(s) = to_text(sweep%numbers(position(s)))
             else

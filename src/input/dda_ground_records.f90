@@ -1,7 +1,7 @@
 !> Records of the ground's motion that a deck names, in &ground or in a sweep of ground%record
 module dda_ground_records
    use dda_deck, only : add_file_mark, deck_error, deck_place_t, deck_t, file_beside, &
-      & ground_record_t, is_given, line_of, text_of
+      & ground_record_t
    use dda_deck_keys, only : key_index
    use dda_deck_token, only : shown
    use dda_error, only : error_t
@@ -23,13 +23,13 @@ contains
       integer :: i, key, s
 
       key = key_index("ground", "record")
-      if (is_given(deck, "ground", "record")) call add_record(text_of(deck, "ground", "record"), &
+      if (deck%ground%record%given) call add_record(deck%ground%record%text, &
          & deck%value(key)%place, deck, error)
-      do s = 1, size(deck%sweep)
-         if (deck%sweep(s)%parameter%key /= key) cycle
-         do i = 1, size(deck%sweep(s)%texts)
+      do s = 1, size(deck%sweeps)
+         if (deck%sweeps(s)%parameter%key /= key) cycle
+         do i = 1, size(deck%sweeps(s)%texts)
             if (allocated(error)) return
-            call add_record(trim(deck%sweep(s)%texts(i)), deck%sweep(s)%place, deck, error)
+            call add_record(trim(deck%sweeps(s)%texts(i)), deck%sweeps(s)%place, deck, error)
          end do
       end do
    end subroutine read_ground_records
@@ -83,7 +83,7 @@ contains
       character(len=:), allocatable :: text
       integer :: blank, n
 
-      text = adjustl(text_of(deck, "ground", "columns"))
+      text = adjustl(deck%ground%columns%text)
       column = "0"
       n = 0
       do while (len_trim(text) > 0)
@@ -94,8 +94,7 @@ contains
       end do
       if (n == 2 .or. n == 3) return
       call deck_error(error, "ground%columns needs two or three columns, of time, x and y, "// &
-         & "got '"//shown(text_of(deck, "ground", "columns"))//"'; write them as in '1 2'", deck, &
-         & deck_place_t(max(1, line_of(deck, "ground", "columns")), &
-         & deck%value(key_index("ground", "columns"))%place%from_command))
+         & "got '"//shown(deck%ground%columns%text)//"'; write them as in '1 2'", deck, &
+         & deck%value(key_index("ground", "columns"))%place)
    end subroutine split_columns
 end module dda_ground_records

@@ -8,9 +8,9 @@ module dda_read_deck
    use dda_deck_words, only : full_name, near_group, near_key
    use dda_deck_token, only : deck_scan_t, token_kind, token_text, shown
    use dda_deck_scan, only : scan_deck, scan_values
-   use dda_deck, only : add_file_mark, deck_t, deck_place_t, parameter_t, new_deck, deck_error, &
-      & file_beside, flag_of, is_given, text_of, word_of
-   use dda_deck_parameter, only : split_name
+   use dda_deck, only : add_file_mark, deck_t, deck_place_t, parameter_t, deck_error, file_beside
+   use dda_deck_values, only : name_values, new_deck
+   use dda_deck_parameter, only : find_parameter, split_name
    use dda_deck_set, only : put_text
    use dda_deck_entry, only : read_values
    use dda_deck_sweep, only : add_sweep, n_cases
@@ -24,7 +24,7 @@ module dda_read_deck
    implicit none
    private
 
-   public :: read_deck, parse_deck, geometry_file, few_cases, many_case_tables
+   public :: read_deck, parse_deck, geometry_file, few_cases
 
    !> Tables that are written for at most so many cases where the deck does not say
    integer, parameter :: few_cases = 100
@@ -54,9 +54,9 @@ contains
       if (.not. allocated(error)) call read_lines(deck, error)
       if (.not. allocated(error)) call read_ground_records(deck, error)
       if (allocated(error)) return
-      if (is_given(deck, "analysis", "restart")) call add_file_mark(file_mark( &
-         & file_beside(deck, text_of(deck, "analysis", "restart"))), deck)
-      if (word_of(deck, "scene", "kind") /= "blocks") return
+      if (deck%analysis%restart%given) call add_file_mark(file_mark( &
+         & file_beside(deck, deck%analysis%restart%text)), deck)
+      if (deck%scene%kind%word /= "blocks") return
       geometry = geometry_file(deck)
       call read_text_file(geometry, text, error)
       if (allocated(error)) then
@@ -75,7 +75,7 @@ contains
       !> The name
       character(len=:), allocatable :: path
 
-      path = file_beside(deck, text_of(deck, "scene", "geometry"))
+      path = file_beside(deck, deck%scene%geometry%text)
    end function geometry_file
 
    !> Read and check a deck from its text
@@ -92,7 +92,7 @@ contains
       !> As of read_deck
       character(len=*), intent(in), optional :: cases
       type(deck_scan_t) :: scan
-      character(len=:), allocatable :: checked
+      character(len=:), allocatable :: checked, problem
       integer :: i
 
       call new_deck(deck, file)
@@ -106,6 +106,8 @@ contains
          if (allocated(error)) return
          call apply_setting(trim(settings(i)), deck_place_t(i, .true.), deck, error)
       end do
+      call name_values(deck)
+      if (deck%search%given) call find_parameter(deck%search%parameter%text, deck%searched, problem)
       checked = ""
       if (present(cases)) checked = cases
       if (.not. allocated(error)) call check_deck(deck, checked, error)
@@ -115,14 +117,16 @@ contains
             if (.not. wanted%given) wanted%flag = n_cases(deck) <= few_cases
          end associate
       end do
+      call name_values(deck)
       associate (proof => deck%value(key_index("output", "proof")))
          if (.not. proof%given) proof%flag = n_cases(deck) <= few_cases &
-            & .and. flag_of(deck, "output", "joints")
+            & .and. deck%output%joints%flag
       end associate
       associate (reactions => deck%value(key_index("output", "reactions")))
-         if (.not. reactions%given) reactions%flag = flag_of(deck, "output", "joints") &
-            & .and. word_of(deck, "analysis", "mode") == "static"
+         if (.not. reactions%given) reactions%flag = deck%output%joints%flag &
+            & .and. deck%analysis%mode%word == "static"
       end associate
+      call name_values(deck)
    end subroutine parse_deck
 
    !> Read one group

@@ -3,7 +3,7 @@
 module dda_arch_lines
    use dda_arch_scene, only : arch_scene, unit_weight
    use dda_block_system, only : block_system_t
-   use dda_deck, only : deck_error, deck_t, has_group, is_given, real_of, word_of
+   use dda_deck, only : deck_error, deck_t
    use dda_deck_keys, only : key_index
    use dda_error, only : error_t
    use dda_kinds, only : wp
@@ -178,7 +178,7 @@ contains
       type(deck_t), intent(in) :: deck
 
       face_material = 1
-      if (word_of(deck, "arch", "springing") == "no-slip") face_material = 2
+      if (deck%arch%springing%word == "no-slip") face_material = 2
    end function face_material
 
    !> An edge-node distance ratio that merges no two nodes of the arch: Shi's 0.01, or less where
@@ -211,15 +211,15 @@ contains
 
       analysis%file = deck%file
       call write_constants(deck, analysis)
-      analysis%plane_strain = word_of(deck, "material", "plane") == "strain"
-      stone%density = real_of(deck, "material", "density")
+      analysis%plane_strain = deck%material%plane%word == "strain"
+      stone%density = deck%material%density%number
       stone%unit_weight = unit_weight(deck)
-      stone%young = real_of(deck, "material", "young")
-      stone%poisson = real_of(deck, "material", "poisson")
+      stone%young = deck%material%young%number
+      stone%poisson = deck%material%poisson%number
       analysis%gravity = stone%unit_weight/stone%density
-      joint%friction_deg = min(real_of(deck, "joint", "friction_deg"), no_slip_deg)
-      joint%cohesion = real_of(deck, "joint", "cohesion")
-      joint%tension = real_of(deck, "joint", "tension")
+      joint%friction_deg = min(deck%joint%friction_deg%number, no_slip_deg)
+      joint%cohesion = deck%joint%cohesion%number
+      joint%tension = deck%joint%tension%number
       allocate (analysis%material(1), analysis%load(0))
       analysis%material(1) = stone
       allocate (analysis%joint(face_material(deck)))
@@ -245,11 +245,11 @@ contains
       analysis%displacement_ratio = constants%max_displacement_ratio
       analysis%max_time_step = constants%time_step
       analysis%steps = constants%max_steps
-      analysis%dynamic = constants%dynamic .or. word_of(deck, "analysis", "mode") == "dynamic"
+      analysis%dynamic = constants%dynamic .or. deck%analysis%mode%word == "dynamic"
       analysis%exact_rotation = constants%exact_rotation
       analysis%contact_damping = constants%contact_damping
       analysis%gravity_steps = constants%gravity_steps
-      if (word_of(deck, "analysis", "mode") /= "limerick") return
+      if (deck%analysis%mode%word /= "limerick") return
       ! in the other modes these keys mean something else
       analysis%auto_time_step = constants%auto_time_step
       analysis%penalty_factor = constants%penalty_factor
@@ -263,14 +263,13 @@ contains
       character(len=:), allocatable :: text
 
       text = ""
-      if (abs(real_of(deck, "load", "gravity_direction_deg") + 90.0_wp) > 0.0_wp) &
+      if (abs(deck%load%gravity_direction_deg%number + 90.0_wp) > 0.0_wp) &
          & text = text//", load%gravity_direction_deg"
-      if (abs(real_of(deck, "load", "horizontal_coefficient")) > 0.0_wp) &
+      if (abs(deck%load%horizontal_coefficient%number) > 0.0_wp) &
          & text = text//", load%horizontal_coefficient"
-      if (has_group(deck, "live")) text = text//", &live"
-      if (has_group(deck, "vehicle")) text = text//", &vehicle"
-      if (is_given(deck, "analysis", "collapse_displacement")) &
-         & text = text//", analysis%collapse_displacement"
+      if (deck%live%given) text = text//", &live"
+      if (deck%vehicle%given) text = text//", &vehicle"
+      if (deck%analysis%collapse_displacement%given) text = text//", analysis%collapse_displacement"
       if (len(text) > 0) text = text(3:)
    end function what_is_lost
 end module dda_arch_lines

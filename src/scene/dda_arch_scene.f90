@@ -5,7 +5,7 @@ module dda_arch_scene
    use dda_arch_chain, only : arch_numbers_t
    use dda_constants, only : degree, pi
    use dda_contact_detection, only : find_contacts
-   use dda_deck, only : deck_t, flag_of, has_group, integer_of, is_given, list_of, real_of, word_of
+   use dda_deck, only : deck_t
    use dda_kinds, only : wp
    use dda_material, only : friction_coefficient, joint_law_t, material_t
    use dda_scene, only : scene_t
@@ -36,14 +36,14 @@ contains
 
       call arch_blocks(arch_shape(deck), material_of(deck), scene%system, edge_pair)
       scene%system%unit_weight = unit_weight(deck)
-      scene%settings = settings_of(deck, degree*real_of(deck, "arch", "half_angle_deg"), &
+      scene%settings = settings_of(deck, degree*deck%arch%half_angle_deg%number, &
          & size(half_joints_deg(deck)))
       scene%settings%rest_tolerance = max(scene%settings%rest_tolerance, &
-         & weight_rounding(degree*real_of(deck, "arch", "half_angle_deg"), &
-         & real_of(deck, "arch", "thickness_ratio")))
+         & weight_rounding(degree*deck%arch%half_angle_deg%number, &
+         & deck%arch%thickness_ratio%number))
       n = size(edge_pair, 2)
       allocate (law(n), source=joint_law(deck))
-      if (word_of(deck, "arch", "springing") == "no-slip") law([1, n])%no_slip = .true.
+      if (deck%arch%springing%word == "no-slip") law([1, n])%no_slip = .true.
       call find_contacts(scene%system, edge_pair, law, scene%settings%penalty_ratio, &
          & scene%settings%n_dof, scene%contacts)
       allocate (scene%joint_angle_deg, source=joint_angles_deg(deck))
@@ -57,11 +57,11 @@ contains
       type(arch_numbers_t) :: numbers
 
       numbers%shape = arch_shape(deck)
-      numbers%density = real_of(deck, "material", "density")
-      numbers%young = real_of(deck, "material", "young")
-      numbers%penalty_ratio = real_of(deck, "analysis", "penalty_ratio")
+      numbers%density = deck%material%density%number
+      numbers%young = deck%material%young%number
+      numbers%penalty_ratio = deck%analysis%penalty_ratio%number
       numbers%law = joint_law(deck)
-      numbers%no_slip_springing = word_of(deck, "arch", "springing") == "no-slip"
+      numbers%no_slip_springing = deck%arch%springing%word == "no-slip"
    end function arch_numbers
 
    !> Angles of all joints from the crown, positive to the right
@@ -86,12 +86,12 @@ contains
       !> The material
       type(material_t) :: material
 
-      material%density = real_of(deck, "material", "density")
-      material%young = real_of(deck, "material", "young")
-      material%poisson = real_of(deck, "material", "poisson")
-      if (is_given(deck, "material", "compressive_strength")) &
-         & material%strength = real_of(deck, "material", "compressive_strength")
-      material%plane_strain = word_of(deck, "material", "plane") == "strain"
+      material%density = deck%material%density%number
+      material%young = deck%material%young%number
+      material%poisson = deck%material%poisson%number
+      if (deck%material%compressive_strength%given) &
+         & material%strength = deck%material%compressive_strength%number
+      material%plane_strain = deck%material%plane%word == "strain"
    end function material_of
 
    !> The law of the joints
@@ -101,14 +101,14 @@ contains
       type(joint_law_t) :: law
       real(wp) :: friction_deg
 
-      friction_deg = real_of(deck, "joint", "friction_deg")
+      friction_deg = deck%joint%friction_deg%number
       law%no_slip = friction_deg >= no_slip_deg
       if (.not. law%no_slip) law%friction = friction_coefficient(friction_deg)
-      law%cohesion = real_of(deck, "joint", "cohesion")
-      law%tension = real_of(deck, "joint", "tension")
-      if (is_given(deck, "joint", "residual_deg")) law%residual = friction_coefficient( &
-         & min(real_of(deck, "joint", "residual_deg"), no_slip_deg))
-      law%slip_length = real_of(deck, "joint", "slip_length")
+      law%cohesion = deck%joint%cohesion%number
+      law%tension = deck%joint%tension%number
+      if (deck%joint%residual_deg%given) law%residual = friction_coefficient( &
+         & min(deck%joint%residual_deg%number, no_slip_deg))
+      law%slip_length = deck%joint%slip_length%number
    end function joint_law
 
    !> Joints of one half of the arch, from the crown
@@ -117,11 +117,10 @@ contains
       !> Angles from the crown: (n) [deg]
       real(wp), allocatable :: joints(:)
 
-      if (is_given(deck, "arch", "joints_deg")) then
-         joints = list_of(deck, "arch", "joints_deg")
+      if (deck%arch%joints_deg%given) then
+         joints = deck%arch%joints_deg%numbers
       else
-         joints = equal_joints(integer_of(deck, "arch", "voussoirs"), &
-            & real_of(deck, "arch", "half_angle_deg"))
+         joints = equal_joints(deck%arch%voussoirs%whole, deck%arch%half_angle_deg%number)
       end if
    end function half_joints_deg
 
@@ -135,11 +134,11 @@ contains
       integer :: crown
 
       allocate (joints, source=half_joints_deg(deck))
-      shape%radius = real_of(deck, "arch", "radius")
-      shape%thickness_ratio = real_of(deck, "arch", "thickness_ratio")
+      shape%radius = deck%arch%radius%number
+      shape%thickness_ratio = deck%arch%thickness_ratio%number
       allocate (shape%joint_angle, source=joints*degree)
       facet = 0.0_wp
-      if (is_given(deck, "arch", "facet_deg")) facet = real_of(deck, "arch", "facet_deg")
+      if (deck%arch%facet_deg%given) facet = deck%arch%facet_deg%number
       crown = merge(1, 0, joints(1) > 0.0_wp)
       allocate (span(size(joints) - 1 + crown))
       span(1) = 2.0_wp*joints(1)
@@ -151,9 +150,8 @@ contains
    pure real(wp) function unit_weight(deck)
       type(deck_t), intent(in) :: deck
 
-      unit_weight = real_of(deck, "material", "density")*real_of(deck, "load", "gravity")
-      if (is_given(deck, "material", "unit_weight")) &
-         & unit_weight = real_of(deck, "material", "unit_weight")
+      unit_weight = deck%material%density%number*deck%load%gravity%number
+      if (deck%material%unit_weight%given) unit_weight = deck%material%unit_weight%number
    end function unit_weight
 
    !> Settings of the runs. The acceleration that counts as rest follows the tolerance of the search
@@ -173,35 +171,33 @@ contains
       settings%dynamic = plan%velocities
       settings%current = plan%moving
       settings%n_dof = plan%unknowns
-      settings%tells_condition = flag_of(deck, "output", "condition")
-      settings%penalty_ratio = real_of(deck, "analysis", "penalty_ratio")
-      settings%max_steps = integer_of(deck, "analysis", "steps")
-      settings%max_changes = integer_of(deck, "analysis", "open_close_limit")
-      if (is_given(deck, "analysis", "time_step")) &
-         & settings%time_step = real_of(deck, "analysis", "time_step")
-      if (is_given(deck, "analysis", "collapse_displacement")) &
-         & settings%collapse_displacement = real_of(deck, "analysis", "collapse_displacement")
-      if (is_given(deck, "analysis", "duration")) &
-         & settings%duration = real_of(deck, "analysis", "duration")
-      if (is_given(deck, "analysis", "collapse_rotation_deg")) then
-         settings%collapse_rotation = degree*real_of(deck, "analysis", "collapse_rotation_deg")
-      else if (has_group(deck, "search") .and. .not. settings%collapse_displacement > 0.0_wp) then
+      settings%tells_condition = deck%output%condition%flag
+      settings%penalty_ratio = deck%analysis%penalty_ratio%number
+      settings%max_steps = deck%analysis%steps%whole
+      settings%max_changes = deck%analysis%open_close_limit%whole
+      if (deck%analysis%time_step%given) settings%time_step = deck%analysis%time_step%number
+      if (deck%analysis%collapse_displacement%given) &
+         & settings%collapse_displacement = deck%analysis%collapse_displacement%number
+      if (deck%analysis%duration%given) settings%duration = deck%analysis%duration%number
+      if (deck%analysis%collapse_rotation_deg%given) then
+         settings%collapse_rotation = degree*deck%analysis%collapse_rotation_deg%number
+      else if (deck%search%given .and. .not. settings%collapse_displacement > 0.0_wp) then
          settings%collapse_rotation = overturned
       end if
-      settings%collapse_point = integer_of(deck, "analysis", "collapse_point")
-      settings%restitution = real_of(deck, "analysis", "restitution")
-      settings%damping = real_of(deck, "analysis", "damping")
-      settings%settles = word_of(deck, "analysis", "start") == "static"
-      settings%max_displacement_ratio = real_of(deck, "analysis", "max_displacement_ratio")
+      settings%collapse_point = deck%analysis%collapse_point%whole
+      settings%restitution = deck%analysis%restitution%number
+      settings%damping = deck%analysis%damping%number
+      settings%settles = deck%analysis%start%word == "static"
+      settings%max_displacement_ratio = deck%analysis%max_displacement_ratio%number
       settings%verdict_flow = merge(flow_rule%associated, flow_rule%coulomb, &
-         & word_of(deck, "analysis", "flow") == "associated")
-      settings%tilt = degree*modulo(real_of(deck, "load", "gravity_direction_deg") + 270.0_wp, &
+         & deck%analysis%flow%word == "associated")
+      settings%tilt = degree*modulo(deck%load%gravity_direction_deg%number + 270.0_wp, &
          & 360.0_wp) - pi
-      settings%push = real_of(deck, "load", "horizontal_coefficient")
-      settings%live_push = flag_of(deck, "load", "live_horizontal")
-      settings%load_factor = real_of(deck, "load", "load_factor")
+      settings%push = deck%load%horizontal_coefficient%number
+      settings%live_push = deck%load%live_horizontal%flag
+      settings%load_factor = deck%load%load_factor%number
       rise = min(1.0_wp, half_angle**2/2.0_wp)
-      settings%rest_tolerance = 1.0e-3_wp*rise*real_of(deck, "search", "tolerance")
+      settings%rest_tolerance = 1.0e-3_wp*rise*deck%search%tolerance%number
       ! the thrust is w r, the weight of a voussoir 2 w r alpha/n: rounding of the one moves the
       ! other
       noise = 16.0_wp*epsilon(1.0_wp)*real(joints, wp)/half_angle
@@ -234,18 +230,18 @@ contains
 
       eta = 0.0_wp
       own_weight = unit_weight(deck) > 0.0_wp &
-         & .and. .not. abs(real_of(deck, "load", "gravity_direction_deg") + 90.0_wp) > 0.0_wp &
-         & .and. .not. abs(real_of(deck, "load", "horizontal_coefficient")) > 0.0_wp &
-         & .and. .not. (has_group(deck, "live") .or. has_group(deck, "vehicle"))
-      no_strength = .not. (real_of(deck, "joint", "cohesion") > 0.0_wp &
-         & .or. real_of(deck, "joint", "tension") > 0.0_wp)
+         & .and. .not. abs(deck%load%gravity_direction_deg%number + 90.0_wp) > 0.0_wp &
+         & .and. .not. abs(deck%load%horizontal_coefficient%number) > 0.0_wp &
+         & .and. .not. (deck%live%given .or. deck%vehicle%given)
+      no_strength = .not. (deck%joint%cohesion%number > 0.0_wp &
+         & .or. deck%joint%tension%number > 0.0_wp)
       known = own_weight .and. no_strength
       if (.not. known) return
-      friction = real_of(deck, "joint", "friction_deg")
+      friction = deck%joint%friction_deg%number
       friction = merge(pi, friction*degree, friction >= no_slip_deg)
       shape = arch_shape(deck)
       call discrete_critical(shape%joint_angle, shape%facets, friction, &
-         & word_of(deck, "arch", "springing") == "no-slip", solution)
+         & deck%arch%springing%word == "no-slip", solution)
       known = solution%status == discrete_status%found
       if (known) eta = solution%eta
    end subroutine exact_thickness
@@ -257,7 +253,7 @@ contains
       type(deck_t), intent(in) :: deck
       real(wp) :: square
 
-      square = (degree*real_of(deck, "arch", "half_angle_deg"))**2
+      square = (degree*deck%arch%half_angle_deg%number)**2
       search_start = 0.8_wp*square**2/48.0_wp*max(0.3_wp, 1.0_wp - square/10.0_wp)
    end function search_start
 
@@ -270,9 +266,8 @@ contains
       type(deck_t), intent(in) :: deck
       real(wp) :: square
 
-      square = (degree*real_of(deck, "arch", "half_angle_deg"))**2
-      arch_resolution = 8.0_wp*square/8.0_wp*epsilon(1.0_wp) &
-         & /real_of(deck, "arch", "thickness_ratio")**2
+      square = (degree*deck%arch%half_angle_deg%number)**2
+      arch_resolution = 8.0_wp*square/8.0_wp*epsilon(1.0_wp)/deck%arch%thickness_ratio%number**2
    end function arch_resolution
 
    !> The same for a chain, whose voussoirs are seen from their own joints: masses are wrong by some
@@ -284,7 +279,7 @@ contains
       type(deck_t), intent(in) :: deck
       real(wp) :: angle
 
-      angle = degree*real_of(deck, "arch", "half_angle_deg")
+      angle = degree*deck%arch%half_angle_deg%number
       chain_resolution = 100.0_wp*epsilon(1.0_wp)*real(size(half_joints_deg(deck)), wp) &
          & /min(angle**2, angle**3)
    end function chain_resolution

@@ -9,7 +9,7 @@ module dda_deck_scene
    use dda_block_scene, only : base_t, block_scene
    use dda_chain, only : chain_t
    use dda_constants, only : degree, pi
-   use dda_deck, only : deck_t, has_group, is_given, parameter_t, real_of, scene_kind, word_of
+   use dda_deck, only : deck_t, parameter_t, scene_kind
    use dda_deck_keys, only : key_index
    use dda_deck_set, only : number_fits, put_number
    use dda_error, only : error_t, fatal_error
@@ -74,7 +74,7 @@ contains
       family%chains = plan%row .and. parameter%key == key_index("arch", "thickness_ratio")
       family%decides_chains = family%chains .and. plan%chain
       if (.not. family%chains) return
-      family%settings = settings_of(deck, degree*real_of(deck, "arch", "half_angle_deg"), &
+      family%settings = settings_of(deck, degree*deck%arch%half_angle_deg%number, &
          & size(half_joints_deg(deck)))
       family%numbers = arch_numbers(deck)
       family%numbers%body_force = unit_weight(deck)*load_direction(family%settings)
@@ -159,12 +159,11 @@ contains
 
       call shape_assembly(deck, assembly, problem)
       if (len_trim(problem%text) > 0) return
-      if (has_group(deck, "tie")) call add_ties(deck, assembly%plan)
+      if (deck%tie%given) call add_ties(deck, assembly%plan)
       call file_scene(deck, assembly%plan, scene)
       call find_crown_joint(assembly, scene)
-      if (is_given(deck, "arch", "lune_deg")) &
-         & call add_lune_weights(real_of(deck, "arch", "lune_deg"), scene)
-      if (has_group(deck, "fill")) then
+      if (deck%arch%lune_deg%given) call add_lune_weights(deck%arch%lune_deg%number, scene)
+      if (deck%fill%given) then
          fill = fill_of(deck, assembly)
          call add_fill_weight(fill, scene)
          call add_live_loads(deck, scene, fill)
@@ -183,7 +182,7 @@ contains
 
       if (allocated(deck%cut)) then
          movable_blocks = count(.not. held_blocks(deck%cut))
-      else if (word_of(deck, "scene", "kind") == "blocks") then
+      else if (deck%scene%kind%word == "blocks") then
          movable_blocks = count(.not. deck%plan%fixed)
       else if (scene_kind(deck) == "shape") then
          call shape_form(deck, form, problem)
@@ -204,20 +203,18 @@ contains
 
       base%material = material_of(deck)
       base%unit_weight = unit_weight(deck)
-      base%gravity = real_of(deck, "load", "gravity")
-      base%law = [real_of(deck, "joint", "friction_deg"), real_of(deck, "joint", "cohesion"), &
-         & real_of(deck, "joint", "tension"), 90.0_wp, real_of(deck, "joint", "slip_length")]
-      if (is_given(deck, "joint", "residual_deg")) base%law(4) = real_of(deck, "joint", &
-         & "residual_deg")
-      base%water_rise = real_of(deck, "load", "water_rise")
+      base%gravity = deck%load%gravity%number
+      base%law = [deck%joint%friction_deg%number, deck%joint%cohesion%number, &
+         & deck%joint%tension%number, 90.0_wp, deck%joint%slip_length%number]
+      if (deck%joint%residual_deg%given) base%law(4) = deck%joint%residual_deg%number
+      base%water_rise = deck%load%water_rise%number
       scene%settings = settings_of(deck, pi/2.0_wp, size(plan%fixed))
       call block_scene(plan, base, scene)
-      if (.not. is_given(deck, "load", "displacement_factor")) return
+      if (.not. deck%load%displacement_factor%given) return
       if (.not. allocated(scene%settings%boundary%held)) return
       do i = 1, size(scene%settings%boundary%held)
          associate (path => scene%settings%boundary%held(i)%path)
-            if (allocated(path%value)) &
-               & path%value = real_of(deck, "load", "displacement_factor")*path%value
+            if (allocated(path%value)) path%value = deck%load%displacement_factor%number*path%value
          end associate
       end do
    end subroutine file_scene

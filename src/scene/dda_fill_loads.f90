@@ -4,7 +4,7 @@ module dda_fill_loads
    use dda_arch_assembly, only : arch_assembly_t, top_chord_t
    use dda_boundary, only : bounded_force_t, constant_history, loaded_point_t
    use dda_constants, only : degree
-   use dda_deck, only : deck_t, is_given, real_of
+   use dda_deck, only : deck_t
    use dda_kinds, only : wp
    use dda_scene, only : scene_t
    use dda_shape_scene, only : add_loads
@@ -51,19 +51,18 @@ contains
       do i = 1, size(fill%chord)
          fill%surface = max(fill%surface, fill%chord(i)%left(2), fill%chord(i)%right(2))
       end do
-      fill%surface = fill%surface + real_of(deck, "fill", "height")
-      fill%unit_weight = real_of(deck, "fill", "unit_weight")
-      fill%unit_weight(2) = real_of(deck, "material", "density")*real_of(deck, "load", "gravity")
-      if (is_given(deck, "material", "unit_weight")) &
-         & fill%unit_weight(2) = real_of(deck, "material", "unit_weight")
-      if (is_given(deck, "fill", "backing_unit_weight")) &
-         & fill%unit_weight(2) = real_of(deck, "fill", "backing_unit_weight")
-      if (is_given(deck, "fill", "backing_height")) fill%backing = assembly%springing_y &
-         & + real_of(deck, "fill", "backing_height")
-      fill%spread = real_of(deck, "fill", "spread")
-      fill%passive = real_of(deck, "fill", "passive_coefficient")
-      if (is_given(deck, "fill", "passive_share")) fill%passive = real_of(deck, "fill", &
-         & "passive_share")*tan(degree*(45.0_wp + 0.5_wp*real_of(deck, "fill", "friction_deg")))**2
+      fill%surface = fill%surface + deck%fill%height%number
+      fill%unit_weight = deck%fill%unit_weight%number
+      fill%unit_weight(2) = deck%material%density%number*deck%load%gravity%number
+      if (deck%material%unit_weight%given) fill%unit_weight(2) = deck%material%unit_weight%number
+      if (deck%fill%backing_unit_weight%given) &
+         & fill%unit_weight(2) = deck%fill%backing_unit_weight%number
+      if (deck%fill%backing_height%given) fill%backing = assembly%springing_y &
+         & + deck%fill%backing_height%number
+      fill%spread = deck%fill%spread%number
+      fill%passive = deck%fill%passive_coefficient%number
+      if (deck%fill%passive_share%given) fill%passive = deck%fill%passive_share%number &
+         & *tan(degree*(45.0_wp + 0.5_wp*deck%fill%friction_deg%number))**2
    end function fill_of
 
    !> Put the weight of the fill on the blocks below it: of what stands above each chord

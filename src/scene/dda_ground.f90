@@ -2,7 +2,7 @@
 module dda_ground
    use dda_boundary, only : history_t
    use dda_constants, only : degree, pi
-   use dda_deck, only : deck_t, is_given, real_of, text_of, word_of
+   use dda_deck, only : deck_t
    use dda_ground_motion, only : acceleration_of_displacement, acceleration_of_record, &
       & acceleration_of_velocity
    use dda_kinds, only : wp
@@ -25,13 +25,13 @@ contains
       !> Acceleration of the ground: that of the file of blocks in, that of the case out
       type(history_t), intent(inout) :: acceleration
 
-      if (is_given(deck, "ground", "pulse")) then
+      if (deck%ground%pulse%given) then
          acceleration = pulse_of(deck)
-      else if (is_given(deck, "ground", "record")) then
+      else if (deck%ground%record%given) then
          acceleration = record_of(deck)
       end if
       if (allocated(acceleration%value)) &
-         & acceleration%value = real_of(deck, "ground", "scale")*acceleration%value
+         & acceleration%value = deck%ground%scale%number*acceleration%value
    end subroutine move_ground
 
    !> A pulse. What is constant before its beginning and after its end is no time of the run, and
@@ -43,11 +43,11 @@ contains
       real(wp) :: duration, frequency, along(2)
       integer :: i, n
 
-      along = real_of(deck, "ground", "amplitude")*direction_of(deck)
-      duration = real_of(deck, "ground", "duration")
-      frequency = real_of(deck, "ground", "frequency")
-      if (word_of(deck, "ground", "pulse") == "sine") then
-         if (.not. is_given(deck, "ground", "duration")) duration = 1.0_wp/frequency
+      along = deck%ground%amplitude%number*direction_of(deck)
+      duration = deck%ground%duration%number
+      frequency = deck%ground%frequency%number
+      if (deck%ground%pulse%word == "sine") then
+         if (.not. deck%ground%duration%given) duration = 1.0_wp/frequency
          n = max(points, ceiling(min(1.0e5_wp, real(points, wp)*frequency*duration)))
          allocate (pulse%time(n + 2), pulse%value(2, n + 2))
          do i = 0, n
@@ -79,7 +79,7 @@ contains
       !> Components along x and y: (2)
       real(wp) :: direction(2)
 
-      direction = degree*real_of(deck, "ground", "direction_deg")
+      direction = degree*deck%ground%direction_deg%number
       direction = [cos(direction(1)), sin(direction(1))]
       where (abs(direction) < epsilon(1.0_wp)) direction = 0.0_wp
    end function direction_of
@@ -95,13 +95,13 @@ contains
       integer :: i
 
       do i = 1, size(deck%ground_record)
-         if (deck%ground_record(i)%name == text_of(deck, "ground", "record")) &
+         if (deck%ground_record(i)%name == deck%ground%record%text) &
             & motion = deck%ground_record(i)%motion
       end do
       turn(:, 1) = direction_of(deck)
       turn(:, 2) = [-turn(2, 1), turn(1, 1)]
-      motion%value = real_of(deck, "ground", "unit")*matmul(turn, motion%value)
-      select case (word_of(deck, "ground", "quantity"))
+      motion%value = deck%ground%unit%number*matmul(turn, motion%value)
+      select case (deck%ground%quantity%word)
       case ("velocity")
          acceleration = acceleration_of_velocity(motion)
       case ("displacement")
@@ -109,9 +109,9 @@ contains
       case default
          acceleration = acceleration_of_record(motion)
       end select
-      if (.not. is_given(deck, "ground", "amplitude")) return
+      if (.not. deck%ground%amplitude%given) return
       largest = maxval(norm2(acceleration%value, dim=1))
-      if (largest > 0.0_wp) acceleration%value = real_of(deck, "ground", "amplitude")/largest &
+      if (largest > 0.0_wp) acceleration%value = deck%ground%amplitude%number/largest &
          & *acceleration%value
    end function record_of
 end module dda_ground

@@ -49,8 +49,8 @@ contains
       allocate (model%material(size(scene%system%materials)))
       do m = 1, size(model%material)
          model%material(m)%material_t = scene%system%materials(m)
-         if (.not. allocated(deck%analysis)) cycle
-         associate (listed => deck%analysis%material(m))
+         if (.not. allocated(deck%file_analysis)) cycle
+         associate (listed => deck%file_analysis%material(m))
             ! height counts from zero in the file, here from the origin of the cut
             model%material(m)%stress = listed%stress &
                & + listed%stress_gradient*deck%cut%scale%origin(2)
@@ -111,9 +111,9 @@ contains
       type(history_t) :: force
 
       force = constant_history([0.0_wp, 0.0_wp])
-      if (.not. allocated(deck%analysis)) return
-      if (source > size(deck%analysis%load)) return
-      associate (record => deck%analysis%load(source)%record)
+      if (.not. allocated(deck%file_analysis)) return
+      if (source > size(deck%file_analysis%load)) return
+      associate (record => deck%file_analysis%load(source)%record)
          force%time = record(1, :)
          force%value = record(2:3, :)
       end associate

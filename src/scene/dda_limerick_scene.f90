@@ -1,6 +1,7 @@
 !> The model of the original program that a deck describes, from its scene
 module dda_limerick_scene
-   use dda_deck, only : deck_t, flag_of, integer_of, is_given, real_of, word_of
+   use dda_deck, only : deck_t
+   use dda_input, only : input_value_t
    use dda_kinds, only : wp
    use dda_limerick_blocks, only : blocks_model, inner_points
    use dda_limerick_lines, only : lines_model, take_constants
@@ -29,10 +30,10 @@ contains
       type(limerick_model_t), intent(out) :: model
       real(wp) :: acceleration
 
-      select case (word_of(deck, "scene", "kind"))
+      select case (deck%scene%kind%word)
       case ("arch")
          call arch_model(deck, scene, model)
-         model%constants%collapse_displacement = usual_collapse*real_of(deck, "arch", "radius")
+         model%constants%collapse_displacement = usual_collapse*deck%arch%radius%number
       case ("lines")
          call lines_model(deck, scene, model)
          model%constants%collapse_displacement = usual_collapse*half_size(model)
@@ -41,9 +42,9 @@ contains
          model%constants%collapse_displacement = usual_collapse*half_size(model)
       end select
       model%load_direction = load_direction(scene%settings)
-      if (allocated(deck%analysis)) call take_constants(deck%analysis, model%constants)
+      if (allocated(deck%file_analysis)) call take_constants(deck%file_analysis, model%constants)
       call set_constants(deck, model%constants)
-      if (allocated(deck%analysis) .or. .not. model%constants%auto_time_step) return
+      if (allocated(deck%file_analysis) .or. .not. model%constants%auto_time_step) return
       acceleration = norm2(model%load_direction)*model%material(1)%unit_weight &
          & /model%material(1)%density
       if (acceleration > 0.0_wp) model%constants%time_step = sqrt(2.0_wp &
@@ -91,12 +92,10 @@ contains
       !> How far they reach beyond the joint at either end [m]
       real(wp), intent(out) :: overhang
 
-      depth = usual_depth*real_of(deck, "arch", "radius")
-      if (is_given(deck, "arch", "abutment_size")) &
-         & depth = real_of(deck, "arch", "abutment_size")
+      depth = usual_depth*deck%arch%radius%number
+      if (deck%arch%abutment_size%given) depth = deck%arch%abutment_size%number
       overhang = depth
-      if (is_given(deck, "arch", "abutment_overhang")) &
-         & overhang = real_of(deck, "arch", "abutment_overhang")
+      if (deck%arch%abutment_overhang%given) overhang = deck%arch%abutment_overhang%number
    end subroutine abutment_sides
 
    !> Make an abutment as large as the deck says
@@ -141,40 +140,32 @@ contains
       !> The constants; those that the deck does not give are left as they are
       type(limerick_constants_t), intent(inout) :: constants
 
-      call take("limerick", "close_ratio", constants%close_ratio)
-      call take("limerick", "open_ratio", constants%open_ratio)
-      call take("limerick", "penetration_ratio", constants%penetration_ratio)
-      call take("limerick", "overlap_deg", constants%overlap_deg)
-      call take("limerick", "stiffness_ratio", constants%stiffness_ratio)
-      call take("limerick", "contact_damping", constants%contact_damping)
-      call take("analysis", "penalty_ratio", constants%penalty_factor)
-      call take("analysis", "max_displacement_ratio", constants%max_displacement_ratio)
-      call take("analysis", "collapse_displacement", constants%collapse_displacement)
-      call take("analysis", "time_step", constants%time_step)
-      if (is_given(deck, "analysis", "time_step")) constants%auto_time_step = .false.
-      if (is_given(deck, "analysis", "steps")) &
-         & constants%max_steps = integer_of(deck, "analysis", "steps")
-      if (is_given(deck, "limerick", "gravity_steps")) &
-         & constants%gravity_steps = integer_of(deck, "limerick", "gravity_steps")
-      if (is_given(deck, "limerick", "auto_penalty")) &
-         & constants%auto_penalty = flag_of(deck, "limerick", "auto_penalty")
-      if (is_given(deck, "limerick", "dynamic")) &
-         & constants%dynamic = flag_of(deck, "limerick", "dynamic")
-      if (is_given(deck, "limerick", "rotation")) &
-         & constants%exact_rotation = word_of(deck, "limerick", "rotation") == "exact"
-
-   contains
-
-      !> Take a number that the deck gives
-      pure subroutine take(group, key, number)
-         !> Group of the key
-         character(len=*), intent(in) :: group
-         !> The key
-         character(len=*), intent(in) :: key
-         !> The number; left as it is if the deck does not give it
-         real(wp), intent(inout) :: number
-
-         if (is_given(deck, group, key)) number = real_of(deck, group, key)
-      end subroutine take
+      call take(deck%limerick%close_ratio, constants%close_ratio)
+      call take(deck%limerick%open_ratio, constants%open_ratio)
+      call take(deck%limerick%penetration_ratio, constants%penetration_ratio)
+      call take(deck%limerick%overlap_deg, constants%overlap_deg)
+      call take(deck%limerick%stiffness_ratio, constants%stiffness_ratio)
+      call take(deck%limerick%contact_damping, constants%contact_damping)
+      call take(deck%analysis%penalty_ratio, constants%penalty_factor)
+      call take(deck%analysis%max_displacement_ratio, constants%max_displacement_ratio)
+      call take(deck%analysis%collapse_displacement, constants%collapse_displacement)
+      call take(deck%analysis%time_step, constants%time_step)
+      if (deck%analysis%time_step%given) constants%auto_time_step = .false.
+      if (deck%analysis%steps%given) constants%max_steps = deck%analysis%steps%whole
+      if (deck%limerick%gravity_steps%given) &
+         & constants%gravity_steps = deck%limerick%gravity_steps%whole
+      if (deck%limerick%auto_penalty%given) constants%auto_penalty = deck%limerick%auto_penalty%flag
+      if (deck%limerick%dynamic%given) constants%dynamic = deck%limerick%dynamic%flag
+      if (deck%limerick%rotation%given) &
+         & constants%exact_rotation = deck%limerick%rotation%word == "exact"
    end subroutine set_constants
+
+   !> Take a number that the deck gives
+   pure subroutine take(value, number)
+      type(input_value_t), intent(in) :: value
+      !> The number; left as it is if the deck does not give it
+      real(wp), intent(inout) :: number
+
+      if (value%given) number = value%number
+   end subroutine take
 end module dda_limerick_scene

@@ -6,7 +6,7 @@ module dda_line_scene
    use dda_constants, only : pi
    use dda_contact_detection, only : find_contacts
    use dda_cut_model, only : cut_model_t, point_kind
-   use dda_deck, only : deck_error, deck_t, is_given, word_of
+   use dda_deck, only : deck_error, deck_t
    use dda_deck_keys, only : key_index
    use dda_edge_split, only : split_edges
    use dda_error, only : error_t
@@ -72,7 +72,7 @@ contains
             property = bolt%property
             if (property(1) < 0.0_wp) then
                property = [0.0_wp, 0.0_wp, 0.0_wp]
-               if (allocated(deck%analysis)) property = deck%analysis%bolt
+               if (allocated(deck%file_analysis)) property = deck%file_analysis%bolt
             end if
             bar(i)%block = bolt%block
             bar(i)%point = reshape(bolt%place, [2, 2])
@@ -110,7 +110,7 @@ contains
          & .or. system%equation(deck%cut%pair%side(3)) > 0)) then
          problem = "expected coincident edges of blocks, got none: this version finds no other " &
             & //"contacts; choose mode = 'limerick'"
-      else if (word_of(deck, "analysis", "mode") == "static" &
+      else if (deck%analysis%mode%word == "static" &
          & .and. .not. any(system%unit_weight > 0.0_wp .and. system%equation > 0)) then
          problem = "a static analysis needs a weight on blocks that move, got none; give one"
       end if
@@ -128,8 +128,8 @@ contains
 
       system = new_block_system(cut%first_vertex, cut%vertex, held_blocks(cut), material_of(deck))
       system%unit_weight = unit_weight(deck)
-      if (.not. allocated(deck%analysis)) return
-      associate (list => deck%analysis%material)
+      if (.not. allocated(deck%file_analysis)) return
+      associate (list => deck%file_analysis%material)
          deallocate (system%materials)
          allocate (system%materials(size(list)))
          do m = 1, size(list)
@@ -151,8 +151,8 @@ contains
    pure logical function weight_is_given(deck)
       type(deck_t), intent(in) :: deck
 
-      weight_is_given = is_given(deck, "material", "unit_weight") &
-         & .or. is_given(deck, "material", "density") .or. is_given(deck, "load", "gravity")
+      weight_is_given = deck%material%unit_weight%given &
+         & .or. deck%material%density%given .or. deck%load%gravity%given
    end function weight_is_given
 
    !> A material of the analysis file; keys that the deck gives go before
@@ -164,11 +164,10 @@ contains
       type(material_t) :: material
 
       material = material_of(deck)
-      if (.not. is_given(deck, "material", "density")) material%density = listed%density
-      if (.not. is_given(deck, "material", "young")) material%young = listed%young
-      if (.not. is_given(deck, "material", "poisson")) material%poisson = listed%poisson
-      if (.not. is_given(deck, "material", "plane")) &
-         & material%plane_strain = deck%analysis%plane_strain
+      if (.not. deck%material%density%given) material%density = listed%density
+      if (.not. deck%material%young%given) material%young = listed%young
+      if (.not. deck%material%poisson%given) material%poisson = listed%poisson
+      if (.not. deck%material%plane%given) material%plane_strain = deck%file_analysis%plane_strain
    end function file_material
 
    !> The law of a joint; keys that the deck gives go before the analysis file
@@ -181,15 +180,15 @@ contains
       type(limerick_joint_t) :: listed
 
       law = joint_law(deck)
-      if (.not. allocated(deck%analysis)) return
-      listed = deck%analysis%joint(number)
-      if (.not. is_given(deck, "joint", "friction_deg")) then
+      if (.not. allocated(deck%file_analysis)) return
+      listed = deck%file_analysis%joint(number)
+      if (.not. deck%joint%friction_deg%given) then
          law%no_slip = listed%friction_deg >= no_slip_deg
          law%friction = 0.0_wp
          if (.not. law%no_slip) law%friction = friction_coefficient(listed%friction_deg)
       end if
-      if (.not. is_given(deck, "joint", "cohesion")) law%cohesion = listed%cohesion
-      if (.not. is_given(deck, "joint", "tension")) law%tension = listed%tension
+      if (.not. deck%joint%cohesion%given) law%cohesion = listed%cohesion
+      if (.not. deck%joint%tension%given) law%tension = listed%tension
    end function law_of_joint
 
    !> Whether forces act on load points
@@ -198,9 +197,9 @@ contains
       integer :: i
 
       has_forces = .false.
-      if (.not. allocated(deck%analysis)) return
-      do i = 1, size(deck%analysis%load)
-         if (any(abs(deck%analysis%load(i)%record(2:3, :)) > 0.0_wp)) has_forces = .true.
+      if (.not. allocated(deck%file_analysis)) return
+      do i = 1, size(deck%file_analysis%load)
+         if (any(abs(deck%file_analysis%load(i)%record(2:3, :)) > 0.0_wp)) has_forces = .true.
       end do
    end function has_forces
 

@@ -3,7 +3,7 @@ module dda_line_text
    use dda_block_system, only : block_system_t
    use dda_constants, only : degree
    use dda_cut_model, only : cut_model_t, point_kind
-   use dda_deck, only : deck_t, has_group
+   use dda_deck, only : deck_t
    use dda_deck_scene, only : deck_scene
    use dda_growing_text, only : add_line, growing_text_t, lines_of
    use dda_kinds, only : wp
@@ -155,9 +155,9 @@ contains
                & //pair_text(point%place + deck%cut%scale%origin)
             if (point%kind == point_kind%fixed) call add_line(lines, "fix"//at)
             if (point%kind == point_kind%measured) call add_line(lines, "measure"//at)
-            if (point%kind /= point_kind%load .or. .not. allocated(deck%analysis)) cycle
-            if (point%source <= size(deck%analysis%load)) &
-               & call add_load(deck%analysis%load(point%source), at, lines)
+            if (point%kind /= point_kind%load .or. .not. allocated(deck%file_analysis)) cycle
+            if (point%source <= size(deck%file_analysis%load)) &
+               & call add_load(deck%file_analysis%load(point%source), at, lines)
          end associate
       end do
    end subroutine add_points
@@ -187,10 +187,10 @@ contains
       character(len=:), allocatable :: text
 
       text = ""
-      if (allocated(deck%analysis)) then
-         if (deck%analysis%plane_strain) text = ", plane strain (material%plane)"
+      if (allocated(deck%file_analysis)) then
+         if (deck%file_analysis%plane_strain) text = ", plane strain (material%plane)"
       end if
-      if (has_group(deck, "live") .or. has_group(deck, "vehicle")) text = text//", &live, &vehicle"
+      if (deck%live%given .or. deck%vehicle%given) text = text//", &live, &vehicle"
       if (len(text) > 0) text = text(3:)
    end function line_losses
 end module dda_line_text

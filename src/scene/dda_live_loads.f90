@@ -2,8 +2,7 @@
 module dda_live_loads
    use dda_block_system, only : block_system_t
    use dda_boundary, only : constant_history, loaded_point_t
-   use dda_deck, only : deck_error, deck_t, flag_of, has_group, is_given, list_of, place_of, &
-      & real_of
+   use dda_deck, only : deck_error, deck_t, place_of
    use dda_deck_keys, only : key_index
    use dda_error, only : error_t
    use dda_fill_loads, only : fill_t
@@ -32,10 +31,9 @@ contains
       !> What lies on the blocks and spreads axles
       type(fill_t), intent(in), optional :: fill
 
-      if (has_group(deck, "live")) call add_loads(loads_of_live(deck, scene), scene)
-      if (has_group(deck, "vehicle")) &
-         & call add_loads(axle_loads(vehicle_of(deck, fill), road_of(scene%system), scene%origin), &
-         & scene)
+      if (deck%live%given) call add_loads(loads_of_live(deck, scene), scene)
+      if (deck%vehicle%given) call add_loads(axle_loads(vehicle_of(deck, fill), &
+         & road_of(scene%system), scene%origin), scene)
    end subroutine add_live_loads
 
    !> The forces of &live on the blocks of a scene
@@ -76,13 +74,13 @@ contains
       real(wp), allocatable, intent(out) :: force(:, :)
       integer :: n
 
-      n = size(list_of(deck, "live", "x"))
+      n = size(deck%live%x%numbers)
       allocate (point(2, n))
       allocate (force(2, n), source=0.0_wp)
-      point(1, :) = list_of(deck, "live", "x") - origin(1)
-      point(2, :) = list_of(deck, "live", "y") - origin(2)
-      if (is_given(deck, "live", "fx")) force(1, :) = list_of(deck, "live", "fx")
-      if (is_given(deck, "live", "fy")) force(2, :) = list_of(deck, "live", "fy")
+      point(1, :) = deck%live%x%numbers - origin(1)
+      point(2, :) = deck%live%y%numbers - origin(2)
+      if (deck%live%fx%given) force(1, :) = deck%live%fx%numbers
+      if (deck%live%fy%given) force(2, :) = deck%live%fy%numbers
    end subroutine live_lists
 
    !> Block that moves and holds a point most deeply or has it on its outline, else one that is
@@ -136,15 +134,15 @@ contains
       real(wp), allocatable :: point(:, :), force(:, :)
       integer :: b, i
 
-      if (has_group(deck, "vehicle") .and. .not. flag_of(deck, "vehicle", "worst")) then
+      if (deck%vehicle%given .and. .not. deck%vehicle%worst%flag) then
          if (size(axle_loads(vehicle_of(deck), road_of(scene%system), scene%origin)) == 0) then
             call deck_error(error, "&vehicle needs an axle above a block that moves, got "// &
-               & "none at position "//to_text(real_of(deck, "vehicle", "position"))//"; move it", &
+               & "none at position "//to_text(deck%vehicle%position%number)//"; move it", &
                & deck, place_of(deck, key_index("vehicle", "position")))
             return
          end if
       end if
-      if (.not. has_group(deck, "live")) return
+      if (.not. deck%live%given) return
       call live_lists(deck, scene%origin, point, force)
       do i = 1, size(point, 2)
          b = block_at(scene%system, point(:, i))
@@ -167,9 +165,8 @@ contains
       !> The deck of the case
       type(deck_t), intent(in) :: deck
 
-      bears_live = has_group(deck, "live") .or. has_group(deck, "vehicle") &
-         & .or. flag_of(deck, "load", "live_horizontal") &
-         & .and. abs(real_of(deck, "load", "horizontal_coefficient")) > 0.0_wp
+      bears_live = deck%live%given .or. deck%vehicle%given .or. deck%load%live_horizontal%flag &
+         & .and. abs(deck%load%horizontal_coefficient%number) > 0.0_wp
       if (allocated(deck%plan%boundary%loaded)) bears_live = bears_live &
          & .or. any(deck%plan%boundary%loaded%live)
    end function bears_live

@@ -5,8 +5,7 @@
 !> other, and where a displacement means collapse; and it shares out the joint forces at rest.
 module dda_scene_plan
    use dda_block_system, only : n_unknown
-   use dda_deck, only : deck_t, flag_of, has_group, integer_of, is_given, real_of, &
-      & scene_kind, word_of
+   use dda_deck, only : deck_t, scene_kind
    use dda_kinds, only : wp
    implicit none
    private
@@ -77,28 +76,25 @@ contains
       !> The plan
       type(scene_plan_t) :: plan
 
-      plan%velocities = word_of(deck, "analysis", "mode") == "dynamic"
-      plan%moving = word_of(deck, "analysis", "geometry") == "current"
-      plan%strength = real_of(deck, "joint", "cohesion") > 0.0 &
-         & .or. real_of(deck, "joint", "tension") > 0.0 &
-         & .or. is_given(deck, "joint", "residual_deg")
-      if (is_given(deck, "analysis", "unknowns")) then
+      plan%velocities = deck%analysis%mode%word == "dynamic"
+      plan%moving = deck%analysis%geometry%word == "current"
+      plan%strength = deck%joint%cohesion%number > 0.0 .or. deck%joint%tension%number > 0.0 &
+         & .or. deck%joint%residual_deg%given
+      if (deck%analysis%unknowns%given) then
          plan%reason = strain_reason%forced
-         plan%unknowns = integer_of(deck, "analysis", "unknowns")
+         plan%unknowns = deck%analysis%unknowns%whole
          call see_chain(deck, plan)
          return
       end if
       plan%reason = strain_reason%none
-      plan%shared_forces = flag_of(deck, "output", "joints") .and. has_group(deck, "search")
-      if (flag_of(deck, "output", "joints") .and. .not. plan%shared_forces) &
-         & plan%reason = strain_reason%forces
-      if (is_given(deck, "analysis", "collapse_displacement")) &
-         & plan%reason = strain_reason%displacement
+      plan%shared_forces = deck%output%joints%flag .and. deck%search%given
+      if (deck%output%joints%flag .and. .not. plan%shared_forces) plan%reason = strain_reason%forces
+      if (deck%analysis%collapse_displacement%given) plan%reason = strain_reason%displacement
       if (plan%strength) plan%reason = strain_reason%strength
       if (plan%velocities) plan%reason = strain_reason%dynamic
       if (plan%moving) plan%reason = strain_reason%moving
       if (scene_kind(deck) /= "arch") plan%reason = strain_reason%files
-      if (word_of(deck, "analysis", "mode") == "limerick") plan%reason = strain_reason%original
+      if (deck%analysis%mode%word == "limerick") plan%reason = strain_reason%original
       if (plan%reason == strain_reason%none) then
          plan%unknowns = n_rigid
       else
@@ -115,16 +111,12 @@ contains
       !> Its plan, otherwise made
       type(scene_plan_t), intent(inout) :: plan
 
-      plan%row = scene_kind(deck) == "arch" &
-         & .and. word_of(deck, "analysis", "mode") == "static" &
-         & .and. .not. (plan%moving .or. plan%strength .or. has_group(deck, "live") &
-         & .or. has_group(deck, "vehicle"))
-      if (plan%row) plan%row = real_of(deck, "arch", "half_angle_deg") >= shallow_deg
-      plan%chain = plan%row .and. plan%unknowns == n_rigid &
-         & .and. .not. (flag_of(deck, "output", "condition") &
-         & .or. is_given(deck, "analysis", "collapse_displacement"))
-      plan%halved = plan%chain &
-         & .and. .not. abs(real_of(deck, "load", "gravity_direction_deg") + 90.0_wp) > 0.0_wp &
-         & .and. .not. abs(real_of(deck, "load", "horizontal_coefficient")) > 0.0_wp
+      plan%row = scene_kind(deck) == "arch" .and. deck%analysis%mode%word == "static" &
+         & .and. .not. (plan%moving .or. plan%strength .or. deck%live%given .or. deck%vehicle%given)
+      if (plan%row) plan%row = deck%arch%half_angle_deg%number >= shallow_deg
+      plan%chain = plan%row .and. plan%unknowns == n_rigid .and. .not. (deck%output%condition%flag &
+         & .or. deck%analysis%collapse_displacement%given)
+      plan%halved = plan%chain .and. .not. abs(deck%load%gravity_direction_deg%number + 90.0_wp) &
+         & > 0.0_wp .and. .not. abs(deck%load%horizontal_coefficient%number) > 0.0_wp
    end subroutine see_chain
 end module dda_scene_plan

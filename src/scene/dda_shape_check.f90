@@ -2,11 +2,9 @@
 module dda_shape_check
    use dda_arch_assembly, only : arch_assembly_t
    use dda_arch_form, only : form_problem_t
-   use dda_deck, only : deck_error, deck_place_t, deck_t, flag_of, has_group, is_given, &
-      & parameter_t, place_of, real_of, scene_kind, text_of, word_of
+   use dda_deck, only : deck_error, deck_place_t, deck_t, place_of, scene_kind
    use dda_deck_key, only : name_length
    use dda_deck_keys, only : deck_key, key_index
-   use dda_deck_parameter, only : find_parameter
    use dda_deck_set, only : put_number
    use dda_deck_sweep, only : n_cases, turn_to_case
    use dda_error, only : error_t
@@ -33,7 +31,7 @@ contains
 
       n = n_cases(deck)
       ! which keys are given is the same for all cases
-      one_kind = .not. any(deck%sweep%parameter%key == key_index("arch", "shape"))
+      one_kind = .not. any(deck%sweeps%parameter%key == key_index("arch", "shape"))
       do number = 1, n
          call turn_to_case(deck, number, work, error)
          if (scene_kind(work) == "shape") then
@@ -54,30 +52,23 @@ contains
       !> What cannot be
       type(error_t), allocatable, intent(out) :: error
       character(len=4), parameter :: ends(2) = ["low ", "high"]
-      character(len=:), allocatable :: problem
-      type(parameter_t) :: searched
       type(deck_t) :: trial
-      integer :: i
+      integer :: i, key
 
       call check_models(deck, error)
       if (allocated(error)) return
-      if (has_group(deck, "search")) &
-         & call find_parameter(text_of(deck, "search", "parameter"), searched, problem)
-      if (has_group(deck, "tie")) call check_ties(deck, searched, error)
+      if (deck%tie%given) call check_ties(deck, error)
       if (allocated(error)) return
-      if (all(deck_key(max(1, searched%key))%group /= ["arch", "fill"])) then
-         call check_form(deck, error)
-         return
-      end if
-      if (searched%key == 0) then
+      if (deck%searched%key == 0 .or. all(deck_key(max(1, deck%searched%key))%group &
+         & /= ["arch", "fill"])) then
          call check_form(deck, error)
          return
       end if
       do i = 1, 2
-         if (.not. is_given(deck, "search", trim(ends(i)))) cycle
+         key = key_index("search", trim(ends(i)))
+         if (.not. deck%value(key)%given) cycle
          trial = deck
-         call put_number(trial, searched, real_of(deck, "search", trim(ends(i))), &
-            & place_of(deck, key_index("search", trim(ends(i)))), error)
+         call put_number(trial, deck%searched, deck%value(key)%number, place_of(deck, key), error)
          if (.not. allocated(error)) call check_form(trial, error)
          if (.not. allocated(error)) cycle
          error%message = "search%"//trim(ends(i))//": "//error%message
@@ -99,9 +90,9 @@ contains
       call shape_assembly(deck, assembly, problem)
       if (len_trim(problem%text) == 0) return
       key = problem%key
-      if (key == "thickness" .and. .not. is_given(deck, "arch", "thickness")) then
-         if (is_given(deck, "arch", "crown_thickness")) key = "crown_thickness"
-         if (is_given(deck, "arch", "thickness_ratio")) key = "thickness_ratio"
+      if (key == "thickness" .and. .not. deck%arch%thickness%given) then
+         if (deck%arch%crown_thickness%given) key = "crown_thickness"
+         if (deck%arch%thickness_ratio%given) key = "thickness_ratio"
       end if
       place = place_of(deck, key_index("arch", trim(key)))
       call deck_error(error, "arch%"//trim(key)//": "//trim(problem%text), deck, place)
@@ -116,46 +107,41 @@ contains
       character(len=:), allocatable :: group, key, problem
       logical :: at_rest, leans
 
-      at_rest = word_of(deck, "analysis", "mode") == "static" &
-         & .and. word_of(deck, "analysis", "geometry") == "reference" &
-         & .and. .not. is_given(deck, "analysis", "collapse_displacement") &
-         & .and. .not. real_of(deck, "joint", "cohesion") > 0.0_wp &
-         & .and. .not. real_of(deck, "joint", "tension") > 0.0_wp
-      leans = real_of(deck, "fill", "passive_coefficient") > 0.0_wp &
-         & .or. real_of(deck, "fill", "passive_share") > 0.0_wp &
-         & .or. is_given(deck, "fill", "backing_height")
+      at_rest = deck%analysis%mode%word == "static" .and. deck%analysis%geometry%word &
+         & == "reference" .and. .not. deck%analysis%collapse_displacement%given &
+         & .and. .not. deck%joint%cohesion%number > 0.0_wp .and. .not. deck%joint%tension%number &
+         & > 0.0_wp
+      leans = deck%fill%passive_coefficient%number > 0.0_wp .or. deck%fill%passive_share%number &
+         & > 0.0_wp .or. deck%fill%backing_height%given
       group = "fill"
       key = "height"
       problem = ""
-      if (has_group(deck, "fill") .and. .not. (is_given(deck, "fill", "height") &
-         & .and. is_given(deck, "fill", "unit_weight"))) then
+      if (deck%fill%given .and. .not. (deck%fill%height%given &
+         & .and. deck%fill%unit_weight%given)) then
          problem = "expected height and unit_weight of the fill, got one or none; give both"
-      else if (is_given(deck, "fill", "passive_share") &
-         & .and. is_given(deck, "fill", "passive_coefficient")) then
+      else if (deck%fill%passive_share%given .and. deck%fill%passive_coefficient%given) then
          key = "passive_share"
          problem = "expected passive_share or passive_coefficient, got both; remove one"
-      else if (is_given(deck, "fill", "passive_share") &
-         & .and. .not. is_given(deck, "fill", "friction_deg")) then
+      else if (deck%fill%passive_share%given .and. .not. deck%fill%friction_deg%given) then
          key = "passive_share"
          problem = "expected friction_deg of the fill beside it, got none; give it"
-      else if (is_given(deck, "fill", "backing_unit_weight") &
-         & .and. .not. is_given(deck, "fill", "backing_height")) then
+      else if (deck%fill%backing_unit_weight%given .and. .not. deck%fill%backing_height%given) then
          key = "backing_unit_weight"
          problem = "expected backing_height beside it, got none; give it"
       else if (leans .and. .not. at_rest) then
          key = "passive_coefficient"
-         if (is_given(deck, "fill", "passive_share")) key = "passive_share"
-         if (is_given(deck, "fill", "backing_height")) key = "backing_height"
+         if (deck%fill%passive_share%given) key = "passive_share"
+         if (deck%fill%backing_height%given) key = "backing_height"
          problem = "expected a static run in reference geometry, without cohesion, tension and "// &
             & "collapse_displacement, for what an arch leans against is a bounded force of "// &
             & "limit analysis; change the run, or remove it"
-      else if (is_given(deck, "arch", "lune_deg")) then
+      else if (deck%arch%lune_deg%given) then
          group = "arch"
          key = "lune_deg"
          if (.not. at_rest) problem = "expected a static run in reference geometry, without "// &
             & "cohesion, tension and collapse_displacement, for a lune has the mass of no "// &
             & "plane block; change the run"
-         if (has_group(deck, "fill")) problem = "expected a lune without fill, got some; "// &
+         if (deck%fill%given) problem = "expected a lune without fill, got some; "// &
             & "remove one of the two"
          if (changes_weight(deck)) problem = "expected weight that acts downwards alone, got "// &
             & "horizontal_coefficient or gravity_direction_deg; remove one of the two"
@@ -169,11 +155,10 @@ contains
       !> The deck of the case
       type(deck_t), intent(in) :: deck
 
-      changes_weight = is_given(deck, "load", "gravity_direction_deg") &
-         & .or. is_given(deck, "load", "horizontal_coefficient") &
-         & .or. flag_of(deck, "load", "live_horizontal")
-      if (has_group(deck, "search")) changes_weight = changes_weight &
-         & .or. index(text_of(deck, "search", "parameter"), "horizontal_coefficient") > 0 &
-         & .or. index(text_of(deck, "search", "parameter"), "gravity_direction_deg") > 0
+      changes_weight = deck%load%gravity_direction_deg%given &
+         & .or. deck%load%horizontal_coefficient%given .or. deck%load%live_horizontal%flag
+      if (deck%search%given) changes_weight = changes_weight &
+         & .or. index(deck%search%parameter%text, "horizontal_coefficient") > 0 &
+         & .or. index(deck%search%parameter%text, "gravity_direction_deg") > 0
    end function changes_weight
 end module dda_shape_check

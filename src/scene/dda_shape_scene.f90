@@ -5,7 +5,7 @@ module dda_shape_scene
    use dda_block_system, only : block_system_t
    use dda_boundary, only : constant_history, loaded_point_t
    use dda_constants, only : degree
-   use dda_deck, only : deck_t, integer_of, is_given, real_of, word_of
+   use dda_deck, only : deck_t
    use dda_kinds, only : wp
    use dda_scene, only : scene_t
    use dda_simplex, only : area_moments, area_moments_t
@@ -27,30 +27,27 @@ contains
       !> Keys that do not go together
       type(form_problem_t), intent(out) :: problem
 
-      form%shape = word_of(deck, "arch", "shape")
+      form%shape = deck%arch%shape%word(:len(form%shape))
       form%by_radius = (form%shape == "circular" .or. form%shape == "segmental") &
-         & .and. .not. (is_given(deck, "arch", "span") .or. is_given(deck, "arch", "rise"))
-      form%radius = real_of(deck, "arch", "radius")
-      form%half_angle_deg = real_of(deck, "arch", "half_angle_deg")
-      if (form%shape == "flat" .and. .not. is_given(deck, "arch", "half_angle_deg")) &
+         & .and. .not. (deck%arch%span%given .or. deck%arch%rise%given)
+      form%radius = deck%arch%radius%number
+      form%half_angle_deg = deck%arch%half_angle_deg%number
+      if (form%shape == "flat" .and. .not. deck%arch%half_angle_deg%given) &
          & form%half_angle_deg = usual_skewback_deg
-      form%span = real_of(deck, "arch", "span")
-      form%rise = real_of(deck, "arch", "rise")
-      if (is_given(deck, "arch", "right_rise")) form%rise(2) = real_of(deck, "arch", "right_rise")
+      form%span = deck%arch%span%number
+      form%rise = deck%arch%rise%number
+      if (deck%arch%right_rise%given) form%rise(2) = deck%arch%right_rise%number
       form%radial = form%shape == "flat"
-      if (is_given(deck, "arch", "joint_direction")) &
-         & form%radial = word_of(deck, "arch", "joint_direction") == "radial"
-      form%voussoirs = integer_of(deck, "arch", "voussoirs")
-      if (is_given(deck, "arch", "facet_deg")) &
-         & form%facet_deg = real_of(deck, "arch", "facet_deg")
-      form%rings = integer_of(deck, "arch", "rings")
-      form%spans = integer_of(deck, "arch", "spans")
-      form%pier = [real_of(deck, "arch", "pier_width"), real_of(deck, "arch", "pier_height")]
-      form%courses = integer_of(deck, "arch", "pier_courses")
-      form%buttress = [real_of(deck, "arch", "buttress_width"), form%pier(2)]
-      if (is_given(deck, "arch", "buttress_height")) &
-         & form%buttress(2) = real_of(deck, "arch", "buttress_height")
-      form%no_slip = word_of(deck, "arch", "springing") == "no-slip"
+      if (deck%arch%joint_direction%given) form%radial = deck%arch%joint_direction%word == "radial"
+      form%voussoirs = deck%arch%voussoirs%whole
+      if (deck%arch%facet_deg%given) form%facet_deg = deck%arch%facet_deg%number
+      form%rings = deck%arch%rings%whole
+      form%spans = deck%arch%spans%whole
+      form%pier = [deck%arch%pier_width%number, deck%arch%pier_height%number]
+      form%courses = deck%arch%pier_courses%whole
+      form%buttress = [deck%arch%buttress_width%number, form%pier(2)]
+      if (deck%arch%buttress_height%given) form%buttress(2) = deck%arch%buttress_height%number
+      form%no_slip = deck%arch%springing%word == "no-slip"
       call check_lines(deck, form, problem)
       if (len_trim(problem%text) == 0) call check_supports(deck, form, problem)
       if (len_trim(problem%text) == 0) call take_thickness(deck, form, problem)
@@ -66,29 +63,28 @@ contains
       logical :: flat
 
       flat = form%shape == "flat"
-      if (is_given(deck, "arch", "joints_deg")) then
+      if (deck%arch%joints_deg%given) then
          problem = form_problem_t("expected voussoirs, got joints_deg, which is for circular "// &
             & "arches of one ring alone; remove it", "joints_deg")
-      else if (.not. form%by_radius .and. is_given(deck, "arch", "radius")) then
+      else if (.not. form%by_radius .and. deck%arch%radius%given) then
          problem = form_problem_t("expected span and rise alone, got a radius beside them; "// &
             & "remove one of the two", "radius")
-      else if (.not. (form%by_radius .or. flat) .and. is_given(deck, "arch", "half_angle_deg")) then
+      else if (.not. (form%by_radius .or. flat) .and. deck%arch%half_angle_deg%given) then
          problem = form_problem_t("expected span and rise alone, got half_angle_deg beside "// &
             & "them; remove one of the two", "half_angle_deg")
-      else if (.not. form%by_radius .and. .not. is_given(deck, "arch", "span")) then
+      else if (.not. form%by_radius .and. .not. deck%arch%span%given) then
          problem = form_problem_t("expected a span, got none; give it", "span")
-      else if (.not. (form%by_radius .or. flat .or. is_given(deck, "arch", "rise"))) then
+      else if (.not. (form%by_radius .or. flat .or. deck%arch%rise%given)) then
          problem = form_problem_t("expected a rise, got none; give it", "rise")
-      else if (flat .and. is_given(deck, "arch", "rise")) then
+      else if (flat .and. deck%arch%rise%given) then
          problem = form_problem_t("expected no rise of a flat arch, got one; remove it", "rise")
-      else if ((form%by_radius .or. flat) .and. is_given(deck, "arch", "right_rise")) then
+      else if ((form%by_radius .or. flat) .and. deck%arch%right_rise%given) then
          problem = form_problem_t("expected span and rise beside right_rise, got none; give "// &
             & "them, or remove it", "right_rise")
       else if (flat .and. form%half_angle_deg >= 90.0_wp) then
          problem = form_problem_t("expected skewbacks of a flat arch of less than 90 from "// &
             & "upright, got more; lower it", "half_angle_deg")
-      else if (is_given(deck, "arch", "abutment_size") &
-         & .or. is_given(deck, "arch", "abutment_overhang")) then
+      else if (deck%arch%abutment_size%given .or. deck%arch%abutment_overhang%given) then
          problem = form_problem_t("expected no abutment_size and abutment_overhang, which are "// &
             & "for mode = 'limerick' alone, got one; remove it", "abutment_size")
       else if (form%by_radius .and. 2.0_wp*form%half_angle_deg &
@@ -107,28 +103,28 @@ contains
       type(form_problem_t), intent(inout) :: problem
       logical :: buttressed
 
-      buttressed = is_given(deck, "arch", "buttress_width")
-      if (form%spans > 1 .and. .not. is_given(deck, "arch", "pier_width")) then
+      buttressed = deck%arch%buttress_width%given
+      if (form%spans > 1 .and. .not. deck%arch%pier_width%given) then
          problem = form_problem_t("expected the width of the piers between spans, got none; "// &
             & "give it", "pier_width")
       else if ((form%spans > 1 .or. buttressed) .and. .not. form%buttress(2) > 0.0_wp &
          & .or. form%spans > 1 .and. .not. form%pier(2) > 0.0_wp) then
          problem = form_problem_t("expected the height of piers and buttresses, got none; "// &
             & "give it", "pier_height")
-      else if (form%spans == 1 .and. is_given(deck, "arch", "pier_width")) then
+      else if (form%spans == 1 .and. deck%arch%pier_width%given) then
          problem = form_problem_t("expected two spans or more on piers, got one; give spans, "// &
             & "or remove pier_width", "pier_width")
-      else if (form%spans == 1 .and. .not. buttressed .and. (is_given(deck, "arch", "pier_height") &
-         & .or. is_given(deck, "arch", "pier_courses"))) then
+      else if (form%spans == 1 .and. .not. buttressed .and. (deck%arch%pier_height%given &
+         & .or. deck%arch%pier_courses%given)) then
          problem = form_problem_t("expected piers or buttresses, got none; give spans or "// &
             & "buttress_width, or remove pier_height and pier_courses", "pier_height")
-      else if (is_given(deck, "arch", "buttress_height") .and. .not. buttressed) then
+      else if (deck%arch%buttress_height%given .and. .not. buttressed) then
          problem = form_problem_t("expected buttress_width beside it, got none; give it", &
             & "buttress_height")
-      else if (is_given(deck, "arch", "lune_deg") .and. (form%spans > 1 .or. buttressed)) then
+      else if (deck%arch%lune_deg%given .and. (form%spans > 1 .or. buttressed)) then
          problem = form_problem_t("expected a lune of one span on fixed springings, got more; "// &
             & "remove lune_deg, or spans and buttresses", "lune_deg")
-      else if (is_given(deck, "arch", "lune_deg") .and. is_given(deck, "arch", "right_rise")) then
+      else if (deck%arch%lune_deg%given .and. deck%arch%right_rise%given) then
          problem = form_problem_t("expected a lune with springings of one height, got two; "// &
             & "remove right_rise", "lune_deg")
       end if
@@ -144,10 +140,10 @@ contains
       type(form_problem_t), intent(inout) :: problem
       logical :: constant, crown, ratio, springing
 
-      constant = is_given(deck, "arch", "thickness")
-      crown = is_given(deck, "arch", "crown_thickness")
-      springing = is_given(deck, "arch", "springing_thickness")
-      ratio = is_given(deck, "arch", "thickness_ratio")
+      constant = deck%arch%thickness%given
+      crown = deck%arch%crown_thickness%given
+      springing = deck%arch%springing_thickness%given
+      ratio = deck%arch%thickness_ratio%given
       if (crown .neqv. springing) then
          problem = form_problem_t("expected crown_thickness and springing_thickness, got one; "// &
             & "give both", merge("crown_thickness    ", "springing_thickness", crown))
@@ -161,10 +157,10 @@ contains
       else if (.not. (constant .or. crown .or. form%by_radius)) then
          problem = form_problem_t("expected a thickness, got none; give it", "thickness")
       end if
-      form%thickness = real_of(deck, "arch", "thickness_ratio")*form%radius
-      if (constant) form%thickness = real_of(deck, "arch", "thickness")
-      if (crown) form%thickness = [real_of(deck, "arch", "crown_thickness"), &
-         & real_of(deck, "arch", "springing_thickness")]
+      form%thickness = deck%arch%thickness_ratio%number*form%radius
+      if (constant) form%thickness = deck%arch%thickness%number
+      if (crown) form%thickness = [deck%arch%crown_thickness%number, &
+         & deck%arch%springing_thickness%number]
    end subroutine take_thickness
 
    !> The blocks of a deck's arch

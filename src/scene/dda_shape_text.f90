@@ -5,7 +5,7 @@ module dda_shape_text
    use dda_bar, only : bar_t
    use dda_block_input, only : block_plan_t
    use dda_boundary, only : loaded_point_t
-   use dda_deck, only : deck_t, is_given, has_group
+   use dda_deck, only : deck_t
    use dda_deck_scene, only : deck_scene
    use dda_growing_text, only : add_line, growing_text_t, lines_of
    use dda_kinds, only : wp
@@ -124,8 +124,8 @@ contains
       character(len=:), allocatable :: text
 
       text = ""
-      if (is_given(deck, "arch", "lune_deg")) text = ", arch%lune_deg"
-      if (has_group(deck, "fill")) text = text//", pressure of the fill"
+      if (deck%arch%lune_deg%given) text = ", arch%lune_deg"
+      if (deck%fill%given) text = text//", pressure of the fill"
       if (len(text) > 0) text = text(3:)
    end function shape_losses
 end module dda_shape_text

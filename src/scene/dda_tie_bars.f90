@@ -5,7 +5,7 @@ module dda_tie_bars
    use dda_bar, only : bar_t
    use dda_block_input, only : block_plan_t
    use dda_block_sites, only : block_at, site_t, survey
-   use dda_deck, only : deck_error, deck_t, is_given, list_of, parameter_t, place_of
+   use dda_deck, only : deck_error, deck_t, place_of
    use dda_deck_keys, only : deck_key, group_index, key_index
    use dda_error, only : error_t
    use dda_kinds, only : wp
@@ -38,29 +38,13 @@ contains
             bar(i)%block(side) = block_at(plan, site, bar(i)%point(:, side))
          end do
          bar(i)%pushes = .false.
-         bar(i)%stiffness = item("ea", i, 0.0_wp)/norm2(ends(3:4, i) - ends(1:2, i))
-         bar(i)%strength = item("strength", i, huge(1.0_wp))
-         bar(i)%prestress = item("prestress", i, 0.0_wp)
+         bar(i)%stiffness = deck%tie%ea%numbers(i)/norm2(ends(3:4, i) - ends(1:2, i))
+         bar(i)%strength = huge(1.0_wp)
+         if (deck%tie%strength%given) bar(i)%strength = deck%tie%strength%numbers(i)
+         bar(i)%prestress = 0.0_wp
+         if (deck%tie%prestress%given) bar(i)%prestress = deck%tie%prestress%numbers(i)
       end do
       call move_alloc(bar, plan%boundary%bar)
-
-   contains
-
-      !> One number of a list, or what stands for it
-      pure real(wp) function item(name, i, usual)
-         !> The key
-         character(len=*), intent(in) :: name
-         !> Number of the tie
-         integer, intent(in) :: i
-         !> What holds without the key
-         real(wp), intent(in) :: usual
-         real(wp), allocatable :: list(:)
-
-         item = usual
-         if (.not. is_given(deck, "tie", name)) return
-         allocate (list, source=list_of(deck, "tie", name))
-         item = list(i)
-      end function item
    end subroutine add_ties
 
    !> Ends of all ties
@@ -69,42 +53,42 @@ contains
       type(deck_t), intent(in) :: deck
       !> x and y of the one end, then of the other: (4, n) [m]
       real(wp), allocatable, intent(out) :: ends(:, :)
-      character(len=2), parameter :: name(4) = ["x1", "y1", "x2", "y2"]
-      integer :: k
 
-      allocate (ends(4, size(list_of(deck, "tie", "x1"))))
-      do k = 1, 4
-         ends(k, :) = list_of(deck, "tie", name(k))
-      end do
+      associate (tie => deck%tie)
+         allocate (ends(4, size(tie%x1%numbers)))
+         ends(1, :) = tie%x1%numbers
+         ends(2, :) = tie%y1%numbers
+         ends(3, :) = tie%x2%numbers
+         ends(4, :) = tie%y2%numbers
+      end associate
    end subroutine tie_ends
 
    !> Check the ties of a case
-   pure subroutine check_ties(deck, searched, error)
+   pure subroutine check_ties(deck, error)
       !> The deck of the case, with &tie
       type(deck_t), intent(in) :: deck
-      !> What is searched; key 0 if nothing is
-      type(parameter_t), intent(in) :: searched
       !> Lists that do not go together, or an end in no block
       type(error_t), allocatable, intent(out) :: error
       character(len=9), parameter :: name(7) = [character(len=9) :: "x1", "y1", "x2", "y2", "ea", &
          & "strength", "prestress"]
-      integer :: i, n
+      integer :: i, key, n
 
-      n = size(list_of(deck, "tie", "x1"))
+      n = size(deck%tie%x1%numbers)
       if (n == 0) then
          call deck_error(error, "&tie needs x1, y1, x2 and y2, the ends of each tie, got none; "// &
             & "give them", deck, deck%group(group_index("tie")))
          return
       end if
       do i = 2, size(name)
-         if (i > 5 .and. .not. is_given(deck, "tie", trim(name(i)))) cycle
-         if (size(list_of(deck, "tie", trim(name(i)))) == n) cycle
+         key = key_index("tie", trim(name(i)))
+         if (i > 5 .and. .not. deck%value(key)%given) cycle
+         if (size(deck%value(key)%numbers) == n) cycle
          call deck_error(error, "tie%"//trim(name(i))//" needs as many numbers as tie%x1, " &
-            & //to_text(n)//", got "//to_text(size(list_of(deck, "tie", trim(name(i))))) &
-            & //"; give one per tie", deck, place_of(deck, key_index("tie", trim(name(i)))))
+            & //to_text(n)//", got "//to_text(size(deck%value(key)%numbers)) &
+            & //"; give one per tie", deck, place_of(deck, key))
          return
       end do
-      if (deck_key(max(1, searched%key))%group == "arch" .and. searched%key > 0) then
+      if (deck_key(max(1, deck%searched%key))%group == "arch" .and. deck%searched%key > 0) then
          call deck_error(error, "&tie needs an arch that keeps its shape, but the search "// &
             & "changes it, and its ends stay; sweep the shape, with the ends linked", deck, &
             & place_of(deck, key_index("search", "parameter")))

@@ -2,7 +2,7 @@
 module dda_vehicle
    use dda_block_system, only : block_system_t
    use dda_boundary, only : constant_history, loaded_point_t
-   use dda_deck, only : deck_t, list_of, real_of
+   use dda_deck, only : deck_t
    use dda_fill_loads, only : fill_t
    use dda_kinds, only : wp
    use dda_sort, only : sorted_order
@@ -57,14 +57,14 @@ contains
       real(wp), allocatable :: spacing(:)
       integer :: i
 
-      allocate (vehicle%axle, source=list_of(deck, "vehicle", "axles"))
-      allocate (spacing, source=list_of(deck, "vehicle", "spacings"))
+      allocate (vehicle%axle, source=deck%vehicle%axles%numbers)
+      allocate (spacing, source=deck%vehicle%spacings%numbers)
       allocate (vehicle%offset(size(vehicle%axle)))
       do i = 1, size(vehicle%axle)
          vehicle%offset(i) = sum(spacing(:i - 1))
       end do
-      vehicle%length = real_of(deck, "vehicle", "length")
-      vehicle%position = real_of(deck, "vehicle", "position")
+      vehicle%length = deck%vehicle%length%number
+      vehicle%position = deck%vehicle%position%number
       if (.not. present(fill)) return
       vehicle%spread = fill%spread
       vehicle%surface = fill%surface

@@ -5,12 +5,11 @@
 !> proof of this kind, and none is told.
 module dda_case_proof
    use dda_bar_joints, only : bar_joint
-   use dda_contact_detection, only : contacts_t
    use dda_search, only : critical_t
    use dda_decision, only : decision_t
    use dda_error, only : error_t
    use dda_graph_decision, only : decides_as_graph
-   use dda_joint_graph, only : joint_graph_t, joint_kind, keep_joints
+   use dda_joint_graph, only : joint_graph_t, keep_joints
    use dda_kinds, only : wp
    use dda_limit_certificate, only : check_forces, check_velocities
    use dda_limit_decision, only : decide_load, load_decision_t, load_state

@@ -7,7 +7,7 @@ module dda_load_search
    use dda_dead_rest, only : fall_at_once, rest_under_dead_loads
    use dda_decision, only : record_collapse, record_rest
    use dda_error, only : error_t
-   use dda_graph_decision, only : decides_as_graph, has_friction, no_start, see_fall, slide_along
+   use dda_graph_decision, only : has_friction, no_start, see_fall, slide_along
    use dda_joint_graph, only : joint_graph_t
    use dda_kinds, only : wp
    use dda_limit_load, only : find_limit, limit_load_t, limit_state

@@ -4,8 +4,6 @@ module dda_graph_report
    use dda_block_strain, only : strain_blocks
    use dda_block_system, only : block_system_t
    use dda_contact_detection, only : contacts_t
-   use dda_contact_types, only : joint_t
-   use dda_friction_cone, only : joint_face_t
    use dda_path_verdict, only : graph_verdict_t
    use dda_joint_graph, only : joint_graph_t, joint_motion
    use dda_kinds, only : wp
