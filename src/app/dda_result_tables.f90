@@ -124,27 +124,27 @@ contains
       tables%has_vtu = deck%output%vtu%flag
       call name_table(tables%at(table%results), "/results.csv", results_header(names, &
          & deck%output%condition%flag))
-      call name_table(tables%at(table%joints), "/joints.csv", joints_header())
+      call name_table(tables%at(table%joints), "/joints.csv", joints_header)
       call name_table(tables%at(table%log), "/log.txt", "case verdict remark" &
          & //parenthesis(left_out(deck)))
       call name_table(tables%at(table%sizes), "/sizes.record", "case,bytes,sum")
-      call name_table(tables%at(table%frames), "/frames.csv", frames_header())
-      call name_table(tables%at(table%frame_joints), "/frame_joints.csv", frame_joints_header())
-      call name_table(tables%at(table%points), "/points.csv", points_header())
+      call name_table(tables%at(table%frames), "/frames.csv", frames_header)
+      call name_table(tables%at(table%frame_joints), "/frame_joints.csv", frame_joints_header)
+      call name_table(tables%at(table%points), "/points.csv", points_header)
       tables%at(table%points)%wanted = .false.
       if (allocated(deck%plan%boundary%measured)) tables%at(table%points)%wanted = &
          & size(deck%plan%boundary%measured) > 0 .and. .not. deck%search%given
-      call name_table(tables%at(table%reactions), "/reactions.csv", reactions_header())
+      call name_table(tables%at(table%reactions), "/reactions.csv", reactions_header)
       tables%at(table%reactions)%wanted = deck%output%reactions%flag .and. .not. deck%search%given
-      call name_table(tables%at(table%energy), "/energy.csv", energy_header())
+      call name_table(tables%at(table%energy), "/energy.csv", energy_header)
       tables%at(table%energy)%wanted = deck%output%energy%flag .and. .not. deck%search%given
-      call name_table(tables%at(table%blocks), "/blocks.csv", blocks_header())
+      call name_table(tables%at(table%blocks), "/blocks.csv", blocks_header)
       tables%at(table%blocks)%wanted = deck%output%blocks%flag
       tables%at(table%joints)%wanted = deck%output%joints%flag
-      call name_table(tables%at(table%proof_forces), "/proof_forces.csv", proof_forces_header())
-      call name_table(tables%at(table%proof_motion), "/proof_motion.csv", proof_motion_header())
+      call name_table(tables%at(table%proof_forces), "/proof_forces.csv", proof_forces_header)
+      call name_table(tables%at(table%proof_motion), "/proof_motion.csv", proof_motion_header)
       tables%at([table%proof_forces, table%proof_motion])%wanted = deck%output%proof%flag
-      call name_table(tables%at(table%bars), "/bars.csv", bars_header())
+      call name_table(tables%at(table%bars), "/bars.csv", bars_header)
       tables%at(table%bars)%wanted = allocated(deck%plan%boundary%bar) .or. deck%tie%given
       if (allocated(deck%cut)) tables%at(table%bars)%wanted = size(deck%cut%bolt) > 0
       tables%at([table%frames, table%frame_joints])%wanted = deck%output%frames%whole > 0

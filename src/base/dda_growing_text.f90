@@ -1,9 +1,11 @@
 !> A text of many lines, whose room doubles where it must
 module dda_growing_text
+   use dda_kinds, only : wp
+   use dda_text, only : to_text
    implicit none
    private
 
-   public :: growing_text_t, add_line, lines_of
+   public :: growing_text_t, add_line, fields, lines_of
 
    !> Lines put together so far
    type :: growing_text_t
@@ -44,4 +46,23 @@ contains
       text = ""
       if (lines%length > 0) text = lines%text(:lines%length - 1)
    end function lines_of
+
+   !> Numbers with something between them
+   pure function fields(value, between) result(text)
+      !> The numbers: (n), one or more
+      real(wp), intent(in) :: value(:)
+      !> A comma where it is left out
+      character, intent(in), optional :: between
+      !> The text
+      character(len=:), allocatable :: text
+      character :: parting
+      integer :: i
+
+      parting = ","
+      if (present(between)) parting = between
+      text = to_text(value(1))
+      do i = 2, size(value)
+         text = text//parting//to_text(value(i))
+      end do
+   end function fields
 end module dda_growing_text

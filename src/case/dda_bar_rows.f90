@@ -10,15 +10,10 @@ module dda_bar_rows
 
    public :: bar_lines, bars_header
 
-contains
-
    !> Names of the columns
-   pure function bars_header() result(line)
-      !> The line
-      character(len=:), allocatable :: line
+   character(len=*), parameter :: bars_header = "case,time,bar,force,state"
 
-      line = "case,time,bar,force,state"
-   end function bars_header
+contains
 
    !> Bars in the pictures of a case, and at its end
    pure function bar_lines(number, this) result(lines)

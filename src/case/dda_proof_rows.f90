@@ -2,7 +2,7 @@
 module dda_proof_rows
    use dda_bar_joints, only : bar_joint
    use dda_case_proof, only : proof_t
-   use dda_growing_text, only : add_line, growing_text_t, lines_of
+   use dda_growing_text, only : add_line, fields, growing_text_t, lines_of
    use dda_kinds, only : wp
    use dda_text, only : to_text
    implicit none
@@ -10,23 +10,13 @@ module dda_proof_rows
 
    public :: proof_forces_header, proof_forces_lines, proof_motion_header, proof_motion_lines
 
-contains
-
    !> Names of the columns of proof_forces.csv
-   pure function proof_forces_header() result(line)
-      !> The line
-      character(len=:), allocatable :: line
-
-      line = "case,value,kind,block_1,block_2,x_1,y_1,x_2,y_2,normal_1,normal_2,shear"
-   end function proof_forces_header
-
+   character(len=*), parameter :: proof_forces_header = &
+      & "case,value,kind,block_1,block_2,x_1,y_1,x_2,y_2,normal_1,normal_2,shear"
    !> Names of the columns of proof_motion.csv
-   pure function proof_motion_header() result(line)
-      !> The line
-      character(len=:), allocatable :: line
+   character(len=*), parameter :: proof_motion_header = "case,value,block,x,y,u,v,spin"
 
-      line = "case,value,block,x,y,u,v,spin"
-   end function proof_motion_header
+contains
 
    !> Forces that carry the load: of joints, at their two corners and along them on the second
    !> block; of held points, along x and y
@@ -49,7 +39,7 @@ contains
       do j = 1, n
          associate (joint => proof%scene%contacts%joint(j))
             call add_line(rows, start//"contact,"//to_text(joint%block(1))//"," &
-               & //to_text(joint%block(2))//","//numbers([joint%contact(1)%point &
+               & //to_text(joint%block(2))//","//fields([joint%contact(1)%point &
                & + proof%scene%origin, joint%contact(joint%n_contact)%point &
                & + proof%scene%origin, proof%force(:, j)]))
          end associate
@@ -82,7 +72,7 @@ contains
             if (.not. held%along(1)) force = [0.0_wp, sum(force), 0.0_wp]
             if (.not. held%along(2)) force = [sum(force), 0.0_wp, 0.0_wp]
             call add_line(rows, start//"held,0,"//to_text(held%block)//"," &
-               & //numbers([held%point + proof%scene%origin, held%point + proof%scene%origin, &
+               & //fields([held%point + proof%scene%origin, held%point + proof%scene%origin, &
                & force]))
          end associate
       end do
@@ -105,7 +95,7 @@ contains
          associate (bounded => proof%scene%settings%boundary%bounded(i))
             n = n + 1
             line = start//"bounded,0,"//to_text(bounded%block)//"," &
-               & //numbers([bounded%point + proof%scene%origin, bounded%point &
+               & //fields([bounded%point + proof%scene%origin, bounded%point &
                & + proof%scene%origin, proof%force(1, n)*bounded%direction])//","
             if (bounded%most < huge(bounded%most)) then
                ! then come the stop and the guide of its carrier
@@ -132,7 +122,7 @@ contains
             j = bar_joint(scene%settings, size(proof%force, 2), i)
             associate (bar => scene%settings%boundary%bar(i))
                call add_line(rows, start//"bar,"//to_text(bar%block(1))//"," &
-                  & //to_text(bar%block(2))//","//numbers([bar%point(:, 1) + scene%origin, &
+                  & //to_text(bar%block(2))//","//fields([bar%point(:, 1) + scene%origin, &
                   & bar%point(:, 2) + scene%origin, proof%force(1, j)])//",,")
             end associate
          end do
@@ -157,23 +147,9 @@ contains
          e = proof%scene%system%equation(b)
          if (e == 0) cycle
          call add_line(rows, to_text(number)//","//value//","//to_text(b)//"," &
-            & //numbers([proof%scene%system%centroid(:, b) + proof%scene%origin, &
+            & //fields([proof%scene%system%centroid(:, b) + proof%scene%origin, &
             & proof%velocity(1:3, e)]))
       end do
       lines = lines_of(rows)
    end function proof_motion_lines
-
-   !> Fields of numbers, parted by commas
-   pure function numbers(value) result(text)
-      !> The numbers: (n)
-      real(wp), intent(in) :: value(:)
-      !> The fields
-      character(len=:), allocatable :: text
-      integer :: i
-
-      text = to_text(value(1))
-      do i = 2, size(value)
-         text = text//","//to_text(value(i))
-      end do
-   end function numbers
 end module dda_proof_rows

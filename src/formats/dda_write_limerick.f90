@@ -1,6 +1,7 @@
 !> Geometry and analysis files of the Limerick line, plain and DDAML, as texts and on disk
 module dda_write_limerick
    use dda_error, only : error_t
+   use dda_growing_text, only : fields
    use dda_kinds, only : wp
    use dda_limerick_analysis, only : limerick_analysis_t, analysis_material_t
    use dda_line_model, only : entities_t, line_model_t
@@ -68,7 +69,7 @@ contains
 
       text = ""
       do i = 1, entities%n
-         text = text//lf//numbers(entities%place(:n_number, i))
+         text = text//lf//fields(entities%place(:n_number, i), " ")
          if (has_material) text = text//" "//to_text(entities%material(i))
       end do
    end function records
@@ -83,8 +84,8 @@ contains
 
       text = ""
       do i = 1, model%bolt%n
-         text = text//lf//numbers(model%bolt%place(:, i))//" " &
-            & //numbers(max(model%bolt_property(:, i), 0.0_wp))
+         text = text//lf//fields(model%bolt%place(:, i), " ")//" " &
+            & //fields(max(model%bolt_property(:, i), 0.0_wp), " ")
       end do
    end function bolt_records
 
@@ -105,24 +106,10 @@ contains
             & //to_text(model%bolt_property(1, i))//'" strength="' &
             & //to_text(model%bolt_property(2, i))//'" pretension="' &
             & //to_text(model%bolt_property(3, i))//'"'
-         text = text//"> "//numbers(model%bolt%place(:, i))//" </Bolt>"//lf
+         text = text//"> "//fields(model%bolt%place(:, i), " ")//" </Bolt>"//lf
       end do
       text = text//"</Boltlist>"//lf
    end function bolt_list
-
-   !> Numbers with blanks between
-   pure function numbers(value) result(text)
-      !> The numbers: (n)
-      real(wp), intent(in) :: value(:)
-      !> The text
-      character(len=:), allocatable :: text
-      integer :: i
-
-      text = to_text(value(1))
-      do i = 2, size(value)
-         text = text//" "//to_text(value(i))
-      end do
-   end function numbers
 
    !> A geometry in DDAML
    pure function ddaml_geometry(model) result(text)
@@ -169,8 +156,8 @@ contains
             & all(abs(entities%place(3:4, i) - entities%place(1:2, i)) <= 0.0_wp)))
          text = text//"<"//kind
          if (entities%material(i) > 0) text = text//' type="'//to_text(entities%material(i))//'"'
-         text = text//"> "//numbers(entities%place(:merge(2, 4, kind == "Point"), i))//" </"//kind &
-            & //">"//lf
+         text = text//"> "//fields(entities%place(:merge(2, 4, kind == "Point"), i), " ")//" </" &
+            & //kind//">"//lf
       end do
       text = text//"</"//name//">"//lf
    end function list
@@ -217,14 +204,14 @@ contains
          & //to_text(analysis%displacement_ratio)//lf//to_text(analysis%max_time_step)
       do i = 1, size(analysis%material)
          associate (material => analysis%material(i))
-            text = text//lf//numbers([material%density, material%unit_weight, material%young, &
-               & material%poisson])//lf//numbers(material%stress)//lf &
-               & //numbers(material%stress_gradient)//lf//numbers(material%velocity)
+            text = text//lf//fields([material%density, material%unit_weight, material%young, &
+               & material%poisson], " ")//lf//fields(material%stress, " ")//lf &
+               & //fields(material%stress_gradient, " ")//lf//fields(material%velocity, " ")
          end associate
       end do
       do i = 1, size(analysis%joint)
          associate (joint => analysis%joint(i))
-            text = text//lf//numbers([joint%friction_deg, joint%cohesion, joint%tension])
+            text = text//lf//fields([joint%friction_deg, joint%cohesion, joint%tension], " ")
          end associate
       end do
    end function plain_analysis
@@ -318,9 +305,9 @@ contains
          & //filled("Unitweight", to_text(material%unit_weight)) &
          & //filled("Youngsmod", to_text(material%young)) &
          & //filled("Poissonratio", to_text(material%poisson))//filled("Damping", "0") &
-         & //filled("Istress", numbers(material%stress)) &
-         & //filled("Ivelocity", numbers(material%velocity)) &
-         & //filled("Istrain", numbers(material%strain))//"</Blockmaterial>"//lf
+         & //filled("Istress", fields(material%stress, " ")) &
+         & //filled("Ivelocity", fields(material%velocity, " ")) &
+         & //filled("Istrain", fields(material%strain, " "))//"</Blockmaterial>"//lf
    end function material_element
 
    !> The forces on load points
@@ -335,7 +322,7 @@ contains
          associate (record => analysis%load(i)%record)
             text = text//'<Loadpoint numpoints="'//to_text(size(record, 2))//'">'
             do k = 1, size(record, 2)
-               text = text//" "//numbers(record(:, k))//";"
+               text = text//" "//fields(record(:, k), " ")//";"
             end do
             text = text//" </Loadpoint>"//lf
          end associate

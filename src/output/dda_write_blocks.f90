@@ -1,6 +1,6 @@
 !> Blocks as CSV: a row a corner, with its displacement (blocks.csv)
 module dda_write_blocks
-   use dda_growing_text, only : add_line, growing_text_t, lines_of
+   use dda_growing_text, only : add_line, fields, growing_text_t, lines_of
    use dda_kinds, only : wp
    use dda_text, only : to_text
    implicit none
@@ -21,15 +21,10 @@ module dda_write_blocks
       real(wp), allocatable :: displacement(:, :)
    end type told_blocks_t
 
-contains
-
    !> Names of the columns of blocks.csv
-   pure function blocks_header() result(line)
-      !> The line
-      character(len=:), allocatable :: line
+   character(len=*), parameter :: blocks_header = "case,block,state,vertex,x,y,u,v"
 
-      line = "case,block,state,vertex,x,y,u,v"
-   end function blocks_header
+contains
 
    !> Rows of the blocks of one case in blocks.csv
    pure function block_lines(number, blocks) result(lines)
@@ -48,23 +43,13 @@ contains
          do v = blocks%first_vertex(b), blocks%first_vertex(b + 1) - 1
             if (allocated(blocks%displacement)) then
                call add_line(rows, common//to_text(v - blocks%first_vertex(b) + 1)//"," &
-                  & //pair(blocks%corner(:, v))//","//pair(blocks%displacement(:, v)))
+                  & //fields(blocks%corner(:, v))//","//fields(blocks%displacement(:, v)))
             else
                call add_line(rows, common//to_text(v - blocks%first_vertex(b) + 1)//"," &
-                  & //pair(blocks%corner(:, v))//",,")
+                  & //fields(blocks%corner(:, v))//",,")
             end if
          end do
       end do
       lines = lines_of(rows)
    end function block_lines
-
-   !> Two fields of a row
-   pure function pair(vector) result(text)
-      !> The numbers: (2)
-      real(wp), intent(in) :: vector(2)
-      !> The fields
-      character(len=:), allocatable :: text
-
-      text = to_text(vector(1))//","//to_text(vector(2))
-   end function pair
 end module dda_write_blocks

@@ -1,6 +1,6 @@
 !> Rows of energy.csv: the energy balance of a dynamic run
 module dda_write_energy
-   use dda_growing_text, only : add_line, growing_text_t, lines_of
+   use dda_growing_text, only : add_line, fields, growing_text_t, lines_of
    use dda_kinds, only : wp
    use dda_text, only : to_text
    implicit none
@@ -8,15 +8,11 @@ module dda_write_energy
 
    public :: energy_header, energy_lines
 
-contains
-
    !> Names of the columns
-   pure function energy_header() result(line)
-      !> The line
-      character(len=:), allocatable :: line
+   character(len=*), parameter :: energy_header = &
+      & "case,step,time,kinetic,elastic,contact,gravity,work,friction,damping,impact,numerical"
 
-      line = "case,step,time,kinetic,elastic,contact,gravity,work,friction,damping,impact,numerical"
-   end function energy_header
+contains
 
    !> Rows of one case
    pure function energy_lines(number, value) result(lines)
@@ -27,15 +23,10 @@ contains
       !> The rows
       character(len=:), allocatable :: lines
       type(growing_text_t) :: text
-      character(len=:), allocatable :: line
-      integer :: i, k
+      integer :: k
 
       do k = 1, size(value, 2)
-         line = to_text(number)//","//to_text(k)
-         do i = 1, size(value, 1)
-            line = line//","//to_text(value(i, k))
-         end do
-         call add_line(text, line)
+         call add_line(text, to_text(number)//","//to_text(k)//","//fields(value(:, k)))
       end do
       lines = lines_of(text)
    end function energy_lines

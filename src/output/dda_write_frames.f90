@@ -1,7 +1,7 @@
 !> Frames of a run as CSV: a row for each corner of each block (frames.csv), a row for each joint
 !> (frame_joints.csv)
 module dda_write_frames
-   use dda_growing_text, only : add_line, growing_text_t, lines_of
+   use dda_growing_text, only : add_line, fields, growing_text_t, lines_of
    use dda_kinds, only : wp
    use dda_text, only : to_text
    implicit none
@@ -37,15 +37,15 @@ module dda_write_frames
       character(len=8) :: state(2) = ""
    end type frame_joint_row_t
 
-contains
-
    !> Names of the columns of frames.csv
-   pure function frames_header() result(line)
-      !> The line
-      character(len=:), allocatable :: line
+   character(len=*), parameter :: frames_header = "case,frame,step,time,block,vertex,x,y"
+   !> Names of the columns of frame_joints.csv
+   character(len=*), parameter :: frame_joints_header = &
+      & "case,frame,joint,x_1,y_1,x_2,y_2,x,y,force_x,force_y,state_1,state_2"
+   !> Names of the columns of points.csv
+   character(len=*), parameter :: points_header = "case,step,time,point,x,y,u,v,vx,vy"
 
-      line = "case,frame,step,time,block,vertex,x,y"
-   end function frames_header
+contains
 
    !> Rows of one frame in frames.csv
    pure function frame_lines(stamp, first_vertex, point, absent) result(lines)
@@ -70,19 +70,11 @@ contains
          end if
          do vertex = first_vertex(block), first_vertex(block + 1) - 1
             call add_line(rows, common//to_text(block)//"," &
-               & //to_text(vertex - first_vertex(block) + 1)//","//pair(point(:, vertex)))
+               & //to_text(vertex - first_vertex(block) + 1)//","//fields(point(:, vertex)))
          end do
       end do
       lines = lines_of(rows)
    end function frame_lines
-
-   !> Names of the columns of frame_joints.csv
-   pure function frame_joints_header() result(line)
-      !> The line
-      character(len=:), allocatable :: line
-
-      line = "case,frame,joint,x_1,y_1,x_2,y_2,x,y,force_x,force_y,state_1,state_2"
-   end function frame_joints_header
 
    !> Rows of one frame in frame_joints.csv
    pure function frame_joint_lines(stamp, row) result(lines)
@@ -97,20 +89,12 @@ contains
 
       do j = 1, size(row)
          call add_line(rows, stamp_text(stamp)//","//to_text(row(j)%joint)//"," &
-            & //pair(row(j)%contact(:, 1))//","//pair(row(j)%contact(:, 2))//"," &
-            & //pair(row(j)%point)//","//pair(row(j)%force)//"," &
+            & //fields(row(j)%contact(:, 1))//","//fields(row(j)%contact(:, 2))//"," &
+            & //fields(row(j)%point)//","//fields(row(j)%force)//"," &
             & //trim(row(j)%state(1))//","//trim(row(j)%state(2)))
       end do
       lines = lines_of(rows)
    end function frame_joint_lines
-
-   !> Names of the columns of points.csv
-   pure function points_header() result(line)
-      !> The line
-      character(len=:), allocatable :: line
-
-      line = "case,step,time,point,x,y,u,v,vx,vy"
-   end function points_header
 
    !> Rows of the measured points of one case in points.csv
    pure function point_lines(number, when, point, track, origin, speed) result(lines)
@@ -135,10 +119,10 @@ contains
       do k = 1, size(when, 2)
          do i = 1, size(track, 2)
             fast = ","
-            if (present(speed)) fast = pair(speed(:, i, k))
+            if (present(speed)) fast = fields(speed(:, i, k))
             call add_line(rows, to_text(number)//","//to_text(nint(when(1, k)))//"," &
-               & //to_text(when(2, k))//","//to_text(i)//","//pair(track(:, i, k) + origin)//"," &
-               & //pair(track(:, i, k) - point(:, i))//","//fast)
+               & //to_text(when(2, k))//","//to_text(i)//","//fields(track(:, i, k) + origin)//"," &
+               & //fields(track(:, i, k) - point(:, i))//","//fast)
          end do
       end do
       lines = lines_of(rows)
@@ -153,14 +137,4 @@ contains
 
       text = to_text(stamp%number)//","//to_text(stamp%frame)
    end function stamp_text
-
-   !> Two fields of a row
-   pure function pair(vector) result(text)
-      !> The numbers: (2)
-      real(wp), intent(in) :: vector(2)
-      !> The fields
-      character(len=:), allocatable :: text
-
-      text = to_text(vector(1))//","//to_text(vector(2))
-   end function pair
 end module dda_write_frames

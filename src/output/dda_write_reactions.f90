@@ -1,6 +1,6 @@
 !> Rows of reactions.csv: what supports put on the blocks
 module dda_write_reactions
-   use dda_growing_text, only : add_line, growing_text_t, lines_of
+   use dda_growing_text, only : add_line, fields, growing_text_t, lines_of
    use dda_kinds, only : wp
    use dda_text, only : to_text
    implicit none
@@ -8,15 +8,10 @@ module dda_write_reactions
 
    public :: reactions_header, reaction_lines
 
-contains
-
    !> Names of the columns
-   pure function reactions_header() result(line)
-      !> The line
-      character(len=:), allocatable :: line
+   character(len=*), parameter :: reactions_header = "case,time,block,point,fx,fy,moment"
 
-      line = "case,time,block,point,fx,fy,moment"
-   end function reactions_header
+contains
 
    !> Rows of one case
    pure function reaction_lines(number, time, support, reaction, origin) result(lines)
@@ -43,7 +38,7 @@ contains
                moment = r(3) + origin(1)*r(2) - origin(2)*r(1)
                call add_line(rows, to_text(number)//","//to_text(time(k))//"," &
                   & //to_text(support(1, i))//","//to_text(support(2, i))//"," &
-                  & //to_text(r(1))//","//to_text(r(2))//","//to_text(moment))
+                  & //fields([r(1:2), moment]))
             end associate
          end do
       end do

@@ -1,5 +1,6 @@
 !> Results as CSV: one row a case, one row a joint (Shi: df27)
 module dda_write_results
+   use dda_growing_text, only : fields
    use dda_kinds, only : wp
    use dda_text, only : to_text
    implicit none
@@ -134,6 +135,12 @@ module dda_write_results
       type(number_t) :: slides(2)
    end type joint_row_t
 
+   !> Names of the columns of joints.csv
+   character(len=*), parameter :: joints_header = &
+      & "case,joint,angle_deg,x_intrados,y_intrados,x_extrados,y_extrados,normal_force," &
+      & //"shear_force,eccentricity_ratio,opening_intrados,opening_extrados,slip,state," &
+      & //"block_1,block_2,x,y,force_x,force_y,mechanism,slides_x,slides_y"
+
 contains
 
    !> A known number
@@ -190,16 +197,6 @@ contains
       if (row%tells_condition) line = line//","//number_text(row%condition)
    end function results_line
 
-   !> Names of the columns of joints.csv
-   pure function joints_header() result(line)
-      !> The line
-      character(len=:), allocatable :: line
-
-      line = "case,joint,angle_deg,x_intrados,y_intrados,x_extrados,y_extrados,normal_force," &
-         & //"shear_force,eccentricity_ratio,opening_intrados,opening_extrados,slip,state," &
-         & //"block_1,block_2,x,y,force_x,force_y,mechanism,slides_x,slides_y"
-   end function joints_header
-
    !> One row of joints.csv
    pure function joint_line(row) result(line)
       type(joint_row_t), intent(in) :: row
@@ -207,13 +204,11 @@ contains
       character(len=:), allocatable :: line
 
       line = to_text(row%number)//","//to_text(row%joint)//","//number_text(row%angle_deg)//"," &
-         & //to_text(row%intrados(1))//","//to_text(row%intrados(2))//"," &
-         & //to_text(row%extrados(1))//","//to_text(row%extrados(2))//"," &
-         & //to_text(row%normal_force)//","//to_text(row%shear_force)//"," &
+         & //fields([row%intrados, row%extrados, row%normal_force, row%shear_force])//"," &
          & //number_text(row%eccentricity_ratio)//","//to_text(row%opening_intrados)//"," &
          & //number_text(row%opening_extrados)//","//to_text(row%slip)//","//trim(row%state)//"," &
-         & //to_text(row%block(1))//","//to_text(row%block(2))//","//to_text(row%point(1))//"," &
-         & //to_text(row%point(2))//","//to_text(row%force(1))//","//to_text(row%force(2))//"," &
+         & //to_text(row%block(1))//","//to_text(row%block(2))//"," &
+         & //fields([row%point, row%force])//"," &
          & //trim(row%mechanism)//","//number_text(row%slides(1))//"," &
          & //number_text(row%slides(2))
    end function joint_line

@@ -5,13 +5,13 @@ module dda_line_text
    use dda_cut_model, only : cut_model_t, point_kind
    use dda_deck, only : deck_t
    use dda_deck_scene, only : deck_scene
-   use dda_growing_text, only : add_line, growing_text_t, lines_of
+   use dda_growing_text, only : add_line, fields, growing_text_t, lines_of
    use dda_kinds, only : wp
    use dda_limerick_analysis, only : load_history_t
    use dda_line_scene, only : held_blocks, law_of_joint, line_system
    use dda_material, only : joint_law_t
    use dda_scene, only : scene_t
-   use dda_shape_text, only : add_bar_lines, pair_text
+   use dda_shape_text, only : add_bar_lines
    use dda_text, only : to_text
    implicit none
    private
@@ -86,12 +86,12 @@ contains
          if (held(b)) line = line//" fixed"
          line = line//" material "//to_text(system%material(b) + 1)
          if (any(abs(system%velocity(1:3, b)) > 0.0_wp)) line = line//" velocity " &
-            & //pair_text(system%velocity(1:2, b))//" "//to_text(system%velocity(3, b))
+            & //fields(system%velocity(1:2, b), " ")//" "//to_text(system%velocity(3, b))
          if (any(abs(system%stress(:, b)) > 0.0_wp)) line = line//" stress " &
-            & //pair_text(system%stress(1:2, b))//" "//to_text(system%stress(3, b))
+            & //fields(system%stress(1:2, b), " ")//" "//to_text(system%stress(3, b))
          call add_line(lines, line)
          do v = cut%first_vertex(b), cut%first_vertex(b + 1) - 1
-            call add_line(lines, "   "//pair_text(cut%vertex(:, v) + cut%scale%origin))
+            call add_line(lines, "   "//fields(cut%vertex(:, v) + cut%scale%origin, " "))
          end do
       end do
    end subroutine add_blocks
@@ -152,7 +152,7 @@ contains
          associate (point => deck%cut%point(i))
             if (held(point%block) .and. point%kind /= point_kind%measured) cycle
             at = " block "//to_text(point%block)//" " &
-               & //pair_text(point%place + deck%cut%scale%origin)
+               & //fields(point%place + deck%cut%scale%origin, " ")
             if (point%kind == point_kind%fixed) call add_line(lines, "fix"//at)
             if (point%kind == point_kind%measured) call add_line(lines, "measure"//at)
             if (point%kind /= point_kind%load .or. .not. allocated(deck%file_analysis)) cycle
@@ -175,7 +175,7 @@ contains
       call add_line(lines, "load"//at)
       do i = 1, size(load%record, 2)
          call add_line(lines, "   "//to_text(load%record(1, i))//" " &
-            & //pair_text(load%record(2:3, i)))
+            & //fields(load%record(2:3, i), " "))
       end do
    end subroutine add_load
 

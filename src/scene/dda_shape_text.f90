@@ -7,7 +7,7 @@ module dda_shape_text
    use dda_boundary, only : loaded_point_t
    use dda_deck, only : deck_t
    use dda_deck_scene, only : deck_scene
-   use dda_growing_text, only : add_line, growing_text_t, lines_of
+   use dda_growing_text, only : add_line, fields, growing_text_t, lines_of
    use dda_kinds, only : wp
    use dda_scene, only : scene_t
    use dda_shape_scene, only : shape_assembly
@@ -15,7 +15,7 @@ module dda_shape_text
    implicit none
    private
 
-   public :: add_bar_lines, pair_text, shape_losses, shape_text
+   public :: add_bar_lines, shape_losses, shape_text
 
 contains
 
@@ -59,7 +59,7 @@ contains
          call add_line(lines, trim(merge("block fixed", "block      ", plan%fixed(b)))// &
             & trim(merge(" material 2", "           ", plan%material(b) == 2)))
          do v = plan%first_vertex(b), plan%first_vertex(b + 1) - 1
-            call add_line(lines, "   "//pair_text(plan%vertex(:, v)))
+            call add_line(lines, "   "//fields(plan%vertex(:, v), " "))
          end do
       end do
    end subroutine add_blocks
@@ -73,8 +73,8 @@ contains
       type(growing_text_t), intent(inout) :: lines
 
       call add_line(lines, trim(merge("live", "load", loaded%live))//" block " &
-         & //to_text(loaded%block)//" "//pair_text(loaded%point + origin)//" " &
-         & //pair_text(loaded%force%value(:, 1)))
+         & //to_text(loaded%block)//" "//fields(loaded%point + origin, " ")//" " &
+         & //fields(loaded%force%value(:, 1), " "))
    end subroutine add_load
 
    !> Add the bars of a scene
@@ -99,22 +99,12 @@ contains
       type(growing_text_t), intent(inout) :: lines
       character(len=:), allocatable :: text
 
-      text = "bar "//pair_text(bar%point(:, 1) + origin)//" "//pair_text(bar%point(:, 2) + origin) &
+      text = "bar "//fields([bar%point(:, 1) + origin, bar%point(:, 2) + origin], " ") &
          & //" stiffness "//to_text(bar%stiffness)//" prestress "//to_text(bar%prestress)
       if (.not. bar%pushes) text = text//" slack"
       if (bar%strength < huge(bar%strength)) text = text//" strength "//to_text(bar%strength)
       call add_line(lines, text)
    end subroutine add_bar
-
-   !> Two numbers
-   pure function pair_text(vector) result(text)
-      !> The numbers: (2)
-      real(wp), intent(in) :: vector(2)
-      !> The text
-      character(len=:), allocatable :: text
-
-      text = to_text(vector(1))//" "//to_text(vector(2))
-   end function pair_text
 
    !> What a file of blocks has no place for
    pure function shape_losses(deck) result(text)
