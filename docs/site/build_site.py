@@ -30,7 +30,7 @@ CHAPTERS = {
     "How to": {
         "howto.md": "Arches, studies, results, pictures",
         "howto_blocks.md": "My own blocks",
-        "howto_limerick.md": "A Limerick model",
+        "limerick.md": "Limerick models",
         "howto_tunnel.md": "A tunnel and a slope",
         "howto_fortran.md": "From a Fortran program",
         "howto_python.md": "From Python",
@@ -46,8 +46,6 @@ CHAPTERS = {
         "theory.md": "Theory",
         "method.md": "Method",
         "limits.md": "Limits",
-        "limerick.md": "Files of the Limerick line",
-        "limerick_scheme.md": "The original's scheme",
         "shi.md": "Shi's routines",
     },
     "Evidence": {

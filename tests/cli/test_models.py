@@ -41,7 +41,7 @@ SINES = "".join(f"{k / 2000},{math.sin(8 * math.pi * k / 2000)}\n" for k in rang
 # critical thickness ratio of semicircles of 36 and 12 voussoirs by limit analysis with 60 digits, without
 # slip and with a friction of 21 degrees, and of joints at 45 degrees: tests/data/arch_exact.csv
 EXACT_36, EXACT_12_F21, EXACT_45 = 0.10742413832037053, 0.11890187237381047, 0.10086104924420147
-# that of 12 voussoirs in the original program: docs/limerick_scheme.md
+# that of 12 voussoirs in the original program: docs/limerick.md
 ORIGINAL_12 = 0.10880
 # thrust of the semicircle at its springings is half its weight: 8 voussoirs of 2240 kg/m3
 HALF_ARCH = 4 * 0.5 * math.sin(math.pi / 8) * (10.75**2 - 9.25**2) * 2240 * 9.81
