@@ -19,10 +19,10 @@ module dda_first_motion
    public :: find_first_motion
 
    !> What may be left of equations and products, and what is aimed at
-   real(wp), parameter :: accepted = 1.0e-7_wp, aim = 1.0e-12_wp
+   real(wp), parameter :: accepted = 1.0e-7_wp, aim = 1.0e-11_wp
 
    !> What a unit of force closes a ray by, in units of the largest mass and of the largest load
-   real(wp), parameter :: compliance = 1.0e-14_wp
+   real(wp), parameter :: compliance = 1.0e-18_wp
 
 contains
 

@@ -21,7 +21,7 @@ module dda_interior_point
    implicit none
    private
 
-   public :: start_by_springs, worst, solve_cones
+   public :: start_by_forces, start_by_springs, worst, solve_cones
 
    !> Turns without progress before the iteration ends
    integer, parameter :: patience = 8
@@ -66,6 +66,20 @@ contains
       point%x = point%x*rays%bounded
       point%s = point%s*rays%bounded + (1.0_wp - rays%bounded)
    end subroutine start_by_springs
+
+   !> Forces that carry the dead load inside their bounds, and rates that share a power equally
+   pure subroutine start_by_forces(rays, power, point)
+      type(joint_rays_t), intent(in) :: rays
+      !> Power of all forces: the gap to begin with
+      real(wp), intent(in) :: power
+      !> Has the forces; receives the rest
+      type(interior_point_t), intent(inout) :: point
+
+      point = interior_point_t(x=point%x)
+      point%s = power*rays%bounded/(real(max(1, rays%n_bounded), wp) &
+         & *(point%x*rays%bounded + (1.0_wp - rays%bounded))) + (1.0_wp - rays%bounded)
+      allocate (point%v(3, 0:rays%n_block), source=0.0_wp)
+   end subroutine start_by_forces
 
    !> Largest factor, or motion of masses, from a point inside the bounds
    pure subroutine solve_cones(rays, path, goal, springs, point)
@@ -134,7 +148,7 @@ contains
       if (point%imbalance < certain .and. point%factor >= goal%target) then
          point%state = interior_state%reached
       else if (point%violation < certain .and. point%upper + point%margin < goal%target &
-         & .and. goal%target < no_limit) then
+         & .and. goal%target < no_limit .and. .not. goal%to_limit) then
          point%state = interior_state%blocked
       else if (worst(point) < goal%tolerance) then
          point%state = interior_state%optimal

@@ -5,7 +5,7 @@
 !> more. The interior-point method starts at those forces, in balance, and stops as soon as forces
 !> reach the end of the path or velocities say that none do.
 module dda_limit_decision
-   use dda_interior_point, only : solve_cones
+   use dda_interior_point, only : solve_cones, start_by_forces
    use dda_interior_state, only : interior_goal_t, interior_point_t, interior_state, &
       & load_path_t, set_path, size_of_load
    use dda_joint_graph, only : crushes, joint_graph_t
@@ -18,7 +18,7 @@ module dda_limit_decision
    private
 
    public :: load_decision_t, load_state
-   public :: decide_load
+   public :: decide_load, decide_on_way
    public :: begin_inside, go_on_to_load, go_to_load, state_at_end, unit_of_force
    public :: keep_velocities, resolution
    public :: crush_tolerance, most_rounds
@@ -149,6 +149,40 @@ contains
       call conclude(graph, load, point, decision)
    end subroutine decide_cones
 
+   !> Whether joints that do not crush can carry a load that grows out of another one. What falls
+   !> does so in the mechanism in which it falls first, with the forces of then
+   pure subroutine decide_on_way(graph, dead, load, tolerance, decision)
+      type(joint_graph_t), intent(in) :: graph
+      !> The load out of which it grows: (n_dof, n_block) [N/m, N/m, N ...]
+      real(wp), intent(in) :: dead(:, :)
+      !> The load: (n_dof, n_block) [N/m, N/m, N ...]
+      real(wp), intent(in) :: load(:, :)
+      !> Relative gap of the two proofs of the load at which it falls
+      real(wp), intent(in) :: tolerance
+      !> The decision; undecided where the dead load does not stand, too
+      type(load_decision_t), intent(out) :: decision
+      type(joint_rays_t) :: rays
+      type(ray_matrix_t) :: springs
+      type(interior_point_t) :: point
+      real(wp) :: start(3, 0:graph%n_block), finish(3, 0:graph%n_block)
+
+      allocate (decision%force(3, size(graph%kind)), source=0.0_wp)
+      allocate (decision%velocity(graph%n_dof, graph%n_block), source=0.0_wp)
+      call set_rays(graph, rays)
+      call plan_matrix(rays, springs)
+      call scale_load(rays, dead, unit_of_force(load), start)
+      call begin_inside(rays, start, point)
+      call go_on_to_load(rays, start, resolution, springs, point)
+      if (state_at_end(point) == load_state%stands) then
+         call scale_load(rays, load, unit_of_force(load), finish)
+         call go_on_to_load(rays, finish, tolerance, springs, point, to_limit=.true.)
+         call forces_of_rays(rays, point%x, unit_of_force(load), decision%force)
+         call keep_velocities(rays, point%v, decision%velocity)
+         call conclude(graph, load, point, decision)
+      end if
+      decision%n_factorisation = springs%n_factorisation
+   end subroutine decide_on_way
+
    !> Follow the path from a load that strictly admissible forces carry to a given one
    pure subroutine go_to_load(rays, load, springs, point)
       type(joint_rays_t), intent(in) :: rays
@@ -176,7 +210,7 @@ contains
    end subroutine begin_inside
 
    !> Follow the path from the load that given forces carry to another one
-   pure subroutine go_on_to_load(rays, finish, tolerance, springs, point)
+   pure subroutine go_on_to_load(rays, finish, tolerance, springs, point, to_limit)
       type(joint_rays_t), intent(in) :: rays
       !> The load in the units of the rays: (3, 0:n_block)
       real(wp), intent(in) :: finish(:, 0:)
@@ -185,6 +219,8 @@ contains
       type(ray_matrix_t), intent(inout) :: springs
       !> Forces inside their bounds in, where the path ends out; the load is at factor one
       type(interior_point_t), intent(inout) :: point
+      !> Whether a path that does not reach the load is followed to its largest factor
+      logical, intent(in), optional :: to_limit
       type(interior_goal_t) :: goal
       type(load_path_t) :: path
       real(wp) :: start(3, 0:rays%n_block), before(size(point%x, 1), size(point%x, 2))
@@ -196,11 +232,10 @@ contains
       ! what lacks of balance is judged by the load in question
       path%largest_dead = maxval(abs(finish))
       path%largest_live = 0.0_wp
-      point%s = path%size*rays%bounded/(real(max(1, rays%n_bounded), wp) &
-         & *(before*rays%bounded + (1.0_wp - rays%bounded))) + (1.0_wp - rays%bounded)
-      allocate (point%v(3, 0:rays%n_block), source=0.0_wp)
+      call start_by_forces(rays, path%size, point)
       goal%tolerance = tolerance
       goal%target = path%size
+      if (present(to_limit)) goal%to_limit = to_limit
       call solve_cones(rays, path, goal, springs, point)
       point%factor = point%factor/path%size
       point%upper = point%upper/path%size

@@ -5,9 +5,10 @@
 !>
 !> Equation (M6) of docs/method.md
 module dda_limit_load
-   use dda_interior_point, only : solve_cones, start_by_springs
+   use dda_interior_point, only : solve_cones, start_by_forces, start_by_springs, &
+      & worst
    use dda_interior_state, only : interior_goal_t, interior_point_t, interior_state, &
-      & load_path_t, no_limit, set_path
+      & load_path_t, no_limit, set_path, size_of_load
    use dda_joint_graph, only : crushes, joint_graph_t
    use dda_joint_layers, only : add_layers, bound_all, joint_layers_t, no_layers, touch_parabola
    use dda_joint_rays, only : forces_of_rays, joint_rays_t, scale_load, set_rays
@@ -226,7 +227,8 @@ contains
       limit%n_factorisation = springs%n_factorisation
    end subroutine limit_cones
 
-   !> Raise the live load beside a dead load that stands
+   !> Raise the live load beside a dead load that stands: from forces that carry it, if there are
+   !> any, or where these lead nowhere, from springs
    pure subroutine raise_live_load(rays, dead, live, tolerance, ceiling, springs, point)
       type(joint_rays_t), intent(in) :: rays
       !> Loads at factor zero: (n_dof, n_block) [N/m, N/m, N ...]
@@ -238,18 +240,28 @@ contains
       !> Live loads so many times as large as the dead load are beyond bounds
       real(wp), intent(in) :: ceiling
       type(ray_matrix_t), intent(inout) :: springs
-      type(interior_point_t), intent(out) :: point
+      !> Where forces carry the dead load in, where the live load ends out
+      type(interior_point_t), intent(inout) :: point
       type(load_path_t) :: path
       type(interior_goal_t) :: goal
+      type(interior_point_t) :: before
       real(wp) :: scaled_dead(3, 0:rays%n_block), scaled_live(3, 0:rays%n_block)
 
       call scale_load(rays, dead, unit_of_force(dead), scaled_dead)
       call scale_load(rays, live, unit_of_force(dead), scaled_live)
       call set_path(scaled_dead, scaled_live, path)
-      call start_by_springs(rays, path, springs, point)
       goal%tolerance = tolerance
       goal%ceiling = ceiling
-      call solve_cones(rays, path, goal, springs, point)
+      if (state_at_end(point) == load_state%stands) then
+         call start_by_forces(rays, max(1.0_wp, size_of_load(scaled_dead)), point)
+         call solve_cones(rays, path, goal, springs, point)
+         before = point
+      end if
+      if (worst(before) > tolerance .and. before%state /= interior_state%unbounded) then
+         call start_by_springs(rays, path, springs, point)
+         call solve_cones(rays, path, goal, springs, point)
+         if (worst(before) < worst(point)) point = before
+      end if
       point%factor = point%factor/path%size
    end subroutine raise_live_load
 

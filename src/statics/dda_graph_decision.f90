@@ -12,8 +12,7 @@ module dda_graph_decision
    use dda_first_motion, only : find_first_motion
    use dda_joint_graph, only : crushes, joint_graph_t, rubs
    use dda_kinds, only : wp
-   use dda_limit_decision, only : decide_load, load_decision_t, load_state
-   use dda_limit_load, only : find_limit, limit_load_t, limit_state
+   use dda_limit_decision, only : decide_load, decide_on_way, load_decision_t, load_state
    use dda_load_stations, only : last_history_time, load_stations, load_stations_t, loads_at
    use dda_coulomb_law, only : coulomb_state_t
    use dda_loading_path, only : path_end
@@ -61,7 +60,7 @@ contains
       type(load_decision_t) :: decision
       type(graph_verdict_t) :: path
       real(wp), allocatable :: load(:, :), opening(:, :)
-      logical :: dead_alone
+      logical :: dead_alone, on_way
 
       call scene_graph(settings, system, contacts, graph)
       allocate (load(3, graph%n_block), opening(3, size(graph%kind)))
@@ -73,13 +72,15 @@ contains
          stations = load_stations(settings, decision%state /= load_state%falls)
       end if
       call loads_at(stations, ubound(stations%tilt, 1), settings, system, graph, load, opening)
-      call decide_load(graph, load, decision)
+      call decide_full(settings, system, graph, stations, load, bare, decision, on_way)
       verdict%n_factorisation = decision%n_factorisation
       if (is_feigned(settings, system, decision)) decision%state = load_state%undecided
       if (decision%state == load_state%falls) then
          verdict%end = path_end%collapsed
-         call move_alloc(decision%velocity, verdict%mechanism)
-         if (.not. bare) call find_first(settings, system, graph, stations, load, verdict)
+         verdict%is_told = on_way
+         verdict%mechanism = decision%velocity
+         if (on_way) call see_first_fall(settings, graph, load, decision%force, verdict)
+         if (.not. (on_way .or. bare)) call see_fall(settings, graph, load, verdict)
          return
       else if (decision%state == load_state%stands) then
          verdict%end = path_end%reached
@@ -101,6 +102,39 @@ contains
       end if
       verdict = path
    end subroutine decide_graph
+
+   !> Decide the full load: on the way from the dead load out of which it grows, unless it is not
+   !> asked how it falls
+   pure subroutine decide_full(settings, system, graph, stations, load, bare, decision, on_way)
+      type(settings_t), intent(in) :: settings
+      type(block_system_t), intent(in) :: system
+      type(joint_graph_t), intent(in) :: graph
+      !> Stations of the loading path
+      type(load_stations_t), intent(in) :: stations
+      !> The full load: (3, n_block)
+      real(wp), intent(in) :: load(:, :)
+      !> Whether it is not asked how it falls
+      logical, intent(in) :: bare
+      !> The decision; its factorisations are all
+      type(load_decision_t), intent(out) :: decision
+      !> Whether it was decided on the way, so that what falls is in the mechanism in which it fell
+      !> first
+      logical, intent(out) :: on_way
+      real(wp) :: dead(3, graph%n_block), opening(3, size(graph%kind))
+      integer :: n
+
+      n = 0
+      on_way = .not. bare .and. ubound(stations%tilt, 1) > 0 .and. .not. crushes(graph)
+      if (on_way) then
+         call loads_at(stations, 0, settings, system, graph, dead, opening)
+         call decide_on_way(graph, dead, load, limit_gap, decision)
+         on_way = decision%state /= load_state%undecided
+         if (on_way) return
+         n = decision%n_factorisation
+      end if
+      call decide_load(graph, load, decision)
+      decision%n_factorisation = decision%n_factorisation + n
+   end subroutine decide_full
 
    !> Whether a collapse has no more power than rounded coordinates make
    pure logical function is_feigned(settings, system, decision)
@@ -143,36 +177,21 @@ contains
       end do
    end function power_of_all
 
-   !> How what has fallen begins to fall: in the mechanism in which it fell first, as what is live
-   !> grew to its value, or by what is dead
-   pure subroutine find_first(settings, system, graph, stations, load, verdict)
+   !> How a load falls that has grown out of a dead load, from the forces with which it begins to
+   pure subroutine see_first_fall(settings, graph, load, force, verdict)
       type(settings_t), intent(in) :: settings
-      type(block_system_t), intent(in) :: system
       type(joint_graph_t), intent(in) :: graph
-      !> Stations of the loading path
-      type(load_stations_t), intent(in) :: stations
-      !> The full load: (3, n_block)
+      !> The load: (3, n_block)
       real(wp), intent(in) :: load(:, :)
-      !> A collapse; its mechanism is set
+      !> Forces in the mechanism in which it falls first: (3, n_joint)
+      real(wp), intent(in) :: force(:, :)
+      !> A collapse; its forces are set, and its mechanism where joints slide along themselves
       type(graph_verdict_t), intent(inout) :: verdict
-      type(limit_load_t) :: limit
-      real(wp) :: dead(3, graph%n_block), opening(3, size(graph%kind))
 
-      if (ubound(stations%tilt, 1) > 0) then
-         call loads_at(stations, 0, settings, system, graph, dead, opening)
-         call find_limit(graph, dead, load - dead, limit_gap, limit, stands=.true.)
-         verdict%n_factorisation = verdict%n_factorisation + limit%n_factorisation
-         if (limit%state == limit_state%found) then
-            verdict%mechanism = limit%velocity
-            verdict%force = limit%force
-            verdict%is_told = .true.
-            if (verdict%n_factorisation + few <= most) call slide_along(settings, graph, load, &
-               & limit%force, verdict)
-            return
-         end if
-      end if
-      call see_fall(settings, graph, load, verdict)
-   end subroutine find_first
+      verdict%force = force
+      if (verdict%n_factorisation + few <= most) call slide_along(settings, graph, load, force, &
+         & verdict)
+   end subroutine see_first_fall
 
    !> How blocks begin to fall by a load from rest
    pure subroutine see_fall(settings, graph, load, verdict)
