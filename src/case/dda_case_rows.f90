@@ -15,7 +15,7 @@ module dda_case_rows
    use dda_joint_rows, only : joint_rows, tell_roles
    use dda_kinds, only : wp
    use dda_mechanism, only : mechanism_of, mechanism_t
-   use dda_scene, only : scene_t
+   use dda_scene, only : scene_t, searched_load
    use dda_text, only : to_text
    use dda_told_blocks, only : scale_to_one, tell_blocks, tell_mechanism_motion, &
       & tell_total_motion
@@ -235,7 +235,9 @@ contains
          scene = this%scene
          allocate (joint(0))
          if (allocated(critical%standing)) then
-            call this%family%build(critical%stands, scene, error)
+            ! a load coefficient changes no blocks
+            if (this%family%load == searched_load%none) &
+               & call this%family%build(critical%stands, scene, error)
             if (allocated(critical%standing%contacts%joint)) then
                joint = critical%standing%contacts%joint
                joint_row = joint_rows(critical%standing%contacts, scene%joint_angle_deg, &
