@@ -72,16 +72,32 @@ contains
             remark = remark//" time "//to_text(outcome%path_time)
          end if
       end if
-      if (outcome%n_slid > 0) then
-         if (len(remark) > 0) remark = remark//"; "
-         remark = remark//"joints that slid between stages: "//to_text(outcome%n_slid) &
-            & //numbered(outcome%slid)//"; forces depend on the order of the stages"
-      end if
+      remark = order_remark(outcome, remark)
       if (outcome%jumps == 0) return
       if (len(remark) > 0) remark = remark//"; "
       remark = remark//"jumps on the loading path: "//to_text(outcome%jumps)//", the largest " &
          & //to_text(outcome%largest_jump)//" m"
    end function path_remark
+
+   !> Why forces after stages are not those of the last shape built at once
+   pure function order_remark(outcome, before) result(remark)
+      !> How the run ended
+      type(outcome_t), intent(in) :: outcome
+      !> What else there is to know
+      character(len=*), intent(in) :: before
+      !> All of it
+      character(len=:), allocatable :: remark
+
+      remark = before
+      if (.not. (outcome%n_slid > 0 .or. outcome%has_built .or. outcome%slides_at_once)) return
+      if (len(remark) > 0) remark = remark//"; "
+      if (outcome%n_slid > 0) remark = remark//"joints that slid between stages: " &
+         & //to_text(outcome%n_slid)//numbered(outcome%slid)//"; "
+      if (outcome%has_built) remark = remark//"blocks were built between stages; "
+      if (outcome%slides_at_once) remark = remark//"no joint slid between stages, " &
+         & //"but the last shape slides or falls if it is built at once; "
+      remark = remark//"forces depend on the order of the stages"
+   end function order_remark
 
    !> Numbers of joints in parentheses, not too many of them; nothing for none
    pure function numbered(joint) result(text)

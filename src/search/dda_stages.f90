@@ -148,6 +148,7 @@ contains
       type(coulomb_state_t), allocatable :: start
       logical :: slid(size(decision%contacts%joint)), there(size(slid))
       integer :: factorisations, j, k, steps
+      logical :: built
 
       system = decision%system
       all = decision%contacts
@@ -171,8 +172,12 @@ contains
          factorisations = factorisations + proof%n_factorisation
          if (proof%end /= path_end%reached) exit
       end do
-      call record_stage(settings, stage, system, contacts, proof, any(slid), decision)
+      associate (change => settings%boundary%change)
+         built = any(change%adds .and. change%time > 0.0_wp .and. change%time <= last)
+      end associate
+      call record_stage(settings, stage, system, contacts, proof, any(slid) .or. built, decision)
       associate (outcome => decision%outcome)
+         outcome%has_built = built
          outcome%n_slid = count(slid)
          outcome%slid = pack([(j, j=1, count(there))], pack(slid, there))
          outcome%steps = steps
@@ -185,7 +190,7 @@ contains
    end subroutine decide_at_rest
 
    !> Blocks and contacts of the last stage
-   pure subroutine record_stage(settings, stage, system, contacts, proof, slid, decision)
+   pure subroutine record_stage(settings, stage, system, contacts, proof, in_order, decision)
       type(settings_t), intent(in) :: settings
       !> Those of the stage
       type(settings_t), intent(in) :: stage
@@ -194,18 +199,24 @@ contains
       type(contacts_t), intent(in) :: contacts
       !> How the stage ended
       type(graph_verdict_t), intent(in) :: proof
-      !> Whether joints have slid in any stage; where none has forces are those of the last shape
-      !> built at once
-      logical, intent(in) :: slid
+      !> Whether joints have slid or blocks were built in any stage; otherwise forces are those of
+      !> the last shape built at once
+      logical, intent(in) :: in_order
       !> Receives them
       type(decision_t), intent(inout) :: decision
+      logical :: slides
 
       if (proof%end == path_end%collapsed) then
          call record_collapse(stage, system, contacts, proof, decision)
       else if (proof%end == path_end%reached) then
-         if (.not. slid) call decide(settings, system, contacts, decision)
-         if (slid .or. has_slipped(decision)) &
+         slides = .false.
+         if (.not. in_order) then
+            call decide(settings, system, contacts, decision)
+            slides = has_slipped(decision)
+         end if
+         if (in_order .or. slides) &
             & call record_rest(stage, system, contacts, proof, decision)
+         decision%outcome%slides_at_once = slides
       else
          decision%system = system
          decision%contacts = contacts
@@ -220,7 +231,10 @@ contains
       type(decision_t), intent(in) :: decision
 
       has_slipped = decision%outcome%verdict /= verdict%stable
-      if (.not. has_slipped) has_slipped = any(decision%contacts%face%slip /= 0)
+      associate (contacts => decision%contacts)
+         if (.not. has_slipped) has_slipped = any(contacts%face%slip /= 0 &
+            & .and. sum(contacts%force(:2, :), dim=1) > slip_share*maxval(abs(contacts%force)))
+      end associate
    end function has_slipped
 
    !> Which joints have slid against friction since a state, or since there was no load
@@ -239,7 +253,6 @@ contains
       slid = abs(slip) > slip_share*maxval(abs(after%motion)) &
          & .and. sum(after%force(:2, :n), dim=1) > slip_share*maxval(abs(after%force))
    end function has_slid
-
 
    !> Which blocks and contacts there are from a time on
    pure subroutine enter_stage(settings, time, system, contacts)
@@ -326,6 +339,7 @@ contains
       start%motion(:, after%n_block - i + 1:) = proof%state%motion(:, before%n_block - i + 1:)
       start%load(:, after%n_block - i + 1:) = load(:, before%n_block - i + 1:)
    end subroutine hand_over
+
    !> A number for each joint of a stage that is the same in all stages: that of the joint between
    !> all blocks, then of the held point, then of the bar
    pure function labels(settings, system, all, graph) result(label)

@@ -91,7 +91,9 @@ contains
       end if
       dead_alone = ubound(stations%tilt, 1) == 0 .and. .not. present(start)
       verdict%on_path = verdict%end == path_end%reached .and. .not. dead_alone
-      if (settings%verdict_flow == flow_rule%associated .or. .not. has_friction(graph)) return
+      ! what blocks that are built carry is known of the path alone
+      if (settings%verdict_flow == flow_rule%associated .or. .not. (has_friction(graph) &
+         & .or. allocated(settings%boundary%change))) return
       if (verdict%end /= path_end%reached .and. dead_alone) return
       call follow_stations(settings, system, graph, stations, path, start)
       path%n_factorisation = path%n_factorisation + verdict%n_factorisation

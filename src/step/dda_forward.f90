@@ -54,6 +54,10 @@ module dda_forward
       integer :: n_slid = 0
       !> Those of them that the last stage has, by their numbers there
       integer, allocatable :: slid(:)
+      !> Whether blocks were built in a stage, so that they carry only what came after them
+      logical :: has_built = .false.
+      !> Whether no joint has slid in stages, and yet the last shape built at once slides or falls
+      logical :: slides_at_once = .false.
       !> Accepted steps
       integer :: steps = 0
       !> Passes of the open-close loop

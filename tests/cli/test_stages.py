@@ -88,6 +88,26 @@ def test_forces_that_depend_on_the_order_are_told(tmp_path: Path) -> None:
     assert "forces depend on the order of the stages" in (tmp_path / "out" / "log.txt").read_text()
 
 
+@pytest.mark.parametrize("friction", [0, 40, 89.9, 90])
+def test_a_prop_that_is_built_later_carries_what_comes_after_it(tmp_path: Path, friction: float) -> None:
+    columns = "".join(rectangle(left, 0, left + 1, 1) for left in (0, 4, 2))
+    beams = rectangle(0, 1, 5, 2) + rectangle(0, 2, 5, 3)
+    keys = f"&joint friction_deg = {friction} /\n"
+    weight = 2240 * GRAVITY
+    _, joints = run(tmp_path, BASE + columns + beams + "add block 4 at 1\n", keys)
+    assert "blocks were built between stages; forces depend on" in (tmp_path / "out" / "log.txt").read_text()
+    carried = {(joint["block_1"], joint["block_2"]): float(joint["normal_force"]) for joint in joints.values()}
+    for pair, share in {("2", "5"): 5, ("3", "5"): 5, ("4", "5"): 0, ("1", "4"): 1}.items():
+        assert carried[pair] == pytest.approx(share * weight, abs=1e-8 * weight)
+    _, joints = run(tmp_path, BASE + columns + beams + "add block 4 at 1\nadd block 6 at 2\n", keys)
+    carried = {(joint["block_1"], joint["block_2"]): float(joint["normal_force"]) for joint in joints.values()}
+    assert carried["2", "5"] == pytest.approx(carried["3", "5"], rel=1e-9)
+    assert carried["2", "5"] + carried["3", "5"] + carried["4", "5"] == pytest.approx(10 * weight, rel=1e-9)
+    # three columns carry what comes, less what the new one has sunk by its own weight: the joints at the feet, half as
+    # soft as those at the heads, are a third of what a column gives
+    assert carried["4", "5"] == pytest.approx((5 - 2 / 3) / 3 * weight, rel=1e-9)
+
+
 @pytest.mark.parametrize("lean", [0.25, 0.5, 0.0])
 def test_keystone_whose_centring_is_struck_rests_in_its_notch(tmp_path: Path, lean: float) -> None:
     # without friction each face carries half the weight over the sine of its angle from upright
