@@ -70,7 +70,7 @@ contains
 
       joints%graph = graph
       joints%arm_unit = positive_or_one(0.5_wp*mean(graph%length))
-      compliance = positive_or_one(mean(sum(graph%compliance, 1)/3.0_wp))
+      compliance = typical(sum(graph%compliance, 1)/3.0_wp)
       mass = positive_or_one(mean(graph%mass(1, :)))
       joints%motion_unit = compliance
       associate (scaled => joints%graph)
@@ -194,6 +194,15 @@ contains
 
       mean = sum(x)/real(max(1, size(x)), wp)
    end function mean
+
+   !> Mean magnitude of those of some numbers that are positive, 1 if there are none: a few soft
+   !> joints of fill or bolts are no measure of the others
+   pure real(wp) function typical(x)
+      !> The numbers: (:)
+      real(wp), intent(in) :: x(:)
+
+      typical = exp(mean(log(pack(x, x > 0.0_wp))))
+   end function typical
 
    !> The number itself if it is positive, else 1
    pure real(wp) function positive_or_one(x)

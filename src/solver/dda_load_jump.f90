@@ -165,7 +165,13 @@ contains
       logical :: found
 
       end = merge(motion_end%balanced, motion_end%unsettled, maxval(abs(rest)) <= jump%tolerance)
-      if (end == motion_end%balanced .or. .not. maxval(abs(state%motion - start)) > jump%far) return
+      if (.not. maxval(abs(state%motion - start)) > jump%far) return
+      if (end == motion_end%balanced) then
+         ! balance so far away is that of a shape that nobody has drawn
+         end = motion_end%far
+         jump%mechanism = state%motion - start
+         return
+      end if
       still = 0.0_wp
       rates = new_rates(state)
       call find_rates(joints, equations, state, rest, still, path_damping, rates, found)

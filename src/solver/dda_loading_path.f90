@@ -67,8 +67,10 @@ module dda_loading_path
       type(coulomb_joints_t) :: joints
       !> Their equations
       type(coulomb_equations_t) :: equations
-      !> Largest displacement under the dead load, 1 at least
-      real(wp) :: elastic = 1.0_wp
+      !> Largest displacement of the first state over its largest force, 1 at least; 0 before it
+      real(wp) :: softness = 0.0_wp
+      !> Largest gap of the first state, and what supports that move have opened since
+      real(wp) :: given = 0.0_wp
    end type loading_path_t
 
    !> What grows along a path
@@ -168,7 +170,7 @@ contains
       result%reached = 1.0_wp
       if (end /= motion_end%balanced) call note_fall(end, jump, result)
       if (result%end == path_end%reached) then
-         path%elastic = max(1.0_wp, maxval(abs(state%motion)))
+         call note_first(state, path)
          call balance_rest(path, state)
       end if
       call finish(path, state, result)
@@ -200,6 +202,8 @@ contains
       way%opening = rate%opening/path%joints%motion_unit
       strength = max(maxval(abs(way%load)), &
          & maxval(abs(way%opening/path%joints%graph%compliance)))
+      if (.not. path%softness > 0.0_wp) call note_first(state, path)
+      path%given = path%given + h_end*maxval(abs(way%opening))
       result%end = path_end%reached
       if (strength > 0.0_wp) then
          target = state%load + h_end*way%load
@@ -211,10 +215,21 @@ contains
       if (result%end == path_end%reached) then
          result%reached = h_end
          if (strength > 0.0_wp) state%load = target
-         call balance_rest(path, state)
       end if
+      call balance_rest(path, state)
       call finish(path, state, result)
    end subroutine follow_path
+
+   !> What is far, as the first state tells it
+   pure subroutine note_first(state, path)
+      !> In units of the joints
+      type(coulomb_state_t), intent(in) :: state
+      !> Receives it
+      type(loading_path_t), intent(inout) :: path
+
+      path%softness = max(1.0_wp, maxval(abs(state%motion))/max(1.0_wp, maxval(abs(state%force))))
+      path%given = maxval(state%gap)
+   end subroutine note_first
 
    !> Numbers without their last digits, which rounding sets: ways to different ends are one way
    elemental real(wp) function plain(x)
@@ -292,7 +307,7 @@ contains
       real(wp) :: balance, more
       integer :: end, try
 
-      jump%far = far_factor*max(path%elastic, maxval(state%gap))
+      jump%far = far_factor*max(path%softness*max(1.0_wp, maxval(abs(state%force))), path%given)
       balance = rounding*max(1.0_wp, maxval(abs(state%force)))
       do try = 1, size(widths)
          more = widths(try)

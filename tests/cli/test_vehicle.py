@@ -72,6 +72,20 @@ def test_no_swept_position_is_worse_than_the_worst(tmp_path: Path, vehicle: str)
     assert "position" in (tmp_path / "x" / "log.txt").read_text() or worst["worst_position"]
 
 
+@pytest.mark.parametrize(("voussoirs", "friction"), [(24, 40), (32, 30), (40, 40)])
+def test_rings_under_fill_are_decided(tmp_path: Path, voussoirs: int, friction: int) -> None:
+    """Soft forces of fill set no scale: with them as a measure blocks drifted for hundreds of metres, or for ever."""
+    deck = (
+        f"&arch shape = 'segmental', span = 10, rise = 2.5, thickness = 0.6, voussoirs = {voussoirs}, rings = 3 /\n"
+        f"&joint friction_deg = {friction} /\n&fill height = 0.4, unit_weight = 18e3, passive_coefficient = 2 /\n"
+        "&vehicle axles = 1e4, 1.5e4, 1e4, spacings = 1.2, 2, worst = .true. /\n" + SEARCH
+    )
+    (row,) = rows(tmp_path, deck, head="")
+    assert row["verdict"] == "found"
+    assert 0.9 * float(row["exact_low"]) < float(row["critical"]) < float(row["exact_high"])
+    assert int(row["factorisations"]) < 1500
+
+
 def test_the_worst_position_of_a_symmetric_arch_has_a_mirror_image(tmp_path: Path) -> None:
     (worst,) = rows(tmp_path, ARCH + "&vehicle axles = 0.1, length = 0, worst = .true. /\n" + SEARCH, head="")
     place = float(worst["worst_position"])
