@@ -8,6 +8,7 @@ from pathlib import Path
 
 import numpy as np
 
+from voussoir.verify_contacts import depth, make_block
 from voussoir.verify_deck import Deck, VerifyError
 from voussoir.verify_water import Water
 
@@ -42,6 +43,22 @@ class Bar:
 
 
 @dataclass
+class Change:
+    """Blocks that are built or taken away at a time, by their numbers or by what holds their centres."""
+
+    time: float
+    adds: bool
+    numbers: list[int]
+    polygon: np.ndarray
+
+    def means(self, number: int, centre: np.ndarray) -> bool:
+        """Whether it is about a block."""
+        if len(self.polygon):
+            return depth(make_block(0, self.polygon, True), centre) > 0
+        return number in self.numbers
+
+
+@dataclass
 class Law:
     """Friction angle, cohesion and tensile strength of a joint."""
 
@@ -66,6 +83,25 @@ class Source:
     bars: list[Bar] = field(default_factory=list)
     water: list[Water] = field(default_factory=list)
     lines: list[tuple[np.ndarray, Law]] = field(default_factory=list)
+    changes: list[Change] = field(default_factory=list)
+    #: Whether loads change with time
+    changing: bool = False
+
+    def present(self, time: float) -> list[int]:
+        """Numbers of the blocks that are there at a time: before its first change a block is what that changes."""
+        there = []
+        for number, corners in enumerate(self.corners, 1):
+            centre = make_block(number, corners, False).centre
+            own = [change for change in self.changes if change.means(number, centre)]
+            passed = [change for change in own if change.time <= time]
+            if max(passed, key=_time_of).adds if passed else not own or not min(own, key=_time_of).adds:
+                there.append(number)
+        return there
+
+
+def _time_of(change: Change) -> float:
+    """When blocks come or go."""
+    return change.time
 
 
 def read_blocks(path: Path, deck: Deck) -> Source:
@@ -106,6 +142,7 @@ def read_blocks(path: Path, deck: Deck) -> Source:
 def _take(entry: list[str], rows: list[list[float]], source: Source, deck: Deck) -> None:
     """Take in one entry with its rows."""
     keys = dict(zip(entry, entry[1:]))
+    source.changing |= len(rows) > 1 and entry[0] in ("load", "live", "base_acceleration", "water")
     if "file" in entry:
         raise VerifyError("records of files are not verified")
     if entry[0] == "block":
@@ -136,7 +173,9 @@ def _take(entry: list[str], rows: list[list[float]], source: Source, deck: Deck)
         strength = deck.read(keys["strength"].replace("d", "e")) if "strength" in keys else None
         source.bars.append(Bar(np.array(ends).reshape(2, 2), strength))
     elif entry[0] in ("remove", "add"):
-        raise VerifyError("stages are not verified: blocks come and go")
+        time = float(deck.read(entry[-1].replace("d", "e")))
+        numbers = [int(word) for word in entry[2:-2]] if entry[1] == "block" else []
+        source.changes.append(Change(time, entry[0] == "add", numbers, np.array(rows, dtype=float)))
     elif entry[0] == "water":
         source.water.append(_water(entry, keys, rows, deck))
     elif entry[0] in ("load", "live", "fix", "displacement", "fix_line"):

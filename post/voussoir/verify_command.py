@@ -188,6 +188,7 @@ def _case_of(deck: Deck, number: int, result: Row, places: list[Path]) -> tuple[
     of_case = deck.case(number)
     if result["worst_position"]:
         of_case.values["vehicle%position"] = [result["worst_position"]]
+    of_case.values["path_time"] = [result["path_time"]]
     return of_case, _files_of(of_case, places)
 
 
@@ -215,10 +216,22 @@ def _check_told(
     elif deck.searched is not None:
         return
     scene = scene_of(at_value, rows["blocks"], places, Finding())
+    _check_stage(scene.source, result, finding)
     bars = [float(row["force"]) for row in rows["bars"]] if result["verdict"] in ("stable", "found") else None
     check_joints(scene, rows["joints"], bars, finding, width)
     strain = 0.0 if result["exact_high"] else STRAIN
     check_rigid(scene, rows["blocks"], finding, math.inf if result["verdict"] == "stable" else strain)
+
+
+def _check_stage(source: Source, result: Row, finding: Finding) -> None:
+    """What stands has stood to its last stage; what falls in an earlier one does so under loads that do not change."""
+    last = max((change.time for change in source.changes), default=0.0)
+    if not source.changes or float(result["path_time"]) >= last:
+        return
+    if result["verdict"] == "stable":
+        finding.faults.append(f"stable to time {result['path_time']}, but blocks come or go at {last}")
+    if source.changing:
+        raise VerifyError("loads that change are not verified of a fall before the last stage")
 
 
 def _check_bound(result: Row, column: str, value: str, finding: Finding) -> None:
@@ -254,10 +267,17 @@ def scene_of(deck: Deck, rows: list[Row], places: list[Path], finding: Finding) 
         corners.setdefault(int(row["block"]), []).append([float(row["x"]), float(row["y"])])
         fixed[int(row["block"])] = row["state"] == "fixed"
     blocks = [make_block(number, np.array(corners[number]), fixed[number]) for number in sorted(corners)]
+    joints = find_joints(blocks)
     source = Source()
     if deck.text("scene%kind") == "blocks":
         source = read_blocks(*_files_of(deck, places), deck)
-        _compare([np.array(corners[n]) for n in sorted(corners)], source.corners, finding)
+        there = source.present(float(deck.text("path_time") or 0))
+        if sorted(corners) != there:
+            finding.faults.append(f"expected blocks {there} in the last stage, got {sorted(corners)}")
+        _compare([np.array(corners[n]) for n in sorted(corners)], [source.corners[n - 1] for n in there], finding)
+        # what is not there keeps its number, touches nothing and carries nothing
+        gone = [make_block(n + 1, c, True) for n, c in enumerate(source.corners) if n + 1 not in corners]
+        blocks = sorted(blocks + gone, key=lambda block: block.number)
     elif deck.gives("scene%analysis"):
         source = read_lines(*_files_of(deck, places), blocks, deck)
     elif deck.text("scene%kind") == "arch" and not deck.is_shape():
@@ -265,7 +285,7 @@ def scene_of(deck: Deck, rows: list[Row], places: list[Path], finding: Finding) 
         _check_supports(blocks, finding)
     elif deck.is_shape():
         _check_supports(blocks, finding)
-    return Scene(blocks, find_joints(blocks), source, deck)
+    return Scene(blocks, joints, source, deck)
 
 
 def _check_supports(blocks: list[Block], finding: Finding) -> None:

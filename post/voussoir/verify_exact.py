@@ -66,7 +66,7 @@ def exact_scene(deck: Deck, rows: list[Row], files: list[Path]) -> ExactScene:
     fixed = {int(row["block"]): row["state"] == "fixed" for row in rows}
     if deck.text("scene%kind") == "blocks":
         source = read_blocks(files[0], deck)
-        corners, still = source.corners, [fixed[k + 1] for k in range(len(source.corners))]
+        corners, still = source.corners, [fixed.get(k + 1, True) for k in range(len(source.corners))]
     elif deck.text("scene%kind") == "arch" and not deck.is_shape():
         corners = arch_corners(deck)
         ends = [_abutment(corners[0], False), _abutment(corners[-1], True)]
@@ -82,7 +82,9 @@ def exact_scene(deck: Deck, rows: list[Row], files: list[Path]) -> ExactScene:
     if deck.gives("scene%analysis"):
         source = read_lines(files[0], files[1], rounded, deck)
     place = {(float(x), float(y)): np.array([x, y]) for block in corners for x, y in block}
-    return ExactScene(Scene(blocks, find_joints(rounded), source, deck), corners, place)
+    # blocks that are not there in the last stage touch nothing
+    there = [block for block in rounded if not source.changes or block.number in fixed]
+    return ExactScene(Scene(blocks, find_joints(there), source, deck), corners, place)
 
 
 def _abutment(voussoir: np.ndarray, right: bool) -> np.ndarray:

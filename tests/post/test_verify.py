@@ -52,6 +52,8 @@ DAM = ("block fixed\n-20 -5\n40 -5\n40 0\n-20 0\nblock\n0 0\n16 0\n12 8\n0 30\n"
        "water -10 24 0 24 5 20 16 0 factor {}\n0 0\n1 6\n")
 BOLTED = ("block fixed\n-5 -1\n5 -1\n5 0\n-5 0\nblock\n0 0\n1 0\n1 1\n0 1\nblock\n0.2 1\n1 1\n1 2\n0.2 2\n"
           "bar 0.5 1.5 -2 -0.5 stiffness 1e8 {0}\nbar 0.5 0.5 0.6 1.4 ea 1e8 {0}\nbar 0.8 1.2 9 9 stiffness 1e7 {0}\n")
+PILLARS = ("block fixed\n-5 -1\n9 -1\n9 0\n-5 0\n" + "".join(
+    f"block\n{x} 0\n{x + 1} 0\n{x + 1} 1\n{x} 1\n" for x in (0, 1.5, 3, 5)) + "block\n0 1\n6 1\n6 2\n0 2\n")
 #: Decks that leave proofs of every kind
 DECKS = {
     "arch": "&arch thickness_ratio = 0.12 /\n",
@@ -105,6 +107,10 @@ SCENES = {
     "bolts": (BOLTED.format("strength 1e4"), "&search parameter = 'horizontal_coefficient' /\n"),
     "a bolt without strength": (BOLTED.format(""), "&search parameter = 'horizontal_coefficient' /\n"),
     "a slope that bolts hold": (BOLTED.format("strength 1e4"), "&load gravity_direction_deg = -60 /\n"),
+    "a heading, then a bench": (PILLARS + "remove block 3 at 1\nremove polygon at 2\n2.9 0.1\n4.1 0.1\n4.1 0.9\n2.9 0.9\n",
+                                "&joint friction_deg = 50 /\n"),
+    "a prop that comes and goes": (PILLARS + "add block 3 at 1\nremove block 3 at 2.5\n", ""),
+    "a stage that falls": (PILLARS + "remove block 3 at 1\nremove block 5 at 2\nremove block 4 at 3\n", ""),
     "a slope that they do not": (BOLTED.format("strength 1e2"), "&load gravity_direction_deg = -30 /\n"),
 }
 #: What the file of blocks has beside its blocks
@@ -145,6 +151,21 @@ def test_proofs_of_bars_and_water_hold(
     folder = run_deck(tmp_path, HEAD + scene[1], scene[0])
     assert main(["verify", str(folder)]) == 0, capsys.readouterr().out
     assert "1 of 1 cases have proofs, 0 fail" in capsys.readouterr().out
+
+
+def test_stages_that_were_left_out_are_found(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    folder = run_deck(tmp_path, HEAD, PILLARS + "remove block 3 at 1\nremove block 4 at 2\n")
+    results = (folder / "results.csv").read_text()
+    rows = rows_of(folder / "results.csv")
+    place = list(rows[0]).index("path_time")
+    head, row = results.splitlines()
+    fields = row.split(",")
+    assert fields[place] == "2"
+    fields[place] = "1"
+    (folder / "results.csv").write_text(f"{head}\n{','.join(fields)}\n")
+    assert main(["verify", str(folder), "--ignore-sums"]) == 1
+    said = capsys.readouterr().out
+    assert "expected blocks [1, 2, 4, 5, 6] in the last stage, got [1, 2, 5, 6]" in said
 
 
 @pytest.mark.parametrize("name", ["dry_wall_2x4", "four_corners", "jammed", "goodman_bray", "wedge_in_notch"])
