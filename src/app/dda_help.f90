@@ -27,7 +27,7 @@ module dda_help
       & "   dda check DECK [DECK ...]   read and check decks, compute nothing", &
       & "   dda cut LINES.geo           cut lines into blocks, say what was dropped", &
       & "   dda lines MAP.nml [...]     joint sets, slopes, openings to lines for dda cut", &
-      & "   dda export DECK [DECK ...]  write arches as files of the Limerick line", &
+      & "   dda export DECK [DECK ...]  write arches and cut blocks as files for other programs", &
       & "   dda help run | check | cut | lines | export", &
       & "                               options of a subcommand (dda run --help does the same)", &
       & "   dda help keys               every group and key of a deck: unit, range, default", &
@@ -131,9 +131,11 @@ module dda_help
       & "   --          what follows are names of decks, even if they begin with -", &
       & "   --help, -h  this page", &
       & "", &
-      & "Writes the arch of each case in the conventions of the Limerick line: NAME.geo and", &
-      & "NAME_ddaml.geo, NAME.ana (DDAML) and NAME_plain.ana, and says what they cannot carry.", &
+      & "Of a ring of voussoirs, in the conventions of the Limerick line: NAME.geo and", &
+      & "NAME_ddaml.geo, NAME.ana (DDAML) and NAME_plain.ana; says what they cannot carry.", &
       & "arch%abutment_size sets the abutments' size.", &
+      & "Of an arch of any shape, with fill, a vehicle or ties, and of blocks cut from lines:", &
+      & "NAME.blocks, a file for scene%kind = 'blocks', where blocks may then come and go.", &
       & "Exit status: 0 all cases were written; 2 bad input; 4 files could not be written."]
 
    !> dda help help
