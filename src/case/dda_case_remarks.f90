@@ -95,7 +95,7 @@ contains
          & //to_text(outcome%n_slid)//numbered(outcome%slid)//"; "
       if (outcome%has_built) remark = remark//"blocks were built between stages; "
       if (outcome%slides_at_once) remark = remark//"no joint slid between stages, " &
-         & //"but the last shape slides or falls if it is built at once; "
+         & //"but the last shape slides or collapses if it is built at once; "
       remark = remark//"forces depend on the order of the stages"
    end function order_remark
 

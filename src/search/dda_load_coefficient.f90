@@ -7,6 +7,7 @@ module dda_load_coefficient
    use dda_graph_decision, only : decides_as_graph
    use dda_joint_graph, only : joint_graph_t
    use dda_kinds, only : wp
+   use dda_limit_decision, only : decide_load, load_decision_t, load_state
    use dda_load_stations, only : bears_live_load, last_history_time, load_stations, &
       & load_stations_t, loads_at
    use dda_path_verdict, only : graph_verdict_t
@@ -15,8 +16,8 @@ module dda_load_coefficient
    implicit none
    private
 
-   public :: added_loads, can_follow, coefficient, full_loads, only_weight, value_at_end, &
-      & with_coefficient
+   public :: added_loads, can_follow, carry_load, coefficient, full_loads, only_weight
+   public :: value_at_end, with_coefficient
 
    !> A coefficient beside which rounding of the constant loads is not felt
    real(wp), parameter :: many = 2.0_wp**40
@@ -110,6 +111,23 @@ contains
       call loads_at(stations, ubound(stations%tilt, 1), settings, scene%system, graph, load, &
          & opening)
    end function full_loads
+
+   !> Forces that carry the loads at a value that stands; those that carry a limit do not carry less
+   pure subroutine carry_load(load, value, scene, graph, force)
+      !> One of searched_load
+      integer, intent(in) :: load
+      !> The value
+      real(wp), intent(in) :: value
+      type(scene_t), intent(in) :: scene
+      type(joint_graph_t), intent(in) :: graph
+      !> N1, N2, T: (3, n_joint); not allocated where none are found [N/m]
+      real(wp), allocatable, intent(out) :: force(:, :)
+      type(load_decision_t) :: decision
+
+      call decide_load(graph, full_loads(with_coefficient(scene%settings, load, value), scene, &
+         & graph), decision)
+      if (decision%state == load_state%stands) call move_alloc(decision%force, force)
+   end subroutine carry_load
 
    !> What a coefficient of one adds to the loads
    pure function added_loads(load, settings, scene, graph) result(live)

@@ -11,8 +11,8 @@ module dda_load_search
    use dda_joint_graph, only : joint_graph_t
    use dda_kinds, only : wp
    use dda_limit_load, only : find_limit, limit_load_t, limit_state
-   use dda_load_coefficient, only : added_loads, can_follow, coefficient, full_loads, only_weight, &
-      & value_at_end, with_coefficient
+   use dda_load_coefficient, only : added_loads, can_follow, carry_load, coefficient, full_loads, &
+      & only_weight, value_at_end, with_coefficient
    use dda_load_stations, only : load_stations, load_stations_t
    use dda_loading_path, only : path_end
    use dda_path_verdict, only : follow_stations, graph_verdict_t
@@ -92,6 +92,10 @@ contains
       if (low < 0.0_wp) call follow_side(family%load, scene, graph, low, search, left)
       call tell_fall(scene%settings, graph, right)
       call tell_fall(scene%settings, graph, left)
+      if (right%proof%end == path_end%reached .and. .not. allocated(right%proof%state)) &
+         & call carry_load(family%load, high, scene, graph, right%proof%force)
+      if (left%proof%end == path_end%reached .and. .not. allocated(left%proof%state)) &
+         & call carry_load(family%load, low, scene, graph, left%proof%force)
       critical%factorisations = right%proof%n_factorisation + left%proof%n_factorisation
       critical%steps = right%proof%n_event + left%proof%n_event
       ! what does not stand upright may do so under gravity that acts another way from the beginning

@@ -43,6 +43,8 @@ CRUSHED = (
     "&material unit_weight = 2e4, compressive_strength = {} /\n&joint friction_deg = 38 /\n"
     "&vehicle axles = 1000, position = -2.4 /\n&analysis flow = 'associated' /\n"
 )
+FLAT = ("&arch shape = 'flat', half_angle_deg = 20, span = 3, thickness = 0.6, voussoirs = 5 /\n"
+        "&joint friction_deg = 30 /\n{}&search parameter = 'horizontal_coefficient', low = 0, high = {} /\n")
 LUNE = "&arch shape = 'circular', thickness_ratio = {}, lune_deg = 10, voussoirs = 21 /\n"
 TIED = (
     "&arch shape = 'circular', radius = 1, thickness = 0.15, voussoirs = 12, buttress_width = 0.2, "
@@ -79,6 +81,10 @@ DECKS = {
     "rings and a rise on one side": "&arch shape = 'elliptic', span = 5, rise = 2, right_rise = 1.4, thickness = 0.5, "
         "rings = 2, voussoirs = 13 /\n&fill height = 0.2, unit_weight = 18e3, passive_coefficient = 0.6 /\n"
         "&vehicle axles = 3e4, 2e4, spacings = 1.1, worst = .true. /\n" + SEARCH,
+    "a flat arch that no push fells": FLAT.format("", 2),
+    "a flat arch under the associated rule": FLAT.format("&analysis flow = 'associated' /\n", 0.2),
+    "a segment that no push fells": FLAT.format("&analysis flow = 'associated' /\n", 0.3).replace(
+        "shape = 'flat', half_angle_deg = 20", "shape = 'segmental', rise = 0.5"),
     "a lune": LUNE.format(0.06),
     "a lune that falls": LUNE.format(0.03),
     "thickness of a lune": "&arch shape = 'circular', lune_deg = 10, voussoirs = 21, facet_deg = 2 /\n"
@@ -107,8 +113,9 @@ SCENES = {
     "bolts": (BOLTED.format("strength 1e4"), "&search parameter = 'horizontal_coefficient' /\n"),
     "a bolt without strength": (BOLTED.format(""), "&search parameter = 'horizontal_coefficient' /\n"),
     "a slope that bolts hold": (BOLTED.format("strength 1e4"), "&load gravity_direction_deg = -60 /\n"),
-    "a heading, then a bench": (PILLARS + "remove block 3 at 1\nremove polygon at 2\n2.9 0.1\n4.1 0.1\n4.1 0.9\n2.9 0.9\n",
-                                "&joint friction_deg = 50 /\n"),
+    "a heading, then a bench": (
+        PILLARS + "remove block 3 at 1\nremove polygon at 2\n2.9 0.1\n4.1 0.1\n4.1 0.9\n2.9 0.9\n",
+        "&joint friction_deg = 50 /\n"),
     "a prop that comes and goes": (PILLARS + "add block 3 at 1\nremove block 3 at 2.5\n", ""),
     "a stage that falls": (PILLARS + "remove block 3 at 1\nremove block 5 at 2\nremove block 4 at 3\n", ""),
     "a slope that they do not": (BOLTED.format("strength 1e2"), "&load gravity_direction_deg = -30 /\n"),
