@@ -68,13 +68,13 @@ def programme(scene, crushes: bool = False) -> float | None:
     Parameters
     ----------
     scene
-        Blocks, joints, deck and file of blocks, of voussoir.verify_proofs.
+        Blocks, joints, deck and file of blocks, of voussoir.verify.proofs.
     crushes
         Whether joints have the strength of their blocks.
     """
     from scipy.optimize import linprog
-    from voussoir.verify_loads import loads_on
-    from voussoir.verify_proofs import push
+    from voussoir.verify.loads import loads_on
+    from voussoir.verify.proofs import push
 
     dead = loads_on(scene.deck.with_value("load_factor", "0"), scene.source, scene.blocks)
     # of many, lest rounding of the weights be in it

@@ -90,9 +90,9 @@ def test_an_arch_carries_what_a_programme_of_tangents_has(
     tmp_path: Path, shape: str, rise: float, strength: float
 ) -> None:
     pytest.importorskip("scipy", reason="the linear programme wants scipy")
-    verify = pytest.importorskip("voussoir.verify_command", reason="PYTHONPATH wants python/")
+    verify = pytest.importorskip("voussoir.verify.command", reason="PYTHONPATH wants python/")
     from live_assemblies import programme
-    from voussoir.verify_deck import read_record
+    from voussoir.verify.deck import read_record
 
     (row,) = rows(tmp_path, BRIDGE.format(shape=shape, rise=rise) + material(strength, 2e4), head="")
     (folder,) = {path.parent for path in tmp_path.rglob("results.csv")}

@@ -11,11 +11,11 @@ from pathlib import Path
 
 import pytest
 
-pytest.importorskip("voussoir.verify_command", reason="PYTHONPATH wants python/")
+pytest.importorskip("voussoir.verify.command", reason="PYTHONPATH wants python/")
 
-from voussoir import verify_command  # noqa: E402
+from voussoir.verify import command as verify_command  # noqa: E402
 from voussoir.command.main import main  # noqa: E402
-from voussoir.verify_deck import read_record  # noqa: E402
+from voussoir.verify.deck import read_record  # noqa: E402
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "cli"))
 
@@ -122,7 +122,7 @@ SCENES = {
 }
 #: What the file of blocks has beside its blocks
 ACTING = (
-    "live block 2 0 2 1000 0\nload block 2 0.5 2 0 -5000\nmaterial 2 density 1800\njoint 1 1 friction_deg 35\n"
+    "live block 2 0 2 1000 0\nload block 2 0.5 2 0 -5000\nmaterial 2 density 1.8d3\njoint 1 1 friction_deg 35\n"
     "block material 2\n2 0\n3 0\n3 1\n2 1\nfix 2.5 1 x\n"
 )
 

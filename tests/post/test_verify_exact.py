@@ -12,13 +12,13 @@ from pathlib import Path
 
 import pytest
 
-pytest.importorskip("voussoir.verify_command", reason="PYTHONPATH wants python/")
+pytest.importorskip("voussoir.verify.command", reason="PYTHONPATH wants python/")
 
 from test_verify import HEAD, rows_of, run_deck  # noqa: E402
 
 from voussoir.command.main import main  # noqa: E402
-from voussoir.verify_rational import Factor, sine_cosine  # noqa: E402
-from voussoir.verify_simplex import Programme, find_best  # noqa: E402
+from voussoir.verify.rational import Factor, sine_cosine  # noqa: E402
+from voussoir.verify.simplex import Programme, find_best  # noqa: E402
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "cli"))
 

@@ -25,7 +25,7 @@ COMMANDS = {
     "theory": ("voussoir.command.theory", "the three analytic solutions at given half angles"),
     "work-precision": ("voussoir.command.work_precision", "error against run time"),
     "view": ("voussoir.command.view", "the blocks of a case in a window that turns"),
-    "verify": ("voussoir.verify_command", "the proofs of a folder of results, recomputed"),
+    "verify": ("voussoir.verify.command", "the proofs of a folder of results, recomputed"),
     "stability": ("voussoir.command.stability", "stiff and extreme scenes, judged by exact answers"),
     "validation": ("voussoir.command.validation", "scenes with exact answers beside what the program computes"),
 }

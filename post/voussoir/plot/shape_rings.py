@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from voussoir.verify_deck import SHAPES
+from voussoir.verify.deck import SHAPES
 
 #: Groups and keys that make an arch a shape besides those of &arch
 OTHERS = ("&fill", "&tie")

@@ -12,7 +12,7 @@ from fractions import Fraction
 
 import numpy as np
 
-from voussoir.verify_rational import Column, Factor
+from voussoir.verify.rational import Column, Factor
 
 #: What rounding leaves of zero, and columns that count as dependent
 ROUNDING, DEPENDENT = 1e-10, 1e-7

@@ -5,7 +5,7 @@ from __future__ import annotations
 import zlib
 from pathlib import Path
 
-from voussoir.verify_deck import VerifyError
+from voussoir.verify.deck import VerifyError
 
 #: Tables whose lines are in the sum, where a run leaves them
 SUMMED = (

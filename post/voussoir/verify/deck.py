@@ -8,7 +8,7 @@ from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from pathlib import Path
 
-from voussoir.verify_rational import sine_cosine
+from voussoir.verify.rational import sine_cosine
 
 #: Groups of the keys that matter here, and their defaults
 DEFAULTS: dict[str, str] = {
@@ -99,8 +99,8 @@ class Deck:
         return self.values.get(key, [DEFAULTS.get(key, "")])[0]
 
     def read(self, text: str) -> float:
-        """A number from its decimal, a fraction where all is exact."""
-        return Fraction(text) if self.exact else float(text)
+        """A number from its decimal, whose exponent may begin with d; a fraction where all is exact."""
+        return (Fraction if self.exact else float)(text.lower().replace("d", "e"))
 
     def number(self, key: str) -> float:
         """A single number."""

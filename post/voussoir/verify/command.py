@@ -10,14 +10,14 @@ from pathlib import Path
 
 import numpy as np
 
-from voussoir.verify_blocks import Source, arch_corners, read_blocks
-from voussoir.verify_contacts import TOUCH, Block, find_joints, make_block
-from voussoir.verify_deck import Deck, VerifyError, read_record
-from voussoir.verify_exact import MOST_JOINTS, check_exactly
-from voussoir.verify_lines import read_lines
-from voussoir.verify_proofs import TOLERANCE, Finding, Row, Scene, check_forces, check_motion
-from voussoir.verify_sums import sums_of, told_sums
-from voussoir.verify_tables import check_joints, check_rigid
+from voussoir.verify.blocks import Source, arch_corners, read_blocks
+from voussoir.verify.contacts import TOUCH, Block, find_joints, make_block
+from voussoir.verify.deck import Deck, VerifyError, read_record
+from voussoir.verify.exact import MOST_JOINTS, check_exactly
+from voussoir.verify.lines import read_lines
+from voussoir.verify.proofs import TOLERANCE, Finding, Row, Scene, check_forces, check_motion
+from voussoir.verify.sums import sums_of, told_sums
+from voussoir.verify.tables import check_joints, check_rigid
 
 #: A collapse that no limit analysis tells is that of blocks that strain, which may be so far from rigid
 STRAIN = 1e-3

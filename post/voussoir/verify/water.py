@@ -6,8 +6,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from voussoir.verify_contacts import Block
-from voussoir.verify_fill import is_covered
+from voussoir.verify.contacts import Block
+from voussoir.verify.fill import is_covered
 
 #: Corners of other blocks nearer to an edge than this share of its length lie on it
 ON_EDGE = 1e-8

@@ -8,11 +8,11 @@ from functools import cached_property
 
 import numpy as np
 
-from voussoir.verify_blocks import Source
-from voussoir.verify_contacts import TOUCH, Block, Joint, depth, numbers_of
-from voussoir.verify_deck import Deck
-from voussoir.verify_fill import Pull
-from voussoir.verify_loads import friction_of, loads_on, may_hold, pulls_of, strength_of
+from voussoir.verify.blocks import Source
+from voussoir.verify.contacts import TOUCH, Block, Joint, depth, numbers_of
+from voussoir.verify.deck import Deck
+from voussoir.verify.fill import Pull
+from voussoir.verify.loads import friction_of, loads_on, may_hold, pulls_of, strength_of
 
 Row = dict[str, str]
 #: Largest figure of a proof that holds

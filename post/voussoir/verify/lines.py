@@ -8,9 +8,9 @@ from xml.etree import ElementTree
 
 import numpy as np
 
-from voussoir.verify_blocks import Law, Source
-from voussoir.verify_contacts import Block, depth
-from voussoir.verify_deck import Deck, VerifyError
+from voussoir.verify.blocks import Law, Source
+from voussoir.verify.contacts import Block, depth
+from voussoir.verify.deck import Deck, VerifyError
 
 #: Numbers of a line with its material, and of a block material and a joint material in the plain form
 LINE, BLOCK, JOINT = 5, 13, 3

@@ -6,8 +6,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from voussoir.verify_contacts import Block, depth
-from voussoir.verify_deck import Deck, VerifyError
+from voussoir.verify.contacts import Block, depth
+from voussoir.verify.deck import Deck, VerifyError
 
 #: A point so far outside an edge, over its length, tells what lies on it
 OUTSIDE = 1e-6

@@ -8,9 +8,9 @@ from pathlib import Path
 
 import numpy as np
 
-from voussoir.verify_contacts import depth, make_block
-from voussoir.verify_deck import Deck, VerifyError
-from voussoir.verify_water import Water
+from voussoir.verify.contacts import depth, make_block
+from voussoir.verify.deck import Deck, VerifyError
+from voussoir.verify.water import Water
 
 Point = tuple[float, float]
 
@@ -131,7 +131,7 @@ def read_blocks(path: Path, deck: Deck) -> Source:
         if not words:
             continue
         if words[0][0] in "0123456789+-.":
-            rows.append([deck.read(word.replace("d", "e")) for word in words])
+            rows.append([deck.read(word) for word in words])
             continue
         if entry:
             _take(entry, rows, source, deck)
@@ -156,7 +156,7 @@ def _take(entry: list[str], rows: list[list[float]], source: Source, deck: Deck)
         if "unit_weight" in keys:
             source.weights[number] = deck.read(keys["unit_weight"])
         if "compressive_strength" in keys:
-            source.strengths[number] = deck.read(keys["compressive_strength"].replace("d", "e"))
+            source.strengths[number] = deck.read(keys["compressive_strength"])
     elif entry[0] == "joint":
         if "residual_deg" in keys or any(float(keys.get(name, "0")) > 0.0 for name in ("cohesion", "tension")):
             raise VerifyError("joints that lose strength by slip have no proof")
@@ -169,11 +169,11 @@ def _take(entry: list[str], rows: list[list[float]], source: Source, deck: Deck)
     elif entry[0] in ("base_velocity", "base_displacement"):
         raise VerifyError(f"{entry[0]} is not verified: only base_acceleration is")
     elif entry[0] == "bar":
-        ends = [deck.read(word.replace("d", "e")) for word in entry[1:5]]
-        strength = deck.read(keys["strength"].replace("d", "e")) if "strength" in keys else None
+        ends = [deck.read(word) for word in entry[1:5]]
+        strength = deck.read(keys["strength"]) if "strength" in keys else None
         source.bars.append(Bar(np.array(ends).reshape(2, 2), strength))
     elif entry[0] in ("remove", "add"):
-        time = float(deck.read(entry[-1].replace("d", "e")))
+        time = float(deck.read(entry[-1]))
         numbers = [int(word) for word in entry[2:-2]] if entry[1] == "block" else []
         source.changes.append(Change(time, entry[0] == "add", numbers, np.array(rows, dtype=float)))
     elif entry[0] == "water":
@@ -188,7 +188,7 @@ def _water(entry: list[str], keys: dict[str, str], rows: list[list[float]], deck
     for word in entry[1:]:
         if word in ("unit_weight", "factor"):
             break
-        places.append(deck.read(word.replace("d", "e")))
+        places.append(deck.read(word))
     weight, factor = (deck.read(keys.get(name, usual)) for name, usual in (("unit_weight", "9810"), ("factor", "1")))
     return Water(list(zip(places[::2], places[1::2])), rows[-1][1] if rows else 0, weight, factor)
 
@@ -196,7 +196,7 @@ def _water(entry: list[str], keys: dict[str, str], rows: list[list[float]], deck
 def _take_point(entry: list[str], rows: list[list[float]], source: Source, deck: Deck) -> None:
     """Take in a point that is loaded or held."""
     block, at = (int(entry[2]), 3) if entry[1] == "block" else (0, 1)
-    numbers = [deck.read(word.replace("d", "e")) for word in entry[at:] if word not in ("x", "y")]
+    numbers = [deck.read(word) for word in entry[at:] if word not in ("x", "y")]
     point = (numbers[0], numbers[1])
     if entry[0] in ("load", "live"):
         force = rows[-1][1:] if rows else numbers[2:4]

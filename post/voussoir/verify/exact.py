@@ -13,14 +13,14 @@ from pathlib import Path
 
 import numpy as np
 
-from voussoir.verify_blocks import Source, arch_corners, read_blocks
-from voussoir.verify_contacts import Joint, find_joints, make_block
-from voussoir.verify_deck import Deck, VerifyError
-from voussoir.verify_lines import read_lines
-from voussoir.verify_loads import loads_on
-from voussoir.verify_proofs import Finding, Row, Scene, held_points
-from voussoir.verify_rational import Column, square_root
-from voussoir.verify_simplex import Programme, find_best
+from voussoir.verify.blocks import Source, arch_corners, read_blocks
+from voussoir.verify.contacts import Joint, find_joints, make_block
+from voussoir.verify.deck import Deck, VerifyError
+from voussoir.verify.lines import read_lines
+from voussoir.verify.loads import loads_on
+from voussoir.verify.proofs import Finding, Row, Scene, held_points
+from voussoir.verify.rational import Column, square_root
+from voussoir.verify.simplex import Programme, find_best
 
 #: Most joints that are computed exactly
 MOST_JOINTS = 200

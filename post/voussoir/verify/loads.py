@@ -6,10 +6,10 @@ import math
 
 import numpy as np
 
-from voussoir.verify_blocks import Bar, Law, PointForce, Source
-from voussoir.verify_contacts import TOUCH, Block, Joint, depth
-from voussoir.verify_deck import Deck, VerifyError
-from voussoir.verify_fill import (
+from voussoir.verify.blocks import Bar, Law, PointForce, Source
+from voussoir.verify.contacts import TOUCH, Block, Joint, depth
+from voussoir.verify.deck import Deck, VerifyError
+from voussoir.verify.fill import (
     Pull,
     chords_of,
     fill_weights,
@@ -18,8 +18,8 @@ from voussoir.verify_fill import (
     pressures,
     surface_of,
 )
-from voussoir.verify_rational import PI
-from voussoir.verify_water import water_loads
+from voussoir.verify.rational import PI
+from voussoir.verify.water import water_loads
 
 #: Friction angles of files of blocks count up to this one [deg]
 MOST_FRICTION_DEG = "89.9"

@@ -6,10 +6,10 @@ import math
 
 import numpy as np
 
-from voussoir.verify_contacts import TOUCH, Block, Joint, numbers_of
-from voussoir.verify_fill import Pull
-from voussoir.verify_loads import loads_on
-from voussoir.verify_proofs import Finding, Row, Scene, largest_of, push
+from voussoir.verify.contacts import TOUCH, Block, Joint, numbers_of
+from voussoir.verify.fill import Pull
+from voussoir.verify.loads import loads_on
+from voussoir.verify.proofs import Finding, Row, Scene, largest_of, push
 
 #: What told forces may leave of a load: those of a search are of the bracket's end that stands
 TOLD = 1e-7
