@@ -169,10 +169,7 @@ contains
       result%reason = path_reason%none
       result%reached = 1.0_wp
       if (end /= motion_end%balanced) call note_fall(end, jump, result)
-      if (result%end == path_end%reached) then
-         call note_first(state, path)
-         call balance_rest(path, state)
-      end if
+      if (result%end == path_end%reached) call balance_rest(path, state)
       call finish(path, state, result)
    end subroutine begin_path
 
@@ -202,7 +199,11 @@ contains
       way%opening = rate%opening/path%joints%motion_unit
       strength = max(maxval(abs(way%load)), &
          & maxval(abs(way%opening/path%joints%graph%compliance)))
-      if (.not. path%softness > 0.0_wp) call note_first(state, path)
+      if (.not. path%softness > 0.0_wp) then
+         path%softness = max(1.0_wp, &
+            & maxval(abs(state%motion))/max(1.0_wp, maxval(abs(state%force))))
+         path%given = maxval(state%gap)
+      end if
       path%given = path%given + h_end*maxval(abs(way%opening))
       result%end = path_end%reached
       if (strength > 0.0_wp) then
@@ -219,17 +220,6 @@ contains
       call balance_rest(path, state)
       call finish(path, state, result)
    end subroutine follow_path
-
-   !> What is far, as the first state tells it
-   pure subroutine note_first(state, path)
-      !> In units of the joints
-      type(coulomb_state_t), intent(in) :: state
-      !> Receives it
-      type(loading_path_t), intent(inout) :: path
-
-      path%softness = max(1.0_wp, maxval(abs(state%motion))/max(1.0_wp, maxval(abs(state%force))))
-      path%given = maxval(state%gap)
-   end subroutine note_first
 
    !> Numbers without their last digits, which rounding sets: ways to different ends are one way
    elemental real(wp) function plain(x)

@@ -302,7 +302,7 @@ def test_corners_of_what_is_fixed_are_those_of_the_arch(tmp_path: Path, deck: st
 @pytest.mark.parametrize(
     ("name", "old", "new"),
     [("x/deck.record", "  30", "  31"), ("x.blocks", "0 -5000", "0 -5001"),
-     ("x.blocks", "density 1800", "density 1801"), ("x.blocks", "3 1\n", "3 1.001\n"),
+     ("x.blocks", "density 1.8d3", "density 1801"), ("x.blocks", "3 1\n", "3 1.001\n"),
      ("x.blocks", "block 2 0 2 1000 0", "block 2 0 1.9 1000 0")],
 )
 def test_another_deck_is_found(tmp_path: Path, name: str, old: str, new: str) -> None:
