@@ -35,12 +35,11 @@ class CaseSet(MutableSet):
 
     def add(self, case: int) -> None:
         """Put a number in."""
-        if case in self:
-            return
-        if case >= len(self._bytes):
-            self._bytes.extend(bytes(case + 1 - len(self._bytes)))
-        self._bytes[case] = 1
-        self._count += 1
+        known = self._bytes
+        if case >= len(known):
+            known.extend(bytes(case + 1 - len(known)))
+        self._count += 1 - known[case]
+        known[case] = 1
 
     def discard(self, case: int) -> None:
         """Take a number out."""

@@ -39,6 +39,8 @@ TABLES = (
 )
 
 
+#: Bytes that are copied at a time
+_PIECE = 1 << 20
 #: Where the rows of a case are: number of the table, first byte, byte behind the last
 _PLACE = np.dtype([("case", "i8"), ("number", "i4"), ("start", "i8"), ("stop", "i8")])
 
@@ -135,18 +137,23 @@ def merge_table(
     if name in ("results.csv", "log.txt", "sizes.record"):  # a row a case, however often it was written
         places = places[np.unique(places["case"], return_index=True)[1]]
     places.sort(order=("case", "number", "start"))
+    # what lies one behind the other is copied at once
+    first = np.ones(len(places), dtype=bool)
+    first[1:] = (places["number"][1:] != places["number"][:-1]) | (places["start"][1:] != places["stop"][:-1])
+    stops = places["stop"][np.append(first[1:], True)] if len(places) else []
 
     def write(file: BinaryIO) -> None:
         file.write(header)
         opened, at = None, -1
-        for place in places:
-            number, start, stop = int(place["number"]), int(place["start"]), int(place["stop"])
+        for place, stop in zip(places[first], stops):
+            number, start = int(place["number"]), int(place["start"])
             if number != at:
                 if opened:
                     opened.close()
                 opened, at = sources[number].open("rb"), number
             opened.seek(start)
-            file.write(opened.read(stop - start))
+            for at_byte in range(start, stop, _PIECE):
+                file.write(opened.read(min(_PIECE, stop - at_byte)))
         if opened:
             opened.close()
 
@@ -181,8 +188,9 @@ def merged(out: Path, cases: Set[int]) -> Summary:
     if not cases:
         return Summary(0, 0)
     with (out / "results.csv").open(newline="", encoding="utf-8", errors="replace") as file:
-        rows = csv.DictReader(file)
-        return Summary(len(cases), sum(row["verdict"] == "undecided" for row in rows))
+        rows = csv.reader(file)
+        verdict = next(rows).index("verdict")
+        return Summary(len(cases), sum(row[verdict] == "undecided" for row in rows))
 
 
 def replace(path: Path, write: Callable[[BinaryIO], object]) -> None:

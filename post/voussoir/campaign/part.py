@@ -58,8 +58,8 @@ def run_part(part: Part) -> tuple[int, str]:
         Worst exit status of the program (0 or 3 if it was never refused), and its message.
     """
     left_out: set[int] = set()
+    done = finished_in(part.folder, part.cases, part.record, part.headers)
     while True:
-        done = finished_in(part.folder, part.cases, part.record, part.headers)
         rest = [case for case in part.cases if case not in done and case not in left_out]
         if not rest:
             return 0, ""
@@ -68,7 +68,8 @@ def run_part(part: Part) -> tuple[int, str]:
             return status, message
         if -status in (signal.SIGINT, signal.SIGTERM):
             return 3, "stopped before all cases were finished; call again to go on"
-        if not finished_in(part.folder, part.cases, part.record, part.headers) > done:
+        before, done = done, finished_in(part.folder, part.cases, part.record, part.headers)
+        if not len(done) > len(before):
             left_out.add(rest[0])
 
 
@@ -203,19 +204,18 @@ def whole_rows(attempt: Path, said: list[str]) -> CaseSet:
         if "case" not in names:
             said.append(f"{attempt / 'results.csv'}:1: warning: expected a column case, got none")
             return found
-        place, read = names.index("case"), len(header)
+        column, count, read = names.index("case"), len(names), len(header)
         for number, line in enumerate(file, 2):
             read += len(line)
             if not line.endswith(b"\n") or 0 <= trusted < read:
                 break
-            fields = fields_of(line, ".csv")
-            case = fields[place] if len(fields) == len(names) else ""
-            if case.isdecimal() and case.isascii() and (span is None or int(case) in span):
-                found.add(int(case))
+            case = case_of(line, column, count)
+            if case and (span is None or case in span):
+                found.add(case)
             else:
                 said.append(
                     f"{attempt / 'results.csv'}:{number}: warning: expected a row of "
-                    f"{len(names)} cells with its case, got another one; its case is "
+                    f"{count} cells with its case, got another one; its case is "
                     "computed again"
                 )
     return found
@@ -296,13 +296,10 @@ def slices_of(table: Path) -> Iterator[tuple[int, int, int]]:
         header = fields_of(file.readline(), table.suffix)
         if "case" not in header:
             return
-        column = header.index("case")
+        column, count = header.index("case"), 0 if table.suffix == ".txt" else len(header)
         case, start, stop = 0, 0, file.tell()
         for line in file:
-            fields = fields_of(line, table.suffix)
-            whole = line.endswith(b"\n") and (len(fields) == len(header) or table.suffix == ".txt")
-            number = fields[column] if whole else ""
-            this = int(number) if whole and number.isdecimal() else 0
+            this = case_of(line, column, count)
             if this != case:
                 if case:
                     yield case, start, stop
@@ -310,6 +307,24 @@ def slices_of(table: Path) -> Iterator[tuple[int, int, int]]:
             stop += len(line)
         if case:
             yield case, start, stop
+
+
+def case_of(line: bytes, column: int, count: int) -> int:
+    """Case of a row; 0 if it was cut off or is none.
+
+    Parameters
+    ----------
+    count : int
+        Number of its cells; 0 in the log, whose first words are parted by blanks.
+    """
+    if count and b'"' in line:
+        cells = [cell.encode() for cell in fields_of(line, ".csv")]
+        whole = len(cells) == count
+    else:
+        cells = line.split(b"," if count else b" ", column + 1)
+        whole = not count or line.count(b",") == count - 1
+    number = cells[column].rstrip() if whole and line.endswith(b"\n") and len(cells) > column else b""
+    return int(number) if number.isdigit() and len(number) < 10 else 0
 
 
 def fields_of(line: bytes, suffix: str) -> list[str]:

@@ -19,7 +19,7 @@ from voussoir.campaign.part import Part, content_of, finished_by, finished_in, r
 from voussoir.dda_program import Asked, DdaError, ask
 
 #: Most cases of a part: its command line stays short, and little is done twice after a kill
-LARGEST_PART = 2000
+LARGEST_PART = 10000
 #: Parts a worker, so that all end at about the same time
 PARTS_A_WORKER = 8
 

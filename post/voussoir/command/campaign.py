@@ -107,9 +107,10 @@ def _compute(campaign: Campaign, arguments: argparse.Namespace, cases: range) ->
     """Compute what is not finished, and merge."""
     asked = campaign.asked
     status, message, problems = 0, "", []
-    if len(finished_by(campaign.out, asked.record, asked.headers, problems)) == campaign.total:
+    before = finished_by(campaign.out, asked.record, asked.headers, problems)
+    if len(before) == campaign.total:
         shutil.rmtree(campaign.parts, ignore_errors=True)
-        return _report(campaign, arguments)
+        return _report(campaign, arguments, merged(campaign.out, before))
     if not arguments.merge:
         workers, engine = arguments.workers, local_engine(arguments.workers)
         if arguments.scheduler:
@@ -145,21 +146,16 @@ def _finish(campaign: Campaign, arguments: argparse.Namespace) -> int:
                 print(f"{arguments.deck}: this share has ended, {left} cases of others are left")
             cases = share(campaign.total, arguments.index, arguments.of)
             return 0 if all(case in done for case in cases) else 3
-    merge(campaign.parts, campaign.out, campaign.asked.record, campaign.asked.headers)
-    if _summary(campaign).cases == campaign.total and arguments.index is None:
-        shutil.rmtree(campaign.parts, ignore_errors=True)
-    return _report(campaign, arguments)
-
-
-def _summary(campaign: Campaign) -> Summary:
-    """What the merged table holds."""
     asked = campaign.asked
-    return merged(campaign.out, finished_by(campaign.out, asked.record, asked.headers))
+    merge(campaign.parts, campaign.out, asked.record, asked.headers)
+    summary = merged(campaign.out, finished_by(campaign.out, asked.record, asked.headers))
+    if summary.cases == campaign.total and arguments.index is None:
+        shutil.rmtree(campaign.parts, ignore_errors=True)
+    return _report(campaign, arguments, summary)
 
 
-def _report(campaign: Campaign, arguments: argparse.Namespace) -> int:
+def _report(campaign: Campaign, arguments: argparse.Namespace, summary: Summary) -> int:
     """Say what there is: 0 if each case has a verdict, else 3."""
-    summary = _summary(campaign)
     missing = campaign.total - summary.cases
     if not arguments.quiet:
         print(
