@@ -87,6 +87,19 @@ span.formula { display: inline-block; max-width: 100%; overflow-x: auto; vertica
 td span.formula { display: inline; }
 div.formula { overflow-x: auto; padding: 0.4em 0; margin-bottom: 1em; }
 @media (max-width: 768px) { .wy-table-responsive table:has(th:nth-child(4)) { min-width: 44rem; } }
+@media (min-width: 769px), print {
+.rst-content .wy-table-responsive table td, .rst-content .wy-table-responsive table th { padding: 6px 8px; }
+.wy-table-responsive td:last-child code { overflow-wrap: anywhere; }
+pre code { white-space: pre-wrap !important; } }
+@media print {
+.rst-content .wy-table-responsive, .rst-content pre, .rst-content div.formula, .rst-content span.formula
+{ overflow: visible !important; max-width: none; }
+.rst-content span.formula { display: inline; }
+.rst-content .wy-table-responsive table { min-width: 0; width: 100%; font-size: 75%; }
+.rst-content .wy-table-responsive table td, .rst-content .wy-table-responsive table th
+{ padding: 2px 4px !important; font-size: inherit; overflow-wrap: anywhere; }
+.rst-content .wy-table-responsive td code { white-space: normal !important; overflow-wrap: anywhere; font-size: 90%; }
+.rst-content tr, .rst-content img { break-inside: avoid; } }
 """
 
 
