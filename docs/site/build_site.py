@@ -95,9 +95,9 @@ pre code { white-space: pre-wrap !important; } }
 .rst-content .wy-table-responsive, .rst-content pre, .rst-content div.formula, .rst-content span.formula
 { overflow: visible !important; max-width: none; }
 .rst-content span.formula { display: inline; }
-.rst-content .wy-table-responsive table { min-width: 0; width: 100%; font-size: 75%; }
+.rst-content .wy-table-responsive table { min-width: 0; width: 100%; font-size: 70%; }
 .rst-content .wy-table-responsive table td, .rst-content .wy-table-responsive table th
-{ padding: 2px 4px !important; font-size: inherit; overflow-wrap: anywhere; }
+{ padding: 2px 4px !important; font-size: inherit; }
 .rst-content .wy-table-responsive td code { white-space: normal !important; overflow-wrap: anywhere; font-size: 90%; }
 .rst-content tr, .rst-content img { break-inside: avoid; } }
 """
@@ -124,6 +124,7 @@ def main() -> int:
         out = arguments.out.resolve()
         build = [sys.executable, "-m", "mkdocs", "build", "--strict", "--quiet", "--site-dir", out]
         status = subprocess.run([*build, "--config-file", stage / "mkdocs.yml"]).returncode
+        (out / "404.html").unlink(missing_ok=True)  # for servers: opened as a file it finds no script
         if status == 0:
             ford = [sys.executable, "-m", "ford", ROOT / "docs/site/ford.md", "-o", out / "fortran"]
             status = subprocess.run([*ford, "--quiet"], cwd=ROOT / "docs/site").returncode
@@ -183,7 +184,8 @@ def with_formulas(text: str) -> str:
         mathml = mathml.replace("|", "&#124;")  # a bar would part the cells of a table
         if shown:
             return f'<div class="formula">{mathml}</div>'
-        return f'<span class="formula">{mathml}</span>' if len(match["inline"]) > LONG else mathml
+        # a bare <math> at the beginning of a line would end the paragraph
+        return f'<span class="{"formula" if len(match["inline"]) > LONG else "short"}">{mathml}</span>'
 
     code = r"(?P<code>^ *```.*?^ *```|`[^`\n]+`)"
     pattern = code + r"|\$\$(?P<shown>[^$]+)\$\$|\$(?P<inline>[^$\n]+(?:\n[^$\n]+)?)\$"
