@@ -15,6 +15,7 @@ module voussoir
    use dda_joint_graph, only : joint_graph_t, joint_kind
    use dda_kinds, only : wp
    use dda_limit_decision, only : decide_load, load_decision_t, load_state
+   use dda_line_scene, only : cut_lines
    use dda_limit_load, only : find_limit, limit_load_t, limit_state
    use dda_read_deck, only : parse_deck, read_deck
    use dda_text, only : to_text
@@ -59,6 +60,7 @@ contains
          return
       end if
       call turn_to_case(deck, number, case_of_deck, error)
+      if (.not. allocated(error)) call cut_lines(case_of_deck, error)
       if (allocated(error)) return
       call prepare_case(case_of_deck, this)
       call compute_case(this)

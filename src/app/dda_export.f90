@@ -10,6 +10,7 @@ module dda_export
    use dda_error, only : error_line, error_t
    use dda_limerick_analysis, only : limerick_analysis_t
    use dda_line_model, only : line_model_t
+   use dda_line_scene, only : cut_lines
    use dda_line_text, only : has_one_law, line_losses, line_text
    use dda_process, only : exit_status, make_folder, worst_status
    use dda_read_deck, only : read_deck
@@ -40,6 +41,7 @@ contains
       status = exit_status%success
       do i = 1, size(command%name)
          call read_deck(name_of(command, i), command%setting, deck, error)
+         if (.not. allocated(error)) call cut_lines(deck, error)
          if (.not. allocated(error) .and. deck%scene%kind%word == "blocks") &
             & call deck_error(error, "dda export needs scene%kind 'arch' or 'lines', got " &
             & //"'blocks'; copy the file that it names", deck, &

@@ -42,6 +42,8 @@ module dda_case
       type(decision_t) :: decision
       !> Scene of the collapse, or of the decision
       type(scene_t) :: scene
+      !> Scene nearest to critical that stands, where it was asked for
+      type(scene_t) :: standing
       !> Where a dynamic run goes on, and where it ended
       type(march_t) :: onward
       !> Restart file that it goes on from; empty if there is none

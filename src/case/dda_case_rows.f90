@@ -10,12 +10,12 @@ module dda_case_rows
    use dda_decision, only : decision_t
    use dda_deck, only : deck_t, scene_kind
    use dda_deck_scene, only : movable_blocks
-   use dda_error, only : error_line, error_t
+   use dda_error, only : error_line
    use dda_forward, only : outcome_t
    use dda_joint_rows, only : joint_rows, tell_roles
    use dda_kinds, only : wp
    use dda_mechanism, only : mechanism_of, mechanism_t
-   use dda_scene, only : scene_t, searched_load
+   use dda_scene, only : build_once, scene_t, searched_load
    use dda_text, only : to_text
    use dda_told_blocks, only : scale_to_one, tell_blocks, tell_mechanism_motion, &
       & tell_total_motion
@@ -229,15 +229,16 @@ contains
       type(told_blocks_t), intent(inout) :: blocks
       type(scene_t) :: scene
       type(joint_t), allocatable :: joint(:)
-      type(error_t), allocatable :: error
 
       associate (critical => this%critical)
          scene = this%scene
          allocate (joint(0))
          if (allocated(critical%standing)) then
             ! a load coefficient changes no blocks
-            if (this%family%load == searched_load%none) &
-               & call this%family%build(critical%stands, scene, error)
+            if (this%family%load == searched_load%none) then
+               scene = this%standing
+               call build_once(this%family, critical%stands, scene)
+            end if
             if (allocated(critical%standing%contacts%joint)) then
                joint = critical%standing%contacts%joint
                joint_row = joint_rows(critical%standing%contacts, scene%joint_angle_deg, &

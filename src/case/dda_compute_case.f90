@@ -25,7 +25,7 @@ module dda_compute_case
    use dda_limerick_decision, only : decide_limerick
    use dda_limerick_search, only : find_limerick_critical, repeat_with_pictures
    use dda_mechanism, only : follow_collapse
-   use dda_scene, only : scene_t
+   use dda_scene, only : build_once, scene_t
    use dda_settings, only : settings_t
    use dda_shared_forces, only : share_forces
    use dda_stages, only : decide_in_stages
@@ -73,8 +73,10 @@ contains
             & this%family%deck%arch%thickness_ratio%number, this%decision)
       end if
       if (this%searches .and. .not. this%family%decides_chains &
-         & .and. .not. allocated(this%critical%fallen) .and. allocated(this%critical%standing)) &
-         & call this%family%build(this%critical%stands, this%scene, error)
+         & .and. .not. allocated(this%critical%fallen) .and. allocated(this%critical%standing)) then
+         call build_once(this%family, this%critical%stands, this%standing)
+         this%scene = this%standing
+      end if
       if (this%plan%shared_forces) call share_told_forces(this)
       if (this%searches .and. this%family%deck%output%frames%whole > 0) then
          if (this%limerick) call repeat_with_pictures(this%family, this%critical, this%album)
@@ -111,7 +113,7 @@ contains
       integer :: joint
 
       if (this%searches) then
-         call prove_search(this%family, this%critical, this%proof)
+         call prove_search(this%family, this%critical, this%standing, this%scene, this%proof)
       else if (allocated(this%scene%contacts%joint)) then
          joint = this%family%deck%output%thrust_joint%whole
          if (joint == 0 .and. size(this%scene%joint_angle_deg) > 0 &
@@ -173,16 +175,15 @@ contains
       !> Value of the parameter that was decided
       real(wp), intent(in) :: value
       type(decision_t), intent(inout) :: decision
-      type(error_t), allocatable :: error
       logical :: collapsed, wanted
+
       if (this%family%decides_chains) this%scene%joint_angle_deg = this%family%joint_angle_deg
       collapsed = decision%outcome%verdict == verdict%collapsed
       wanted = merge(this%tells_tables .or. this%family%deck%output%frames%whole > 0, &
          & this%searches, this%family%decides_chains)
       if (wanted .or. collapsed) call unfold(decision)
       if (collapsed) wanted = wanted .or. any(decision%contacts%face%slip /= 0)
-      if (wanted .and. .not. allocated(this%scene%contacts%joint)) &
-         & call this%family%build(value, this%scene, error)
+      if (wanted) call build_once(this%family, value, this%scene)
       if (collapsed) call follow_collapse(this%scene, decision, this%album)
       if (allocated(this%scene%contacts%joint) .and. .not. allocated(decision%contacts%joint)) &
          & decision%contacts%joint = this%scene%contacts%joint
@@ -209,14 +210,12 @@ contains
    pure subroutine share_told_forces(this)
       !> The case, decided
       type(case_t), intent(inout) :: this
-      type(scene_t) :: scene
-      type(error_t), allocatable :: error
 
       if (.not. allocated(this%critical%standing)) return
-      call this%family%build(this%critical%stands, scene, error)
-      call share_forces(scene, this%critical%standing)
+      call build_once(this%family, this%critical%stands, this%standing)
+      call share_forces(this%standing, this%critical%standing)
       if (.not. allocated(this%critical%standing%contacts%joint)) &
-         & this%critical%standing%contacts%joint = scene%contacts%joint
+         & this%critical%standing%contacts%joint = this%standing%contacts%joint
    end subroutine share_told_forces
 
    !> Let the pictures of a static run lie evenly on the way of a collapse, until a corner has moved
@@ -244,24 +243,22 @@ contains
    pure subroutine take_pictures(this)
       !> The case, searched
       type(case_t), intent(inout) :: this
-      type(error_t), allocatable :: error
       type(outcome_t) :: outcome
       type(settings_t) :: settings
       type(block_system_t) :: system
       type(contacts_t) :: contacts
-      real(wp) :: value
       integer :: flow
 
       if (allocated(this%critical%fallen)) then
-         value = this%critical%falls
+         call build_once(this%family, this%critical%falls, this%scene)
          flow = this%critical%fallen%flow
       else if (allocated(this%critical%standing)) then
-         value = this%critical%stands
+         call build_once(this%family, this%critical%stands, this%standing)
+         this%scene = this%standing
          flow = this%critical%standing%flow
       else
          return
       end if
-      call this%family%build(value, this%scene, error)
       settings = this%scene%settings
       settings%flow = flow
       call plan_fall(this)

@@ -9,7 +9,7 @@ module dda_scene_check
    use dda_error, only : error_t, fatal_error
    use dda_kinds, only : wp
    use dda_limerick_blocks, only : check_limerick_blocks
-   use dda_line_scene, only : check_line_scene
+   use dda_line_scene, only : check_line_scene, cut_lines
    use dda_live_loads, only : bears_live, check_live_points
    use dda_read_deck, only : geometry_file
    use dda_restart, only : check_restart, load_restart
@@ -42,7 +42,8 @@ contains
       class(watch_t), intent(inout), optional :: watch
 
       if (present(watch)) call watch%tell("looking for joints", -1.0_wp)
-      if (deck%analysis%restart%given) call check_start(deck, error)
+      call cut_lines(deck, error)
+      if (.not. allocated(error) .and. deck%analysis%restart%given) call check_start(deck, error)
       if (.not. allocated(error)) call check_shapes(deck, error)
       if (.not. allocated(error)) call check_live_cases(deck, error)
       if (allocated(error) .or. deck%scene%kind%word /= "blocks") return

@@ -8,6 +8,7 @@ module dda_deck
    use dda_error, only : error_t, fatal_error
    use dda_input, only : input_t
    use dda_limerick_analysis, only : limerick_analysis_t
+   use dda_line_model, only : line_model_t
    use dda_text, only : lower_case
    use dda_warnings, only : warnings_t
    use dda_deck_key, only : word_length
@@ -89,7 +90,9 @@ module dda_deck
       type(parameter_t) :: searched
       !> The sweeps in their order: (n)
       type(deck_sweep_t), allocatable :: sweeps(:)
-      !> Blocks cut from the file that scene%geometry names; allocated for kind = 'lines' alone
+      !> Lines of the file that scene%geometry names, for kind = 'lines' alone, until they are cut
+      type(line_model_t), allocatable :: lines
+      !> Blocks that were cut from them
       type(cut_model_t), allocatable :: cut
       !> What the file that scene%analysis names says; unallocated if none is named
       type(limerick_analysis_t), allocatable :: file_analysis

@@ -1,11 +1,9 @@
-!> The files that a deck of lines names: read, cut and checked with the deck
+!> The files that a deck of lines names: read and checked with the deck
 module dda_deck_lines
-   use dda_cutting, only : cut_blocks
    use dda_deck, only : add_file_mark, deck_error, deck_t, file_beside
    use dda_deck_keys, only : key_index
    use dda_error, only : error_t
    use dda_file_mark, only : file_mark
-   use dda_line_model, only : line_model_t
    use dda_read_limerick, only : check_materials, read_analysis, read_geometry
    implicit none
    private
@@ -16,24 +14,22 @@ contains
 
    !> Read the files of a deck whose kind is 'lines'; any other deck is left as it is
    subroutine read_lines(deck, error)
-      !> The deck, checked; receives blocks, analysis and warnings
+      !> The deck, checked; receives lines, analysis and warnings
       type(deck_t), intent(inout) :: deck
       !> What is wrong with the files, or with the two together
       type(error_t), allocatable, intent(out) :: error
-      type(line_model_t) :: model
       character(len=:), allocatable :: file
 
       if (deck%scene%kind%word /= "lines") return
       file = file_beside(deck, deck%scene%geometry%text)
-      call read_geometry(file, model, deck%warnings, error)
+      allocate (deck%lines)
+      call read_geometry(file, deck%lines, deck%warnings, error)
       if (allocated(error)) then
          call name_key(deck, "geometry", error)
          return
       end if
       call add_file_mark(file_mark(file), deck)
-      allocate (deck%cut)
-      call cut_blocks(model, deck%cut, error)
-      if (allocated(error) .or. .not. deck%scene%analysis%given) return
+      if (.not. deck%scene%analysis%given) return
       file = file_beside(deck, deck%scene%analysis%text)
       allocate (deck%file_analysis)
       call read_analysis(file, deck%file_analysis, deck%warnings, error)
@@ -42,7 +38,7 @@ contains
          return
       end if
       call add_file_mark(file_mark(file), deck)
-      call check_materials(model, deck%file_analysis, deck%warnings, error)
+      call check_materials(deck%lines, deck%file_analysis, deck%warnings, error)
    end subroutine read_lines
 
    !> An error without a line speaks of a file that cannot be read: the line of the deck helps more

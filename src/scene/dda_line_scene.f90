@@ -6,6 +6,7 @@ module dda_line_scene
    use dda_constants, only : pi
    use dda_contact_detection, only : find_contacts
    use dda_cut_model, only : cut_model_t, point_kind
+   use dda_cutting, only : cut_blocks
    use dda_deck, only : deck_error, deck_t
    use dda_deck_keys, only : key_index
    use dda_edge_split, only : split_edges
@@ -18,7 +19,7 @@ module dda_line_scene
    implicit none
    private
 
-   public :: line_scene, check_line_scene, held_blocks, law_of_joint, line_system
+   public :: line_scene, check_line_scene, cut_lines, held_blocks, law_of_joint, line_system
 
    !> Friction angles from here on mean that a joint cannot slide [deg]
    real(wp), parameter :: no_slip_deg = 89.9_wp
@@ -27,6 +28,19 @@ module dda_line_scene
    real(wp), parameter :: least_stiffness = 1.0e-12_wp
 
 contains
+
+   !> Cut the lines of a deck into blocks, once; a deck without lines is left as it is
+   pure subroutine cut_lines(deck, error)
+      !> The deck; receives the blocks in place of the lines
+      type(deck_t), intent(inout) :: deck
+      !> Lines that make no blocks
+      type(error_t), allocatable, intent(out) :: error
+
+      if (.not. allocated(deck%lines)) return
+      allocate (deck%cut)
+      call cut_blocks(deck%lines, deck%cut, error)
+      if (.not. allocated(error)) deallocate (deck%lines)
+   end subroutine cut_lines
 
    !> The scene of the blocks that a deck's files make
    pure subroutine line_scene(deck, scene)

@@ -16,7 +16,7 @@ module dda_case_proof
    use dda_limit_load, only : find_limit, limit_load_t, limit_state
    use dda_load_coefficient, only : added_loads, full_loads, with_coefficient
    use dda_load_stations, only : bears_live_load
-   use dda_scene, only : family_t, scene_t, searched_load
+   use dda_scene, only : build_once, family_t, scene_t, searched_load
    use dda_scene_graph, only : scene_graph
    use dda_settings, only : settings_t
    use dda_thrust_range, only : find_thrust_range
@@ -99,41 +99,42 @@ contains
    end subroutine prove_decision
 
    !> Prove both sides of what a search has found
-   pure subroutine prove_search(family, critical, proof)
+   pure subroutine prove_search(family, critical, stands, falls, proof)
       class(family_t), intent(in) :: family
       !> What was found
       type(critical_t), intent(in) :: critical
+      !> The scenes of its two sides; made here if they are not there yet
+      type(scene_t), intent(inout) :: stands
+      type(scene_t), intent(inout) :: falls
       type(proof_t), intent(out) :: proof
       type(joint_graph_t) :: graph
       type(proof_t) :: other
-      type(scene_t) :: scene
-      type(error_t), allocatable :: error
 
       if (allocated(critical%limit_force)) then
          call prove_limit(family, critical, proof)
          return
       end if
       if (allocated(critical%standing)) then
-         call family%build(critical%stands, scene, error)
-         if (allocated(error)) return
-         if (.not. decides_as_graph(scene%settings, scene%contacts)) return
-         call scene_graph(scene%settings, scene%system, scene%contacts, graph)
-         call prove_state(scene, graph, verdict%stable, proof)
+         call build_once(family, critical%stands, stands)
+         if (.not. allocated(stands%contacts%joint)) return
+         if (.not. decides_as_graph(stands%settings, stands%contacts)) return
+         call scene_graph(stands%settings, stands%system, stands%contacts, graph)
+         call prove_state(stands, graph, verdict%stable, proof)
          proof%force_at = critical%stands
       end if
       if (.not. allocated(critical%fallen)) return
-      call family%build(critical%falls, scene, error)
-      if (allocated(error)) return
-      if (.not. decides_as_graph(scene%settings, scene%contacts)) return
-      call scene_graph(scene%settings, scene%system, scene%contacts, graph)
-      call prove_state(scene, graph, verdict%collapsed, other)
+      call build_once(family, critical%falls, falls)
+      if (.not. allocated(falls%contacts%joint)) return
+      if (.not. decides_as_graph(falls%settings, falls%contacts)) return
+      call scene_graph(falls%settings, falls%system, falls%contacts, graph)
+      call prove_state(falls, graph, verdict%collapsed, other)
       if (.not. allocated(other%velocity)) return
       proof%law_violation = max(proof%law_violation, other%law_violation)
       proof%power = other%power
       proof%motion_at = critical%falls
       call move_alloc(other%velocity, proof%velocity)
-      if (.not. allocated(proof%force)) proof%scene = scene
-      proof%same_shape = .not. any(abs(proof%scene%system%vertex - scene%system%vertex) > 0.0_wp)
+      if (.not. allocated(proof%force)) proof%scene = falls
+      proof%same_shape = .not. any(abs(proof%scene%system%vertex - falls%system%vertex) > 0.0_wp)
    end subroutine prove_search
 
    !> Least and greatest force of a bar with which the blocks stand: a pair of forces in its place

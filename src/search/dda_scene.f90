@@ -9,7 +9,7 @@ module dda_scene
    implicit none
    private
 
-   public :: scene_t, family_t, searched_load, searched_load_enum
+   public :: scene_t, family_t, searched_load, searched_load_enum, build_once
 
    !> Load coefficients that come last on the loading path
    type :: searched_load_enum
@@ -70,6 +70,20 @@ module dda_scene
    end interface
 
 contains
+
+   !> Make the scene of one value where it is not there yet; without joints where there is none
+   pure subroutine build_once(family, value, scene)
+      class(family_t), intent(in) :: family
+      !> Value of its parameter
+      real(wp), intent(in) :: value
+      type(scene_t), intent(inout) :: scene
+      type(error_t), allocatable :: error
+
+      if (allocated(scene%contacts%joint)) return
+      call family%build(value, scene, error)
+      if (allocated(error) .and. allocated(scene%contacts%joint)) &
+         & deallocate (scene%contacts%joint)
+   end subroutine build_once
 
    !> Scenes that are no chains
    pure subroutine link_nothing(family, value, settings, chain, linked)
