@@ -1,9 +1,11 @@
 !> Files written through the C library, which says when a disk is full; Fortran's flush does not.
 !> Whatever fails on the way is reported when the file is flushed or closed
 module dda_binary_file
-   use, intrinsic :: iso_c_binding, only : c_associated, c_char, c_int, c_loc, c_long, &
-      & c_null_char, c_null_ptr, c_ptr, c_size_t
+   use, intrinsic :: iso_c_binding, only : c_associated, c_int, c_loc, c_long, c_null_char, &
+      & c_null_ptr, c_ptr, c_size_t
    use, intrinsic :: iso_fortran_env, only : int32, int64
+   use dda_c_files, only : c_fopen, c_fdopen, c_fwrite, c_fflush, c_fseek, c_ftell, c_fileno, &
+      & c_fsync, c_ferror, c_fclose
    use dda_error, only : error_t, fatal_error
    use dda_kinds, only : wp
    implicit none
@@ -25,112 +27,6 @@ module dda_binary_file
    !> What a write that failed may have met
    character(len=*), parameter :: no_room = "cannot write the results: no space left on the "// &
       & "disk, or above the limit of a file (ulimit -f); make room or write elsewhere"
-
-   interface
-      !> C: open a file
-      function c_fopen(path, mode) bind(c, name="fopen") result(handle)
-         import :: c_char, c_ptr
-         !> Its name, ended by a null character
-         character(kind=c_char), intent(in) :: path(*)
-         !> What is wanted of it, ended by a null character
-         character(kind=c_char), intent(in) :: mode(*)
-         !> The file, null if it cannot be opened
-         type(c_ptr) :: handle
-      end function c_fopen
-
-      !> C: a file that the system has opened already
-      function c_fdopen(descriptor, mode) bind(c, name="fdopen") result(handle)
-         import :: c_char, c_int, c_ptr
-         !> The system's number of the file
-         integer(c_int), intent(in), value :: descriptor
-         !> What is wanted of it, ended by a null character
-         character(kind=c_char), intent(in) :: mode(*)
-         !> The file, null if there is none of that number
-         type(c_ptr) :: handle
-      end function c_fdopen
-
-      !> C: write items
-      function c_fwrite(items, size, count, handle) bind(c, name="fwrite") result(written)
-         import :: c_ptr, c_size_t
-         !> Where the items are
-         type(c_ptr), intent(in), value :: items
-         !> Size of an item
-         integer(c_size_t), intent(in), value :: size
-         !> Number of items
-         integer(c_size_t), intent(in), value :: count
-         !> The file
-         type(c_ptr), intent(in), value :: handle
-         !> Number of items written
-         integer(c_size_t) :: written
-      end function c_fwrite
-
-      !> C: hand what is buffered to the system
-      function c_fflush(handle) bind(c, name="fflush") result(failed)
-         import :: c_int, c_ptr
-         !> The file
-         type(c_ptr), intent(in), value :: handle
-         !> 0 if all is well
-         integer(c_int) :: failed
-      end function c_fflush
-
-      !> C: go to a place of a file
-      function c_fseek(handle, offset, origin) bind(c, name="fseek") result(failed)
-         import :: c_int, c_long, c_ptr
-         !> The file
-         type(c_ptr), intent(in), value :: handle
-         !> Bytes from the origin
-         integer(c_long), intent(in), value :: offset
-         !> 0 for the beginning of the file
-         integer(c_int), intent(in), value :: origin
-         !> 0 if all is well
-         integer(c_int) :: failed
-      end function c_fseek
-
-      !> C: the place that is written next
-      function c_ftell(handle) bind(c, name="ftell") result(place)
-         import :: c_long, c_ptr
-         !> The file
-         type(c_ptr), intent(in), value :: handle
-         !> Bytes before it
-         integer(c_long) :: place
-      end function c_ftell
-
-      !> C: the system's number of a file
-      function c_fileno(handle) bind(c, name="fileno") result(descriptor)
-         import :: c_int, c_ptr
-         !> The file
-         type(c_ptr), intent(in), value :: handle
-         !> Its number
-         integer(c_int) :: descriptor
-      end function c_fileno
-
-      !> C: wait until the disk has what the system was given
-      function c_fsync(descriptor) bind(c, name="fsync") result(failed)
-         import :: c_int
-         !> The system's number of the file
-         integer(c_int), intent(in), value :: descriptor
-         !> 0 if all is well
-         integer(c_int) :: failed
-      end function c_fsync
-
-      !> C: whether anything has failed since the file was opened
-      function c_ferror(handle) bind(c, name="ferror") result(failed)
-         import :: c_int, c_ptr
-         !> The file
-         type(c_ptr), intent(in), value :: handle
-         !> 0 if all is well
-         integer(c_int) :: failed
-      end function c_ferror
-
-      !> C: close a file
-      function c_fclose(handle) bind(c, name="fclose") result(failed)
-         import :: c_int, c_ptr
-         !> The file
-         type(c_ptr), intent(in), value :: handle
-         !> 0 if all is well
-         integer(c_int) :: failed
-      end function c_fclose
-   end interface
 
 contains
 

@@ -1,7 +1,8 @@
 !> A text file as one string, whatever its line ends, or a failure with a line
 module dda_text_file
-   use, intrinsic :: iso_c_binding, only : c_associated, c_char, c_int, c_loc, c_null_char, &
-      c_ptr, c_size_t
+   use, intrinsic :: iso_c_binding, only : c_associated, c_int, c_loc, c_null_char, c_ptr, &
+      & c_size_t
+   use dda_c_files, only : c_fopen, c_ferror, c_fclose, c_fread, c_access
    use dda_error, only : error_t, fatal_error
    use dda_text, only : to_text
    implicit none
@@ -13,64 +14,6 @@ module dda_text_file
    integer, parameter :: megabyte = 1024**2
    !> Largest file that is read [bytes]
    integer, parameter :: max_file_size = 512*megabyte
-
-   ! Through the C library: Fortran's open cuts the blanks at the end of a name.
-   interface
-      !> C: open a file
-      function c_fopen(path, mode) bind(c, name="fopen") result(handle)
-         import :: c_char, c_ptr
-         !> Its name, ended by a null character
-         character(kind=c_char), intent(in) :: path(*)
-         !> What is wanted of it, ended by a null character
-         character(kind=c_char), intent(in) :: mode(*)
-         !> The file, null if it cannot be opened
-         type(c_ptr) :: handle
-      end function c_fopen
-
-      !> C: read items
-      function c_fread(items, size, count, handle) bind(c, name="fread") result(got)
-         import :: c_ptr, c_size_t
-         !> Where the items go
-         type(c_ptr), intent(in), value :: items
-         !> Size of an item
-         integer(c_size_t), intent(in), value :: size
-         !> Number of items
-         integer(c_size_t), intent(in), value :: count
-         !> The file
-         type(c_ptr), intent(in), value :: handle
-         !> Number of items read; fewer at the end of the file
-         integer(c_size_t) :: got
-      end function c_fread
-
-      !> C: whether anything has failed since the file was opened
-      function c_ferror(handle) bind(c, name="ferror") result(failed)
-         import :: c_int, c_ptr
-         !> The file
-         type(c_ptr), intent(in), value :: handle
-         !> 0 if all is well
-         integer(c_int) :: failed
-      end function c_ferror
-
-      !> C: close a file
-      function c_fclose(handle) bind(c, name="fclose") result(failed)
-         import :: c_int, c_ptr
-         !> The file
-         type(c_ptr), intent(in), value :: handle
-         !> 0 if all is well
-         integer(c_int) :: failed
-      end function c_fclose
-
-      !> C: what may be done with a file
-      function c_access(path, mode) bind(c, name="access") result(failed)
-         import :: c_char, c_int
-         !> Its name, ended by a null character
-         character(kind=c_char), intent(in) :: path(*)
-         !> What is wanted; 0: that it exists
-         integer(c_int), intent(in), value :: mode
-         !> 0 if it may be done
-         integer(c_int) :: failed
-      end function c_access
-   end interface
 
 contains
 

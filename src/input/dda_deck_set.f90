@@ -9,54 +9,13 @@ module dda_deck_set
    use dda_deck_token, only : shown
    use dda_deck, only : deck_t, deck_place_t, parameter_t, deck_error
    use dda_deck_values, only : name_values
-   use dda_deck_parameter, only : find_parameter
    implicit none
    private
 
-   public :: set_number, set_text, put_number, put_numbers, put_text
+   public :: put_number, put_numbers, put_text
    public :: number_problem, number_fits, text_problem, is_numeric
 
 contains
-
-   !> Give a parameter a number by name
-   pure subroutine set_number(deck, name, value, error)
-      type(deck_t), intent(inout) :: deck
-      !> Name of a key that may vary: friction_deg, joints_deg(2), arch%radius
-      character(len=*), intent(in) :: name
-      !> The number in the unit of the registry
-      real(wp), intent(in) :: value
-      !> No such key, or out of its range
-      type(error_t), allocatable, intent(out) :: error
-      type(parameter_t) :: parameter
-      character(len=:), allocatable :: problem
-
-      call find_parameter(name, parameter, problem)
-      if (len(problem) > 0) then
-         call deck_error(error, problem, deck, deck_place_t())
-      else
-         call put_number(deck, parameter, value, deck_place_t(), error)
-      end if
-   end subroutine set_number
-
-   !> Give a parameter a word by name
-   pure subroutine set_text(deck, name, value, error)
-      type(deck_t), intent(inout) :: deck
-      !> Name of a key that may vary: springing, analysis%geometry
-      character(len=*), intent(in) :: name
-      !> The word
-      character(len=*), intent(in) :: value
-      !> No such key, or a word that it does not know
-      type(error_t), allocatable, intent(out) :: error
-      type(parameter_t) :: parameter
-      character(len=:), allocatable :: problem
-
-      call find_parameter(name, parameter, problem)
-      if (len(problem) > 0) then
-         call deck_error(error, problem, deck, deck_place_t())
-      else
-         call put_text(deck, parameter, value, deck_place_t(), error)
-      end if
-   end subroutine set_text
 
    !> Put a number into a key or into one item of its list
    pure subroutine put_number(deck, parameter, value, place, error)

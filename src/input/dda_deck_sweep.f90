@@ -13,7 +13,7 @@ module dda_deck_sweep
    implicit none
    private
 
-   public :: add_sweep, n_cases, case_deck, turn_to_case, set_case, swept_names, swept_texts
+   public :: add_sweep, n_cases, case_deck, turn_to_case, swept_names, swept_texts
    public :: max_sweeps
 
    !> Most &sweep groups of a deck
@@ -235,20 +235,6 @@ contains
       end do
    end function positions
 
-   !> Put the swept values of a case into the deck of the sweeps
-   pure subroutine set_case(deck, number, error)
-      !> The deck; it may hold the values of another case
-      type(deck_t), intent(inout) :: deck
-      !> Number of the case, from 1 to n_cases
-      integer, intent(in) :: number
-      !> An item of a list that is not there; never for a deck that was checked
-      type(error_t), allocatable, intent(out) :: error
-      type(deck_t) :: swept
-
-      swept%sweeps = deck%sweeps
-      call put_case(swept, number, deck, error)
-   end subroutine set_case
-
    !> Put the swept values of a case into a deck
    pure subroutine put_case(swept, number, deck, error)
       !> A deck with the sweeps
@@ -257,7 +243,7 @@ contains
       integer, intent(in) :: number
       !> The deck that receives them
       type(deck_t), intent(inout) :: deck
-      !> As in set_case
+      !> An item of a list that is not there; never for a deck that was checked
       type(error_t), allocatable, intent(out) :: error
       integer :: position(size(swept%sweeps)), s
 
@@ -283,7 +269,7 @@ contains
       integer, intent(in) :: number
       !> The same deck with the swept values of the case
       type(deck_t), intent(out) :: result
-      !> As in set_case
+      !> As in put_case
       type(error_t), allocatable, intent(out) :: error
 
       result = deck
@@ -299,7 +285,7 @@ contains
       integer, intent(in) :: number
       !> The deck of a case, without sweeps; new, or as this routine left it
       type(deck_t), intent(inout) :: result
-      !> As in set_case
+      !> As in put_case
       type(error_t), allocatable, intent(out) :: error
 
       if (.not. allocated(result%value)) then
