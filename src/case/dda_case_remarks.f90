@@ -73,10 +73,6 @@ contains
          end if
       end if
       remark = order_remark(outcome, remark)
-      if (outcome%jumps == 0) return
-      if (len(remark) > 0) remark = remark//"; "
-      remark = remark//"jumps on the loading path: "//to_text(outcome%jumps)//", the largest " &
-         & //to_text(outcome%largest_jump)//" m"
    end function path_remark
 
    !> Why forces after stages are not those of the last shape built at once
@@ -143,17 +139,20 @@ contains
    end function change_remark
 
    !> What the user should know of jumps on the loading path
-   pure function jump_remark(critical, before) result(remark)
-      !> What was found
-      type(critical_t), intent(in) :: critical
+   pure function jump_remark(jumps, largest, before) result(remark)
+      !> How many there were
+      integer, intent(in) :: jumps
+      !> The largest displacement of one [m]
+      real(wp), intent(in) :: largest
       !> What else there is to know
       character(len=*), intent(in) :: before
       !> All of it
       character(len=:), allocatable :: remark
 
       remark = before
+      if (jumps == 0) return
       if (len(remark) > 0) remark = remark//"; "
-      remark = remark//"jumps on the loading path: "//to_text(critical%jumps)//", the largest " &
-         & //to_text(critical%largest_jump)//" m"
+      remark = remark//"jumps on the loading path: "//to_text(jumps)//", the largest " &
+         & //to_text(largest)//" m"
    end function jump_remark
 end module dda_case_remarks

@@ -147,6 +147,7 @@ contains
             row%path_time = some_number(outcome%path_time)
             remark = path_remark(outcome, remark)
          end if
+         remark = jump_remark(outcome%jumps, outcome%largest_jump, remark)
          if (outcome%verdict == verdict%collapsed .and. allocated(outcome%motion) &
             & .and. .not. this%plan%velocities .and. scene_kind(this%family%deck) /= "arch") &
             & remark = fall_remark(this%scene%system, outcome%motion, remark)
@@ -204,7 +205,7 @@ contains
             row%exact_high = some_number(maxval(critical%limit))
          end if
          if (critical%has_other) remark = "it also collapses at "//to_text(critical%other)
-         if (critical%jumps > 0) remark = jump_remark(critical, remark)
+         remark = jump_remark(critical%jumps, critical%largest_jump, remark)
          if (critical%others > 0 .and. critical%verdict /= verdict%undecided) &
             & remark = change_remark(critical, remark)
          if (allocated(critical%fallen)) &

@@ -118,6 +118,8 @@ contains
       end if
       associate (outcome => decision%outcome)
          outcome%steps = outcome%steps + proof%n_event + 1
+         outcome%jumps = outcome%jumps + proof%n_jump
+         outcome%largest_jump = max(outcome%largest_jump, proof%largest_jump)
          outcome%factorisations = outcome%factorisations + proof%n_factorisation
          if (.not. allocated(outcome%motion)) &
             & allocate (outcome%motion(settings%n_dof, maxval(system%equation)), source=0.0_wp)

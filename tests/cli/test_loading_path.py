@@ -214,3 +214,12 @@ def test_arch_has_one_verdict_with_and_without_tables(tmp_path: Path) -> None:
         with (tmp_path / "deck" / "results.csv").open() as rows:
             verdicts += [row["verdict"] for row in csv.DictReader(rows)]
     assert verdicts == ["collapsed", "collapsed"]
+
+
+def test_a_decision_tells_the_jumps_on_its_way_as_the_search_does(tmp_path: Path) -> None:
+    """The wall of 4 by 8 bricks with friction 0.65 jumps to another state before 0.54 of its weight pushes it."""
+    (row,) = run_wall(tmp_path, 4, 8, 0.65, "&load horizontal_coefficient = 0.54 /\n")
+    assert row["verdict"] == "stable"
+    assert "jumps on the loading path: " in (tmp_path / "deck" / "log.txt").read_text()
+    run_wall(tmp_path, 4, 8, 0.65, "&load horizontal_coefficient = 0.1 /\n")
+    assert "jumps" not in (tmp_path / "deck" / "log.txt").read_text()
