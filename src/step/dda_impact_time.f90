@@ -16,8 +16,9 @@ module dda_impact_time
 
    public :: check_impact
 
-   !> Without restitution only impacts end a step that carry this share of the energy of motion: in
-   !> a pile of many blocks none does, and its steps stay as long as they are
+   !> Without restitution only impacts end a step that carry this share of the energy of motion, and
+   !> of what the longest step of free fall adds to it: in a pile of many blocks none does, and its
+   !> steps stay as long as they are
    real(wp), parameter :: notable = 1.0e-2_wp
 
 contains
@@ -51,7 +52,8 @@ contains
       associate (velocity => packed_velocity(system, size(free, 1)))
          speed = relative_displacement(contacts%springs, velocity)
          least = merge(0.0_wp, notable, settings%restitution > 0.0_wp) &
-            & *kinetic_energy(equations, velocity)
+            & *(kinetic_energy(equations, velocity) &
+            & + sum(equations%mass(1, 1, :))*step%slowest_impact**2/8.0_wp)
       end associate
       acceleration = relative_displacement(contacts%springs, free)
       earliest = huge(earliest)
