@@ -119,9 +119,6 @@ def test_rings_carry_what_the_linear_programme_says(tmp_path: Path, row: dict[st
     assert float(found["critical"]) <= float(found["exact_high"])
     if row["friction_all_joints"] == "rough":
         assert float(found["critical"]) == pytest.approx(associated, rel=1e-8)
-    if row["P_over_weight_one_coulomb_state"]:
-        # jumps on the loading path choose among states that are a ten-thousandth apart
-        assert float(found["critical"]) >= float(row["P_over_weight_one_coulomb_state"]) * (1.0 - 2e-4)
 
 
 def test_a_live_push_is_the_coefficient_times_the_factor(tmp_path: Path) -> None:
