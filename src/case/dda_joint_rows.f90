@@ -92,9 +92,12 @@ contains
       real(wp), intent(in), optional :: motion(:, :)
       integer :: role(size(fallen%joint)), j, k
       logical :: slip(size(fallen%joint))
+      real(wp) :: largest
 
-      role = role_of_joint(fallen, motion)
-      slip = slides(fallen%face, fallen%increment(3, :), largest_of(fallen, motion))
+      largest = largest_of(fallen)
+      if (present(motion)) largest = largest_of(fallen, motion)
+      role = role_of_joint(fallen, largest)
+      slip = slides(fallen%face, fallen%increment(3, :), largest)
       do j = 1, size(row)
          row(j)%slides%known = .false.
          k = place_in(fallen%joint, joint(j), j)

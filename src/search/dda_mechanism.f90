@@ -93,13 +93,14 @@ contains
       !> Motion of the blocks in the step, where it is known: (n_dof, n_equation)
       real(wp), intent(in), optional :: motion(:, :)
       integer :: role(size(contacts%face)), n
-      real(wp) :: opening, slip
+      real(wp) :: largest, opening, slip
 
-      role = role_of_joint(contacts, motion)
+      largest = largest_of(contacts)
+      if (present(motion)) largest = largest_of(contacts, motion)
+      role = role_of_joint(contacts, largest)
       n = size(joint_angle_deg)
       associate (increment => contacts%increment)
-         slip = sum(abs(increment(3, :)), mask=slides(contacts%face, increment(3, :), &
-            & largest_of(contacts, motion)))
+         slip = sum(abs(increment(3, :)), mask=slides(contacts%face, increment(3, :), largest))
          opening = sum(increment(1, :), mask=role == mechanism_role%hinge_second) &
             & + sum(increment(2, :), mask=role == mechanism_role%hinge_first)
       end associate
@@ -122,11 +123,11 @@ contains
 
    !> What every joint does in the last step; openings small beside the largest motion are elastic.
    !> A joint turns about a corner that is closed; if it slides there, too, the turn is told
-   pure function role_of_joint(contacts, motion) result(role)
+   pure function role_of_joint(contacts, largest) result(role)
       !> Contacts at the end of a step
       type(contacts_t), intent(in) :: contacts
-      !> Motion of the blocks in the step, where it is known: (n_dof, n_equation)
-      real(wp), intent(in), optional :: motion(:, :)
+      !> Largest displacement in the step, of `largest_of` [m]
+      real(wp), intent(in) :: largest
       !> One of mechanism_role each: (n_joint)
       integer :: role(size(contacts%face))
       real(wp) :: least
@@ -135,7 +136,7 @@ contains
 
       least = elastic_share*maxval(abs(contacts%increment))
       role = merge(mechanism_role%sliding, mechanism_role%locked, slides(contacts%face, &
-         & contacts%increment(3, :), largest_of(contacts, motion)))
+         & contacts%increment(3, :), largest))
       do j = 1, size(role)
          opens = contacts%face(j)%open .and. contacts%increment(1:2, j) > least
          if (.not. any(opens)) cycle
