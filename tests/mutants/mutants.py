@@ -1,9 +1,10 @@
 #!/usr/bin/env python3
 """Put single faults into src/, one after the other, and tell which test finds each.
 
-The tree is copied and built once; each fault is built incrementally in the copy. The unit tests of the fault's
-room run first, then those of the other rooms, then the physics, then, if asked, tests of the command and of Python,
-those first that are about the room. The table has a row for each fault as soon as it is known.
+The tree is copied and built once, with lines counted: a program that never runs the faulty statement cannot find
+it and is left out. Each fault is built incrementally in the copy. The unit tests of the fault's room run first,
+then those of the other rooms, then the physics, then, if asked, tests of the command and of Python, those first
+that are about the room. The table has a row for each fault as soon as it is known.
 """
 
 from __future__ import annotations
@@ -19,7 +20,9 @@ import time
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from faults import Fault, draw_faults
+sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "measure"))
+from faults import Fault, draw_faults  # noqa: E402
+from line_coverage import count_lines  # noqa: E402
 
 PARTS = ("CMakeLists.txt", "CMakePresets.json", "cmake", "src", "tests", "post", "input", "docs", "pyproject.toml",
          "README.md", "CITATION.cff", "LICENSE", "CHANGELOG.md")
@@ -57,6 +60,8 @@ class Copy:
     jobs: int
     limit: float
     usual: dict[str, float] = field(default_factory=dict)
+    #: Lines that hold code, by file, and whether each program has run them
+    ran: dict[str, dict[Path, dict[int, int]]] = field(default_factory=dict)
 
     @property
     def build(self) -> Path:
@@ -68,14 +73,27 @@ class Copy:
         command = ["cmake", "--build", str(self.build), "-j", str(self.jobs), "--target", *targets]
         return subprocess.run(command, capture_output=True).returncode == 0
 
-    def holds(self, program: str, fault: Fault) -> bool:
-        """Whether a test program has procedures of the faulty module; what a constant is goes farther."""
-        mark = f"__{fault.path.stem}_MOD_".encode()
-        return "parameter" in fault.before or mark in (self.build / "tests" / "bin" / program).read_bytes()
+    def reaches(self, program: str, fault: Fault) -> bool:
+        """Whether a test program runs the faulty statement, or something of a file that knows a faulty constant."""
+        path = self.root / fault.path
+        if "parameter" not in fault.before:
+            return runs(self.ran[program].get(path, {}), path, fault.line)
+        return any(any(counts.values()) and (other == path or f"use {path.stem}," in other.read_text())
+                   for other, counts in self.ran[program].items())
+
+    def count(self, program: str) -> None:
+        """Keep which lines a program has run in its last run."""
+        counted = self.root / "counted"
+        for data in counted.rglob("*.gcda"):
+            notes = Path("/", *data.relative_to(counted).parts).with_suffix(".gcno")
+            shutil.copyfile(notes, data.with_suffix(".gcno"))
+        self.ran[program] = count_lines(self.root, counted) if counted.exists() else {}
+        shutil.rmtree(counted, ignore_errors=True)
 
     def run(self, program: str) -> tuple[str, float]:
         """Run a test program: the test that failed, or nothing, and the seconds it took."""
         command = [str(self.build / "tests" / "bin" / program)]
+        shutil.rmtree(self.root / "counted", ignore_errors=True)
         return self.finish(command, program, self.build / "tests")
 
     def run_pytest(self, room: str) -> tuple[str, float]:
@@ -94,7 +112,8 @@ class Copy:
         """Wait for a command, ten times as long as it takes without a fault at most."""
         limit = max(20.0, 10.0 * self.usual[name]) if name in self.usual else self.limit
         environment = {**os.environ, "DDA": str(self.build / "bin" / "dda"), "OMP_NUM_THREADS": "1",
-                       "VOUSSOIR_BUILD": str(self.build), "PYTHONPATH": str(self.build / "python")}
+                       "VOUSSOIR_BUILD": str(self.build), "PYTHONPATH": str(self.build / "python"),
+                       "GCOV_PREFIX": str(self.root / "counted")}
         start = time.monotonic()
         try:
             done = subprocess.run(command, cwd=folder, env=environment, timeout=limit, text=True,
@@ -109,6 +128,18 @@ class Copy:
             return failed.group(1) or failed.group(2), taken
         begun = re.findall(r"_suite\.(\w+)", done.stdout)
         return f"{begun[-1]} (crash)" if begun else f"{name} (crash)", taken
+
+
+def runs(counts: dict[int, int], path: Path, line: int) -> bool:
+    """Whether the statement of a line was run; one that is not counted, such as a default, where its file was."""
+    text = path.read_text().splitlines()
+    first = last = line
+    while first > 1 and text[first - 2].split("!", 1)[0].rstrip().endswith("&"):
+        first -= 1
+    while last < len(text) and text[last - 1].split("!", 1)[0].rstrip().endswith("&"):
+        last += 1
+    here = [counts[number] for number in range(first, last + 1) if number in counts]
+    return any(here or counts.values())
 
 
 def copy_changed(source: Path, target: Path) -> None:
@@ -130,7 +161,8 @@ def prepare(source: Path, copy: Copy, asked: argparse.Namespace) -> list[str]:
             copy_changed(source / part, copy.root / part)
     if not (copy.build / "CMakeCache.txt").exists():
         subprocess.run(["cmake", "-S", copy.root, "-B", copy.build, "-G", "Ninja", "-DCMAKE_BUILD_TYPE=Release",
-                        f"-DCMAKE_Fortran_FLAGS_RELEASE={asked.flags}"], check=True, stdout=subprocess.DEVNULL)
+                        f"-DCMAKE_Fortran_FLAGS_RELEASE={asked.flags}", "-DVOUSSOIR_COVERAGE=ON"],
+                       check=True, stdout=subprocess.DEVNULL)
     listed = (copy.root / "tests" / "CMakeLists.txt").read_text()
     units = re.findall(r"add_pfunit_ctest\((unit_\w+)", listed)
     if not copy.make(*units, "physics", "dda", *(["_theory"] if "suite" in asked.levels else [])):
@@ -145,7 +177,7 @@ def judge(fault: Fault, copy: Copy, units: list[str], asked: argparse.Namespace)
     levels = [("room", [own] if own in units else []), ("unit", [name for name in units if name != own]),
               ("physics", ["physics"])]
     for level, programs in levels:
-        programs = [program for program in programs if copy.holds(program, fault)]
+        programs = [program for program in programs if copy.reaches(program, fault)]
         if level not in asked.levels:
             continue
         if programs and not copy.make(*programs):
@@ -218,6 +250,8 @@ def main() -> int:
             if test:
                 print(f"{program} fails without a fault: {test}", file=sys.stderr)
                 return 1
+            if program != "suite":
+                copy.count(program)
     rows: list[dict[str, object]] = []
     with table.open("w", newline="") as lines:
         writer = csv.DictWriter(lines, COLUMNS, lineterminator="\n")
