@@ -24,8 +24,9 @@ contains
       logical :: ok
 
       allocate (chosen(total), source=text == "")
+      if (text == "") return
       first = 1
-      do while (first <= len(text))
+      do while (first <= len(text) + 1)
          comma = index(text(first:)//",", ",")
          call read_range(text(first:first + comma - 2), low, high, ok)
          if (ok) ok = low >= 1 .and. low <= high .and. high <= total

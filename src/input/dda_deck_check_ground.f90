@@ -24,8 +24,10 @@ contains
       call check_collapse(deck, error)
       if (.not. allocated(error) .and. deck%searched%key > 0) call check_search_in_time(deck, error)
       if (allocated(error)) return
-      if (.not. (deck%ground%given .or. varies_ground(deck))) return
+      key = ground_key(deck)
+      if (.not. deck%ground%given .and. key == 0) return
       place = deck%group(group_index("ground"))
+      if (place%line == 0) place = deck%value(key)%place
       if (place%line == 0) place = place_of(deck, key_index("search", "parameter"))
       key = 0
       problem = ""
@@ -44,19 +46,17 @@ contains
       if (len(problem) > 0) call deck_error(error, problem, deck, place)
    end subroutine check_ground
 
-   !> Whether the search or a sweep gives a key of &ground
-   pure logical function varies_ground(deck)
+   !> The first key of &ground that is searched, given, or swept; 0 if none is
+   pure integer function ground_key(deck)
       !> The deck of the case
       type(deck_t), intent(in) :: deck
-      integer :: s
 
-      varies_ground = .false.
-      if (deck%searched%key > 0) varies_ground = deck_key(deck%searched%key)%group == "ground"
-      do s = 1, size(deck%sweeps)
-         varies_ground = varies_ground &
-            & .or. deck_key(deck%sweeps(s)%parameter%key)%group == "ground"
-      end do
-   end function varies_ground
+      ground_key = deck%searched%key
+      if (ground_key > 0) then
+         if (deck_key(ground_key)%group == "ground") return
+      end if
+      ground_key = findloc(deck_key%group == "ground" .and. deck%value%given, .true., dim=1)
+   end function ground_key
 
    !> Whether a key of &ground is given, or searched
    pure logical function gives(deck, name)

@@ -50,7 +50,7 @@ contains
       do i = 2, size(name)
          if (len(problem) > 0) exit
          key = key_index("live", name(i))
-         if (i > 2 .and. .not. deck%value(key)%given) cycle
+         if (i > 2 .and. .not. (deck%value(key)%given .or. deck%searched%key == key)) cycle
          if (size(deck%value(key)%numbers) == n) cycle
          problem = "live%"//trim(name(i))//" needs as many numbers as live%x, "//to_text(n) &
             & //", got "//to_text(size(deck%value(key)%numbers))//"; give one per force"
