@@ -89,7 +89,9 @@ contains
          & /max(rates%drive, tiny(1.0_wp))
    end subroutine find_rates
 
-   !> Give back what damping has taken from the rates of an assembly that does not move
+   !> Give back what damping has taken from the rates of an assembly that does not move. What is
+   !> soft takes many turns; what does not become less drives a motion, however small a share of the
+   !> load it is, and stays unbalanced
    pure subroutine undamp_rates(joints, equations, load_rate, rates)
       type(coulomb_joints_t), intent(in) :: joints
       !> Their equations, those of the rates
@@ -97,21 +99,23 @@ contains
       !> Rate of the load: (n_dof, n_block)
       real(wp), intent(in) :: load_rate(:, :)
       type(rates_t), intent(inout) :: rates
-      integer, parameter :: max_turn = 5
-      real(wp), parameter :: exact = 1.0e-12_wp
+      integer, parameter :: max_turn = 40
+      real(wp), parameter :: exact = 1.0e-12_wp, less = 0.9_wp
       real(wp) :: more(size(load_rate, 1), size(load_rate, 2)), opening(3, size(rates%face, 2))
-      real(wp) :: rest(size(load_rate, 1), size(load_rate, 2)), left
+      real(wp) :: rest(size(load_rate, 1), size(load_rate, 2)), before, scale
       integer :: turn
 
-      left = rates%unbalanced*rates%drive
+      scale = max(rates%drive, tiny(1.0_wp))
       do turn = 1, max_turn
-         if (left <= exact*rates%drive) exit
+         if (rates%unbalanced <= exact) exit
+         before = rates%unbalanced
          call imbalance(joints, load_rate, rates%force, rest)
          call solve_equations(equations, joints, rest, more, opening)
          rates%motion = rates%motion + more
          rates%opening = rates%opening + opening
          call spring_forces(joints, rates%face, rates%opening, rates%force)
-         left = equations%damping*maxval(abs(joints%graph%mass*more))
+         rates%unbalanced = equations%damping*maxval(abs(joints%graph%mass*more))/scale
+         if (rates%unbalanced > less*before) exit
       end do
    end subroutine undamp_rates
 

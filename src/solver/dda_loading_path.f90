@@ -111,7 +111,9 @@ module dda_loading_path
    !> Largest of them
    real(wp), parameter :: largest_nudge = 1.0e-3_wp
    !> What a motion may leave of a nudge
-   real(wp), parameter :: nudge_left = 1.0e-3_wp
+   real(wp), parameter :: nudge_left = 1.0e-6_wp
+   !> Blocks rest where at most so much of a growing load is not balanced once damping is given back
+   real(wp), parameter :: rests_unbalanced = 1.0e-6_wp
    !> Rounding of forces
    real(wp), parameter :: rounding = 1.0e-12_wp
    !> What need not be taken away of an imbalance
@@ -256,9 +258,10 @@ contains
          if (result%n_jump > max_jump) exit
          call find_rates(path%joints, path%equations, state, way%load, way%opening, path_damping, &
             & rates, found)
-         if (found .and. rates%unbalanced <= moves_unbalanced &
-            & .and. standstill <= max_standstill) then
-            call undamp_rates(path%joints, path%equations, way%load, rates)
+         found = found .and. rates%unbalanced <= moves_unbalanced &
+            & .and. standstill <= max_standstill
+         if (found) call undamp_rates(path%joints, path%equations, way%load, rates)
+         if (found .and. rates%unbalanced <= rests_unbalanced) then
             event = next_event(path%joints, state, rates, h_end - result%reached)
             standstill = merge(standstill + 1, 0, event%distance < no_way)
             call move_on(path%joints, rates, event, state)

@@ -12,18 +12,35 @@ import pytest
 pytest.importorskip("scipy", reason="the linear programme wants scipy")
 pytest.importorskip("voussoir.verify.command", reason="PYTHONPATH wants python/")
 
+from voussoir.command.main import main  # noqa: E402
 from voussoir.verify import command as verify_command  # noqa: E402
 from voussoir.verify.deck import read_record  # noqa: E402
+from voussoir.verify.proofs import Scene  # noqa: E402
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "cli"))
 
 from bridges import rings  # noqa: E402
-from live_assemblies import held_state  # noqa: E402
+from live_assemblies import held_state, random_assembly  # noqa: E402
 from test_live_loads import friction_of, table  # noqa: E402
 
 ROWS = [row for row in table("practice_multi_ring.csv") if row["P_over_weight_one_coulomb_state"]]
 #: Slower than the others: half the way there and back for ever
 SHARES = {("0.12", "2", "0.6"): 0.15}
+
+
+def search(folder: Path, blocks: str, friction: str) -> tuple[dict[str, str], Scene]:
+    """Row of the search of the first collapse, and the scene under a load factor of one."""
+    (folder / "x.blocks").write_text(blocks)
+    (folder / "x.nml").write_text(
+        "&scene kind = 'blocks', geometry = 'x.blocks' /\n&material unit_weight = 1.0 /\n"
+        f"&joint friction_deg = {friction} /\n&search parameter = 'load_factor' /\n"
+    )
+    subprocess.run([os.environ["DDA"], "run", "x.nml", "--quiet"], cwd=folder, check=True)
+    assert main(["verify", str(folder / "x"), "--quiet"]) == 0
+    tables = {name: verify_command.read_table(folder / "x" / f"{name}.csv") for name in ("results", "blocks")}
+    (found,) = tables["results"][1]
+    deck = read_record(folder / "x").with_value("load_factor", "1")
+    return found, verify_command.scene_of(deck, tables["blocks"][1], [folder], verify_command.Finding())
 
 
 @pytest.mark.parametrize("row", ROWS, ids=lambda row: "-".join(list(row.values())[:5]))
@@ -32,17 +49,7 @@ def test_first_collapse_is_between_a_state_of_coulombs_law_and_the_associated_li
 ) -> None:
     """The states of the table are those of a repetition that was stopped: up to 6e-5 above where it ends."""
     key = (row["thickness_ratio"], row["rings"], row["friction_all_joints"])
-    (tmp_path / "x.blocks").write_text(rings(row))
-    (tmp_path / "x.nml").write_text(
-        "&scene kind = 'blocks', geometry = 'x.blocks' /\n&material unit_weight = 1.0 /\n"
-        f"&joint friction_deg = {friction_of(key[2])} /\n&search parameter = 'load_factor' /\n"
-    )
-    subprocess.run([os.environ["DDA"], "run", "x.nml", "--quiet"], cwd=tmp_path, check=True)
-    folder = tmp_path / "x"
-    tables = {name: verify_command.read_table(folder / f"{name}.csv") for name in ("results", "blocks")}
-    (found,) = tables["results"][1]
-    deck = read_record(folder).with_value("load_factor", "1")
-    scene = verify_command.scene_of(deck, tables["blocks"][1], [tmp_path], verify_command.Finding())
+    found, scene = search(tmp_path, rings(row), friction_of(key[2]))
     state = held_state(scene, SHARES.get(key, 0.8))
     # a collapse it is: forces in balance and within the law, and a motion that the loads drive
     assert state.power == pytest.approx(1.0, abs=1e-12)
@@ -51,5 +58,22 @@ def test_first_collapse_is_between_a_state_of_coulombs_law_and_the_associated_li
     assert state.factor <= float(row["P_over_weight_one_coulomb_state"]) * (1.0 + 1e-9)
     assert state.factor * (1.0 - 1e-9) <= float(found["critical"])
     assert float(found["critical"]) <= float(found["exact_high"])
-    if state.factor > 0.99999 * float(found["exact_high"]):
+    if key != ("0.12", "3", "0.6"):
+        # the path of three rings ends at another state
         assert float(found["critical"]) == pytest.approx(state.factor, rel=1e-9)
+
+
+def test_a_motion_that_a_small_share_of_the_load_drives_is_a_collapse(tmp_path: Path) -> None:
+    """Damping of a path took half a percent of the load there, and the blocks seemed to rest up to 3 % more."""
+    blocks, friction = random_assembly(62138)
+    found, scene = search(tmp_path, blocks, repr(friction))
+    state = held_state(scene, 1.0)
+    assert state.change < 1e-6
+    assert float(found["critical"]) == pytest.approx(state.factor, rel=1e-6)
+    assert float(found["critical"]) < 0.97 * float(found["exact_high"])
+
+
+def test_forces_at_the_end_of_a_path_balance_where_so_small_a_share_drives(tmp_path: Path) -> None:
+    blocks, friction = random_assembly(62076)
+    found, _ = search(tmp_path, blocks, repr(friction))
+    assert float(found["critical"]) < float(found["exact_high"])
