@@ -37,6 +37,8 @@ contains
       !> Factorisations
       integer, intent(out) :: n
       integer, parameter :: flow(2) = [flow_rule%associated, flow_rule%coulomb]
+      ! a rest takes about four steps; blocks that creep for longer find none in hundreds
+      integer, parameter :: most_steps = 20
       type(block_system_t) :: moved
       type(contacts_t) :: settled
       type(joint_graph_t) :: graph
@@ -50,6 +52,7 @@ contains
       dead%tilt = 0.0_wp
       dead%push = 0.0_wp
       dead%load_factor = 0.0_wp
+      dead%max_steps = min(settings%max_steps, most_steps)
       call scene_graph(dead, system, contacts, graph)
       if (size(graph%kind) /= size(contacts%joint)) return
       do i = 1, size(flow)
