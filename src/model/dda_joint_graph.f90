@@ -114,9 +114,9 @@ contains
    pure subroutine joint_motion(graph, motion, opening)
       type(joint_graph_t), intent(in) :: graph
       !> Motion of the blocks: (n_dof, n_block)
-      real(wp), intent(in) :: motion(:, :)
+      real(wp), intent(in), contiguous :: motion(:, :)
       !> Opening 1, opening 2, slip: (3, n_joint)
-      real(wp), intent(out) :: opening(:, :)
+      real(wp), intent(out), contiguous :: opening(:, :)
       integer :: b, d, j, k, side
       real(wp) :: sum
 
@@ -149,9 +149,9 @@ contains
       !> Opening and slip by unit motion of each block
       real(wp), intent(in) :: row(3, 3, 2, n_joint)
       !> Motion of the blocks: (3, n_block)
-      real(wp), intent(in) :: motion(:, :)
+      real(wp), intent(in), contiguous :: motion(:, :)
       !> Opening 1, opening 2, slip: (3, n_joint)
-      real(wp), intent(out) :: opening(:, :)
+      real(wp), intent(out), contiguous :: opening(:, :)
       integer :: b, j, k, side
       real(wp) :: x(3), y(3)
 
@@ -175,9 +175,9 @@ contains
    pure subroutine add_joint_forces(graph, force, load)
       type(joint_graph_t), intent(in) :: graph
       !> N1, N2, T of each joint: (3, n_joint) [N/m]
-      real(wp), intent(in) :: force(:, :)
+      real(wp), intent(in), contiguous :: force(:, :)
       !> Forces on the blocks, to which theirs are added: (n_dof, n_block) [N/m, N/m, N ...]
-      real(wp), intent(inout) :: load(:, :)
+      real(wp), intent(inout), contiguous :: load(:, :)
       integer :: b, j, k, side
 
       if (graph%n_dof == 3) then
@@ -204,9 +204,9 @@ contains
       !> Opening and slip by unit motion of each block
       real(wp), intent(in) :: row(3, 3, 2, n_joint)
       !> N1, N2, T of each joint: (3, n_joint)
-      real(wp), intent(in) :: force(:, :)
+      real(wp), intent(in), contiguous :: force(:, :)
       !> Forces on the blocks, to which theirs are added: (3, n_block)
-      real(wp), intent(inout) :: load(:, :)
+      real(wp), intent(inout), contiguous :: load(:, :)
       integer :: b, d, j, side
       real(wp) :: f(3)
 

@@ -62,7 +62,7 @@ module dda_coulomb_equations
    end type coulomb_equations_t
 
    !> Answers that are kept: more cost as much as a new factor
-   integer, parameter :: max_answer = 48
+   integer, parameter :: max_answer = 32
    !> Answers that are worth their cost at once
    integer, parameter :: max_new = 16
 
@@ -87,7 +87,7 @@ contains
       type(coulomb_equations_t), intent(inout) :: equations
       type(coulomb_joints_t), intent(in) :: joints
       !> What corners and joints do: (3, n_joint)
-      integer, intent(in) :: faces(:, :)
+      integer, intent(in), contiguous :: faces(:, :)
       !> Multiple of the mass
       real(wp), intent(in) :: damping
       logical :: few
@@ -245,11 +245,11 @@ contains
       type(coulomb_equations_t), intent(inout) :: equations
       type(coulomb_joints_t), intent(in) :: joints
       !> The load: (n_dof, n_block)
-      real(wp), intent(in) :: load(:, :)
+      real(wp), intent(in), contiguous :: load(:, :)
       !> Motion of the blocks: (n_dof, n_block)
-      real(wp), intent(out) :: motion(:, :)
+      real(wp), intent(out), contiguous :: motion(:, :)
       !> How the joints open with it: (3, n_joint)
-      real(wp), intent(out) :: opening(:, :)
+      real(wp), intent(out), contiguous :: opening(:, :)
       !> What may be left of the load, and rounding of the openings of blocks that move far
       real(wp), parameter :: exact = 1.0e-11_wp, rounding = 1.0e-14_wp
       real(wp) :: force(3, size(opening, 2)), rest(size(load, 1), size(load, 2)), bound
@@ -281,7 +281,7 @@ contains
       type(coulomb_equations_t), intent(in) :: equations
       type(coulomb_joints_t), intent(in) :: joints
       !> Load in, motion out: (n_dof, n_block)
-      real(wp), intent(inout) :: x(:, :)
+      real(wp), intent(inout), contiguous :: x(:, :)
       real(wp) :: y(size(equations%active))
       integer :: i
 

@@ -112,7 +112,7 @@ contains
       !> State before
       type(coulomb_state_t), intent(in) :: before
       !> Increments of opening 1, opening 2 and slip: (3, n_joint)
-      real(wp), intent(in) :: opening(:, :)
+      real(wp), intent(in), contiguous :: opening(:, :)
       !> State after; its motion and load are left alone
       type(coulomb_state_t), intent(inout) :: after
       real(wp) :: bound, trial
@@ -183,11 +183,11 @@ contains
    pure subroutine spring_forces(joints, faces, opening, force)
       type(coulomb_joints_t), intent(in) :: joints
       !> What corners and joints do: (3, n_joint)
-      integer, intent(in) :: faces(:, :)
+      integer, intent(in), contiguous :: faces(:, :)
       !> Opening 1, opening 2, slip: (3, n_joint)
-      real(wp), intent(in) :: opening(:, :)
+      real(wp), intent(in), contiguous :: opening(:, :)
       !> N1, N2, T: (3, n_joint)
-      real(wp), intent(out) :: force(:, :)
+      real(wp), intent(out), contiguous :: force(:, :)
       integer :: i, j
 
       do j = 1, size(faces, 2)
@@ -211,11 +211,11 @@ contains
    pure subroutine imbalance(joints, load, force, rest)
       type(coulomb_joints_t), intent(in) :: joints
       !> The load: (n_dof, n_block)
-      real(wp), intent(in) :: load(:, :)
+      real(wp), intent(in), contiguous :: load(:, :)
       !> Joint forces: (3, n_joint)
-      real(wp), intent(in) :: force(:, :)
+      real(wp), intent(in), contiguous :: force(:, :)
       !> Load and joint forces: (n_dof, n_block)
-      real(wp), intent(out) :: rest(:, :)
+      real(wp), intent(out), contiguous :: rest(:, :)
 
       rest = load
       call add_joint_forces(joints%graph, force, rest)
@@ -226,9 +226,9 @@ contains
       type(coulomb_joints_t), intent(in) :: joints
       type(coulomb_state_t), intent(in) :: state
       !> What corners and joints are to do: (3, n_joint)
-      integer, intent(in) :: faces(:, :)
+      integer, intent(in), contiguous :: faces(:, :)
       !> Change of N1, N2 and T: (3, n_joint)
-      real(wp), intent(out) :: change(:, :)
+      real(wp), intent(out), contiguous :: change(:, :)
       integer :: i, j
 
       do j = 1, size(faces, 2)

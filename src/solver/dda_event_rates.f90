@@ -60,9 +60,9 @@ contains
       !> Where the assembly is
       type(coulomb_state_t), intent(in) :: state
       !> Rate of the load: (n_dof, n_block)
-      real(wp), intent(in) :: load_rate(:, :)
+      real(wp), intent(in), contiguous :: load_rate(:, :)
       !> Rates of opening that are prescribed: (3, n_joint)
-      real(wp), intent(in) :: opening_rate(:, :)
+      real(wp), intent(in), contiguous :: opening_rate(:, :)
       !> Multiple of the mass
       real(wp), intent(in) :: damping
       type(rates_t), intent(inout) :: rates
@@ -97,7 +97,7 @@ contains
       !> Their equations, those of the rates
       type(coulomb_equations_t), intent(inout) :: equations
       !> Rate of the load: (n_dof, n_block)
-      real(wp), intent(in) :: load_rate(:, :)
+      real(wp), intent(in), contiguous :: load_rate(:, :)
       type(rates_t), intent(inout) :: rates
       integer, parameter :: max_turn = 40
       real(wp), parameter :: exact = 1.0e-12_wp, less = 0.9_wp
@@ -124,9 +124,9 @@ contains
       type(coulomb_joints_t), intent(in) :: joints
       type(coulomb_equations_t), intent(inout) :: equations
       !> Rate of the load: (n_dof, n_block)
-      real(wp), intent(in) :: load_rate(:, :)
+      real(wp), intent(in), contiguous :: load_rate(:, :)
       !> Rates of opening that are prescribed: (3, n_joint)
-      real(wp), intent(in) :: opening_rate(:, :)
+      real(wp), intent(in), contiguous :: opening_rate(:, :)
       !> Multiple of the mass
       real(wp), intent(in) :: damping
       !> The rates, with their faces
