@@ -282,6 +282,7 @@ contains
          if (side%end == path_end%reached) side%value = last
          proof%end = side%end
          proof%force = limit%force
+         if (allocated(side%force)) proof%force = side%force
          ! a state that the path has left before the limit does not carry what is told
          if (allocated(proof%state)) deallocate (proof%state)
       end associate

@@ -77,6 +77,21 @@ def test_single_decisions_are_monotone_and_agree_with_the_search(tmp_path: Path)
         assert row["verdict"] == expected, row["horizontal_coefficient"]
 
 
+@pytest.mark.parametrize("flow", ["associated", "coulomb"])
+def test_gravity_that_tilts_keeps_its_size(tmp_path: Path, flow: str) -> None:
+    """A block on a joint of 30 degrees slides at that tilt, with W cos 30 across and W sin 30 along it."""
+    (tmp_path / "x.blocks").write_text("block fixed\n-3 -1\n3 -1\n3 0\n-3 0\nblock\n-1 0\n1 0\n1 1\n-1 1\n")
+    (tmp_path / "x.nml").write_text(
+        f"&scene kind = 'blocks', geometry = 'x.blocks' /\n&analysis flow = '{flow}' /\n"
+        "&material density = 1000 /\n&load gravity = 10 /\n&joint friction_deg = 30 /\n"
+        "&search parameter = 'gravity_direction_deg', low = -90, high = -45 /\n&output joints = .true. /\n")
+    assert run_dda("run", "x.nml", "--quiet", cwd=tmp_path).returncode == 0
+    with (tmp_path / "x" / "joints.csv").open(newline="") as table:
+        (joint,) = csv.DictReader(table)
+    assert float(joint["normal_force"]) == pytest.approx(2e4 * math.cos(math.radians(30)), rel=1e-7)
+    assert abs(float(joint["shear_force"])) == pytest.approx(2e4 * math.sin(math.radians(30)), rel=1e-7)
+
+
 def test_tilting_is_a_push_of_the_same_wall(tmp_path: Path) -> None:
     """27.935 degrees with friction 0.75, in steps of a quarter of a degree to 2e-3."""
     search = "&search parameter = 'gravity_direction_deg', low = -90, high = -50 /\n"
