@@ -285,9 +285,7 @@ contains
       call tell(screen, "velocities", &
          & trim(merge("kept: mode is dynamic                          ", &
          & "none: every step starts at rest, mode is static", plan%velocities)))
-      if (plan%shared_forces) then
-         call tell(screen, "joints.csv", "joint forces recomputed with deformable blocks")
-      else if (deck%output%joints%flag) then
+      if (deck%output%joints%flag) then
          call tell(screen, "joints.csv", "joint forces of the run itself")
       else
          call tell(screen, "joints.csv", "none: output%joints is "//trim(merge( &

@@ -27,7 +27,6 @@ module dda_compute_case
    use dda_mechanism, only : follow_collapse
    use dda_scene, only : build_once, scene_t
    use dda_settings, only : settings_t
-   use dda_shared_forces, only : share_forces
    use dda_stages, only : decide_in_stages
    use dda_verdict, only : verdict
    use dda_worst_position, only : find_worst_position
@@ -77,7 +76,7 @@ contains
          call build_once(this%family, this%critical%stands, this%standing)
          this%scene = this%standing
       end if
-      if (this%plan%shared_forces) call share_told_forces(this)
+      if (this%family%deck%output%joints%flag .and. this%searches) call place_joints(this)
       if (this%searches .and. this%family%deck%output%frames%whole > 0) then
          if (this%limerick) call repeat_with_pictures(this%family, this%critical, this%album)
          if (.not. this%limerick) call take_pictures(this)
@@ -206,17 +205,18 @@ contains
          & this%album%point = this%family%deck%plan%boundary%measured
    end subroutine plan_album
 
-   !> Share out the joint forces of the arch nearest to critical that was found to stand
-   pure subroutine share_told_forces(this)
+   !> Give the assembly nearest to critical that was found to stand its joints: a chain has none
+   pure subroutine place_joints(this)
       !> The case, decided
       type(case_t), intent(inout) :: this
 
       if (.not. allocated(this%critical%standing)) return
-      call build_once(this%family, this%critical%stands, this%standing)
-      call share_forces(this%standing, this%critical%standing)
-      if (.not. allocated(this%critical%standing%contacts%joint)) &
-         & this%critical%standing%contacts%joint = this%standing%contacts%joint
-   end subroutine share_told_forces
+      associate (contacts => this%critical%standing%contacts)
+         if (allocated(contacts%joint)) return
+         call build_once(this%family, this%critical%stands, this%standing)
+         contacts%joint = this%standing%contacts%joint
+      end associate
+   end subroutine place_joints
 
    !> Let the pictures of a static run lie evenly on the way of a collapse, until a corner has moved
    !> a tenth of the radius, or of the size of the blocks; or on the path of its histories

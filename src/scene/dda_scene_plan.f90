@@ -63,8 +63,6 @@ module dda_scene_plan
       logical :: chain = .false.
       !> Whether the left half of the chain will do, as the loads are upright
       logical :: halved = .false.
-      !> Whether the forces of the arch that a search found to stand are computed with strain
-      logical :: shared_forces = .false.
    end type scene_plan_t
 
 contains
@@ -87,19 +85,14 @@ contains
          return
       end if
       plan%reason = strain_reason%none
-      plan%shared_forces = deck%output%joints%flag .and. deck%search%given
-      if (deck%output%joints%flag .and. .not. plan%shared_forces) plan%reason = strain_reason%forces
+      if (deck%output%joints%flag .and. .not. deck%search%given) plan%reason = strain_reason%forces
       if (deck%analysis%collapse_displacement%given) plan%reason = strain_reason%displacement
       if (plan%strength) plan%reason = strain_reason%strength
       if (plan%velocities) plan%reason = strain_reason%dynamic
       if (plan%moving) plan%reason = strain_reason%moving
       if (scene_kind(deck) /= "arch") plan%reason = strain_reason%files
       if (deck%analysis%mode%word == "limerick") plan%reason = strain_reason%original
-      if (plan%reason == strain_reason%none) then
-         plan%unknowns = n_rigid
-      else
-         plan%shared_forces = .false.
-      end if
+      if (plan%reason == strain_reason%none) plan%unknowns = n_rigid
       call see_chain(deck, plan)
    end function plan_scene
 

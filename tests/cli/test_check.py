@@ -49,7 +49,7 @@ def test_plan_names_the_deck_and_its_title(tmp_path: Path) -> None:
         ("&arch joints_deg = 0, 54.5, 90 /\n", ["blocks 4", "joints 5"]),
         ("&search /\n", ["search thickness_ratio"]),
         ("&search parameter = 'friction_deg' /\n", ["search friction_deg"]),
-        ("&search /\n", ["unknowns 3 per block, 108 in all: rigid", "recomputed with deformable blocks"]),
+        ("&search /\n", ["unknowns 3 per block, 108 in all: rigid", "joint forces of the run itself"]),
         ("&output joints = .false. /\n", ["unknowns 3 per block", "none: output%joints is .false."]),
         ("&search /\n", ["equations chain: each block", "half model (vertical loads)"]),
         (

@@ -23,7 +23,7 @@ THICKER = 1.05
 PARTS: tuple[tuple[str, str | None], ...] = (
     ("nothing: the plan", ""),
     ("strain: 6 unknowns a block", "&analysis unknowns = 6 /\n"),
-    ("joint forces with strain: joints.csv", "&output joints = .true., vtu = .false. /\n"),
+    ("decisions with strain: joints.csv", "&output joints = .true., vtu = .false. /\n"),
     ("strength that can break", "&joint cohesion = 1e-9 /\n"),
     ("pictures: vtu", "&output joints = .false., blocks = .false., vtu = .true. /\n"),
     ("condition", "&output joints = .false., blocks = .false., vtu = .false., condition = .true. /\n"),
