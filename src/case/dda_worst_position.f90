@@ -7,9 +7,9 @@
 module dda_worst_position
    use dda_arch_assembly, only : arch_assembly_t
    use dda_arch_form, only : form_problem_t
-   use dda_boundary, only : bounded_force_t, loaded_point_t, value_at
+   use dda_boundary, only : loaded_point_t, value_at
    use dda_deck, only : deck_t
-   use dda_fill_loads, only : fill_of, fill_t, press_fill
+   use dda_fill_loads, only : fill_of, fill_t, live_side, press_side
    use dda_graph_decision, only : decides_as_graph
    use dda_joint_graph, only : joint_graph_t
    use dda_kinds, only : wp
@@ -19,7 +19,7 @@ module dda_worst_position
    use dda_scene, only : scene_t, searched_load
    use dda_scene_graph, only : scene_graph
    use dda_settings, only : factor_of
-   use dda_shape_scene, only : add_loads, shape_assembly
+   use dda_shape_scene, only : shape_assembly
    use dda_vehicle, only : axle_loads, passages, road_of, road_t, vehicle_of, vehicle_t
    use dda_worst_load, only : least_factor_t, load_arc_t, seek_least_factor
    use dda_interior_state, only : no_limit
@@ -46,6 +46,14 @@ module dda_worst_position
       logical :: stands = .false.
    end type bridge_t
 
+   !> A part of the road
+   type :: stretch_t
+      !> Where it begins and ends [m]
+      real(wp) :: from = 0.0_wp, to = 0.0_wp
+      !> Where the live load is on it, see live_side
+      integer :: side = 0
+   end type stretch_t
+
 contains
 
    !> Find the worst position
@@ -60,22 +68,22 @@ contains
       logical, intent(out) :: found
       type(bridge_t) :: bridge
       type(least_factor_t) :: least
-      real(wp), allocatable :: at(:)
+      type(stretch_t), allocatable :: stretch(:)
       integer :: first, last
 
       position = 0.0_wp
       found = .false.
       if (.not. decides_as_graph(scene%settings, scene%contacts)) return
       call take_bridge(deck, scene, bridge)
-      allocate (at, source=stretches(bridge))
+      call part_road(bridge, stretch)
       first = 1
-      do while (first < size(at))
-         last = first + 1
-         do while (last + 1 < size(at))
-            if (.not. lean_alike(bridge, at(first), at(last + 1))) exit
-            last = last + 2
+      do while (first <= size(stretch))
+         last = first
+         do while (last < size(stretch))
+            if (stretch(last + 1)%side /= stretch(first)%side) exit
+            last = last + 1
          end do
-         call seek_on_side(bridge, at(first:last), least)
+         call seek_on_side(bridge, stretch(first:last), least)
          first = last + 1
       end do
       found = least%factor < no_limit
@@ -129,34 +137,40 @@ contains
       stands_alone = decision%state == load_state%stands
    end function stands_alone
 
-   !> Stretches of the road along which the loads change smoothly and the bridge leans against the
-   !> same fill
-   pure function stretches(bridge) result(at)
+   !> Part the road into stretches along which the loads change smoothly and the bridge leans
+   !> against the same fill
+   pure subroutine part_road(bridge, stretch)
       type(bridge_t), intent(in) :: bridge
-      !> Beginning and end of each, one after the other: (2 n) [m]
-      real(wp), allocatable :: at(:)
+      !> The stretches, from left to right: (n)
+      type(stretch_t), allocatable, intent(out) :: stretch(:)
       real(wp), allocatable :: passage(:)
-      real(wp) :: from, other, to
-      integer :: k, n
+      real(wp) :: at(4), turn
+      integer :: side(2)
+      integer :: i, k, n
 
       allocate (passage, source=passages(bridge%vehicle, bridge%road, bridge%scene%origin))
-      allocate (at(4*size(passage)))
+      allocate (stretch(2*size(passage)))
       n = 0
       do k = 1, size(passage) - 1
-         from = passage(k) + beside*bridge%road%size
-         to = passage(k + 1) - beside*bridge%road%size
-         if (.not. to > from) cycle
-         if (.not. lean_alike(bridge, from, to)) then
-            other = turning_point(bridge, from, to)
-            at(n + 1:n + 2) = [from, other - beside*bridge%road%size]
-            n = n + 2
-            from = other + beside*bridge%road%size
+         at = [passage(k), passage(k), passage(k + 1), passage(k + 1)] &
+            & + [1.0_wp, 0.0_wp, 0.0_wp, -1.0_wp]*beside*bridge%road%size
+         if (.not. at(4) > at(1)) cycle
+         side = [side_at(bridge, at(1)), side_at(bridge, at(4))]
+         if (side(1) == side(2)) then
+            stretch(n + 1) = stretch_t(at(1), at(4), side(1))
+            n = n + 1
+         else
+            turn = turning_point(bridge, at(1), at(4))
+            at(2:3) = turn + [-1.0_wp, 1.0_wp]*beside*bridge%road%size
+            do i = 1, 2
+               if (.not. at(2*i) > at(2*i - 1)) cycle
+               stretch(n + 1) = stretch_t(at(2*i - 1), at(2*i), side(i))
+               n = n + 1
+            end do
          end if
-         at(n + 1:n + 2) = [from, to]
-         n = n + 2
       end do
-      at = at(:n)
-   end function stretches
+      stretch = stretch(:n)
+   end subroutine part_road
 
    !> Position between two others at which the bridge begins to lean against other fill
    pure real(wp) function turning_point(bridge, from, to) result(middle)
@@ -164,51 +178,27 @@ contains
       !> The two positions [m]
       real(wp), intent(in) :: from, to
       real(wp) :: ends(2)
+      integer :: side
 
       ends = [from, to]
+      side = side_at(bridge, from)
       do
          middle = 0.5_wp*sum(ends)
          if (ends(2) - ends(1) <= 0.1_wp*beside*bridge%road%size) return
-         if (lean_alike(bridge, from, middle)) then
-            ends(1) = middle
-         else
-            ends(2) = middle
-         end if
+         ends(merge(1, 2, side_at(bridge, middle) == side)) = middle
       end do
    end function turning_point
 
-   !> Whether the bridge leans against the same fill at two positions
-   pure logical function lean_alike(bridge, one, other)
-      type(bridge_t), intent(in) :: bridge
-      !> The two positions [m]
-      real(wp), intent(in) :: one, other
-      type(bounded_force_t), allocatable :: a(:), b(:)
-
-      lean_alike = .true.
-      if (.not. allocated(bridge%fill)) return
-      allocate (a, source=leant_against(bridge, one))
-      allocate (b, source=leant_against(bridge, other))
-      lean_alike = size(a) == size(b)
-      if (lean_alike) lean_alike = all(a%block == b%block)
-   end function lean_alike
-
-   !> What the bridge leans against with the vehicle at a position
-   pure function leant_against(bridge, position) result(bounded)
-      !> The bridge, with fill
+   !> Which fill the bridge leans against with the vehicle at a position
+   pure integer function side_at(bridge, position) result(side)
       type(bridge_t), intent(in) :: bridge
       !> The position [m]
       real(wp), intent(in) :: position
-      !> The forces: (n)
-      type(bounded_force_t), allocatable :: bounded(:)
-      type(scene_t) :: loads
 
-      loads%origin = bridge%scene%origin
-      loads%settings%boundary%loaded = bridge%scene%settings%boundary%loaded
-      call add_loads(axles_at(bridge, position), loads)
-      call press_fill(bridge%fill, loads)
-      allocate (bounded(0))
-      if (allocated(loads%settings%boundary%bounded)) bounded = loads%settings%boundary%bounded
-   end function leant_against
+      side = 0
+      if (allocated(bridge%fill)) side = live_side(bridge%fill, bridge%scene%origin, &
+         & bridge%scene%settings%boundary%loaded, axles_at(bridge, position))
+   end function side_at
 
    !> Loads of the vehicle at a position
    pure function axles_at(bridge, position) result(axles)
@@ -225,26 +215,26 @@ contains
    end function axles_at
 
    !> Seek the least factor on stretches on which the bridge leans against the same fill
-   pure subroutine seek_on_side(bridge, at, least)
+   pure subroutine seek_on_side(bridge, stretch, least)
       type(bridge_t), intent(in) :: bridge
-      !> Beginning and end of each stretch: (2 n) [m]
-      real(wp), intent(in) :: at(:)
+      !> The stretches: (n)
+      type(stretch_t), intent(in) :: stretch(:)
       !> The least factor so far
       type(least_factor_t), intent(inout) :: least
-      type(load_arc_t) :: arc(size(at)/2)
+      type(load_arc_t) :: arc(size(stretch))
       type(joint_graph_t) :: graph
       type(scene_t) :: scene
       real(wp), allocatable :: dead(:, :), other(:, :)
       integer :: k
 
       scene = bridge%scene
-      if (allocated(bridge%fill)) scene%settings%boundary%bounded = leant_against(bridge, at(1))
+      if (allocated(bridge%fill)) call press_side(bridge%fill, stretch(1)%side, scene)
       call scene_graph(scene%settings, scene%system, scene%contacts, graph)
       other = added_loads(searched_load%factor, scene%settings, scene, graph)
       scene%settings%load_factor = 0.0_wp
       dead = full_loads(scene%settings, scene, graph)
       do k = 1, size(arc)
-         arc(k) = arc_of(bridge, at(2*k - 1), at(2*k), other)
+         arc(k) = arc_of(bridge, stretch(k)%from, stretch(k)%to, other)
       end do
       call seek_least_factor(graph, dead, arc, bridge%stands, near*bridge%road%size, least)
    end subroutine seek_on_side

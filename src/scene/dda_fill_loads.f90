@@ -11,7 +11,7 @@ module dda_fill_loads
    implicit none
    private
 
-   public :: fill_t, add_fill_weight, fill_of, press_fill
+   public :: fill_t, add_fill_weight, fill_of, live_side, press_fill, press_side
 
    !> The fill of a case
    type :: fill_t
@@ -144,18 +144,31 @@ contains
       part(2) = left(1)*part(1) + width**2*(depth(1) + 2.0_wp*depth(2))/6.0_wp
    end function trapezium
 
-   !> What the arch can lean against: the backing, whatever the force, and the fill on the side away
-   !> from the live load of a span, on both sides of a span without
+   !> What the arch of a scene can lean against
    pure subroutine press_fill(fill, scene)
       type(fill_t), intent(in) :: fill
       !> The scene with its live loads; its bounded forces are set
       type(scene_t), intent(inout) :: scene
+      integer :: side
+
+      side = 0
+      if (allocated(scene%settings%boundary%loaded)) &
+         & side = live_side(fill, scene%origin, scene%settings%boundary%loaded)
+      call press_side(fill, side, scene)
+   end subroutine press_fill
+
+   !> Lean against the backing, whatever the force, and the fill on the side away from the live load
+   !> of a span, on both sides of a span without
+   pure subroutine press_side(fill, side, scene)
+      type(fill_t), intent(in) :: fill
+      !> Where the live load is, see live_side
+      integer, intent(in) :: side
+      !> The scene; its bounded forces are set
+      type(scene_t), intent(inout) :: scene
       type(bounded_force_t) :: force(size(fill%chord))
-      real(wp) :: load_x, middle(2), rise
-      logical :: is_loaded
+      real(wp) :: middle(2), rise
       integer :: i, n
 
-      call find_live(scene, load_x, is_loaded)
       n = 0
       do i = 1, size(fill%chord)
          associate (chord => fill%chord(i))
@@ -167,10 +180,8 @@ contains
                & *abs(rise)
             if (middle(2) < fill%backing) then
                force(n + 1)%most = huge(rise)
-            else if (is_loaded .and. chord%span == loaded_span(fill, load_x)) then
-               associate (crown => fill%crown_x(chord%span))
-                  if ((middle(1) - crown)*(load_x - crown) > 0.0_wp) cycle
-               end associate
+            else if (chord%span == abs(side)) then
+               if ((middle(1) - fill%crown_x(chord%span))*real(side, wp) > 0.0_wp) cycle
             end if
             if (.not. force(n + 1)%most > 0.0_wp) cycle
             n = n + 1
@@ -181,40 +192,42 @@ contains
       end do
       if (allocated(scene%settings%boundary%bounded)) deallocate (scene%settings%boundary%bounded)
       if (n > 0) allocate (scene%settings%boundary%bounded, source=force(:n))
-   end subroutine press_fill
+   end subroutine press_side
 
-   !> Span that is nearest to a place
-   pure integer function loaded_span(fill, x)
+   !> Number of the span whose crown is nearest to the resultant of the live loads on points, with a
+   !> minus where that is to its left; 0 where it is on no side
+   pure integer function live_side(fill, origin, loaded, more) result(side)
       type(fill_t), intent(in) :: fill
-      !> The place [m]
-      real(wp), intent(in) :: x
+      !> Origin of the coordinates of the points: (2) [m]
+      real(wp), intent(in) :: origin(2)
+      !> Loads, live ones among them: (n)
+      type(loaded_point_t), intent(in) :: loaded(:)
+      !> More of them: (m)
+      type(loaded_point_t), intent(in), optional :: more(:)
+      real(wp) :: total(2), x
 
-      loaded_span = minloc(abs(fill%crown_x - x), dim=1)
-   end function loaded_span
+      total = 0.0_wp
+      call add_live(loaded, total)
+      if (present(more)) call add_live(more, total)
+      side = 0
+      if (.not. total(1) > 0.0_wp) return
+      x = total(2)/total(1) + origin(1)
+      side = minloc(abs(fill%crown_x - x), dim=1)
+      side = merge(0, merge(-side, side, x < fill%crown_x(side)), &
+         & abs(x - fill%crown_x(side)) <= 0.0_wp)
+   end function live_side
 
-   !> Where the resultant of the live loads on points is
-   pure subroutine find_live(scene, x, is_loaded)
-      type(scene_t), intent(in) :: scene
-      !> The place [m]
-      real(wp), intent(out) :: x
-      !> Whether there are such loads
-      logical, intent(out) :: is_loaded
-      real(wp) :: force, size_of
+   !> Add the sizes of live loads, and their moments along x
+   pure subroutine add_live(loaded, total)
+      !> Loads, live ones among them: (n)
+      type(loaded_point_t), intent(in) :: loaded(:)
+      !> The sums: (2) [N/m, N]
+      real(wp), intent(inout) :: total(2)
       integer :: i
 
-      x = 0.0_wp
-      force = 0.0_wp
-      if (allocated(scene%settings%boundary%loaded)) then
-         do i = 1, size(scene%settings%boundary%loaded)
-            associate (loaded => scene%settings%boundary%loaded(i))
-               if (.not. loaded%live) cycle
-               size_of = norm2(loaded%force%value(:, 1))
-               force = force + size_of
-               x = x + size_of*(loaded%point(1) + scene%origin(1))
-            end associate
-         end do
-      end if
-      is_loaded = force > 0.0_wp
-      if (is_loaded) x = x/force
-   end subroutine find_live
+      do i = 1, size(loaded)
+         if (loaded(i)%live) total = total + norm2(loaded(i)%force%value(:, 1)) &
+            & *[1.0_wp, loaded(i)%point(1)]
+      end do
+   end subroutine add_live
 end module dda_fill_loads

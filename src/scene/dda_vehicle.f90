@@ -35,6 +35,12 @@ module dda_vehicle
       integer, allocatable :: block(:)
       !> Whether that moves: (n)
       logical, allocatable :: moves(:)
+      !> Places between which one edge is the highest, rising: (m) [m]
+      real(wp), allocatable :: corner(:)
+      !> That edge, between each of them and the next; 0 where there is none: (0:m)
+      integer, allocatable :: highest(:)
+      !> Where the edges of blocks that move begin and end: (2) [m]
+      real(wp) :: reach(2) = 0.0_wp
       !> Size of all blocks [m]
       real(wp) :: size = 0.0_wp
    end type road_t
@@ -95,7 +101,33 @@ contains
       road%right = road%right(:, :n)
       road%block = road%block(:n)
       road%moves = system%equation(road%block) > 0
+      road%reach = [minval(road%left(1, :), road%moves), maxval(road%right(1, :), road%moves)]
+      call see_highest(road)
    end function road_of
+
+   !> See which edge is the highest where
+   pure subroutine see_highest(road)
+      !> Its edges in, the highest of them out
+      type(road_t), intent(inout) :: road
+      real(wp) :: top, y
+      integer :: i, k
+
+      road%corner = [road%left(1, :), road%right(1, :)]
+      road%corner = road%corner(sorted_order(spread(0, 1, size(road%corner)), road%corner))
+      allocate (road%highest(0:size(road%corner)), source=0)
+      do i = 1, size(road%corner) - 1
+         associate (middle => 0.5_wp*(road%corner(i) + road%corner(i + 1)))
+            top = -huge(top)
+            do k = 1, size(road%block)
+               if (middle < road%left(1, k) .or. middle > road%right(1, k)) cycle
+               y = height(road, k, middle)
+               if (.not. y > top) cycle
+               top = y
+               road%highest(i) = k
+            end do
+         end associate
+      end do
+   end subroutine see_highest
 
    !> Live loads of the axles; what is not above a block that moves is left out
    pure function axle_loads(vehicle, road, origin) result(loaded)
@@ -204,8 +236,7 @@ contains
       real(wp) :: top
       integer :: edge
 
-      call find_top(road, min(max(x, minval(road%left(1, :), road%moves)), &
-         & maxval(road%right(1, :), road%moves)), edge, top)
+      call find_top(road, min(max(x, road%reach(1)), road%reach(2)), edge, top)
       lower_end = top
       if (edge > 0) lower_end = min(road%left(2, edge), road%right(2, edge))
    end function top_below
@@ -220,20 +251,61 @@ contains
       integer, intent(out) :: edge
       !> Its height [m]
       real(wp), intent(out) :: top
-      real(wp) :: y
-      integer :: k
+      integer :: after, before, k, middle
 
       edge = 0
       top = -huge(top)
-      do k = 1, size(road%block)
-         if (x < road%left(1, k) .or. x > road%right(1, k)) cycle
-         y = road%left(2, k) + (x - road%left(1, k))/(road%right(1, k) - road%left(1, k)) &
-            & *(road%right(2, k) - road%left(2, k))
-         if (.not. y > top) cycle
-         top = y
-         edge = k
+      ! the last corner that is not to the right
+      before = 0
+      after = size(road%corner) + 1
+      do while (after - before > 1)
+         middle = (before + after)/2
+         if (road%corner(middle) <= x) then
+            before = middle
+         else
+            after = middle
+         end if
+      end do
+      ! on a corner the edge to its left counts, too, past those corners that are at the same place
+      do k = before, 0, -1
+         call take_higher(road, road%highest(k), x, edge, top)
+         if (k == 0) exit
+         if (road%corner(k) < x) exit
       end do
    end subroutine find_top
+
+   !> Take an edge that is higher than the others
+   pure subroutine take_higher(road, k, x, edge, top)
+      !> What axles stand on
+      type(road_t), intent(in) :: road
+      !> Number of the edge, or 0
+      integer, intent(in) :: k
+      !> The place [m]
+      real(wp), intent(in) :: x
+      !> Number of the highest edge so far
+      integer, intent(inout) :: edge
+      !> Its height [m]
+      real(wp), intent(inout) :: top
+
+      if (k == 0) return
+      ! of two at one height the first
+      if (height(road, k, x) < top .or. height(road, k, x) <= top .and. k > edge) return
+      top = height(road, k, x)
+      edge = k
+   end subroutine take_higher
+
+   !> Height of an edge at a place
+   pure real(wp) function height(road, k, x)
+      !> What axles stand on
+      type(road_t), intent(in) :: road
+      !> Number of the edge
+      integer, intent(in) :: k
+      !> The place [m]
+      real(wp), intent(in) :: x
+
+      height = road%left(2, k) + (x - road%left(1, k))/(road%right(1, k) - road%left(1, k)) &
+         & *(road%right(2, k) - road%left(2, k))
+   end function height
 
    !> Places of the corners of the upper faces, where an axle goes from block to block
    pure function upper_corners(road) result(x)

@@ -53,6 +53,8 @@ module dda_worst_load
    real(wp), parameter :: gap = 1.0e-9_wp
    !> A factor that is smaller by less than this share is none
    real(wp), parameter :: smaller = 1.0e-5_wp
+   !> Loads that differ by less than this share of the largest are one
+   real(wp), parameter :: same = 1.0e-7_wp
 
 contains
 
@@ -87,11 +89,32 @@ contains
       if (least%factor >= no_limit) return
       call begin_walk(graph, dead, chase%walk)
       do k = 1, size(arc)
-         call pass(arc, k, 0.0_wp, chase, least)
+         if (.not. goes_on(arc, k)) call pass(arc, k, 0.0_wp, chase, least)
          call pass(arc, k, 1.0_wp, chase, least)
          call pass_between(arc, k, 0.0_wp, 1.0_wp, chase, least)
       end do
    end subroutine seek_least_factor
+
+   !> Whether an arc begins with the load that the arc before ends with
+   pure logical function goes_on(arc, k)
+      !> The live loads: (n)
+      type(load_arc_t), intent(in) :: arc(:)
+      !> Number of the arc
+      integer, intent(in) :: k
+      real(wp), allocatable :: load(:, :)
+      integer :: i, n
+
+      goes_on = .false.
+      if (k == 1) return
+      n = max(maxval(arc(k)%block), maxval(arc(k - 1)%block))
+      allocate (load(3, n), source=0.0_wp)
+      call add_live([-1.0_wp, 0.0_wp, 0.0_wp], arc(k), load)
+      call add_live([0.0_wp, 0.0_wp, 1.0_wp], arc(k - 1), load)
+      do i = 1, 3
+         if (maxval(abs(load(i, :))) > same*maxval(abs(arc(k)%load(i, :, 1)))) return
+      end do
+      goes_on = .true.
+   end function goes_on
 
    !> Pass a load: carry it at the least factor so far, or go down from it
    pure subroutine pass(arc, k, share, chase, least)

@@ -47,8 +47,10 @@ module dda_load_walk
    real(wp), parameter :: stiffness_of_free = 1.0e8_wp
    !> Gap at which a way to a load ends that neither reaches it nor shows that nothing does
    real(wp), parameter :: resolution = 1.0e-8_wp
+   !> Times that a correction is solved for, the later ones for what rounding has left of it
+   integer, parameter :: most_turns = 4
    !> Imbalance of forces that carry a load, over its largest part
-   real(wp), parameter :: balanced = 1.0e-11_wp
+   real(wp), parameter :: balanced = 1.0e-9_wp
 
 contains
 
@@ -115,16 +117,21 @@ contains
       logical, intent(out) :: carried
       real(wp) :: motion(3, 0:walk%graph%n_block), rest(3, 0:walk%graph%n_block)
       real(wp) :: rate(n_side, size(walk%x, 2)), x(n_side, size(walk%x, 2))
+      integer :: turn
 
-      rest = scaled
-      call add_ray_forces(walk%rays, walk%x, rest)
-      call solve_springs(walk%rays, walk%springs, rest, motion, rate)
-      x = walk%x - walk%springs%stiffness*rate
-      carried = all(x*walk%rays%bounded >= 0.0_wp)
-      if (.not. carried) return
+      carried = .false.
+      x = walk%x
       rest = scaled
       call add_ray_forces(walk%rays, x, rest)
-      carried = maxval(abs(rest)) <= balanced*maxval(abs(scaled))
+      do turn = 1, most_turns
+         call solve_springs(walk%rays, walk%springs, rest, motion, rate)
+         x = x - walk%springs%stiffness*rate
+         if (any(x*walk%rays%bounded < 0.0_wp)) return
+         rest = scaled
+         call add_ray_forces(walk%rays, x, rest)
+         carried = maxval(abs(rest)) <= balanced*maxval(abs(scaled))
+         if (carried) return
+      end do
    end subroutine try_correction
 
    !> Draw the forces away from their bounds, and factor the springs that tell how far they are from
