@@ -87,7 +87,6 @@ contains
    !> What a case has in a column
    pure function field_of(column, row, swept) result(text)
       type(column_t), intent(in) :: column
-      !> Row of the case
       type(result_row_t), intent(in) :: row
       !> Values of the swept parameters: (n)
       character(len=*), intent(in) :: swept(:)
@@ -125,7 +124,6 @@ contains
       type(number_t), intent(in) :: number
       !> Width of its column
       integer, intent(in) :: width
-      !> The text
       character(len=:), allocatable :: text
 
       text = ""
@@ -138,7 +136,6 @@ contains
       real(wp), intent(in) :: value
       !> Width of its column
       integer, intent(in) :: width
-      !> The text
       character(len=:), allocatable :: text
       character(len=30) :: buffer
       character(len=12) :: form
@@ -160,7 +157,6 @@ contains
       !> The value as the tables have it
       character(len=*), intent(in) :: value
       type(column_t), intent(in) :: column
-      !> The text
       character(len=:), allocatable :: text
       real(wp) :: number
       logical :: ok
@@ -182,7 +178,6 @@ contains
       real(wp), intent(in) :: angle(:)
       !> Width of the column
       integer, intent(in) :: width
-      !> The text
       character(len=:), allocatable :: text
       character(len=:), allocatable :: next
       integer :: i, left_over
@@ -205,7 +200,6 @@ contains
       type(column_t), intent(in) :: column
       !> The text
       character(len=*), intent(in) :: text
-      !> The field
       character(len=:), allocatable :: field
       integer :: rest
 
@@ -223,7 +217,6 @@ contains
       character(len=*), intent(in) :: text
       !> Width of the screen
       integer, intent(in) :: width
-      !> The lines
       character(len=:), allocatable :: lines
       integer :: blank, finish, margin, start
 

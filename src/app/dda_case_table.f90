@@ -52,7 +52,6 @@ contains
 
    !> Begin the table of a deck; nothing is printed before its first row
    subroutine new_case_table(screen, deck, chosen, table)
-      !> Where it goes
       type(screen_t), intent(in) :: screen
       type(deck_t), intent(in) :: deck
       !> Cases that will be computed: (n)
@@ -119,7 +118,6 @@ contains
    subroutine add_case(table, deck, row, remark)
       type(case_table_t), intent(inout) :: table
       type(deck_t), intent(in) :: deck
-      !> Row of the case
       type(result_row_t), intent(in) :: row
       !> What the user should know beside the row
       character(len=*), intent(in) :: remark
@@ -151,11 +149,9 @@ contains
    pure function row_lines(table, deck, row, remark) result(lines)
       type(case_table_t), intent(in) :: table
       type(deck_t), intent(in) :: deck
-      !> Row of the case
       type(result_row_t), intent(in) :: row
       !> What the user should know beside the row
       character(len=*), intent(in) :: remark
-      !> The lines
       character(len=:), allocatable :: lines
       integer :: c
 
@@ -197,9 +193,7 @@ contains
 
    !> Move what waits without copying its text
    pure subroutine move_waiting(from, to)
-      !> Where it is
       type(waiting_t), intent(inout) :: from
-      !> Where it goes
       type(waiting_t), intent(inout) :: to
 
       to%number = from%number

@@ -31,7 +31,6 @@ contains
 
    !> Check all decks of the command line
    subroutine check_decks(command, status)
-      !> What the user asked for
       type(command_t), intent(in) :: command
       !> Exit status of the program
       integer, intent(out) :: status
@@ -65,7 +64,6 @@ contains
 
    !> The tables that a run would write, each with its first line, and its deck.record
    function record_text(deck, stem) result(text)
-      !> The deck, checked
       type(deck_t), intent(in) :: deck
       !> Its name without folder and ending
       character(len=*), intent(in) :: stem
@@ -85,11 +83,9 @@ contains
 
    !> Print what a deck's cases are made of
    subroutine print_plan(screen, name, deck, scene)
-      !> Where it goes
       type(screen_t), intent(in) :: screen
       !> Name of the deck
       character(len=*), intent(in) :: name
-      !> The deck, checked
       type(deck_t), intent(inout) :: deck
       !> The scene of its first case, if its blocks are from a file
       type(scene_t), intent(inout) :: scene
@@ -141,9 +137,7 @@ contains
 
    !> Print number, area and centre of each block
    subroutine print_blocks(screen, scene)
-      !> Where it goes
       type(screen_t), intent(in) :: screen
-      !> The scene of the first case
       type(scene_t), intent(in) :: scene
       integer, parameter :: most_rows = 50
       integer :: b
@@ -162,9 +156,7 @@ contains
 
    !> Print which model it is, which others there are, and what can be searched in it
    subroutine print_model(screen, deck)
-      !> Where it goes
       type(screen_t), intent(in) :: screen
-      !> The deck of the case
       type(deck_t), intent(in) :: deck
       character(len=:), allocatable :: kind, mode
 
@@ -180,7 +172,6 @@ contains
    pure function points_text(boundary) result(text)
       !> The points of the scene
       type(boundary_t), intent(in) :: boundary
-      !> The text
       character(len=:), allocatable :: text
       integer :: n(3)
 
@@ -195,9 +186,7 @@ contains
 
    !> What is written besides results.csv and joints.csv
    pure function tables_text(deck) result(text)
-      !> The deck of the case
       type(deck_t), intent(in) :: deck
-      !> The text
       character(len=:), allocatable :: text
 
       text = ""
@@ -214,9 +203,7 @@ contains
 
    !> Print what a case of the original's scheme is made of
    subroutine print_limerick_plan(screen, deck, scene)
-      !> Where it goes
       type(screen_t), intent(in) :: screen
-      !> The deck of the case
       type(deck_t), intent(in) :: deck
       type(scene_t), intent(in) :: scene
       type(limerick_model_t) :: model
@@ -244,7 +231,6 @@ contains
    !> The joints and how long they last
    pure function joints_text(scene) result(text)
       type(scene_t), intent(in) :: scene
-      !> The text
       character(len=:), allocatable :: text
       integer :: singles
 
@@ -263,9 +249,7 @@ contains
 
    !> Print which parts of the method a case needs, and why
    subroutine print_parts(screen, deck, blocks)
-      !> Where it goes
       type(screen_t), intent(in) :: screen
-      !> The deck of the case
       type(deck_t), intent(in) :: deck
       !> Blocks that move
       integer, intent(in) :: blocks
@@ -302,7 +286,6 @@ contains
    pure function why(reason) result(words)
       !> One of strain_reason
       integer, intent(in) :: reason
-      !> The words
       character(len=100) :: words
 
       words = "set by analysis%unknowns"
@@ -320,7 +303,6 @@ contains
 
    !> Print one line of the plan
    subroutine tell(screen, what, how)
-      !> Where it goes
       type(screen_t), intent(in) :: screen
       !> Part of the scene
       character(len=*), intent(in) :: what

@@ -49,7 +49,6 @@ contains
 
    !> Read the arguments of the program
    subroutine read_command(command, error)
-      !> What the user asked for
       type(command_t), intent(out) :: command
       !> Allocated if an argument is not understood
       type(error_t), allocatable, intent(out) :: error
@@ -75,9 +74,7 @@ contains
       character(len=*), intent(in) :: argument(:)
       !> Their lengths, blanks at their ends counted: (n) [characters]
       integer, intent(in) :: length(:)
-      !> What the user asked for
       type(command_t), intent(out) :: command
-      !> Allocated if an argument is not understood
       type(error_t), allocatable, intent(out) :: error
       character(len=longest), allocatable :: name(:), setting(:)
       logical :: takes_decks, takes_options
@@ -133,9 +130,7 @@ contains
 
    !> Whether there is anything to read
    pure subroutine check_names(command, error)
-      !> What the user asked for
       type(command_t), intent(in) :: command
-      !> Allocated if there is not
       type(error_t), allocatable, intent(out) :: error
 
       if (command%verb == "help" .or. size(command%name) > 0) return
@@ -146,9 +141,7 @@ contains
 
    !> Whether dda cut or dda lines can do what is asked
    pure subroutine check_out(command, error)
-      !> What the user asked for
       type(command_t), intent(in) :: command
-      !> Allocated if it cannot
       type(error_t), allocatable, intent(out) :: error
       integer :: n
 
@@ -171,11 +164,9 @@ contains
    pure subroutine take_subcommand(word, command, takes_decks, error)
       !> The argument
       character(len=*), intent(in) :: word
-      !> Receives the subcommand
       type(command_t), intent(inout) :: command
       !> Whether decks and options follow
       logical, intent(out) :: takes_decks
-      !> Allocated if there is no such subcommand
       type(error_t), allocatable, intent(out) :: error
 
       takes_decks = .false.
@@ -197,9 +188,7 @@ contains
    pure subroutine check_option(option, command, error)
       !> An argument; one that no subcommand takes as an option is not judged here
       character(len=*), intent(in) :: option
-      !> Holds the subcommand
       type(command_t), intent(in) :: command
-      !> Allocated if it does not
       type(error_t), allocatable, intent(out) :: error
       character(len=:), allocatable :: own
 
@@ -227,9 +216,7 @@ contains
       integer, intent(in) :: length(:)
       !> Place of the option in, of its last part out
       integer, intent(inout) :: i
-      !> Receives the option
       type(command_t), intent(inout) :: command
-      !> Allocated if the option is not understood
       type(error_t), allocatable, intent(out) :: error
       logical :: ok
 
@@ -274,11 +261,9 @@ contains
 
    !> Name of a deck or a topic as it was given, blanks at its end included
    pure function name_of(command, i) result(name)
-      !> What the user asked for
       type(command_t), intent(in) :: command
       !> Place of the name
       integer, intent(in) :: i
-      !> The name
       character(len=:), allocatable :: name
 
       name = command%name(i)(:command%name_length(i))

@@ -27,7 +27,6 @@ contains
 
    !> Cut all files of the command line
    subroutine cut_files(command, status)
-      !> What the user asked for
       type(command_t), intent(in) :: command
       !> Exit status of the program
       integer, intent(out) :: status
@@ -42,7 +41,6 @@ contains
 
    !> Cut one file
    subroutine cut_file(command, name, status)
-      !> What the user asked for
       type(command_t), intent(in) :: command
       !> Name of the file
       character(len=*), intent(in) :: name
@@ -85,7 +83,6 @@ contains
       !> Name of the file
       character(len=*), intent(in) :: file
       type(cut_model_t), intent(in) :: cut
-      !> Allocated if it cannot be written
       type(error_t), allocatable, intent(out) :: error
 
       if (index(file, ".vtu", back=.true.) == len(file) - 3) then
@@ -97,9 +94,7 @@ contains
 
    !> Print counts, areas, and what was dropped
    subroutine print_cut(screen, model, cut)
-      !> Where it goes
       type(screen_t), intent(in) :: screen
-      !> Lines and points
       type(line_model_t), intent(in) :: model
       type(cut_model_t), intent(in) :: cut
       integer :: smallest, largest
@@ -131,7 +126,6 @@ contains
 
    !> Print a row a block
    subroutine print_blocks(screen, cut)
-      !> Where it goes
       type(screen_t), intent(in) :: screen
       type(cut_model_t), intent(in) :: cut
       type(area_moments_t) :: moments
@@ -152,9 +146,7 @@ contains
 
    !> Print what was dropped, and why
    subroutine print_dropped(screen, model, cut)
-      !> Where it goes
       type(screen_t), intent(in) :: screen
-      !> Lines and points
       type(line_model_t), intent(in) :: model
       type(cut_model_t), intent(in) :: cut
       logical, allocatable :: unused(:)
@@ -181,11 +173,9 @@ contains
 
    !> A remark in words
    pure function remark_text(model, cut, remark) result(text)
-      !> Lines and points
       type(line_model_t), intent(in) :: model
       type(cut_model_t), intent(in) :: cut
       type(cut_remark_t), intent(in) :: remark
-      !> One line
       character(len=:), allocatable :: text
       character(len=:), allocatable :: other
 
@@ -228,7 +218,6 @@ contains
 
    !> Print one line of the summary
    subroutine tell(screen, what, how)
-      !> Where it goes
       type(screen_t), intent(in) :: screen
       !> What is told
       character(len=*), intent(in) :: what

@@ -25,7 +25,6 @@ contains
       character(len=*), intent(in) :: file
       !> Length of results.csv that is on the disk [bytes]
       integer(int64), intent(in) :: length
-      !> Allocated if it cannot be written
       type(error_t), allocatable, intent(inout) :: error
       type(table_file_t) :: record
       character(len=20) :: bytes
@@ -58,7 +57,6 @@ contains
 
    !> What the system calls the time since its start; a dash where it has no name for it
    function start_name() result(name)
-      !> The name
       character(len=36) :: name
       integer :: unit, stat
 

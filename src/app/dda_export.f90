@@ -30,7 +30,6 @@ contains
 
    !> Export all decks of the command line
    subroutine export_decks(command, status)
-      !> What the user asked for
       type(command_t), intent(in) :: command
       !> Exit status of the program
       integer, intent(out) :: status
@@ -58,9 +57,7 @@ contains
 
    !> Export all cases of a deck
    subroutine export_deck(command, deck, status)
-      !> What the user asked for
       type(command_t), intent(in) :: command
-      !> The deck, checked
       type(deck_t), intent(in) :: deck
       !> Exit status of this deck
       integer, intent(out) :: status
@@ -101,11 +98,9 @@ contains
 
    !> Export an arch of any shape, or blocks that were cut from lines, as a file of blocks
    subroutine export_blocks(command, stem, deck, status)
-      !> What the user asked for
       type(command_t), intent(in) :: command
       !> Name of the file without its ending
       character(len=*), intent(in) :: stem
-      !> The deck of the case
       type(deck_t), intent(in) :: deck
       !> Exit status of this deck
       integer, intent(out) :: status
@@ -144,10 +139,8 @@ contains
    subroutine write_pair(stem, model, analysis, error)
       !> Name of the files without their endings
       character(len=*), intent(in) :: stem
-      !> Lines and points
       type(line_model_t), intent(in) :: model
       type(limerick_analysis_t), intent(in) :: analysis
-      !> Allocated if they cannot be written
       type(error_t), allocatable, intent(out) :: error
 
       call write_text(stem//".geo", plain_geometry(model), error)
@@ -160,11 +153,9 @@ contains
 
    !> Say what was written, and what was lost
    subroutine tell(screen, stem, deck)
-      !> Where it goes
       type(screen_t), intent(in) :: screen
       !> Name of the files without their endings
       character(len=*), intent(in) :: stem
-      !> The deck of the case
       type(deck_t), intent(in) :: deck
 
       call print_line(screen, stem//".geo, "//stem//"_ddaml.geo, "//stem//".ana (DDAML), " &

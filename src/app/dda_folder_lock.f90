@@ -29,7 +29,6 @@ module dda_folder_lock
       !> C: number of this process
       function c_getpid() bind(c, name="getpid") result(number)
          import :: c_int
-         !> The number
          integer(c_int) :: number
       end function c_getpid
    end interface

@@ -149,7 +149,6 @@ contains
 
    !> Print help on a topic
    subroutine print_help(command, status)
-      !> What the user asked for
       type(command_t), intent(in) :: command
       !> Exit status of the program
       integer, intent(out) :: status
@@ -188,7 +187,6 @@ contains
 
    !> Print lines of text
    subroutine print_lines(screen, lines)
-      !> Where they go
       type(screen_t), intent(in) :: screen
       !> The lines: (n)
       character(len=*), intent(in) :: lines(:)

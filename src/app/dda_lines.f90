@@ -23,7 +23,6 @@ contains
 
    !> Draw the lines of all maps of the command line
    subroutine draw_lines(command, status)
-      !> What the user asked for
       type(command_t), intent(in) :: command
       !> Exit status of the program
       integer, intent(out) :: status
@@ -40,13 +39,11 @@ contains
 
    !> Draw the lines of one map
    subroutine draw_map(command, name, status, error)
-      !> What the user asked for
       type(command_t), intent(in) :: command
       !> Name of the map
       character(len=*), intent(in) :: name
       !> Exit status of this map
       integer, intent(out) :: status
-      !> Bad input, or files that cannot be written
       type(error_t), allocatable, intent(out) :: error
       type(joint_map_t) :: map
       type(line_model_t) :: model
@@ -105,9 +102,7 @@ contains
    subroutine write_table(file, model, error)
       !> Name of the file
       character(len=*), intent(in) :: file
-      !> Lines and points
       type(line_model_t), intent(in) :: model
-      !> Allocated if it cannot be written
       type(error_t), allocatable, intent(out) :: error
       type(table_file_t) :: table
       integer :: i
@@ -131,11 +126,9 @@ contains
       type(table_file_t), intent(inout) :: table
       !> Their role
       character(len=*), intent(in) :: role
-      !> Lines or points
       type(entities_t), intent(in) :: entities
       !> The first of them and the last
       integer, intent(in) :: first, last
-      !> Allocated if they cannot be written; nothing is done if it is allocated already
       type(error_t), allocatable, intent(inout) :: error
       integer :: i, k
       character(len=:), allocatable :: line

@@ -80,11 +80,9 @@ contains
       integer, intent(in) :: number
       !> Where the origin of the coordinates is: (2) [m]
       real(wp), intent(in) :: origin(2)
-      !> Holds the ways
       type(album_t), intent(in) :: album
       !> points.csv
       type(table_file_t), intent(inout) :: points
-      !> Allocated if they cannot be written
       type(error_t), allocatable, intent(out) :: error
       real(wp) :: place(2, size(album%point))
       integer :: i
@@ -101,11 +99,9 @@ contains
    subroutine write_energies(number, album, table, error)
       !> Number of the case
       integer, intent(in) :: number
-      !> Holds the energies
       type(album_t), intent(in) :: album
       !> energy.csv
       type(table_file_t), intent(inout) :: table
-      !> Allocated if they cannot be written
       type(error_t), allocatable, intent(out) :: error
       real(wp) :: value(10, album%audit%n)
       integer :: i
@@ -138,7 +134,6 @@ contains
       type(pvd_index_t), intent(inout) :: index
       !> Time of the picture [s]; of a static run its number
       real(wp), intent(in) :: time
-      !> Allocated if something cannot be written
       type(error_t), allocatable, intent(out) :: error
       type(field_t) :: of_corners(1), of_blocks(4), of_joints(3)
       real(wp) :: place(2, size(row)), force(2, size(row))

@@ -45,7 +45,6 @@ contains
 
    !> Tell how far a task is: not at once, and not too often
    subroutine tell_of_task(watch, task, share)
-      !> What was told so far
       class(terminal_watch_t), intent(inout) :: watch
       !> What is done
       character(len=*), intent(in) :: task
@@ -70,7 +69,6 @@ contains
 
    !> Wipe the line of a task
    subroutine end_watch(watch)
-      !> What was told so far
       class(terminal_watch_t), intent(inout) :: watch
 
       if (watch%told) call wipe_line()
@@ -86,7 +84,6 @@ contains
 
    !> Count one case and tell how many are done and how long the others will take
    subroutine report_progress(progress)
-      !> What was told so far
       type(progress_t), intent(inout) :: progress
       integer(int64) :: now, rate
       real(wp) :: left
@@ -103,7 +100,6 @@ contains
 
    !> Wipe the line
    subroutine clear_progress(progress)
-      !> What was told so far
       type(progress_t), intent(in) :: progress
 
       if (.not. progress%shown .or. progress%done == 0) return

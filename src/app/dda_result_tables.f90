@@ -179,7 +179,6 @@ contains
    !> are
    pure function left_out(deck) result(text)
       type(deck_t), intent(in) :: deck
-      !> The text
       character(len=:), allocatable :: text
       character(len=:), allocatable :: files, keys
       integer :: i
@@ -202,11 +201,9 @@ contains
 
    !> Begin all tables; those of an earlier run are replaced or removed
    subroutine open_tables(tables, record, error)
-      !> The tables, named
       type(result_tables_t), intent(inout) :: tables
       !> What was asked for
       character(len=*), intent(in) :: record
-      !> Allocated if they cannot be written
       type(error_t), allocatable, intent(out) :: error
       integer(int64) :: now, rate
       integer :: i
@@ -237,7 +234,6 @@ contains
       type(result_tables_t), intent(in) :: tables
       !> What was asked for
       character(len=*), intent(in) :: record
-      !> Allocated if it cannot be written
       type(error_t), allocatable, intent(out) :: error
       type(table_file_t) :: file
 
@@ -248,7 +244,6 @@ contains
    !> Bring all tables to the disk, results.csv last, and write down how long it is
    subroutine sync_tables(tables, error)
       type(result_tables_t), intent(inout) :: tables
-      !> Allocated if they cannot be written
       type(error_t), allocatable, intent(inout) :: error
       integer(int64) :: start, end, rate
       integer :: i
@@ -267,7 +262,6 @@ contains
    !> Bring all tables to the disk if the last time is long ago
    subroutine sync_when_due(tables, error)
       type(result_tables_t), intent(inout) :: tables
-      !> Allocated if they cannot be written
       type(error_t), allocatable, intent(inout) :: error
       integer(int64) :: now
 
@@ -278,7 +272,6 @@ contains
    !> Bring all tables to the disk and close them
    subroutine close_tables(tables, error)
       type(result_tables_t), intent(inout) :: tables
-      !> Allocated if they cannot be written
       type(error_t), allocatable, intent(inout) :: error
       integer :: i
 
@@ -307,7 +300,6 @@ contains
 
    !> Bytes of all tables but results.csv and the sizes
    integer(int64) function common_length(tables)
-      !> The tables, open
       type(result_tables_t), intent(in) :: tables
       integer :: i
 
@@ -320,7 +312,6 @@ contains
 
    !> Check sum of the lines that were appended to all tables but results.csv and the sizes
    pure integer(int64) function common_sum(tables)
-      !> The tables, open
       type(result_tables_t), intent(in) :: tables
       integer :: i
 
@@ -335,14 +326,12 @@ contains
    !> bytes they are, and last that of results.csv, so that a case with a row is whole
    subroutine write_case(tables, row, joint_row, blocks, remark, error)
       type(result_tables_t), intent(inout) :: tables
-      !> Row of the case
       type(result_row_t), intent(in) :: row
       !> Rows of its joints
       type(joint_row_t), intent(in) :: joint_row(:)
       type(told_blocks_t), intent(in) :: blocks
       !> What goes to the log
       character(len=*), intent(in) :: remark
-      !> Allocated if they cannot be written
       type(error_t), allocatable, intent(inout) :: error
       type(growing_text_t) :: lines
       integer(int64) :: length, lines_sum

@@ -46,13 +46,11 @@ contains
 
    !> Find the cases that are finished
    subroutine find_finished(tables, record, total, finished)
-      !> The tables, named
       type(result_tables_t), intent(in) :: tables
       !> What is asked for
       character(len=*), intent(in) :: record
       !> Number of cases
       integer, intent(in) :: total
-      !> What was found
       type(finished_t), intent(out) :: finished
       character(len=:), allocatable :: earlier
       type(error_t), allocatable :: none_left
@@ -71,7 +69,6 @@ contains
    !> Whether each case has the bytes and lines that were written down of it in the tables beside
    !> results.csv
    subroutine compare_sizes(tables, whole)
-      !> The tables, named
       type(result_tables_t), intent(in) :: tables
       !> Whether it has: (n)
       logical, intent(out) :: whole(:)
@@ -135,7 +132,6 @@ contains
       integer(int64), intent(in) :: length
       !> Whether a case is whole in the other tables: (n)
       logical, intent(in) :: whole(:)
-      !> Receives the cases
       type(finished_t), intent(inout) :: finished
       type(table_lines_t) :: lines
       type(layout_t) :: layout
@@ -161,11 +157,8 @@ contains
 
    !> Begin all tables with what they hold of finished cases, in place of what they hold now
    subroutine reopen_tables(tables, finished, error)
-      !> The tables, named
       type(result_tables_t), intent(inout) :: tables
-      !> What is finished
       type(finished_t), intent(in) :: finished
-      !> Allocated if they cannot be written
       type(error_t), allocatable, intent(out) :: error
       integer :: i
 
@@ -187,7 +180,6 @@ contains
       logical, intent(in) :: once
       !> Whether a case is finished: (n)
       logical, intent(in) :: finished(:)
-      !> Allocated if it cannot be written
       type(error_t), allocatable, intent(out) :: error
       type(table_lines_t) :: lines
       character(len=:), allocatable :: line
@@ -214,11 +206,9 @@ contains
    end subroutine keep_rows
 
    !> Where a table has what tells a whole row
-   pure function layout_of(header) result(layout)
+   pure type(layout_t) function layout_of(header) result(layout)
       !> First line of the table
       character(len=*), intent(in) :: header
-      !> The layout
-      type(layout_t) :: layout
 
       if (index(header, " ") > 0) return
       layout%columns = n_fields(header)
@@ -229,7 +219,6 @@ contains
 
    !> Case that a line belongs to; 0 for one that is no whole row of the table
    pure integer function case_of(layout, line, total)
-      !> What the table looks like
       type(layout_t), intent(in) :: layout
       !> The line
       character(len=*), intent(in) :: line

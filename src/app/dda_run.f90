@@ -31,7 +31,6 @@ contains
 
    !> Run all decks of the command line; a bad deck does not keep the others from running
    subroutine run_decks(command, status)
-      !> What the user asked for
       type(command_t), intent(in) :: command
       !> Exit status of the program
       integer, intent(out) :: status
@@ -65,12 +64,10 @@ contains
 
    !> Read a deck, and check that its scene can be run
    subroutine read_and_check(command, number, deck, error)
-      !> What the user asked for
       type(command_t), intent(in) :: command
       !> Number of the deck
       integer, intent(in) :: number
       type(deck_t), intent(out) :: deck
-      !> Allocated if it is not to be run
       type(error_t), allocatable, intent(out) :: error
       type(scene_t) :: scene
       type(terminal_watch_t) :: watch
@@ -84,13 +81,11 @@ contains
 
    !> No two decks may write into the same folder
    subroutine check_folder(command, number, good, error)
-      !> What the user asked for
       type(command_t), intent(in) :: command
       !> Number of the deck
       integer, intent(in) :: number
       !> Which of the decks before it will run: (number - 1)
       logical, intent(in) :: good(:)
-      !> Allocated if an earlier deck writes where this one would
       type(error_t), allocatable, intent(inout) :: error
       integer :: i
 
@@ -106,7 +101,6 @@ contains
 
    !> Folder that a deck's results go to
    pure function folder_of(command, name) result(folder)
-      !> What the user asked for
       type(command_t), intent(in) :: command
       !> Name of the deck
       character(len=*), intent(in) :: name
@@ -124,11 +118,9 @@ contains
 
    !> Run all cases of one deck
    subroutine run_deck(command, name, deck, status)
-      !> What the user asked for
       type(command_t), intent(in) :: command
       !> Name of the deck
       character(len=*), intent(in) :: name
-      !> The deck, checked
       type(deck_t), intent(in) :: deck
       !> Exit status of this deck
       integer, intent(out) :: status
@@ -174,18 +166,14 @@ contains
 
    !> Begin the tables, or go on with those of an earlier run of the same deck
    subroutine begin_tables(command, name, deck, total, tables, finished, error)
-      !> What the user asked for
       type(command_t), intent(in) :: command
       !> Name of the deck
       character(len=*), intent(in) :: name
       type(deck_t), intent(in) :: deck
       !> Number of cases
       integer, intent(in) :: total
-      !> The tables, named
       type(result_tables_t), intent(inout) :: tables
-      !> What is finished already
       type(finished_t), intent(out) :: finished
-      !> Allocated if the tables cannot be written
       type(error_t), allocatable, intent(out) :: error
       character(len=:), allocatable :: record
 

@@ -37,19 +37,15 @@ contains
    !> Compute cases until none is left, or none can be written; each thread runs this. Cases are
    !> written down in the same turn in which the next ones are prepared: one wait for other threads
    subroutine run_cases(command, name, deck, chosen, next, tables, progress, shown, count, error)
-      !> What the user asked for
       type(command_t), intent(in) :: command
       !> Name of the deck
       character(len=*), intent(in) :: name
-      !> The deck with its sweeps
       type(deck_t), intent(in) :: deck
       !> Cases to be computed
       logical, intent(in) :: chosen(:)
       !> The last case that was begun by any thread
       integer, intent(inout) :: next
-      !> Where the results go
       type(result_tables_t), intent(inout) :: tables
-      !> What was told so far
       type(progress_t), intent(inout) :: progress
       !> The table on the screen
       type(case_table_t), intent(inout) :: shown
@@ -123,13 +119,11 @@ contains
 
    !> Make one case ready to be computed
    subroutine prepare(deck, number, case_of_deck, tables, this)
-      !> The deck with its sweeps
       type(deck_t), intent(in) :: deck
       !> Number of the case
       integer, intent(in) :: number
       !> Deck of the case before in, of this one out
       type(deck_t), intent(inout) :: case_of_deck
-      !> Where the results go
       type(result_tables_t), intent(in) :: tables
       type(case_t), intent(out) :: this
       type(error_t), allocatable :: problem
@@ -175,24 +169,19 @@ contains
    !> Write a computed case down
    subroutine write_down(command, name, deck, number, this, tables, progress, shown, count, &
       & error)
-      !> What the user asked for
       type(command_t), intent(in) :: command
       !> Name of the deck
       character(len=*), intent(in) :: name
-      !> The deck with its sweeps
       type(deck_t), intent(in) :: deck
       !> Number of the case
       integer, intent(in) :: number
       type(case_t), intent(in) :: this
-      !> Where the results go
       type(result_tables_t), intent(inout) :: tables
-      !> What was told so far
       type(progress_t), intent(inout) :: progress
       !> The table on the screen
       type(case_table_t), intent(inout) :: shown
       !> Cases decided, undecided, written: (3)
       integer, intent(inout) :: count(3)
-      !> Failure to write
       type(error_t), allocatable, intent(inout) :: error
       type(result_row_t) :: row
       type(joint_row_t), allocatable :: joint_row(:)
@@ -220,13 +209,10 @@ contains
 
    !> Write what is seen of a case on its way: pictures, measured points, energies
    subroutine write_pictures(tables, number, this, error)
-      !> Where the results go
       type(result_tables_t), intent(inout) :: tables
       !> Number of the case
       integer, intent(in) :: number
-      !> The case, computed
       type(case_t), intent(in) :: this
-      !> Allocated if something cannot be written
       type(error_t), allocatable, intent(inout) :: error
 
       if (tables%at(table%frames)%wanted) call write_album(tables%folder, number, &
@@ -244,13 +230,10 @@ contains
 
    !> Write what proves the verdict of a case
    subroutine write_proof(tables, number, this, error)
-      !> Where the results go
       type(result_tables_t), intent(inout) :: tables
       !> Number of the case
       integer, intent(in) :: number
-      !> The case, computed
       type(case_t), intent(in) :: this
-      !> Allocated if it cannot be written
       type(error_t), allocatable, intent(inout) :: error
       character(len=:), allocatable :: lines, value
 
@@ -271,9 +254,7 @@ contains
       character(len=*), intent(in) :: folder
       !> Number of the case
       integer, intent(in) :: number
-      !> The case, computed
       type(case_t), intent(in) :: this
-      !> Allocated if it cannot be written
       type(error_t), allocatable, intent(out) :: error
 
       if (.not. this%family%deck%output%restart%flag) return

@@ -13,7 +13,6 @@ contains
 
    !> The text of deck.record
    pure function run_record(deck, stem) result(record)
-      !> The deck, checked
       type(deck_t), intent(in) :: deck
       !> Its name without folder and ending
       character(len=*), intent(in) :: stem

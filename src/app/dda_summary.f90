@@ -11,7 +11,6 @@ contains
 
    !> Print what --resume has found
    subroutine print_resumed(screen, name, same_deck, finished, total)
-      !> Where it goes
       type(screen_t), intent(in) :: screen
       !> Name of the deck
       character(len=*), intent(in) :: name
@@ -33,7 +32,6 @@ contains
 
    !> Print the last line
    subroutine print_total(screen, name, folder, count, left_out)
-      !> Where it goes
       type(screen_t), intent(in) :: screen
       !> Name of the deck
       character(len=*), intent(in) :: name

@@ -20,7 +20,6 @@ contains
 
    !> Put a line below the others
    pure subroutine add_line(lines, line)
-      !> The lines so far
       type(growing_text_t), intent(inout) :: lines
       !> The line
       character(len=*), intent(in) :: line
@@ -53,7 +52,6 @@ contains
       real(wp), intent(in) :: value(:)
       !> A comma where it is left out
       character, intent(in), optional :: between
-      !> The text
       character(len=:), allocatable :: text
       character :: parting
       integer :: i

@@ -323,19 +323,18 @@ contains
       if (.not. ok) value = 0.0_wp
    end subroutine read_number
 
-   !> Power of ten of the first digit of a decimal number that is not zero
-   pure function power_of_ten(digits, point) result(power)
+   !> Power of ten of the first digit of a decimal number that is not zero: far below 0 if all
+   !> digits are zero
+   pure integer function power_of_ten(digits, point)
       !> Digits with or without a sign, the decimal point taken out
       character(len=*), intent(in) :: digits
       !> Place where the point stood, counted from 1; 0 if there was none
       integer, intent(in) :: point
-      !> The power; far below 0 if all digits are zero
-      integer :: power
       integer :: first
 
       first = scan(digits, "123456789")
-      power = -1000
-      if (first > 0) power = merge(point - 1, len(digits), point > 0) - first
+      power_of_ten = -1000
+      if (first > 0) power_of_ten = merge(point - 1, len(digits), point > 0) - first
    end function power_of_ten
 
    !> Read one integer, and nothing else, from a text
@@ -359,20 +358,18 @@ contains
    end subroutine read_integer
 
    !> Whether a text is one digit or more, after a sign where signs are allowed
-   pure function is_digits(text, signed) result(yes)
+   pure logical function is_digits(text, signed)
       !> Text to look at
       character(len=*), intent(in) :: text
       !> Whether a leading sign may stand
       logical, intent(in) :: signed
-      !> The answer
-      logical :: yes
       integer :: first
 
       first = 1
       if (signed .and. len(text) > 0) then
          if (scan(text(1:1), "+-") == 1) first = 2
       end if
-      yes = len(text) >= first
-      if (yes) yes = verify(text(first:), "0123456789") == 0
+      is_digits = len(text) >= first
+      if (is_digits) is_digits = verify(text(first:), "0123456789") == 0
    end function is_digits
 end module dda_text

@@ -19,7 +19,6 @@ contains
    pure function bar_lines(number, this) result(lines)
       !> Number of the case
       integer, intent(in) :: number
-      !> The case, computed
       type(case_t), intent(in) :: this
       !> Rows, parted by line ends; empty without bars
       character(len=:), allocatable :: lines
@@ -67,7 +66,6 @@ contains
       real(wp), intent(in) :: time
       !> The bars
       type(bar_state_t), intent(in) :: bar(:)
-      !> Receives the rows
       type(growing_text_t), intent(inout) :: rows
       integer :: i
 

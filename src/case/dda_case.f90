@@ -90,7 +90,6 @@ contains
 
    !> Name of the searched parameter, empty if nothing is searched
    pure function searched_name(deck) result(name)
-      !> The deck of the case
       type(deck_t), intent(in) :: deck
       !> Name of a key
       character(len=:), allocatable :: name
@@ -101,7 +100,6 @@ contains
 
    !> What a deck asks to be searched
    pure subroutine prepare_search(deck, plan, searched, family, search)
-      !> The deck of the case
       type(deck_t), intent(in) :: deck
       !> What its scenes need
       type(scene_plan_t), intent(in) :: plan

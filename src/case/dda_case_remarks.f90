@@ -53,7 +53,6 @@ contains
 
    !> What the user should know of the path of a static run
    pure function path_remark(outcome, before) result(remark)
-      !> How the run ended
       type(outcome_t), intent(in) :: outcome
       !> What else there is to know
       character(len=*), intent(in) :: before
@@ -77,7 +76,6 @@ contains
 
    !> Why forces after stages are not those of the last shape built at once
    pure function order_remark(outcome, before) result(remark)
-      !> How the run ended
       type(outcome_t), intent(in) :: outcome
       !> What else there is to know
       character(len=*), intent(in) :: before
@@ -99,7 +97,6 @@ contains
    pure function numbered(joint) result(text)
       !> The numbers: (n)
       integer, intent(in) :: joint(:)
-      !> The text
       character(len=:), allocatable :: text
       integer, parameter :: most = 12
       integer :: i
@@ -114,7 +111,6 @@ contains
 
    !> What a search in time has found on both sides of its bracket
    pure function change_remark(critical, before) result(remark)
-      !> What was found
       type(critical_t), intent(in) :: critical
       !> What else there is to know
       character(len=*), intent(in) :: before

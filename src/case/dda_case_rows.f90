@@ -34,7 +34,6 @@ contains
 
    !> Tell a case
    pure subroutine tell_case(this, row, joint_row, blocks, remark)
-      !> The case, computed
       type(case_t), intent(in) :: this
       !> Its row; the fields deck, number and swept are left to the caller
       type(result_row_t), intent(out) :: row
@@ -121,7 +120,6 @@ contains
    !> Whether the friction of the deck may be that of a joint: those of lines have that of their
    !> analysis file, those of blocks that of the law of their materials, where there is one
    pure logical function deck_friction_acts(deck)
-      !> The deck of the case
       type(deck_t), intent(in) :: deck
 
       deck_friction_acts = deck%joint%friction_deg%given
@@ -276,7 +274,6 @@ contains
 
    !> Fill the column of the condition number, if it was estimated
    pure subroutine tell_condition(outcome, row)
-      !> How the decision ended
       type(outcome_t), intent(in) :: outcome
       type(result_row_t), intent(inout) :: row
 
@@ -288,7 +285,6 @@ contains
    !> collapse stops, that value is its middle; where they lie closer than rounding can tell apart,
    !> it is told as wide as that
    pure subroutine tell_bracket(critical, row)
-      !> What was found
       type(critical_t), intent(in) :: critical
       type(result_row_t), intent(inout) :: row
 
@@ -309,11 +305,9 @@ contains
    end subroutine tell_bracket
 
    !> Contacts of the step that has shown a collapse
-   pure function fallen_contacts(fallen) result(contacts)
+   pure type(contacts_t) function fallen_contacts(fallen) result(contacts)
       !> The collapse, which may have been followed beyond that step
       type(decision_t), intent(in) :: fallen
-      !> The contacts
-      type(contacts_t) :: contacts
 
       if (allocated(fallen%outcome%fallen)) then
          contacts = fallen%outcome%fallen
@@ -348,7 +342,6 @@ contains
    pure function verdict_name(answer) result(name)
       !> One of verdict
       integer, intent(in) :: answer
-      !> The word
       character(len=10) :: name
 
       name = "undecided"

@@ -42,7 +42,6 @@ contains
 
    !> Compute a case
    subroutine compute_case(this)
-      !> The case, prepared
       type(case_t), intent(inout) :: this
       type(error_t), allocatable :: error
       integer(int64) :: start, finish, rate
@@ -89,7 +88,6 @@ contains
 
    !> Put the vehicle where the least load factor is carried
    pure subroutine place_vehicle(this)
-      !> The case, prepared
       type(case_t), intent(inout) :: this
       type(scene_t) :: scene
       type(error_t), allocatable :: error
@@ -107,7 +105,6 @@ contains
 
    !> Prove the verdict of a case by limit analysis
    pure subroutine prove_case(this)
-      !> The case, decided
       type(case_t), intent(inout) :: this
       integer :: joint
 
@@ -207,7 +204,6 @@ contains
 
    !> Give the assembly nearest to critical that was found to stand its joints: a chain has none
    pure subroutine place_joints(this)
-      !> The case, decided
       type(case_t), intent(inout) :: this
 
       if (.not. allocated(this%critical%standing)) return
@@ -221,7 +217,6 @@ contains
    !> Let the pictures of a static run lie evenly on the way of a collapse, until a corner has moved
    !> a tenth of the radius, or of the size of the blocks; or on the path of its histories
    pure subroutine plan_fall(this)
-      !> The case, with its scene
       type(case_t), intent(inout) :: this
       type(load_clock_t) :: clock
       integer :: frames
@@ -241,7 +236,6 @@ contains
    !> Repeat the run nearest to critical that a search has found to fall, else to stand, for its
    !> pictures
    pure subroutine take_pictures(this)
-      !> The case, searched
       type(case_t), intent(inout) :: this
       type(outcome_t) :: outcome
       type(settings_t) :: settings

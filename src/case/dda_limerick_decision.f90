@@ -28,7 +28,6 @@ contains
 
    !> Run what a deck describes under the original's scheme
    pure subroutine decide_limerick(deck, decision, album)
-      !> The deck of one case, checked
       type(deck_t), intent(in) :: deck
       type(decision_t), intent(out) :: decision
       !> Receives the ways of its points, if it has some
@@ -64,7 +63,6 @@ contains
    pure subroutine plan_pictures(frames, constants, album)
       !> How many are asked for
       integer, intent(in) :: frames
-      !> Constants of the scheme
       type(limerick_constants_t), intent(in) :: constants
       type(album_t), intent(inout) :: album
 
@@ -84,9 +82,7 @@ contains
       type(limerick_model_t), intent(in) :: model
       !> The run as it ended
       type(limerick_run_t), intent(out) :: run
-      !> How it ended
       type(limerick_outcome_t), intent(out) :: outcome
-      !> Receives the pictures
       type(album_t), intent(inout) :: album
       type(block_system_t) :: system
       type(contacts_t) :: contacts
@@ -136,7 +132,6 @@ contains
    !> Keep the ways of the measured points
    pure subroutine keep_ways(outcome, album)
       type(limerick_outcome_t), intent(in) :: outcome
-      !> Receives them
       type(album_t), intent(inout) :: album
       integer :: i, n
 
@@ -153,7 +148,6 @@ contains
    pure subroutine place_corners(kind, run, system)
       !> What the blocks are made from
       character(len=*), intent(in) :: kind
-      !> The run at its end
       type(limerick_run_t), intent(in) :: run
       !> The blocks; where their corners have moved to is set
       type(block_system_t), intent(inout) :: system
@@ -180,7 +174,6 @@ contains
       !> The scene at the beginning
       type(scene_t), intent(in) :: scene
       type(limerick_model_t), intent(in) :: model
-      !> The run at its end
       type(limerick_run_t), intent(in) :: run
       !> The corners at the end: (2, n_vertex) [m]
       real(wp), intent(in) :: now(:, :)
@@ -208,7 +201,6 @@ contains
    !> Forces and open corners of the joints from the contacts between their blocks
    pure subroutine tell_forces(model, run, contacts)
       type(limerick_model_t), intent(in) :: model
-      !> The run at its end
       type(limerick_run_t), intent(in) :: run
       !> The joints; points are set, forces and open corners become so
       type(contacts_t), intent(inout) :: contacts
@@ -272,7 +264,6 @@ contains
    !> Normal force and force along the edge on the edge's block
    pure function contact_force(model, run, contact) result(force)
       type(limerick_model_t), intent(in) :: model
-      !> The run at its end
       type(limerick_run_t), intent(in) :: run
       type(limerick_contact_t), intent(in) :: contact
       !> Compression, and force on the edge's block in the direction of slip: (2) [N/m]

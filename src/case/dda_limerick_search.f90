@@ -28,7 +28,6 @@ contains
       type(deck_family_t), intent(in) :: family
       !> What is searched; where the far end needs no check, the search strides out from the start
       type(search_t), intent(in) :: search
-      !> What was found
       type(critical_t), intent(out) :: critical
       integer :: answer
 
@@ -56,9 +55,7 @@ contains
    pure subroutine repeat_with_pictures(family, critical, album)
       !> The deck and its parameter
       type(deck_family_t), intent(in) :: family
-      !> What was found
       type(critical_t), intent(in) :: critical
-      !> Receives the pictures
       type(album_t), intent(inout) :: album
       type(decision_t) :: decision
       type(error_t), allocatable :: error
@@ -79,7 +76,6 @@ contains
 
    !> Whether a value stands and another falls
    pure logical function both_sides(critical)
-      !> What was found so far
       type(critical_t), intent(in) :: critical
 
       both_sides = allocated(critical%fallen) .and. allocated(critical%standing)
@@ -89,9 +85,7 @@ contains
    pure subroutine stride_out(family, search, critical, answer)
       !> The deck and its parameter
       type(deck_family_t), intent(in) :: family
-      !> What is searched
       type(search_t), intent(in) :: search
-      !> Receives the decisions
       type(critical_t), intent(inout) :: critical
       !> The last of them, one of verdict
       integer, intent(out) :: answer
@@ -119,7 +113,6 @@ contains
       type(deck_family_t), intent(in) :: family
       !> The value
       real(wp), intent(in) :: value
-      !> Receives the decision
       type(critical_t), intent(inout) :: critical
       !> One of verdict
       integer, intent(out) :: answer

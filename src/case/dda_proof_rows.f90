@@ -57,7 +57,6 @@ contains
       type(proof_t), intent(in) :: proof
       !> Number of the last joint before them; theirs are added
       integer, intent(inout) :: n
-      !> Receives the rows
       type(growing_text_t), intent(inout) :: rows
       real(wp) :: force(3)
       integer :: i
@@ -85,7 +84,6 @@ contains
       type(proof_t), intent(in) :: proof
       !> Number of the last joint before them; theirs are added
       integer, intent(inout) :: n
-      !> Receives the rows
       type(growing_text_t), intent(inout) :: rows
       character(len=:), allocatable :: line
       integer :: i
@@ -112,7 +110,6 @@ contains
       !> First fields of a row
       character(len=*), intent(in) :: start
       type(proof_t), intent(in) :: proof
-      !> Receives the rows
       type(growing_text_t), intent(inout) :: rows
       integer :: i, j
 

@@ -28,9 +28,7 @@ contains
    pure function reaction_text(number, this) result(lines)
       !> Number of the case
       integer, intent(in) :: number
-      !> The case, computed
       type(case_t), intent(in) :: this
-      !> The rows, parted by line ends
       character(len=:), allocatable :: lines
       integer, allocatable :: support(:, :)
       real(wp), allocatable :: reaction(:, :)

@@ -76,7 +76,6 @@ contains
       type(block_system_t), intent(in) :: system
       type(contacts_t), intent(in) :: contacts
       type(march_t), intent(in) :: march
-      !> Allocated if it cannot be written
       type(error_t), allocatable, intent(out) :: error
       type(state_t) :: state
       integer(int32), allocatable :: whole(:)

@@ -32,7 +32,6 @@ contains
    !> Check that the modes of a deck can run the blocks of its file, and that a run that goes on has
    !> a file; warn of blocks that will fall, and of units that are no metres
    subroutine check_scene(deck, scene, error, watch)
-      !> The deck, checked; receives the warnings
       type(deck_t), intent(inout) :: deck
       !> The scene of the first case, if its blocks are from a file
       type(scene_t), intent(out) :: scene
@@ -53,7 +52,6 @@ contains
    !> Check that live loads act on blocks that move, and that the load factor has loads
    pure subroutine check_live_cases(deck, error)
       type(deck_t), intent(in) :: deck
-      !> What cannot be
       type(error_t), allocatable, intent(out) :: error
       type(deck_place_t) :: place
       type(deck_t) :: work
@@ -102,12 +100,10 @@ contains
    end function leads_points
 
    !> Where a factor is given, swept or searched
-   pure function factor_place(deck, name) result(place)
+   pure type(deck_place_t) function factor_place(deck, name) result(place)
       type(deck_t), intent(in) :: deck
       !> Its key in &load
       character(len=*), intent(in) :: name
-      !> The place; line 0 if it is not
-      type(deck_place_t) :: place
       integer :: key, s
 
       key = key_index("load", name)
@@ -120,7 +116,6 @@ contains
 
    !> Check that the modes of a deck can run the blocks that were cut from its lines
    pure subroutine check_lines(deck, error)
-      !> The deck, checked; receives the warnings
       type(deck_t), intent(inout) :: deck
       !> What cannot be run
       type(error_t), allocatable, intent(out) :: error
@@ -131,11 +126,9 @@ contains
 
    !> Check the first case of each mode
    pure subroutine check_modes(deck, scene, error)
-      !> The deck, checked; receives the warnings
       type(deck_t), intent(inout) :: deck
       !> The scene of the first case, if its blocks are from a file
       type(scene_t), intent(out) :: scene
-      !> What cannot be run
       type(error_t), allocatable, intent(out) :: error
       type(deck_t) :: work
       integer :: number, mode
@@ -159,15 +152,12 @@ contains
 
    !> Check that the mode of one case can run its scene
    pure subroutine check_mode(deck, warns, scene, warnings, error)
-      !> The deck of the case
       type(deck_t), intent(in) :: deck
       !> Whether doubts are told
       logical, intent(in) :: warns
       !> A scene of these blocks and joints, if they are from a file
       type(scene_t), intent(in) :: scene
-      !> Receives them
       type(warnings_t), intent(inout) :: warnings
-      !> What it cannot run
       type(error_t), allocatable, intent(out) :: error
 
       select case (deck%scene%kind%word)
@@ -197,7 +187,6 @@ contains
    !> Check the file that a run goes on from: a single case must be able to, of many each finds out
    subroutine check_start(deck, error)
       type(deck_t), intent(in) :: deck
-      !> No file, or one that a single case cannot go on from
       type(error_t), allocatable, intent(out) :: error
       character(len=:), allocatable :: name
       type(scene_t) :: scene
@@ -220,10 +209,8 @@ contains
 
    !> Whether anything bears on the blocks of a static scene
    pure subroutine check_loads(deck, scene, error)
-      !> The deck of a case
       type(deck_t), intent(in) :: deck
       type(scene_t), intent(in) :: scene
-      !> Allocated if nothing does
       type(error_t), allocatable, intent(out) :: error
       integer :: i
 
@@ -248,10 +235,8 @@ contains
 
    !> Check that a static scene can come to rest at all
    pure subroutine check_support(deck, scene, error)
-      !> The deck of a case
       type(deck_t), intent(in) :: deck
       type(scene_t), intent(in) :: scene
-      !> Allocated if nothing holds a block
       type(error_t), allocatable, intent(out) :: error
       integer :: b
 
@@ -263,9 +248,7 @@ contains
 
    !> Check that a deck can be run in stages
    pure subroutine check_stages(deck, error)
-      !> The deck of a case
       type(deck_t), intent(in) :: deck
-      !> What knows no stages
       type(error_t), allocatable, intent(out) :: error
       character(len=:), allocatable :: problem
 
@@ -294,10 +277,8 @@ contains
 
    !> Check that what may be crushed does not stand on corners, which bear nothing then
    pure subroutine check_widths(deck, scene, error)
-      !> The deck of a case
       type(deck_t), intent(in) :: deck
       type(scene_t), intent(in) :: scene
-      !> Allocated if a joint has no width
       type(error_t), allocatable, intent(out) :: error
       integer :: j
 
@@ -315,10 +296,8 @@ contains
 
    !> Warn of blocks that will fall, and of units that are no metres
    pure subroutine doubt_scene(deck, scene, warnings)
-      !> The deck of a case
       type(deck_t), intent(in) :: deck
       type(scene_t), intent(in) :: scene
-      !> Receives the warnings
       type(warnings_t), intent(inout) :: warnings
       integer :: b
 
@@ -336,10 +315,8 @@ contains
    !> Warn where the weight of the blocks would strain them as no masonry is strained: lengths are
    !> then often millimetres
    pure subroutine doubt_units(deck, scene, warnings)
-      !> The deck of a case
       type(deck_t), intent(in) :: deck
       type(scene_t), intent(in) :: scene
-      !> Receives the warning
       type(warnings_t), intent(inout) :: warnings
       character(len=10) :: figure
       real(wp) :: height, strain

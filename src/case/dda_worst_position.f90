@@ -58,7 +58,6 @@ contains
 
    !> Find the worst position
    pure subroutine find_worst_position(deck, scene, position, found)
-      !> The deck of the case
       type(deck_t), intent(in) :: deck
       !> Its scene with a vehicle anywhere
       type(scene_t), intent(in) :: scene
@@ -92,7 +91,6 @@ contains
 
    !> What a deck has of a bridge
    pure subroutine take_bridge(deck, scene, bridge)
-      !> The deck of the case
       type(deck_t), intent(in) :: deck
       !> Its scene with a vehicle anywhere
       type(scene_t), intent(in) :: scene
@@ -240,14 +238,12 @@ contains
    end subroutine seek_on_side
 
    !> Live loads with the vehicle on a stretch
-   pure function arc_of(bridge, from, to, other) result(arc)
+   pure type(load_arc_t) function arc_of(bridge, from, to, other) result(arc)
       type(bridge_t), intent(in) :: bridge
       !> Beginning and end of the stretch [m]
       real(wp), intent(in) :: from, to
       !> Live loads beside the vehicle: (3, n_block) [N/m, N/m, N]
       real(wp), intent(in) :: other(:, :)
-      !> The loads
-      type(load_arc_t) :: arc
       type(loaded_point_t), allocatable :: axles(:)
       real(wp) :: live(3, size(other, 2), 3), load(6)
       logical :: is_loaded(size(other, 2))

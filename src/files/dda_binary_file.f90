@@ -35,7 +35,6 @@ contains
       !> Name of the file; one that exists is replaced
       character(len=*), intent(in) :: name
       type(binary_file_t), intent(out) :: file
-      !> Allocated if it cannot be written
       type(error_t), allocatable, intent(out) :: error
       !> Whether what it holds is kept and added to instead
       logical, intent(in), optional :: keep

@@ -82,7 +82,6 @@ module dda_c_files
          import :: c_int, c_ptr
          !> The file
          type(c_ptr), intent(in), value :: handle
-         !> Its number
          integer(c_int) :: descriptor
       end function c_fileno
 

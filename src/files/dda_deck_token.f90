@@ -75,7 +75,6 @@ contains
       type(deck_scan_t), intent(in) :: scan
       !> Place of the token
       integer, intent(in) :: i
-      !> Its text
       character(len=:), allocatable :: text
       character(len=1) :: quote
       integer :: at, next
@@ -134,7 +133,6 @@ contains
 
    !> Append a token at the scanner's line
    pure subroutine add_token(scan, kind, first, last, count, error)
-      !> Scanner
       type(deck_scan_t), intent(inout) :: scan
       !> One of token_kind
       integer, intent(in) :: kind
@@ -165,7 +163,6 @@ contains
 
    !> Go to the next character that is neither blank nor comment
    pure subroutine skip_blanks(scan)
-      !> Scanner
       type(deck_scan_t), intent(inout) :: scan
       integer :: next
 
@@ -183,31 +180,28 @@ contains
       end do
    end subroutine skip_blanks
 
-   !> Last character of the word at the scanner's place
-   pure function word_end(scan) result(last)
+   !> Place of the last letter of the word at the scanner's place; one before the
+   !> scanner's if a word end stands there
+   pure integer function word_end(scan)
       !> Scanner at the first letter
       type(deck_scan_t), intent(in) :: scan
-      !> Place of the last letter; one before the scanner's if a word end stands there
-      integer :: last
 
-      last = scan%position
-      do while (last <= len(scan%text))
-         if (index(word_ends, scan%text(last:last)) > 0) exit
-         last = last + 1
+      word_end = scan%position
+      do while (word_end <= len(scan%text))
+         if (index(word_ends, scan%text(word_end:word_end)) > 0) exit
+         word_end = word_end + 1
       end do
-      last = last - 1
+      word_end = word_end - 1
    end function word_end
 
    !> Whether a text begins with another
-   pure function starts_with(text, beginning) result(yes)
+   pure logical function starts_with(text, beginning)
       !> Text to look at
       character(len=*), intent(in) :: text
       !> How it should begin
       character(len=*), intent(in) :: beginning
-      !> The answer
-      logical :: yes
 
-      yes = len(text) >= len(beginning)
-      if (yes) yes = text(:len(beginning)) == beginning
+      starts_with = len(text) >= len(beginning)
+      if (starts_with) starts_with = text(:len(beginning)) == beginning
    end function starts_with
 end module dda_deck_token

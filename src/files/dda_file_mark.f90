@@ -18,7 +18,6 @@ contains
    function file_mark(file) result(mark)
       !> Name of the file
       character(len=*), intent(in) :: file
-      !> The mark
       character(len=:), allocatable :: mark
       character(len=chunk) :: bytes
       integer(int64) :: length, left, total(2)
@@ -45,7 +44,6 @@ contains
    pure function text_mark(text) result(mark)
       !> The text
       character(len=*), intent(in) :: text
-      !> The mark
       character(len=:), allocatable :: mark
       integer(int64) :: total(2)
 

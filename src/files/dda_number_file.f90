@@ -27,7 +27,6 @@ contains
       integer(int32), intent(in) :: whole(:)
       !> Numbers: (:)
       real(wp), intent(in) :: number(:)
-      !> Allocated if it cannot be written
       type(error_t), allocatable, intent(out) :: error
       type(error_t), allocatable :: late
       type(binary_file_t) :: opened

@@ -65,7 +65,6 @@ contains
       type(table_file_t), intent(inout) :: table
       !> The line
       character(len=*), intent(in) :: line
-      !> Allocated if it cannot be written
       type(error_t), allocatable, intent(out) :: error
 
       if (len(line) == 0) return
@@ -78,7 +77,6 @@ contains
    subroutine sync_table(table, error)
       !> The table; nothing happens to one that is not open
       type(table_file_t), intent(in) :: table
-      !> Allocated if it cannot be written
       type(error_t), allocatable, intent(inout) :: error
 
       call sync_binary(table%file, error)
@@ -127,7 +125,6 @@ contains
    pure function part_name(file) result(name)
       !> Name that it will have
       character(len=*), intent(in) :: file
-      !> The name
       character(len=:), allocatable :: name
 
       name = file//".part"

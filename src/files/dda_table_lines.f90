@@ -111,7 +111,6 @@ contains
       character(len=*), intent(in) :: line
       !> Which, from 1
       integer, intent(in) :: number
-      !> The field
       character(len=:), allocatable :: text
       logical :: quoted
       integer :: i, n, start

@@ -41,7 +41,6 @@ contains
       character(len=*), intent(in) :: file
       !> Its bytes; empty after a failure
       character(len=:), allocatable, intent(out) :: bytes
-      !> Missing, a folder, empty, too large or unreadable
       type(error_t), allocatable, intent(out) :: error
       type(c_ptr) :: handle
       integer(c_int) :: failed
@@ -71,7 +70,6 @@ contains
    subroutine check_name(file, error)
       !> Name of the file
       character(len=*), intent(in) :: file
-      !> Missing or a folder
       type(error_t), allocatable, intent(out) :: error
       integer(c_int), parameter :: exists = 0
 

@@ -27,7 +27,6 @@ contains
       !> The file's elements; those that are not read are marked
       type(xml_tree_t), intent(inout) :: tree
       type(limerick_analysis_t), intent(out) :: analysis
-      !> Receives what the reader ignores
       type(warnings_t), intent(inout) :: warnings
       !> What is wrong, with its line
       type(error_t), allocatable, intent(out) :: error
@@ -58,9 +57,7 @@ contains
       type(xml_tree_t), intent(in) :: tree
       !> Place of the child
       integer, intent(in) :: at
-      !> Receives what it says
       type(limerick_analysis_t), intent(inout) :: analysis
-      !> Receives what the reader ignores
       type(warnings_t), intent(inout) :: warnings
       type(error_t), allocatable, intent(out) :: error
 
@@ -98,9 +95,7 @@ contains
       type(xml_tree_t), intent(in) :: tree
       !> Place of the element
       integer, intent(in) :: at
-      !> Receives the choice
       type(limerick_analysis_t), intent(inout) :: analysis
-      !> Receives what the reader ignores
       type(warnings_t), intent(inout) :: warnings
       type(error_t), allocatable, intent(out) :: error
       logical :: turned_on
@@ -157,9 +152,7 @@ contains
       type(xml_tree_t), intent(in) :: tree
       !> Place of Analysis
       integer, intent(in) :: part
-      !> Receives them
       type(limerick_analysis_t), intent(inout) :: analysis
-      !> Receives what the reader ignores
       type(warnings_t), intent(inout) :: warnings
       type(error_t), allocatable, intent(out) :: error
       integer :: at, n_blocks, n_joints
@@ -233,7 +226,6 @@ contains
       type(xml_tree_t), intent(in) :: tree
       !> Place of Analysis
       integer, intent(in) :: part
-      !> Receives them
       type(limerick_analysis_t), intent(inout) :: analysis
       type(error_t), allocatable, intent(out) :: error
       integer :: list, at, n, pass
@@ -262,7 +254,6 @@ contains
       type(xml_tree_t), intent(in) :: tree
       !> Place of AConstants
       integer, intent(in) :: at
-      !> Receives them
       type(limerick_analysis_t), intent(inout) :: analysis
       type(error_t), allocatable, intent(out) :: error
       integer :: child
@@ -294,9 +285,7 @@ contains
       !> Place of Analysis
       integer, intent(in) :: part
       type(limerick_analysis_t), intent(in) :: analysis
-      !> Receives what was assumed
       type(warnings_t), intent(inout) :: warnings
-      !> What is missing
       type(error_t), allocatable, intent(out) :: error
       character(len=*), parameter :: wanted(5) = [character(len=16) :: "Numtimesteps", &
          & "Maxtimestep", "Maxdisplacement", "Blockmaterial", "Jointproperties"]

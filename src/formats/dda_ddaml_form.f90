@@ -113,7 +113,6 @@ contains
       integer, intent(in) :: part
       !> What may be in it
       type(form_t), intent(in) :: form(:)
-      !> Receives what is not read
       type(warnings_t), intent(inout) :: warnings
       !> What has two meanings
       type(error_t), allocatable, intent(out) :: error
@@ -186,9 +185,7 @@ contains
       integer, intent(in) :: outer
       !> What may be in the part
       type(form_t), intent(in) :: form(:)
-      !> Receives the warning
       type(warnings_t), intent(inout) :: warnings
-      !> Numbers before and behind it are no record
       type(error_t), allocatable, intent(inout) :: error
       logical :: among_numbers
 
@@ -227,9 +224,7 @@ contains
       integer, intent(in) :: at
       !> Its entry in the form
       type(form_t), intent(in) :: form
-      !> Receives the warnings
       type(warnings_t), intent(inout) :: warnings
-      !> Two attributes whose names differ in their prefix
       type(error_t), allocatable, intent(inout) :: error
       integer :: i
 
@@ -256,7 +251,6 @@ contains
       type(xml_tree_t), intent(in) :: tree
       !> Place of the element
       integer, intent(in) :: at
-      !> Receives the warning
       type(warnings_t), intent(inout) :: warnings
       type(word_list_t) :: words
 

@@ -35,9 +35,7 @@ contains
    pure subroutine read_ddaml_geometry(tree, model, warnings, error)
       !> The file's elements; those that are not read are marked
       type(xml_tree_t), intent(inout) :: tree
-      !> Lines and points
       type(line_model_t), intent(out) :: model
-      !> Receives what the reader ignores
       type(warnings_t), intent(inout) :: warnings
       !> What is wrong, with its line
       type(error_t), allocatable, intent(out) :: error
@@ -70,11 +68,8 @@ contains
       type(xml_tree_t), intent(in) :: tree
       !> Place of the child
       integer, intent(in) :: at
-      !> Receives what it says
       type(line_model_t), intent(inout) :: model
-      !> Receives boundary lines
       type(entities_t), intent(inout) :: boundary
-      !> Receives what the reader ignores
       type(warnings_t), intent(inout) :: warnings
       type(error_t), allocatable, intent(out) :: error
 
@@ -133,9 +128,7 @@ contains
       integer, intent(in) :: list
       !> What the type of its elements says
       integer, intent(in) :: type
-      !> Receives them
       type(entities_t), intent(inout) :: entities
-      !> Receives what the reader ignores
       type(warnings_t), intent(inout) :: warnings
       type(error_t), allocatable, intent(out) :: error
       integer :: at
@@ -152,9 +145,7 @@ contains
       type(xml_tree_t), intent(in) :: tree
       !> Place of the list
       integer, intent(in) :: list
-      !> Receives them
       type(line_model_t), intent(inout) :: model
-      !> Receives what the reader ignores
       type(warnings_t), intent(inout) :: warnings
       type(error_t), allocatable, intent(out) :: error
       character(len=*), parameter :: name(3) = [character(len=10) :: "stiffness", "strength", &
@@ -188,9 +179,7 @@ contains
       integer, intent(in) :: at
       !> What its type says
       integer, intent(in) :: type
-      !> Receives it
       type(entities_t), intent(inout) :: entities
-      !> Receives what the reader ignores
       type(warnings_t), intent(inout) :: warnings
       type(error_t), allocatable, intent(out) :: error
       type(word_list_t) :: words

@@ -28,7 +28,6 @@ contains
       !> Acceleration of gravity, for a weight that is not given
       real(wp), intent(in) :: gravity
       type(analysis_material_t), intent(out) :: material
-      !> Receives what the reader ignores
       type(warnings_t), intent(inout) :: warnings
       type(error_t), allocatable, intent(out) :: error
       real(wp) :: one(1), unused(1)
@@ -85,7 +84,6 @@ contains
       !> Place of the element
       integer, intent(in) :: at
       type(limerick_joint_t), intent(out) :: joint
-      !> Receives what the reader ignores
       type(warnings_t), intent(inout) :: warnings
       type(error_t), allocatable, intent(out) :: error
       real(wp) :: one(1)
@@ -114,7 +112,6 @@ contains
       logical, intent(in) :: needed
       !> Its numbers; left as they are if it is not there: (n)
       real(wp), intent(inout) :: value(:)
-      !> Receives what the reader ignores
       type(warnings_t), intent(inout) :: warnings
       type(error_t), allocatable, intent(out) :: error
       type(word_list_t) :: words

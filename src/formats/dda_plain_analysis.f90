@@ -28,7 +28,6 @@ contains
       !> Name of the file
       character(len=*), intent(in) :: file
       type(limerick_analysis_t), intent(out) :: analysis
-      !> Receives what the reader ignores
       type(warnings_t), intent(inout) :: warnings
       !> What is wrong, with its line
       type(error_t), allocatable, intent(out) :: error
@@ -61,9 +60,7 @@ contains
 
    !> Read the two numbers that bound a step
    pure subroutine read_steps(words, analysis, error)
-      !> The words of the file
       type(word_list_t), intent(inout) :: words
-      !> Receives them
       type(limerick_analysis_t), intent(inout) :: analysis
       type(error_t), allocatable, intent(out) :: error
       real(wp) :: value(1)
@@ -77,11 +74,9 @@ contains
 
    !> Read the materials of the blocks
    pure subroutine read_materials(words, n, analysis, error)
-      !> The words of the file
       type(word_list_t), intent(inout) :: words
       !> How many there are
       integer, intent(in) :: n
-      !> Receives them
       type(limerick_analysis_t), intent(inout) :: analysis
       type(error_t), allocatable, intent(out) :: error
       type(analysis_material_t), allocatable :: list(:)
@@ -110,11 +105,9 @@ contains
 
    !> Read the materials of the joints
    pure subroutine read_joints(words, n, analysis, error)
-      !> The words of the file
       type(word_list_t), intent(inout) :: words
       !> How many there are
       integer, intent(in) :: n
-      !> Receives them
       type(limerick_analysis_t), intent(inout) :: analysis
       type(error_t), allocatable, intent(out) :: error
       type(limerick_joint_t), allocatable :: list(:)

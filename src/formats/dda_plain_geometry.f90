@@ -41,9 +41,7 @@ contains
       character(len=*), intent(in) :: text
       !> Name of the file
       character(len=*), intent(in) :: file
-      !> Lines and points
       type(line_model_t), intent(out) :: model
-      !> Receives what the reader ignores
       type(warnings_t), intent(inout) :: warnings
       !> What is wrong, with its line
       type(error_t), allocatable, intent(out) :: error
@@ -82,7 +80,6 @@ contains
 
    !> Read how many things there are
    pure subroutine read_counts(words, n, error)
-      !> The words of the file
       type(word_list_t), intent(inout) :: words
       type(counts_t), intent(out) :: n
       type(error_t), allocatable, intent(out) :: error
@@ -107,11 +104,9 @@ contains
 
    !> Read bolts: ends, stiffness, strength and prestress of each, as Shi's programs have them
    pure subroutine read_bolts(words, n, model, error)
-      !> The words of the file
       type(word_list_t), intent(inout) :: words
       !> How many there are
       integer, intent(in) :: n
-      !> Receives them
       type(line_model_t), intent(inout) :: model
       type(error_t), allocatable, intent(out) :: error
       character(len=*), parameter :: what(3) = [character(len=9) :: "stiffness", "strength", &
@@ -134,7 +129,6 @@ contains
 
    !> Read the records of one kind
    pure subroutine read_records(words, what, n, n_number, has_material, entities, error)
-      !> The words of the file
       type(word_list_t), intent(inout) :: words
       !> What a record is called
       character(len=*), intent(in) :: what

@@ -38,9 +38,7 @@ contains
    subroutine read_geometry(file, model, warnings, error)
       !> Name of the file
       character(len=*), intent(in) :: file
-      !> Lines and points
       type(line_model_t), intent(out) :: model
-      !> Receives what the reader ignores
       type(warnings_t), intent(inout) :: warnings
       !> What is wrong, with file and line
       type(error_t), allocatable, intent(out) :: error
@@ -65,7 +63,6 @@ contains
       !> Name of the file
       character(len=*), intent(in) :: file
       type(limerick_analysis_t), intent(out) :: analysis
-      !> Receives what the reader ignores
       type(warnings_t), intent(inout) :: warnings
       !> What is wrong, with file and line
       type(error_t), allocatable, intent(out) :: error
@@ -87,7 +84,6 @@ contains
 
    !> Whether an analysis has a material for each block and joint, and a force for each load point
    pure subroutine check_materials(model, analysis, warnings, error)
-      !> Lines and points
       type(line_model_t), intent(in) :: model
       type(limerick_analysis_t), intent(in) :: analysis
       !> Receives load points without a force
@@ -121,7 +117,6 @@ contains
       character(len=*), intent(in) :: file
       !> Name of the analysis file
       character(len=*), intent(in) :: analysis_file
-      !> What is missing
       type(error_t), allocatable, intent(out) :: error
       integer :: i
 

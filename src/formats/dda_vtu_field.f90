@@ -47,13 +47,11 @@ module dda_vtu_field
 contains
 
    !> A field of real numbers
-   pure function scalar_field(name, values) result(field)
+   pure type(field_t) function scalar_field(name, values) result(field)
       !> Its name
       character(len=*), intent(in) :: name
       !> The numbers: (n)
       real(wp), intent(in) :: values(:)
-      !> The field
-      type(field_t) :: field
 
       field%name = name
       field%kind = field_kind%scalar
@@ -62,41 +60,35 @@ contains
    end function scalar_field
 
    !> A field of plane vectors
-   pure function vector_field(name, values) result(field)
+   pure type(field_t) function vector_field(name, values)
       !> Its name
       character(len=*), intent(in) :: name
       !> Components x and y: (2, n)
       real(wp), intent(in) :: values(:, :)
-      !> The field
-      type(field_t) :: field
 
-      field%name = name
-      field%kind = field_kind%vector
-      allocate (field%values, source=values)
+      vector_field%name = name
+      vector_field%kind = field_kind%vector
+      allocate (vector_field%values, source=values)
    end function vector_field
 
    !> A field of symmetric plane tensors
-   pure function tensor_field(name, values) result(field)
+   pure type(field_t) function tensor_field(name, values)
       !> Its name
       character(len=*), intent(in) :: name
       !> Components xx, yy and xy: (3, n)
       real(wp), intent(in) :: values(:, :)
-      !> The field
-      type(field_t) :: field
 
-      field%name = name
-      field%kind = field_kind%tensor
-      allocate (field%values, source=values)
+      tensor_field%name = name
+      tensor_field%kind = field_kind%tensor
+      allocate (tensor_field%values, source=values)
    end function tensor_field
 
    !> A field of whole numbers
-   pure function state_field(name, states) result(field)
+   pure type(field_t) function state_field(name, states) result(field)
       !> Its name
       character(len=*), intent(in) :: name
       !> The numbers: (n)
       integer, intent(in) :: states(:)
-      !> The field
-      type(field_t) :: field
 
       field%name = name
       field%kind = field_kind%state
@@ -127,7 +119,6 @@ contains
    pure function shape_text(extent) result(text)
       !> Rows and columns: (2)
       integer, intent(in) :: extent(2)
-      !> The text
       character(len=:), allocatable :: text
 
       text = to_text(extent(1))//" x "//to_text(extent(2))
@@ -148,14 +139,12 @@ contains
          & //attribute("ComponentName1", "yy")//attribute("ComponentName2", "xy")
    end function field_attributes
 
-   !> Room that the numbers of a field take in the file
-   pure function field_bytes(field) result(n)
+   !> Bytes that the numbers of a field take in the file, without the length before them
+   pure integer(int64) function field_bytes(field)
       type(field_t), intent(in) :: field
-      !> Bytes, without the length before them
-      integer(int64) :: n
       integer, parameter :: column(4) = [8, 24, 24, 4]
 
-      n = int(column(field%kind), int64)*size(field%values, 2, int64)
+      field_bytes = int(column(field%kind), int64)*size(field%values, 2, int64)
    end function field_bytes
 
    !> Write the length of a field and its numbers

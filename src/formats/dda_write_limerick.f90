@@ -27,7 +27,6 @@ contains
       character(len=*), intent(in) :: file
       !> The text; its last line end is added
       character(len=*), intent(in) :: text
-      !> Allocated if it cannot be written
       type(error_t), allocatable, intent(out) :: error
       type(table_file_t) :: table
       integer :: first
@@ -40,7 +39,6 @@ contains
 
    !> A geometry in the plain form
    pure function plain_geometry(model) result(text)
-      !> Lines and points
       type(line_model_t), intent(in) :: model
       !> The file without its last line end
       character(len=:), allocatable :: text
@@ -76,7 +74,6 @@ contains
 
    !> Bolts in the plain form, as Shi's programs have them
    pure function bolt_records(model) result(text)
-      !> Lines and points
       type(line_model_t), intent(in) :: model
       !> Lines, each with its line end before it
       character(len=:), allocatable :: text
@@ -91,7 +88,6 @@ contains
 
    !> Bolts in DDAML; the original reads all but the attributes that say what they are like
    pure function bolt_list(model) result(text)
-      !> Lines and points
       type(line_model_t), intent(in) :: model
       !> Lines, each with its line end; empty without bolts
       character(len=:), allocatable :: text
@@ -113,7 +109,6 @@ contains
 
    !> A geometry in DDAML
    pure function ddaml_geometry(model) result(text)
-      !> Lines and points
       type(line_model_t), intent(in) :: model
       !> The file without its last line end
       character(len=:), allocatable :: text
@@ -136,7 +131,6 @@ contains
       character(len=*), intent(in) :: name
       !> Name of its elements; empty where it is Point for points and Line for lines
       character(len=*), intent(in) :: item
-      !> What it holds
       type(entities_t), intent(in) :: entities
       !> First of them
       integer, intent(in) :: first
@@ -264,7 +258,6 @@ contains
    !> The phase that turns gravity on
    pure function gravity_phase(analysis) result(text)
       type(limerick_analysis_t), intent(in) :: analysis
-      !> Its element
       character(len=:), allocatable :: text
 
       if (analysis%gravity_steps == 0) then

@@ -144,7 +144,6 @@ contains
    pure subroutine move_element(from, to)
       !> The element; its parts go
       type(xml_element_t), intent(inout) :: from
-      !> Receives them
       type(xml_element_t), intent(inout) :: to
 
       call move_alloc(from%name, to%name)

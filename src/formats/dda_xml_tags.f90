@@ -98,9 +98,7 @@ contains
    pure subroutine skip_doctype(text, scan, error)
       !> The text
       character(len=*), intent(in) :: text
-      !> Where the scan is
       type(scan_t), intent(inout) :: scan
-      !> Declarations inside it
       type(error_t), allocatable, intent(out) :: error
       type(tag_t) :: tag
 
@@ -117,9 +115,7 @@ contains
    pure subroutine skip_tag(text, scan, error)
       !> The text
       character(len=*), intent(in) :: text
-      !> Where the scan is
       type(scan_t), intent(inout) :: scan
-      !> Entities, too many attributes or names
       type(error_t), allocatable, intent(out) :: error
       type(tag_t) :: tag
 
@@ -146,7 +142,6 @@ contains
       character(len=*), intent(in) :: text
       !> Place of its last character
       integer, intent(in) :: last
-      !> Where the scan is
       type(scan_t), intent(inout) :: scan
       type(error_t), allocatable, intent(out) :: error
       integer :: first, length
@@ -182,7 +177,6 @@ contains
       character(len=*), intent(in) :: text
       !> Place of the character
       integer, intent(in) :: last
-      !> Where the scan is
       type(scan_t), intent(inout) :: scan
 
       scan%row = scan%row + count_of(lf, text(scan%next:min(last, len(text))))

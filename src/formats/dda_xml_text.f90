@@ -26,7 +26,6 @@ contains
       character(len=*), intent(in) :: name
       !> Its value; what XML reserves is written as XML wants it
       character(len=*), intent(in) :: value
-      !> The text
       character(len=:), allocatable :: text
       integer :: i
 
@@ -50,7 +49,6 @@ contains
 
    !> The order in which this machine keeps the bytes of a number, in VTK's word
    pure function byte_order() result(word)
-      !> The word
       character(len=:), allocatable :: word
 
       word = "BigEndian"

@@ -285,7 +285,6 @@ contains
       integer, intent(inout) :: item(:)
       !> The node; it has at least n leaves
       integer, intent(in) :: node
-      !> Receives the boxes
       type(box_tree_t), intent(inout) :: tree
       integer :: axis, half
 

@@ -21,11 +21,9 @@ contains
 
    !> Area, centre and central second moments; sums over the triangles seen from the first vertex,
    !> so that a polygon far from the origin loses no digits
-   pure function area_moments(vertex) result(moments)
+   pure type(area_moments_t) function area_moments(vertex) result(moments)
       !> Corners in order: (2, n), n >= 3 [m]
       real(wp), intent(in) :: vertex(:, :)
-      !> The integrals
-      type(area_moments_t) :: moments
       real(wp) :: a(2), b(2), twice, first(2), second(3)
       integer :: i
 

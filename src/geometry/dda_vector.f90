@@ -9,15 +9,13 @@ module dda_vector
 contains
 
    !> Signed area of the parallelogram of two vectors, positive if b lies to the left of a
-   pure function cross(a, b) result(area)
+   pure real(wp) function cross(a, b)
       !> First vector: (2)
       real(wp), intent(in) :: a(2)
       !> Second vector: (2)
       real(wp), intent(in) :: b(2)
-      !> a x b
-      real(wp) :: area
 
-      area = a(1)*b(2) - a(2)*b(1)
+      cross = a(1)*b(2) - a(2)*b(1)
    end function cross
 
    !> Unit vector from the first point towards the second

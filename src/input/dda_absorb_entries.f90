@@ -23,11 +23,8 @@ contains
    !> block, those of Gauss, at which forces that are linear along it have their exact work
    pure subroutine take_absorbing(entry, plan, site, error)
       type(entry_t), intent(in) :: entry
-      !> Receives the points
       type(block_plan_t), intent(inout) :: plan
-      !> Where the blocks are
       type(site_t), intent(in) :: site
-      !> Anything wrong
       type(error_t), allocatable, intent(out) :: error
       type(absorbing_point_t) :: point
       real(wp), allocatable :: part(:, :)
@@ -75,7 +72,6 @@ contains
       !> Place of the first word
       integer, intent(in) :: first
       type(absorbing_point_t), intent(inout) :: point
-      !> Anything wrong
       type(error_t), allocatable, intent(out) :: error
       character(len=*), parameter :: word(4) = [character(len=7) :: "p_speed", "s_speed", "x", "y"]
       logical :: given(4)

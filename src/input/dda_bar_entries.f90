@@ -21,15 +21,12 @@ contains
    !> bar x1 y1 x2 y2 (stiffness S | ea V) [strength T] [prestress P] [slack] [breaks]
    pure subroutine take_bar(entry, plan, site, file, warnings, error)
       type(entry_t), intent(in) :: entry
-      !> Receives it
       type(block_plan_t), intent(inout) :: plan
-      !> Where the blocks are
       type(site_t), intent(in) :: site
       !> Name of the file, for warnings
       character(len=*), intent(in) :: file
       !> Receives ends that no block has
       type(warnings_t), intent(inout) :: warnings
-      !> Anything wrong
       type(error_t), allocatable, intent(out) :: error
       type(bar_t) :: bar
       real(wp) :: ends(4)
@@ -72,7 +69,6 @@ contains
       !> Length of the bar [m]
       real(wp), intent(in) :: length
       type(bar_t), intent(inout) :: bar
-      !> Anything wrong
       type(error_t), allocatable, intent(out) :: error
       character(len=*), parameter :: word(6) = [character(len=9) :: "stiffness", "ea", &
          & "strength", "prestress", "slack", "breaks"]
@@ -120,9 +116,7 @@ contains
    !> Take in water: water x y x y ... [unit_weight W] [factor F], and rows of time and rise below
    pure subroutine take_water(entry, plan, error)
       type(entry_t), intent(in) :: entry
-      !> Receives it
       type(block_plan_t), intent(inout) :: plan
-      !> Anything wrong
       type(error_t), allocatable, intent(out) :: error
       type(water_t) :: water
       type(water_t), allocatable :: longer(:)
@@ -177,7 +171,6 @@ contains
       !> Place of the first word
       integer, intent(in) :: first
       type(water_t), intent(inout) :: water
-      !> Anything wrong
       type(error_t), allocatable, intent(out) :: error
       real(wp) :: value(1)
       integer :: i

@@ -155,9 +155,7 @@ contains
       integer, intent(in) :: first
       !> Place after the last one
       integer, intent(out) :: next
-      !> Receives the text
       type(line_t), intent(inout) :: line
-      !> No second quote, or another text before
       type(error_t), allocatable, intent(out) :: error
       integer :: length
 
@@ -213,7 +211,6 @@ contains
       real(wp), intent(inout) :: value(:)
       !> Which came: (n)
       logical, intent(inout) :: given(:)
-      !> Anything wrong
       type(error_t), allocatable, intent(out) :: error
       integer :: i, k
 

@@ -32,7 +32,6 @@ contains
    subroutine add_points(later, plan, site, file, warnings, error, watch)
       !> Their entries in the order of the file; rows of numbers go
       type(waiting_entry_t), intent(inout) :: later(:)
-      !> Receives them
       type(block_plan_t), intent(inout) :: plan
       !> Where the blocks are; receives the points too
       type(site_t), intent(inout) :: site
@@ -40,9 +39,7 @@ contains
       character(len=*), intent(in) :: file
       !> Receives points that several blocks have
       type(warnings_t), intent(inout) :: warnings
-      !> Anything wrong
       type(error_t), allocatable, intent(out) :: error
-      !> Is told how far this is
       class(watch_t), intent(inout), optional :: watch
       type(entry_t) :: entry
       integer :: i
@@ -81,7 +78,6 @@ contains
    pure subroutine make_lists(later, boundary)
       !> Entries of the file
       type(waiting_entry_t), intent(in) :: later(:)
-      !> Receives the lists
       type(boundary_t), intent(inout) :: boundary
       integer :: i, n_held, n_loaded, n_measured
 
@@ -104,9 +100,7 @@ contains
    !> Take in the motion of the ground
    pure subroutine take_ground(entry, plan, error)
       type(entry_t), intent(in) :: entry
-      !> Receives it
       type(block_plan_t), intent(inout) :: plan
-      !> Given twice, or not as it must be
       type(error_t), allocatable, intent(out) :: error
       type(history_t) :: history
       real(wp) :: value(2)
@@ -147,11 +141,9 @@ contains
    !> Hold a line: the ends of its part in each block that it crosses or runs along
    pure subroutine hold_line(entry, plan, site, error)
       type(entry_t), intent(in) :: entry
-      !> Receives the held points
       type(block_plan_t), intent(inout) :: plan
       !> Where the blocks are, and which points hold them
       type(site_t), intent(inout) :: site
-      !> A line without length or in no block, or an unknown word
       type(error_t), allocatable, intent(out) :: error
       type(held_point_t) :: held
       real(wp), allocatable :: part(:, :)
@@ -189,7 +181,6 @@ contains
    !> Take in a point of a block
    pure subroutine take_point(entry, plan, site, file, warnings, error)
       type(entry_t), intent(in) :: entry
-      !> Receives it
       type(block_plan_t), intent(inout) :: plan
       !> Where the blocks are, and which points hold them
       type(site_t), intent(inout) :: site
@@ -197,7 +188,6 @@ contains
       character(len=*), intent(in) :: file
       !> Receives points that several blocks have
       type(warnings_t), intent(inout) :: warnings
-      !> Anything wrong
       type(error_t), allocatable, intent(out) :: error
       type(history_t) :: history
       type(held_point_t) :: held
@@ -250,7 +240,6 @@ contains
    pure subroutine take_place(entry, plan, site, i, block, point, error)
       type(entry_t), intent(in) :: entry
       type(block_plan_t), intent(in) :: plan
-      !> Where they are
       type(site_t), intent(in) :: site
       !> Place of the word after the coordinates
       integer, intent(out) :: i
@@ -258,7 +247,6 @@ contains
       integer, intent(out) :: block
       !> The point, seen from the origin of the plan: (2) [m]
       real(wp), intent(out) :: point(2)
-      !> A block that is not there, or a point outside it
       type(error_t), allocatable, intent(out) :: error
       character(len=:), allocatable :: shown_point
       logical :: ok
@@ -301,7 +289,6 @@ contains
       integer, intent(in) :: rival(:)
       !> Name of the file
       character(len=*), intent(in) :: file
-      !> Receives the warning
       type(warnings_t), intent(inout) :: warnings
       character(len=:), allocatable :: others
       integer :: k
@@ -324,7 +311,6 @@ contains
       integer, intent(in) :: i
       !> Whether it is held along x and along y: (2)
       logical, intent(out) :: along(2)
-      !> Another word, or one too many
       type(error_t), allocatable, intent(out) :: error
 
       along = .true.
@@ -344,7 +330,6 @@ contains
       !> That value: (2)
       real(wp), intent(in) :: value(2)
       type(history_t), intent(out) :: history
-      !> Neither or both, or times that do not increase
       type(error_t), allocatable, intent(out) :: error
       integer :: n
 

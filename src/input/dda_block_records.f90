@@ -57,7 +57,6 @@ contains
       character(len=word_size), intent(out) :: column(3)
       !> What the components are multiplied by
       real(wp), intent(out) :: scale
-      !> Rows of its own, no name, or another word
       type(error_t), allocatable, intent(out) :: error
       real(wp) :: number(1)
       integer :: i, n

@@ -43,7 +43,6 @@ contains
    !> Know where the blocks are
    pure subroutine survey(plan, site)
       type(block_plan_t), intent(in) :: plan
-      !> Where they are
       type(site_t), intent(out) :: site
       real(wp), allocatable :: low(:, :), high(:, :)
       integer :: b, k, n
@@ -73,7 +72,6 @@ contains
    !> Block that holds a point most deeply or has it on its outline; 0 if none does
    pure integer function block_at(plan, site, point)
       type(block_plan_t), intent(in) :: plan
-      !> Where its blocks are
       type(site_t), intent(in) :: site
       !> The point, seen from the origin of the plan: (2) [m]
       real(wp), intent(in) :: point(2)
@@ -95,7 +93,6 @@ contains
    !> Blocks that have a point on their outlines together with a block, as far as rounding tells
    pure function rivals_at(plan, site, point, block) result(rival)
       type(block_plan_t), intent(in) :: plan
-      !> Where its blocks are
       type(site_t), intent(in) :: site
       !> The point, seen from the origin of the plan: (2) [m]
       real(wp), intent(in) :: point(2)
@@ -124,7 +121,6 @@ contains
    !> Whether a block holds a point or has it on its outline
    pure logical function holds_point(plan, site, block, point)
       type(block_plan_t), intent(in) :: plan
-      !> Where its blocks are
       type(site_t), intent(in) :: site
       !> Number of the block
       integer, intent(in) :: block
@@ -137,7 +133,6 @@ contains
    !> How deep a point lies in a block, negative outside [m]
    pure real(wp) function depth_of(plan, site, block, point)
       type(block_plan_t), intent(in) :: plan
-      !> Where its blocks are
       type(site_t), intent(in) :: site
       !> Number of the block
       integer, intent(in) :: block
@@ -150,7 +145,6 @@ contains
 
    !> Blocks that a segment may meet
    pure function blocks_along(site, segment) result(block)
-      !> Where the blocks are
       type(site_t), intent(in) :: site
       !> Its ends, seen from the origin of the plan: (4) [m]
       real(wp), intent(in) :: segment(4)
@@ -163,9 +157,7 @@ contains
    !> Add a held point, unless others hold the block in its way
    pure subroutine add_held(held, plan, site, error)
       type(held_point_t), intent(in) :: held
-      !> Receives it
       type(block_plan_t), intent(inout) :: plan
-      !> Receives it too
       type(site_t), intent(inout) :: site
       !> A fixed block that is to move, or a point that cannot go its way
       type(error_t), allocatable, intent(out) :: error

@@ -23,7 +23,6 @@ contains
       type(entry_t), intent(in) :: entry
       !> Receives a change for each of its blocks
       type(block_plan_t), intent(inout) :: plan
-      !> Anything wrong
       type(error_t), allocatable, intent(out) :: error
       type(stage_change_t), allocatable :: more(:)
       integer, allocatable :: block(:)
@@ -67,7 +66,6 @@ contains
       integer, intent(in) :: n_block
       !> Their numbers: (n)
       integer, allocatable, intent(out) :: block(:)
-      !> No number of a block
       type(error_t), allocatable, intent(out) :: error
       integer :: i
       logical :: ok
@@ -94,7 +92,6 @@ contains
       type(block_plan_t), intent(in) :: plan
       !> Their numbers: (n)
       integer, allocatable, intent(out) :: block(:)
-      !> No polygon, or none inside
       type(error_t), allocatable, intent(out) :: error
       type(area_moments_t) :: moments
       real(wp), allocatable :: corner(:, :)
@@ -118,7 +115,6 @@ contains
 
    !> Put the changes in the order of their times, and check that each is one
    pure subroutine close_changes(plan, error)
-      !> The plan, complete
       type(block_plan_t), intent(inout) :: plan
       !> A block built or taken away twice, or a bar that would lose its end
       type(error_t), allocatable, intent(out) :: error

@@ -31,7 +31,6 @@ contains
       type(block_plan_t), intent(inout) :: plan
       !> Name of the file, for warnings
       character(len=*), intent(in) :: file
-      !> Receives what is doubtful
       type(warnings_t), intent(inout) :: warnings
       !> Allocated if there is no block, or one material or law too few or too many
       type(error_t), allocatable, intent(out) :: error
@@ -62,7 +61,6 @@ contains
       character(len=*), intent(in) :: file
       !> Receives laws that no joint has
       type(warnings_t), intent(inout) :: warnings
-      !> A block without a material
       type(error_t), allocatable, intent(out) :: error
       logical :: known(most_materials)
       integer :: b, i
@@ -109,11 +107,9 @@ contains
    !> Whether no two blocks overlap; two fixed ones may
    subroutine check_overlaps(plan, site, error, watch)
       type(block_plan_t), intent(in) :: plan
-      !> Where its blocks are
       type(site_t), intent(in) :: site
       !> Blocks that do
       type(error_t), allocatable, intent(out) :: error
-      !> Is told how far the check is
       class(watch_t), intent(inout), optional :: watch
       real(wp) :: size_of(size(plan%fixed)), point(2)
       integer, allocatable :: near(:)
@@ -150,7 +146,6 @@ contains
       type(block_plan_t), intent(in) :: plan
       !> Name of the file
       character(len=*), intent(in) :: file
-      !> Receives the warning
       type(warnings_t), intent(inout) :: warnings
       real(wp) :: extent, farthest
       integer :: b

@@ -111,23 +111,19 @@ contains
 
    !> Whether velocities are kept from step to step: asked by the mode, and in that of the original
    !> by its key, or else by the analysis file
-   pure function keeps_velocities(deck) result(yes)
-      !> The deck of a case
+   pure logical function keeps_velocities(deck)
       type(deck_t), intent(in) :: deck
-      !> The answer
-      logical :: yes
 
-      yes = deck%analysis%mode%word == "dynamic"
+      keeps_velocities = deck%analysis%mode%word == "dynamic"
       if (deck%analysis%mode%word /= "limerick") return
-      yes = deck%limerick%dynamic%flag
+      keeps_velocities = deck%limerick%dynamic%flag
       if (allocated(deck%file_analysis) .and. .not. deck%limerick%dynamic%given) &
-         & yes = deck%file_analysis%dynamic
+         & keeps_velocities = deck%file_analysis%dynamic
    end function keeps_velocities
 
    !> What the blocks of a case are made from, the word of scene%kind: but for arches that are more
    !> than a circular ring of voussoirs, which are a shape
    pure function scene_kind(deck) result(kind)
-      !> The deck of the case
       type(deck_t), intent(in) :: deck
       !> arch, shape, lines or blocks
       character(len=word_length) :: kind
@@ -152,7 +148,6 @@ contains
 
    !> Geometry of a case; in the mode of the original blocks always move
    pure function geometry_of(deck) result(word)
-      !> The deck of the case
       type(deck_t), intent(in) :: deck
       !> reference or current
       character(len=word_length) :: word
@@ -162,13 +157,11 @@ contains
          & .and. .not. deck%analysis%geometry%given) word = "current"
    end function geometry_of
 
-   !> Where a key was given, or else its group
-   pure function place_of(deck, key) result(place)
+   !> Where a key was given, or else its group: line 0 if neither was given
+   pure type(deck_place_t) function place_of(deck, key) result(place)
       type(deck_t), intent(in) :: deck
       !> Place of the key in the registry
       integer, intent(in) :: key
-      !> The place; line 0 if neither was given
-      type(deck_place_t) :: place
 
       place = deck%value(key)%place
       if (place%line == 0) place = deck%group(group_index(deck_key(key)%group))
@@ -180,7 +173,6 @@ contains
       !> What was wanted and what was found
       character(len=*), intent(in) :: message
       type(deck_t), intent(in) :: deck
-      !> Where it was found
       type(deck_place_t), intent(in) :: place
 
       if (place%from_command) then

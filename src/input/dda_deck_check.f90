@@ -38,7 +38,6 @@ contains
    !> Check that the deck says where its blocks come from, once
    pure subroutine check_kind(deck, error)
       type(deck_t), intent(in) :: deck
-      !> A file that is missing or has no use, or an arch beside it
       type(error_t), allocatable, intent(out) :: error
       character(len=8), parameter :: file_key(2) = ["geometry", "analysis"]
       character(len=:), allocatable :: kind, problem
@@ -74,7 +73,6 @@ contains
    !> Check what is searched
    pure subroutine check_search(deck, error)
       type(deck_t), intent(in) :: deck
-      !> No real-valued key, or one that the search cannot vary
       type(error_t), allocatable, intent(out) :: error
       character(len=:), allocatable :: problem
       type(deck_place_t) :: place
@@ -104,7 +102,6 @@ contains
       type(deck_t), intent(in) :: deck
       !> Number of the sweep
       integer, intent(in) :: s
-      !> The same parameter twice, or a link to nothing of the same length
       type(error_t), allocatable, intent(out) :: error
       character(len=:), allocatable :: name, problem
       integer :: other
@@ -155,9 +152,7 @@ contains
       type(parameter_t), intent(in) :: parameter
       !> swept or searched
       character(len=*), intent(in) :: how
-      !> Where it is
       type(deck_place_t), intent(in) :: place
-      !> No effect, or a --set without effect
       type(error_t), allocatable, intent(out) :: error
       logical :: is_weight
 
@@ -179,15 +174,11 @@ contains
    end subroutine check_varied
 
    !> Whether two parameters are the same
-   pure function same(a, b) result(yes)
-      !> First parameter
+   pure logical function same(a, b)
       type(parameter_t), intent(in) :: a
-      !> Second parameter
       type(parameter_t), intent(in) :: b
-      !> The answer
-      logical :: yes
 
-      yes = a%key == b%key .and. a%item == b%item
+      same = a%key == b%key .and. a%item == b%item
    end function same
 
    !> Check every case of the sweeps
@@ -195,7 +186,6 @@ contains
       type(deck_t), intent(in) :: deck
       !> Cases that will be computed, as choose_cases reads them; empty for all
       character(len=*), intent(in) :: cases
-      !> The first thing that is wrong, with the number of the case
       type(error_t), allocatable, intent(out) :: error
       type(deck_t) :: work
       logical, allocatable :: chosen(:)

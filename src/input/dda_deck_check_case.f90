@@ -25,7 +25,6 @@ contains
 
    !> Check what the keys of one case must be to one another
    pure subroutine check_case(deck, error)
-      !> The deck of the case
       type(deck_t), intent(in) :: deck
       !> The first thing that is wrong
       type(error_t), allocatable, intent(out) :: error
@@ -57,7 +56,6 @@ contains
 
    !> Check that there is such a model, and that the parameter can be searched in it
    pure subroutine check_model(deck, error)
-      !> The deck of the case
       type(deck_t), intent(in) :: deck
       !> What the table of models does not have
       type(error_t), allocatable, intent(out) :: error
@@ -86,9 +84,7 @@ contains
 
    !> Check that the mode and the geometry have a use for the keys that are given
    pure subroutine check_use(deck, error)
-      !> The deck of the case
       type(deck_t), intent(in) :: deck
-      !> A key without effect
       type(error_t), allocatable, intent(out) :: error
       character(len=:), allocatable :: mode, problem
       logical :: moves
@@ -139,7 +135,6 @@ contains
    !> Check that joints may lose strength by slip
    pure subroutine check_slip(deck, error)
       type(deck_t), intent(in) :: deck
-      !> A model in which they do not
       type(error_t), allocatable, intent(inout) :: error
       character(len=*), parameter :: name(2) = ["residual_deg", "slip_length "]
       integer :: i
@@ -158,9 +153,7 @@ contains
 
    !> Check the joints of the arch
    pure subroutine check_shape(deck, error)
-      !> The deck of one case
       type(deck_t), intent(in) :: deck
-      !> Joints that make no arch
       type(error_t), allocatable, intent(out) :: error
       real(wp) :: span
 
@@ -177,9 +170,7 @@ contains
 
    !> Check joints_deg, and what is given beside it
    pure subroutine check_joints(deck, error)
-      !> The deck of one case
       type(deck_t), intent(in) :: deck
-      !> Joints that do not begin at 0, do not increase or contradict other keys
       type(error_t), allocatable, intent(out) :: error
       character(len=:), allocatable :: problem
       type(deck_place_t) :: place
@@ -232,14 +223,12 @@ contains
    end subroutine check_half_angle
 
    !> Where the later one of two keys of &arch was given; a --set is later than the deck
-   pure function later(deck, a, b) result(place)
+   pure type(deck_place_t) function later(deck, a, b) result(place)
       type(deck_t), intent(in) :: deck
       !> Name of the first key
       character(len=*), intent(in) :: a
       !> Name of the second key
       character(len=*), intent(in) :: b
-      !> The place
-      type(deck_place_t) :: place
       type(deck_place_t) :: other
       logical :: other_is_later
 
@@ -252,9 +241,7 @@ contains
 
    !> Check the two ends of the search
    pure subroutine check_bracket(deck, error)
-      !> The deck of one case
       type(deck_t), intent(in) :: deck
-      !> An end that is missing, out of range, or on the wrong side
       type(error_t), allocatable, intent(out) :: error
       real(wp) :: low, high
 
@@ -276,11 +263,9 @@ contains
 
    !> Check that the parameter can take one end of the search
    pure subroutine check_end(deck, name, error)
-      !> The deck of one case
       type(deck_t), intent(in) :: deck
       !> low or high
       character(len=*), intent(in) :: name
-      !> Out of range, or an arch that cannot be
       type(error_t), allocatable, intent(out) :: error
       character(len=:), allocatable :: problem
       type(deck_t) :: trial

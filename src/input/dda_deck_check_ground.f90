@@ -13,7 +13,6 @@ contains
 
    !> Check the motion of the ground in one case
    pure subroutine check_ground(deck, error)
-      !> The deck of the case
       type(deck_t), intent(in) :: deck
       !> Keys that do not go together, or a mode that has no use for them
       type(error_t), allocatable, intent(out) :: error
@@ -48,7 +47,6 @@ contains
 
    !> The first key of &ground that is searched, given, or swept; 0 if none is
    pure integer function ground_key(deck)
-      !> The deck of the case
       type(deck_t), intent(in) :: deck
 
       ground_key = deck%searched%key
@@ -60,7 +58,6 @@ contains
 
    !> Whether a key of &ground is given, or searched
    pure logical function gives(deck, name)
-      !> The deck of the case
       type(deck_t), intent(in) :: deck
       !> Name of the key
       character(len=*), intent(in) :: name
@@ -72,7 +69,6 @@ contains
 
    !> Check what a pulse or a record needs, and what it has no use for
    pure subroutine check_keys(deck, problem, key)
-      !> The deck of the case
       type(deck_t), intent(in) :: deck
       !> What is wrong; left as it was if nothing is
       character(len=:), allocatable, intent(inout) :: problem
@@ -114,7 +110,6 @@ contains
    !> Check a deck against its file of blocks: the ground has one motion, the point that means
    !> collapse is measured, and strength goes by slip only where slip is followed
    pure subroutine check_block_file(deck, error)
-      !> The deck, its files read
       type(deck_t), intent(in) :: deck
       !> No motion of the ground or two, or no such point
       type(error_t), allocatable, intent(out) :: error
@@ -148,9 +143,7 @@ contains
 
    !> Check that joints may lose strength by slip where the file says so
    pure subroutine check_wear(deck, error)
-      !> The deck, its files read
       type(deck_t), intent(in) :: deck
-      !> Limit analysis, or the scheme of the original
       type(error_t), allocatable, intent(inout) :: error
       character(len=:), allocatable :: key
       integer :: i
@@ -171,9 +164,7 @@ contains
 
    !> Check what a search in time needs
    pure subroutine check_search_in_time(deck, error)
-      !> The deck of the case
       type(deck_t), intent(in) :: deck
-      !> No duration, blocks that do not move, or a run that goes on
       type(error_t), allocatable, intent(out) :: error
       character(len=:), allocatable :: problem
 
@@ -196,9 +187,7 @@ contains
 
    !> Check what means collapse in a dynamic run
    pure subroutine check_collapse(deck, error)
-      !> The deck of the case
       type(deck_t), intent(in) :: deck
-      !> A mode that has no use for it, or a point without a distance
       type(error_t), allocatable, intent(out) :: error
       character(len=*), parameter :: name(2) = [character(len=21) :: "collapse_rotation_deg", &
          & "collapse_point"]

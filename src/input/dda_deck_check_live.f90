@@ -14,7 +14,6 @@ contains
 
    !> Check the live loads of one case
    pure subroutine check_live(deck, error)
-      !> The deck of the case
       type(deck_t), intent(in) :: deck
       !> Lists that do not go together, or what has no effect
       type(error_t), allocatable, intent(out) :: error
@@ -34,9 +33,7 @@ contains
 
    !> Check the lists of &live
    pure subroutine check_lists(deck, error)
-      !> The deck of the case
       type(deck_t), intent(in) :: deck
-      !> Lists of different lengths, or a mode that has no use for them
       type(error_t), allocatable, intent(out) :: error
       character(len=2), parameter :: name(4) = ["x ", "y ", "fx", "fy"]
       character(len=:), allocatable :: problem
@@ -73,9 +70,7 @@ contains
 
    !> Check the vehicle
    pure subroutine check_vehicle(deck, error)
-      !> The deck of the case
       type(deck_t), intent(in) :: deck
-      !> Axles without distances or place, or a mode that has no use for them
       type(error_t), allocatable, intent(out) :: error
       character(len=:), allocatable :: problem
       type(deck_place_t) :: place
@@ -127,7 +122,6 @@ contains
 
    !> Whether a force of &live is not 0
    pure logical function has_forces(deck)
-      !> The deck of the case
       type(deck_t), intent(in) :: deck
 
       has_forces = any(abs(deck%live%fx%numbers) > 0.0_wp) &

@@ -13,7 +13,6 @@ contains
 
    !> Check that limit analysis decides blocks that may be crushed: nothing else knows it
    pure subroutine check_strength(deck, error)
-      !> The deck of the case
       type(deck_t), intent(in) :: deck
       !> What it cannot be beside
       type(error_t), allocatable, intent(out) :: error
@@ -52,7 +51,6 @@ contains
 
    !> Whether joints have strength of their own
    pure logical function has_bond(deck)
-      !> The deck of the case
       type(deck_t), intent(in) :: deck
       integer :: i
 

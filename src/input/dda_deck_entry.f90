@@ -65,7 +65,6 @@ contains
       !> Where the key stands
       type(deck_place_t), intent(in) :: place
       type(deck_t), intent(in) :: deck
-      !> Wrong type or wrong number of values
       type(error_t), allocatable, intent(out) :: error
       character(len=:), allocatable :: found
       logical :: takes_list
@@ -154,31 +153,27 @@ contains
    end function hint
 
    !> Where a token stands
-   pure function place_at(scan, i, place) result(at)
+   pure type(deck_place_t) function place_at(scan, i, place)
       type(deck_scan_t), intent(in) :: scan
       !> Place of the token; past the end if there is none
       integer, intent(in) :: i
       !> Where its key stands
       type(deck_place_t), intent(in) :: place
-      !> Line of the token in a deck, number of the --set on the command line
-      type(deck_place_t) :: at
 
-      at = place
+      place_at = place
       if (place%from_command .or. i > scan%n) return
       if (scan%token(i)%kind == token_kind%key .or. scan%token(i)%kind == token_kind%close) return
-      at%line = scan%token(i)%line
+      place_at%line = scan%token(i)%line
    end function place_at
 
    !> Number that a token stands for
-   pure function number_at(scan, i) result(number)
+   pure real(wp) function number_at(scan, i)
       type(deck_scan_t), intent(in) :: scan
       !> Place of a token that is a number
       integer, intent(in) :: i
-      !> The number
-      real(wp) :: number
       logical :: unused
 
-      call read_number(token_text(scan, i), number, unused)
+      call read_number(token_text(scan, i), number_at, unused)
    end function number_at
 
    !> Numbers that tokens stand for, repeat counts written out

@@ -332,38 +332,35 @@ module dda_deck_keys
 
 contains
 
-   !> Place of a key in the registry
-   pure function key_index(group, name) result(i)
+   !> Place of a key in the registry: place in deck_key, counted from 1; 0 if there is no such key
+   pure integer function key_index(group, name)
       !> Name of the group, lower case
       character(len=*), intent(in) :: group
       !> Name of the key, lower case
       character(len=*), intent(in) :: name
-      !> Place in deck_key, counted from 1; 0 if there is no such key
-      integer :: i
       integer :: before, g
 
-      i = 0
+      key_index = 0
       g = group_index(group)
       if (g == 0) return
       before = sum(n_keys(:g - 1))
-      do i = before + n_keys(g), before + 1, -1
+      do key_index = before + n_keys(g), before + 1, -1
          ! the first letter tells most keys apart, and a comparison of texts is a call
-         if (deck_key(i)%name(1:1) /= name(1:1)) cycle
-         if (deck_key(i)%name == name) return
+         if (deck_key(key_index)%name(1:1) /= name(1:1)) cycle
+         if (deck_key(key_index)%name == name) return
       end do
-      i = 0
+      key_index = 0
    end function key_index
 
-   !> Place of a group in the registry
-   pure function group_index(name) result(i)
+   !> Place of a group in the registry: place in deck_group, counted from 1; 0 if there is no such
+   !> group
+   pure integer function group_index(name)
       !> Name of the group, lower case
       character(len=*), intent(in) :: name
-      !> Place in deck_group, counted from 1; 0 if there is no such group
-      integer :: i
 
-      do i = size(deck_group), 1, -1
-         if (deck_group(i)%name(1:1) /= name(1:1)) cycle
-         if (deck_group(i)%name == name) return
+      do group_index = size(deck_group), 1, -1
+         if (deck_group(group_index)%name(1:1) /= name(1:1)) cycle
+         if (deck_group(group_index)%name == name) return
       end do
    end function group_index
 end module dda_deck_keys

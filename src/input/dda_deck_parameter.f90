@@ -45,7 +45,6 @@ contains
    pure subroutine find_parameter(name, parameter, problem)
       !> Name of the key, with or without its group: friction_deg, joints_deg(2), arch%radius
       character(len=*), intent(in) :: name
-      !> What it stands for
       type(parameter_t), intent(out) :: parameter
       !> Why there is none; empty if there is one
       character(len=:), allocatable, intent(out) :: problem

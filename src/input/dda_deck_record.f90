@@ -18,7 +18,6 @@ contains
    !> order of keys leave no trace in it, a --set leaves the one that a key in the deck would leave;
    !> files that the deck names leave their checksums
    pure function deck_record(deck, maker) result(record)
-      !> The deck, checked
       type(deck_t), intent(in) :: deck
       !> First line: who computes it
       character(len=*), intent(in) :: maker
@@ -45,7 +44,6 @@ contains
 
    !> Record one key
    pure subroutine add_value(lines, key, value)
-      !> The record so far
       type(growing_text_t), intent(inout) :: lines
       !> Place of the key in the registry
       integer, intent(in) :: key
@@ -69,7 +67,6 @@ contains
 
    !> Record one sweep
    pure subroutine add_sweep(lines, sweep)
-      !> The record so far
       type(growing_text_t), intent(inout) :: lines
       type(deck_sweep_t), intent(in) :: sweep
       integer :: i

@@ -74,7 +74,6 @@ contains
    pure subroutine scan_group(scan, error)
       !> Scanner between two groups
       type(deck_scan_t), intent(inout) :: scan
-      !> Text between groups, or an ampersand without a name
       type(error_t), allocatable, intent(out) :: error
       integer :: first, last
 
@@ -100,7 +99,6 @@ contains
    pure subroutine scan_item(scan, error)
       !> Scanner inside a group, at a character that is not blank
       type(deck_scan_t), intent(inout) :: scan
-      !> What the grammar does not allow
       type(error_t), allocatable, intent(out) :: error
 
       select case (scan%text(scan%position:scan%position))
@@ -126,7 +124,6 @@ contains
       type(deck_scan_t), intent(inout) :: scan
       !> Number of characters of the end
       integer, intent(in) :: width
-      !> Too many tokens
       type(error_t), allocatable, intent(out) :: error
 
       call add_token(scan, token_kind%close, scan%position, scan%position, 1, error)
@@ -138,7 +135,6 @@ contains
    pure subroutine scan_ampersand(scan, error)
       !> Scanner at the ampersand
       type(deck_scan_t), intent(inout) :: scan
-      !> The group is not closed
       type(error_t), allocatable, intent(out) :: error
       integer :: last
 
@@ -155,7 +151,6 @@ contains
    pure subroutine scan_comma(scan, error)
       !> Scanner at the comma
       type(deck_scan_t), intent(inout) :: scan
-      !> Too many tokens
       type(error_t), allocatable, intent(out) :: error
       logical :: has_value
 
@@ -175,7 +170,6 @@ contains
       type(deck_scan_t), intent(inout) :: scan
       !> Repeat count
       integer, intent(in) :: count
-      !> No closing quote on the line
       type(error_t), allocatable, intent(out) :: error
       character(len=1) :: quote
       integer :: first, last
@@ -207,7 +201,6 @@ contains
    pure subroutine scan_word(scan, error)
       !> Scanner at the first letter
       type(deck_scan_t), intent(inout) :: scan
-      !> A repeat count that makes no sense
       type(error_t), allocatable, intent(out) :: error
       integer :: first, last, star, count, line
 
@@ -247,7 +240,6 @@ contains
       integer, intent(in) :: star
       !> The repeat count
       integer, intent(out) :: count
-      !> No whole number, or one out of range
       type(error_t), allocatable, intent(out) :: error
       logical :: ok
 
@@ -265,7 +257,6 @@ contains
       type(deck_scan_t), intent(in) :: scan
       !> What was found instead of the slash
       character(len=*), intent(in) :: found
-      !> The failure, at the line of the group
       type(error_t), allocatable, intent(out) :: error
 
       if (scan%open_group == 0) then

@@ -24,7 +24,6 @@ contains
       type(parameter_t), intent(in) :: parameter
       !> The number in the unit of the registry
       real(wp), intent(in) :: value
-      !> Where it was written
       type(deck_place_t), intent(in) :: place
       !> Not a number's key, out of range, or an item that the list lacks
       type(error_t), allocatable, intent(out) :: error
@@ -64,7 +63,6 @@ contains
       integer, intent(in) :: key
       !> The numbers in the unit of the registry: (n)
       real(wp), intent(in) :: values(:)
-      !> Where they were written
       type(deck_place_t), intent(in) :: place
       !> One of them is out of range
       type(error_t), allocatable, intent(out) :: error
@@ -90,7 +88,6 @@ contains
       type(parameter_t), intent(in) :: parameter
       !> The text
       character(len=*), intent(in) :: text
-      !> Where it was written
       type(deck_place_t), intent(in) :: place
       !> Not a text's key, or a word that it does not know
       type(error_t), allocatable, intent(out) :: error
@@ -133,13 +130,11 @@ contains
    end function number_problem
 
    !> Whether a number can be the value of a key
-   pure function number_fits(key, value) result(fits)
+   pure logical function number_fits(key, value) result(fits)
       !> Place of the key in the registry
       integer, intent(in) :: key
       !> The number
       real(wp), intent(in) :: value
-      !> The answer
-      logical :: fits
 
       fits = is_numeric(key)
       if (fits) fits = value >= deck_key(key)%at_least .and. value <= deck_key(key)%at_most &
@@ -178,16 +173,14 @@ contains
    end function text_problem
 
    !> Whether a list of words holds a word, whatever its case
-   pure function has_word(words, text) result(yes)
+   pure logical function has_word(words, text)
       !> Words parted by one blank
       character(len=*), intent(in) :: words
       !> The word
       character(len=*), intent(in) :: text
-      !> The answer
-      logical :: yes
 
-      yes = len_trim(text) > 0 .and. index(trim(text), " ") == 0
-      if (yes) yes = index(" "//words//" ", " "//lower_case(trim(text))//" ") > 0
+      has_word = len_trim(text) > 0 .and. index(trim(text), " ") == 0
+      if (has_word) has_word = index(" "//words//" ", " "//lower_case(trim(text))//" ") > 0
    end function has_word
 
    !> Read .true., .false., T, F and what is like them
@@ -211,13 +204,11 @@ contains
    end subroutine read_flag
 
    !> Whether a key takes numbers
-   pure function is_numeric(key) result(yes)
+   pure logical function is_numeric(key)
       !> Place of the key in the registry
       integer, intent(in) :: key
-      !> The answer
-      logical :: yes
 
-      yes = any(deck_key(key)%kind == [key_kind%number, key_kind%whole, key_kind%numbers])
+      is_numeric = any(deck_key(key)%kind == [key_kind%number, key_kind%whole, key_kind%numbers])
    end function is_numeric
 
    !> Half angle and number of voussoirs follow joints_deg where they are not given

@@ -92,7 +92,6 @@ contains
       !> The deck, the keys of &sweep filled
       type(deck_t), intent(in) :: deck
       type(deck_sweep_t), intent(inout) :: sweep
-      !> None of them or more than one
       type(error_t), allocatable, intent(out) :: error
       logical :: has_values, has_texts, has_any, has_all
       character(len=26) :: found
@@ -133,7 +132,6 @@ contains
       !> The deck, the keys of &sweep filled
       type(deck_t), intent(in) :: deck
       type(deck_sweep_t), intent(inout) :: sweep
-      !> One value for two ends
       type(error_t), allocatable, intent(out) :: error
       real(wp) :: first, last
       integer :: n, i
@@ -156,7 +154,6 @@ contains
    pure subroutine check_values(deck, sweep, error)
       type(deck_t), intent(in) :: deck
       type(deck_sweep_t), intent(in) :: sweep
-      !> Words for numbers, numbers for words, or a value out of range
       type(error_t), allocatable, intent(out) :: error
       character(len=:), allocatable :: problem
       integer :: i
@@ -189,12 +186,10 @@ contains
    end function advised
 
    !> Number of values of a sweep
-   pure function n_values(sweep) result(n)
+   pure integer function n_values(sweep)
       type(deck_sweep_t), intent(in) :: sweep
-      !> How many
-      integer :: n
 
-      n = size(sweep%numbers) + size(sweep%texts)
+      n_values = size(sweep%numbers) + size(sweep%texts)
    end function n_values
 
    !> Number of cases of a deck
@@ -243,7 +238,6 @@ contains
       integer, intent(in) :: number
       !> The deck that receives them
       type(deck_t), intent(inout) :: deck
-      !> An item of a list that is not there; never for a deck that was checked
       type(error_t), allocatable, intent(out) :: error
       integer :: position(size(swept%sweeps)), s
 
@@ -263,7 +257,6 @@ contains
 
    !> The deck of one case
    pure subroutine case_deck(deck, number, result, error)
-      !> The deck with its sweeps
       type(deck_t), intent(in) :: deck
       !> Number of the case, from 1 to n_cases
       integer, intent(in) :: number
@@ -279,7 +272,6 @@ contains
    !> Turn the deck of one case into that of another one of the same sweeps; the first time all of
    !> the deck is copied, and later the swept values alone
    pure subroutine turn_to_case(deck, number, result, error)
-      !> The deck with its sweeps
       type(deck_t), intent(in) :: deck
       !> Number of the case, from 1 to n_cases
       integer, intent(in) :: number

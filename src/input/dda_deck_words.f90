@@ -17,7 +17,6 @@ contains
 
    !> What a key takes: kind of value, unit and range
    pure function wanted(key) result(text)
-      !> Entry of the registry
       type(key_t), intent(in) :: key
       !> Words such as: a number [m] from 1e-9 to 1e9
       character(len=:), allocatable :: text
@@ -42,7 +41,6 @@ contains
 
    !> Unit in brackets
    pure function unit_text(key) result(text)
-      !> Entry of the registry
       type(key_t), intent(in) :: key
       !> The unit after a blank; empty if there is none
       character(len=:), allocatable :: text
@@ -53,7 +51,6 @@ contains
 
    !> Range of a number
    pure function range_text(key) result(text)
-      !> Entry of the registry
       type(key_t), intent(in) :: key
       !> The range after a blank, such as: from 0 to 90; empty if all numbers will do
       character(len=:), allocatable :: text
@@ -102,7 +99,6 @@ contains
 
    !> Name of a key with its group
    pure function full_name(key) result(name)
-      !> Entry of the registry
       type(key_t), intent(in) :: key
       !> Such as: arch%radius
       character(len=:), allocatable :: name
@@ -144,7 +140,6 @@ contains
 
    !> The word that was meant, of those that a key takes
    pure function near_word(key, text) result(near)
-      !> Entry of the registry
       type(key_t), intent(in) :: key
       !> Word that the key does not take
       character(len=*), intent(in) :: text
@@ -220,13 +215,11 @@ contains
    end function nearest_word
 
    !> Fewest letters to insert, delete or replace to turn one word into another (Levenshtein)
-   pure function edit_distance(a, b) result(distance)
+   pure integer function edit_distance(a, b)
       !> First word; only its beginning counts where it is very long
       character(len=*), intent(in) :: a
       !> Second word
       character(len=*), intent(in) :: b
-      !> Number of changes
-      integer :: distance
       integer :: row(0:len(b)), diagonal, above, i, j
 
       row = [(j, j=0, len(b))]
@@ -239,7 +232,7 @@ contains
             diagonal = above
          end do
       end do
-      distance = row(len(b))
+      edit_distance = row(len(b))
    end function edit_distance
 
    !> All groups and keys with unit, range, default and meaning: what `dda help keys` prints
@@ -274,7 +267,6 @@ contains
 
    !> Help on one key
    pure function key_help(key, lf) result(text)
-      !> Entry of the registry
       type(key_t), intent(in) :: key
       !> End of a line
       character(len=*), intent(in) :: lf

@@ -18,7 +18,6 @@ contains
    subroutine read_ground_records(deck, error)
       !> The deck, checked; receives the records
       type(deck_t), intent(inout) :: deck
-      !> Bad input, with file and line
       type(error_t), allocatable, intent(out) :: error
       integer :: i, key, s
 
@@ -40,9 +39,7 @@ contains
       character(len=*), intent(in) :: name
       !> Where the deck names it
       type(deck_place_t), intent(in) :: place
-      !> Receives the record
       type(deck_t), intent(inout) :: deck
-      !> Bad input, with file and line
       type(error_t), allocatable, intent(out) :: error
       character(len=:), allocatable :: mark, message
       character(len=column_size) :: column(3)
@@ -78,7 +75,6 @@ contains
       type(deck_t), intent(in) :: deck
       !> The columns; 0 for none: (3)
       character(len=column_size), intent(out) :: column(3)
-      !> More or fewer
       type(error_t), allocatable, intent(out) :: error
       character(len=:), allocatable :: text
       integer :: blank, n

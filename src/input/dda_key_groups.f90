@@ -50,7 +50,6 @@ contains
       type(key_t), intent(in) :: keys(:)
       !> The groups of the text, in their order
       type(key_group_t), allocatable, intent(out) :: group(:)
-      !> Bad input, with file and line
       type(error_t), allocatable, intent(out) :: error
       type(deck_scan_t) :: scan
       integer :: i, g, last
@@ -85,7 +84,6 @@ contains
       type(key_t), intent(in) :: keys(:)
       !> The group, empty before
       type(key_group_t), intent(inout) :: group
-      !> Bad input, with its line
       type(error_t), allocatable, intent(out) :: error
       character(len=:), allocatable :: name
       integer :: i, k, next
@@ -137,7 +135,6 @@ contains
       integer, intent(in) :: last
       type(key_t), intent(in) :: key
       type(key_value_t), intent(out) :: value
-      !> Not what the key takes
       type(error_t), allocatable, intent(out) :: error
       character(len=:), allocatable :: text
       integer :: i, n
@@ -259,7 +256,6 @@ contains
       type(key_group_t), intent(in) :: group
       !> Name of the key
       character(len=*), intent(in) :: name
-      !> The word
       character(len=:), allocatable :: word
       integer :: k
 

@@ -23,7 +23,6 @@ contains
    pure subroutine take_outline(group, map, error)
       !> All groups
       type(key_group_t), intent(in) :: group(:)
-      !> Receives it
       type(joint_map_t), intent(inout) :: map
       !> No outline, or no simple one
       type(error_t), allocatable, intent(out) :: error
@@ -84,7 +83,6 @@ contains
       real(wp), intent(in) :: left, right
       !> Points from left to right: (2, n) [m]
       real(wp), allocatable, intent(out) :: surface(:, :)
-      !> Not between the sides
       type(error_t), allocatable, intent(out) :: error
       real(wp), allocatable :: point(:, :)
       real(wp) :: tangent, rise
@@ -167,7 +165,6 @@ contains
       type(key_group_t), intent(in) :: group
       !> Its corners: (2, n) [m]
       real(wp), intent(in) :: corner(:, :)
-      !> It is not, or has none
       type(error_t), allocatable, intent(out) :: error
       type(area_moments_t) :: moments
       real(wp) :: crossing(2)
@@ -188,7 +185,6 @@ contains
    !> An opening
    pure subroutine take_opening(group, map, error)
       type(key_group_t), intent(in) :: group
-      !> Receives it
       type(joint_map_t), intent(inout) :: map
       !> No simple outline
       type(error_t), allocatable, intent(out) :: error

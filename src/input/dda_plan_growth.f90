@@ -46,7 +46,6 @@ contains
       integer, intent(in) :: line
       !> Name of the file, for warnings
       character(len=*), intent(in) :: file
-      !> Receives what was changed
       type(warnings_t), intent(inout) :: warnings
       !> Allocated if the corners make no block
       type(error_t), allocatable, intent(out) :: error
@@ -86,7 +85,6 @@ contains
 
    !> Put a block behind the others, at rest and free of stress
    pure subroutine put_block(growing, vertex, fixed, material, line)
-      !> Receives the block
       type(growing_plan_t), intent(inout) :: growing
       !> Its corners, counter-clockwise: (2, n) [m]
       real(wp), intent(in) :: vertex(:, :)
@@ -119,7 +117,6 @@ contains
 
    !> Add a law
    pure subroutine add_law_plan(growing, law)
-      !> Receives the law
       type(growing_plan_t), intent(inout) :: growing
       type(law_plan_t), intent(in) :: law
       type(law_plan_t), allocatable :: longer(:)

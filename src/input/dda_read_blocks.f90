@@ -59,11 +59,8 @@ contains
       !> Name that errors will show
       character(len=*), intent(in) :: file
       type(block_plan_t), intent(out) :: plan
-      !> Receives what is doubtful
       type(warnings_t), intent(inout) :: warnings
-      !> Bad input, with file and line
       type(error_t), allocatable, intent(out) :: error
-      !> Is told how far the reading is
       class(watch_t), intent(inout), optional :: watch
       type(reading_t) :: reading
       type(site_t) :: site
@@ -112,11 +109,8 @@ contains
    !> Take a line: the beginning of an entry, or a row of the one before
    pure subroutine take_line(line, reading, warnings, error)
       type(line_t), intent(in) :: line
-      !> What has been read so far
       type(reading_t), intent(inout) :: reading
-      !> Receives what is doubtful
       type(warnings_t), intent(inout) :: warnings
-      !> Anything wrong
       type(error_t), allocatable, intent(out) :: error
       real(wp) :: value
       integer :: i
@@ -157,7 +151,6 @@ contains
    !> What a row below an entry ought to be
    pure function row_wanted(entry) result(text)
       type(entry_t), intent(in) :: entry
-      !> The text
       character(len=:), allocatable :: text
 
       select case (entry%n_column)
@@ -174,7 +167,6 @@ contains
    !> Whether a line begins an entry
    pure subroutine check_entry(line, error)
       type(line_t), intent(in) :: line
-      !> No such entry
       type(error_t), allocatable, intent(out) :: error
 
       if (index(", "//entries//",", ", "//trim(line%word(1))//",") == 0) &
@@ -203,9 +195,7 @@ contains
    pure subroutine close_entry(reading, warnings, error)
       !> What has been read so far; its entry is left without a head
       type(reading_t), intent(inout) :: reading
-      !> Receives what is doubtful
       type(warnings_t), intent(inout) :: warnings
-      !> Anything wrong
       type(error_t), allocatable, intent(out) :: error
 
       select case (reading%entry%head%word(1))
@@ -230,9 +220,7 @@ contains
    pure subroutine close_block(reading, warnings, error)
       !> What has been read so far; receives the block
       type(reading_t), intent(inout) :: reading
-      !> Receives what was changed of the block
       type(warnings_t), intent(inout) :: warnings
-      !> Anything wrong
       type(error_t), allocatable, intent(out) :: error
       character(len=*), parameter :: known(4) = [character(len=8) :: "fixed", "material", &
          & "velocity", "stress"]
@@ -287,9 +275,7 @@ contains
    !> material N [density d] [unit_weight w] [young e] [poisson p] [compressive_strength s]
    pure subroutine add_material(line, plan, error)
       type(line_t), intent(in) :: line
-      !> Receives the material
       type(block_plan_t), intent(inout) :: plan
-      !> Anything wrong
       type(error_t), allocatable, intent(out) :: error
       type(material_plan_t) :: material
       logical :: ok
@@ -326,9 +312,7 @@ contains
    !> [slip_length d]
    pure subroutine add_law(line, growing, error)
       type(line_t), intent(in) :: line
-      !> Receives the law
       type(growing_plan_t), intent(inout) :: growing
-      !> Anything wrong
       type(error_t), allocatable, intent(out) :: error
       type(law_plan_t) :: law
       logical :: ok(2)

@@ -42,7 +42,6 @@ contains
       type(deck_t), intent(out) :: deck
       !> Bad input, with file and line, or with --set and its number
       type(error_t), allocatable, intent(out) :: error
-      !> Is told how far the reading is
       class(watch_t), intent(inout), optional :: watch
       !> Cases that will be computed, such as 1-500,812: the others are not checked; without it, or
       !> empty, all are
@@ -72,7 +71,6 @@ contains
    !> Name of the file of blocks: beside the deck unless it begins with a slash
    pure function geometry_file(deck) result(path)
       type(deck_t), intent(in) :: deck
-      !> The name
       character(len=:), allocatable :: path
 
       path = file_beside(deck, deck%scene%geometry%text)
@@ -135,7 +133,6 @@ contains
       !> Token of the group; then the token after the group
       integer, intent(inout) :: i
       type(deck_t), intent(inout) :: deck
-      !> Unknown or repeated group, or anything wrong inside
       type(error_t), allocatable, intent(out) :: error
       character(len=:), allocatable :: name
       type(deck_place_t) :: place
@@ -170,7 +167,6 @@ contains
       !> Name of the group
       character(len=*), intent(in) :: group
       type(deck_t), intent(inout) :: deck
-      !> Unknown or repeated key, or a value it cannot take
       type(error_t), allocatable, intent(out) :: error
       type(deck_place_t) :: place
       integer :: key, first
@@ -197,14 +193,12 @@ contains
    end subroutine read_entry
 
    !> Whether a token stands for a value, be it an empty one
-   pure function is_value(scan, i) result(yes)
+   pure logical function is_value(scan, i)
       type(deck_scan_t), intent(in) :: scan
       !> Place of the token
       integer, intent(in) :: i
-      !> The answer
-      logical :: yes
 
-      yes = any(scan%token(i)%kind == [token_kind%word, token_kind%quoted, token_kind%nothing])
+      is_value = any(scan%token(i)%kind == [token_kind%word, token_kind%quoted, token_kind%nothing])
    end function is_value
 
    !> Find a key of a known group
@@ -213,13 +207,11 @@ contains
       character(len=*), intent(in) :: group
       !> Name of the key
       character(len=*), intent(in) :: name
-      !> The deck, for its errors
       type(deck_t), intent(in) :: deck
       !> Where the key stands
       type(deck_place_t), intent(in) :: place
       !> Place in the registry
       integer, intent(out) :: key
-      !> Unknown, one item of a list, or not yet read
       type(error_t), allocatable, intent(out) :: error
       integer :: open
 
@@ -244,7 +236,6 @@ contains
       !> Its number on the command line
       type(deck_place_t), intent(in) :: place
       type(deck_t), intent(inout) :: deck
-      !> Anything wrong with name or value
       type(error_t), allocatable, intent(out) :: error
       character(len=:), allocatable :: group, name
       type(parameter_t) :: parameter
@@ -269,14 +260,12 @@ contains
    end subroutine apply_setting
 
    !> Whether a text holds control characters
-   pure function has_control(text) result(yes)
+   pure logical function has_control(text)
       !> Any text
       character(len=*), intent(in) :: text
-      !> The answer
-      logical :: yes
       integer :: i
 
-      yes = any([(ichar(text(i:i)) < 32 .or. ichar(text(i:i)) == 127, i=1, len(text))])
+      has_control = any([(ichar(text(i:i)) < 32 .or. ichar(text(i:i)) == 127, i=1, len(text))])
    end function has_control
 
    !> Put the text after the equals sign of a --set into its key
@@ -288,7 +277,6 @@ contains
       !> Number of the --set
       type(deck_place_t), intent(in) :: place
       type(deck_t), intent(inout) :: deck
-      !> A value that the key cannot take
       type(error_t), allocatable, intent(out) :: error
       type(deck_scan_t) :: scan
       logical :: is_text, has_quotes

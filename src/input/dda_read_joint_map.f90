@@ -26,7 +26,6 @@ contains
       type(joint_map_t), intent(out) :: map
       !> Whether lines are to be written in DDAML
       logical, intent(out) :: is_ddaml
-      !> Bad input, with file and line
       type(error_t), allocatable, intent(out) :: error
       character(len=:), allocatable :: text
 
@@ -44,7 +43,6 @@ contains
       type(joint_map_t), intent(out) :: map
       !> Whether lines are to be written in DDAML
       logical, intent(out) :: is_ddaml
-      !> Bad input, with file and line
       type(error_t), allocatable, intent(out) :: error
       type(key_group_t), allocatable :: group(:)
       integer :: i, seed
@@ -91,9 +89,7 @@ contains
       type(key_group_t), intent(in) :: group
       !> Seed of the map
       integer, intent(in) :: seed
-      !> Receives it
       type(joint_map_t), intent(inout) :: map
-      !> Half a point
       type(error_t), allocatable, intent(out) :: error
       type(joint_set_t) :: set
       integer :: n
@@ -136,9 +132,7 @@ contains
    !> Lines or points placed by hand
    pure subroutine take_lines(group, map, error)
       type(key_group_t), intent(in) :: group
-      !> Receives them
       type(joint_map_t), intent(inout) :: map
-      !> No points
       type(error_t), allocatable, intent(out) :: error
       type(map_line_t) :: line
       real(wp), allocatable :: point(:, :)
@@ -165,7 +159,6 @@ contains
    !> Bolts around an opening
    pure subroutine take_bolts(group, map)
       type(key_group_t), intent(in) :: group
-      !> Receives them
       type(joint_map_t), intent(inout) :: map
       type(bolts_t) :: bolts
 
@@ -184,7 +177,6 @@ contains
       !> All groups
       type(key_group_t), intent(in) :: group(:)
       type(joint_map_t), intent(in) :: map
-      !> One that is not
       type(error_t), allocatable, intent(out) :: error
       integer :: i
 

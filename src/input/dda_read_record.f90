@@ -57,7 +57,6 @@ contains
       real(wp), intent(in) :: scale
       !> Time and components: (3, n)
       real(wp), allocatable, intent(out) :: row(:, :)
-      !> Bad input, with its line
       type(error_t), allocatable, intent(out) :: error
       integer :: place(3), start, finish, number, n, header(2)
 
@@ -163,7 +162,6 @@ contains
       integer, intent(in) :: line
       !> Their numbers, 0 for none: (3)
       integer, intent(out) :: place(3)
-      !> A column that is not there
       type(error_t), allocatable, intent(out) :: error
       integer :: i, k
       logical :: ok
@@ -212,7 +210,6 @@ contains
       real(wp), intent(in) :: scale
       !> Time and components: (3)
       real(wp), intent(out) :: row(3)
-      !> A field that is no number, or too large
       type(error_t), allocatable, intent(out) :: error
       integer :: i
       logical :: ok
@@ -236,7 +233,6 @@ contains
       real(wp), intent(in) :: time(2)
       !> Number of the line
       integer, intent(in) :: line
-      !> It does not
       type(error_t), allocatable, intent(out) :: error
 
       if (.not. time(2) > time(1)) call fatal_error(error, "expected a time after " &

@@ -67,7 +67,6 @@ contains
       logical, intent(in) :: fixed(:)
       !> The one material of all blocks
       type(material_t), intent(in) :: material
-      !> The blocks
       type(block_system_t) :: system
       type(area_moments_t) :: moments
       integer :: b, n, movable

@@ -121,22 +121,18 @@ module dda_boundary
 contains
 
    !> A history that is the same at all times
-   pure function constant_history(value) result(history)
+   pure type(history_t) function constant_history(value)
       !> Components along x and y: (2)
       real(wp), intent(in) :: value(2)
-      !> The history
-      type(history_t) :: history
 
-      allocate (history%time(1), source=0.0_wp)
-      allocate (history%value(2, 1))
-      history%value(:, 1) = value
+      allocate (constant_history%time(1), source=0.0_wp)
+      allocate (constant_history%value(2, 1))
+      constant_history%value(:, 1) = value
    end function constant_history
 
    !> What acts and leads at time 0, for good, on a ground at rest
-   pure function held_at_start(boundary) result(held)
+   pure type(boundary_t) function held_at_start(boundary) result(held)
       type(boundary_t), intent(in) :: boundary
-      !> The same without histories
-      type(boundary_t) :: held
       integer :: i
 
       held = boundary

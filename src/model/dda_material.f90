@@ -45,7 +45,6 @@ contains
 
    !> Hooke's law of the plane: stress (sx, sy, txy) from strain (ex, ey, gxy)
    pure function elasticity_matrix(material) result(d)
-      !> Material of the block
       type(material_t), intent(in) :: material
       !> Symmetric matrix: (3, 3) [Pa]
       real(wp) :: d(3, 3)

@@ -31,7 +31,6 @@ contains
       !> Number of the case
       integer, intent(in) :: number
       type(told_blocks_t), intent(in) :: blocks
-      !> The rows, parted by line ends
       character(len=:), allocatable :: lines
       character(len=:), allocatable :: common
       type(growing_text_t) :: rows

@@ -23,7 +23,6 @@ contains
       !> Name of the file; one that exists is replaced
       character(len=*), intent(in) :: file
       type(cut_model_t), intent(in) :: cut
-      !> Allocated if it cannot be written
       type(error_t), allocatable, intent(out) :: error
       type(table_file_t) :: table
       character(len=:), allocatable :: lines
@@ -56,7 +55,6 @@ contains
       integer, intent(in) :: block
       !> Its fixed, load and measured points: (3)
       integer, intent(in) :: held(3)
-      !> The row
       character(len=:), allocatable :: line
       character(len=:), allocatable :: x, y, joint
       type(area_moments_t) :: moments
@@ -86,7 +84,6 @@ contains
       !> Name of the file; one that exists is replaced
       character(len=*), intent(in) :: file
       type(cut_model_t), intent(in) :: cut
-      !> Allocated if it cannot be written
       type(error_t), allocatable, intent(out) :: error
       type(field_t), allocatable :: cells(:), corners(:)
       real(wp), allocatable :: point(:, :)

@@ -20,7 +20,6 @@ contains
       integer, intent(in) :: number
       !> Time and energies after each step, as the columns have them: (10, n_step) [s, J per metre]
       real(wp), intent(in) :: value(:, :)
-      !> The rows
       character(len=:), allocatable :: lines
       type(growing_text_t) :: text
       integer :: k

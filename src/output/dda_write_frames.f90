@@ -57,7 +57,6 @@ contains
       real(wp), intent(in) :: point(:, :)
       !> Blocks that have no rows, as they are not there: (n_block)
       logical, intent(in), optional :: absent(:)
-      !> The rows, parted by line ends
       character(len=:), allocatable :: lines
       character(len=:), allocatable :: common
       type(growing_text_t) :: rows
@@ -78,11 +77,9 @@ contains
 
    !> Rows of one frame in frame_joints.csv
    pure function frame_joint_lines(stamp, row) result(lines)
-      !> Case and frame
       type(frame_stamp_t), intent(in) :: stamp
       !> The joints: (n_joint)
       type(frame_joint_row_t), intent(in) :: row(:)
-      !> The rows, parted by line ends
       character(len=:), allocatable :: lines
       type(growing_text_t) :: rows
       integer :: j
@@ -110,7 +107,6 @@ contains
       real(wp), intent(in) :: origin(2)
       !> How fast they are; left out if that is not known: (2, n_point, n or more) [m/s]
       real(wp), intent(in), optional :: speed(:, :, :)
-      !> The rows, parted by line ends
       character(len=:), allocatable :: lines
       type(growing_text_t) :: rows
       character(len=:), allocatable :: fast
@@ -130,7 +126,6 @@ contains
 
    !> Case and frame as the first fields of a row
    pure function stamp_text(stamp) result(text)
-      !> Case and frame
       type(frame_stamp_t), intent(in) :: stamp
       !> The fields
       character(len=:), allocatable :: text

@@ -33,7 +33,6 @@ contains
       !> Name of the file; one that exists is replaced
       character(len=*), intent(in) :: name
       type(pvd_index_t), intent(out) :: index
-      !> Allocated if it cannot be written
       type(error_t), allocatable, intent(out) :: error
 
       call open_binary(name, index%file, error)
@@ -54,7 +53,6 @@ contains
       integer, intent(in) :: part
       !> Name of the file, relative to the folder of the index
       character(len=*), intent(in) :: shown
-      !> Allocated if it cannot be written
       type(error_t), allocatable, intent(out) :: error
       character(len=:), allocatable :: entry
 

@@ -26,7 +26,6 @@ contains
       real(wp), intent(in) :: reaction(:, :, :)
       !> Where that origin is in coordinates of the user: (2) [m]
       real(wp), intent(in) :: origin(2)
-      !> The rows, parted by line ends
       character(len=:), allocatable :: lines
       type(growing_text_t) :: rows
       real(wp) :: moment

@@ -144,13 +144,11 @@ module dda_write_results
 contains
 
    !> A known number
-   elemental function some_number(value) result(number)
+   elemental type(number_t) function some_number(value)
       !> The value
       real(wp), intent(in) :: value
-      !> The number
-      type(number_t) :: number
 
-      number = number_t(.true., value)
+      some_number = number_t(.true., value)
    end function some_number
 
    !> Names of the columns of results.csv
@@ -159,7 +157,6 @@ contains
       character(len=*), intent(in) :: swept
       !> Whether the table has a column of condition numbers
       logical, intent(in) :: tells_condition
-      !> The line
       character(len=:), allocatable :: line
 
       line = "deck,case,"//swept//"blocks,half_angle_deg,thickness_ratio,friction_deg,mode," &
@@ -174,7 +171,6 @@ contains
    !> One row of results.csv
    pure function results_line(row) result(line)
       type(result_row_t), intent(in) :: row
-      !> The line
       character(len=:), allocatable :: line
 
       line = quoted(row%deck)//","//to_text(row%number)//","//row%swept &
@@ -200,7 +196,6 @@ contains
    !> One row of joints.csv
    pure function joint_line(row) result(line)
       type(joint_row_t), intent(in) :: row
-      !> The line
       character(len=:), allocatable :: line
 
       line = to_text(row%number)//","//to_text(row%joint)//","//number_text(row%angle_deg)//"," &
@@ -216,7 +211,6 @@ contains
    !> A number as text, nothing if it is unknown
    pure function number_text(number) result(text)
       type(number_t), intent(in) :: number
-      !> The text
       character(len=:), allocatable :: text
 
       text = ""
@@ -227,7 +221,6 @@ contains
    pure function joined(angles) result(text)
       !> The angles: (:) [deg]
       real(wp), intent(in), allocatable :: angles(:)
-      !> The text
       character(len=:), allocatable :: text
       integer :: i
 
@@ -243,7 +236,6 @@ contains
    pure function quoted(text) result(field)
       !> Any text
       character(len=*), intent(in) :: text
-      !> The field
       character(len=:), allocatable :: field
       integer :: i
 

@@ -97,7 +97,6 @@ contains
       type(field_t), intent(in) :: point_fields(:)
       !> Fields with a value for each cell: (:)
       type(field_t), intent(in) :: cell_fields(:)
-      !> A contract that is broken already, or a failure of this procedure
       type(error_t), allocatable, intent(inout) :: error
       type(binary_file_t) :: vtu
       integer :: i
@@ -190,7 +189,6 @@ contains
 
    !> Announce the fields of the points or of the cells
    pure subroutine add_fields(header, element, fields)
-      !> The header so far
       type(header_t), intent(inout) :: header
       !> PointData or CellData
       character(len=*), intent(in) :: element
@@ -207,7 +205,6 @@ contains
 
    !> Announce an array
    pure subroutine add_array(header, attributes, n_byte)
-      !> The header so far
       type(header_t), intent(inout) :: header
       !> What the array is
       character(len=*), intent(in) :: attributes
@@ -223,7 +220,6 @@ contains
 
    !> Put a line below the header
    pure subroutine add_line(header, line)
-      !> The header so far
       type(header_t), intent(inout) :: header
       !> The line
       character(len=*), intent(in) :: line

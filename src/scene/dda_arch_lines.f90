@@ -104,7 +104,6 @@ contains
       type(block_system_t), intent(in) :: system
       !> Number of the voussoir
       integer, intent(in) :: block
-      !> Receives the chords
       type(line_model_t), intent(inout) :: model
       integer :: first, last, k
 
@@ -122,7 +121,6 @@ contains
       type(block_system_t), intent(in) :: system
       !> Number of the voussoir on the left
       integer, intent(in) :: block
-      !> Receives the joint
       type(line_model_t), intent(inout) :: model
       real(wp) :: intrados(2), extrados(2), more(2)
       integer :: first, n
@@ -141,7 +139,6 @@ contains
       real(wp), intent(in) :: corner(2, 4)
       !> Joint material of the face
       integer, intent(in) :: material
-      !> Receives lines and points
       type(line_model_t), intent(inout) :: model
       real(wp) :: share(2), point(2)
       integer :: k, i, j
@@ -161,7 +158,6 @@ contains
 
    !> Add a line
    pure subroutine add_line(model, start, finish, material)
-      !> Receives the line
       type(line_model_t), intent(inout) :: model
       !> Where it starts: (2) [m]
       real(wp), intent(in) :: start(2)
@@ -201,11 +197,8 @@ contains
    end function edge_node_ratio
 
    !> The analysis of an arch, with the constants of the original
-   pure function arch_analysis(deck) result(analysis)
-      !> The deck of a case
+   pure type(limerick_analysis_t) function arch_analysis(deck) result(analysis)
       type(deck_t), intent(in) :: deck
-      !> The analysis
-      type(limerick_analysis_t) :: analysis
       type(analysis_material_t) :: stone
       type(limerick_joint_t) :: joint
 
@@ -229,9 +222,7 @@ contains
 
    !> The constants of the original's scheme, those of its own mode or its defaults
    pure subroutine write_constants(deck, analysis)
-      !> The deck of a case
       type(deck_t), intent(in) :: deck
-      !> Receives the constants
       type(limerick_analysis_t), intent(inout) :: analysis
       type(limerick_constants_t) :: constants
 
@@ -257,7 +248,6 @@ contains
 
    !> What the files cannot carry
    pure function what_is_lost(deck) result(text)
-      !> The deck of a case
       type(deck_t), intent(in) :: deck
       !> Keys, parted by commas; empty if nothing is lost
       character(len=:), allocatable :: text

@@ -27,7 +27,6 @@ contains
 
    !> The scene that the deck of one case describes
    pure subroutine arch_scene(deck, scene)
-      !> The deck, checked
       type(deck_t), intent(in) :: deck
       type(scene_t), intent(out) :: scene
       type(joint_law_t), allocatable :: law(:)
@@ -49,12 +48,9 @@ contains
       allocate (scene%joint_angle_deg, source=joint_angles_deg(deck))
    end subroutine arch_scene
 
-   !> What a chain of rigid voussoirs is made from
-   pure function arch_numbers(deck) result(numbers)
-      !> The deck, checked
+   !> What a chain of rigid voussoirs is made from, without what the settings say
+   pure type(arch_numbers_t) function arch_numbers(deck) result(numbers)
       type(deck_t), intent(in) :: deck
-      !> The numbers; those of the settings are left out
-      type(arch_numbers_t) :: numbers
 
       numbers%shape = arch_shape(deck)
       numbers%density = deck%material%density%number
@@ -81,10 +77,8 @@ contains
    end function joint_angles_deg
 
    !> The blocks' material
-   pure function material_of(deck) result(material)
+   pure type(material_t) function material_of(deck) result(material)
       type(deck_t), intent(in) :: deck
-      !> The material
-      type(material_t) :: material
 
       material%density = deck%material%density%number
       material%young = deck%material%young%number
@@ -95,10 +89,8 @@ contains
    end function material_of
 
    !> The law of the joints
-   pure function joint_law(deck) result(law)
+   pure type(joint_law_t) function joint_law(deck) result(law)
       type(deck_t), intent(in) :: deck
-      !> The law
-      type(joint_law_t) :: law
       real(wp) :: friction_deg
 
       friction_deg = deck%joint%friction_deg%number
@@ -125,10 +117,8 @@ contains
    end function half_joints_deg
 
    !> The shape of the arch
-   pure function arch_shape(deck) result(shape)
+   pure type(arch_shape_t) function arch_shape(deck) result(shape)
       type(deck_t), intent(in) :: deck
-      !> The shape
-      type(arch_shape_t) :: shape
       real(wp), allocatable :: joints(:), span(:)
       real(wp) :: facet
       integer :: crown
@@ -156,14 +146,12 @@ contains
 
    !> Settings of the runs. The acceleration that counts as rest follows the tolerance of the search
    !> and the arch: a shallow arch that lacks the same share of its thickness accelerates less
-   pure function settings_of(deck, half_angle, joints) result(settings)
+   pure type(settings_t) function settings_of(deck, half_angle, joints) result(settings)
       type(deck_t), intent(in) :: deck
       !> Angle from the crown to a springing; a right angle for what is no arch [rad]
       real(wp), intent(in) :: half_angle
       !> Joints of one half of an arch, or all joints
       integer, intent(in) :: joints
-      !> The settings
-      type(settings_t) :: settings
       real(wp) :: noise, rise
       type(scene_plan_t) :: plan
 
@@ -217,7 +205,6 @@ contains
 
    !> Exact critical thickness ratio of the very same polygons by limit analysis
    pure subroutine exact_thickness(deck, eta, known)
-      !> The deck of one case
       type(deck_t), intent(in) :: deck
       !> The ratio
       real(wp), intent(out) :: eta
@@ -249,7 +236,6 @@ contains
    !> Where a search for the thickness ratio begins: somewhat below what an arch of many voussoirs
    !> needs, by the first two terms of its series in the half angle
    pure real(wp) function search_start(deck)
-      !> The deck of one case
       type(deck_t), intent(in) :: deck
       real(wp) :: square
 
@@ -262,7 +248,6 @@ contains
    !> and with it the place of the thrust by alpha^2/8*eps/eta of the radius, to be compared with
    !> eta; with a margin of 8
    pure real(wp) function arch_resolution(deck)
-      !> The deck of one case
       type(deck_t), intent(in) :: deck
       real(wp) :: square
 
@@ -275,7 +260,6 @@ contains
    !> arch that lacks as much of its thickness, and accelerates by 0.4 alpha^2 of that, must not
    !> pass for one at rest, which it may at 16 eps n/alpha (n joints in half an arch)
    pure real(wp) function chain_resolution(deck)
-      !> The deck of one case
       type(deck_t), intent(in) :: deck
       real(wp) :: angle
 

@@ -36,7 +36,6 @@ contains
 
    !> Make the scene of a plan; its settings are the caller's, with the plan's points
    pure subroutine block_scene(plan, base, scene)
-      !> The plan, checked
       type(block_plan_t), intent(in) :: plan
       !> What the deck says of all blocks and joints
       type(base_t), intent(in) :: base
@@ -107,7 +106,6 @@ contains
    !> Materials by number; what the plan leaves out is that of the deck
    pure subroutine materials_of(plan, base, material, unit_weight)
       type(block_plan_t), intent(in) :: plan
-      !> What the deck says
       type(base_t), intent(in) :: base
       !> The materials: (n_material)
       type(material_t), allocatable, intent(out) :: material(:)
@@ -136,7 +134,6 @@ contains
    !> Laws of the joints between any two materials
    pure function laws_of(plan, base, n) result(law)
       type(block_plan_t), intent(in) :: plan
-      !> What the deck says
       type(base_t), intent(in) :: base
       !> Number of materials
       integer, intent(in) :: n
@@ -158,7 +155,6 @@ contains
 
    !> Whether blocks may meet for whose materials the plan gives no friction
    pure logical function lacks_friction(plan)
-      !> The plan, checked
       type(block_plan_t), intent(in) :: plan
       logical, allocatable :: given(:, :), moves(:)
       integer, allocatable :: blocks(:)
@@ -189,12 +185,10 @@ contains
    end function lacks_friction
 
    !> A law of joints that may open
-   pure function law_of(value) result(law)
+   pure type(joint_law_t) function law_of(value) result(law)
       !> Friction angle, cohesion, tensile strength, friction angle after slip, slip over which
       !> strength goes: (5) [deg, Pa, Pa, deg, m]
       real(wp), intent(in) :: value(5)
-      !> The law
-      type(joint_law_t) :: law
 
       law%friction = friction_coefficient(min(value(1), most_friction_deg))
       law%cohesion = value(2)

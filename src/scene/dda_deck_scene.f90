@@ -56,7 +56,6 @@ contains
 
    !> The family of a deck, its numbers read
    pure subroutine new_family(deck, plan, parameter, family)
-      !> The deck of one case
       type(deck_t), intent(in) :: deck
       !> What its scenes need
       type(scene_plan_t), intent(in) :: plan
@@ -105,7 +104,6 @@ contains
       !> Value of its parameter
       real(wp), intent(in) :: value
       type(scene_t), intent(out) :: scene
-      !> Allocated if the parameter cannot have the value
       type(error_t), allocatable, intent(out) :: error
       type(deck_t) :: deck
       type(arch_assembly_t) :: assembly
@@ -129,7 +127,6 @@ contains
 
    !> The scene that the deck of one case describes
    pure subroutine deck_scene(deck, scene)
-      !> The deck, checked
       type(deck_t), intent(in) :: deck
       type(scene_t), intent(out) :: scene
 
@@ -149,7 +146,6 @@ contains
 
    !> The scene of an arch of any shape
    pure subroutine shape_scene(deck, scene)
-      !> The deck, checked
       type(deck_t), intent(in) :: deck
       !> The scene; of an arch that cannot be, without blocks
       type(scene_t), intent(out) :: scene
@@ -175,7 +171,6 @@ contains
 
    !> Number of blocks that can move in the scene of a case
    pure integer function movable_blocks(deck)
-      !> The deck, checked
       type(deck_t), intent(in) :: deck
       type(arch_form_t) :: form
       type(form_problem_t) :: problem
@@ -194,7 +189,6 @@ contains
 
    !> The scene of blocks as a file or an arch gives them
    pure subroutine file_scene(deck, plan, scene)
-      !> The deck, checked
       type(deck_t), intent(in) :: deck
       type(block_plan_t), intent(in) :: plan
       type(scene_t), intent(out) :: scene

@@ -37,12 +37,10 @@ module dda_fill_loads
 contains
 
    !> The fill of a deck
-   pure function fill_of(deck, assembly) result(fill)
+   pure type(fill_t) function fill_of(deck, assembly) result(fill)
       !> The deck of the case, with &fill
       type(deck_t), intent(in) :: deck
       type(arch_assembly_t), intent(in) :: assembly
-      !> The fill
-      type(fill_t) :: fill
       integer :: i
 
       allocate (fill%chord, source=assembly%top)

@@ -20,7 +20,6 @@ contains
 
    !> Give the ground of a scene the motion that &ground asks for
    pure subroutine move_ground(deck, acceleration)
-      !> The deck of the case, checked
       type(deck_t), intent(in) :: deck
       !> Acceleration of the ground: that of the file of blocks in, that of the case out
       type(history_t), intent(inout) :: acceleration
@@ -36,10 +35,8 @@ contains
 
    !> A pulse. What is constant before its beginning and after its end is no time of the run, and
    !> nothing
-   pure function pulse_of(deck) result(pulse)
+   pure type(history_t) function pulse_of(deck) result(pulse)
       type(deck_t), intent(in) :: deck
-      !> The pulse
-      type(history_t) :: pulse
       real(wp) :: duration, frequency, along(2)
       integer :: i, n
 
@@ -86,10 +83,8 @@ contains
 
    !> The record of the case as an acceleration, turned, and brought to its amplitude if one is
    !> given; none before its first time and after its last
-   pure function record_of(deck) result(acceleration)
+   pure type(history_t) function record_of(deck) result(acceleration)
       type(deck_t), intent(in) :: deck
-      !> The acceleration
-      type(history_t) :: acceleration
       type(history_t) :: motion
       real(wp) :: turn(2, 2), largest
       integer :: i

@@ -21,7 +21,6 @@ contains
    !> for its stress and velocity are its own; the first material, which the first step looks at,
    !> is that of a block that moves
    pure subroutine blocks_model(plan, scene, model)
-      !> The plan, checked
       type(block_plan_t), intent(in) :: plan
       type(scene_t), intent(in) :: scene
       !> The model; its parts but for the direction of the weight are set

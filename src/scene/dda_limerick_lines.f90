@@ -103,25 +103,22 @@ contains
    end subroutine take_points
 
    !> Force on a load point; one of which the analysis says nothing has none
-   pure function force_of(deck, source) result(force)
+   pure type(history_t) function force_of(deck, source)
       type(deck_t), intent(in) :: deck
       !> Number of the load point
       integer, intent(in) :: source
-      !> The force
-      type(history_t) :: force
 
-      force = constant_history([0.0_wp, 0.0_wp])
+      force_of = constant_history([0.0_wp, 0.0_wp])
       if (.not. allocated(deck%file_analysis)) return
       if (source > size(deck%file_analysis%load)) return
       associate (record => deck%file_analysis%load(source)%record)
-         force%time = record(1, :)
-         force%value = record(2:3, :)
+         force_of%time = record(1, :)
+         force_of%value = record(2:3, :)
       end associate
    end function force_of
 
    !> Take the constants of the scheme that an analysis file gives
    pure subroutine take_constants(analysis, constants)
-      !> What the file says
       type(limerick_analysis_t), intent(in) :: analysis
       !> The constants; what ends a run is left as it is
       type(limerick_constants_t), intent(inout) :: constants

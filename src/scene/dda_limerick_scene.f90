@@ -24,7 +24,6 @@ contains
 
    !> The model that the deck of one case describes
    pure subroutine limerick_scene(deck, scene, model)
-      !> The deck, checked
       type(deck_t), intent(in) :: deck
       type(scene_t), intent(in) :: scene
       type(limerick_model_t), intent(out) :: model
@@ -53,7 +52,6 @@ contains
 
    !> The arch that a deck describes, between its abutments
    pure subroutine arch_model(deck, scene, model)
-      !> The deck, checked
       type(deck_t), intent(in) :: deck
       !> Its scene; the springings are its last two blocks
       type(scene_t), intent(in) :: scene

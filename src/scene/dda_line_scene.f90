@@ -101,7 +101,6 @@ contains
 
    !> Whether this version can run the blocks of a deck
    pure subroutine check_line_scene(deck, error)
-      !> The deck of a case
       type(deck_t), intent(in) :: deck
       !> What it cannot do
       type(error_t), allocatable, intent(out) :: error
@@ -170,12 +169,9 @@ contains
    end function weight_is_given
 
    !> A material of the analysis file; keys that the deck gives go before
-   pure function file_material(deck, listed) result(material)
+   pure type(material_t) function file_material(deck, listed) result(material)
       type(deck_t), intent(in) :: deck
-      !> What the file says
       type(analysis_material_t), intent(in) :: listed
-      !> The material
-      type(material_t) :: material
 
       material = material_of(deck)
       if (.not. deck%material%density%given) material%density = listed%density
@@ -185,12 +181,10 @@ contains
    end function file_material
 
    !> The law of a joint; keys that the deck gives go before the analysis file
-   pure function law_of_joint(deck, number) result(law)
+   pure type(joint_law_t) function law_of_joint(deck, number) result(law)
       type(deck_t), intent(in) :: deck
       !> Number of the joint's material
       integer, intent(in) :: number
-      !> The law
-      type(joint_law_t) :: law
       type(limerick_joint_t) :: listed
 
       law = joint_law(deck)

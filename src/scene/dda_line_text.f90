@@ -74,7 +74,6 @@ contains
       type(cut_model_t), intent(in) :: cut
       !> What they are made of, and how they begin
       type(block_system_t), intent(in) :: system
-      !> Receives the lines
       type(growing_text_t), intent(inout) :: lines
       character(len=:), allocatable :: line
       logical :: held(size(cut%area))
@@ -99,7 +98,6 @@ contains
    !> Add the materials of the blocks
    pure subroutine add_materials(system, lines)
       type(block_system_t), intent(in) :: system
-      !> Receives the lines
       type(growing_text_t), intent(inout) :: lines
       integer :: b, m
 
@@ -119,7 +117,6 @@ contains
       type(joint_law_t), intent(in) :: law
       !> Number of materials
       integer, intent(in) :: n
-      !> Receives the lines
       type(growing_text_t), intent(inout) :: lines
       character(len=:), allocatable :: friction, residual
       integer :: i, j
@@ -141,7 +138,6 @@ contains
    !> Add what is held, loaded and measured; blocks that two points hold are fixed
    pure subroutine add_points(deck, lines)
       type(deck_t), intent(in) :: deck
-      !> Receives the lines
       type(growing_text_t), intent(inout) :: lines
       character(len=:), allocatable :: at
       logical :: held(size(deck%cut%area))
@@ -167,7 +163,6 @@ contains
       type(load_history_t), intent(in) :: load
       !> Where it acts
       character(len=*), intent(in) :: at
-      !> Receives the lines
       type(growing_text_t), intent(inout) :: lines
       integer :: i
 
@@ -181,7 +176,6 @@ contains
 
    !> What a file of blocks has no place for
    pure function line_losses(deck) result(text)
-      !> The deck of the case
       type(deck_t), intent(in) :: deck
       !> What it is, parted by commas; empty if nothing is lost
       character(len=:), allocatable :: text

@@ -24,7 +24,6 @@ contains
 
    !> Put the forces of &live and the axles of &vehicle on the blocks of a scene
    pure subroutine add_live_loads(deck, scene, fill)
-      !> The deck of the case
       type(deck_t), intent(in) :: deck
       !> The scene; forces in none of its blocks are left out
       type(scene_t), intent(inout) :: scene
@@ -38,7 +37,6 @@ contains
 
    !> The forces of &live on the blocks of a scene
    pure function loads_of_live(deck, scene) result(of_live)
-      !> The deck of the case
       type(deck_t), intent(in) :: deck
       type(scene_t), intent(in) :: scene
       !> The forces; those in no block are left out: (n)
@@ -64,7 +62,6 @@ contains
 
    !> Points and forces of &live
    pure subroutine live_lists(deck, origin, point, force)
-      !> The deck of the case
       type(deck_t), intent(in) :: deck
       !> Origin of the blocks' coordinates: (2) [m]
       real(wp), intent(in) :: origin(2)
@@ -124,7 +121,6 @@ contains
 
    !> Check that the forces of &live act on blocks that move
    pure subroutine check_live_points(deck, scene, error)
-      !> The deck of the case
       type(deck_t), intent(in) :: deck
       !> Its scene, with or without them
       type(scene_t), intent(in) :: scene
@@ -162,7 +158,6 @@ contains
 
    !> Whether a case has anything that the load factor multiplies
    pure logical function bears_live(deck)
-      !> The deck of the case
       type(deck_t), intent(in) :: deck
 
       bears_live = deck%live%given .or. deck%vehicle%given .or. deck%load%live_horizontal%flag &

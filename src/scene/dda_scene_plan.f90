@@ -68,11 +68,8 @@ module dda_scene_plan
 contains
 
    !> What the scene of one case needs
-   pure function plan_scene(deck) result(plan)
-      !> The deck of the case
+   pure type(scene_plan_t) function plan_scene(deck) result(plan)
       type(deck_t), intent(in) :: deck
-      !> The plan
-      type(scene_plan_t) :: plan
 
       plan%velocities = deck%analysis%mode%word == "dynamic"
       plan%moving = deck%analysis%geometry%word == "current"
@@ -99,7 +96,6 @@ contains
    !> Whether an arch is a chain but for strain, and whether it needs no more: the condition number
    !> is one of the equations with a pattern, and a displacement that means collapse one of corners
    pure subroutine see_chain(deck, plan)
-      !> The deck of the case
       type(deck_t), intent(in) :: deck
       !> Its plan, otherwise made
       type(scene_plan_t), intent(inout) :: plan

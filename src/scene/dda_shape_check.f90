@@ -47,9 +47,7 @@ contains
 
    !> Check one case
    pure subroutine check_one(deck, error)
-      !> The deck of the case
       type(deck_t), intent(in) :: deck
-      !> What cannot be
       type(error_t), allocatable, intent(out) :: error
       character(len=4), parameter :: ends(2) = ["low ", "high"]
       type(deck_t) :: trial
@@ -78,7 +76,6 @@ contains
 
    !> Check that there is such an arch
    pure subroutine check_form(deck, error)
-      !> The deck of the case
       type(deck_t), intent(in) :: deck
       !> What makes none
       type(error_t), allocatable, intent(out) :: error
@@ -100,9 +97,7 @@ contains
 
    !> Check that what is asked of such an arch can be computed
    pure subroutine check_models(deck, error)
-      !> The deck of the case
       type(deck_t), intent(in) :: deck
-      !> What cannot be
       type(error_t), allocatable, intent(out) :: error
       character(len=:), allocatable :: group, key, problem
       logical :: at_rest, leans
@@ -152,7 +147,6 @@ contains
 
    !> Whether weight acts otherwise than downwards
    pure logical function changes_weight(deck)
-      !> The deck of the case
       type(deck_t), intent(in) :: deck
 
       changes_weight = deck%load%gravity_direction_deg%given &

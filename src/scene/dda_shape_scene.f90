@@ -21,7 +21,6 @@ contains
 
    !> The form of a deck, its keys checked against one another
    pure subroutine shape_form(deck, form, problem)
-      !> The deck of the case
       type(deck_t), intent(in) :: deck
       type(arch_form_t), intent(out) :: form
       !> Keys that do not go together
@@ -55,7 +54,6 @@ contains
 
    !> Check the keys that make the line of an arch
    pure subroutine check_lines(deck, form, problem)
-      !> The deck of the case
       type(deck_t), intent(in) :: deck
       type(arch_form_t), intent(in) :: form
       !> Keys that do not go together
@@ -96,7 +94,6 @@ contains
 
    !> Check the keys of piers and buttresses, and of what has no use beside others
    pure subroutine check_supports(deck, form, problem)
-      !> The deck of the case
       type(deck_t), intent(in) :: deck
       type(arch_form_t), intent(in) :: form
       !> Keys that do not go together
@@ -132,7 +129,6 @@ contains
 
    !> Thickness of a form at the crown and at the springings
    pure subroutine take_thickness(deck, form, problem)
-      !> The deck of the case
       type(deck_t), intent(in) :: deck
       !> Its form; the thickness is set
       type(arch_form_t), intent(inout) :: form
@@ -165,7 +161,6 @@ contains
 
    !> The blocks of a deck's arch
    pure subroutine shape_assembly(deck, assembly, problem)
-      !> The deck of the case
       type(deck_t), intent(in) :: deck
       type(arch_assembly_t), intent(out) :: assembly
       !> What makes no arch

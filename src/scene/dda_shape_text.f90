@@ -21,7 +21,6 @@ contains
 
    !> The blocks of a deck's arch, with what acts on points of them
    pure function shape_text(deck) result(text)
-      !> The deck of the case
       type(deck_t), intent(in) :: deck
       !> Lines, each ended by a line feed
       character(len=:), allocatable :: text
@@ -51,7 +50,6 @@ contains
    !> Add the blocks, each with its corners
    pure subroutine add_blocks(plan, lines)
       type(block_plan_t), intent(in) :: plan
-      !> Receives the lines
       type(growing_text_t), intent(inout) :: lines
       integer :: b, v
 
@@ -69,7 +67,6 @@ contains
       type(loaded_point_t), intent(in) :: loaded
       !> Where the origin of its coordinates is: (2) [m]
       real(wp), intent(in) :: origin(2)
-      !> Receives the line
       type(growing_text_t), intent(inout) :: lines
 
       call add_line(lines, trim(merge("live", "load", loaded%live))//" block " &
@@ -80,7 +77,6 @@ contains
    !> Add the bars of a scene
    pure subroutine add_bar_lines(scene, lines)
       type(scene_t), intent(in) :: scene
-      !> Receives the lines
       type(growing_text_t), intent(inout) :: lines
       integer :: i
 
@@ -95,7 +91,6 @@ contains
       type(bar_t), intent(in) :: bar
       !> Where the origin of its coordinates is: (2) [m]
       real(wp), intent(in) :: origin(2)
-      !> Receives the line
       type(growing_text_t), intent(inout) :: lines
       character(len=:), allocatable :: text
 
@@ -108,7 +103,6 @@ contains
 
    !> What a file of blocks has no place for
    pure function shape_losses(deck) result(text)
-      !> The deck of the case
       type(deck_t), intent(in) :: deck
       !> Keys, parted by commas; empty if nothing is lost
       character(len=:), allocatable :: text

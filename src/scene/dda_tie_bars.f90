@@ -49,7 +49,6 @@ contains
 
    !> Ends of all ties
    pure subroutine tie_ends(deck, ends)
-      !> The deck of the case
       type(deck_t), intent(in) :: deck
       !> x and y of the one end, then of the other: (4, n) [m]
       real(wp), allocatable, intent(out) :: ends(:, :)
@@ -101,7 +100,6 @@ contains
    pure subroutine check_ends(deck, error)
       !> The deck of the case, its lists checked
       type(deck_t), intent(in) :: deck
-      !> An end in no block, or both in one
       type(error_t), allocatable, intent(out) :: error
       character(len=2), parameter :: name(2) = ["x1", "x2"]
       character(len=:), allocatable :: problem

@@ -53,13 +53,11 @@ module dda_vehicle
 contains
 
    !> The vehicle of a deck
-   pure function vehicle_of(deck, fill) result(vehicle)
+   pure type(vehicle_t) function vehicle_of(deck, fill) result(vehicle)
       !> The deck of the case, with &vehicle
       type(deck_t), intent(in) :: deck
       !> Fill that it stands on
       type(fill_t), intent(in), optional :: fill
-      !> The vehicle
-      type(vehicle_t) :: vehicle
       real(wp), allocatable :: spacing(:)
       integer :: i
 
@@ -77,10 +75,8 @@ contains
    end function vehicle_of
 
    !> The edges that axles may stand on
-   pure function road_of(system) result(road)
+   pure type(road_t) function road_of(system) result(road)
       type(block_system_t), intent(in) :: system
-      !> Their upper edges
-      type(road_t) :: road
       integer :: b, k, n, next
 
       road%size = norm2(maxval(system%vertex, dim=2) - minval(system%vertex, dim=2))
@@ -132,7 +128,6 @@ contains
    !> Live loads of the axles; what is not above a block that moves is left out
    pure function axle_loads(vehicle, road, origin) result(loaded)
       type(vehicle_t), intent(in) :: vehicle
-      !> What it stands on
       type(road_t), intent(in) :: road
       !> Origin of the coordinates of the blocks: (2) [m]
       real(wp), intent(in) :: origin(2)
@@ -179,7 +174,6 @@ contains
    !> Half the length over which an axle is spread [m]
    pure real(wp) function half_length(vehicle, road, origin, x) result(half)
       type(vehicle_t), intent(in) :: vehicle
-      !> What it stands on
       type(road_t), intent(in) :: road
       !> Origin of the coordinates of the blocks: (2) [m]
       real(wp), intent(in) :: origin(2)
@@ -195,7 +189,6 @@ contains
    !> corner of an upper face, or its middle, where what it is spread over is another length beyond
    pure function passages(vehicle, road, origin) result(at)
       type(vehicle_t), intent(in) :: vehicle
-      !> What it stands on
       type(road_t), intent(in) :: road
       !> Origin of the coordinates of the blocks: (2) [m]
       real(wp), intent(in) :: origin(2)
@@ -229,7 +222,6 @@ contains
    !> Height of the lower end of the upper edge below an axle, of blocks that move; beside them all,
    !> of the nearest end
    pure real(wp) function top_below(road, x) result(lower_end)
-      !> What it stands on
       type(road_t), intent(in) :: road
       !> The place [m]
       real(wp), intent(in) :: x
@@ -243,7 +235,6 @@ contains
 
    !> The highest edge at a place
    pure subroutine find_top(road, x, edge, top)
-      !> What axles stand on
       type(road_t), intent(in) :: road
       !> The place [m]
       real(wp), intent(in) :: x
@@ -309,7 +300,6 @@ contains
 
    !> Places of the corners of the upper faces, where an axle goes from block to block
    pure function upper_corners(road) result(x)
-      !> What axles stand on
       type(road_t), intent(in) :: road
       !> Their places, each once, rising: (n) [m]
       real(wp), allocatable :: x(:)

@@ -25,7 +25,6 @@ contains
       type(block_plan_t), intent(in) :: plan
       !> By how much all lines of heads have risen [m]
       real(wp), intent(in) :: rise
-      !> Receives the forces
       type(boundary_t), intent(inout) :: boundary
       type(loaded_point_t), allocatable :: point(:)
       real(wp), allocatable :: force(:, :, :), time(:), part(:, :)

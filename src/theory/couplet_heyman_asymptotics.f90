@@ -98,19 +98,17 @@ contains
    end subroutine near_limit_solution
 
    !> Sum of a power series
-   pure function power_sum(coefficient, t) result(total)
+   pure real(wp) function power_sum(coefficient, t)
       !> Coefficients, constant first: (:)
       real(wp), intent(in) :: coefficient(:)
       !> Variable
       real(wp), intent(in) :: t
-      !> Sum
-      real(wp) :: total
 
       integer :: i
 
-      total = 0.0_wp
+      power_sum = 0.0_wp
       do i = size(coefficient), 1, -1
-         total = coefficient(i) + t*total
+         power_sum = coefficient(i) + t*power_sum
       end do
    end function power_sum
 

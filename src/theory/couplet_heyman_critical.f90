@@ -31,19 +31,18 @@ module couplet_heyman_critical
 
 contains
 
-   !> Whether a theory has a critical solution at a half angle
-   elemental function is_embraced(alpha, which) result(inside)
+   !> Whether a theory has a critical solution at a half angle: 0 < alpha <= alpha_limit; false for
+   !> a NaN
+   elemental logical function is_embraced(alpha, which)
       !> Half angle of embrace [rad]
       real(wp), intent(in) :: alpha
       !> One of `theory`
       integer, intent(in) :: which
-      !> 0 < alpha <= alpha_limit; false for a NaN
-      logical :: inside
 
       type(limits_t) :: limits
 
       limits = limits_of(which)
-      inside = alpha > 0.0_wp .and. alpha <= limits%alpha_limit
+      is_embraced = alpha > 0.0_wp .and. alpha <= limits%alpha_limit
    end function is_embraced
 
    !> Critical hinge, thickness and thrust; NaN outside the range of validity
@@ -193,15 +192,13 @@ contains
 
    !> f(e) - f(e - y) with f(eta) = 4 eta m/(4 - eta^2), without a difference of nearly equal
    !> numbers
-   elemental function tangency_drop(y, e, flag) result(drop)
+   elemental real(wp) function tangency_drop(y, e, flag) result(drop)
       !> e - eta
       real(wp), intent(in) :: y
       !> Thickness ratio at the limit [-]
       real(wp), intent(in) :: e
       !> delta_M
       real(wp), intent(in) :: flag
-      !> The difference
-      real(wp) :: drop
 
       real(wp) :: numerator, denominator
 
@@ -291,13 +288,11 @@ contains
    end function heyman_guess
 
    !> -dA/d beta along Heyman's solution: (k/S)' + 2 eta'/(2 + eta)^2
-   elemental function heyman_rate(beta, eta) result(rate)
+   elemental real(wp) function heyman_rate(beta, eta) result(rate)
       !> Inner hinge [rad]
       real(wp), intent(in) :: beta
       !> Thickness ratio there, eq. (2) [-]
       real(wp), intent(in) :: eta
-      !> Positive everywhere
-      real(wp) :: rate
 
       real(wp) :: eta_rate
 

@@ -20,15 +20,13 @@ module couplet_heyman_curves
 contains
 
    !> A(beta) - A(alpha), exact to the last digits for any two angles
-   elemental function embrace_difference(beta, alpha, alpha_tail) result(difference)
+   elemental real(wp) function embrace_difference(beta, alpha, alpha_tail) result(difference)
       !> One angle, (0, pi) [rad]
       real(wp), intent(in) :: beta
       !> The other, (0, pi) [rad]
       real(wp), intent(in) :: alpha
       !> What alpha is short of the meant angle by; 0 where it is meant as it is [rad]
       real(wp), intent(in) :: alpha_tail
-      !> Difference, positive for beta < alpha
-      real(wp) :: difference
 
       real(wp) :: s, d
 
@@ -103,16 +101,14 @@ contains
    end subroutine settle_cubic
 
    !> 1 - A(alpha), exact to the last digits also where A is close to 1
-   elemental function unit_shortfall(alpha) result(shortfall)
+   elemental real(wp) function unit_shortfall(alpha)
       !> Half angle of embrace, (0, pi) [rad]
       real(wp), intent(in) :: alpha
-      !> 1 - A
-      real(wp) :: shortfall
 
       if (abs(alpha - unit_angle) < 0.5_wp) then
-         shortfall = -embrace_difference(alpha, unit_angle, unit_angle_tail)
+         unit_shortfall = -embrace_difference(alpha, unit_angle, unit_angle_tail)
       else
-         shortfall = embrace_deficit(alpha) - 1.0_wp
+         unit_shortfall = embrace_deficit(alpha) - 1.0_wp
       end if
    end function unit_shortfall
 
@@ -165,8 +161,9 @@ contains
 
    !> Eq. (11): the line of thrust through the extrados of crown and springing
    !>
-   !> 1 + e = (2 + eta) Q/(eta (beta S + h2 C)) with h2 of eq. (8)
-   elemental function thrust_line(beta, alpha, eta, which) result(ratio)
+   !> 1 + e = (2 + eta) Q/(eta (beta S + h2 C)) with h2 of eq. (8): 2e/t, -1 at the extrados, 1 at
+   !> the intrados
+   elemental real(wp) function thrust_line(beta, alpha, eta, which)
       !> Angle of the joint, [0, alpha] [rad]
       real(wp), intent(in) :: beta
       !> Half angle of embrace, (0, pi) [rad]
@@ -175,16 +172,14 @@ contains
       real(wp), intent(in) :: eta
       !> One of `theory`
       integer, intent(in) :: which
-      !> 2e/t, -1 at the extrados, 1 at the intrados
-      real(wp) :: ratio
 
       real(wp) :: excess, normal
 
-      ratio = -1.0_wp
+      thrust_line = -1.0_wp
       if (beta <= 0.0_wp) return
       excess = versine(beta)*embrace_difference(beta, alpha, 0.0_wp)
       normal = beta*sin(beta) + springing_thrust(alpha, eta, which)*cos(beta)
-      ratio = (2.0_wp + eta)*excess/(eta*normal) - 1.0_wp
+      thrust_line = (2.0_wp + eta)*excess/(eta*normal) - 1.0_wp
    end function thrust_line
 
 end module couplet_heyman_curves

@@ -88,7 +88,6 @@ contains
       real(wp), intent(in) :: friction
       !> Whether the two springing joints cannot slide
       logical, intent(in) :: springing_no_slip
-      !> Critical state
       type(discrete_solution_t), intent(out) :: solution
 
       type(ring_t) :: ring
@@ -168,42 +167,39 @@ contains
       end do
    end function chords
 
-   !> Whether the arguments describe an arch
-   pure function makes_sense(joint_angle, facets, friction) result(sound)
+   !> Whether the arguments describe an arch: finite, in range, increasing, and of matching sizes
+   pure logical function makes_sense(joint_angle, facets, friction)
       !> Joints of one half: (:) [rad]
       real(wp), intent(in) :: joint_angle(:)
       !> Chords of each voussoir: (:)
       integer, intent(in) :: facets(:)
       !> Friction angle [rad]
       real(wp), intent(in) :: friction
-      !> Finite, in range, increasing, and of matching sizes
-      logical :: sound
 
       !> Half a turn [rad]
       real(wp), parameter :: pi = acos(-1.0_wp)
       integer :: n
 
       n = size(joint_angle)
-      sound = n > 0
-      if (.not. sound) return
-      sound = joint_angle(1) >= 0.0_wp .and. joint_angle(n) > 0.0_wp .and. joint_angle(n) < pi
-      sound = sound .and. all(joint_angle(2:) > joint_angle(:n - 1))
-      sound = sound .and. all(facets > 0) .and. friction >= 0.0_wp
-      sound = sound .and. size(facets) == merge(n, n - 1, joint_angle(1) > 0.0_wp)
+      makes_sense = n > 0
+      if (.not. makes_sense) return
+      makes_sense = joint_angle(1) >= 0.0_wp .and. joint_angle(n) > 0.0_wp .and. joint_angle(n) < pi
+      makes_sense = makes_sense .and. all(joint_angle(2:) > joint_angle(:n - 1))
+      makes_sense = makes_sense .and. all(facets > 0) .and. friction >= 0.0_wp
+      makes_sense = makes_sense .and. size(facets) == merge(n, n - 1, joint_angle(1) > 0.0_wp)
    end function makes_sense
 
-   !> Whether two joints alone let a thrust pass along the centre line: then no thickness is needed
-   pure function stands_as_a_line(ring) result(stands)
+   !> Whether two joints alone let a thrust pass along the centre line: then no thickness is needed;
+   !> the straight thrust between the joints' centres presses on both and slides on neither
+   pure logical function stands_as_a_line(ring)
       !> A ring of two joints
       type(ring_t), intent(in) :: ring
-      !> The straight thrust between the joints' centres presses on both and slides on neither
-      logical :: stands
 
       real(wp) :: deficit
 
       deficit = (ring%form(1) - ring%form(2))/(ring%versine(2) - ring%versine(1))
-      stands = deficit >= ring%lowest .and. deficit <= ring%highest
-      stands = stands .and. all(ring%normal - deficit*ring%cosine >= 0.0_wp)
+      stands_as_a_line = deficit >= ring%lowest .and. deficit <= ring%highest
+      stands_as_a_line = stands_as_a_line .and. all(ring%normal - deficit*ring%cosine >= 0.0_wp)
    end function stands_as_a_line
 
    !> Root in eta of the widest gap: the pinching joints propose it, a bracket keeps the proposals
@@ -211,7 +207,6 @@ contains
    pure subroutine search_eta(ring, solution)
       !> Ring of two joints or more
       type(ring_t), intent(in) :: ring
-      !> Critical state
       type(discrete_solution_t), intent(out) :: solution
 
       !> More than ever needed: bisection alone takes 60
@@ -249,25 +244,19 @@ contains
       solution%status = discrete_status%unsettled
    end subroutine search_eta
 
-   !> Whether two states are pinched by the same joints
-   pure function same_joints(a, b) result(same)
-      !> One state
+   !> Whether two states are pinched by the same joints: equal pairs and the same exhausted friction
+   pure logical function same_joints(a, b)
       type(pinch_t), intent(in) :: a
       type(pinch_t), intent(in) :: b
-      !> Equal pairs and the same exhausted friction
-      logical :: same
 
-      same = a%sliding == b%sliding .and. all(a%left == b%left) .and. all(a%right == b%right)
+      same_joints = a%sliding == b%sliding .and. all(a%left == b%left) .and. all(a%right == b%right)
    end function same_joints
 
-   !> Critical state of a ring that has one
-   pure function critical_state(eta, pinch) result(solution)
+   !> Critical state of a ring that has one: status found, with the thrust and the joints that bind
+   pure type(discrete_solution_t) function critical_state(eta, pinch) result(solution)
       !> Critical thickness ratio [-]
       real(wp), intent(in) :: eta
-      !> State of the ring there
       type(pinch_t), intent(in) :: pinch
-      !> Status found, with the thrust and the joints that bind
-      type(discrete_solution_t) :: solution
 
       integer :: joint(5), role(5)
       logical :: binds(5)

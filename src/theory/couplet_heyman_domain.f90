@@ -27,56 +27,49 @@ contains
       fault(2) = findloc(valid, .false., dim=1)
    end subroutine blame
 
-   !> Whether an angle can be the half angle of embrace of an arch at all
-   elemental function is_half_angle(alpha) result(valid)
+   !> Whether an angle can be the half angle of embrace of an arch at all: 0 < alpha < pi; false for
+   !> a NaN
+   elemental logical function is_half_angle(alpha)
       !> Angle [rad]
       real(wp), intent(in) :: alpha
-      !> 0 < alpha < pi; false for a NaN
-      logical :: valid
 
-      valid = alpha > 0.0_wp .and. alpha < pi
+      is_half_angle = alpha > 0.0_wp .and. alpha < pi
    end function is_half_angle
 
-   !> Whether a number can be a thickness ratio
-   elemental function is_thickness(eta) result(valid)
+   !> Whether a number can be a thickness ratio: 0 < eta < 2; false for a NaN
+   elemental logical function is_thickness(eta)
       !> Number
       real(wp), intent(in) :: eta
-      !> 0 < eta < 2; false for a NaN
-      logical :: valid
 
-      valid = eta > 0.0_wp .and. eta < 2.0_wp
+      is_thickness = eta > 0.0_wp .and. eta < 2.0_wp
    end function is_thickness
 
-   !> Whether an angle is that of a joint of one half of an arch
-   elemental function is_joint(beta, alpha) result(valid)
+   !> Whether an angle is that of a joint of one half of an arch: 0 <= beta <= alpha; false for a
+   !> NaN
+   elemental logical function is_joint(beta, alpha)
       !> Angle [rad]
       real(wp), intent(in) :: beta
       !> Half angle of embrace [rad]
       real(wp), intent(in) :: alpha
-      !> 0 <= beta <= alpha; false for a NaN
-      logical :: valid
 
-      valid = beta >= 0.0_wp .and. beta <= alpha
+      is_joint = beta >= 0.0_wp .and. beta <= alpha
    end function is_joint
 
-   !> Whether a number is neither infinite nor a NaN
-   elemental function is_finite(x) result(valid)
+   !> Whether a number is neither infinite nor a NaN: |x| <= huge
+   elemental logical function is_finite(x)
       !> Number
       real(wp), intent(in) :: x
-      !> |x| <= huge
-      logical :: valid
 
-      valid = abs(x) <= huge(x)
+      is_finite = abs(x) <= huge(x)
    end function is_finite
 
-   !> Whether a number can limit the span of a chord
-   elemental function is_facet(facet) result(valid)
+   !> Whether a number can limit the span of a chord: 0, or finite and not too short; false for a
+   !> NaN
+   elemental logical function is_facet(facet)
       !> Number; 0 stands for no limit [rad]
       real(wp), intent(in) :: facet
-      !> 0, or finite and not too short; false for a NaN
-      logical :: valid
 
-      valid = abs(facet) <= 0.0_wp .or. (facet >= shortest_chord .and. is_finite(facet))
+      is_facet = abs(facet) <= 0.0_wp .or. (facet >= shortest_chord .and. is_finite(facet))
    end function is_facet
 
 end module couplet_heyman_domain

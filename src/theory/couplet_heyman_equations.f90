@@ -146,8 +146,9 @@ contains
 
    !> Eq. (10): where the line of thrust through the crown's extrados cuts the joint at beta
    !>
-   !> 1 + e = q ((2 + eta)(A(beta) - h) - 2 m)/(eta (beta S + h C)): the crown keeps all its digits.
-   elemental function eccentricity(beta, eta, h, which) result(ratio)
+   !> 1 + e = q ((2 + eta)(A(beta) - h) - 2 m)/(eta (beta S + h C)): the crown keeps all its digits;
+   !> 2e/t, -1 at the extrados, 1 at the intrados
+   elemental real(wp) function eccentricity(beta, eta, h, which)
       !> Angle of the joint, [0, pi) [rad]
       real(wp), intent(in) :: beta
       !> Thickness ratio [-]
@@ -156,14 +157,12 @@ contains
       real(wp), intent(in) :: h
       !> One of `theory`
       integer, intent(in) :: which
-      !> 2e/t, -1 at the extrados, 1 at the intrados
-      real(wp) :: ratio
 
       real(wp) :: drop
 
       drop = (2.0_wp + eta)*((1.0_wp - h) - embrace_deficit(beta)) &
            + eta*(1.0_wp - weight_flag(which)*eta/6.0_wp)
-      ratio = versine(beta)*drop/(eta*(beta*sin(beta) + h*cos(beta))) - 1.0_wp
+      eccentricity = versine(beta)*drop/(eta*(beta*sin(beta) + h*cos(beta))) - 1.0_wp
    end function eccentricity
 
 end module couplet_heyman_equations

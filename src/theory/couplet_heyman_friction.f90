@@ -42,14 +42,12 @@ module couplet_heyman_friction
 
 contains
 
-   !> Friction coefficients at which the mode of collapse changes
-   pure function friction_limits(alpha, which) result(limits)
+   !> Friction coefficients at which the mode of collapse changes: NaN outside the range of validity
+   pure type(friction_limits_t) function friction_limits(alpha, which) result(limits)
       !> Half angle of embrace, (0, alpha_limit] [rad]
       real(wp), intent(in) :: alpha
       !> One of `theory`
       integer, intent(in) :: which
-      !> The limits; NaN outside the range of validity
-      type(friction_limits_t) :: limits
 
       real(wp) :: x, springing, haunch
 
@@ -108,24 +106,22 @@ contains
    end subroutine friction_solution
 
    !> 1 - h of the rotational mode, exact to the last digits also for shallow arches
-   elemental function rotational_deficit(alpha, which) result(deficit)
+   elemental real(wp) function rotational_deficit(alpha, which)
       !> Half angle of embrace [rad]
       real(wp), intent(in) :: alpha
       !> One of `theory`
       integer, intent(in) :: which
-      !> 1 - h
-      real(wp) :: deficit
 
       real(wp) :: beta, eta, h
 
       call critical_solution(alpha, which, beta, eta, h)
       if (h < 0.5_wp) then
-         deficit = 1.0_wp - h
+         rotational_deficit = 1.0_wp - h
       else if (tangency_flag(which) > 0.0_wp) then
-         deficit = eta*(1.0_wp - weight_flag(which)*eta/6.0_wp)/(2.0_wp + eta)
-         deficit = embrace_deficit(alpha) - deficit
+         rotational_deficit = eta*(1.0_wp - weight_flag(which)*eta/6.0_wp)/(2.0_wp + eta)
+         rotational_deficit = embrace_deficit(alpha) - rotational_deficit
       else
-         deficit = arm_excess(beta)/sin(beta)
+         rotational_deficit = arm_excess(beta)/sin(beta)
       end if
    end function rotational_deficit
 
@@ -220,13 +216,11 @@ contains
    end subroutine mixed_hinge
 
    !> beta cot beta - h_e of eq. (12)
-   elemental function tangency_excess(eta, which) result(excess)
+   elemental real(wp) function tangency_excess(eta, which) result(excess)
       !> Thickness ratio [-]
       real(wp), intent(in) :: eta
       !> One of `theory`
       integer, intent(in) :: which
-      !> The difference
-      real(wp) :: excess
 
       excess = tangency_flag(which)*eta*(1.0_wp + weight_flag(which)*eta/6.0_wp)/(2.0_wp - eta)
    end function tangency_excess

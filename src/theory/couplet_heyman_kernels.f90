@@ -19,46 +19,40 @@ module couplet_heyman_kernels
 contains
 
    !> p(x) = x - sin x: what an arc of the unit circle is longer than its half chord
-   elemental function arc_excess(x) result(p)
+   elemental real(wp) function arc_excess(x)
       !> Angle [rad]
       real(wp), intent(in) :: x
-      !> x - sin x
-      real(wp) :: p
       !> Ratios of the series, 1/(2i (2i + 1))
       real(wp), parameter :: ratio(terms) = &
          1.0_wp/real([20, 42, 72, 110, 156, 210, 272, 342, 420, 506, 600], wp)
 
       if (abs(x) < series_range) then
-         p = x*x*x/6.0_wp*nested_series(x*x, ratio)
+         arc_excess = x*x*x/6.0_wp*nested_series(x*x, ratio)
       else
-         p = x - sin(x)
+         arc_excess = x - sin(x)
       end if
    end function arc_excess
 
    !> q(x) = 1 - cos x = 2 sin^2(x/2)
-   elemental function versine(x) result(q)
+   elemental real(wp) function versine(x)
       !> Angle [rad]
       real(wp), intent(in) :: x
-      !> 1 - cos x
-      real(wp) :: q
 
-      q = 2.0_wp*sin(0.5_wp*x)**2
+      versine = 2.0_wp*sin(0.5_wp*x)**2
    end function versine
 
    !> k(x) = sin x - x cos x
-   elemental function arm_excess(x) result(k)
+   elemental real(wp) function arm_excess(x)
       !> Angle [rad]
       real(wp), intent(in) :: x
-      !> sin x - x cos x
-      real(wp) :: k
       !> Ratios of the series, 1/(2i (2i + 3))
       real(wp), parameter :: ratio(terms) = &
          1.0_wp/real([10, 28, 54, 88, 130, 180, 238, 304, 378, 460, 550], wp)
 
       if (abs(x) < series_range) then
-         k = x*x*x/3.0_wp*nested_series(x*x, ratio)
+         arm_excess = x*x*x/3.0_wp*nested_series(x*x, ratio)
       else
-         k = sin(x) - x*cos(x)
+         arm_excess = sin(x) - x*cos(x)
       end if
    end function arm_excess
 
@@ -89,19 +83,17 @@ contains
    end function embrace_deficit
 
    !> 1 - y r(1) (1 - y r(2) (1 - ...)): an alternating series from its last term
-   pure function nested_series(y, ratio) result(total)
+   pure real(wp) function nested_series(y, ratio)
       !> Square of the argument
       real(wp), intent(in) :: y
       !> Each term over the one before it and over -y: (terms)
       real(wp), intent(in) :: ratio(terms)
-      !> Sum, 1 at y = 0
-      real(wp) :: total
 
       integer :: i
 
-      total = 1.0_wp
+      nested_series = 1.0_wp
       do i = terms, 1, -1
-         total = 1.0_wp - y*ratio(i)*total
+         nested_series = 1.0_wp - y*ratio(i)*nested_series
       end do
    end function nested_series
 

@@ -109,7 +109,7 @@ contains
    end subroutine narrowest_pair
 
    !> Gap between the extrados of one joint and the intrados of another
-   pure function pair_gap(ring, eta, deficit, pair) result(gap)
+   pure real(wp) function pair_gap(ring, eta, deficit, pair)
       type(ring_t), intent(in) :: ring
       !> Thickness ratio [-]
       real(wp), intent(in) :: eta
@@ -117,27 +117,23 @@ contains
       real(wp), intent(in) :: deficit
       !> Extrados and intrados joint: (2)
       integer, intent(in) :: pair(2)
-      !> Room between them
-      real(wp) :: gap
 
       real(wp) :: reach
 
       associate (j => pair(1), k => pair(2))
          reach = ring%normal(j) + ring%normal(k) - deficit*(ring%cosine(j) + ring%cosine(k))
-         gap = deficit*(ring%versine(j) - ring%versine(k)) + (ring%form(j) - ring%form(k)) &
+         pair_gap = deficit*(ring%versine(j) - ring%versine(k)) + (ring%form(j) - ring%form(k)) &
              + 0.5_wp*eta*reach - eta*eta/12.0_wp*(ring%moment(j) - ring%moment(k))
       end associate
    end function pair_gap
 
    !> Derivative of a pair's gap by the deficit
-   pure function gap_slope(ring, eta, pair) result(slope)
+   pure real(wp) function gap_slope(ring, eta, pair) result(slope)
       type(ring_t), intent(in) :: ring
       !> Thickness ratio [-]
       real(wp), intent(in) :: eta
       !> Extrados and intrados joint: (2)
       integer, intent(in) :: pair(2)
-      !> d gap/d deficit
-      real(wp) :: slope
 
       associate (j => pair(1), k => pair(2))
          slope = ring%versine(j) - ring%versine(k) - 0.5_wp*eta*(ring%cosine(j) + ring%cosine(k))
@@ -145,7 +141,7 @@ contains
    end function gap_slope
 
    !> Derivative of a pair's gap by eta
-   pure function gap_growth(ring, eta, deficit, pair) result(growth)
+   pure real(wp) function gap_growth(ring, eta, deficit, pair)
       type(ring_t), intent(in) :: ring
       !> Thickness ratio [-]
       real(wp), intent(in) :: eta
@@ -153,12 +149,10 @@ contains
       real(wp), intent(in) :: deficit
       !> Extrados and intrados joint: (2)
       integer, intent(in) :: pair(2)
-      !> d gap/d eta
-      real(wp) :: growth
 
       associate (j => pair(1), k => pair(2))
-         growth = ring%normal(j) + ring%normal(k) - deficit*(ring%cosine(j) + ring%cosine(k))
-         growth = 0.5_wp*growth - eta/6.0_wp*(ring%moment(j) - ring%moment(k))
+         gap_growth = ring%normal(j) + ring%normal(k) - deficit*(ring%cosine(j) + ring%cosine(k))
+         gap_growth = 0.5_wp*gap_growth - eta/6.0_wp*(ring%moment(j) - ring%moment(k))
       end associate
    end function gap_growth
 

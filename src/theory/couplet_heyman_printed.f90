@@ -19,22 +19,20 @@ module couplet_heyman_printed
 contains
 
    !> Eq. (1), left side: beta cot beta times a quotient; equals A for Heyman's hinge
-   elemental function heyman_quotient(beta) result(a)
+   elemental real(wp) function heyman_quotient(beta)
       !> Inner hinge, (0, pi/2) [rad]
       real(wp), intent(in) :: beta
-      !> A
-      real(wp) :: a
 
       real(wp) :: s, c, common
 
       s = sin(beta)
       c = cos(beta)
       common = 2.0_wp*beta*c + s*c**2
-      a = beta*c/s*(common + s)/(common - s*c)
+      heyman_quotient = beta*c/s*(common + s)/(common - s*c)
    end function heyman_quotient
 
    !> Eq. (14): vanishes on the equilibrium curve
-   elemental function equilibrium_polynomial(eta, beta, a, which) result(value)
+   elemental real(wp) function equilibrium_polynomial(eta, beta, a, which) result(value)
       !> Thickness ratio [-]
       real(wp), intent(in) :: eta
       !> Inner hinge [rad]
@@ -43,8 +41,6 @@ contains
       real(wp), intent(in) :: a
       !> One of `theory`
       integer, intent(in) :: which
-      !> Value of the polynomial
-      real(wp) :: value
 
       real(wp) :: s, c
 
@@ -55,7 +51,7 @@ contains
    end function equilibrium_polynomial
 
    !> Eq. (18): derivative of eq. (14) by beta; vanishes at the least thickness
-   elemental function stationary_polynomial(eta, beta, a, which) result(value)
+   elemental real(wp) function stationary_polynomial(eta, beta, a, which) result(value)
       !> Thickness ratio [-]
       real(wp), intent(in) :: eta
       !> Inner hinge [rad]
@@ -64,8 +60,6 @@ contains
       real(wp), intent(in) :: a
       !> One of `theory`
       integer, intent(in) :: which
-      !> Value of the polynomial
-      real(wp) :: value
 
       real(wp) :: s, arm
 
@@ -75,7 +69,7 @@ contains
    end function stationary_polynomial
 
    !> Denominator of eq. (19): derivative of eq. (14) by eta
-   elemental function growth_polynomial(eta, beta, a, which) result(value)
+   elemental real(wp) function growth_polynomial(eta, beta, a, which) result(value)
       !> Thickness ratio [-]
       real(wp), intent(in) :: eta
       !> Inner hinge [rad]
@@ -84,8 +78,6 @@ contains
       real(wp), intent(in) :: a
       !> One of `theory`
       integer, intent(in) :: which
-      !> Value of the polynomial
-      real(wp) :: value
 
       real(wp) :: s, c
 
@@ -96,31 +88,27 @@ contains
    end function growth_polynomial
 
    !> Eq. (20): the A at which eq. (19) has no slope
-   elemental function singular_embrace(eta, beta, which) result(a)
+   elemental real(wp) function singular_embrace(eta, beta, which)
       !> Thickness ratio [-]
       real(wp), intent(in) :: eta
       !> Inner hinge [rad]
       real(wp), intent(in) :: beta
       !> One of `theory`
       integer, intent(in) :: which
-      !> A_sing
-      real(wp) :: a
 
       real(wp) :: c
 
       c = cos(beta)
-      a = weight_flag(which)*c*eta**2 - 2.0_wp*beta*sin(beta)*eta + 4.0_wp*c
-      a = a/(4.0_wp + 2.0_wp*(1.0_wp + c)*eta)
+      singular_embrace = weight_flag(which)*c*eta**2 - 2.0_wp*beta*sin(beta)*eta + 4.0_wp*c
+      singular_embrace = singular_embrace/(4.0_wp + 2.0_wp*(1.0_wp + c)*eta)
    end function singular_embrace
 
    !> Eq. (21): eq. (27) at A = A_sing
-   elemental function singular_polynomial(eta, which) result(value)
+   elemental real(wp) function singular_polynomial(eta, which) result(value)
       !> Thickness ratio [-]
       real(wp), intent(in) :: eta
       !> One of `theory`
       integer, intent(in) :: which
-      !> Value of the quotient, zero at eta = 0 only
-      real(wp) :: value
 
       real(wp) :: flag
 
@@ -129,30 +117,26 @@ contains
    end function singular_polynomial
 
    !> Eq. (27): eq. (14) at beta = 0
-   elemental function crown_polynomial(eta, a, which) result(value)
+   elemental real(wp) function crown_polynomial(eta, a, which)
       !> Thickness ratio [-]
       real(wp), intent(in) :: eta
       !> A, eq. (9)
       real(wp), intent(in) :: a
       !> One of `theory`
       integer, intent(in) :: which
-      !> Value of the polynomial
-      real(wp) :: value
 
-      value = (weight_flag(which)*eta**2 - 6.0_wp*a*eta + 12.0_wp*(1.0_wp - a))*eta
+      crown_polynomial = (weight_flag(which)*eta**2 - 6.0_wp*a*eta + 12.0_wp*(1.0_wp - a))*eta
    end function crown_polynomial
 
    !> Eq. (22): eta eliminated; for CCR it has the extraneous root A = -(beta + S C)/S besides those
    !> of eq. (24)
-   elemental function embrace_polynomial(beta, a, which) result(value)
+   elemental real(wp) function embrace_polynomial(beta, a, which) result(value)
       !> Critical hinge [rad]
       real(wp), intent(in) :: beta
       !> A, eq. (9)
       real(wp), intent(in) :: a
       !> CCR or Milankovitch of `theory`
       integer, intent(in) :: which
-      !> Value of the polynomial
-      real(wp) :: value
 
       real(wp) :: s, c, g, rest, head
 
@@ -166,56 +150,50 @@ contains
    end function embrace_polynomial
 
    !> Eq. (23): eq. (22) for Milankovitch
-   elemental function embrace_cubic(beta, a) result(value)
+   elemental real(wp) function embrace_cubic(beta, a)
       !> Critical hinge [rad]
       real(wp), intent(in) :: beta
       !> A, eq. (9)
       real(wp), intent(in) :: a
-      !> Value of the polynomial
-      real(wp) :: value
 
       real(wp) :: s, c, g
 
       s = sin(beta)
       c = cos(beta)
       g = beta + s*c
-      value = s**2*(3.0_wp*g - 2.0_wp*s)*a**3 + 3.0_wp*(1.0_wp - c)*(beta - s)*g*s*a**2 &
+      embrace_cubic = s**2*(3.0_wp*g - 2.0_wp*s)*a**3 + 3.0_wp*(1.0_wp - c)*(beta - s)*g*s*a**2 &
             - 3.0_wp*(s + beta*c)*g**2*a + 2.0_wp*g**3
    end function embrace_cubic
 
    !> Eq. (24): eq. (22) for CCR without its extraneous factor
-   elemental function embrace_quadratic(beta, a) result(value)
+   elemental real(wp) function embrace_quadratic(beta, a)
       !> Critical hinge [rad]
       real(wp), intent(in) :: beta
       !> A, eq. (9)
       real(wp), intent(in) :: a
-      !> Value of the polynomial
-      real(wp) :: value
 
       real(wp) :: s, c, g
 
       s = sin(beta)
       c = cos(beta)
       g = beta + s*c
-      value = s*(2.0_wp*g - s)*a**2 - 2.0_wp*(s + beta*c)*g*a + g**2
+      embrace_quadratic = s*(2.0_wp*g - s)*a**2 - 2.0_wp*(s + beta*c)*g*a + g**2
    end function embrace_quadratic
 
    !> Eq. (25): A eliminated; for one hinge it has two thicknesses, one on either side of beta_max
-   elemental function thickness_polynomial(eta, beta, which) result(value)
+   elemental real(wp) function thickness_polynomial(eta, beta, which)
       !> Critical thickness ratio [-]
       real(wp), intent(in) :: eta
       !> Critical hinge [rad]
       real(wp), intent(in) :: beta
       !> CCR or Milankovitch of `theory`
       integer, intent(in) :: which
-      !> Value of the polynomial
-      real(wp) :: value
 
       real(wp) :: s, c
 
       s = sin(beta)
       c = cos(beta)
-      value = weight_flag(which)*s*eta**3 + 3.0_wp*(1.0_wp + c)*(beta + s)*eta**2 &
+      thickness_polynomial = weight_flag(which)*s*eta**3 + 3.0_wp*(1.0_wp + c)*(beta + s)*eta**2 &
             - 12.0_wp*(beta + s*c - s)*eta + 12.0_wp*(1.0_wp - c)*(beta - s)
    end function thickness_polynomial
 

@@ -84,57 +84,47 @@ module couplet_heyman_theories
 contains
 
    !> Whether a number names a theory
-   elemental function is_theory(which) result(known)
+   elemental logical function is_theory(which)
       !> One of `theory`, or not
       integer, intent(in) :: which
-      !> It is
-      logical :: known
 
-      known = which >= theory%heyman .and. which <= theory%milankovitch
+      is_theory = which >= theory%heyman .and. which <= theory%milankovitch
    end function is_theory
 
    !> delta_M: 1 where the weight acts in the true centre of gravity
-   elemental function weight_flag(which) result(flag)
+   elemental real(wp) function weight_flag(which)
       !> One of `theory`
       integer, intent(in) :: which
-      !> 0 or 1
-      real(wp) :: flag
 
-      flag = merge(1.0_wp, 0.0_wp, which == theory%milankovitch)
+      weight_flag = merge(1.0_wp, 0.0_wp, which == theory%milankovitch)
    end function weight_flag
 
    !> delta_CCR: 1 where the line of thrust touches the intrados, 0 where the resultant does
-   elemental function tangency_flag(which) result(flag)
+   elemental real(wp) function tangency_flag(which)
       !> One of `theory`
       integer, intent(in) :: which
-      !> 0 or 1
-      real(wp) :: flag
 
-      flag = merge(0.0_wp, 1.0_wp, which == theory%heyman)
+      tangency_flag = merge(0.0_wp, 1.0_wp, which == theory%heyman)
    end function tangency_flag
 
    !> Radius at which the weight acts, over r: 1 + delta_M eta^2/12
-   elemental function weight_arm(eta, which) result(arm)
+   elemental real(wp) function weight_arm(eta, which)
       !> Thickness ratio [-]
       real(wp), intent(in) :: eta
       !> One of `theory`
       integer, intent(in) :: which
-      !> r_G/r
-      real(wp) :: arm
 
-      arm = 1.0_wp + weight_flag(which)*eta*eta/12.0_wp
+      weight_arm = 1.0_wp + weight_flag(which)*eta*eta/12.0_wp
    end function weight_arm
 
    !> Limits of validity of a theory
-   pure function limits_of(which) result(limits)
+   pure type(limits_t) function limits_of(which)
       !> One of `theory`
       integer, intent(in) :: which
-      !> Where it ends
-      type(limits_t) :: limits
 
-      limits = limits_ccr
-      if (which == theory%heyman) limits = limits_heyman
-      if (which == theory%milankovitch) limits = limits_milankovitch
+      limits_of = limits_ccr
+      if (which == theory%heyman) limits_of = limits_heyman
+      if (which == theory%milankovitch) limits_of = limits_milankovitch
    end function limits_of
 
 end module couplet_heyman_theories
