@@ -9,8 +9,8 @@ module dda_limerick_decision
    use dda_frames, only : album_t, frame_is_due, keep_frame
    use dda_kinds, only : wp
    use dda_limerick_contact, only : limerick_contact_t
-   use dda_limerick_model, only : contact_law, finite_law, limerick_constants_t, &
-      & limerick_model_t
+   use dda_limerick_analysis, only : limerick_constants_t
+   use dda_limerick_model, only : contact_law, finite_law, limerick_model_t
    use dda_limerick_run, only : begin_outcome, begin_run, limerick_outcome_t, limerick_verdict, &
       & next_step, run_limerick
    use dda_limerick_scene, only : limerick_scene

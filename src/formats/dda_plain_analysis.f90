@@ -40,7 +40,8 @@ contains
       call take_whole(words, "the type of analysis (0 static, 1 dynamic)", 0, 1, kind, error)
       analysis%dynamic = kind == 1
       if (.not. allocated(error)) &
-         & call take_whole(words, "the number of time steps", 1, most_steps, analysis%steps, error)
+         & call take_whole(words, "the number of time steps", 1, most_steps, analysis%max_steps, &
+         & error)
       if (.not. allocated(error)) call take_whole(words, "the number of block materials", 1, &
          & most_materials, n_material, error)
       if (.not. allocated(error)) call take_whole(words, "the number of joint materials", 1, &
@@ -67,9 +68,9 @@ contains
 
       call take_word_numbers(words, "the largest displacement ratio", largest_value, value, error)
       if (allocated(error)) return
-      analysis%displacement_ratio = value(1)
+      analysis%max_displacement_ratio = value(1)
       call take_word_numbers(words, "the largest time step", largest_value, value, error)
-      analysis%max_time_step = value(1)
+      analysis%time_step = value(1)
    end subroutine read_steps
 
    !> Read the materials of the blocks
@@ -184,12 +185,13 @@ contains
       integer, intent(in) :: row
       type(error_t), allocatable, intent(out) :: error
 
-      if (.not. analysis%displacement_ratio > 0.0_wp .or. analysis%displacement_ratio > 1.0_wp) then
+      if (.not. analysis%max_displacement_ratio > 0.0_wp &
+         & .or. analysis%max_displacement_ratio > 1.0_wp) then
          call fatal_error(error, "the largest displacement ratio must be above 0 and at most 1, " &
-            & //"got "//to_text(analysis%displacement_ratio)//"; correct it", file, row)
-      else if (.not. analysis%max_time_step > 0.0_wp) then
+            & //"got "//to_text(analysis%max_displacement_ratio)//"; correct it", file, row)
+      else if (.not. analysis%time_step > 0.0_wp) then
          call fatal_error(error, "the largest time step must be above 0, got " &
-            & //to_text(analysis%max_time_step)//"; correct it", file, row)
+            & //to_text(analysis%time_step)//"; correct it", file, row)
       end if
    end subroutine check_steps
 end module dda_plain_analysis

@@ -193,9 +193,9 @@ contains
       character(len=:), allocatable :: text
       integer :: i
 
-      text = merge("1", "0", analysis%dynamic)//lf//to_text(analysis%steps)//lf &
+      text = merge("1", "0", analysis%dynamic)//lf//to_text(analysis%max_steps)//lf &
          & //to_text(size(analysis%material))//lf//to_text(size(analysis%joint))//lf &
-         & //to_text(analysis%displacement_ratio)//lf//to_text(analysis%max_time_step)
+         & //to_text(analysis%max_displacement_ratio)//lf//to_text(analysis%time_step)
       do i = 1, size(analysis%material)
          associate (material => analysis%material(i))
             text = text//lf//fields([material%density, material%unit_weight, material%young, &
@@ -246,10 +246,10 @@ contains
          & //empty("Autopenalty", "flag", yes_no(analysis%auto_penalty), &
          & ' pfactor="'//to_text(analysis%penalty_factor)//'"') &
          & //empty("Planestrain", "flag", yes_no(analysis%plane_strain)) &
-         & //empty("Numtimesteps", "timesteps", to_text(analysis%steps)) &
-         & //empty("Maxtimestep", "maxtimestep", to_text(analysis%max_time_step)) &
+         & //empty("Numtimesteps", "timesteps", to_text(analysis%max_steps)) &
+         & //empty("Maxtimestep", "maxtimestep", to_text(analysis%time_step)) &
          & //empty("Mintimestep", "mintimestep", to_text(analysis%min_time_step)) &
-         & //empty("Maxdisplacement", "maxdisplacement", to_text(analysis%displacement_ratio)) &
+         & //empty("Maxdisplacement", "maxdisplacement", to_text(analysis%max_displacement_ratio)) &
          & //empty("Opencloselimit", "maxopenclose", to_text(analysis%open_close_limit)) &
          & //empty("Saveinterval", "step", to_text(analysis%save_interval)) &
          & //empty("ContactDamping", "value", to_text(analysis%contact_damping))
@@ -277,11 +277,11 @@ contains
       !> Elements, each with its line end
       character(len=:), allocatable :: text
 
-      text = "<AConstants>"//lf//empty("Openclose", "value", to_text(analysis%close_limit)) &
-         & //empty("Opencriteria", "value", to_text(analysis%open_limit)) &
-         & //empty("NormSpringPen", "value", to_text(analysis%spring_penetration)) &
+      text = "<AConstants>"//lf//empty("Openclose", "value", to_text(analysis%close_ratio)) &
+         & //empty("Opencriteria", "value", to_text(analysis%open_ratio)) &
+         & //empty("NormSpringPen", "value", to_text(analysis%penetration_ratio)) &
          & //empty("AngleOverlap", "value", to_text(analysis%overlap_deg)) &
-         & //empty("ShearNormRatio", "value", to_text(analysis%shear_ratio)) &
+         & //empty("ShearNormRatio", "value", to_text(analysis%stiffness_ratio)) &
          & //"</AConstants>"//lf
    end function constants
 

@@ -2,54 +2,16 @@
 module dda_limerick_model
    use dda_boundary, only : boundary_t, records_before, value_at
    use dda_kinds, only : wp
+   use dda_limerick_analysis, only : limerick_constants_t
    use dda_material, only : friction_coefficient, joint_law_t, material_t
    implicit none
    private
 
-   public :: limerick_model_t, limerick_constants_t, limerick_material_t
+   public :: limerick_model_t, limerick_material_t
    public :: contact_law, finite_law, force_at, half_size, loads_end, next_record
 
    !> Friction angle of a joint that cannot slide [deg]
    real(wp), parameter :: no_slip_deg = 89.9_wp
-
-   !> Constants of the scheme, with the original's defaults and letters
-   type :: limerick_constants_t
-      !> An open contact closes beyond this penetration over the half size (s0)
-      real(wp) :: close_ratio = 2.0e-4_wp
-      !> A closed contact opens beyond this opening over the half size (f0)
-      real(wp) :: open_ratio = 2.0e-7_wp
-      !> Penetration over the half size that the automatic penalty aims at (g3)
-      real(wp) :: penetration_ratio = 4.0e-4_wp
-      !> Overlap of two corners that is overlooked (h1) [deg]
-      real(wp) :: overlap_deg = 3.0_wp
-      !> Normal over shear stiffness of a contact (h2)
-      real(wp) :: stiffness_ratio = 2.5_wp
-      !> Contact stiffness at the beginning over the largest Young's modulus
-      real(wp) :: penalty_factor = 50.0_wp
-      !> Whether the contact stiffness follows the penetration
-      logical :: auto_penalty = .true.
-      !> Whether the time step follows the motion
-      logical :: auto_time_step = .true.
-      !> Length of every step that is not chosen; a hundredth of it is the shortest that is [s]
-      real(wp) :: time_step = 0.01_wp
-      !> Largest motion of a vertex in a step over the half size (g2)
-      real(wp) :: max_displacement_ratio = 1.0e-3_wp
-      !> Most steps of a run
-      integer :: max_steps = 20000
-      !> Velocities are kept from step to step; otherwise every step starts at rest
-      logical :: dynamic = .false.
-      !> Whether vertices turn by sine and cosine; otherwise along the tangent, which lets blocks
-      !> grow
-      logical :: exact_rotation = .false.
-      !> Force of a closed contact over the speed of approach, in a dynamic run [N s/m2]
-      real(wp) :: contact_damping = 0.0_wp
-      !> Most steps of the phase that turns gravity on; 0 for none
-      integer :: gravity_steps = 0
-      !> Relative change of normal and shear forces in a step at which that phase ends: (2)
-      real(wp) :: gravity_tolerance(2) = 0.01_wp
-      !> Motion of a vertex that ends a static run as collapse [m]
-      real(wp) :: collapse_displacement = 0.5_wp
-   end type limerick_constants_t
 
    !> What a block is made of, and how it begins
    type, extends(material_t) :: limerick_material_t

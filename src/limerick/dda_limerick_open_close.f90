@@ -5,7 +5,8 @@ module dda_limerick_open_close
    use dda_limerick_assembly, only : add_contacts, limerick_equations_t
    use dda_limerick_contact, only : contact_list_t, contact_spring_t, limerick_contact_t, &
       & place_shear_spring, projection
-   use dda_limerick_model, only : contact_law, limerick_constants_t, limerick_model_t
+   use dda_limerick_analysis, only : limerick_constants_t
+   use dda_limerick_model, only : contact_law, limerick_model_t
    use dda_limerick_state, only : limerick_state, limerick_blocks_t, limerick_march_t
    use dda_deformation, only : displacement_matrix
    use dda_material, only : joint_law_t

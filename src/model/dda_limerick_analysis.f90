@@ -4,7 +4,8 @@ module dda_limerick_analysis
    implicit none
    private
 
-   public :: limerick_analysis_t, analysis_material_t, limerick_joint_t, load_history_t
+   public :: analysis_material_t, limerick_analysis_t, limerick_constants_t, limerick_joint_t
+   public :: load_history_t
 
    !> What blocks are made of, and their state at the beginning; any consistent units
    type :: analysis_material_t
@@ -42,52 +43,59 @@ module dda_limerick_analysis
       real(wp), allocatable :: record(:, :)
    end type load_history_t
 
+   !> Constants of the scheme, with the original's defaults and letters
+   type :: limerick_constants_t
+      !> An open contact closes beyond this penetration over the half size (s0)
+      real(wp) :: close_ratio = 2.0e-4_wp
+      !> A closed contact opens beyond this opening over the half size (f0)
+      real(wp) :: open_ratio = 2.0e-7_wp
+      !> Penetration over the half size that the automatic penalty aims at (g3)
+      real(wp) :: penetration_ratio = 4.0e-4_wp
+      !> Overlap of two corners that is overlooked (h1) [deg]
+      real(wp) :: overlap_deg = 3.0_wp
+      !> Normal over shear stiffness of a contact (h2)
+      real(wp) :: stiffness_ratio = 2.5_wp
+      !> Contact stiffness at the beginning over the largest Young's modulus
+      real(wp) :: penalty_factor = 50.0_wp
+      !> Whether the contact stiffness follows the penetration
+      logical :: auto_penalty = .true.
+      !> Whether the time step follows the motion
+      logical :: auto_time_step = .true.
+      !> Length of every step that is not chosen; a hundredth of it is the shortest that is [s]
+      real(wp) :: time_step = 0.01_wp
+      !> Largest motion of a vertex in a step over the half size (g2)
+      real(wp) :: max_displacement_ratio = 1.0e-3_wp
+      !> Most steps of a run
+      integer :: max_steps = 20000
+      !> Velocities are kept from step to step; otherwise every step starts at rest
+      logical :: dynamic = .false.
+      !> Whether vertices turn by sine and cosine; otherwise along the tangent, which lets blocks
+      !> grow
+      logical :: exact_rotation = .false.
+      !> Force of a closed contact over the speed of approach, in a dynamic run [N s/m2]
+      real(wp) :: contact_damping = 0.0_wp
+      !> Most steps of the phase that turns gravity on; 0 for none
+      integer :: gravity_steps = 0
+      !> Relative change of normal and shear forces in a step at which that phase ends: (2)
+      real(wp) :: gravity_tolerance(2) = 0.01_wp
+      !> Motion of a vertex that ends a static run as collapse [m]
+      real(wp) :: collapse_displacement = 0.5_wp
+   end type limerick_constants_t
+
    !> Everything that an analysis file says; the values here hold where it says nothing
-   type :: limerick_analysis_t
+   type, extends(limerick_constants_t) :: limerick_analysis_t
       !> Name of the file, for messages
       character(len=:), allocatable :: file
-      !> Velocities are kept from step to step
-      logical :: dynamic = .false.
-      !> Blocks turn by sine and cosine, not linearly
-      logical :: exact_rotation = .false.
       !> Plane strain instead of plane stress
       logical :: plane_strain = .false.
-      !> The step chooses its length
-      logical :: auto_time_step = .true.
-      !> The penalty follows the penetration
-      logical :: auto_penalty = .true.
-      !> Penalty over the largest Young's modulus at the beginning
-      real(wp) :: penalty_factor = 50.0_wp
-      !> Steps of the run
-      integer :: steps = 0
-      !> Largest time step, or the first one
-      real(wp) :: max_time_step = 0.0_wp
       !> Smallest time step; 0 if none is given
       real(wp) :: min_time_step = 0.0_wp
-      !> Shi's g2: largest displacement of a step over the half size of the model
-      real(wp) :: displacement_ratio = 0.0_wp
       !> Most open-close iterations of a step
       integer :: open_close_limit = 8
       !> Steps between two saved ones
       integer :: save_interval = 1
       !> Acceleration of gravity
       real(wp) :: gravity = 9.81_wp
-      !> Shi's s0: penetration, over the half size of the model, that closes a contact
-      real(wp) :: close_limit = 2.0e-4_wp
-      !> Shi's f0: distance, over the half size of the model, that opens a contact
-      real(wp) :: open_limit = 2.0e-7_wp
-      !> Shi's g3: penetration, over the half size of the model, that the penalty aims at
-      real(wp) :: spring_penetration = 4.0e-4_wp
-      !> Shi's h1: angle by which corners may overlap [deg]
-      real(wp) :: overlap_deg = 3.0_wp
-      !> Shi's h2: stiffness of normal over shear springs
-      real(wp) :: shear_ratio = 2.5_wp
-      !> Damping of contacts: force over speed of approach
-      real(wp) :: contact_damping = 0.0_wp
-      !> Most steps of the phase that turns gravity on; 0 for none
-      integer :: gravity_steps = 0
-      !> Relative change of normal and shear forces in a step at which that phase ends: (2)
-      real(wp) :: gravity_tolerance(2) = 0.01_wp
       !> Materials of blocks: (n)
       type(analysis_material_t), allocatable :: material(:)
       !> Materials of joints: (n)

@@ -7,8 +7,8 @@ module dda_arch_lines
    use dda_deck_keys, only : key_index
    use dda_error, only : error_t
    use dda_kinds, only : wp
-   use dda_limerick_analysis, only : limerick_analysis_t, limerick_joint_t, analysis_material_t
-   use dda_limerick_model, only : limerick_constants_t
+   use dda_limerick_analysis, only : limerick_analysis_t, limerick_constants_t, &
+      & limerick_joint_t, analysis_material_t
    use dda_limerick_scene, only : abutment_sides, set_constants
    use dda_line_model, only : add_entity, line_model_t, new_line_model
    use dda_scene, only : scene_t
@@ -200,10 +200,17 @@ contains
    pure type(limerick_analysis_t) function arch_analysis(deck) result(analysis)
       type(deck_t), intent(in) :: deck
       type(analysis_material_t) :: stone
+      type(limerick_constants_t) :: usual
       type(limerick_joint_t) :: joint
 
       analysis%file = deck%file
-      call write_constants(deck, analysis)
+      call set_constants(deck, analysis%limerick_constants_t)
+      analysis%dynamic = analysis%dynamic .or. deck%analysis%mode%word == "dynamic"
+      if (deck%analysis%mode%word /= "limerick") then
+         ! in the other modes these keys mean something else
+         analysis%auto_time_step = usual%auto_time_step
+         analysis%penalty_factor = usual%penalty_factor
+      end if
       analysis%plane_strain = deck%material%plane%word == "strain"
       stone%density = deck%material%density%number
       stone%unit_weight = unit_weight(deck)
@@ -219,32 +226,6 @@ contains
       analysis%joint = joint
       analysis%joint(2:)%friction_deg = no_slip_deg
    end function arch_analysis
-
-   !> The constants of the original's scheme, those of its own mode or its defaults
-   pure subroutine write_constants(deck, analysis)
-      type(deck_t), intent(in) :: deck
-      type(limerick_analysis_t), intent(inout) :: analysis
-      type(limerick_constants_t) :: constants
-
-      call set_constants(deck, constants)
-      analysis%close_limit = constants%close_ratio
-      analysis%open_limit = constants%open_ratio
-      analysis%spring_penetration = constants%penetration_ratio
-      analysis%overlap_deg = constants%overlap_deg
-      analysis%shear_ratio = constants%stiffness_ratio
-      analysis%auto_penalty = constants%auto_penalty
-      analysis%displacement_ratio = constants%max_displacement_ratio
-      analysis%max_time_step = constants%time_step
-      analysis%steps = constants%max_steps
-      analysis%dynamic = constants%dynamic .or. deck%analysis%mode%word == "dynamic"
-      analysis%exact_rotation = constants%exact_rotation
-      analysis%contact_damping = constants%contact_damping
-      analysis%gravity_steps = constants%gravity_steps
-      if (deck%analysis%mode%word /= "limerick") return
-      ! in the other modes these keys mean something else
-      analysis%auto_time_step = constants%auto_time_step
-      analysis%penalty_factor = constants%penalty_factor
-   end subroutine write_constants
 
    !> What the files cannot carry
    pure function what_is_lost(deck) result(text)
