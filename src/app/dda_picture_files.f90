@@ -9,11 +9,11 @@ module dda_picture_files
    use dda_table_file, only : append_line, table_file_t
    use dda_text, only : to_text
    use dda_vtu_field, only : field_t, scalar_field, state_field, tensor_field, vector_field
-   use dda_write_energy, only : energy_lines
+   use dda_write_tables, only : energy_lines
    use dda_write_frames, only : frame_joint_lines, frame_joint_row_t, frame_lines, frame_stamp_t, &
       & point_lines
-   use dda_write_pvd, only : add_to_index, close_index, open_index, pvd_index_t
-   use dda_write_vtu, only : write_points, write_polygons
+   use dda_write_vtu, only : add_to_index, close_index, open_index, pvd_index_t, write_points, &
+      & write_polygons
    implicit none
    private
 

@@ -14,10 +14,9 @@ module dda_result_tables
       & sum_of, sync_table, table_file_t
    use dda_text, only : to_text
    use dda_growing_text, only : add_line, growing_text_t, lines_of
-   use dda_write_blocks, only : block_lines, blocks_header, told_blocks_t
-   use dda_write_energy, only : energy_header
+   use dda_write_tables, only : block_lines, blocks_header, told_blocks_t, energy_header, &
+      & reactions_header
    use dda_write_frames, only : frame_joints_header, frames_header, points_header
-   use dda_write_reactions, only : reactions_header
    use dda_write_results, only : joint_line, joint_row_t, joints_header, result_row_t, &
       & results_header, results_line
    implicit none

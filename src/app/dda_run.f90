@@ -1,6 +1,8 @@
 !> dda run: decks to results
 module dda_run
+   use, intrinsic :: iso_c_binding, only : c_int
    use, intrinsic :: iso_fortran_env, only : error_unit
+   use dda_binary_file, only : binary_file_t, close_binary, descriptor_of, open_binary
    use dda_case_choice, only : choose_cases
    use dda_case_table, only : case_table_t, end_case_table, new_case_table
    use dda_command_line, only : command_t, name_of
@@ -8,7 +10,6 @@ module dda_run
    use dda_deck, only : deck_t
    use dda_deck_sweep, only : n_cases
    use dda_error, only : error_line, error_t, fatal_error
-   use dda_folder_lock, only : lock_folder
    use dda_process, only : error_is_terminal, exit_status, make_folder, worst_status
    use dda_progress, only : clear_progress, end_watch, progress_t, terminal_watch_t
    use dda_read_deck, only : read_deck
@@ -18,7 +19,8 @@ module dda_run
    use dda_run_record, only : run_record
    use dda_scene, only : scene_t
    use dda_scene_check, only : check_lines, check_scene
-   use dda_summary, only : print_resumed, print_total
+   use dda_screen, only : print_line, screen_t
+   use dda_table_file, only : remove_file
    use dda_text, only : to_text
    implicit none
    private
@@ -27,6 +29,29 @@ module dda_run
 
    !> Most cases at the same time
    integer, parameter :: max_jobs = 256
+
+   !> C's LOCK_EX and LOCK_NB: alone, and without waiting
+   integer(c_int), parameter :: alone = 2, at_once = 4
+
+   interface
+      !> C: lock an open file; whoever opens it anew has no part in the lock
+      function c_flock(descriptor, operation) bind(c, name="flock") result(failed)
+         import :: c_int
+         !> The system's number of the file
+         integer(c_int), intent(in), value :: descriptor
+         !> How to lock it
+         integer(c_int), intent(in), value :: operation
+         !> 0 if it is locked
+         integer(c_int) :: failed
+      end function c_flock
+
+      !> C: number of this process
+      function c_getpid() bind(c, name="getpid") result(number)
+         import :: c_int
+         integer(c_int) :: number
+      end function c_getpid
+   end interface
+
 contains
 
    !> Run all decks of the command line; a bad deck does not keep the others from running
@@ -194,4 +219,93 @@ contains
          call open_tables(tables, record, error)
       end if
    end subroutine begin_tables
+
+   !> Print what --resume has found
+   subroutine print_resumed(screen, name, same_deck, finished, total)
+      type(screen_t), intent(in) :: screen
+      !> Name of the deck
+      character(len=*), intent(in) :: name
+      !> Whether there are results of the same deck
+      logical, intent(in) :: same_deck
+      !> Cases that are finished
+      integer, intent(in) :: finished
+      !> Number of cases
+      integer, intent(in) :: total
+
+      if (same_deck) then
+         call print_line(screen, name//": resumed, "//to_text(finished)//" of " &
+            & //to_text(total)//" cases are there already")
+      else
+         call print_line(screen, name//": nothing to resume, there are no results of this very "// &
+            & "deck with these settings by this build of dda; all cases are computed")
+      end if
+   end subroutine print_resumed
+
+   !> Print the last line
+   subroutine print_total(screen, name, folder, count, left_out)
+      type(screen_t), intent(in) :: screen
+      !> Name of the deck
+      character(len=*), intent(in) :: name
+      !> Where the results are
+      character(len=*), intent(in) :: folder
+      !> Cases decided, undecided, written: (3)
+      integer, intent(in) :: count(3)
+      !> Which tables are not written, and why; empty if there is none
+      character(len=*), intent(in) :: left_out
+
+      call print_line(screen, name//": "//to_text(count(1))//" decided, "//to_text(count(2)) &
+         & //" undecided; results in "//folder//"/results.csv")
+      if (left_out /= "") call print_line(screen, name//": "//left_out)
+   end subroutine print_total
+
+   !> Take a folder for the rest of the program; nothing of it is touched before
+   subroutine lock_folder(folder, quiet, error)
+      !> Name of the folder, which exists
+      character(len=*), intent(in) :: folder
+      !> Whether no warning is printed
+      logical, intent(in) :: quiet
+      !> Allocated if another run has it, or no file can be written there
+      type(error_t), allocatable, intent(out) :: error
+      character(len=:), allocatable :: file
+      type(binary_file_t) :: held
+
+      file = folder//"/run.lock"
+      call open_binary(file, held, error, keep=.true.)
+      if (allocated(error)) return
+      if (is_locked(held)) return
+      if (has_locks(file)) then
+         call fatal_error(error, "expected a folder that no other run or deck writes to, got "// &
+            & "one in use; choose another folder with --out, or wait for that run to end", file, 1)
+      else if (.not. quiet) then
+         write (error_unit, "(a)") file//":1: warning: this file system knows no locks: "// &
+            & "nothing keeps another run from writing to "//folder
+      end if
+   end subroutine lock_folder
+
+   !> Lock an open file, if nobody else has
+   logical function is_locked(file)
+      !> The file; stays locked until it is closed, at the end of the program
+      type(binary_file_t), intent(in) :: file
+      integer(c_int) :: failed
+
+      failed = c_flock(int(descriptor_of(file), c_int), ior(alone, at_once))
+      is_locked = failed == 0
+   end function is_locked
+
+   !> Whether files of a folder can be locked at all: one that nobody else knows of must
+   logical function has_locks(file)
+      !> Name of the file that could not be locked
+      character(len=*), intent(in) :: file
+      character(len=:), allocatable :: name
+      type(binary_file_t) :: probe
+      type(error_t), allocatable :: error
+
+      name = file//"."//to_text(int(c_getpid()))
+      call open_binary(name, probe, error)
+      has_locks = .true.
+      if (allocated(error)) return
+      has_locks = is_locked(probe)
+      call close_binary(probe, error)
+      call remove_file(name)
+   end function has_locks
 end module dda_run

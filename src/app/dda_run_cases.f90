@@ -18,7 +18,7 @@ module dda_run_cases
    use dda_reaction_rows, only : reaction_text
    use dda_table_file, only : append_line
    use dda_text, only : to_text
-   use dda_write_blocks, only : told_blocks_t
+   use dda_write_tables, only : told_blocks_t
    use dda_write_results, only : joint_row_t, result_row_t
    implicit none
    private

@@ -20,7 +20,7 @@ module dda_case_rows
    use dda_told_blocks, only : scale_to_one, tell_blocks, tell_mechanism_motion, &
       & tell_total_motion
    use dda_verdict, only : verdict
-   use dda_write_blocks, only : told_blocks_t
+   use dda_write_tables, only : told_blocks_t
    use dda_write_results, only : joint_row_t, result_row_t, some_number
    implicit none
    private

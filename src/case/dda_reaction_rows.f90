@@ -13,7 +13,7 @@ module dda_reaction_rows
    use dda_settings, only : load_direction, settings_t
    use dda_vector, only : cross
    use dda_verdict, only : verdict
-   use dda_write_reactions, only : reaction_lines
+   use dda_write_tables, only : reaction_lines
    implicit none
    private
 

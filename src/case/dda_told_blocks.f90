@@ -4,7 +4,7 @@ module dda_told_blocks
    use dda_deformation, only : displacement_matrix
    use dda_kinds, only : wp
    use dda_scene, only : scene_t
-   use dda_write_blocks, only : told_blocks_t
+   use dda_write_tables, only : told_blocks_t
    implicit none
    private
 

@@ -1,13 +1,15 @@
 !> Lines of a file of blocks as words, and the words' numbers
 module dda_block_lines
+   use dda_deck_key, only : in_range, key_kind, key_t
    use dda_deck_token, only : shown
+   use dda_deck_words, only : wanted
    use dda_error, only : error_t, fatal_error
    use dda_kinds, only : wp
    use dda_text, only : lower_case, read_number, to_text
    implicit none
    private
 
-   public :: entry_t, line_t, split_line, take_keys, take_numbers, word_size, largest_number
+   public :: entry_t, line_t, split_line, take_numbers, take_words, word_size, largest_number
    public :: keep_entry, take_entry, waiting_entry_t
 
    !> Longest word of a line [characters]
@@ -200,32 +202,59 @@ contains
       i = i + size(number) + 1
    end subroutine take_numbers
 
-   !> Read words with a number each
-   pure subroutine take_keys(line, first, key, value, given, error)
+   !> Take the words that may follow, each once, with their numbers: one, three for a list, none
+   !> for a flag
+   pure subroutine take_words(line, first, key, value, given, error)
       type(line_t), intent(in) :: line
       !> Place of the first word
       integer, intent(in) :: first
-      !> Words that may come: (n)
-      character(len=*), intent(in) :: key(:)
-      !> Their numbers: (n)
+      !> Words that may come, and what numbers they take: (n)
+      type(key_t), intent(in) :: key(:)
+      !> All their numbers: (sum of the words')
       real(wp), intent(inout) :: value(:)
       !> Which came: (n)
-      logical, intent(inout) :: given(:)
+      logical, intent(out) :: given(:)
+      !> Another word, one that comes twice, or a number out of its range
       type(error_t), allocatable, intent(out) :: error
-      integer :: i, k
+      integer :: i, k, width(size(key))
 
+      width = 1
+      where (key%kind == key_kind%numbers) width = 3
+      where (key%kind == key_kind%flag) width = 0
+      given = .false.
       i = first
-      do while (i <= line%n .and. .not. allocated(error))
-         k = findloc(key == line%word(i), .true., dim=1)
+      do while (i <= line%n)
+         k = findloc(key%name == line%word(i), .true., dim=1)
          if (k == 0) then
-            call fatal_error(error, "unknown word '"//shown(trim(line%word(i)))//"'", &
-               & line=line%number)
+            call fatal_error(error, "expected "//listed(key%name)//", got '" &
+               & //shown(trim(line%word(i)))//"'", line=line%number)
+            return
          else if (given(k)) then
-            call fatal_error(error, trim(key(k))//" is given twice", line=line%number)
-         else
-            given(k) = .true.
-            call take_numbers(line, i, value(k:k), error)
+            call fatal_error(error, trim(key(k)%name)//" is given twice", line=line%number)
+            return
          end if
+         given(k) = .true.
+         associate (own => value(sum(width(:k - 1)) + 1:sum(width(:k))))
+            call take_numbers(line, i, own, error)
+            if (allocated(error)) return
+            if (all(in_range(key(k), own))) cycle
+            call fatal_error(error, trim(key(k)%name)//" must be "//wanted(key(k))//", got " &
+               & //to_text(own(1)), line=line%number)
+            return
+         end associate
       end do
-   end subroutine take_keys
+   end subroutine take_words
+
+   !> Words as in a, b or c
+   pure function listed(word) result(text)
+      !> The words: (n)
+      character(len=*), intent(in) :: word(:)
+      character(len=:), allocatable :: text
+      integer :: k
+
+      text = trim(word(1))
+      do k = 2, size(word)
+         text = text//trim(merge(" or", ",  ", k == size(word)))//" "//trim(word(k))
+      end do
+   end function listed
 end module dda_block_lines

@@ -1,7 +1,6 @@
 !> Points of a file of blocks, and what acts on them in time
 module dda_block_points
-   use dda_absorb_entries, only : take_absorbing
-   use dda_bar_entries, only : take_bar, take_water
+   use dda_block_entries, only : take_absorbing, take_bar, take_water
    use dda_block_input, only : block_plan_t
    use dda_block_lines, only : entry_t, take_entry, take_numbers, waiting_entry_t
    use dda_block_records, only : take_record

@@ -4,7 +4,7 @@ module dda_deck_key
    implicit none
    private
 
-   public :: key_t, key_kind, group_t, name_length, word_length, max_items
+   public :: key_t, key_kind, group_t, in_range, name_length, word_length, max_items
 
    !> Longest name of a key [characters]
    integer, parameter :: name_length = 32
@@ -81,4 +81,17 @@ module dda_deck_key
       !> What the group describes
       character(len=72) :: meaning = ""
    end type group_t
+contains
+
+   !> Whether a number is one that a key takes
+   elemental logical function in_range(key, number)
+      type(key_t), intent(in) :: key
+      !> The number in the unit of the key
+      real(wp), intent(in) :: number
+
+      in_range = number >= key%at_least .and. number <= key%at_most .and. number > key%above &
+         & .and. number < key%below
+      if (in_range .and. key%kind == key_kind%whole) &
+         & in_range = .not. abs(number - anint(number)) > 0.0_wp
+   end function in_range
 end module dda_deck_key

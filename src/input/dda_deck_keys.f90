@@ -9,7 +9,7 @@ module dda_deck_keys
    implicit none
    private
 
-   public :: deck_key, deck_group, key_index, group_index
+   public :: deck_key, deck_group, key_index, group_index, joint_keys, material_keys
 
    !> All groups, in the order of the contract
    type(group_t), parameter :: deck_group(*) = [ &

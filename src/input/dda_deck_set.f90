@@ -3,7 +3,7 @@ module dda_deck_set
    use dda_kinds, only : wp
    use dda_error, only : error_t
    use dda_text, only : to_text, lower_case
-   use dda_deck_key, only : key_t, key_kind
+   use dda_deck_key, only : in_range, key_t, key_kind
    use dda_deck_keys, only : deck_key, key_index
    use dda_deck_words, only : wanted, quoted_words, full_name, near_word, or_leave_out
    use dda_deck_token, only : shown
@@ -130,18 +130,14 @@ contains
    end function number_problem
 
    !> Whether a number can be the value of a key
-   pure logical function number_fits(key, value) result(fits)
+   pure logical function number_fits(key, value)
       !> Place of the key in the registry
       integer, intent(in) :: key
-      !> The number
+      !> The number in the unit of the registry
       real(wp), intent(in) :: value
 
-      fits = is_numeric(key)
-      if (fits) fits = value >= deck_key(key)%at_least .and. value <= deck_key(key)%at_most &
-         .and. value > deck_key(key)%above .and. value < deck_key(key)%below
-      if (fits .and. deck_key(key)%kind == key_kind%whole) then
-         fits = .not. abs(value - anint(value)) > 0.0_wp
-      end if
+      number_fits = is_numeric(key)
+      if (number_fits) number_fits = in_range(deck_key(key), value)
    end function number_fits
 
    !> Why a text cannot be the value of a key

@@ -1,6 +1,6 @@
 !> Groups of keys that may be repeated: from the tokens of a namelist file to values, by a registry
 module dda_key_groups
-   use dda_deck_key, only : group_t, key_kind, key_t
+   use dda_deck_key, only : group_t, in_range, key_kind, key_t
    use dda_deck_scan, only : scan_deck
    use dda_deck_token, only : deck_scan_t, shown, token_kind, token_text
    use dda_deck_words, only : near_one, wanted
@@ -175,8 +175,7 @@ contains
          fits = kind == token_kind%word
          if (fits) call read_number(text, number, fits)
          if (fits .and. key%kind == key_kind%whole) call read_integer(text, whole, fits)
-         if (fits) fits = number >= key%at_least .and. number <= key%at_most &
-            & .and. number > key%above .and. number < key%below
+         if (fits) fits = in_range(key, number)
       case (key_kind%word)
          fits = kind == token_kind%quoted .and. len_trim(text) > 0 &
             & .and. index(" "//trim(key%words)//" ", " "//trim(lower_case(text))//" ") > 0

@@ -1,11 +1,13 @@
 !> Read a file of blocks: polygons, materials, points and what acts on them, one thing a line
 module dda_read_blocks
    use dda_block_input, only : block_plan_t, law_plan_t, material_plan_t, most_materials, new_plan
-   use dda_block_lines, only : entry_t, keep_entry, largest_number, line_t, split_line, take_keys, &
-      & take_numbers, waiting_entry_t, word_size
+   use dda_block_lines, only : entry_t, keep_entry, largest_number, line_t, split_line, &
+      & take_words, waiting_entry_t
    use dda_block_points, only : add_points
    use dda_block_sites, only : site_t, survey
    use dda_check_plan, only : check_overlaps, check_plan
+   use dda_deck_key, only : key_kind, key_t
+   use dda_deck_keys, only : joint_keys, material_keys
    use dda_deck_token, only : shown
    use dda_error, only : error_t, fatal_error
    use dda_growth, only : make_room
@@ -20,14 +22,6 @@ module dda_read_blocks
 
    public :: parse_blocks
 
-   !> Keys that a material may have
-   character(len=word_size), parameter :: material_key(5) = [character(len=word_size) :: &
-      & "density", "unit_weight", "young", "poisson", "compressive_strength"]
-   !> Keys that a joint may have
-   character(len=word_size), parameter :: law_key(5) = [character(len=word_size) :: &
-      & "friction_deg", "cohesion", "tension", "residual_deg", "slip_length"]
-   !> Least density, unit weight and Young's modulus, as in decks
-   real(wp), parameter :: least_property = 1.0e-12_wp
    !> Words that begin an entry
    character(len=*), parameter :: entries = "block, material, joint, fix, fix_line, "// &
       & "measure, load, live, displacement, base_acceleration, base_velocity, "// &
@@ -222,52 +216,22 @@ contains
       type(reading_t), intent(inout) :: reading
       type(warnings_t), intent(inout) :: warnings
       type(error_t), allocatable, intent(out) :: error
-      character(len=*), parameter :: known(4) = [character(len=8) :: "fixed", "material", &
-         & "velocity", "stress"]
-      real(wp) :: velocity(3), stress(3), number(1)
-      integer :: i, k
-      logical :: given(size(known))
+      type(key_t), parameter :: key(4) = [key_t(name="fixed", kind=key_kind%flag), &
+         & key_t(name="material", kind=key_kind%whole, at_least=1.0_wp, &
+         & at_most=real(most_materials, wp)), key_t(name="velocity", kind=key_kind%numbers), &
+         & key_t(name="stress", kind=key_kind%numbers)]
+      real(wp) :: value(7)
+      logical :: given(4)
 
-      given = .false.
-      velocity = 0.0_wp
-      stress = 0.0_wp
-      number = 1.0_wp
+      value = [1.0_wp, spread(0.0_wp, 1, 6)]
       associate (head => reading%entry%head, growing => reading%growing)
-         i = 2
-         do while (i <= head%n .and. .not. allocated(error))
-            k = findloc(known == head%word(i), .true., dim=1)
-            if (k > 0) then
-               if (given(k)) call fatal_error(error, trim(known(k))//" is given twice", &
-                  & line=head%number)
-               given(k) = .true.
-            end if
-            if (allocated(error)) return
-            select case (k)
-            case (1)
-               i = i + 1
-            case (2)
-               call take_numbers(head, i, number, error)
-            case (3)
-               call take_numbers(head, i, velocity, error)
-            case (4)
-               call take_numbers(head, i, stress, error)
-            case default
-               call fatal_error(error, "expected fixed, material, velocity or stress, got '" &
-                  & //shown(trim(head%word(i)))//"'", line=head%number)
-            end select
-         end do
+         call take_words(head, 2, key, value, given, error)
          if (allocated(error)) return
-         if (abs(number(1) - anint(number(1))) > 0.0_wp .or. number(1) < 1.0_wp &
-            & .or. number(1) > real(most_materials, wp)) then
-            call fatal_error(error, "expected the number of a material from 1 to " &
-               & //to_text(most_materials)//", got "//to_text(number(1)), line=head%number)
-            return
-         end if
          call add_plan_block(growing, reading%entry%row(:2, :reading%entry%n_row), given(1), &
-            & nint(number(1)), head%number, reading%file, warnings, error)
+            & nint(value(1)), head%number, reading%file, warnings, error)
          if (allocated(error)) return
-         growing%plan%velocity(:, growing%n_block) = velocity
-         growing%plan%stress(:, growing%n_block) = stress
+         growing%plan%velocity(:, growing%n_block) = value(2:4)
+         growing%plan%stress(:, growing%n_block) = value(5:7)
       end associate
    end subroutine close_block
 
@@ -291,21 +255,8 @@ contains
             & line=line%number)
          return
       end if
-      call take_keys(line, 3, material_key, material%value, material%given, error)
-      if (allocated(error)) return
-      if (any(material%given(:3) .and. .not. material%value(:3) >= least_property)) then
-         call fatal_error(error, "expected density, unit_weight and young above 0, from 1e-12 " &
-            & //"to 1e30, got "//to_text(minval(material%value(:3), material%given(:3))) &
-            & //"; correct it", line=line%number)
-      else if (material%given(4) .and. .not. abs(material%value(4) + 0.25_wp) < 0.75_wp) then
-         call fatal_error(error, "poisson must be a number between -1 and 0.5, got " &
-            & //to_text(material%value(4)), line=line%number)
-      else if (material%given(5) .and. .not. material%value(5) >= least_property) then
-         call fatal_error(error, "compressive_strength must be a number from 1e-12 to 1e30, got " &
-            & //to_text(material%value(5)), line=line%number)
-      else
-         plan%materials = [plan%materials, material]
-      end if
+      call take_words(line, 3, material_keys(:5), material%value, material%given, error)
+      if (.not. allocated(error)) plan%materials = [plan%materials, material]
    end subroutine add_material
 
    !> Take in a law: joint I J [friction_deg f] [cohesion c] [tension t] [residual_deg r]
@@ -326,12 +277,9 @@ contains
             & //to_text(most_materials)//" after joint", line=line%number)
          return
       end if
-      call take_keys(line, 4, law_key, law%value, law%given, error)
+      call take_words(line, 4, joint_keys, law%value, law%given, error)
       if (allocated(error)) return
-      if (any(law%value < 0.0_wp) .or. law%value(1) > 90.0_wp) then
-         call fatal_error(error, "expected 0 <= friction_deg <= 90 and no negative strength", &
-            & line=line%number)
-      else if (law%given(1) .and. law%value(4) > law%value(1)) then
+      if (law%given(1) .and. law%value(4) > law%value(1)) then
          call fatal_error(error, "residual_deg must be at most friction_deg, " &
             & //to_text(law%value(1))//", got "//to_text(law%value(4)), line=line%number)
       else

@@ -16,9 +16,8 @@ module dda_read_deck
    use dda_deck_sweep, only : add_sweep, n_cases
    use dda_deck_check, only : check_deck
    use dda_deck_check_ground, only : check_block_file
-   use dda_deck_lines, only : name_key, read_lines
+   use dda_deck_files, only : name_key, read_ground_records, read_lines
    use dda_file_mark, only : file_mark, text_mark
-   use dda_ground_records, only : read_ground_records
    use dda_read_blocks, only : parse_blocks
    use dda_watch, only : watch_t
    implicit none

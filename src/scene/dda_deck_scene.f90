@@ -7,6 +7,7 @@ module dda_deck_scene
       & material_of, settings_of, unit_weight
    use dda_block_input, only : block_plan_t
    use dda_block_scene, only : base_t, block_scene
+   use dda_boundary, only : history_t
    use dda_chain, only : chain_t
    use dda_constants, only : degree, pi
    use dda_deck, only : deck_t, parameter_t, scene_kind
@@ -14,20 +15,20 @@ module dda_deck_scene
    use dda_deck_set, only : number_fits, put_number
    use dda_error, only : error_t, fatal_error
    use dda_fill_loads, only : add_fill_weight, fill_of, fill_t, press_fill
-   use dda_ground, only : move_ground
+   use dda_ground_motion, only : acceleration_of_displacement, acceleration_of_record, &
+      & acceleration_of_velocity
    use dda_kinds, only : wp
    use dda_line_scene, only : held_blocks, line_scene
    use dda_live_loads, only : add_live_loads, check_live_points
    use dda_scene, only : family_t, scene_t, searched_load
    use dda_scene_plan, only : scene_plan_t
    use dda_settings, only : load_direction, settings_t
-   use dda_shape_scene, only : add_lune_weights, find_crown_joint, shape_assembly, &
-      & shape_form
+   use dda_shape_scene, only : add_lune_weights, find_crown_joint, shape_assembly, shape_form
    use dda_tie_bars, only : add_ties
    implicit none
    private
 
-   public :: deck_family_t, deck_scene, movable_blocks, new_family
+   public :: deck_family_t, deck_scene, movable_blocks, move_ground, new_family
 
    !> The scenes of one deck whose searched parameter varies
    type, extends(family_t) :: deck_family_t
@@ -51,6 +52,11 @@ module dda_deck_scene
       !> Make the scene of one value
       procedure :: build => build_deck_scene
    end type deck_family_t
+
+   !> Points of a period of a sine
+   integer, parameter :: points = 360
+   !> Length of the jump at the end of a pulse, over its duration
+   real(wp), parameter :: jump = 1.0e-9_wp
 
 contains
 
@@ -212,4 +218,96 @@ contains
          end associate
       end do
    end subroutine file_scene
+
+   !> Give the ground of a scene the motion that &ground asks for
+   pure subroutine move_ground(deck, acceleration)
+      type(deck_t), intent(in) :: deck
+      !> Acceleration of the ground: that of the file of blocks in, that of the case out
+      type(history_t), intent(inout) :: acceleration
+
+      if (deck%ground%pulse%given) then
+         acceleration = pulse_of(deck)
+      else if (deck%ground%record%given) then
+         acceleration = record_of(deck)
+      end if
+      if (allocated(acceleration%value)) &
+         & acceleration%value = deck%ground%scale%number*acceleration%value
+   end subroutine move_ground
+
+   !> A pulse. What is constant before its beginning and after its end is no time of the run, and
+   !> nothing
+   pure type(history_t) function pulse_of(deck) result(pulse)
+      type(deck_t), intent(in) :: deck
+      real(wp) :: duration, frequency, along(2)
+      integer :: i, n
+
+      along = deck%ground%amplitude%number*direction_of(deck)
+      duration = deck%ground%duration%number
+      frequency = deck%ground%frequency%number
+      if (deck%ground%pulse%word == "sine") then
+         if (.not. deck%ground%duration%given) duration = 1.0_wp/frequency
+         n = max(points, ceiling(min(1.0e5_wp, real(points, wp)*frequency*duration)))
+         allocate (pulse%time(n + 2), pulse%value(2, n + 2))
+         do i = 0, n
+            pulse%time(i + 1) = duration*real(i, wp)/real(n, wp)
+            pulse%value(:, i + 1) = along*swell(pi*frequency*duration/real(n, wp)) &
+               & *sin(2.0_wp*pi*frequency*pulse%time(i + 1))
+         end do
+      else
+         n = 1
+         allocate (pulse%time(3), pulse%value(2, 3))
+         pulse%time(:2) = [0.0_wp, duration]
+         pulse%value(:, :2) = spread(along, 2, 2)
+      end if
+      pulse%time(n + 2) = (1.0_wp + jump)*duration
+      pulse%value(:, n + 2) = 0.0_wp
+   end function pulse_of
+
+   !> By how much the corners of a broken line lie outside its sine, that it have the same impulse
+   pure real(wp) function swell(half_step)
+      !> Half the angle from corner to corner [rad]
+      real(wp), intent(in) :: half_step
+
+      swell = tan(half_step)/half_step
+   end function swell
+
+   !> Unit vector of the direction of a pulse; the four main ones are free of rounding
+   pure function direction_of(deck) result(direction)
+      type(deck_t), intent(in) :: deck
+      !> Components along x and y: (2)
+      real(wp) :: direction(2)
+
+      direction = degree*deck%ground%direction_deg%number
+      direction = [cos(direction(1)), sin(direction(1))]
+      where (abs(direction) < epsilon(1.0_wp)) direction = 0.0_wp
+   end function direction_of
+
+   !> The record of the case as an acceleration, turned, and brought to its amplitude if one is
+   !> given; none before its first time and after its last
+   pure type(history_t) function record_of(deck) result(acceleration)
+      type(deck_t), intent(in) :: deck
+      type(history_t) :: motion
+      real(wp) :: turn(2, 2), largest
+      integer :: i
+
+      do i = 1, size(deck%ground_record)
+         if (deck%ground_record(i)%name == deck%ground%record%text) &
+            & motion = deck%ground_record(i)%motion
+      end do
+      turn(:, 1) = direction_of(deck)
+      turn(:, 2) = [-turn(2, 1), turn(1, 1)]
+      motion%value = deck%ground%unit%number*matmul(turn, motion%value)
+      select case (deck%ground%quantity%word)
+      case ("velocity")
+         acceleration = acceleration_of_velocity(motion)
+      case ("displacement")
+         acceleration = acceleration_of_displacement(motion)
+      case default
+         acceleration = acceleration_of_record(motion)
+      end select
+      if (.not. deck%ground%amplitude%given) return
+      largest = maxval(norm2(acceleration%value, dim=1))
+      if (largest > 0.0_wp) acceleration%value = deck%ground%amplitude%number/largest &
+         & *acceleration%value
+   end function record_of
 end module dda_deck_scene

@@ -141,7 +141,7 @@ def test_a_bar_only_pulls_unless_it_moves_in_time(tmp_path: Path) -> None:
 BAD = {
     "no stiffness": ("bar 0.5 0.5 0.5 -1", "expected either stiffness or ea, got neither"),
     "both": ("bar 0.5 0.5 0.5 -1 stiffness 1 ea 1", "expected either stiffness or ea, got both"),
-    "negative": ("bar 0.5 0.5 0.5 -1 stiffness -1", "expected stiffness above 0, got -1"),
+    "negative": ("bar 0.5 0.5 0.5 -1 stiffness -1", "stiffness must be a number above 0, got -1"),
     "word": ("bar 0.5 0.5 0.5 -1 stiffness 1 strong", "got 'strong'"),
     "no length": ("bar 0.5 0.5 0.5 0.5 stiffness 1", "expected a bar with a length"),
     "one block": ("bar 0.5 0.5 0.6 0.5 stiffness 1", "both ends in one block"),

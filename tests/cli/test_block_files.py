@@ -101,7 +101,7 @@ def test_a_load_on_a_joint_without_a_block_is_warned_of(tmp_path: Path) -> None:
         (BASE + BLOCK + "fix 5 5\n", 11, "lies in none"),
         (BASE + BLOCK + "load block 2 0.5 -0.5 1 0\n", 11, "(0.5, -0.5), which lies outside it"),
         (BASE + BLOCK + "load block 3 0.5 0.5 1 0\n", 11, "a block from 1 to 2, got '3'"),
-        (BASE + BLOCK + "material 2 density 0\n", 11, "above 0"),
+        (BASE + BLOCK + "material 2 density 0\n", 11, "from 1e-12 to 1e30, got 0"),
         (BASE + BLOCK.replace("1 2", "1,5 2"), 9, "a corner x y"),
         (BASE + BLOCK + "fix 0.5 1\ndisplacement 0.5 1 0.1 0\n", 12, "conflicts with the other fixed or"),
     ],

@@ -1,16 +1,18 @@
-!> Records of the ground's motion that a deck names, in &ground or in a sweep of ground%record
-module dda_ground_records
+!> Files that a deck names: lines, analysis, and records of the ground in &ground or in a sweep
+module dda_deck_files
    use dda_deck, only : add_file_mark, deck_error, deck_place_t, deck_t, file_beside, &
       & ground_record_t
    use dda_deck_keys, only : key_index
    use dda_deck_token, only : shown
    use dda_error, only : error_t
+   use dda_file_mark, only : file_mark
    use dda_kinds, only : wp
+   use dda_read_limerick, only : check_materials, read_analysis, read_geometry
    use dda_read_record, only : column_size, read_record
    implicit none
    private
 
-   public :: read_ground_records
+   public :: name_key, read_ground_records, read_lines
 
 contains
 
@@ -93,4 +95,47 @@ contains
          & "got '"//shown(deck%ground%columns%text)//"'; write them as in '1 2'", deck, &
          & deck%value(key_index("ground", "columns"))%place)
    end subroutine split_columns
-end module dda_ground_records
+
+   !> Read the files of a deck whose kind is 'lines'; any other deck is left as it is
+   subroutine read_lines(deck, error)
+      !> The deck, checked; receives lines, analysis and warnings
+      type(deck_t), intent(inout) :: deck
+      !> What is wrong with the files, or with the two together
+      type(error_t), allocatable, intent(out) :: error
+      character(len=:), allocatable :: file
+
+      if (deck%scene%kind%word /= "lines") return
+      file = file_beside(deck, deck%scene%geometry%text)
+      allocate (deck%lines)
+      call read_geometry(file, deck%lines, deck%warnings, error)
+      if (allocated(error)) then
+         call name_key(deck, "geometry", error)
+         return
+      end if
+      call add_file_mark(file_mark(file), deck)
+      if (.not. deck%scene%analysis%given) return
+      file = file_beside(deck, deck%scene%analysis%text)
+      allocate (deck%file_analysis)
+      call read_analysis(file, deck%file_analysis, deck%warnings, error)
+      if (allocated(error)) then
+         call name_key(deck, "analysis", error)
+         return
+      end if
+      call add_file_mark(file_mark(file), deck)
+      call check_materials(deck%lines, deck%file_analysis, deck%warnings, error)
+   end subroutine read_lines
+
+   !> An error without a line speaks of a file that cannot be read: the line of the deck helps more
+   pure subroutine name_key(deck, key, error)
+      type(deck_t), intent(in) :: deck
+      !> The key of &scene that names the file
+      character(len=*), intent(in) :: key
+      type(error_t), allocatable, intent(inout) :: error
+      character(len=:), allocatable :: message
+
+      if (error%line > 0) return
+      message = "scene%"//key//" = '"//deck%value(key_index("scene", key))%text &
+         //"': "//error%message
+      call deck_error(error, message, deck, deck%value(key_index("scene", key))%place)
+   end subroutine name_key
+end module dda_deck_files

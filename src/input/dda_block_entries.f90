@@ -1,19 +1,24 @@
-!> Bars and water of a file of blocks
-module dda_bar_entries
+!> Bars, water and absorbing faces of a file of blocks
+module dda_block_entries
    use dda_bar, only : bar_t
    use dda_block_input, only : block_plan_t
-   use dda_block_lines, only : entry_t, take_numbers
-   use dda_block_sites, only : block_at, site_t
-   use dda_deck_token, only : shown
+   use dda_block_lines, only : entry_t, line_t, take_numbers, take_words
+   use dda_block_sites, only : block_at, blocks_along, site_t
+   use dda_boundary, only : absorbing_point_t
+   use dda_deck_key, only : key_kind, key_t
    use dda_error, only : error_t, fatal_error
    use dda_kinds, only : wp
+   use dda_polygon, only : parts_inside
    use dda_text, only : read_number, to_text
    use dda_warnings, only : add_warning, warnings_t
    use dda_water, only : water_t
    implicit none
    private
 
-   public :: take_bar, take_water
+   public :: take_absorbing, take_bar, take_water
+
+   !> Points nearer than this share of the block's size are one
+   real(wp), parameter :: touching = 1.0e-8_wp
 
 contains
 
@@ -36,8 +41,8 @@ contains
       i = 1
       ends = 0.0_wp
       call take_numbers(entry%head, i, ends, error)
-      if (.not. allocated(error)) call take_properties(entry, i, norm2(ends(3:4) - ends(1:2)), &
-         & bar, error)
+      if (.not. allocated(error)) call take_properties(entry%head, i, &
+         & norm2(ends(3:4) - ends(1:2)), bar, error)
       if (allocated(error)) return
       bar%point = reshape(ends, [2, 2]) - spread(plan%origin, 2, 2)
       if (.not. norm2(bar%point(:, 1) - bar%point(:, 2)) > 0.0_wp) then
@@ -62,54 +67,36 @@ contains
    end subroutine take_bar
 
    !> What a bar is like
-   pure subroutine take_properties(entry, first, length, bar, error)
-      type(entry_t), intent(in) :: entry
+   pure subroutine take_properties(line, first, length, bar, error)
+      type(line_t), intent(in) :: line
       !> Place of the first word
       integer, intent(in) :: first
       !> Length of the bar [m]
       real(wp), intent(in) :: length
       type(bar_t), intent(inout) :: bar
       type(error_t), allocatable, intent(out) :: error
-      character(len=*), parameter :: word(6) = [character(len=9) :: "stiffness", "ea", &
-         & "strength", "prestress", "slack", "breaks"]
-      logical :: given(6)
-      real(wp) :: value(1)
-      integer :: i, k
+      type(key_t), parameter :: key(6) = [key_t(name="stiffness", above=0.0_wp), &
+         & key_t(name="ea", above=0.0_wp), key_t(name="strength", at_least=0.0_wp), &
+         & key_t(name="prestress", at_least=0.0_wp), key_t(name="slack", kind=key_kind%flag), &
+         & key_t(name="breaks", kind=key_kind%flag)]
+      logical :: given(size(key))
+      real(wp) :: value(4)
 
-      given = .false.
-      value = 0.0_wp
-      i = first
-      do while (i <= entry%head%n)
-         k = findloc(word == entry%head%word(i), .true., dim=1)
-         if (k == 0) then
-            call fatal_error(error, "expected stiffness, ea, strength, prestress, slack or " &
-               & //"breaks, got '"//shown(trim(entry%head%word(i)))//"'", line=entry%head%number)
-         else if (given(k)) then
-            call fatal_error(error, trim(word(k))//" is given twice", line=entry%head%number)
-         else if (k <= 4) then
-            call take_numbers(entry%head, i, value, error)
-            if (.not. allocated(error) .and. (value(1) < 0.0_wp .or. k <= 2 &
-               & .and. .not. value(1) > 0.0_wp)) call fatal_error(error, "expected " &
-               & //trim(word(k))//trim(merge(" above 0", " from 0 ", k <= 2))//", got " &
-               & //to_text(value(1)), line=entry%head%number)
-         else
-            i = i + 1
-         end if
-         if (allocated(error)) return
-         given(k) = .true.
-         if (k == 1) bar%stiffness = value(1)
-         if (k == 2) bar%stiffness = value(1)/max(length, tiny(length))
-         if (k == 3) bar%strength = value(1)
-         if (k == 4) bar%prestress = value(1)
-      end do
+      value = [0.0_wp, 0.0_wp, bar%strength, bar%prestress]
+      call take_words(line, first, key, value, given, error)
+      if (allocated(error)) return
+      bar%stiffness = value(1)
+      if (given(2)) bar%stiffness = value(2)/max(length, tiny(length))
+      bar%strength = value(3)
+      bar%prestress = value(4)
       bar%pushes = .not. given(5)
       bar%breaks = given(6)
       if (given(1) .eqv. given(2)) then
          call fatal_error(error, "expected either stiffness or ea, got "//trim(merge("both   ", &
-            & "neither", given(1))), line=entry%head%number)
+            & "neither", given(1))), line=line%number)
       else if (bar%prestress > bar%strength) then
          call fatal_error(error, "expected a prestress of at most the strength, got " &
-            & //to_text(bar%prestress), line=entry%head%number)
+            & //to_text(bar%prestress), line=line%number)
       end if
    end subroutine take_properties
 
@@ -118,11 +105,13 @@ contains
       type(entry_t), intent(in) :: entry
       type(block_plan_t), intent(inout) :: plan
       type(error_t), allocatable, intent(out) :: error
+      type(key_t), parameter :: key(2) = [key_t(name="unit_weight", at_least=0.0_wp), &
+         & key_t(name="factor", at_least=0.0_wp, at_most=1.0_wp)]
       type(water_t) :: water
       type(water_t), allocatable :: longer(:)
-      real(wp) :: place(entry%head%n)
+      real(wp) :: place(entry%head%n), value(2)
       integer :: i, n
-      logical :: ok
+      logical :: given(2), ok
 
       water%line = entry%head%number
       n = 0
@@ -148,8 +137,11 @@ contains
             & line=water%line)
          return
       end if
-      call take_water_words(entry, n + 2, water, error)
+      value = [water%unit_weight, water%factor]
+      call take_words(entry%head, n + 2, key, value, given, error)
       if (allocated(error)) return
+      water%unit_weight = value(1)
+      water%factor = value(2)
       water%time = entry%row(1, :entry%n_row)
       water%rise = entry%row(2, :entry%n_row)
       if (any(water%time(2:) <= water%time(:entry%n_row - 1)) .or. any(water%time < 0.0_wp)) then
@@ -165,35 +157,58 @@ contains
       call move_alloc(longer, plan%water)
    end subroutine take_water
 
-   !> What the water is like
-   pure subroutine take_water_words(entry, first, water, error)
+   !> Take in absorb x1 y1 x2 y2 [x or y] [p_speed V] [s_speed V]: two points of its part along each
+   !> block, those of Gauss, at which forces that are linear along it have their exact work
+   pure subroutine take_absorbing(entry, plan, site, error)
       type(entry_t), intent(in) :: entry
-      !> Place of the first word
-      integer, intent(in) :: first
-      type(water_t), intent(inout) :: water
+      type(block_plan_t), intent(inout) :: plan
+      type(site_t), intent(in) :: site
       type(error_t), allocatable, intent(out) :: error
-      real(wp) :: value(1)
-      integer :: i
-      logical :: is_weight
+      type(key_t), parameter :: key(4) = [key_t(name="x", kind=key_kind%flag), &
+         & key_t(name="y", kind=key_kind%flag), key_t(name="p_speed", unit="m/s", above=0.0_wp), &
+         & key_t(name="s_speed", unit="m/s", above=0.0_wp)]
+      type(absorbing_point_t) :: point
+      real(wp), allocatable :: part(:, :)
+      real(wp) :: ends(4), half(2), middle(2)
+      integer, allocatable :: near(:)
+      integer :: b, i, k, n_before
+      logical :: given(4)
 
-      i = first
-      value = 0.0_wp
-      do while (i <= entry%head%n)
-         is_weight = entry%head%word(i) == "unit_weight"
-         if (.not. is_weight .and. entry%head%word(i) /= "factor") then
-            call fatal_error(error, "expected unit_weight or factor, got '" &
-               & //shown(trim(entry%head%word(i)))//"'", line=water%line)
-            return
-         end if
-         call take_numbers(entry%head, i, value, error)
-         if (allocated(error)) return
-         if (value(1) < 0.0_wp .or. .not. is_weight .and. value(1) > 1.0_wp) then
-            call fatal_error(error, "expected a unit_weight from 0 or a factor from 0 to 1, got " &
-               & //to_text(value(1)), line=water%line)
-            return
-         end if
-         if (is_weight) water%unit_weight = value(1)
-         if (.not. is_weight) water%factor = value(1)
+      i = 1
+      ends = 0.0_wp
+      point%line = entry%head%number
+      call take_numbers(entry%head, i, ends, error)
+      if (.not. allocated(error)) &
+         & call take_words(entry%head, i, key, point%speed, given, error)
+      if (.not. allocated(error) .and. all(given(:2))) call fatal_error(error, &
+         & "expected one direction, got both x and y", line=point%line)
+      if (allocated(error)) return
+      if (any(given(:2))) point%along = given(:2)
+      ends = ends - [plan%origin, plan%origin]
+      if (.not. allocated(plan%boundary%absorbing)) allocate (plan%boundary%absorbing(0))
+      n_before = size(plan%boundary%absorbing)
+      allocate (near(0))
+      if (norm2(ends(3:4) - ends(1:2)) > 0.0_wp) then
+         near = blocks_along(site, ends)
+         point%tangent = (ends(3:4) - ends(1:2))/norm2(ends(3:4) - ends(1:2))
+      end if
+      do i = 1, size(near)
+         b = near(i)
+         part = parts_inside(plan%vertex(:, plan%first_vertex(b):plan%first_vertex(b + 1) - 1), &
+            & ends, touching*site%size_of(b), site%edges(site%edges_of(b)))
+         point%block = b
+         do k = 1, size(part, 2), 2
+            middle = (part(:, k) + part(:, k + 1))/2.0_wp
+            half = (part(:, k + 1) - part(:, k))/2.0_wp
+            point%length = norm2(half)
+            if (.not. point%length > touching*site%size_of(b)) cycle
+            point%point = middle - half/sqrt(3.0_wp)
+            plan%boundary%absorbing = [plan%boundary%absorbing, point]
+            point%point = middle + half/sqrt(3.0_wp)
+            plan%boundary%absorbing = [plan%boundary%absorbing, point]
+         end do
       end do
-   end subroutine take_water_words
-end module dda_bar_entries
+      if (size(plan%boundary%absorbing) == n_before) call fatal_error(error, &
+         & "expected a line along faces of blocks, got one along none", line=point%line)
+   end subroutine take_absorbing
+end module dda_block_entries
