@@ -102,7 +102,7 @@ BAD = {
     "odd": ("water 0 1 2", "two points or more"),
     "backwards": ("water 1 1 0 1", "from left to right"),
     "word": ("water 0 1 1 1 salty", "got 'salty'"),
-    "factor": ("water 0 1 1 1 factor 2", "factor from 0 to 1"),
+    "factor": ("water 0 1 1 1 factor 2", "factor must be a number from 0 to 1, got 2"),
     "times": ("water 0 1 1 1\n1 0\n0 1", "increasing times"),
 }
 
