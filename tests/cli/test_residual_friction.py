@@ -122,7 +122,7 @@ REFUSED = {
     "file and flow": ("&analysis flow = 'associated' /\n", "joint 1 1 residual_deg 20\n", "analysis%flow needs joints"),
     "limerick": ("&analysis mode = 'limerick' /\n", "joint 1 1 slip_length 1\n", "analysis%mode needs joints"),
     "too much": ("", "joint 1 1 friction_deg 30 residual_deg 40\n", "residual_deg must be at most friction_deg, 30"),
-    "below": ("", "joint 1 1 friction_deg 30 residual_deg -4\n", "residual_deg must be a number [deg] from 0 to 90, got -4"),
+    "below": ("", "joint 1 1 friction_deg 30 residual_deg -4\n", "must be a number [deg] from 0 to 90, got -4"),
     "strength": ("&material compressive_strength = 1e6 /\n&analysis flow = 'associated' /\n",
                  "joint 1 1 residual_deg 20\n", "needs"),
 }
