@@ -9,7 +9,7 @@ module dda_worst_load
    use dda_interior_state, only : no_limit
    use dda_joint_graph, only : joint_graph_t
    use dda_kinds, only : wp
-   use dda_limit_decision, only : load_state
+   use dda_limit_decision, only : decide_load, load_decision_t, load_state
    use dda_limit_load, only : find_limit, limit_load_t, limit_state
    use dda_load_walk, only : begin_walk, load_walk_t, walk_to
    implicit none
@@ -65,18 +65,25 @@ contains
       real(wp), intent(in) :: dead(:, :)
       !> The live loads: (n)
       type(load_arc_t), intent(in) :: arc(:)
-      !> Whether the dead load is taken to stand
+      !> Whether the dead load is known to stand
       logical, intent(in) :: stands
       !> How near the place is to be [m]
       real(wp), intent(in) :: near
       !> The least factor so far in, with these arcs out
       type(least_factor_t), intent(inout) :: least
       type(chase_t) :: chase
+      type(load_decision_t) :: decision
       integer :: k, stride
 
       chase%graph = graph
       chase%dead = dead
       chase%stands = stands
+      if (.not. stands) then
+         call decide_load(graph, dead, decision)
+         ! what falls without live loads has no factor
+         if (decision%state == load_state%falls) return
+         chase%stands = decision%state == load_state%stands
+      end if
       chase%near = near
       stride = size(arc)
       do while (least%factor >= no_limit .and. stride > 0)
