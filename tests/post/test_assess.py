@@ -60,6 +60,48 @@ def test_what_is_no_single_arch_is_refused(
     assert words in capsys.readouterr().err
 
 
+def test_a_fault_is_told_with_the_deck_of_the_user(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    deck = tmp_path / "mine.nml"
+    deck.write_text("&arch /\n&tie y = 1 /\n")
+    assert main(["assess", str(deck)]) == 2
+    assert capsys.readouterr().err.startswith(f"{deck}:2: error: unknown key 'y'")
+
+
+def test_the_chart_of_positions_has_the_worst_one(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    """The arch leans against the fill away from the axle: the factor jumps at the crown, to its least there."""
+    from voussoir.plot import position_chart
+
+    seen = {}
+
+    def keep(run: object, cases: object, worst: float | None = None) -> object:
+        seen.update(cases=cases, worst=worst)
+        return drawn(run, cases, worst)
+
+    drawn = position_chart.draw_positions
+    monkeypatch.setattr(position_chart, "draw_positions", keep)
+    deck = tmp_path / "bridge.nml"
+    deck.write_text(BRIDGE.replace("20e3 /\n&vehicle", "20e3, passive_coefficient = 1 /\n&vehicle"))
+    assert main(["assess", str(deck)]) == 0
+    factors = dict(zip(seen["cases"]["position"], seen["cases"]["critical"]))
+    assert factors[seen["worst"]] == min(factors.values())
+
+
 def test_groups_are_left_out_with_their_lines() -> None:
     text = "&arch /\n&search\n parameter = 'x' /\n&joint /\n"
     assert assess_command.without(text, "search") == "&arch /\n\n\n&joint /\n"
+
+
+def test_the_picture_of_an_arch_of_any_shape_tells_its_geometrical_safety(tmp_path: Path) -> None:
+    deck = tmp_path / "pointed.nml"
+    deck.write_text("&arch shape = 'pointed', span = 6, rise = 4, thickness = 0.6, voussoirs = 12 /\n")
+    assert main(["assess", str(deck)]) == 0
+    page = (tmp_path / "pointed.html").read_text()
+    safety = float(re.search(r"Geometrical safety</th><td>([\d.]+):", page)[1])
+    assert f"thickness {safety:.3g} × critical" in page
+
+
+def test_forces_of_a_lune_are_no_forces_per_metre(tmp_path: Path) -> None:
+    deck = tmp_path / "dome.nml"
+    deck.write_text("&arch half_angle_deg = 80, radius = 6, thickness_ratio = 0.08, voussoirs = 12, lune_deg = 6 /\n")
+    assert main(["assess", str(deck)]) == 0
+    assert re.search(r"[\d.]+ to [\d.]+ N at the crown", (tmp_path / "dome.html").read_text())

@@ -23,6 +23,8 @@ from voussoir.results import Results, Table
 POSITIONS = 41
 #: How far the search for the critical thickness goes below the thickness
 THINNEST = 1e-3
+#: The file that a deck is computed from
+_COPY = re.compile(rf"\S*voussoir-[^/\s]+/[^:\s]+(?=:\d)|\bdeck\.nml(?=:\d)")
 _TRUE = re.compile(r"\bworst\s*=\s*\.?t\w*\.?", re.IGNORECASE)
 
 
@@ -47,8 +49,7 @@ def run(arguments: argparse.Namespace) -> int:
         check(text, arguments.deck)
         written = assess(text, arguments.deck)
     except (DdaError, ValueError) as error:
-        words = str(error).replace("deck.nml", arguments.deck.name)
-        sys.stderr.write(words + "\n")
+        sys.stderr.write(_COPY.sub(lambda _: str(arguments.deck), str(error)) + "\n")
         return 2
     except ImportError as error:
         sys.stderr.write(f"voussoir:1: error: expected matplotlib, got none ({error}); install python3-matplotlib\n")
@@ -127,7 +128,7 @@ def thickness_safety(text: str, own: dict[str, Any]) -> tuple[float, str]:
         try:
             row = run_deck(dead + f"\n&search parameter = '{name}', {ends} /\n").case(1)
         except DdaError as error:
-            return math.nan, f"not found: {error}"
+            return math.nan, f"not found: {str(error).rpartition('error: ')[2]}"
         if row["verdict"] == "found":
             return value / row["critical"], (
                 f"under dead load; the critical {name} lies between "
@@ -177,6 +178,7 @@ def assess(text: str, deck: Path) -> str:
     from voussoir.plot.case_picture import draw_case
     from voussoir.plot.figure_style import house_style
     from voussoir.plot.position_chart import draw_positions
+    from voussoir.plot.units import force_unit
 
     bare = without(text, "search")
     found, factor = load_search(bare)
@@ -187,6 +189,8 @@ def assess(text: str, deck: Path) -> str:
     steps = [float(word) for word in own_run.settings("vehicle%spacings")]
     start = float(own_run.setting("vehicle%position") or "nan")
     placed = [(start + sum(steps[:k]), float(weight)) for k, weight in enumerate(own_run.settings("vehicle%axles"))]
+    safety = thickness_safety(fixed, own)
+    own_run.cases["safety_thickness"][0] = safety[0]  # for the titles of arches of any shape, too
     free = np.vstack([block.corners for block in own_run.blocks_of(1) if block.state != "fixed"])
     height = own_run.setting("fill%height")
     surface = None if height is None else float(free[:, 1].max()) + float(height)
@@ -194,9 +198,9 @@ def assess(text: str, deck: Path) -> str:
         scheme = draw_scheme(own_run, placed, surface)
         parts = [
             ("Drawing", figure_of(scheme, "Blocks, supports (hatched), overall dimensions, axles at their position.")),
-            ("Safety", table_of(_numbers(own, factor, thickness_safety(fixed, own)))),
+            ("Safety", table_of(_numbers(own, factor, safety, force_unit(own_run)))),
         ]
-        cases = _positions(fixed, free[:, 0], steps) if placed else None
+        cases = _positions(fixed, free[:, 0], steps, place) if placed else None
         if cases is not None:
             chart = draw_positions(own_run, cases, None if math.isnan(place) else place)
             parts.append(("Position of the vehicle", figure_of(chart, "Factor of the live loads that brings it down.")))
@@ -218,16 +222,20 @@ def _at_position(text: str, place: float, deck: Path) -> str:
     return _TRUE.sub(f"position = {float(place)!r}", text)
 
 
-def _positions(text: str, x: np.ndarray, steps: list[float]) -> Table | None:
-    """Load factors along the road; nothing where no position can be computed."""
+def _positions(text: str, x: np.ndarray, steps: list[float], worst: float) -> Table | None:
+    """Load factors along the road, and at the worst position if there is one: it may lie where they jump, as the arch
+    begins to lean against the fill of its other side. Nothing where no position can be computed.
+    """
     low, high = float(x.min()) - sum(steps), float(x.max())
     # axles that only the ground carries are refused: the ends are drawn in until all stand on the arch
     for inset in (0.02, 0.05, 0.1):
         reach = inset * (float(x.max()) - float(x.min()))
-        sweep = f"first = {float(low + reach)!r}, last = {float(high - reach)!r}, count = {POSITIONS}"
+        places = np.linspace(low + reach, high - reach, POSITIONS)
+        places = np.sort(np.append(places, worst if low + reach < worst < high - reach else []))
+        values = ", ".join(repr(float(place)) for place in places)
         try:
             return run_deck(
-                f"{text}\n&search parameter = 'load_factor' /\n&sweep parameter = 'position', {sweep} /\n"
+                f"{text}\n&search parameter = 'load_factor' /\n&sweep parameter = 'position', values = {values} /\n"
             ).cases
         except DdaError:
             continue
@@ -235,7 +243,7 @@ def _positions(text: str, x: np.ndarray, steps: list[float]) -> Table | None:
 
 
 def _numbers(
-    own: dict[str, Any], factor: dict[str, Any] | None, geometrical: tuple[float, str]
+    own: dict[str, Any], factor: dict[str, Any] | None, geometrical: tuple[float, str], unit: str
 ) -> list[tuple[str, str]]:
     """The three safety numbers with their bounds."""
     safety, note = geometrical
@@ -252,7 +260,7 @@ def _numbers(
     if factor is not None and not math.isnan(factor.get("worst_position", math.nan)):
         rows.append(("Worst position", f"first axle at {factor['worst_position']:.4f} m"))
     least, most = own.get("thrust_min", math.nan), own.get("thrust_max", math.nan)
-    told = "not told" if math.isnan(least) or math.isnan(most) else f"{least:.6g} to {most:.6g} N/m at the crown"
+    told = "not told" if math.isnan(least) or math.isnan(most) else f"{least:.6g} to {most:.6g} {unit} at the crown"
     rows.append(("Range of thrust", told))
     return rows
 

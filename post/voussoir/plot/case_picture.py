@@ -255,7 +255,7 @@ def draw_forces(axes: Axes, scene: CaseScene, joints: Table, size: float) -> lis
         headwidth=4.5,
         zorder=4.5,
     )
-    words = f"contact forces, longest {force_text(largest)}"
+    words = f"contact forces, longest {force_text(largest, scene.unit)}"
     return [entry(words, linestyle="-", color=INK[2], linewidth=1.2)]
 
 

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from voussoir.plot.units import force_unit
 from voussoir.results import Block, Results
 
 #: Room around what moves, and how far beyond it supports are shown, over its size
@@ -34,6 +35,8 @@ class CaseScene:
         Of an arch of any shape, the voussoirs of a ring, which are numbered first.
     count : int
         The number of all of them.
+    unit : str
+        Unit of its forces.
     """
 
     blocks: list[Block]
@@ -43,6 +46,7 @@ class CaseScene:
     falls: bool
     voussoirs: int = 0
     count: int = 0
+    unit: str = "N/m"
 
     @property
     def largest(self) -> float:
@@ -79,7 +83,7 @@ def scene_of(run: Results, number: int) -> CaseScene:
         int(row.get(name, run.setting(f"arch%{name}") or usual))
         for name, usual in (("voussoirs", 36), ("rings", 1), ("spans", 1))
     )
-    return CaseScene(free, supports, is_arch, moves, falls, one, one * rings * spans)
+    return CaseScene(free, supports, is_arch, moves, falls, one, one * rings * spans, force_unit(run))
 
 
 def shortened(support: Block, free: list[Block]) -> Block:

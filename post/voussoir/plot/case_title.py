@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from typing import Any
 
-from voussoir.plot.units import force_text, name_of, value_label
+from voussoir.plot.units import force_text, force_unit, name_of, value_label
 from voussoir.results import Results
 
 Row = dict[str, Any]
@@ -64,13 +64,13 @@ def _ending(row: Row, run: Results | None) -> str:
         if not math.isnan(row["exact"]):
             end += f", exact {row['exact']:.6g}"
     if end == "stable":
-        end += safety_of(row)
+        end += safety_of(row, run)
     if row["collapse_mode"] != "none":
         end += f", {row['collapse_mode']} collapse"
     return end
 
 
-def safety_of(row: Row) -> str:
+def safety_of(row: Row, run: Results | None) -> str:
     """The safety numbers of what stands, as far as they are told."""
     words = ""
     for name, text in (("safety_thickness", ", thickness {:.3g} × critical"), ("exact_low", ", load factor {:.4g}")):
@@ -78,5 +78,6 @@ def safety_of(row: Row) -> str:
             words += text.format(row[name])
     ends = [row.get(name, math.nan) for name in ("thrust_min", "thrust_max")]
     if not any(map(math.isnan, ends)):
-        words += f", thrust {force_text(ends[0])} to {force_text(ends[1])}"
+        unit = force_unit(run)
+        words += f", thrust {force_text(ends[0], unit)} to {force_text(ends[1], unit)}"
     return words

@@ -3,6 +3,10 @@
 from __future__ import annotations
 
 import math
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from voussoir.results import Results
 
 #: Words and unit of numbers that are swept or searched; others are called by their keys
 PARAMETERS = {
@@ -90,23 +94,31 @@ def length_text(metres: float) -> str:
     return f"{metres:.3g} m"
 
 
-def force_text(force: float) -> str:
-    """A force per metre of depth with the unit that suits it.
+def force_unit(run: Results | None) -> str:
+    """The unit of the forces of a run: per metre of depth, but for lunes, which have a depth of their own."""
+    lune = run is not None and (run.setting("arch%lune_deg") is not None or "lune_deg" in run.cases.columns)
+    return "N" if lune else "N/m"
+
+
+def force_text(force: float, unit: str = "N/m") -> str:
+    """A force with the size of unit that suits it.
 
     Parameters
     ----------
     force : float
-        The force [N/m].
+        The force, in the unit.
+    unit : str, optional
+        "N/m" or "N".
 
     Returns
     -------
     str
         Such as "12.5 kN/m".
     """
-    for unit, size in (("GN/m", 1e9), ("MN/m", 1e6), ("kN/m", 1e3), ("N/m", 1.0)):
+    for prefix, size in (("G", 1e9), ("M", 1e6), ("k", 1e3), ("", 1.0)):
         if size <= force < 1e3 * size:
-            return f"{force / size:.4g} {unit}"
-    return f"{force:.4g} N/m"
+            return f"{force / size:.4g} {prefix}{unit}"
+    return f"{force:.4g} {unit}"
 
 
 def rounded(value: float) -> float:
