@@ -27,7 +27,7 @@ figure{margin:.6rem 0;break-inside:avoid}svg{width:100%;height:auto}figcaption{f
 pre{white-space:pre-wrap;overflow-wrap:anywhere;background:#f5f5f2;padding:.7rem;font-size:.85rem}
 .note{font-size:.9rem;color:#555}@page{size:A4;margin:14mm}
 @media print{body{margin:0;padding:0;font-size:10pt;max-width:none}h2{break-after:avoid;margin:.7rem 0 .2rem}
-section{break-inside:avoid}svg{max-height:70mm}.verdict{margin:.4rem 0}*{print-color-adjust:exact}}
+section{break-inside:avoid}svg{max-height:62mm}.verdict{margin:.4rem 0}*{print-color-adjust:exact}}
 """
 
 
