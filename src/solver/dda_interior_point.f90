@@ -25,6 +25,8 @@ module dda_interior_point
 
    !> Turns without progress before the iteration ends
    integer, parameter :: patience = 8
+   !> Share of a target by which a factor must grow to be progress
+   real(wp), parameter :: headway = 0.01_wp
    !> Least force and rate that an iteration begins with
    real(wp), parameter :: inside = 1.0e-6_wp
    !> Imbalance and violation of forces and velocities that prove something
@@ -93,10 +95,11 @@ contains
       type(interior_point_t) :: best
       type(turn_t) :: turn
       integer :: idle
-      real(wp) :: merit
+      real(wp) :: merit, farthest
 
       call begin_turns(rays, path, goal, turn)
       merit = huge(merit)
+      farthest = point%factor
       idle = 0
       do
          call see_residuals(rays, path, point, turn)
@@ -104,6 +107,11 @@ contains
          if (worst(point) < merit) then
             merit = worst(point)
             best = point
+            idle = 0
+         end if
+         ! on the way to a target the gap may stay
+         if (goal%target < no_limit .and. point%factor > farthest + headway*goal%target) then
+            farthest = point%factor
             idle = 0
          end if
          call judge(path, goal, turn, idle, point)
