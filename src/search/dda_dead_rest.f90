@@ -1,8 +1,10 @@
-!> Rest under the dead loads where the loading path finds no state to begin with
+!> Rest under the dead loads where the loading path falls before it has begun
 !>
 !> Forces that balance the dead loads may exist and yet be out of reach for joints that are loaded
 !> from nothing: blocks that nothing presses fall between their neighbours, and where friction is
-!> high the way to rest turns back. Elastic blocks that move in steps say which of the two it is.
+!> high the way to rest turns back. Elastic blocks that move in steps under the associated rule come
+!> to rest: if nothing slides in that rest it is one under Coulomb friction, too; if joints slide
+!> they hold only because sliding opens them, and the fall of the path counts.
 module dda_dead_rest
    use dda_block_system, only : block_system_t
    use dda_contact_detection, only : contacts_t
@@ -24,64 +26,52 @@ module dda_dead_rest
 
 contains
 
-   !> Run the blocks under their dead loads alone, first under the associated rule: a rest in which
-   !> nothing slides is one under Coulomb friction
-   pure subroutine rest_under_dead_loads(settings, system, contacts, start, mechanism, n)
+   !> Run the blocks under their dead loads alone
+   pure subroutine rest_under_dead_loads(settings, system, contacts, start, slides, n)
       type(settings_t), intent(in) :: settings
       type(block_system_t), intent(in) :: system
       type(contacts_t), intent(in) :: contacts
-      !> Where they come to rest, with the load that its forces balance
+      !> Where nothing slides, with the load that its forces balance
       type(coulomb_state_t), allocatable, intent(out) :: start
-      !> How they move where they fall, the largest 1: (3, n_block) [1, 1, 1/m]
-      real(wp), allocatable, intent(out) :: mechanism(:, :)
+      !> Whether there is a rest and joints slide in it
+      logical, intent(out) :: slides
       !> Factorisations
       integer, intent(out) :: n
-      integer, parameter :: flow(2) = [flow_rule%associated, flow_rule%coulomb]
-      ! a rest takes about four steps; blocks that creep for longer find none in hundreds
+      ! a rest takes about four steps
       integer, parameter :: most_steps = 20
       type(block_system_t) :: moved
       type(contacts_t) :: settled
       type(joint_graph_t) :: graph
       type(outcome_t) :: outcome
       type(settings_t) :: dead
-      integer :: i
 
       n = 0
+      slides = .false.
       if (size(history_times(settings)) > 0 .or. leads_at_once(settings)) return
       dead = settings
       dead%tilt = 0.0_wp
       dead%push = 0.0_wp
       dead%load_factor = 0.0_wp
       dead%max_steps = min(settings%max_steps, most_steps)
+      dead%flow = flow_rule%associated
       call scene_graph(dead, system, contacts, graph)
       if (size(graph%kind) /= size(contacts%joint)) return
-      do i = 1, size(flow)
-         moved = system
-         settled = contacts
-         dead%flow = flow(i)
-         call run_to_verdict(dead, moved, settled, outcome)
-         n = n + outcome%factorisations
-         if (outcome%verdict /= verdict%stable) exit
-         if (dead%flow == flow_rule%associated .and. any(settled%face%slip /= 0)) cycle
-         call take_state(graph, settled, start)
-         return
-      end do
-      if (outcome%verdict /= verdict%collapsed) return
-      mechanism = outcome%motion(:3, :)/maxval(abs(outcome%motion(:3, :)))
+      moved = system
+      settled = contacts
+      call run_to_verdict(dead, moved, settled, outcome)
+      n = outcome%factorisations
+      if (outcome%verdict /= verdict%stable) return
+      slides = any(settled%face%slip /= 0)
+      if (.not. slides) call take_state(graph, settled, start)
    end subroutine rest_under_dead_loads
 
-   !> A path that ends where it begins, as the dead loads make the blocks fall
-   pure subroutine fall_at_once(mechanism, proof)
-      !> How the blocks move: (3, n_block)
-      real(wp), intent(in) :: mechanism(:, :)
-      !> The path that has found no state to begin with
+   !> A path whose fall, before it has begun, counts
+   pure subroutine fall_at_once(proof)
+      !> The path, with the mechanism of its fall
       type(graph_verdict_t), intent(inout) :: proof
 
+      if (.not. allocated(proof%mechanism)) return
       proof%end = path_end%collapsed
-      proof%mechanism = mechanism
-      proof%flow = flow_rule%coulomb
-      proof%station = 0
-      proof%share = 0.0_wp
       if (allocated(proof%reason)) deallocate (proof%reason)
    end subroutine fall_at_once
 

@@ -92,14 +92,14 @@ contains
       type(album_t), intent(inout), optional :: album
       type(graph_verdict_t) :: proof
       type(coulomb_state_t), allocatable :: start
-      real(wp), allocatable :: mechanism(:, :)
       integer :: n
+      logical :: slides
 
       call decide_graph(settings, system, contacts, bare, proof)
-      if (proof%no_start .and. .not. proof%unproven) then
-         call rest_under_dead_loads(settings, system, contacts, start, mechanism, n)
+      if (proof%no_start) then
+         call rest_under_dead_loads(settings, system, contacts, start, slides, n)
          if (allocated(start)) call decide_graph(settings, system, contacts, bare, proof, start)
-         if (allocated(mechanism)) call fall_at_once(mechanism, proof)
+         if (slides) call fall_at_once(proof)
          proof%n_factorisation = proof%n_factorisation + n
       end if
       if (proof%end == path_end%collapsed) then

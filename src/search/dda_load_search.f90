@@ -188,19 +188,18 @@ contains
       !> How the path went
       type(graph_verdict_t), intent(inout) :: proof
       type(coulomb_state_t), allocatable :: start
-      real(wp), allocatable :: mechanism(:, :)
       integer :: n
+      logical :: slides
 
       call follow_stations(settings, scene%system, graph, stations, proof)
       if (.not. (proof%no_start .and. is_balanced)) return
-      call rest_under_dead_loads(settings, scene%system, scene%contacts, start, mechanism, n)
+      call rest_under_dead_loads(settings, scene%system, scene%contacts, start, slides, n)
       if (allocated(start)) then
          call follow_stations(settings, scene%system, graph, stations, proof, start)
-      else if (allocated(mechanism)) then
-         call fall_at_once(mechanism, proof)
       else
          proof%end = path_end%undecided
          proof%reason = no_start
+         if (slides) call fall_at_once(proof)
       end if
       proof%n_factorisation = proof%n_factorisation + n
    end subroutine follow_from_rest

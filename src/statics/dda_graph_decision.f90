@@ -102,6 +102,7 @@ contains
          path%end = path_end%undecided
          path%reason = no_start
       end if
+      path%no_start = path%no_start .and. verdict%end == path_end%reached
       verdict = path
    end subroutine decide_graph
 

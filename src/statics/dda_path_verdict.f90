@@ -38,7 +38,7 @@ module dda_path_verdict
       logical :: on_path = .false.
       !> Whether steps may prove what limit analysis did not, as no path leads to the load
       logical :: unproven = .false.
-      !> Whether the path has found no state under the dead loads
+      !> Whether forces balance the dead loads, and the path has found no state under them
       logical :: no_start = .false.
       !> Last station of the path that was reached, and the share of the leg after it
       integer :: station = 0

@@ -1,4 +1,4 @@
-"""Where no state under the dead loads is found by springs alone, blocks that move say whether there is one."""
+"""Where joints that are loaded at once find no state under the dead loads, a rest in which nothing slides is one."""
 
 from __future__ import annotations
 
