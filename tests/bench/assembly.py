@@ -13,6 +13,8 @@ Polygon = list[Point]
 NEGLIGIBLE = 1e-9
 #: Names of joint kinds in the order of the Fortran program's numbers
 KINDS = ("contact", "no_slip", "corner", "corner_no_slip", "pin", "mirror")
+#: Friction above this counts as this in a file of blocks
+MOST_FRICTION_DEG = 89.9
 
 
 def area_and_centre(polygon: Polygon) -> tuple[float, Point]:
@@ -137,3 +139,23 @@ def _shared(a: Point, b: Point, c: Point, d: Point) -> tuple[Point, Point] | Non
     if high - low <= 10.0 * tiny:
         return None
     return (a[0] + low * ex, a[1] + low * ey), (a[0] + high * ex, a[1] + high * ey)
+
+
+def block_text(assembly: Assembly, ground: list[list[tuple[float, float]]]) -> str:
+    """The assembly as a file of blocks; each block has a material, each pair of them a law."""
+    lines = []
+    for polygon in ground:
+        lines += ["block fixed", *(f"{x!r} {y!r}" for x, y in polygon)]
+    for number, polygon in enumerate(assembly.blocks, start=2):
+        lines += [f"block material {number}", *(f"{x!r} {y!r}" for x, y in polygon)]
+    lines += [f"material {number + 2} density 1000" for number in range(len(assembly.blocks))]
+    laws = {tuple(sorted(number + 1 for number in joint.blocks)): joint for joint in assembly.joints}
+    for joint in assembly.joints:
+        law = laws[tuple(sorted(number + 1 for number in joint.blocks))]
+        most = math.tan(math.radians(MOST_FRICTION_DEG))
+        joint.friction = min(most, math.inf if law.kind == "no_slip" else law.friction)
+    for joint in assembly.joints:
+        joint.kind = "contact"
+    for (one, other), joint in laws.items():
+        lines.append(f"joint {one} {other} friction_deg {math.degrees(math.atan(joint.friction))!r}")
+    return "\n".join(lines) + "\n"

@@ -11,40 +11,17 @@ from __future__ import annotations
 import argparse
 import csv
 import io
-import math
 import resource
 import subprocess
 import tempfile
 from pathlib import Path
 
-from assembly import Assembly
+from assembly import block_text
 from highs import judge, read_graphs
 from random_assemblies import make_pushed
 
 SHARES = (0.5, 0.9, 0.99, 1.01, 1.1, 1.5, 5.0)
 FLOWS = ("associated", "coulomb")
-#: Friction above this counts as this in a file of blocks
-MOST_FRICTION_DEG = 89.9
-
-
-def block_text(assembly: Assembly, ground: list[list[tuple[float, float]]]) -> str:
-    """The assembly as a file of blocks; each block has a material, each pair of them a law."""
-    lines = []
-    for polygon in ground:
-        lines += ["block fixed", *(f"{x!r} {y!r}" for x, y in polygon)]
-    for number, polygon in enumerate(assembly.blocks, start=2):
-        lines += [f"block material {number}", *(f"{x!r} {y!r}" for x, y in polygon)]
-    lines += [f"material {number + 2} density 1000" for number in range(len(assembly.blocks))]
-    laws = {tuple(sorted(number + 1 for number in joint.blocks)): joint for joint in assembly.joints}
-    for joint in assembly.joints:
-        law = laws[tuple(sorted(number + 1 for number in joint.blocks))]
-        most = math.tan(math.radians(MOST_FRICTION_DEG))
-        joint.friction = min(most, math.inf if law.kind == "no_slip" else law.friction)
-    for joint in assembly.joints:
-        joint.kind = "contact"
-    for (one, other), joint in laws.items():
-        lines.append(f"joint {one} {other} friction_deg {math.degrees(math.atan(joint.friction))!r}")
-    return "\n".join(lines) + "\n"
 
 
 def run(dda: Path, folder: Path, flow: str, task: str) -> tuple[list[dict[str, str]], float]:

@@ -10,7 +10,7 @@ import pytest
 from dda_command import run_dda
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "bench"))
-from assembly import area_and_centre  # noqa: E402
+from assembly import area_and_centre, block_text  # noqa: E402
 from random_assemblies import make_pushed  # noqa: E402
 
 BETWEEN_WALLS = """block fixed
@@ -73,3 +73,20 @@ def test_a_corbel_of_rough_blocks_is_decided_as_its_search_says(tmp_path: Path) 
     sweep = f"&sweep parameter = 'horizontal_coefficient', values = {', '.join(map(repr, values))} /"
     found = rows(tmp_path, blocks, rough + sweep)
     assert [row["verdict"] for row in found] == 3 * ["stable"] + 3 * ["collapsed"]
+
+
+def test_what_holds_only_as_sliding_opens_joints_falls(tmp_path: Path) -> None:
+    """A ring some joints of which are very rough: dead loads at once fall, at once said."""
+    (row,) = rows(tmp_path, block_text(*make_pushed(45014)), "&search parameter = 'horizontal_coefficient', high = 5 /")
+    assert row["verdict"] == "collapsed"
+    assert int(row["factorisations"]) < 2000
+
+
+def test_a_fall_of_very_rough_piers_takes_few_factorisations(tmp_path: Path) -> None:
+    """Friction of 89.9 degrees beside 47: from the limit of HiGHS on, 0.0778216766, everything falls."""
+    loads = ", ".join(repr(0.0778216766 * share) for share in (0.99, 1.01, 1.1, 1.5, 5.0))
+    text = block_text(*make_pushed(46023))
+    found = rows(tmp_path, text, f"&analysis flow = 'associated' /\n"
+                 f"&sweep parameter = 'horizontal_coefficient', values = {loads} /")
+    assert [row["verdict"] for row in found] == ["stable", *4 * ["collapsed"]]
+    assert max(int(row["factorisations"]) for row in found) <= 40
