@@ -6,7 +6,7 @@
 module dda_load_jump
    use dda_coulomb_equations, only : coulomb_equations_t
    use dda_coulomb_joints, only : coulomb_joints_t
-   use dda_coulomb_law, only : coulomb_state_t, imbalance
+   use dda_coulomb_law, only : apply_law, coulomb_state_t, imbalance
    use dda_event_rates, only : find_rates, new_rates, rates_t
    use dda_kinds, only : wp
    use dda_path_event, only : event_kind, event_t, hold_forces, move_on, next_event
@@ -14,7 +14,7 @@ module dda_load_jump
    private
 
    public :: motion_end, motion_end_enum, jump_t, path_damping, moves_unbalanced
-   public :: far_factor, jump_to_balance
+   public :: far_factor, jump_to_balance, nudge, nudge_to_balance
 
    !> How a motion ends
    type :: motion_end_enum
@@ -55,15 +55,96 @@ module dda_load_jump
    !> So many events without way lead nowhere
    integer, parameter :: max_standstill = 60
    !> Steps of a jump: at least so many, and so many more for each joint
-   integer, parameter :: least_patience = 500, patience = 10
+   integer, parameter :: least_patience = 2000, patience = 10
    !> Change of damping after a step that meets no event, and its inverse where there are no rates
    real(wp), parameter :: calmer = 0.1_wp
    !> Damping that is tried first where there are no rates along a path
    real(wp), parameter :: first_firm = 1.0e-3_wp
    !> With so much damping there are always rates
    real(wp), parameter :: strongest = 1.0e5_wp
+   !> A load is raised by this part of a block's weight at least to see how the blocks move
+   real(wp), parameter :: nudge = 1.0e-6_wp
+   !> Where a motion does not converge the load is raised by so many times as much, and where it is
+   !> a fall by so much less
+   real(wp), parameter :: wider = 10.0_wp, narrower = 0.25_wp
+   !> What a motion may leave of a nudge
+   real(wp), parameter :: nudge_left = 1.0e-6_wp
+   !> Rounding of forces
+   real(wp), parameter :: rounding = 1.0e-12_wp
 
 contains
+
+   !> Raise the load by a little and let the blocks move; where they fall, by less, too. The way is
+   !> the same wherever it is to end, unless that is next to nothing: where it leads beyond, a
+   !> smaller one may end there
+   pure subroutine nudge_to_balance(joints, equations, load_rate, opening_rate, width, left, &
+      & state, jump, gained, end)
+      type(coulomb_joints_t), intent(in) :: joints
+      type(coulomb_equations_t), intent(inout) :: equations
+      !> What grows of the load: (n_dof, n_block)
+      real(wp), intent(in) :: load_rate(:, :)
+      !> Openings that grow with it: (3, n_joint)
+      real(wp), intent(in) :: opening_rate(:, :)
+      !> By how much
+      real(wp), intent(in) :: width
+      !> How much is asked for
+      real(wp), intent(in) :: left
+      !> The state, left as it is unless another in balance is found
+      type(coulomb_state_t), intent(inout) :: state
+      !> Receives the mechanism of a fall
+      type(jump_t), intent(inout) :: jump
+      !> How much was gained
+      real(wp), intent(out) :: gained
+      !> How the motion ends, one of motion_end
+      integer, intent(out) :: end
+      type(coulomb_state_t) :: moved, last
+      integer :: last_end
+
+      gained = merge(left, width, left < nudge)
+      do
+         call try_nudge(joints, equations, load_rate, opening_rate, gained, state, jump, moved, end)
+         if (end == motion_end%unsettled) then
+            gained = wider*gained
+            call try_nudge(joints, equations, load_rate, opening_rate, gained, state, jump, &
+               & moved, end)
+         end if
+         if (end == motion_end%balanced .or. end == motion_end%unsettled) exit
+         if (.not. gained > nudge) exit
+         gained = max(nudge, narrower*gained)
+      end do
+      if (end /= motion_end%balanced) return
+      if (gained > left) then
+         call try_nudge(joints, equations, load_rate, opening_rate, left, state, jump, last, &
+            & last_end)
+         if (last_end == motion_end%balanced) moved = last
+      end if
+      state = moved
+   end subroutine nudge_to_balance
+
+   !> Let the blocks move at a load that is somewhat larger
+   pure subroutine try_nudge(joints, equations, load_rate, opening_rate, more, state, jump, &
+      & moved, end)
+      type(coulomb_joints_t), intent(in) :: joints
+      type(coulomb_equations_t), intent(inout) :: equations
+      !> What grows of the load: (n_dof, n_block)
+      real(wp), intent(in) :: load_rate(:, :)
+      !> Openings that grow with it: (3, n_joint)
+      real(wp), intent(in) :: opening_rate(:, :)
+      !> By how much
+      real(wp), intent(in) :: more
+      type(coulomb_state_t), intent(in) :: state
+      !> Receives the mechanism of a fall
+      type(jump_t), intent(inout) :: jump
+      !> Where the motion ends
+      type(coulomb_state_t), intent(out) :: moved
+      !> How it ends, one of motion_end
+      integer, intent(out) :: end
+
+      jump%tolerance = max(rounding*max(1.0_wp, maxval(abs(state%force))), nudge_left*more)
+      moved = state
+      call apply_law(joints, state, more*opening_rate, moved)
+      call jump_to_balance(joints, equations, state%load + more*load_rate, moved, jump, end)
+   end subroutine try_nudge
 
    !> Move from event to event at a load that does not change. Where friction lets forces drop, only
    !> motion that is damped enough has rates: damping rises until it has, and falls again with every

@@ -16,13 +16,13 @@ module dda_loading_path
    use dda_coulomb_joints, only : coulomb_joints_t, in_metres, in_motion_units, in_newtons, &
       & in_units, &
       & new_coulomb_joints, set_force_unit
-   use dda_coulomb_law, only : apply_law, coulomb_state_t, imbalance
+   use dda_coulomb_law, only : coulomb_state_t, imbalance
    use dda_coulomb_start, only : load_at_once
    use dda_event_rates, only : find_rates, new_rates, rates_t, undamp_rates
    use dda_joint_graph, only : joint_graph_t
    use dda_kinds, only : wp
-   use dda_load_jump, only : far_factor, jump_t, jump_to_balance, motion_end, moves_unbalanced, &
-      & path_damping
+   use dda_load_jump, only : far_factor, jump_t, motion_end, moves_unbalanced, nudge, &
+      & nudge_to_balance, path_damping
    use dda_path_event, only : event_kind, event_t, move_on, next_event
    implicit none
    private
@@ -104,18 +104,12 @@ module dda_loading_path
       real(wp), allocatable :: mechanism(:, :)
    end type path_result_t
 
-   !> A load is raised by this part of a block's weight to see how the blocks move
-   real(wp), parameter :: nudge = 1.0e-6_wp
-   !> It grows where jumps follow one another within so many times as much; its largest value
+   !> A nudge grows where jumps follow one another within so many times as much; its largest value
    real(wp), parameter :: slow_factor = 10.0_wp
    !> Largest of them
    real(wp), parameter :: largest_nudge = 1.0e-3_wp
-   !> What a motion may leave of a nudge
-   real(wp), parameter :: nudge_left = 1.0e-6_wp
    !> Blocks rest where at most so much of a growing load is not balanced once damping is given back
    real(wp), parameter :: rests_unbalanced = 1.0e-6_wp
-   !> Rounding of forces
-   real(wp), parameter :: rounding = 1.0e-12_wp
    !> What need not be taken away of an imbalance
    real(wp), parameter :: exact = 1.0e-14_wp
    !> An event no further off than this makes no way
@@ -273,8 +267,7 @@ contains
             width = merge(min(4.0_wp*width, largest_nudge), nudge, slow)
             last_jump = result%reached
             standstill = 0
-            call nudge_on(path, state, way, &
-               & min(width*[1.0_wp, 10.0_wp], h_end - result%reached), result)
+            call jump_on(path, state, way, width, h_end, result)
             if (result%end /= path_end%reached) return
          end if
          state%load = first_load + result%reached*way%load
@@ -283,43 +276,36 @@ contains
       result%reason = path_reason%too_many
    end subroutine follow
 
-   !> Raise the load by a little and let the blocks move
-   pure subroutine nudge_on(path, state, way, widths, result)
+   !> Go on by a jump
+   pure subroutine jump_on(path, state, way, width, h_end, result)
       !> What was made once
       type(loading_path_t), intent(inout) :: path
       !> The state, left as it is unless another in balance is found
       type(coulomb_state_t), intent(inout) :: state
       !> What grows
       type(path_rate_t), intent(in) :: way
-      !> By how much, one after the other where no motion settles: (n)
-      real(wp), intent(in) :: widths(:)
+      !> By how much, to see how the blocks move
+      real(wp), intent(in) :: width
+      !> Where the path ends
+      real(wp), intent(in) :: h_end
       !> Receives the jump, or how the blocks fall
       type(path_result_t), intent(inout) :: result
-      type(coulomb_state_t) :: moved
       type(jump_t) :: jump
-      real(wp) :: balance, more
-      integer :: end, try
+      real(wp) :: before(size(state%motion, 1), size(state%motion, 2)), gained
+      integer :: end
 
       jump%far = far_factor*max(path%softness*max(1.0_wp, maxval(abs(state%force))), path%given)
-      balance = rounding*max(1.0_wp, maxval(abs(state%force)))
-      do try = 1, size(widths)
-         more = widths(try)
-         jump%tolerance = max(balance, nudge_left*more)
-         moved = state
-         call apply_law(path%joints, state, more*way%opening, moved)
-         call jump_to_balance(path%joints, path%equations, state%load + more*way%load, moved, &
-            & jump, end)
-         if (end /= motion_end%unsettled) exit
-      end do
+      before = state%motion
+      call nudge_to_balance(path%joints, path%equations, way%load, way%opening, width, &
+         & h_end - result%reached, state, jump, gained, end)
       if (end == motion_end%balanced) then
          result%n_jump = result%n_jump + 1
-         result%largest_jump = max(result%largest_jump, maxval(abs(moved%motion - state%motion)))
-         result%reached = result%reached + more
-         state = moved
+         result%largest_jump = max(result%largest_jump, maxval(abs(state%motion - before)))
+         result%reached = min(h_end, result%reached + gained)
       else
          call note_fall(end, jump, result)
       end if
-   end subroutine nudge_on
+   end subroutine jump_on
 
    !> What a fall, or a motion that did not settle, means for a path
    pure subroutine note_fall(end, jump, result)

@@ -90,3 +90,14 @@ def test_a_fall_of_very_rough_piers_takes_few_factorisations(tmp_path: Path) -> 
                  f"&sweep parameter = 'horizontal_coefficient', values = {loads} /")
     assert [row["verdict"] for row in found] == ["stable", *4 * ["collapsed"]]
     assert max(int(row["factorisations"]) for row in found) <= 40
+
+
+def test_a_path_of_many_jumps_is_one_way_to_all_its_loads(tmp_path: Path) -> None:
+    """Piers that jump 58 times on their way: decisions beside the collapse agree with the search."""
+    text = block_text(*make_pushed(45045))
+    (found,) = rows(tmp_path, text, "&search parameter = 'horizontal_coefficient', high = 5 /")
+    critical = float(found["critical"])
+    shares = [1.0 + far * side for side in (-1.0, 1.0) for far in (3e-3, 6e-4, 1e-4, 2e-5)]
+    loads = ", ".join(repr(critical * share) for share in shares)
+    decided = rows(tmp_path, text, f"&sweep parameter = 'horizontal_coefficient', values = {loads} /")
+    assert [row["verdict"] for row in decided] == [*4 * ["stable"], *4 * ["collapsed"]]
