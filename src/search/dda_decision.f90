@@ -98,7 +98,8 @@ contains
       call decide_graph(settings, system, contacts, bare, proof)
       if (proof%no_start) then
          call rest_under_dead_loads(settings, system, contacts, start, slides, n)
-         if (allocated(start)) call decide_graph(settings, system, contacts, bare, proof, start)
+         if (allocated(start) .and. .not. proof%unproven) &
+            & call decide_graph(settings, system, contacts, bare, proof, start)
          if (slides) call fall_at_once(proof)
          proof%n_factorisation = proof%n_factorisation + n
       end if
