@@ -311,6 +311,12 @@ contains
       else if (left%end == path_end%undecided) then
          call keep_limit(search, low, high, left, critical)
          critical%reason = left%proof%reason
+      else if (falls_right .and. falls_left .and. .not. right%value > left%value) then
+         ! where the coefficient does nothing it falls already
+         critical%verdict = verdict%collapsed
+         critical%falls = search%low &
+            & + (right%value - low)*(search%high - search%low)/(high - low)
+         call keep_collapse(scene, right, critical)
       else if (falls_right .and. .not. right%value - right%half > low) then
          critical%verdict = verdict%collapsed
          critical%falls = search%low

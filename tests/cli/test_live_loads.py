@@ -89,8 +89,10 @@ def test_a_dead_load_stays(tmp_path: Path) -> None:
     assert float(row["critical"]) == pytest.approx(TURNS - 4.0, rel=1e-9)
 
 
-def test_what_falls_without_live_loads_has_no_factor(tmp_path: Path) -> None:
-    (row,) = rows(tmp_path, SEARCH, PUSHED + "load 0 2 40000 0\n")
+@pytest.mark.parametrize("keys", ["", ", low = -5.0, high = 5.0", ", low = -5.0, high = 0.0"])
+def test_what_falls_without_live_loads_has_no_factor(tmp_path: Path, keys: str) -> None:
+    search = SEARCH.replace(" /", keys + " /")
+    (row,) = rows(tmp_path, search, PUSHED + "load 0 2 40000 0\n")
     assert row["verdict"] == "collapsed" and row["critical"] == ""
 
 
