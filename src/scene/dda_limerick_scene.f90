@@ -1,14 +1,13 @@
 !> The model of the original program that a deck describes, from its scene
 module dda_limerick_scene
-   use dda_boundary, only : boundary_t, constant_history, history_t, measured_point_t
-   use dda_cut_model, only : point_kind
+   use dda_boundary, only : boundary_t, measured_point_t
    use dda_deck, only : deck_t
    use dda_input, only : input_value_t
    use dda_kinds, only : wp
    use dda_limerick_analysis, only : limerick_constants_t
    use dda_limerick_blocks, only : blocks_model, inner_points
    use dda_limerick_model, only : finite_law, half_size, limerick_model_t
-   use dda_line_scene, only : law_of_joint
+   use dda_line_scene, only : law_of_joint, points_of_lines
    use dda_scene, only : scene_t
    use dda_settings, only : load_direction
    use dda_vector, only : along, right_normal
@@ -191,7 +190,7 @@ contains
       do j = 1, size(model%law)
          model%law(1, j) = finite_law(law_of_joint(deck, j))
       end do
-      call take_points(deck, scene, model%boundary)
+      call add_corners(deck, scene, model%boundary)
    end subroutine lines_model
 
    !> Materials with their weights and states at the beginning
@@ -221,56 +220,27 @@ contains
 
    !> Points that are held, loaded and measured; among the last the corners of the scene's blocks,
    !> from which its joints are told
-   pure subroutine take_points(deck, scene, boundary)
+   pure subroutine add_corners(deck, scene, boundary)
       type(deck_t), intent(in) :: deck
       !> The scene; edges that lie together in part are parted there
       type(scene_t), intent(in) :: scene
       type(boundary_t), intent(out) :: boundary
-      integer :: n(3), b, i, v
+      type(measured_point_t), allocatable :: measured(:)
+      integer :: b, n, v
 
-      associate (point => deck%cut%point, system => scene%system)
-         allocate (boundary%held(count(point%kind == point_kind%fixed)))
-         allocate (boundary%loaded(count(point%kind == point_kind%load)))
-         allocate (boundary%measured(count(point%kind == point_kind%measured) &
-            & + size(system%vertex, 2)))
-         n = 0
-         do i = 1, size(point)
-            if (point(i)%kind == point_kind%fixed) then
-               n(1) = n(1) + 1
-               boundary%held(n(1))%block = point(i)%block
-               boundary%held(n(1))%point = point(i)%place
-            else if (point(i)%kind == point_kind%load) then
-               n(2) = n(2) + 1
-               boundary%loaded(n(2))%block = point(i)%block
-               boundary%loaded(n(2))%point = point(i)%place
-               boundary%loaded(n(2))%force = force_of(deck, point(i)%source)
-            else if (point(i)%kind == point_kind%measured) then
-               n(3) = n(3) + 1
-               boundary%measured(n(3)) = measured_point_t(point(i)%block, point(i)%place)
-            end if
-         end do
-         if (allocated(scene%settings%boundary%bar)) boundary%bar = scene%settings%boundary%bar
+      call points_of_lines(deck, spread(.false., 1, size(deck%cut%area)), boundary)
+      if (allocated(scene%settings%boundary%bar)) boundary%bar = scene%settings%boundary%bar
+      n = size(boundary%measured)
+      associate (system => scene%system)
+         allocate (measured(n + size(system%vertex, 2)))
+         measured(:n) = boundary%measured
          do b = 1, size(system%area)
             do v = system%first_vertex(b), system%first_vertex(b + 1) - 1
-               boundary%measured(n(3) + v) = measured_point_t(b, system%vertex(:, v))
+               measured(n + v) = measured_point_t(b, system%vertex(:, v))
             end do
          end do
       end associate
-   end subroutine take_points
-
-   !> Force on a load point; one of which the analysis says nothing has none
-   pure type(history_t) function force_of(deck, source)
-      type(deck_t), intent(in) :: deck
-      !> Number of the load point
-      integer, intent(in) :: source
-
-      force_of = constant_history([0.0_wp, 0.0_wp])
-      if (.not. allocated(deck%file_analysis)) return
-      if (source > size(deck%file_analysis%load)) return
-      associate (record => deck%file_analysis%load(source)%record)
-         force_of%time = record(1, :)
-         force_of%value = record(2:3, :)
-      end associate
-   end function force_of
+      call move_alloc(measured, boundary%measured)
+   end subroutine add_corners
 
 end module dda_limerick_scene

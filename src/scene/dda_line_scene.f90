@@ -3,6 +3,7 @@ module dda_line_scene
    use dda_arch_scene, only : joint_law, material_of, settings_of, unit_weight
    use dda_bar, only : bar_t
    use dda_block_system, only : block_system_t, new_block_system
+   use dda_boundary, only : boundary_t, constant_history, history_t
    use dda_constants, only : pi
    use dda_contact_detection, only : find_contacts
    use dda_cut_model, only : cut_model_t, point_kind
@@ -15,11 +16,11 @@ module dda_line_scene
    use dda_limerick_analysis, only : limerick_joint_t, analysis_material_t
    use dda_material, only : friction_coefficient, joint_law_t, material_t
    use dda_scene, only : scene_t
-   use dda_text, only : to_text
    implicit none
    private
 
    public :: line_scene, check_line_scene, cut_lines, held_blocks, law_of_joint, line_system
+   public :: points_of_lines
 
    !> Friction angles from here on mean that a joint cannot slide [deg]
    real(wp), parameter :: no_slip_deg = 89.9_wp
@@ -29,9 +30,10 @@ module dda_line_scene
 
 contains
 
-   !> Cut the lines of a deck into blocks, once; a deck without lines is left as it is
+   !> Cut the lines of a deck into blocks, once, with the points that act on them; a deck without
+   !> lines is left as it is
    pure subroutine cut_lines(deck, error)
-      !> The deck; receives the blocks in place of the lines
+      !> The deck; receives the blocks in place of the lines, and the points
       type(deck_t), intent(inout) :: deck
       !> Lines that make no blocks
       type(error_t), allocatable, intent(out) :: error
@@ -39,7 +41,9 @@ contains
       if (.not. allocated(deck%lines)) return
       allocate (deck%cut)
       call cut_blocks(deck%lines, deck%cut, error)
-      if (.not. allocated(error)) deallocate (deck%lines)
+      if (allocated(error)) return
+      deallocate (deck%lines)
+      call points_of_lines(deck, held_blocks(deck%cut), deck%plan%boundary)
    end subroutine cut_lines
 
    !> The scene of the blocks that a deck's files make
@@ -66,10 +70,63 @@ contains
       end do
       call find_contacts(scene%system, edge_pair, law, scene%settings%penalty_ratio, &
          & scene%settings%n_dof, scene%contacts)
+      scene%settings%boundary = deck%plan%boundary
       if (size(split%bolt) == 0) return
       scene%settings%boundary%bar = bars_of(deck, split)
       allocate (scene%system%bar(size(split%bolt)))
    end subroutine line_scene
+
+   !> Points of the files that hold, load and measure blocks
+   pure subroutine points_of_lines(deck, fixed, boundary)
+      !> The deck of a case, with its blocks
+      type(deck_t), intent(in) :: deck
+      !> Whether a block needs no points to be held: (n_block)
+      logical, intent(in) :: fixed(:)
+      !> Receives the points
+      type(boundary_t), intent(inout) :: boundary
+      integer :: n(3), i
+
+      associate (point => deck%cut%point)
+         allocate (boundary%held(count(point%kind == point_kind%fixed .and. .not. &
+            & fixed(point%block))))
+         allocate (boundary%loaded(count(point%kind == point_kind%load)))
+         allocate (boundary%measured(count(point%kind == point_kind%measured)))
+         n = 0
+         do i = 1, size(point)
+            if (point(i)%kind == point_kind%fixed .and. .not. fixed(point(i)%block)) then
+               n(1) = n(1) + 1
+               boundary%held(n(1))%block = point(i)%block
+               boundary%held(n(1))%point = point(i)%place
+            else if (point(i)%kind == point_kind%load) then
+               n(2) = n(2) + 1
+               boundary%loaded(n(2))%block = point(i)%block
+               boundary%loaded(n(2))%point = point(i)%place
+               boundary%loaded(n(2))%force = force_of(deck, point(i)%source)
+            else if (point(i)%kind == point_kind%measured) then
+               n(3) = n(3) + 1
+               boundary%measured(n(3))%block = point(i)%block
+               boundary%measured(n(3))%point = point(i)%place
+            end if
+         end do
+      end associate
+   end subroutine points_of_lines
+
+   !> Force on a load point; one of which the analysis says nothing has none
+   pure function force_of(deck, source) result(force)
+      type(deck_t), intent(in) :: deck
+      !> Number of the load point
+      integer, intent(in) :: source
+      !> The force
+      type(history_t) :: force
+
+      force = constant_history([0.0_wp, 0.0_wp])
+      if (.not. allocated(deck%file_analysis)) return
+      if (source > size(deck%file_analysis%load)) return
+      associate (record => deck%file_analysis%load(source)%record)
+         force%time = record(1, :)
+         force%value = record(2:3, :)
+      end associate
+   end function force_of
 
    !> Bolts as bars. The stiffness of old files is that of a bar of length one
    pure function bars_of(deck, cut) result(bar)
@@ -106,19 +163,11 @@ contains
       type(error_t), allocatable, intent(out) :: error
       type(block_system_t) :: system
       character(len=:), allocatable :: problem
-      integer :: b
 
       problem = ""
-      b = pinned_block(deck%cut)
       call line_system(deck, deck%cut, system)
-      if (b > 0) then
-         problem = "expected blocks held by two fixed points or more, got block " &
-            & //to_text(b)//" with one: this version has no hinges; add a fixed point"
-      else if (all(system%equation == 0)) then
+      if (all(system%equation == 0)) then
          problem = "expected a block that can move, got only fixed ones; remove fixed points"
-      else if (has_forces(deck)) then
-         problem = "expected load points without forces, got forces; remove them " &
-            & //"or choose mode = 'limerick'"
       else if (.not. any(system%equation(deck%cut%pair%side(1)) > 0 &
          & .or. system%equation(deck%cut%pair%side(3)) > 0)) then
          problem = "expected coincident edges of blocks, got none: this version finds no other " &
@@ -198,32 +247,6 @@ contains
       if (.not. deck%joint%cohesion%given) law%cohesion = listed%cohesion
       if (.not. deck%joint%tension%given) law%tension = listed%tension
    end function law_of_joint
-
-   !> Whether forces act on load points
-   pure logical function has_forces(deck)
-      type(deck_t), intent(in) :: deck
-      integer :: i
-
-      has_forces = .false.
-      if (.not. allocated(deck%file_analysis)) return
-      do i = 1, size(deck%file_analysis%load)
-         if (any(abs(deck%file_analysis%load(i)%record(2:3, :)) > 0.0_wp)) has_forces = .true.
-      end do
-   end function has_forces
-
-   !> A block with fixed points in one place only, which may turn about it; 0 if there is none
-   pure integer function pinned_block(cut)
-      type(cut_model_t), intent(in) :: cut
-      logical :: held(size(cut%area))
-      integer :: i
-
-      held = held_blocks(cut)
-      pinned_block = 0
-      do i = 1, size(cut%point)
-         if (cut%point(i)%kind == point_kind%fixed .and. .not. held(cut%point(i)%block)) &
-            & pinned_block = cut%point(i)%block
-      end do
-   end function pinned_block
 
    !> Blocks that cannot move: those with two fixed points apart from one another
    pure function held_blocks(cut) result(held)

@@ -295,10 +295,8 @@ contains
       !> Ends of the range, from where the coefficient does nothing
       real(wp), intent(in) :: low, high
       type(scene_t), intent(in) :: scene
-      !> Where it falls to the right
-      type(side_t), intent(in) :: right
-      !> Where it falls to the left
-      type(side_t), intent(in) :: left
+      !> Where it falls to the right and to the left
+      type(side_t), intent(in) :: right, left
       !> Receives the verdict
       type(critical_t), intent(inout) :: critical
       logical :: falls_left, falls_right
@@ -311,15 +309,12 @@ contains
       else if (left%end == path_end%undecided) then
          call keep_limit(search, low, high, left, critical)
          critical%reason = left%proof%reason
-      else if (falls_right .and. falls_left .and. .not. right%value > left%value) then
-         ! where the coefficient does nothing it falls already
+      else if (falls_right .and. (.not. right%value - right%half > low .or. falls_left .and. .not. &
+         & right%value > left%value)) then
+         ! at the lower end, or where the coefficient does nothing
          critical%verdict = verdict%collapsed
-         critical%falls = search%low &
-            & + (right%value - low)*(search%high - search%low)/(high - low)
-         call keep_collapse(scene, right, critical)
-      else if (falls_right .and. .not. right%value - right%half > low) then
-         critical%verdict = verdict%collapsed
-         critical%falls = search%low
+         critical%falls = search%low + max(0.0_wp, right%value - right%half - low) &
+            & *(search%high - search%low)/(high - low)
          call keep_collapse(scene, right, critical)
       else if (falls_left .and. .not. left%value + left%half < high) then
          critical%verdict = verdict%collapsed

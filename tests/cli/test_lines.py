@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+import math
 from pathlib import Path
 
 import pytest
@@ -120,7 +121,7 @@ def test_check_accepts_a_deck_of_lines(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("fixed", "loads", "wanted"),
     [
-        ("0.5 0.5 0.5 0.5\n", 0, "two fixed points"),
+        ("0.5 0.5 0.5 0.5\n", 0, "expected coincident edges"),
         ("0.2 0.5 0.2 0.5\n0.7 0.5 0.7 0.5\n", 0, "only fixed ones"),
         ("", 0, "expected coincident edges"),
     ],
@@ -226,6 +227,69 @@ def test_a_changed_file_of_lines_is_computed_anew(tmp_path: Path) -> None:
     assert run_dda("export", "ring.nml", cwd=tmp_path).returncode == 0
     assert run_dda("run", "a.nml", "--resume", cwd=tmp_path).returncode == 0
     assert ",collapsed," in (tmp_path / "a" / "results.csv").read_text()
+
+
+def block_on_ground(points: str, x: float = 0.0) -> str:
+    """Lines of a block of 1 x 2 m on a ground, moved to the right, with two fixed points and more."""
+    ground, block = [(-3, -1), (4, -1), (4, 0), (-3, 0)], [(0, 0), (1, 0), (1, 2), (0, 2)]
+    sides = [(*a, *b) for ring in (ground, block) for a, b in zip(ring, ring[1:] + ring[:1])]
+    sides.remove((0, 0, 1, 0))
+    rows = "".join(f"{a + x!r} {b} {c + x!r} {d} 1\n" for a, b, c, d in sides)
+    held = f"{x - 2!r} -0.5 {x - 2!r} -0.5\n{x + 3!r} -0.5 {x + 3!r} -0.5\n"
+    return f"0.01\n{len(sides)} 0 0 0 {{}} 0\n{rows}{held}{points}"
+
+
+ANALYSIS = """<DDA><Analysis><Numtimesteps timesteps="20"/><Maxtimestep maxtimestep="0.01"/>
+<Maxdisplacement maxdisplacement="0.002"/><Gravaccel value="10"/>
+<Blockmaterial type="1"><Unitmass> 2000 </Unitmass><Unitweight> 20000 </Unitweight><Youngsmod> 1e10 </Youngsmod>
+<Poissonratio> 0.2 </Poissonratio></Blockmaterial>
+<Jointproperties type="1"><Friction> 60 </Friction><Cohesion> 0 </Cohesion><Tensile> 0 </Tensile></Jointproperties>
+<Loadpointlist><Loadpoint numpoints="{}"> {} </Loadpoint></Loadpointlist></Analysis></DDA>
+"""
+
+
+@pytest.mark.skipif(not HAS_XML, reason="no libxml2")
+@pytest.mark.parametrize("x", [0.0, 2.0**20])
+@pytest.mark.parametrize("records", ["1 0 {force} 0", "2 0 0 0; 5 {force} 0"])
+def test_forces_on_load_points_topple_a_block(tmp_path: Path, x: float, records: str) -> None:
+    """40 kN half a metre from its corner, a push 1.5 m above it: it turns from 40/3 kN on, at whatever time."""
+    (tmp_path / "a.geo").write_text(block_on_ground(f"{x + 0.5!r} 1.5\n", x).format("2 1 0"))
+    deck = "&scene kind='lines', geometry='a.geo', analysis='a.ana' /\n"
+    for factor, verdict in ((0.999, "stable"), (1.001, "collapsed")):
+        count, rest = records.split(" ", 1)
+        (tmp_path / "a.ana").write_text(ANALYSIS.format(count, rest.format(force=factor * 4e4 / 3.0)))
+        row = row_of(tmp_path, f"d{verdict}", deck)
+        assert row["verdict"] == verdict
+        # the file of blocks of it says the same
+        assert run_dda("export", f"d{verdict}.nml", cwd=tmp_path).returncode == 0
+        (tmp_path / "e.nml").write_text(f"&scene kind='blocks', geometry='d{verdict}.blocks' /\n")
+        assert row_of(tmp_path, "e", (tmp_path / "e.nml").read_text())["verdict"] == verdict
+
+
+@pytest.mark.skipif(not HAS_XML, reason="no libxml2")
+@pytest.mark.parametrize("x", [0.0, 2.0**20])
+def test_a_single_fixed_point_takes_a_force_that_acts_there(tmp_path: Path, x: float) -> None:
+    deck = "&scene kind='lines', geometry='a.geo', analysis='a.ana' /\n"
+    (tmp_path / "a.ana").write_text(ANALYSIS.format(1, "0 1e6 0"))
+    for held, verdict in ((f"{x + 0.5!r} 1.5 {x + 0.5!r} 1.5\n", "stable"), ("", "collapsed")):
+        text = block_on_ground(f"{held}{x + 0.5!r} 1.5\n", x).format("3 1 0" if held else "2 1 0")
+        (tmp_path / "a.geo").write_text(text)
+        assert row_of(tmp_path, verdict, deck)["verdict"] == verdict
+
+
+@pytest.mark.parametrize("x", [0.0, 2.0**20])
+def test_measured_points_of_a_file_are_told(tmp_path: Path, x: float) -> None:
+    """The ground moves to the left by 4.5 m/s2; the block slides by what friction does not bear."""
+    (tmp_path / "a.geo").write_text(block_on_ground(f"{x + 0.25!r} 1.9\n", x).format("2 0 1"))
+    motion = "&ground pulse='rectangular', amplitude=-4.5, duration=1.0 /\n&joint friction_deg=20 /\n"
+    row_of(tmp_path, "a", "&scene kind='lines', geometry='a.geo' /\n" + motion
+           + "&analysis mode='dynamic', geometry='current', start='static',\n"
+           "   duration=0.2, time_step=1e-3, steps=1000 /\n")
+    with (tmp_path / "a" / "points.csv").open(newline="") as table:
+        last = list(csv.DictReader(table))[-1]
+    assert float(last["x"]) - x == pytest.approx(0.25 + float(last["u"]), abs=1e-9)
+    slides = 0.5 * (4.5 - 9.81 * math.tan(math.radians(20.0))) * 0.2**2
+    assert float(last["u"]) == pytest.approx(slides, rel=0.02)
 
 
 @pytest.mark.parametrize("mode", ["static", "limerick"])
