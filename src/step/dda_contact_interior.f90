@@ -12,7 +12,7 @@
 module dda_contact_interior
    use dda_assembly, only : equations_t
    use dda_contact_view, only : contact_view_t
-   use dda_face_passes, only : settle_faces
+   use dda_face_passes, only : settle_faces, settle_many_faces
    use dda_interior_problem, only : factor_springs, interior_t, pose, problem_t, respond
    use dda_interior_problem, only : see_bounds, see_lack, see_openings
    use dda_joint_springs, only : joint_springs_t
@@ -37,8 +37,8 @@ contains
 
    !> Forces of some joints if these keep nearly to the faces that they had: of all forces that stop
    !> the blocks those nearest to the ones before
-   pure subroutine keep_to_faces(equations, springs, view, joint, before, moved, force, passes, &
-      & agreed)
+   pure subroutine keep_to_faces(equations, springs, view, joint, many, before, moved, force, &
+      & passes, agreed)
       !> Blocks assembled
       type(equations_t), intent(in) :: equations
       !> The springs of the joints
@@ -47,6 +47,8 @@ contains
       type(contact_view_t), intent(in) :: view
       !> Numbers of the joints: (n)
       integer, intent(in) :: joint(:)
+      !> Whether they are many
+      logical, intent(in) :: many
       !> Forces of all joints in the step before: (3, n_joint) [N/m]
       real(wp), intent(in) :: before(:, :)
       !> Motion of all blocks by these: (n_dof, n_equation) [m]
@@ -62,7 +64,11 @@ contains
 
       call pose(equations, springs, view, joint, before, moved, p)
       call begin(springs, view, before, moved, lift, p, x)
-      call settle_faces(equations, springs, view, p, x, passes, agreed)
+      if (many) then
+         call settle_many_faces(equations, springs, view, p, x, passes, agreed)
+      else
+         call settle_faces(equations, springs, view, p, x, passes, agreed)
+      end if
       if (agreed) call take_forces(equations, springs, view, x, p, force)
    end subroutine keep_to_faces
 

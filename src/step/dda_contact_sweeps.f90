@@ -37,6 +37,9 @@ module dda_contact_sweeps
    integer, parameter :: few = 2
    !> Groups of more joints than this are swept for long before interior springs are tried
    integer, parameter :: many = 300
+   !> Gap by which a look at so many sees forces change, over what no step notices; of speeds, which
+   !> the next step begins with, a finer one
+   real(wp), parameter :: look = 1.0e-3_wp, look_at_speeds = 3.0e-5_wp
 
 contains
 
@@ -103,19 +106,22 @@ contains
       real(wp), intent(inout) :: motion(:, 0:)
       !> Whether it is settled
       logical, intent(out) :: settled
-      real(wp) :: coarse_enough(2)
+      real(wp) :: coarse_enough(2), seen(2)
 
       if (size(joint) <= few) then
          call sweep_group(joint, sweeps_for%rounding, springs, view, noise, enough, force, motion, &
             & settled)
          return
       end if
-      call sweep_group(joint, sweeps_for%a_look, springs, view, noise, enough, force, motion, &
+      seen = enough
+      if (size(joint) > many) seen(2) = max(enough(2), merge(look_at_speeds, look, state%rates) &
+         & *state%unseen)
+      call sweep_group(joint, sweeps_for%a_look, springs, view, noise, seen, force, motion, &
          & settled)
       if (settled) return
       if (.not. state%rates .and. is_redundant(view, springs, joint)) then
-         call keep_to_faces(equations, springs, view, joint, state%multiplier, moved, force, &
-            & state%passes, settled)
+         call keep_to_faces(equations, springs, view, joint, size(joint) > many, &
+            & state%multiplier, moved, force, state%passes, settled)
          if (settled) call move_group(equations, springs, view, joint, force, motion)
          if (settled) return
       else

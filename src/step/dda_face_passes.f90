@@ -15,7 +15,7 @@ module dda_face_passes
    implicit none
    private
 
-   public :: settle_faces
+   public :: settle_faces, settle_many_faces
 
    !> Compliance of a force that does not follow its opening, over that of the blocks
    real(wp), parameter :: free = 1.0e20_wp
@@ -27,6 +27,18 @@ module dda_face_passes
    integer, parameter :: max_passes = 5
    !> Most solutions
    integer, parameter :: max_turns = 24
+   !> Compliances of the springs of many joints over that of few, tried one after the other: where
+   !> the firmest find no faces, soft ones find some in few passes from farther away, and the faces
+   !> of each are near those of the next
+   real(wp), parameter :: softness(4) = [1.0e-3_wp, 1.0_wp, 3.0e-2_wp, 1.0e-3_wp]
+   !> Where more than this share of many joints change, most of what is held is wrong
+   real(wp), parameter :: most_changes = 0.2_wp
+   !> Most passes of many joints with springs of one softness
+   integer, parameter :: many_passes = 12
+   !> Passes that do not bring noticeably fewer changes and end them
+   integer, parameter :: patience = 2
+   !> What counts as noticeable
+   real(wp), parameter :: falling = 0.7_wp
 
 contains
 
@@ -82,6 +94,88 @@ contains
          last = changes
       end do
    end subroutine settle_faces
+
+   !> The same of many joints, which rather end than keep to the way that the loads have led them:
+   !> with ever firmer springs, as far as these agree
+   pure subroutine settle_many_faces(equations, springs, view, p, x, passes, agreed)
+      !> Blocks assembled
+      type(equations_t), intent(in) :: equations
+      !> The springs of the joints
+      type(joint_springs_t), intent(in) :: springs
+      !> What the joints see
+      type(contact_view_t), intent(in) :: view
+      !> The problem; the size of a force is given, its springs are as they were in the end
+      type(problem_t), intent(inout) :: p
+      !> Forces and motion
+      type(interior_t), intent(inout) :: x
+      !> Factorisations so far
+      integer, intent(inout) :: passes
+      !> Whether the faces agree with springs as soft as those of few joints at the least
+      logical, intent(out) :: agreed
+      type(joint_face_t) :: face(size(p%joint))
+      type(interior_t) :: firmer
+      real(wp) :: soft(3, size(p%joint))
+      logical :: ended
+      integer :: i, k
+
+      soft = p%soft
+      agreed = .false.
+      firmer = x
+      do k = 1, size(softness)
+         where (.not. p%follows) p%soft = softness(k)*soft
+         if (k == 2) firmer = x
+         if (k <= 2) then
+            call see_lack(equations, springs, view, firmer, p)
+            do i = 1, size(face)
+               call read_face(springs, p, firmer, i, face(i))
+            end do
+         end if
+         call pass_faces(equations, springs, view, p, firmer, face, passes, ended)
+         agreed = agreed .or. ended
+         if (ended) x = firmer
+         if (ended .eqv. k == 1) exit
+      end do
+      p%soft = soft
+   end subroutine settle_many_faces
+
+   !> Solve with the faces as they are and change those that disagree, again and again
+   pure subroutine pass_faces(equations, springs, view, p, x, face, passes, agreed)
+      !> Blocks assembled
+      type(equations_t), intent(in) :: equations
+      !> The springs of the joints
+      type(joint_springs_t), intent(in) :: springs
+      !> What the joints see
+      type(contact_view_t), intent(in) :: view
+      type(problem_t), intent(inout) :: p
+      !> Forces and motion
+      type(interior_t), intent(inout) :: x
+      !> Faces: (n_joint)
+      type(joint_face_t), intent(inout) :: face(:)
+      !> Factorisations so far
+      integer, intent(inout) :: passes
+      !> Whether the faces agree
+      logical, intent(out) :: agreed
+      integer :: changes, least, pass, stale
+
+      agreed = .false.
+      stale = 0
+      least = huge(least)/2
+      do pass = 1, many_passes
+         passes = passes + 1
+         call hold_faces(springs, face, p, x)
+         call factor_springs(equations, springs, p)
+         if (.not. p%factor%usable) return
+         call move_on(equations, springs, view, p, x)
+         call change_faces(springs, p, x, face, changes)
+         agreed = changes == 0
+         if (agreed) exit
+         stale = merge(0, stale + 1, changes < falling*least)
+         if (stale == patience .or. changes > most_changes*size(face)) return
+         least = min(least, changes)
+      end do
+      ! what rounding has left
+      if (agreed) call move_on(equations, springs, view, p, x)
+   end subroutine pass_faces
 
    !> Add what forces and motion lack, but to forces that their faces give
    pure subroutine move_on(equations, springs, view, p, x)
