@@ -93,6 +93,9 @@ contains
             if (least%factor < no_limit) exit
          end do
       end do
+      do k = 1, size(arc)
+         call find_bounded(arc, k, 0.0_wp, 1.0_wp, chase, least)
+      end do
       if (least%factor >= no_limit) return
       call begin_walk(graph, dead, chase%walk)
       do k = 1, size(arc)
@@ -122,6 +125,37 @@ contains
       end do
       goes_on = .true.
    end function goes_on
+
+   !> Find a load of an arc that not every factor carries, if no other was found. Loads that every
+   !> factor carries are a cone: a piece has none if its ends and the load in which its tangents
+   !> meet are in it
+   pure recursive subroutine find_bounded(arc, k, from, to, chase, least)
+      !> The live loads: (n)
+      type(load_arc_t), intent(in) :: arc(:)
+      !> Number of the arc
+      integer, intent(in) :: k
+      !> Shares of the way along it
+      real(wp), intent(in) :: from, to
+      !> What the search works on
+      type(chase_t), intent(in) :: chase
+      !> The least factor so far
+      type(least_factor_t), intent(inout) :: least
+      type(limit_load_t) :: limit
+      real(wp) :: live(3, size(chase%dead, 2)), middle
+
+      if (size(arc(k)%block) == 0) return
+      middle = 0.5_wp*(from + to)
+      if (least%factor >= no_limit) call descend(arc, k, from, chase, least)
+      if (least%factor >= no_limit) call descend(arc, k, to, chase, least)
+      if (least%factor >= no_limit) call descend(arc, k, middle, chase, least)
+      if (least%factor < no_limit .or. (to - from)*(arc(k)%to - arc(k)%from) <= chase%near) return
+      live = 0.0_wp
+      call add_live(2.0_wp*weights(middle) - 0.5_wp*(weights(from) + weights(to)), arc(k), live)
+      call find_limit(chase%graph, chase%dead, live, gap, limit, chase%stands)
+      if (limit%state /= limit_state%found) return
+      call find_bounded(arc, k, from, middle, chase, least)
+      call find_bounded(arc, k, middle, to, chase, least)
+   end subroutine find_bounded
 
    !> Pass a load: carry it at the least factor so far, or go down from it
    pure subroutine pass(arc, k, share, chase, least)
