@@ -78,7 +78,8 @@ class Copy:
         path = self.root / fault.path
         if "parameter" not in fault.before:
             return runs(self.ran[program].get(path, {}), path, fault.line)
-        return any(any(counts.values()) and (other == path or f"use {path.stem}," in other.read_text())
+        return any(other.suffix == ".f90" and any(counts.values())
+                   and (other == path or f"use {path.stem}," in other.read_text())
                    for other, counts in self.ran[program].items())
 
     def count(self, program: str) -> None:

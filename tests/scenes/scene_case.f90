@@ -6,7 +6,9 @@ module scene_case
    use dda_deck, only : deck_t
    use dda_deck_sweep, only : turn_to_case
    use dda_error, only : error_t
+   use dda_kinds, only : wp
    use dda_read_deck, only : read_deck
+   use dda_restart, only : save_restart
    use dda_scene, only : scene_t
    use dda_scene_check, only : check_scene
    use dda_write_tables, only : told_blocks_t
@@ -15,12 +17,10 @@ module scene_case
    implicit none
    private
 
-   public :: told_t, tell
+   public :: told_t, tell, write_text
 
    !> What is told of a case
    type :: told_t
-      !> The case, computed
-      type(case_t) :: this
       !> Its row of results.csv; `refused` is the verdict of what cannot be read
       type(result_row_t) :: row
       !> Its rows of joints.csv
@@ -29,24 +29,35 @@ module scene_case
       type(told_blocks_t) :: blocks
       !> What stands beside it; why it was refused
       character(len=:), allocatable :: remark
+      !> Velocities of the blocks at the end of a decision: (n_dof, n_block)
+      real(wp), allocatable :: velocity(:, :)
+      !> Forces of its bars: (n_bar) [N/m]
+      real(wp), allocatable :: bar_force(:)
+      !> Whether blocks are taken away: (n_block)
+      logical, allocatable :: absent(:)
    end type told_t
 
 contains
 
    !> Compute the first case of a deck
-   subroutine tell(groups, told, blocks)
+   subroutine tell(groups, told, blocks, restart)
       !> Lines of the deck, parted by |
       character(len=*), intent(in) :: groups
-      type(told_t), intent(out) :: told
+      !> What is told of it; begun anew here, for compilers write that out at each call otherwise
+      type(told_t), intent(inout) :: told
       !> Lines of its file of blocks, likewise
       character(len=*), intent(in), optional :: blocks
+      !> File that receives the end of a run in time
+      character(len=*), intent(in), optional :: restart
       character(len=*), parameter :: name = "scene_case"
       character(len=:), allocatable :: head
       character(len=1) :: none(0)
+      type(case_t) :: this
       type(deck_t) :: deck, work
       type(error_t), allocatable :: error
       type(scene_t) :: scene
 
+      call begin_anew(told)
       head = ""
       if (present(blocks)) then
          head = "&scene kind = 'blocks', geometry = '"//name//".blocks' /"//new_line("a")
@@ -61,10 +72,24 @@ contains
          told%remark = error%message
          return
       end if
-      call prepare_case(work, told%this)
-      call compute_case(told%this)
-      call tell_case(told%this, told%row, told%joint, told%blocks, told%remark)
+      call prepare_case(work, this)
+      call compute_case(this)
+      call tell_case(this, told%row, told%joint, told%blocks, told%remark)
+      associate (system => this%decision%system)
+         if (allocated(system%velocity)) told%velocity = system%velocity
+         if (allocated(system%bar)) told%bar_force = system%bar%force
+         if (allocated(system%absent)) told%absent = system%absent
+         if (present(restart)) call save_restart(restart, this%scene%settings, system, &
+            & this%decision%contacts, this%onward, error)
+      end associate
    end subroutine tell
+
+   !> Forget what was told
+   subroutine begin_anew(told)
+      type(told_t), intent(out) :: told
+
+      told%remark = ""
+   end subroutine begin_anew
 
    !> Write a text to a file
    subroutine write_text(file, text)
