@@ -114,6 +114,9 @@ function(add_pfunit_ctest name)
     Fortran_MODULE_DIRECTORY "${CMAKE_CURRENT_BINARY_DIR}/mod/${name}")
   target_include_directories(${name} PRIVATE
     "${CMAKE_CURRENT_BINARY_DIR}/mod/${name}" "${CMAKE_CURRENT_SOURCE_DIR}")
+  # Tests run once what the compiler would take minutes to make fast.
+  target_compile_options(${name} PRIVATE
+    $<$<AND:$<Fortran_COMPILER_ID:GNU>,$<CONFIG:Release>>:-O0>)
   # Without PRIVATE, as pFUnit does it: CMake does not let the two forms be mixed on a target.
   target_link_libraries(${name} ${arg_LINK_LIBRARIES} funit)
 
