@@ -4,7 +4,8 @@ module dda_export
    use, intrinsic :: iso_fortran_env, only : error_unit
    use dda_arch_lines, only : arch_analysis, arch_lines, what_is_lost
    use dda_command_line, only : command_t, name_of
-   use dda_deck, only : deck_error, deck_t, scene_kind
+   use dda_deck, only : deck_error, deck_t, place_of, scene_kind
+   use dda_deck_keys, only : key_index
    use dda_deck_sweep, only : case_deck, n_cases
    use dda_error, only : error_line, error_t
    use dda_limerick_analysis, only : limerick_analysis_t
@@ -40,9 +41,10 @@ contains
       do i = 1, size(command%name)
          call read_deck(name_of(command, i), command%setting, deck, error)
          if (.not. allocated(error)) call cut_lines(deck, error)
-         if (.not. allocated(error) .and. deck%scene%kind%word == "blocks") call deck_error(error, &
-            & "dda export needs scene%kind 'arch' or 'lines', got " &
-            & //"'blocks'; copy the file that it names", deck, deck%scene%kind%place)
+         if (.not. allocated(error) .and. deck%scene%kind%word == "blocks") &
+            & call deck_error(error, "dda export needs scene%kind 'arch' or 'lines', got " &
+            & //"'blocks'; copy the file that it names", deck, &
+            & place_of(deck, key_index("scene", "kind")))
          if (allocated(error)) then
             write (error_unit, "(a)") error_line(error)
             deck_status = exit_status%bad_input
@@ -113,7 +115,7 @@ contains
       else
          if (.not. has_one_law(deck)) call deck_error(error, "expected joints of one law, got " &
             & //"several: a file of blocks has laws of pairs of block materials; give the law by " &
-            & //"the keys of &joint", deck, deck%scene%geometry%place)
+            & //"the keys of &joint", deck, place_of(deck, key_index("scene", "geometry")))
          if (.not. allocated(error)) text = line_text(deck)
          losses = line_losses(deck)
       end if

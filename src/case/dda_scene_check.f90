@@ -1,13 +1,12 @@
 !> Checks of a deck that need its scene: whether its modes can run the blocks
 module dda_scene_check
    use dda_block_scene, only : floating_block
-   use dda_deck, only : deck_error, deck_t, file_beside, keeps_velocities
+   use dda_deck, only : deck_error, deck_place_t, deck_t, file_beside, keeps_velocities, place_of
    use dda_deck_check_case, only : check_model
    use dda_deck_keys, only : deck_key, key_index
    use dda_deck_scene, only : deck_scene
    use dda_deck_sweep, only : n_cases, turn_to_case
    use dda_error, only : error_t, fatal_error
-   use dda_input, only : deck_place_t
    use dda_kinds, only : wp
    use dda_limerick_blocks, only : check_limerick_blocks
    use dda_line_scene, only : check_line_scene, cut_lines
@@ -112,7 +111,7 @@ contains
       do s = 1, size(deck%sweeps)
          if (deck%sweeps(s)%parameter%key == key) place = deck%sweeps(s)%place
       end do
-      if (deck%searched%key == key) place = deck%search%parameter%place
+      if (deck%searched%key == key) place = place_of(deck, key_index("search", "parameter"))
    end function factor_place
 
    !> Check that the modes of a deck can run the blocks that were cut from its lines
@@ -198,7 +197,7 @@ contains
       inquire (file=file_beside(deck, name), exist=exists)
       if (.not. exists) then
          call deck_error(error, "there is no restart file '"//name//"'; check the name", deck, &
-            & deck%analysis%restart%place)
+            & place_of(deck, key_index("analysis", "restart")))
       else if (n_cases(deck) == 1) then
          call deck_scene(deck, scene)
          call load_restart(file_beside(deck, name), scene%settings, scene%system, &

@@ -6,7 +6,7 @@ module dda_deck
    use dda_cut_model, only : cut_model_t
    use dda_kinds, only : wp
    use dda_error, only : error_t, fatal_error
-   use dda_input, only : deck_place_t, input_t, input_value_t
+   use dda_input, only : input_t
    use dda_limerick_analysis, only : limerick_analysis_t
    use dda_line_model, only : line_model_t
    use dda_text, only : lower_case
@@ -16,11 +16,19 @@ module dda_deck
    implicit none
    private
 
-   public :: deck_t, deck_sweep_t, parameter_t
+   public :: deck_t, deck_value_t, deck_sweep_t, deck_place_t, parameter_t
    public :: ground_record_t
    public :: geometry_of, keeps_velocities, place_of, deck_error
    public :: scene_kind
    public :: add_file_mark, file_beside
+
+   !> Where a value was written
+   type :: deck_place_t
+      !> Line of the deck, or number of the --set; 0 for a default
+      integer :: line = 0
+      !> Whether it came from a --set
+      logical :: from_command = .false.
+   end type deck_place_t
 
    !> A key, or one item of its list
    type :: parameter_t
@@ -29,6 +37,24 @@ module dda_deck
       !> Item of a list, counted from 1; 0 for a single value
       integer :: item = 0
    end type parameter_t
+
+   !> Value of one key
+   type :: deck_value_t
+      !> Whether the deck, a --set or a sweep gives it
+      logical :: given = .false.
+      !> Where
+      type(deck_place_t) :: place
+      !> Number, whole numbers too
+      real(wp) :: number = 0.0_wp
+      !> Flag
+      logical :: flag = .false.
+      !> Text, words too; unallocated where the key takes none
+      character(len=:), allocatable :: text
+      !> List of numbers; unallocated where the key takes none: (n)
+      real(wp), allocatable :: numbers(:)
+      !> List of words; unallocated where the key takes none: (n)
+      character(len=word_length), allocatable :: texts(:)
+   end type deck_value_t
 
    !> One &sweep
    type :: deck_sweep_t
@@ -57,7 +83,7 @@ module dda_deck
       !> Name of the file
       character(len=:), allocatable :: file
       !> Values, in the order of the registry: (0:n), 0 stands for a key that does not exist
-      type(input_value_t), allocatable :: value(:)
+      type(deck_value_t), allocatable :: value(:)
       !> Where each group begins, line 0 if it is not there: (n)
       type(deck_place_t), allocatable :: group(:)
       !> What is searched; key 0 if nothing is

@@ -1,14 +1,13 @@
 !> Check what a deck searches and sweeps, then every case, before anything is computed
 module dda_deck_check
    use dda_case_choice, only : choose_cases
-   use dda_input, only : deck_place_t
    use dda_kinds, only : wp
    use dda_error, only : error_t
    use dda_text, only : to_text
    use dda_deck_key, only : key_t, key_kind
    use dda_deck_keys, only : deck_key, key_index, group_index
    use dda_deck_words, only : full_name
-   use dda_deck, only : deck_t, parameter_t, deck_error, place_of
+   use dda_deck, only : deck_t, deck_place_t, parameter_t, deck_error, place_of
    use dda_deck_parameter, only : find_parameter, parameter_name
    use dda_deck_sweep, only : n_cases, turn_to_case
    use dda_deck_check_case, only : check_case
@@ -46,8 +45,8 @@ contains
 
       kind = trim(deck%scene%kind%word)
       if (kind /= "arch" .and. .not. deck%scene%geometry%given) then
-         call deck_error(error, "scene%kind = '"//kind//"' needs scene%geometry, a file of "//kind &
-            & //"; name one", deck, deck%scene%kind%place)
+         call deck_error(error, "scene%kind = '"//kind//"' needs scene%geometry, a file of "// &
+            kind//"; name one", deck, place_of(deck, key_index("scene", "kind")))
       else if (kind /= "arch" .and. deck%arch%given) then
          call deck_error(error, "&arch has no effect: scene%kind is '"//kind// &
             "'; remove one of the two", deck, deck%group(group_index("arch")))
@@ -81,7 +80,7 @@ contains
       type(key_t) :: key
 
       if (.not. deck%search%given) return
-      place = deck%search%parameter%place
+      place = place_of(deck, key_index("search", "parameter"))
       call find_parameter(deck%search%parameter%text, unused, problem)
       if (len(problem) == 0) then
          key = deck_key(deck%searched%key)

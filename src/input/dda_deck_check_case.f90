@@ -1,16 +1,15 @@
 !> What the keys of one case must be to one another
 module dda_deck_check_case
-   use dda_input, only : deck_place_t
    use dda_kinds, only : wp
    use dda_error, only : error_t
    use dda_text, only : to_text
    use dda_deck_keys, only : deck_key, key_index, group_index
-   use dda_deck, only : deck_t, deck_error, geometry_of, keeps_velocities, scene_kind, place_of
+   use dda_deck, only : deck_t, deck_place_t, deck_error, geometry_of, keeps_velocities, &
+      scene_kind, place_of
    use dda_deck_check_ground, only : check_ground
    use dda_deck_check_live, only : check_live, check_strength
    use dda_deck_parameter, only : parameter_name
-   use dda_deck_set, only : put_number
-   use dda_key_values, only : number_problem
+   use dda_deck_set, only : put_number, number_problem
    use dda_deck_words, only : full_name
    use dda_model_table, only : model_problem, search_problem
    implicit none
@@ -40,13 +39,13 @@ contains
       if (.not. keeps_velocities(deck) .and. .not. (deck%load%gravity%number > 0.0_wp &
          .or. deck%material%unit_weight%given .or. deck%scene%analysis%given &
          .or. deck%scene%kind%word == "blocks" .and. deck%analysis%mode%word /= "limerick")) then
-         call deck_error(error, "a static analysis needs a weight: load%gravity is 0 and " &
-            & //"material%unit_weight is not given; give one of them", deck, &
-            & deck%load%gravity%place)
+         call deck_error(error, "a static analysis needs a weight: load%gravity is 0 and "// &
+            "material%unit_weight is not given; give one of them", deck, &
+            deck%value(key_index("load", "gravity"))%place)
       else if (deck%analysis%unknowns%given .and. all(deck%analysis%unknowns%whole /= [3, 6])) then
-         call deck_error(error, "analysis%unknowns must be 3 or 6, got " &
-            & //to_text(deck%analysis%unknowns%whole)//"; choose one of the two", deck, &
-            & deck%analysis%unknowns%place)
+         call deck_error(error, "analysis%unknowns must be 3 or 6, got "// &
+            to_text(deck%analysis%unknowns%whole)//"; choose one of the two", deck, &
+            place_of(deck, key_index("analysis", "unknowns")))
       else
          if (scene_kind(deck) == "arch") call check_shape(deck, error)
          if (allocated(error) .or. deck%searched%key == 0) return
@@ -65,19 +64,21 @@ contains
       kind = trim(scene_kind(deck))
       problem = model_problem(kind, mode, trim(geometry_of(deck)))
       if (len(problem) > 0) then
-         call deck_error(error, "expected a geometry that mode = '"//mode//"' of scene%kind = '" &
-            & //kind//"' runs, got '"//trim(geometry_of(deck))//"': "//problem &
-            & //"; 'dda help models' lists them", deck, deck%analysis%geometry%place)
+         call deck_error(error, "expected a geometry that mode = '"//mode//"' of scene%kind = '"// &
+            kind//"' runs, got '"//trim(geometry_of(deck))//"': "//problem// &
+            "; 'dda help models' lists them", deck, &
+            place_of(deck, key_index("analysis", "geometry")))
          return
       end if
       if (deck%searched%key == 0) return
       problem = search_problem(deck_key(deck%searched%key), kind, mode)
       if (mode == "limerick" .and. keeps_velocities(deck)) &
          problem = "with velocities it ends 'completed', neither stable nor collapsed"
-      if (len(problem) > 0) call deck_error(error, "search%parameter: expected a key that " &
-         & //"mode = '"//trim(deck%analysis%mode%word)//"' of scene%kind = '"//kind &
-         & //"' searches, got "//full_name(deck_key(deck%searched%key))//": "//problem &
-         & //"; 'dda help models' lists them", deck, deck%search%parameter%place)
+      if (len(problem) > 0) call deck_error(error, "search%parameter: expected a key that "// &
+         "mode = '"//trim(deck%analysis%mode%word)//"' of scene%kind = '"//kind// &
+         "' searches, got "//full_name(deck_key(deck%searched%key))//": "//problem// &
+         "; 'dda help models' lists them", deck, &
+         place_of(deck, key_index("search", "parameter")))
    end subroutine check_model
 
    !> Check that the mode and the geometry have a use for the keys that are given
@@ -174,9 +175,9 @@ contains
       type(deck_place_t) :: place
       integer :: n, i
 
-      place = deck%arch%joints_deg%place
+      place = deck%value(key_index("arch", "joints_deg"))%place
       problem = ""
-      associate (joints => deck%arch%joints_deg%numbers)
+      associate (joints => deck%value(key_index("arch", "joints_deg"))%numbers)
          n = size(joints)
          if (n < 2) then
             problem = "must be two angles or more, got "//to_text(n)// &
@@ -211,7 +212,7 @@ contains
 
       if (.not. deck%arch%half_angle_deg%given) return
       half_angle = deck%arch%half_angle_deg%number
-      associate (joints => deck%arch%joints_deg%numbers)
+      associate (joints => deck%value(key_index("arch", "joints_deg"))%numbers)
          last = joints(size(joints))
       end associate
       if (.not. abs(last - half_angle) > same_angle) return
@@ -245,9 +246,9 @@ contains
 
       call search_bracket(deck, low, high)
       if (.not. low > -huge(low) .or. .not. high < huge(high)) then
-         call deck_error(error, "a search for "//parameter_name(deck%searched) &
-            & //" needs search%low and search%high, which have no default; give both", deck, &
-            & deck%search%parameter%place)
+         call deck_error(error, "a search for "//parameter_name(deck%searched)// &
+            " needs search%low and search%high, which have no default; give both", deck, &
+            place_of(deck, key_index("search", "parameter")))
       else if (.not. low < high) then
          call deck_error(error, "search%low must be below search%high, got "//to_text(low)// &
             " and "//to_text(high)//"; make low the smaller one", deck, &
@@ -270,7 +271,7 @@ contains
 
       associate (bound => deck%value(key_index("search", name)))
          if (.not. bound%given) return
-         problem = number_problem(deck_key(deck%searched%key), bound%number)
+         problem = number_problem(deck%searched%key, bound%number)
          if (len(problem) > 0) then
             call deck_error(error, "search%"//name//": "//problem// &
                "; choose an end that it can take", deck, bound%place)

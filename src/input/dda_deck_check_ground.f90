@@ -1,7 +1,6 @@
 !> What a deck says of the ground, and of what means collapse in time
 module dda_deck_check_ground
-   use dda_deck, only : deck_error, deck_t, place_of
-   use dda_input, only : deck_place_t
+   use dda_deck, only : deck_error, deck_place_t, deck_t, place_of
    use dda_deck_keys, only : deck_key, group_index, key_index
    use dda_error, only : error_t
    use dda_text, only : to_text
@@ -28,7 +27,7 @@ contains
       if (.not. deck%ground%given .and. key == 0) return
       place = deck%group(group_index("ground"))
       if (place%line == 0) place = deck%value(key)%place
-      if (place%line == 0) place = deck%search%parameter%place
+      if (place%line == 0) place = place_of(deck, key_index("search", "parameter"))
       key = 0
       problem = ""
       if (deck%analysis%mode%word /= "dynamic") then
@@ -122,9 +121,9 @@ contains
       if (allocated(deck%plan%boundary%measured)) measured = size(deck%plan%boundary%measured)
       point = deck%analysis%collapse_point%whole
       if (point > measured) then
-         call deck_error(error, "analysis%collapse_point needs a measured point, "//"from 1 to " &
-            & //to_text(measured)//", got "//to_text(point)//"; add 'measure' lines", deck, &
-            & deck%analysis%collapse_point%place)
+         call deck_error(error, "analysis%collapse_point needs a measured point, "// &
+            & "from 1 to "//to_text(measured)//", got "//to_text(point)//"; add 'measure' lines", &
+            & deck, place_of(deck, key_index("analysis", "collapse_point")))
          return
       end if
       call check_wear(deck, error)
@@ -183,7 +182,8 @@ contains
       else if (.not. (deck%search%low%given .and. deck%search%high%given)) then
          problem = "a search with mode = 'dynamic' needs search%low and search%high; give both"
       end if
-      if (len(problem) > 0) call deck_error(error, problem, deck, deck%search%parameter%place)
+      if (len(problem) > 0) call deck_error(error, problem, deck, &
+         & place_of(deck, key_index("search", "parameter")))
    end subroutine check_search_in_time
 
    !> Check what means collapse in a dynamic run
@@ -205,13 +205,13 @@ contains
       end do
       if (.not. deck%analysis%collapse_point%given) return
       if (deck%scene%kind%word /= "blocks") then
-         call deck_error(error, "analysis%collapse_point needs a file of blocks with " &
-            & //"measured points, got kind = '"//trim(deck%scene%kind%word)//"'", deck, &
-            & deck%analysis%collapse_point%place)
+         call deck_error(error, "analysis%collapse_point needs a file of blocks with "// &
+            & "measured points, got kind = '"//trim(deck%scene%kind%word)//"'", &
+            & deck, place_of(deck, key_index("analysis", "collapse_point")))
       else if (.not. deck%analysis%collapse_displacement%given) then
-         call deck_error(error, "analysis%collapse_point needs collapse_displacement, the " &
-            & //"displacement of that point that means collapse, got none; give it", deck, &
-            & deck%analysis%collapse_point%place)
+         call deck_error(error, "analysis%collapse_point needs collapse_displacement, the "// &
+            & "displacement of that point that means collapse, got none; give it", deck, &
+            & place_of(deck, key_index("analysis", "collapse_point")))
       end if
    end subroutine check_collapse
 end module dda_deck_check_ground

@@ -1,9 +1,8 @@
 !> What a deck says of live loads, and of the strength of its blocks
 module dda_deck_check_live
-   use dda_deck, only : deck_error, deck_t, place_of
+   use dda_deck, only : deck_error, deck_place_t, deck_t, place_of
    use dda_deck_keys, only : deck_key, group_index, key_index
    use dda_error, only : error_t
-   use dda_input, only : deck_place_t
    use dda_kinds, only : wp
    use dda_text, only : to_text
    implicit none
@@ -26,10 +25,10 @@ contains
       if (allocated(error)) return
       push = key_index("load", "horizontal_coefficient")
       pushed = deck%searched%key == push .or. abs(deck%value(push)%number) > 0.0_wp
-      if (deck%load%live_horizontal%flag .and. .not. pushed) call deck_error(error, &
-         & "load%live_horizontal needs a horizontal_coefficient other " &
-         & //"than 0, got 0; give one, or remove live_horizontal", deck, &
-         & deck%load%live_horizontal%place)
+      if (deck%load%live_horizontal%flag .and. .not. pushed) &
+         & call deck_error(error, "load%live_horizontal needs a horizontal_coefficient other "// &
+         & "than 0, got 0; give one, or remove live_horizontal", deck, &
+         & place_of(deck, key_index("load", "live_horizontal")))
    end subroutine check_live
 
    !> Check the lists of &live
@@ -62,7 +61,7 @@ contains
       else if (group_of(deck) == "arch") then
          problem = "&live needs an arch that keeps its shape, but the search changes it, "// &
             & "and its points stay; sweep the shape, with x and y linked"
-         place = deck%search%parameter%place
+         place = place_of(deck, key_index("search", "parameter"))
       else if (group_of(deck) /= "live" .and. .not. has_forces(deck)) then
          problem = "&live needs a force other than 0, got none; give fx or fy"
       end if
@@ -93,7 +92,7 @@ contains
          problem = "&vehicle needs a position, got none; give it, or worst = .true."
       else if (worst .and. deck%vehicle%position%given) then
          problem = "vehicle%worst needs no position, got one; remove one of the two"
-         place = deck%vehicle%position%place
+         place = place_of(deck, key_index("vehicle", "position"))
       else if (deck%analysis%mode%word == "limerick") then
          problem = "&vehicle needs another mode than 'limerick', whose loads are those of "// &
             & "its files; remove one of the two"
@@ -102,11 +101,11 @@ contains
          & .or. deck%analysis%geometry%word /= "reference")) then
          problem = "vehicle%worst needs a search for load_factor in static reference "// &
             & "geometry, got none; add &search parameter = 'load_factor'"
-         place = deck%vehicle%worst%place
+         place = place_of(deck, key_index("vehicle", "worst"))
       else if (group_of(deck) == "arch") then
          problem = "&vehicle needs an arch that keeps its shape, but the search changes it; "// &
             & "sweep the shape"
-         place = deck%search%parameter%place
+         place = place_of(deck, key_index("search", "parameter"))
       end if
       if (len(problem) > 0) call deck_error(error, problem, deck, place)
    end subroutine check_vehicle
@@ -143,9 +142,9 @@ contains
       if (deck%material%compressive_strength%given) then
          place = place_of(deck, own)
       else if (deck%searched%key == own) then
-         place = deck%search%parameter%place
+         place = place_of(deck, key_index("search", "parameter"))
       else if (any(deck%plan%materials%given(5))) then
-         place = deck%scene%geometry%place
+         place = place_of(deck, key_index("scene", "geometry"))
       else
          return
       end if
@@ -162,7 +161,7 @@ contains
       else if (deck%searched%key == key_index("load", "gravity_direction_deg")) then
          problem = "search%parameter: expected another key beside compressive_strength, got "// &
             & "gravity_direction_deg; search horizontal_coefficient"
-         place = deck%search%parameter%place
+         place = place_of(deck, key_index("search", "parameter"))
       end if
       if (len(problem) > 0) call deck_error(error, problem, deck, place)
    end subroutine check_strength

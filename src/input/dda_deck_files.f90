@@ -1,11 +1,11 @@
 !> Files that a deck names: lines, analysis, and records of the ground in &ground or in a sweep
 module dda_deck_files
-   use dda_deck, only : add_file_mark, deck_error, deck_t, file_beside, ground_record_t
+   use dda_deck, only : add_file_mark, deck_error, deck_place_t, deck_t, file_beside, &
+      & ground_record_t
    use dda_deck_keys, only : key_index
    use dda_deck_token, only : shown
    use dda_error, only : error_t
    use dda_file_mark, only : file_mark
-   use dda_input, only : deck_place_t
    use dda_kinds, only : wp
    use dda_read_limerick, only : check_materials, read_analysis, read_geometry
    use dda_read_record, only : column_size, read_record
@@ -91,9 +91,9 @@ contains
          text = adjustl(text(min(blank + 1, len(text) + 1):))
       end do
       if (n == 2 .or. n == 3) return
-      call deck_error(error, "ground%columns needs two or three columns, of time, x and y, " &
-         & //"got '"//shown(deck%ground%columns%text)//"'; write them as in '1 2'", deck, &
-         & deck%ground%columns%place)
+      call deck_error(error, "ground%columns needs two or three columns, of time, x and y, "// &
+         & "got '"//shown(deck%ground%columns%text)//"'; write them as in '1 2'", deck, &
+         & deck%value(key_index("ground", "columns"))%place)
    end subroutine split_columns
 
    !> Read the files of a deck whose kind is 'lines'; any other deck is left as it is

@@ -29,6 +29,8 @@ module dda_deck_key
       integer :: numbers = 6
       !> A list of words
       integer :: texts = 7
+      !> Known, but refused: a later version of the program reads it
+      integer :: later = 8
    end type key_kind_enum
 
    !> The kinds of value by name
@@ -58,6 +60,8 @@ module dda_deck_key
       real(wp) :: below = huge(1.0_wp)
       !> Words that are allowed, separated by blanks
       character(len=72) :: words = ""
+      !> Words that a later version of the program allows, separated by blanks
+      character(len=40) :: later = ""
       !> Whether &sweep may name the key; &search may, if it is also a real number
       logical :: varies = .true.
       !> Whether its name alone means it where groups share the name

@@ -1,79 +1,21 @@
 !> Put values into a deck: each one is checked against the registry first
 module dda_deck_set
-   use dda_deck, only : deck_error, deck_t, parameter_t
-   use dda_deck_key, only : in_range, key_kind
-   use dda_deck_keys, only : deck_key, key_index
-   use dda_deck_token, only : deck_scan_t, token_kind
-   use dda_deck_values, only : name_values
-   use dda_deck_words, only : full_name, or_leave_out
-   use dda_error, only : error_t
-   use dda_input, only : deck_place_t, input_value_t
-   use dda_key_values, only : is_numeric, number_problem, read_flag, take_values, text_problem
    use dda_kinds, only : wp
-   use dda_text, only : lower_case, to_text
+   use dda_error, only : error_t
+   use dda_text, only : to_text, lower_case
+   use dda_deck_key, only : in_range, key_t, key_kind
+   use dda_deck_keys, only : deck_key, key_index
+   use dda_deck_words, only : wanted, quoted_words, full_name, near_word, or_leave_out
+   use dda_deck_token, only : shown
+   use dda_deck, only : deck_t, deck_place_t, parameter_t, deck_error
+   use dda_deck_values, only : name_values
    implicit none
    private
 
-   public :: number_fits, put_number, put_text, read_values
+   public :: put_number, put_numbers, put_text
+   public :: number_problem, number_fits, text_problem, is_numeric
 
 contains
-
-   !> Read the values of one key
-   pure subroutine read_values(scan, first, last, parameter, place, deck, error)
-      type(deck_scan_t), intent(in) :: scan
-      !> First token of the values
-      integer, intent(in) :: first
-      !> Last token; one before the first if there are none
-      integer, intent(in) :: last
-      !> The key, with the item if only that one is set
-      type(parameter_t), intent(in) :: parameter
-      !> Where the key stands
-      type(deck_place_t), intent(in) :: place
-      type(deck_t), intent(inout) :: deck
-      !> Wrong type, wrong number of values, or a value out of range
-      type(error_t), allocatable, intent(out) :: error
-      type(input_value_t) :: value
-      character(len=:), allocatable :: problem
-      integer :: at
-
-      call take_values(scan, first, last, deck_key(parameter%key), parameter%item > 0, value, at, &
-         & problem)
-      if (len(problem) > 0) then
-         call deck_error(error, problem//or_leave_out(parameter%key), deck, &
-            & place_at(scan, at, place))
-         return
-      end if
-      select case (deck_key(parameter%key)%kind)
-      case (key_kind%numbers)
-         if (parameter%item > 0) then
-            call put_number(deck, parameter, value%numbers(1), place, error)
-         else
-            call put_numbers(deck, parameter%key, value%numbers, place, error)
-         end if
-      case (key_kind%number, key_kind%whole)
-         call put_number(deck, parameter, value%number, place_at(scan, first, place), error)
-      case (key_kind%texts)
-         deck%value(parameter%key)%texts = value%texts
-         deck%value(parameter%key)%given = .true.
-         deck%value(parameter%key)%place = place
-      case default
-         call put_text(deck, parameter, value%text, place_at(scan, first, place), error)
-      end select
-   end subroutine read_values
-
-   !> Where a token stands
-   pure type(deck_place_t) function place_at(scan, i, place)
-      type(deck_scan_t), intent(in) :: scan
-      !> Place of the token; past the end if there is none
-      integer, intent(in) :: i
-      !> Where its key stands
-      type(deck_place_t), intent(in) :: place
-
-      place_at = place
-      if (place%from_command .or. i > scan%n) return
-      if (scan%token(i)%kind == token_kind%key .or. scan%token(i)%kind == token_kind%close) return
-      place_at%line = scan%token(i)%line
-   end function place_at
 
    !> Put a number into a key or into one item of its list
    pure subroutine put_number(deck, parameter, value, place, error)
@@ -96,7 +38,7 @@ contains
                to_text(parameter%item)//": its list has "//to_text(n)//"; write it in &"// &
                trim(deck_key(parameter%key)%group)
          else if (.not. number_fits(parameter%key, value)) then
-            problem = number_problem(deck_key(parameter%key), value)//or_leave_out(parameter%key)
+            problem = number_problem(parameter%key, value)//or_leave_out(parameter%key)
          end if
          if (allocated(problem)) then
             call deck_error(error, problem, deck, place)
@@ -128,7 +70,7 @@ contains
       integer :: i
 
       do i = 1, size(values)
-         problem = number_problem(deck_key(key), values(i))
+         problem = number_problem(key, values(i))
          if (len(problem) == 0) cycle
          call deck_error(error, problem//or_leave_out(key), deck, place)
          return
@@ -150,8 +92,9 @@ contains
       !> Not a text's key, or a word that it does not know
       type(error_t), allocatable, intent(out) :: error
       character(len=:), allocatable :: problem
+      logical :: unused
 
-      problem = text_problem(deck_key(parameter%key), text)
+      problem = text_problem(parameter%key, text)
       if (len(problem) > 0) then
          call deck_error(error, problem//or_leave_out(parameter%key), deck, place)
          return
@@ -159,7 +102,7 @@ contains
       associate (held => deck%value(parameter%key))
          select case (deck_key(parameter%key)%kind)
          case (key_kind%flag)
-            call read_flag(text, held%flag)
+            call read_flag(text, held%flag, unused)
          case (key_kind%word)
             held%text = lower_case(trim(text))
          case default
@@ -171,6 +114,21 @@ contains
       call name_values(deck)
    end subroutine put_text
 
+   !> Why a number cannot be the value of a key
+   pure function number_problem(key, value) result(problem)
+      !> Place of the key in the registry
+      integer, intent(in) :: key
+      !> The number
+      real(wp), intent(in) :: value
+      !> What was wanted and what was found; empty if the number will do
+      character(len=:), allocatable :: problem
+
+      problem = ""
+      if (number_fits(key, value)) return
+      problem = full_name(deck_key(key))//" must be "//wanted(deck_key(key))//", got "// &
+         to_text(value)
+   end function number_problem
+
    !> Whether a number can be the value of a key
    pure logical function number_fits(key, value)
       !> Place of the key in the registry
@@ -178,8 +136,76 @@ contains
       !> The number in the unit of the registry
       real(wp), intent(in) :: value
 
-      number_fits = is_numeric(deck_key(key)) .and. in_range(deck_key(key), value)
+      number_fits = is_numeric(key)
+      if (number_fits) number_fits = in_range(deck_key(key), value)
    end function number_fits
+
+   !> Why a text cannot be the value of a key
+   pure function text_problem(key, text) result(problem)
+      !> Place of the key in the registry
+      integer, intent(in) :: key
+      !> The text
+      character(len=*), intent(in) :: text
+      !> What was wanted and what was found; empty if the text will do
+      character(len=:), allocatable :: problem
+      type(key_t) :: entry
+      logical :: fits, flag
+
+      problem = ""
+      entry = deck_key(key)
+      select case (entry%kind)
+      case (key_kind%word)
+         fits = has_word(entry%words, text)
+         if (has_word(entry%later, text)) problem = full_name(entry)//" = "// &
+            quoted_words(lower_case(trim(text)))//" is not yet there: this version takes "// &
+            quoted_words(entry%words)
+      case (key_kind%flag)
+         call read_flag(text, flag, fits)
+      case default
+         fits = entry%kind == key_kind%text
+      end select
+      if (.not. fits .and. len(problem) == 0) problem = full_name(entry)//" must be "// &
+         wanted(entry)//", got '"//shown(trim(text))//"'"//near_word(entry, text)
+   end function text_problem
+
+   !> Whether a list of words holds a word, whatever its case
+   pure logical function has_word(words, text)
+      !> Words parted by one blank
+      character(len=*), intent(in) :: words
+      !> The word
+      character(len=*), intent(in) :: text
+
+      has_word = len_trim(text) > 0 .and. index(trim(text), " ") == 0
+      if (has_word) has_word = index(" "//words//" ", " "//lower_case(trim(text))//" ") > 0
+   end function has_word
+
+   !> Read .true., .false., T, F and what is like them
+   pure subroutine read_flag(text, flag, ok)
+      !> The text
+      character(len=*), intent(in) :: text
+      !> The flag; left as it was if the text is none
+      logical, intent(inout) :: flag
+      !> Whether the text is a flag
+      logical, intent(out) :: ok
+
+      ok = .true.
+      select case (lower_case(text))
+      case (".true.", "true", "t", ".t.")
+         flag = .true.
+      case (".false.", "false", "f", ".f.")
+         flag = .false.
+      case default
+         ok = .false.
+      end select
+   end subroutine read_flag
+
+   !> Whether a key takes numbers
+   pure logical function is_numeric(key)
+      !> Place of the key in the registry
+      integer, intent(in) :: key
+
+      is_numeric = any(deck_key(key)%kind == [key_kind%number, key_kind%whole, key_kind%numbers])
+   end function is_numeric
 
    !> Half angle and number of voussoirs follow joints_deg where they are not given
    pure subroutine follow_joints(deck)

@@ -1,17 +1,15 @@
 !> Sweeps into cases: the last &sweep runs fastest, a linked one goes with the one before it
 module dda_deck_sweep
-   use dda_input, only : deck_place_t, input_value_t
    use dda_kinds, only : wp
    use dda_error, only : error_t
    use dda_text, only : to_text, lower_case
    use dda_deck_key, only : key_kind, word_length
    use dda_deck_keys, only : deck_key, key_index
    use dda_deck_words, only : wanted, full_name
-   use dda_deck, only : deck_t, deck_sweep_t, deck_error
+   use dda_deck, only : deck_t, deck_value_t, deck_sweep_t, deck_place_t, deck_error, place_of
    use dda_deck_values, only : name_values
    use dda_deck_parameter, only : find_parameter, parameter_name
-   use dda_deck_set, only : put_number, put_text
-   use dda_key_values, only : is_numeric, number_problem, text_problem
+   use dda_deck_set, only : put_number, put_text, number_problem, text_problem, is_numeric
    implicit none
    private
 
@@ -50,7 +48,8 @@ contains
       end if
       call find_parameter(deck%sweep%parameter%text, sweep%parameter, problem)
       if (len(problem) > 0) then
-         call deck_error(error, "sweep%parameter: "//problem, deck, deck%sweep%parameter%place)
+         call deck_error(error, "sweep%parameter: "//problem, deck, &
+            place_of(deck, key_index("sweep", "parameter")))
          return
       end if
       sweep%linked = deck%sweep%linked%flag
@@ -80,7 +79,7 @@ contains
 
    !> Put a key of &sweep back to its default, ready for the next &sweep
    pure subroutine forget(value)
-      type(input_value_t), intent(inout) :: value
+      type(deck_value_t), intent(inout) :: value
 
       value%given = .false.
       value%place = deck_place_t()
@@ -141,9 +140,9 @@ contains
       last = deck%sweep%last%number
       n = deck%sweep%count%whole
       if (n == 1 .and. abs(last - first) > 0.0_wp) then
-         call deck_error(error, "sweep%count = 1 needs the same first and last, got " &
-            & //to_text(first)//" and "//to_text(last)//"; make them equal, or count larger", &
-            & deck, deck%sweep%count%place)
+         call deck_error(error, "sweep%count = 1 needs the same first and last, got "// &
+            to_text(first)//" and "//to_text(last)//"; make them equal, or count larger", deck, &
+            place_of(deck, key_index("sweep", "count")))
       else
          sweep%numbers = [(first + (last - first)*real(i - 1, wp)/real(max(n - 1, 1), wp), &
             i=1, n)]
@@ -160,10 +159,10 @@ contains
       integer :: i
 
       problem = ""
-      associate (key => deck_key(sweep%parameter%key))
+      associate (key => sweep%parameter%key)
          if (is_numeric(key) .neqv. size(sweep%numbers) > 0) problem = "expected "// &
             trim(merge("values, got texts", "texts, got values", is_numeric(key)))//": "// &
-            full_name(key)//" must be "//wanted(key)//"; write "// &
+            full_name(deck_key(key))//" must be "//wanted(deck_key(key))//"; write "// &
             trim(merge("values", "texts ", is_numeric(key)))//" = ..."
          do i = 1, size(sweep%numbers)
             if (len(problem) == 0) problem = advised(number_problem(key, sweep%numbers(i)))

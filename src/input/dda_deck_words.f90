@@ -278,6 +278,6 @@ contains
       if (len_trim(key%default) > 0) text = text//" = "//trim(key%default)
       if (len_trim(key%without) > 0) text = text//"   (without it: "//trim(key%without)//")"
       text = text//lf//indent//trim(key%meaning)//lf
-      text = text//indent//wanted(key)//lf
+      if (key%kind /= key_kind%later) text = text//indent//wanted(key)//lf
    end function key_help
 end module dda_deck_words

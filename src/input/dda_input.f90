@@ -5,34 +5,28 @@ module dda_input
    implicit none
    private
 
-   public :: deck_place_t, input_t, input_value_t
+   public :: input_list_t, input_t, input_text_t, input_value_t
 
-   !> Where a value was written
-   type :: deck_place_t
-      !> Line of the deck, or number of the --set; 0 for a default
-      integer :: line = 0
-      !> Whether it came from a --set
-      logical :: from_command = .false.
-   end type deck_place_t
-
-   !> Value of a key; the default where it is not given
+   !> A number, whole number, flag or word; the default where it is not given
    type :: input_value_t
-      !> Whether the deck, a --set or a sweep gives it
       logical :: given = .false.
-      !> Where; of values that have names, but are not given, where their group is
-      type(deck_place_t) :: place
-      !> Number, whole numbers too
       real(wp) :: number = 0.0_wp
       integer :: whole = 0
       logical :: flag = .false.
       character(len=word_length) :: word = ""
-      !> Text, words too; unallocated where the key takes none
-      character(len=:), allocatable :: text
-      !> List of numbers; unallocated where the key takes none: (n)
-      real(wp), allocatable :: numbers(:)
-      !> List of words; unallocated where the key takes none: (n)
-      character(len=word_length), allocatable :: texts(:)
    end type input_value_t
+
+   !> A text
+   type :: input_text_t
+      logical :: given = .false.
+      character(len=:), allocatable :: text
+   end type input_text_t
+
+   !> A list of numbers; of none where it is not given
+   type :: input_list_t
+      logical :: given = .false.
+      real(wp), allocatable :: numbers(:)
+   end type input_list_t
 
    !> A group of keys, and whether the deck has it
    type :: group_input_t
@@ -41,7 +35,8 @@ module dda_input
 
    !> &scene: what is studied
    type, extends(group_input_t) :: scene_input_t
-      type(input_value_t) :: title, geometry, analysis, kind
+      type(input_text_t) :: title, geometry, analysis
+      type(input_value_t) :: kind
    end type scene_input_t
 
    !> &arch: the shape of an arch
@@ -49,7 +44,8 @@ module dda_input
       type(input_value_t) :: radius, thickness_ratio, half_angle_deg, voussoirs, facet_deg, &
          & springing, abutment_size, abutment_overhang, shape, span, rise, right_rise, thickness, &
          & crown_thickness, springing_thickness, joint_direction, rings, spans, pier_width, &
-         & pier_height, pier_courses, buttress_width, buttress_height, lune_deg, joints_deg
+         & pier_height, pier_courses, buttress_width, buttress_height, lune_deg
+      type(input_list_t) :: joints_deg
    end type arch_input_t
 
    !> &material: the blocks' material
@@ -70,12 +66,13 @@ module dda_input
 
    !> &live: forces that the load factor multiplies
    type, extends(group_input_t) :: live_input_t
-      type(input_value_t) :: x, y, fx, fy
+      type(input_list_t) :: x, y, fx, fy
    end type live_input_t
 
    !> &vehicle: axles above the blocks
    type, extends(group_input_t) :: vehicle_input_t
-      type(input_value_t) :: axles, spacings, length, position, worst
+      type(input_list_t) :: axles, spacings
+      type(input_value_t) :: length, position, worst
    end type vehicle_input_t
 
    !> &fill: what lies on an arch
@@ -86,20 +83,22 @@ module dda_input
 
    !> &tie: bars between blocks of an arch
    type, extends(group_input_t) :: tie_input_t
-      type(input_value_t) :: x1, y1, x2, y2, ea, strength, prestress
+      type(input_list_t) :: x1, y1, x2, y2, ea, strength, prestress
    end type tie_input_t
 
    !> &ground: how the ground moves
    type, extends(group_input_t) :: ground_input_t
       type(input_value_t) :: scale, pulse, amplitude, duration, frequency, direction_deg, &
-         & quantity, unit, record, columns
+         & quantity, unit
+      type(input_text_t) :: record, columns
    end type ground_input_t
 
    !> &analysis: how a case is computed
    type, extends(group_input_t) :: analysis_input_t
       type(input_value_t) :: mode, geometry, flow, steps, max_displacement_ratio, time_step, &
          & duration, restitution, damping, penalty_ratio, collapse_displacement, &
-         & collapse_rotation_deg, collapse_point, open_close_limit, start, unknowns, restart
+         & collapse_rotation_deg, collapse_point, open_close_limit, start, unknowns
+      type(input_text_t) :: restart
    end type analysis_input_t
 
    !> &limerick: the original's scheme
@@ -110,12 +109,15 @@ module dda_input
 
    !> &search: what is searched
    type, extends(group_input_t) :: search_input_t
-      type(input_value_t) :: parameter, low, high, tolerance
+      type(input_text_t) :: parameter
+      type(input_value_t) :: low, high, tolerance
    end type search_input_t
 
    !> &sweep: the sweep that is being read
    type, extends(group_input_t) :: sweep_input_t
-      type(input_value_t) :: parameter, values, texts, first, last, count, linked
+      type(input_text_t) :: parameter
+      type(input_list_t) :: values, texts
+      type(input_value_t) :: first, last, count, linked
    end type sweep_input_t
 
    !> &output: what is written

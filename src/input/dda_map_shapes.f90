@@ -1,6 +1,5 @@
 !> Shapes of a map of joints: the outline, the surface of the ground, openings
 module dda_map_shapes
-   use dda_deck_key, only : word_length
    use dda_error, only : error_t
    use dda_joint_map, only : joint_map_t, opening_t
    use dda_key_groups, only : flag_in, group_error, key_group_t, number_in, numbers_in, texts_in, &
@@ -27,7 +26,7 @@ contains
       type(joint_map_t), intent(inout) :: map
       !> No outline, or no simple one
       type(error_t), allocatable, intent(out) :: error
-      character(len=word_length), allocatable :: side(:)
+      character(len=16), allocatable :: side(:)
       character(len=*), parameter :: sides(3) = [character(len=6) :: "left", "right", "bottom"]
       real(wp), allocatable :: box(:), surface(:, :)
       integer :: i, s

@@ -1,7 +1,6 @@
 !> Read a deck: file, --set values, sweeps, and every check before anything is computed
 module dda_read_deck
    use dda_error, only : error_t
-   use dda_input, only : deck_place_t
    use dda_text, only : to_text
    use dda_text_file, only : read_text_file
    use dda_deck_key, only : key_kind
@@ -9,10 +8,11 @@ module dda_read_deck
    use dda_deck_words, only : full_name, near_group, near_key
    use dda_deck_token, only : deck_scan_t, token_kind, token_text, shown
    use dda_deck_scan, only : scan_deck, scan_values
-   use dda_deck, only : add_file_mark, deck_t, parameter_t, deck_error, file_beside
+   use dda_deck, only : add_file_mark, deck_t, deck_place_t, parameter_t, deck_error, file_beside
    use dda_deck_values, only : name_values, new_deck
    use dda_deck_parameter, only : find_parameter, split_name
-   use dda_deck_set, only : put_text, read_values
+   use dda_deck_set, only : put_text
+   use dda_deck_entry, only : read_values
    use dda_deck_sweep, only : add_sweep, n_cases
    use dda_deck_check, only : check_deck
    use dda_deck_check_ground, only : check_block_file
@@ -222,6 +222,9 @@ contains
       else if (key == 0) then
          call deck_error(error, "unknown key '"//shown(name)//"' in &"//group//": "// &
             near_key(name, group), deck, place)
+      else if (deck_key(key)%kind == key_kind%later) then
+         call deck_error(error, full_name(deck_key(key))//" is not yet there. It will be: "// &
+            trim(deck_key(key)%meaning)//" Remove it", deck, place)
       end if
    end subroutine find_key
 

@@ -4,6 +4,7 @@ module dda_arch_lines
    use dda_arch_scene, only : arch_scene, unit_weight
    use dda_block_system, only : block_system_t
    use dda_deck, only : deck_error, deck_t
+   use dda_deck_keys, only : key_index
    use dda_error, only : error_t
    use dda_kinds, only : wp
    use dda_limerick_analysis, only : limerick_analysis_t, limerick_constants_t, &
@@ -49,7 +50,7 @@ contains
       if (maxval(corner(1, :, 1)) >= 0.0_wp .or. minval(corner(1, :, 2)) <= 0.0_wp) then
          call deck_error(error, "arch%abutment_size must keep the abutments apart, got " &
             & //to_text(depth)//" m, where they meet below the arch; make it smaller", deck, &
-            & deck%arch%abutment_size%place)
+            & deck%value(key_index("arch", "abutment_size"))%place)
          return
       end if
       call new_line_model(model)

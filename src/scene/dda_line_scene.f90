@@ -9,6 +9,7 @@ module dda_line_scene
    use dda_cut_model, only : cut_model_t, point_kind
    use dda_cutting, only : cut_blocks
    use dda_deck, only : deck_error, deck_t
+   use dda_deck_keys, only : key_index
    use dda_edge_split, only : split_edges
    use dda_error, only : error_t
    use dda_kinds, only : wp
@@ -176,7 +177,7 @@ contains
          problem = "a static analysis needs a weight on blocks that move, got none; give one"
       end if
       if (len(problem) > 0) call deck_error(error, "scene%geometry: "//problem, deck, &
-         & deck%scene%geometry%place)
+         & deck%value(key_index("scene", "geometry"))%place)
    end subroutine check_line_scene
 
    !> The blocks with their materials, weights and states at the beginning

@@ -2,13 +2,12 @@
 module dda_shape_check
    use dda_arch_assembly, only : arch_assembly_t
    use dda_arch_form, only : form_problem_t
-   use dda_deck, only : deck_error, deck_t, place_of, scene_kind
+   use dda_deck, only : deck_error, deck_place_t, deck_t, place_of, scene_kind
    use dda_deck_key, only : name_length
    use dda_deck_keys, only : deck_key, key_index
    use dda_deck_set, only : put_number
    use dda_deck_sweep, only : n_cases, turn_to_case
    use dda_error, only : error_t
-   use dda_input, only : deck_place_t
    use dda_kinds, only : wp
    use dda_shape_scene, only : shape_assembly
    use dda_text, only : to_text

@@ -88,9 +88,9 @@ contains
          return
       end do
       if (deck_key(max(1, deck%searched%key))%group == "arch" .and. deck%searched%key > 0) then
-         call deck_error(error, "&tie needs an arch that keeps its shape, but the search " &
-            & //"changes it, and its ends stay; sweep the shape, with the ends linked", deck, &
-            & deck%search%parameter%place)
+         call deck_error(error, "&tie needs an arch that keeps its shape, but the search "// &
+            & "changes it, and its ends stay; sweep the shape, with the ends linked", deck, &
+            & place_of(deck, key_index("search", "parameter")))
          return
       end if
       call check_ends(deck, error)
@@ -113,8 +113,8 @@ contains
       if (len_trim(no_form%text) > 0) return
       do i = 1, size(ends, 2)
          if (norm2(ends(3:4, i) - ends(1:2, i)) > 0.0_wp) cycle
-         call deck_error(error, "&tie needs ends that are apart, got tie "//to_text(i) &
-            & //" between equal points; move one", deck, deck%tie%x1%place)
+         call deck_error(error, "&tie needs ends that are apart, got tie "//to_text(i)// &
+            & " between equal points; move one", deck, place_of(deck, key_index("tie", "x1")))
          return
       end do
       call add_ties(deck, assembly%plan)
@@ -137,7 +137,7 @@ contains
             else if (bar%prestress > bar%strength) then
                call deck_error(error, "tie%prestress must be at most tie%strength, got " &
                   & //to_text(bar%prestress)//" for tie "//to_text(i)//"; lower it", deck, &
-                  & deck%tie%prestress%place)
+                  & place_of(deck, key_index("tie", "prestress")))
                return
             end if
          end associate

@@ -112,7 +112,7 @@ BAD = {
     "unknown group": ("&joint_sets /\n", "map.nml:1: error: expected a group such as &lines"),
     "no spacing": (
         "&outline left=0 right=1 bottom=0 top=1 /\n&joint_set spacing=0 /\n",
-        "map.nml:2: error: joint_set%spacing must be a number",
+        "map.nml:2: error: spacing must be a number",
     ),
     "too dense": (
         "&outline left=0 right=1e6 bottom=0 top=1e6 /\n&joint_set spacing=1e-5 /\n",
