@@ -24,9 +24,9 @@ module dda_graph_decision
 
    public :: decide_graph, decides_as_graph, has_friction, no_start, see_fall, slide_along
 
-   !> Why a path is undecided whose dead loads limit analysis lets stand
-   character(len=*), parameter :: no_start = "forces balance the dead loads, but no state under " &
-      & //"Coulomb friction is found"
+   !> Why a path is undecided that limit analysis lets stand at its end
+   character(len=*), parameter :: no_start = "no state under Coulomb friction is found under the " &
+      & //"loads of the beginning"
    !> Relative gap of the two proofs of a limit whose mechanism is asked for
    real(wp), parameter :: limit_gap = 1.0e-9_wp
    !> Factorisations that find how joints slide in a fall, and all that the fall of live loads takes
