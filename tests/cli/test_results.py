@@ -717,11 +717,11 @@ def test_joint_forces_at_rest_do_not_depend_on_the_plan(tmp_path: Path) -> None:
     text = "&search /\n&sweep parameter = 'half_angle_deg', values = 45, 90, 120 /\n"
     _, (rigid, elastic) = both_plans(tmp_path, text)
     weight = 2240.0 * 9.81 * math.pi * 10.0 * 10.0 * 0.2
-    # so near to the critical thickness the thrust has a range of the root of what is left
     assert len(rigid) == 3 * 37
+    # so near to the critical thickness the thrust has a range of the root of what is left
     for one, other in zip(rigid, elastic, strict=True):
         for name in ("normal_force", "shear_force"):
-            assert float(one[name]) == pytest.approx(float(other[name]), abs=1e-8 * weight)
+            assert float(one[name]) == pytest.approx(float(other[name]), abs=3e-9 * weight)
 
 
 @pytest.mark.parametrize("unknowns", [3, 6])
