@@ -39,7 +39,7 @@ contains
          most = maxval(number)
       end if
       ! the difference must not overflow
-      if (size(number) < few .or. least < 0 .and. most > huge(most) + least) then
+      if (size(number) < few .or. most > huge(most) + min(least, 0_int64)) then
          call merge_sort(number, spread(0.0_wp, 1, size(number)), order)
       else
          call radix_sort(number, least, most, order)

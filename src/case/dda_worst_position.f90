@@ -97,7 +97,7 @@ contains
       type(bridge_t), intent(out) :: bridge
       type(arch_assembly_t) :: assembly
       type(form_problem_t) :: problem
-      type(loaded_point_t), allocatable :: other(:)
+      type(loaded_point_t), allocatable :: axles(:), other(:)
 
       bridge%scene = scene
       bridge%road = road_of(scene%system)
@@ -110,9 +110,9 @@ contains
          bridge%vehicle = vehicle_of(deck)
       end if
       ! the loads of the vehicle are the last
+      axles = axle_loads(bridge%vehicle, bridge%road, scene%origin)
       associate (loaded => scene%settings%boundary%loaded)
-         allocate (other, source=loaded(:size(loaded) &
-            & - size(axle_loads(bridge%vehicle, bridge%road, scene%origin))))
+         allocate (other, source=loaded(:size(loaded) - size(axles)))
       end associate
       call move_alloc(other, bridge%scene%settings%boundary%loaded)
       bridge%scene%settings = with_coefficient(bridge%scene%settings, searched_load%factor, 1.0_wp)
@@ -209,7 +209,7 @@ contains
 
       vehicle = bridge%vehicle
       vehicle%position = position
-      allocate (axles, source=axle_loads(vehicle, bridge%road, bridge%scene%origin))
+      axles = axle_loads(vehicle, bridge%road, bridge%scene%origin)
    end function axles_at
 
    !> Seek the least factor on stretches on which the bridge leans against the same fill

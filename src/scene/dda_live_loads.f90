@@ -29,10 +29,16 @@ contains
       type(scene_t), intent(inout) :: scene
       !> What lies on the blocks and spreads axles
       type(fill_t), intent(in), optional :: fill
+      type(loaded_point_t), allocatable :: live(:)
 
-      if (deck%live%given) call add_loads(loads_of_live(deck, scene), scene)
-      if (deck%vehicle%given) call add_loads(axle_loads(vehicle_of(deck, fill), &
-         & road_of(scene%system), scene%origin), scene)
+      if (deck%live%given) then
+         live = loads_of_live(deck, scene)
+         call add_loads(live, scene)
+      end if
+      if (deck%vehicle%given) then
+         live = axle_loads(vehicle_of(deck, fill), road_of(scene%system), scene%origin)
+         call add_loads(live, scene)
+      end if
    end subroutine add_live_loads
 
    !> The forces of &live on the blocks of a scene
@@ -126,12 +132,15 @@ contains
       type(scene_t), intent(in) :: scene
       !> A point in no block, or in one that is fixed
       type(error_t), allocatable, intent(out) :: error
+      type(loaded_point_t), allocatable :: axle(:)
       character(len=:), allocatable :: text
       real(wp), allocatable :: point(:, :), force(:, :)
       integer :: b, i
 
       if (deck%vehicle%given .and. .not. deck%vehicle%worst%flag) then
-         if (size(axle_loads(vehicle_of(deck), road_of(scene%system), scene%origin)) == 0) then
+         ! a function's result in an expression is not freed in all its parts
+         axle = axle_loads(vehicle_of(deck), road_of(scene%system), scene%origin)
+         if (size(axle) == 0) then
             call deck_error(error, "&vehicle needs an axle above a block that moves, got "// &
                & "none at position "//to_text(deck%vehicle%position%number)//"; move it", &
                & deck, place_of(deck, key_index("vehicle", "position")))
