@@ -84,6 +84,8 @@ contains
          call join_corner(near, edge_pair(1, i), edge_pair(2, i), 2, reach, taken, list)
          call join_corner(near, edge_pair(2, i), edge_pair(1, i), 1, reach, taken, list)
       end do
+      ! corners that touch corners and nothing else at the beginning are no joint
+      if (near%beginning) return
       do i = 1, size(edge_pair, 2)
          call join_corners(near, edge_pair(:, i), reach, taken, list)
       end do
@@ -170,7 +172,8 @@ contains
       edge = merge(of_first(2), of_second(2), by_first)
    end subroutine choose_end
 
-   !> Join a corner and an edge that it points to, away from the edge's own corners
+   !> Join a corner and an edge that it points to, away from the edge's own corners: at the
+   !> beginning by what counts as touching, later by where corners have met
    pure subroutine join_corner(near, corner, edge, edge_side, reach, taken, list)
       type(neighbourhood_t), intent(in) :: near
       !> Number of the corner
@@ -191,7 +194,7 @@ contains
       view = view_corner(near%outline, near%vertex, corner, edge, reach)
       if (.not. view%faces) return
       ! in a notch the edge ends at its wall, at a corner that sticks out another edge may be meant
-      zone = meeting_zone(near, corner, edge)
+      zone = merge(reach, meeting_zone(near, corner, edge), near%beginning)
       if (.not. is_convex(near%outline, near%vertex, edge)) zone(1) = -zone(1)
       if (.not. is_convex(near%outline, near%vertex, near%outline%next(edge))) zone(2) = -zone(2)
       if (view%way < zone(1) .or. view%way > view%length - zone(2)) return
@@ -212,7 +215,7 @@ contains
       !> Receives the joint
       type(joint_list_t), intent(inout) :: list
       type(corner_view_t) :: view
-      real(wp) :: distance, zone, level, time, best_gap, best_time
+      real(wp) :: distance, zone, time, best_gap, best_time
       integer :: corner(4), edge(4), i, best, n_level
       logical :: has_met
 
@@ -227,7 +230,6 @@ contains
       if (.not. is_convex(near%outline, near%vertex, pair(2))) return
       zone = minval([(maxval(meeting_zone(near, corner(i), edge(i))), i=1, 4)])
       has_met = distance <= zone
-      level = merge(met*zone, zone, near%beginning)
       best = 0
       n_level = 0
       best_gap = -huge(best_gap)
@@ -240,7 +242,7 @@ contains
             n_level = 0
             exit
          end if
-         if (has_met .and. abs(view%gap) <= level) n_level = n_level + 1
+         if (has_met .and. abs(view%gap) <= zone) n_level = n_level + 1
          time = crossing_time(near, corner(i), edge(i), view, zone)
          if (time < best_time .or. .not. time > best_time .and. .not. view%gap > best_gap) cycle
          best = i

@@ -41,7 +41,8 @@ contains
       call joint_motion(graph, verdict%mechanism, rate)
       contacts%increment = rate(:, :size(contacts%joint))
       if (allocated(verdict%force)) contacts%force = verdict%force(:, :size(contacts%joint))
-      least = still*maxval(abs(rate))
+      ! a block that turns about its one corner moves, its joint does not
+      least = still*max(maxval(abs(rate)), maxval(abs(verdict%mechanism(1:2, :))))
       do j = 1, size(contacts%joint)
          dilatancy = 0.0_wp
          if (verdict%flow == flow_rule%associated) dilatancy = graph%friction(j)*abs(rate(3, j))
@@ -56,6 +57,7 @@ contains
             & contacts%face(j)%slip /= 0])
          ! interior points leave a trace of force there
          where (contacts%face(j)%open) contacts%force(1:2, j) = 0.0_wp
+         if (all(contacts%face(j)%open)) contacts%force(3, j) = 0.0_wp
       end do
    end subroutine show_mechanism
 

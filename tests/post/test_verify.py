@@ -190,6 +190,32 @@ def test_a_joint_as_short_as_blocks_may_be_apart_has_two_ends(tmp_path: Path) ->
     assert main(["verify", str(folder), "--exact"]) == 0
 
 
+@pytest.mark.parametrize("overlap", [5e-5, 2e-6, 5e-7, 0.0, -2e-6, -5e-5])
+def test_bricks_that_all_but_meet_above_a_head_joint_have_the_joints_that_are_drawn(
+    tmp_path: Path, overlap: float
+) -> None:
+    """Two bricks on two, head joint on head joint but for an overlap of a fraction of a millimetre."""
+    corners = [(-1, -1, 5, 0), (0, 0, 1, 0.5), (1, 0, 2, 0.5), (0.4, 0.5, 1 + overlap, 1), (1 + overlap, 0.5, 1.9, 1)]
+    blocks = "".join(f"block {'fixed' if y < 0 else ''}\n{x} {y}\n{u} {y}\n{u} {v}\n{x} {v}\n"
+                     for x, y, u, v in corners)
+    push = "&search parameter = 'horizontal_coefficient' /\n&analysis flow = 'associated' /\n"
+    folder = run_deck(tmp_path, HEAD + "&joint friction_deg = 35 /\n" + push, blocks)
+    assert main(["verify", str(folder), "--exact"]) == 0
+
+
+@pytest.mark.parametrize("foot", [0.99995, 0.99997, 1.0, 1.00001, 1.0006, 1.1, 1.3])
+def test_a_block_tips_about_its_only_corner_by_a_force_in_the_cone(tmp_path: Path, foot: float) -> None:
+    """Its other foot stands on the very end of the table or beyond it."""
+    blocks = ("block fixed\n0 -1\n1 -1\n1 0\n0 0\n"
+              f"block\n0.3 0\n0.5 0.3\n0.8 0.3\n{foot} 0\n1.6 0.5\n0.1 0.5\n")
+    folder = run_deck(tmp_path, HEAD + "&output joints = .true., blocks = .true. /\n", blocks)
+    row = rows_of(folder / "results.csv")[0]
+    assert row["verdict"] == "collapsed"
+    joint, = rows_of(folder / "joints.csv")
+    assert float(joint["normal_force"]) > 0.0
+    assert main(["verify", str(folder)]) == 0
+
+
 def test_a_limit_that_the_loading_path_all_but_reaches_tells_forces_that_carry_it(tmp_path: Path) -> None:
     """The path ends one part in ten millions below the limit, whose load is a thousand times a block's weight."""
     blocks, friction = random_assembly(95)

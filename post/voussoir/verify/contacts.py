@@ -10,6 +10,9 @@ import numpy as np
 #: Blocks touch within this share of the smaller one's size, the root of its area
 TOUCH = 1e-4
 
+#: Edges that overlap by less than this share of the shorter one meet at corners only
+OVERLAP = 1e-6
+
 
 @dataclass
 class Block:
@@ -160,7 +163,7 @@ def _edges_together(first: Block, a: int, second: Block, b: int, reach: float) -
     tail = other + other_length * opposite
     low = max(0.0, min((other - start) @ direction, (tail - start) @ direction))
     high = min(length, max((other - start) @ direction, (tail - start) @ direction))
-    if high - low <= reach:
+    if high - low <= OVERLAP * min(length, other_length):
         return None
     ends = []
     for place in (low, high):
