@@ -17,7 +17,7 @@ module dda_command_line
       & "lines", "export", "help", "--help", "--version"]
    !> Options of those that read files
    character(len=*), parameter :: options(*) = [character(len=8) :: "--out", "--jobs", "--set", &
-      & "--cases", "--resume", "--record", "--quiet", "--help"]
+      & "--cases", "--resume", "--tight", "--record", "--quiet", "--help"]
 
    !> What the user asked for
    type :: command_t
@@ -39,6 +39,8 @@ module dda_command_line
       logical :: quiet = .false.
       !> Skip cases that an earlier run has finished
       logical :: resume = .false.
+      !> Bounds of searches as near as rounding lets them be
+      logical :: tight = .false.
       !> Print what deck.record would hold
       logical :: record = .false.
       !> Where lines for the user go
@@ -194,7 +196,7 @@ contains
 
       select case (command%verb)
       case ("run")
-         own = "--out --jobs --set --cases --resume --quiet --help"
+         own = "--out --jobs --set --cases --resume --tight --quiet --help"
       case ("check")
          own = "--set --record --quiet --help"
       case ("cut", "lines")
@@ -226,6 +228,9 @@ contains
          return
       case ("--resume")
          command%resume = .true.
+         return
+      case ("--tight")
+         command%tight = .true.
          return
       case ("--record")
          command%record = .true.

@@ -52,7 +52,7 @@ module dda_help
    !> dda help run
    character(len=*), parameter :: on_run(*) = [character(len=96) :: &
       & "dda run DECK [DECK ...] [--out DIR] [--jobs N] [--set group%key=value ...]", &
-      & "        [--cases LIST] [--resume] [--quiet]", &
+      & "        [--cases LIST] [--resume] [--tight] [--quiet]", &
       & "", &
       & "   --out DIR   where results go; several decks each have a folder inside it", &
       & "               (without it: a folder named as the deck without its ending)", &
@@ -63,6 +63,8 @@ module dda_help
       & "   --resume    skip the cases that an earlier run of the same deck with the same", &
       & "               --set has finished; if the deck has changed, compute all again", &
       & "               (without it: compute all again)", &
+      & "   --tight     bounds of searches to 1e-12, as search%tolerance=1e-11 asks for them", &
+      & "               (without it: to the tolerance of the deck)", &
       & "   --quiet     print nothing but errors (without it: a line a case of up to 100,", &
       & "               the undecided ones of more, and progress where a terminal shows it)", &
       & "   --          what follows are names of decks, even if they begin with -", &

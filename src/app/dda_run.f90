@@ -99,7 +99,7 @@ contains
 
       watch%shown = error_is_terminal() .and. .not. command%quiet
       call read_deck(name_of(command, number), command%setting, deck, error, watch, &
-         & command%cases)
+         & command%cases, command%tight)
       if (.not. allocated(error)) call check_scene(deck, scene, error, watch)
       call end_watch(watch)
    end subroutine read_and_check

@@ -29,11 +29,13 @@ module dda_read_deck
    integer, parameter :: few_cases = 100
    !> Their keys in &output
    character(len=*), parameter :: many_case_tables(*) = ["joints", "blocks"]
+   !> What --tight sets in a search
+   character(len=*), parameter :: tightest = "search%tolerance=1e-11"
 
 contains
 
    !> Read and check a deck and all cases of its sweeps
-   subroutine read_deck(file, settings, deck, error, watch, cases)
+   subroutine read_deck(file, settings, deck, error, watch, cases, tight)
       !> Name of the file
       character(len=*), intent(in) :: file
       !> The --set values: group%key=value: (n)
@@ -45,10 +47,12 @@ contains
       !> Cases that will be computed, such as 1-500,812: the others are not checked; without it, or
       !> empty, all are
       character(len=*), intent(in), optional :: cases
+      !> Whether the bounds of a search are to be as near as rounding lets them be
+      logical, intent(in), optional :: tight
       character(len=:), allocatable :: text, geometry
 
       call read_text_file(file, text, error)
-      if (.not. allocated(error)) call parse_deck(text, file, settings, deck, error, cases)
+      if (.not. allocated(error)) call parse_deck(text, file, settings, deck, error, cases, tight)
       if (.not. allocated(error)) call read_lines(deck, error)
       if (.not. allocated(error)) call read_ground_records(deck, error)
       if (allocated(error)) return
@@ -76,7 +80,7 @@ contains
    end function geometry_file
 
    !> Read and check a deck from its text
-   pure subroutine parse_deck(text, file, settings, deck, error, cases)
+   pure subroutine parse_deck(text, file, settings, deck, error, cases, tight)
       !> The text, lines ended by line feeds
       character(len=*), intent(in) :: text
       !> Name that errors will show
@@ -88,6 +92,8 @@ contains
       type(error_t), allocatable, intent(out) :: error
       !> As of read_deck
       character(len=*), intent(in), optional :: cases
+      !> As of read_deck
+      logical, intent(in), optional :: tight
       type(deck_scan_t) :: scan
       character(len=:), allocatable :: checked, problem
       integer :: i
@@ -103,6 +109,10 @@ contains
          if (allocated(error)) return
          call apply_setting(trim(settings(i)), deck_place_t(i, .true.), deck, error)
       end do
+      if (present(tight) .and. .not. allocated(error)) then
+         if (tight .and. deck%group(group_index("search"))%line > 0) call apply_setting( &
+            & tightest, deck_place_t(0, .true.), deck, error)
+      end if
       call name_values(deck)
       if (deck%search%given) call find_parameter(deck%search%parameter%text, deck%searched, problem)
       checked = ""

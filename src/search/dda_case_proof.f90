@@ -58,7 +58,7 @@ module dda_case_proof
    end type proof_t
 
    !> Relative gap of the limit of a load factor beside a decision
-   real(wp), parameter :: limit_gap = 1.0e-10_wp
+   real(wp), parameter :: limit_gap = 1.0e-13_wp
 
 contains
 

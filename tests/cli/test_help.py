@@ -105,6 +105,14 @@ def run_resume(folder: Path) -> None:
     assert cases(folder) == 4
 
 
+def run_tight(folder: Path) -> None:
+    write = (folder / "push.nml").write_text
+    write("&arch thickness_ratio = 0.2, half_angle_deg = 80, voussoirs = 9 /\n&joint friction_deg = 40 /\n"
+          "&search parameter = 'horizontal_coefficient' /\n&analysis flow = 'associated' /\n")
+    assert run_dda("run", "push.nml", "--tight", cwd=folder).returncode == 0
+    assert "search%tolerance\n  1e-11\n" in (folder / "push" / "deck.record").read_text()
+
+
 def run_quiet(folder: Path) -> None:
     done = run_dda("run", "deck.nml", "--quiet", cwd=folder)
     assert (done.returncode, done.stdout, done.stderr) == (0, "", "")
@@ -166,6 +174,7 @@ PROOFS: dict[tuple[str, str], Callable[[Path], None]] = {
     ("run", "--set"): run_set,
     ("run", "--cases"): run_cases,
     ("run", "--resume"): run_resume,
+    ("run", "--tight"): run_tight,
     ("run", "--quiet"): run_quiet,
     ("check", "--set"): check_set,
     ("check", "--record"): check_record,
