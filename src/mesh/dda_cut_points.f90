@@ -255,7 +255,6 @@ contains
       point = moments%centroid
    end function inside_point
 
-   !> Blocks get the material of the last material line that crosses one of their edges, or that
    !> Find the blocks of the bolts (Shi: dc14); an end in no block is held by the ground
    pure subroutine place_bolts(model, cut)
       !> Lines and points
@@ -283,6 +282,7 @@ contains
       cut%bolt = bolt(:n)
    end subroutine place_bolts
 
+   !> Blocks get the material of the last material line that crosses one of their edges, or that
    !> starts in them and crosses none; the first material otherwise (Shi: dc13)
    pure subroutine give_materials(model, cut, error)
       !> Lines and points
