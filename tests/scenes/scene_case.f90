@@ -29,8 +29,12 @@ module scene_case
       type(told_blocks_t) :: blocks
       !> What stands beside it; why it was refused
       character(len=:), allocatable :: remark
+      !> What its deck was warned of, parted by |
+      character(len=:), allocatable :: warnings
       !> Velocities of the blocks at the end of a decision: (n_dof, n_block)
       real(wp), allocatable :: velocity(:, :)
+      !> Motions of the blocks: (n_dof, n_block)
+      real(wp), allocatable :: motion(:, :)
       !> Forces of its bars: (n_bar) [N/m]
       real(wp), allocatable :: bar_force(:)
       !> Whether blocks are taken away: (n_block)
@@ -56,6 +60,7 @@ contains
       type(deck_t) :: deck, work
       type(error_t), allocatable :: error
       type(scene_t) :: scene
+      integer :: i
 
       call begin_anew(told)
       head = ""
@@ -66,6 +71,11 @@ contains
       call write_text(name//".nml", head//lines_of(groups)//new_line("a"))
       call read_deck(name//".nml", none, deck, error)
       if (.not. allocated(error)) call check_scene(deck, scene, error)
+      if (allocated(deck%warnings%item)) then
+         do i = 1, size(deck%warnings%item)
+            told%warnings = told%warnings//deck%warnings%item(i)%message//"|"
+         end do
+      end if
       if (.not. allocated(error)) call turn_to_case(deck, 1, work, error)
       if (allocated(error)) then
          told%row%verdict = "refused"
@@ -77,6 +87,7 @@ contains
       call tell_case(this, told%row, told%joint, told%blocks, told%remark)
       associate (system => this%decision%system)
          if (allocated(system%velocity)) told%velocity = system%velocity
+         if (allocated(system%motion)) told%motion = system%motion
          if (allocated(system%bar)) told%bar_force = system%bar%force
          if (allocated(system%absent)) told%absent = system%absent
          if (present(restart)) call save_restart(restart, this%scene%settings, system, &
@@ -89,6 +100,7 @@ contains
       type(told_t), intent(out) :: told
 
       told%remark = ""
+      told%warnings = ""
    end subroutine begin_anew
 
    !> Write a text to a file
