@@ -176,6 +176,7 @@ contains
 
       i = 1
       ends = 0.0_wp
+      given = .false.
       point%line = entry%head%number
       call take_numbers(entry%head, i, ends, error)
       if (.not. allocated(error)) &

@@ -94,7 +94,7 @@ contains
          allocate (outcome%motion(settings%n_dof, 0))
          return
       end if
-      neighbours = neighbours_of(contacts%joint)
+      allocate (neighbours, source=neighbours_of(contacts%joint))
       call new_equations(system, contacts%springs, settings, equations)
       call begin_step(contacts, size(equations%weight, 1), size(equations%weight, 2), step%state)
       if (present(onward)) call go_on(settings, system, onward, march, equations)
