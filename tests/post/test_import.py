@@ -72,7 +72,7 @@ def test_dxf_with_arcs_inserts_and_three_layers(tmp_path: Path, capsys) -> None:
     words = ["import", str(tmp_path / "yard.dxf"), "--out", str(deck), "--tolerance", "1e-4"]
     assert main(words) == 0
     printed = capsys.readouterr().out
-    assert "dropped: LINE on layer axes: not closed" in printed
+    assert "dropped: LINE on layer axes: 1 piece encloses nothing" in printed
     assert "4 blocks, 1 of them fixed" in printed
     text = deck.with_suffix(".blocks").read_text()
     assert text.count("block") == 4 and text.count("material 2") == 2  # the dome, and its entry
@@ -83,6 +83,108 @@ def test_dxf_with_arcs_inserts_and_three_layers(tmp_path: Path, capsys) -> None:
     area = abs((x * y.take(range(1, len(y) + 1), mode="wrap")
                 - y * x.take(range(1, len(x) + 1), mode="wrap")).sum()) / 2.0
     assert area == pytest.approx(math.pi / 8.0, rel=1e-3)
+
+
+def ring_of(space, layer: str, radii: tuple, count: int, as_lines: bool, scale: float = 1.0) -> None:
+    """Draw a half ring of voussoirs: as polylines with arcs, or as single lines and arcs that they share."""
+    inner, outer = (radius * scale for radius in radii)
+    kind = {"layer": layer}
+
+    def at(radius: float, turn: int) -> tuple[float, float]:
+        angle = math.pi * turn / count
+        return radius * math.cos(angle), radius * math.sin(angle)
+
+    bulge = math.tan(math.pi / count / 4)
+    if as_lines:
+        for turn in range(count + 1):
+            space.add_line(at(inner, turn), at(outer, turn), dxfattribs=kind)
+        for radius in (inner, outer):  # one arc over all joints: it is cut where they end
+            space.add_arc((0, 0), radius, 0, 180, dxfattribs=kind)
+        return
+    for turn in range(count):
+        corners = [(at(inner, turn), 0), (at(outer, turn), bulge)]
+        corners += [(at(outer, turn + 1), 0), (at(inner, turn + 1), -bulge)]
+        space.add_lwpolyline([(*point, curve) for point, curve in corners], format="xyb", close=True, dxfattribs=kind)
+
+
+def test_single_lines_and_arcs_enclose_the_voussoirs_of_polylines(tmp_path: Path, capsys) -> None:
+    ezdxf = pytest.importorskip("ezdxf")
+    pushes = []
+    for as_lines in (False, True):
+        drawing = ezdxf.new()
+        drawing.units = ezdxf.units.MM
+        space = drawing.modelspace()
+        ring_of(space, "ring", (4.5, 5.2), 15, as_lines, 1e3)
+        ground = [(-7000, -1000), (7000, -1000), (7000, 0), (-7000, 0)]
+        space.add_lwpolyline(ground, close=True, dxfattribs={"layer": "Ground"})
+        drawing.saveas(tmp_path / f"ring_{as_lines}.dxf")
+        deck = tmp_path / f"ring_{as_lines}.nml"
+        assert main(["import", str(tmp_path / f"ring_{as_lines}.dxf"), "--out", str(deck)]) == 0
+        printed = capsys.readouterr().out
+        assert "16 blocks, 1 of them fixed; a unit is 0.001 m (the drawing)" in printed
+        assert "dropped" not in printed
+        pushes.append(horizontal(deck))
+    assert 0.0 < pushes[0] < 1.0
+    assert pushes[0] == pytest.approx(pushes[1], rel=1e-9)
+
+
+@pytest.mark.parametrize("mirrored", [False, True])
+def test_both_sides_of_a_curved_joint_have_the_same_chords(tmp_path: Path, mirrored: bool) -> None:
+    ezdxf = pytest.importorskip("ezdxf")
+    drawing = ezdxf.new()
+    space = drawing.modelspace()
+    ring_of(space, "ring", (4.5, 5.2), 15, False)
+    x, y = 5.2 * math.cos(math.radians(50)), 5.2 * math.sin(math.radians(50))  # between two joints of the ring
+    corners = [(5.2, 0, math.tan(math.radians(50) / 4)), (x, y, 0), (x, 5.5, 0), (7, 5.5, 0), (7, 0, 0)]
+    spandrel = drawing.blocks.new("spandrel")
+    spandrel.add_lwpolyline(corners, format="xyb", close=True)
+    space.add_blockref("spandrel", (0, 0), dxfattribs={"layer": "fill", "xscale": -1.0 if mirrored else 1.0})
+    base = [(-7, -1), (7, -1), (7, 0), (-7, 0)]
+    space.add_lwpolyline(base, close=True, dxfattribs={"layer": "ground"})
+    drawing.saveas(tmp_path / "half.dxf")
+    assert main(["import", str(tmp_path / "half.dxf"), "--out", str(tmp_path / "half.nml"), "--tolerance", "0.02"]) == 0
+    run = voussoir.run(tmp_path / "half.nml", friction_deg=50)  # blocks that overlap would be refused
+    assert run.cases["verdict"].tolist() == ["stable"]
+    fill = next(block for block in run.blocks_of(1) if block.corners[:, 1].max() > 5.4)
+    on_arc = [point for point in fill.corners if abs(math.hypot(*point) - 5.2) < 1e-9]
+    angles = sorted(math.degrees(math.atan2(py, abs(px))) for px, py in on_arc)
+    for joint in (12, 24, 36, 48):
+        assert min(abs(angle - joint) for angle in angles) < 1e-9
+
+
+def test_whole_circle_of_two_arcs_is_a_disc(tmp_path: Path) -> None:
+    ezdxf = pytest.importorskip("ezdxf")
+    from voussoir.deck.shapes import read_shapes
+
+    for sign in (1, -1):
+        drawing = ezdxf.new()
+        drawing.modelspace().add_lwpolyline([(0, 0, sign), (2, 0, sign)], format="xyb", close=True)
+        drawing.modelspace().add_circle((5, 0), 1.0)
+        drawing.modelspace().add_arc((9, 0), 1.0, 30, 330)
+        drawing.modelspace().add_line((9, 0), (9 + math.cos(math.pi / 6), 0.5))
+        drawing.modelspace().add_line((9, 0), (9 + math.cos(math.pi / 6), -0.5))
+        drawing.saveas(tmp_path / "disc.dxf")
+        shapes, dropped, _ = read_shapes(tmp_path / "disc.dxf", None, 1e-5)
+        assert not dropped
+        areas = [shape.polygon.area for shape in shapes]
+        assert areas == pytest.approx([math.pi, math.pi, math.pi * 300 / 360], rel=2e-5)
+
+
+def test_import_runs_draws_and_tells_what_is_missing(tmp_path: Path, capfd) -> None:
+    file = tmp_path / "pier.wkt"
+    file.write_text(f"{GROUND}\nPOLYGON ((0 0, 1 0, 1 3, 0 3, 0 0))\n")
+    deck = tmp_path / "pier.nml"
+    words = ["import", str(file), "--out", str(deck), "--run", "--search", "horizontal_coefficient"]
+    assert main(words) == 2  # nothing holds it
+    assert "nothing is fixed" in capfd.readouterr().out
+    assert main(["import", str(file), "--out", str(deck), "--hold", "3"]) == 2
+    assert "expected numbers of blocks from 1 to 2 to hold, got 3" in capfd.readouterr().err
+    pytest.importorskip("matplotlib")
+    assert main([*words, "--hold", "1"]) == 0
+    printed = capfd.readouterr().out
+    assert "a unit is 1 m (no unit is named" in printed
+    assert "0.333333" in printed and "found" in printed
+    assert (tmp_path / "pier" / "plots" / "case_1.png").is_file()
 
 
 def test_assembly_of_compas_falls_where_it_must(tmp_path: Path) -> None:

@@ -3,9 +3,14 @@
 from __future__ import annotations
 
 import argparse
+import subprocess
 import sys
+from collections.abc import Sequence
 from pathlib import Path
 
+from voussoir.command import plot
+from voussoir.command.options import magnification, whole_number
+from voussoir.dda_program import find_dda, path_word
 from voussoir.deck.blocks import BLOCKS_FILE, Blocks
 from voussoir.deck.shapes import READERS, ImportedShape, read_shapes
 from voussoir.extras import MissingPackage
@@ -17,12 +22,14 @@ FIXED = ("fixed", "ground", "support", "abutment")
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the options of the subcommand."""
     parser.description = (
-        "Make a deck and its file of blocks from closed outlines: DXF (closed polylines, circles, "
-        "blocks that are inserted; arcs become chords), GeoJSON, WKT, meshes, assemblies of COMPAS (json)."
+        "Make a deck and its file of blocks from outlines: DXF (closed polylines, circles, inserted blocks, what "
+        "single lines and arcs of a layer enclose; arcs become chords), GeoJSON, WKT, meshes, COMPAS (json)."
     )
     parser.add_argument("file", metavar="FILE", type=Path, help=f"of {', '.join(READERS)}")
     parser.add_argument("--out", metavar="DECK", type=Path, help="the deck (default: FILE with the ending nml)")
-    parser.add_argument("--scale", metavar="S", type=float, default=1.0, help="metres a unit of the file")
+    parser.add_argument(
+        "--scale", metavar="S", type=_scale, help="metres a unit of the file (default: what a drawing names, else 1)"
+    )
     parser.add_argument(
         "--tolerance", metavar="T", type=float, default=1e-3, help="how far a chord may be from its arc [m]"
     )
@@ -33,25 +40,42 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         default=list(FIXED),
         help="layers, or values of the property role or layer, of what does not move",
     )
+    parser.add_argument(
+        "--hold", metavar="N", type=whole_number(1), nargs="+", default=[], help="numbers of blocks that do not move"
+    )
+    parser.add_argument(
+        "--search", metavar="PARAMETER", help="ask for the value at which it falls, such as horizontal_coefficient"
+    )
+    parser.add_argument("--run", action="store_true", help="run the deck, too, and draw what comes out")
+
+
+def _scale(word: str) -> float:
+    """A number above 0."""
+    number = magnification(word)
+    if number == 0.0:
+        raise argparse.ArgumentTypeError(f"must be above 0, got '{word}'")
+    return number
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Read, write, and say what was dropped.
+    """Read, write, say what was dropped, and run the deck if asked.
 
-    Exit status: 0, 2 for a file that cannot be read or holds no outline, 4 for one that cannot be written.
+    Exit status: 0, 2 for a file that cannot be read or holds no outline, 4 for one that cannot be written;
+    with --run 3 for a case that is undecided.
     """
     try:
-        shapes, dropped = read_shapes(arguments.file, arguments.scale, arguments.tolerance)
+        shapes, dropped, (scale, whose) = read_shapes(arguments.file, arguments.scale, arguments.tolerance)
+        if not shapes:
+            raise ValueError("expected closed outlines, got none; close the polylines")
+        blocks = blocks_of(shapes, tuple(word.lower() for word in arguments.fixed), arguments.hold)
     except (MissingPackage, OSError, ValueError) as problem:
         sys.stderr.write(f"{arguments.file}:1: error: {problem}\n")
         return 2
-    if not shapes:
-        sys.stderr.write(f"{arguments.file}:1: error: expected closed outlines, got none; close the polylines\n")
-        return 2
-    blocks = blocks_of(shapes, tuple(word.lower() for word in arguments.fixed))
     deck = arguments.out or Path(arguments.file.with_suffix(".nml").name)
     name = deck.with_suffix(".blocks").name
     blocks.groups["scene"] |= {"title": arguments.file.stem, "geometry": name}
+    if arguments.search:
+        blocks.groups["search"] = {"parameter": arguments.search}
     try:
         deck.parent.mkdir(parents=True, exist_ok=True)
         deck.with_suffix(".blocks").write_text(blocks.files[BLOCKS_FILE], encoding="utf-8")
@@ -63,26 +87,44 @@ def run(arguments: argparse.Namespace) -> int:
     for words in dropped:
         print(f"dropped: {words}")
     print(
-        f"{deck}, {name}: {len(blocks.shapes)} blocks, {fixed} of them fixed; "
+        f"{deck}, {name}: {len(blocks.shapes)} blocks, {fixed} of them fixed; a unit is {scale:g} m ({whose}); "
         f"chords within {arguments.tolerance:g} m of their arcs"
     )
+    layers = {shape.material: found.layer for shape, found in zip(blocks.shapes, shapes) if not shape.fixed}
+    if len(layers) > 1:
+        print("materials: " + ", ".join(f"{number} {layer or '(no layer)'}" for number, layer in layers.items()))
     if not fixed:
-        print("nothing is fixed: put what holds the blocks on a layer named 'fixed', or --fixed WORD")
-    return 0
+        print("nothing is fixed: put what holds the blocks on a layer named 'fixed', or --fixed WORD, or --hold N")
+    return _run_deck(deck) if arguments.run and fixed else 2 if arguments.run else 0
 
 
-def blocks_of(shapes: list[ImportedShape], fixed: tuple[str, ...]) -> Blocks:
+def _run_deck(deck: Path) -> int:
+    """Run a deck as the program does, and draw its cases; the exit status."""
+    folder = deck.with_suffix("")
+    status = subprocess.run([str(find_dda()), "run", path_word(deck), "--out", path_word(folder)]).returncode
+    if status not in (0, 3):
+        return status
+    parser = argparse.ArgumentParser()
+    plot.add_arguments(parser)
+    return plot.run(parser.parse_args([str(folder), "--format", "svg", "png"])) or status
+
+
+def blocks_of(shapes: list[ImportedShape], fixed: tuple[str, ...], held: Sequence[int] = ()) -> Blocks:
     """Blocks from outlines: a material a layer, in the order in which the layers come.
 
     Parameters
     ----------
     fixed : tuple of str
         Layers of what does not move, in small letters.
+    held : sequence of int, optional
+        Numbers of further ones, from 1.
     """
+    if max(held, default=0) > len(shapes):
+        raise ValueError(f"expected numbers of blocks from 1 to {len(shapes)} to hold, got {max(held)}")
     blocks = Blocks()
-    moving = dict.fromkeys(shape.layer for shape in shapes if shape.layer.lower() not in fixed)
+    still = [shape.layer.lower() in fixed or number in held for number, shape in enumerate(shapes, 1)]
+    moving = dict.fromkeys(shape.layer for shape, stays in zip(shapes, still) if not stays)
     materials = {layer: number for number, layer in enumerate(moving, 1)}
-    for shape in shapes:
-        still = shape.layer.lower() in fixed
-        blocks.add_polygon(shape.polygon, still, 1 if still else materials[shape.layer])
+    for shape, stays in zip(shapes, still):
+        blocks.add_polygon(shape.polygon, stays, 1 if stays else materials[shape.layer])
     return blocks

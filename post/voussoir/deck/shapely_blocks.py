@@ -60,4 +60,5 @@ def pieces_of(polygon: Any) -> list:
     reach = high - low
     middle = polygon.interiors[0].envelope.centroid.x
     line = LineString([(middle, low - reach), (middle, high + reach)])
-    return [piece for part in split(polygon, line).geoms for piece in pieces_of(part)]
+    parts = (part.simplify(1e-9 * reach) for part in split(polygon, line).geoms)  # without corners that nearly meet
+    return [piece for part in parts for piece in pieces_of(part)]

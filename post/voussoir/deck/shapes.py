@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 import json
-import math
-from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import Any, Optional
 
+from voussoir.deck.dxf_shapes import Found, metres_a_unit, read_dxf
 from voussoir.deck.shapely_blocks import polygons_of
 from voussoir.extras import load
 
@@ -29,20 +28,24 @@ class ImportedShape:
     layer: str
 
 
-def read_shapes(file: Path, scale: float, tolerance: float) -> tuple[list[ImportedShape], list[str]]:
+def read_shapes(
+    file: Path, scale: Optional[float], tolerance: float
+) -> tuple[list[ImportedShape], list[str], tuple[float, str]]:
     """Outlines of a file.
 
     Parameters
     ----------
     file : Path
         Its ending says how it is read: see `READERS`.
+    scale : float, optional
+        Metres a unit of the file; by default what a drawing says of its unit, else 1.
     tolerance : float
         How far a chord may be from its arc [m].
 
     Returns
     -------
     tuple
-        The outlines, and in words what was dropped.
+        The outlines, in words what was dropped, and the scale with who says so.
 
     Raises
     ------
@@ -54,6 +57,9 @@ def read_shapes(file: Path, scale: float, tolerance: float) -> tuple[list[Import
     if file.suffix.lower() not in READERS:
         raise ValueError(f"expected a file of {', '.join(READERS)}, got '{file.suffix}'")
     affinity = load("shapely.affinity", "an outline")
+    said = metres_a_unit(file) if scale is None and file.suffix.lower() == ".dxf" else None
+    whose = "--scale" if scale is not None else "the drawing" if said else "no unit is named; --scale S sets another"
+    scale = scale or said or 1.0
     shapes, dropped = [], []
     for words, geometry, layer in READERS[file.suffix.lower()](file, tolerance / scale):
         if geometry is None:
@@ -67,11 +73,7 @@ def read_shapes(file: Path, scale: float, tolerance: float) -> tuple[list[Import
                 continue
             scaled = affinity.scale(polygon, scale, scale, origin=(0.0, 0.0))
             shapes.append(ImportedShape(scaled, layer))
-    return shapes, dropped
-
-
-#: What a reader gives: words for messages, a geometry or None where there is none, the layer
-Found = Iterator[tuple[str, Any, str]]
+    return shapes, dropped, (scale, whose)
 
 
 def read_wkt(file: Path, tolerance: float) -> Found:
@@ -102,41 +104,6 @@ def read_geojson(file: Path, tolerance: float) -> Found:
         known = feature.get("properties") or {}
         layer = next((str(known[key]) for key in ("role", "layer", "name") if known.get(key)), "")
         yield f"feature {number}", geometry.shape(shape) if shape else None, layer
-
-
-def read_dxf(file: Path, tolerance: float) -> Found:
-    """Closed polylines, circles, ellipses and splines; inserted blocks are taken apart."""
-    ezdxf = load("ezdxf", "a DXF drawing")
-    path = load("ezdxf.path", "a DXF drawing")
-    geometry = load("shapely.geometry", "a DXF drawing")
-    try:
-        drawing = ezdxf.readfile(file)
-    except ezdxf.DXFStructureError as problem:
-        raise ValueError(f"expected a DXF drawing, got: {problem}") from problem
-    for entity in _taken_apart(drawing.modelspace()):
-        words = f"{entity.dxftype()} on layer {entity.dxf.layer}"
-        try:
-            outline = path.make_path(entity)
-        except TypeError:
-            yield f"{words}: no outline", None, ""
-            continue
-        points = [(point.x, point.y) for point in outline.flattening(tolerance)]
-        if len(points) < 4 or math.dist(points[0], points[-1]) > tolerance:
-            yield f"{words}: not closed", None, ""
-            continue
-        yield words, geometry.Polygon(points[:-1]), entity.dxf.layer
-
-
-def _taken_apart(entities: Any) -> Iterator[Any]:
-    """Entities, those of inserted blocks in their places."""
-    for entity in entities:
-        if entity.dxftype() != "INSERT":
-            yield entity
-            continue
-        for inner in _taken_apart(entity.virtual_entities()):
-            if inner.dxf.layer == "0":  # of the layer of its insert
-                inner.dxf.layer = entity.dxf.layer
-            yield inner
 
 
 def read_compas(file: Path) -> Found:
