@@ -10,7 +10,7 @@ module dda_coulomb_fall
    use dda_coulomb_law, only : apply_law, coulomb_state_t, unloaded_state
    use dda_joint_graph, only : joint_graph_t
    use dda_kinds, only : wp
-   use dda_load_jump, only : far_factor, jump_t, jump_to_balance, motion_end
+   use dda_load_jump, only : far_factor, few_pivots, jump_t, jump_to_balance, motion_end
    implicit none
    private
 
@@ -18,9 +18,6 @@ module dda_coulomb_fall
 
    !> Forces below this share of the largest are none, joints as near to their limit are at it
    real(wp), parameter :: nothing = 1.0e-6_wp
-
-   !> Pivots after which faces are looked for with more damping
-   integer, parameter :: few_pivots = 10
 
 contains
 

@@ -14,7 +14,7 @@ module dda_load_jump
    private
 
    public :: motion_end, motion_end_enum, jump_t, path_damping, moves_unbalanced
-   public :: far_factor, jump_to_balance, nudge, nudge_to_balance
+   public :: far_factor, few_pivots, jump_to_balance, nudge, nudge_to_balance
 
    !> How a motion ends
    type :: motion_end_enum
@@ -48,8 +48,13 @@ module dda_load_jump
    real(wp), parameter :: moves_unbalanced = 0.01_wp
    !> So many times the motion under the dead load is far
    real(wp), parameter :: far_factor = 1.0e4_wp
-   !> Motion that has not converged is a fall if it has come so far, as a share of what is far
+   !> Motion that has not converged in a share of the steps is a fall if it has come so far, as a
+   !> share of what is far
    real(wp), parameter :: driven = 0.01_wp
+   !> That share is one over this
+   integer, parameter :: brief = 4
+   !> Pivots after which rates are looked for with more damping
+   integer, parameter :: few_pivots = 16
    !> An event no further off than this makes no way
    real(wp), parameter :: no_way = 1.0e-13_wp
    !> So many events without way lead nowhere
@@ -98,8 +103,10 @@ contains
       !> How the motion ends, one of motion_end
       integer, intent(out) :: end
       type(coulomb_state_t) :: moved, last
-      integer :: last_end
+      integer :: last_end, most_pivots
 
+      most_pivots = equations%most_pivots
+      equations%most_pivots = few_pivots
       gained = merge(left, width, left < nudge)
       do
          call try_nudge(joints, equations, load_rate, opening_rate, gained, state, jump, moved, end)
@@ -112,13 +119,13 @@ contains
          if (.not. gained > nudge) exit
          gained = max(nudge, narrower*gained)
       end do
-      if (end /= motion_end%balanced) return
-      if (gained > left) then
+      if (end == motion_end%balanced .and. gained > left) then
          call try_nudge(joints, equations, load_rate, opening_rate, left, state, jump, last, &
             & last_end)
          if (last_end == motion_end%balanced) moved = last
       end if
-      state = moved
+      if (end == motion_end%balanced) state = moved
+      equations%most_pivots = most_pivots
    end subroutine nudge_to_balance
 
    !> Let the blocks move at a load that is somewhat larger
@@ -163,7 +170,8 @@ contains
       type(event_t) :: event
       real(wp) :: damping, firm, still(3, size(state%slip))
       real(wp) :: rest(size(load, 1), size(load, 2)), start(size(load, 1), size(load, 2))
-      integer :: i, standstill
+      real(wp) :: far
+      integer :: i, most, standstill
       logical :: calm, found, pushed
 
       still = 0.0_wp
@@ -174,9 +182,12 @@ contains
       firm = first_firm
       calm = .false.
       rates = new_rates(state)
-      do i = 1, least_patience + patience*size(state%slip)
+      far = jump%far
+      most = least_patience + patience*size(state%slip)
+      do i = 1, most
          call imbalance(joints, load, state%force, rest)
-         call see_end(joints, equations, rest, start, state, jump, end)
+         if (i > most/brief) far = driven*jump%far
+         call see_end(joints, equations, rest, start, state, far, jump, end)
          if (end == motion_end%balanced) state%load = load
          if (end /= motion_end%unsettled) return
          if (equations%base%n_factorisation >= equations%most_factorisations) return
@@ -203,8 +214,6 @@ contains
          if (standstill > max_standstill) return
          call move_on(joints, rates, event, state)
       end do
-      jump%far = driven*jump%far
-      call see_end(joints, equations, rest, start, state, jump, end)
    end subroutine jump_to_balance
 
    !> How far rates lead, in steps that would bring balance if nothing were damped: while the forces
@@ -228,7 +237,7 @@ contains
 
    !> Whether a motion has come to balance, or far. If a far one is not seen to have no end, the
    !> blocks have fallen by all that it went
-   pure subroutine see_end(joints, equations, rest, start, state, jump, end)
+   pure subroutine see_end(joints, equations, rest, start, state, far, jump, end)
       type(coulomb_joints_t), intent(in) :: joints
       type(coulomb_equations_t), intent(inout) :: equations
       !> What the forces leave of the load: (n_dof, n_block)
@@ -236,6 +245,8 @@ contains
       !> Motion where it began: (n_dof, n_block)
       real(wp), intent(in) :: start(:, :)
       type(coulomb_state_t), intent(in) :: state
+      !> A motion beyond this is far
+      real(wp), intent(in) :: far
       !> Receives the mechanism
       type(jump_t), intent(inout) :: jump
       !> One of motion_end
@@ -246,7 +257,7 @@ contains
       logical :: found
 
       end = merge(motion_end%balanced, motion_end%unsettled, maxval(abs(rest)) <= jump%tolerance)
-      if (.not. maxval(abs(state%motion - start)) > jump%far) return
+      if (.not. maxval(abs(state%motion - start)) > far) return
       if (end == motion_end%balanced) then
          ! balance so far away is that of a shape that nobody has drawn
          end = motion_end%far
