@@ -90,7 +90,7 @@ contains
       n_dof = size(motion, 1)
       ! strain that follows its load has no part in impulses
       if (.not. any(abs(springs%row(4:, :, :, joint)) > 0.0_wp)) n_dof = 3
-      p%joint = joint
+      allocate (p%joint, source=joint)
       allocate (p%block(2, n), p%entry(n), p%bounded(4, n), p%unit(3, n), p%before(3, n))
       allocate (p%opening(3, n), p%product(4, n), p%given(3, n), p%yield(4, n))
       number = 0
