@@ -37,6 +37,8 @@ module scene_case
       real(wp), allocatable :: motion(:, :)
       !> Forces of its bars: (n_bar) [N/m]
       real(wp), allocatable :: bar_force(:)
+      !> Number of its pictures
+      integer :: pictures = 0
       !> Whether blocks are taken away: (n_block)
       logical, allocatable :: absent(:)
    end type told_t
@@ -84,6 +86,7 @@ contains
       end if
       call prepare_case(work, this)
       call compute_case(this)
+      told%pictures = this%album%n
       call tell_case(this, told%row, told%joint, told%blocks, told%remark)
       associate (system => this%decision%system)
          if (allocated(system%velocity)) told%velocity = system%velocity
