@@ -39,6 +39,8 @@ module scene_case
       real(wp), allocatable :: bar_force(:)
       !> Number of its pictures
       integer :: pictures = 0
+      !> How far corners have gone in the last of them: (2, n_vertex) [m]
+      real(wp), allocatable :: seen(:, :)
       !> Whether blocks are taken away: (n_block)
       logical, allocatable :: absent(:)
    end type told_t
@@ -87,6 +89,7 @@ contains
       call prepare_case(work, this)
       call compute_case(this)
       told%pictures = this%album%n
+      if (told%pictures > 0) told%seen = this%album%frame(told%pictures)%moved - this%scene%system%vertex
       call tell_case(this, told%row, told%joint, told%blocks, told%remark)
       associate (system => this%decision%system)
          if (allocated(system%velocity)) told%velocity = system%velocity
