@@ -14,7 +14,7 @@ pytest.importorskip("voussoir", reason="PYTHONPATH wants the build's python fold
 
 from voussoir import results  # noqa: E402
 from voussoir.command.main import main  # noqa: E402
-from voussoir.plot.case_picture import draw_case, roles_of, thrust_points  # noqa: E402
+from voussoir.plot.case_picture import draw_case, roles_of, row_with_safety, thrust_points  # noqa: E402
 from voussoir.plot.case_scene import scene_of  # noqa: E402
 from voussoir.plot.case_title import title_of  # noqa: E402
 from voussoir.plot.collapse_animation import FFMpegWriter  # noqa: E402
@@ -515,3 +515,38 @@ def test_mechanism_of_a_collapse_without_frames_is_animated(arches, tmp_path: Pa
 def test_results_that_do_not_move_are_not_animated(arches, capsys) -> None:
     assert main(["animate", str(arches.folder), "--case", "2"]) == 2
     assert "expected frames of case 2, got none; give the deck" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(
+    "keys", ["shape = 'pointed', span = 6, rise = 4, thickness", "half_angle_deg = 80, thickness_ratio"]
+)
+def test_titles_of_arches_that_stand_tell_thickness_over_critical(tmp_path: Path, keys: str) -> None:
+    """Pushed a little, so that no table of exact values has the critical thickness."""
+    name, push = keys.rpartition(" ")[2], "&load horizontal_coefficient = 0.02 /\n"
+    text = f"&arch {keys} = 0.5, voussoirs = 15 /\n&joint friction_deg = 40 /\n" + push
+    for folder in ("stands", "critical"):
+        (tmp_path / folder).mkdir()
+    stands = compute(tmp_path / "stands", text)
+    search = f"&search parameter = '{name}', low = 0.01, high = 0.5 /\n"
+    critical = compute(tmp_path / "critical", text + search).case(1)["critical"]
+    row = row_with_safety(stands, 1)
+    assert row["safety_thickness"] == pytest.approx(0.5 / critical, rel=1e-7)
+    assert f"thickness {0.5 / critical:.3g} × critical" in title_of(row, stands)
+    assert title_of(row, stands).replace("\n", "") in "".join(
+        line for line in draw_case(stands, 1).axes[0].get_title().split("\n")
+    )
+
+
+def test_titles_say_where_no_thickness_falls_and_thrust_has_no_end(tmp_path: Path) -> None:
+    """A flat arch between skewbacks within the friction angle stands at any thickness, under any thrust."""
+    flat = "&arch shape = 'flat', span = 9, half_angle_deg = 25, thickness = 1.2, voussoirs = 21 /\n"
+    run = compute(tmp_path, flat + "&joint friction_deg = 40 /\n")
+    title = title_of(row_with_safety(run, 1), run)
+    assert "at any smaller thickness, too" in title and "thrust of at least" in title
+
+
+def test_titles_do_without_a_program(arches: results.Results, monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    run = compute(tmp_path, "&arch shape = 'pointed', span = 6, rise = 4, thickness = 0.5, voussoirs = 15 /\n")
+    monkeypatch.setenv("VOUSSOIR_DDA", str(tmp_path / "none"))
+    title = title_of(row_with_safety(run, 1), run)
+    assert "Stable, thrust" in title

@@ -17,12 +17,11 @@ import numpy as np
 from voussoir import __version__
 from voussoir.dda_program import DdaError, find_dda
 from voussoir.deck.run import run as run_deck
+from voussoir.deck.thickness import ends_of, thickness_safety
 from voussoir.results import Results, Table
 
 #: Positions of the first axle in the diagram
 POSITIONS = 41
-#: How far the search for the critical thickness goes below the thickness
-THINNEST = 1e-3
 #: The file that a deck is computed from
 _COPY = re.compile(rf"\S*voussoir-[^/\s]+/[^:\s]+(?=:\d)|\bdeck\.nml(?=:\d)")
 _TRUE = re.compile(r"\bworst\s*=\s*\.?t\w*\.?", re.IGNORECASE)
@@ -105,51 +104,6 @@ def load_search(text: str) -> tuple[Results | None, dict[str, Any] | None]:
     return found, found.case(1)
 
 
-def thickness_safety(text: str, own: dict[str, Any]) -> tuple[float, str]:
-    """Thickness over the least with which the arch stands under its dead load.
-
-    Returns
-    -------
-    safety : float
-        The number, NaN where it is not known.
-    note : str
-        What it is, or why it is not known.
-    """
-    if not math.isnan(own.get("safety_thickness", math.nan)):
-        return own["safety_thickness"], "thickness over the exact critical thickness of the same voussoirs"
-    dead = without(text, "live", "vehicle")
-    bare = re.sub(r"!.*", "", dead)
-    for name in ("thickness_ratio", "thickness"):
-        match = re.search(rf"(?<![\w]){name}\s*=\s*([-+.\deEdD]+)", bare)
-        if match is None:
-            continue
-        value = float(match[1].lower().replace("d", "e"))
-        ends = f"low = {float(value * THINNEST)!r}, high = {float(value)!r}"
-        try:
-            row = run_deck(dead + f"\n&search parameter = '{name}', {ends} /\n").case(1)
-        except DdaError as error:
-            return math.nan, f"not found: {str(error).rpartition('error: ')[2]}"
-        if row["verdict"] == "found":
-            return value / row["critical"], (
-                f"under dead load; the critical {name} lies between "
-                f"{ends_of(row['critical_low'], row['critical_high'])}"
-            )
-        return math.nan, f"under dead load {row['verdict']} at any smaller {name} down to a thousandth"
-    return math.nan, "not searched: the thickness is no single number"
-
-
-def ends_of(low: float, high: float) -> str:
-    """The ends of an interval with as many digits as tell them apart.
-
-    Examples
-    --------
-    >>> ends_of(0.25, 0.2500001)
-    '0.25 and 0.2500001'
-    """
-    digits = next((n for n in range(6, 17) if f"{low:.{n}g}" != f"{high:.{n}g}"), 17)
-    return f"{low:.{digits}g} and {high:.{digits}g}"
-
-
 def verdict_of(own: dict[str, Any], factor: dict[str, Any] | None) -> tuple[str, bool]:
     """The verdict in a sentence, and whether it is a bad one.
 
@@ -189,7 +143,7 @@ def assess(text: str, deck: Path) -> str:
     steps = [float(word) for word in own_run.settings("vehicle%spacings")]
     start = float(own_run.setting("vehicle%position") or "nan")
     placed = [(start + sum(steps[:k]), float(weight)) for k, weight in enumerate(own_run.settings("vehicle%axles"))]
-    safety = thickness_safety(fixed, own)
+    safety = thickness_safety(own_run)
     own_run.cases["safety_thickness"][0] = safety[0]  # for the titles of arches of any shape, too
     free = np.vstack([block.corners for block in own_run.blocks_of(1) if block.state != "fixed"])
     height = own_run.setting("fill%height")
@@ -246,8 +200,10 @@ def _numbers(
     own: dict[str, Any], factor: dict[str, Any] | None, geometrical: tuple[float, str], unit: str
 ) -> list[tuple[str, str]]:
     """The three safety numbers with their bounds."""
+    from voussoir.plot.case_title import thrust_of
+
     safety, note = geometrical
-    rows = [("Geometrical safety", f"{safety:.4g}: {note}" if not math.isnan(safety) else note)]
+    rows = [("Geometrical safety", f"{safety:.4g}: {note}" if math.isfinite(safety) else note)]
     if factor is None:
         rows.append(("Load factor", "no live loads"))
     else:
@@ -259,9 +215,8 @@ def _numbers(
         rows.append(("Load factor", text))
     if factor is not None and not math.isnan(factor.get("worst_position", math.nan)):
         rows.append(("Worst position", f"first axle at {factor['worst_position']:.4f} m"))
-    least, most = own.get("thrust_min", math.nan), own.get("thrust_max", math.nan)
-    told = "not told" if math.isnan(least) or math.isnan(most) else f"{least:.6g} to {most:.6g} {unit} at the crown"
-    rows.append(("Range of thrust", told))
+    thrust = thrust_of(own, unit)
+    rows.append(("Range of thrust", f"{thrust} at the crown" if thrust else "not told"))
     return rows
 
 

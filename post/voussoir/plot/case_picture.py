@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import Any
 
 import numpy as np
 from matplotlib.artist import Artist
@@ -66,7 +67,7 @@ def draw_case(
     KeyError
         If there is no such case, or its blocks were not written.
     """
-    title = title_of(run.case(number), run)
+    title = title_of(row_with_safety(run, number), run)
     scene, source = scene_of(run, number), source_of(run)
     joints = run.joints_of(number) if run.joints is not None else None
     ways = run.points_of(number)
@@ -96,6 +97,22 @@ def draw_case(
     axes.set_title(title, fontsize=10.5)
     figure.legend(handles=entries, loc="upper center", bbox_to_anchor=(0.5, -0.02), ncols=2, fontsize=9)
     return figure
+
+
+def row_with_safety(run: Results, number: int) -> dict[str, Any]:
+    """Row of a case; of an arch that stands at rest, with the geometrical safety, where dda is there to find it."""
+    from voussoir.dda_program import DdaError
+    from voussoir.deck.thickness import thickness_safety
+
+    row = run.case(number)
+    stands = row["verdict"] == "stable" and (row["mode"], row["geometry"]) == ("static", "reference")
+    if not stands or run.kind not in ("arch", "shape") or run.searched:
+        return row
+    try:
+        row["safety_thickness"] = thickness_safety(run, number)[0]
+    except (FileNotFoundError, DdaError):
+        pass
+    return row
 
 
 def new_figure(low: np.ndarray, high: np.ndarray) -> tuple[Figure, Axes]:

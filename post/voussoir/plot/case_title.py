@@ -73,11 +73,30 @@ def _ending(row: Row, run: Results | None) -> str:
 def safety_of(row: Row, run: Results | None) -> str:
     """The safety numbers of what stands, as far as they are told."""
     words = ""
-    for name, text in (("safety_thickness", ", thickness {:.3g} × critical"), ("exact_low", ", load factor {:.4g}")):
-        if not math.isnan(row.get(name, math.nan)):
-            words += text.format(row[name])
-    ends = [row.get(name, math.nan) for name in ("thrust_min", "thrust_max")]
-    if not any(map(math.isnan, ends)):
-        unit = force_unit(run)
-        words += f", thrust {force_text(ends[0], unit)} to {force_text(ends[1], unit)}"
-    return words
+    safety, factor = (row.get(name, math.nan) for name in ("safety_thickness", "exact_low"))
+    if math.isinf(safety):
+        words += ", at any smaller thickness, too"
+    elif not math.isnan(safety):
+        words += f", thickness {safety:.3g} × critical"
+    if not math.isnan(factor):
+        words += f", load factor {factor:.4g}"
+    thrust = thrust_of(row, force_unit(run))
+    return f"{words}, thrust {thrust}" if thrust else words
+
+
+def thrust_of(row: Row, unit: str) -> str:
+    """The range of thrust in words, empty where neither end is told.
+
+    Examples
+    --------
+    >>> thrust_of({"thrust_min": 1200.0, "thrust_max": math.nan}, "N/m")
+    'of at least 1.2 kN/m'
+    """
+    least, most = (row.get(name, math.nan) for name in ("thrust_min", "thrust_max"))
+    if math.isnan(least) and math.isnan(most):
+        return ""
+    if math.isnan(most):
+        return f"of at least {force_text(least, unit)}"
+    if math.isnan(least):
+        return f"of at most {force_text(most, unit)}"
+    return f"{force_text(least, unit)} to {force_text(most, unit)}"

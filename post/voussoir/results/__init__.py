@@ -272,6 +272,11 @@ class Results:
         """Parameters that were swept, in the order of the deck."""
         return [line.split()[1] for line in self._record() if line.startswith("&sweep ")]
 
+    @property
+    def given(self) -> list[str]:
+        """Names of the keys that the deck gives, such as "arch%radius"."""
+        return [line for line in self._record() if "%" in line and not line.startswith((" ", "&", "dda "))]
+
     def _record(self) -> list[str]:
         """Lines of deck.record: what the deck asks for."""
         record = self.folder / "deck.record"

@@ -1,0 +1,100 @@
+"""How thick an arch is over the least thickness with which it stands."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+from voussoir.deck.run import run as run_deck
+from voussoir.deck.text import groups_of, merged
+from voussoir.dda_program import DdaError, find_dda
+from voussoir.results import Results
+
+#: How far the search for the critical thickness goes below the thickness
+THINNEST = 1e-3
+#: Groups that say nothing of an arch under its dead load
+_OTHERS = ("scene", "output", "search", "live", "vehicle")
+
+
+def thickness_safety(run: Results, number: int = 1) -> tuple[float, str]:
+    """Thickness over the least with which an arch stands under its dead load.
+
+    Parameters
+    ----------
+    run : Results
+        A run of arches in which `number` is a case.
+
+    Returns
+    -------
+    safety : float
+        The number; infinite where no smaller thickness falls, NaN where it is not known.
+    note : str
+        What it is, or why it is not known.
+
+    Raises
+    ------
+    FileNotFoundError
+        If the program dda is not found.
+    """
+    row = run.case(number)
+    told = float(row.get("safety_thickness", math.nan))
+    if not math.isnan(told):
+        return told, "thickness over the exact critical thickness of the same voussoirs"
+    groups = dead_groups(run, row)
+    name = next((key for key in ("thickness", "thickness_ratio") if key in groups.get("arch", {})), None)
+    if name is None:
+        return math.nan, "not searched: the thickness is no single number"
+    value = float(groups["arch"][name])
+    search = {"parameter": name, "low": value * THINNEST, "high": value}
+    try:
+        found = run_deck(merged(groups, {"search": search})).case(1)
+    except DdaError as error:
+        return math.nan, f"not found: {str(error).rpartition('error: ')[2]}"
+    if found["verdict"] == "found":
+        between = ends_of(found["critical_low"], found["critical_high"])
+        return value / found["critical"], f"under dead load; the critical {name} lies between {between}"
+    known = math.inf if found["verdict"] == "stable" else math.nan
+    return known, f"under dead load {found['verdict']} at any smaller {name} down to a thousandth"
+
+
+def dead_groups(run: Results, row: dict[str, Any]) -> dict[str, Any]:
+    """What a deck says of one of its cases, without its live loads.
+
+    Parameters
+    ----------
+    row : dict
+        Row of the case, for what was swept.
+    """
+    groups: dict[str, Any] = {}
+    for name in run.given:
+        group, _, key = name.partition("%")
+        values = [_value(word) for word in run.settings(name)]
+        groups.setdefault(group, {})[key] = values[0] if len(values) == 1 else values
+    swept = {name: row[name.rpartition("%")[2]] for name in run.swept if name.rpartition("%")[2] in row}
+    if swept:
+        groups = merged(groups, groups_of(find_dda(), swept))
+    return {group: keys for group, keys in groups.items() if group not in _OTHERS}
+
+
+def _value(word: str) -> Any:
+    """A value of a record: a number, a flag or a word."""
+    if word in (".true.", ".false."):
+        return word == ".true."
+    for number in (int, float):
+        try:
+            return number(word)
+        except ValueError:
+            continue
+    return word
+
+
+def ends_of(low: float, high: float) -> str:
+    """The ends of an interval with as many digits as tell them apart.
+
+    Examples
+    --------
+    >>> ends_of(0.25, 0.2500001)
+    '0.25 and 0.2500001'
+    """
+    digits = next((n for n in range(6, 17) if f"{low:.{n}g}" != f"{high:.{n}g}"), 17)
+    return f"{low:.{digits}g} and {high:.{digits}g}"
