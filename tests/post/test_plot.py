@@ -6,6 +6,7 @@ import os
 import subprocess
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 np = pytest.importorskip("numpy")
@@ -432,6 +433,33 @@ def test_many_curves_of_one_number_are_told_apart_by_colour(tmp_path: Path) -> N
             assert bar.get_ylim() == pytest.approx((low, high))
             for line in axes.lines:
                 assert len(line.get_xdata()) == 19 - curves
+
+
+def test_three_swept_numbers_are_maps_of_computed_cells(tmp_path: Path) -> None:
+    run = compute(
+        tmp_path,
+        "&search /\n&arch voussoirs = 8 /\n&output joints = .false. /\n"
+        "&sweep parameter = 'half_angle_deg', first = 60, last = 90, count = 7 /\n"
+        "&sweep parameter = 'friction_deg', values = 10, 40, 50 /\n"
+        "&sweep parameter = 'horizontal_coefficient', first = 0, last = 0.2, count = 11 /\n",
+    )
+    missing = int((run.cases["verdict"] != "found").sum())
+    assert missing > 0  # 10 degrees are too few
+    with house_style():
+        figure = draw_chart(run, "horizontal_coefficient")
+    *panels, bar = figure.axes
+    assert len(panels) == 3
+    found = run.cases.take(run.cases["verdict"] == "found")
+    assert bar.get_ylim() == pytest.approx((found["critical"].min(), found["critical"].max()))
+    for axes, friction in zip(panels, (10.0, 40.0, 50.0)):
+        assert axes.get_title() == f"friction angle {friction:g}°"
+        field = np.ma.filled(axes.collections[0].get_array(), np.nan)
+        rows = found.where(friction_deg=friction)
+        assert np.isfinite(field).sum() == len(rows)
+        last = rows.where(half_angle_deg=90.0, horizontal_coefficient=0.2)["critical"].tolist()
+        assert field[6, 10] == last[0] if last else np.isnan(field[6, 10])
+    assert f"{missing} of {len(run.cases)} cases have no critical value" in figure._suptitle.get_text()
+    assert main(["plot", str(run.folder), "--chart", "--out", str(tmp_path / "out"), "--format", "png"]) == 0
 
 
 def test_too_many_curves_are_refused(tmp_path: Path) -> None:

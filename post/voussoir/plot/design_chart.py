@@ -7,6 +7,7 @@ from matplotlib.cm import ScalarMappable
 from matplotlib.colors import Normalize
 from matplotlib.figure import Figure
 
+from voussoir.plot.field_chart import draw_field
 from voussoir.plot.figure_style import INK, Picture
 from voussoir.plot.position_chart import draw_positions
 from voussoir.plot.units import axis_label, value_label
@@ -19,6 +20,8 @@ _BEFORE, _BEHIND = "case", "blocks"
 _MARKERS = "osD^vP*X"
 #: Most curves that can be told apart
 MOST_CURVES = 8
+#: Most curves whose colour can be told; more are a map
+MOST_COLOURS = 40
 
 
 class ChartError(ValueError):
@@ -40,7 +43,7 @@ def swept_columns(cases: Table) -> list[str]:
 
 
 def draw_chart(run: Results, column: str | None = None) -> Figure:
-    """Draw the critical value against one swept column, a curve for each value of the others.
+    """Draw the critical value against one swept column, a curve for each value of the others, or maps.
 
     Parameters
     ----------
@@ -75,24 +78,33 @@ def draw_chart(run: Results, column: str | None = None) -> Figure:
     if len(found) < 2:
         raise ChartError("expected two critical values or more, got fewer; give the deck &search")
     others = [name for name in swept if name != column and not _follows(found, name, column)]
+    missing = _missing(run.cases, found)
+    numbers = set(others) <= set(numeric)
+    curves = len(set(zip(*(found[name].tolist() for name in others))))
+    if numbers and (len(others) == 2 and curves > MOST_CURVES or len(others) == 1 and curves > MOST_COLOURS):
+        across, *panels = sorted(others, key=lambda name: -len(_values(found, name)))
+        return draw_field(found, column, across, panels[0] if panels else None, _searched(run), missing)
     groups = _groups(found, others)
     if column == "position" and len(groups) == 1 and run.searched == "load_factor" and run.blocks is not None:
         return draw_positions(run, run.cases)
     if len(groups) <= MOST_CURVES:
         figure = _draw(run, groups, column)
-    elif len(others) == 1 and others[0] in numeric:
+    elif len(others) == 1 and numbers:
         figure = _draw_by_colour(run, groups, column, others[0])
     else:
         raise ChartError(
             f"expected at most {MOST_CURVES} curves or one number beside {column}, got "
             f"{len(groups)} curves of {', '.join(others)}; sweep fewer values, or fewer keys"
         )
-    missing = len(run.cases) - len(found)
     if missing:
-        figure.axes[0].set_title(
-            f"{missing} of {len(run.cases)} cases have no critical value", fontsize=9, color="#555555"
-        )
+        figure.axes[0].set_title(missing, fontsize=9, color="#555555")
     return figure
+
+
+def _missing(cases: Table, found: Table) -> str:
+    """How many cases have no critical value, in words; empty where all have one."""
+    lost = len(cases) - len(found)
+    return f"{lost} of {len(cases)} cases have no critical value" if lost else ""
 
 
 def _draw(run: Results, groups: list[tuple[str, Table]], column: str) -> Figure:
