@@ -453,7 +453,7 @@ def test_three_swept_numbers_are_maps_of_computed_cells(tmp_path: Path) -> None:
     assert bar.get_ylim() == pytest.approx((found["critical"].min(), found["critical"].max()))
     for axes, friction in zip(panels, (10.0, 40.0, 50.0)):
         assert axes.get_title() == f"friction angle {friction:g}°"
-        field = np.ma.filled(axes.collections[0].get_array(), np.nan)
+        field = np.ma.filled(axes.collections[0].get_array(), np.nan).reshape(7, 11)
         rows = found.where(friction_deg=friction)
         assert np.isfinite(field).sum() == len(rows)
         last = rows.where(half_angle_deg=90.0, horizontal_coefficient=0.2)["critical"].tolist()
