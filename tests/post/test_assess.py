@@ -105,3 +105,18 @@ def test_forces_of_a_lune_are_no_forces_per_metre(tmp_path: Path) -> None:
     deck.write_text("&arch half_angle_deg = 80, radius = 6, thickness_ratio = 0.08, voussoirs = 12, lune_deg = 6 /\n")
     assert main(["assess", str(deck)]) == 0
     assert re.search(r"[\d.]+ k?N to [\d.]+ k?N at the crown", (tmp_path / "dome.html").read_text())
+
+
+def test_rings_are_drawn_with_one_factor_and_their_dimensions(tmp_path: Path) -> None:
+    """Rings that slide fall before limit analysis says so: the title must not tell its factor."""
+    deck = tmp_path / "rings.nml"
+    deck.write_text(
+        "&arch shape = 'segmental', span = 6, rise = 1.6, thickness = 0.5, voussoirs = 12, rings = 2 /\n"
+        "&joint friction_deg = 30 /\n&vehicle axles = 20e3, position = -1.4 /\n"
+    )
+    assert main(["assess", str(deck)]) == 0
+    page = (tmp_path / "rings.html").read_text()
+    told = re.search(r"multiplied by ([\d.]+)\.</p>", page)[1]
+    assert re.search(rf"load factor {re.escape(told)}", page)
+    assert "Span 6 m, rise 1.6 m, thickness 0.5 m." in page
+    assert "by limit analysis, an upper bound where rings slide" in page

@@ -24,6 +24,12 @@ from voussoir.results import Results, Table
 POSITIONS = 41
 #: The file that a deck is computed from
 _COPY = re.compile(rf"\S*voussoir-[^/\s]+/[^:\s]+(?=:\d)|\bdeck\.nml(?=:\d)")
+#: What the diagram of positions shows, of arches and of arches in rings
+_POSITIONS = (
+    "Factor of the live loads that brings it down.",
+    "Factor of the live loads by limit analysis, an upper bound where rings slide on one another; the worst position "
+    "is where it is least.",
+)
 _TRUE = re.compile(r"\bworst\s*=\s*\.?t\w*\.?", re.IGNORECASE)
 
 
@@ -128,7 +134,7 @@ def verdict_of(own: dict[str, Any], factor: dict[str, Any] | None) -> tuple[str,
 
 def assess(text: str, deck: Path) -> str:
     """Compute what the page tells, and write it."""
-    from voussoir.plot.assess_page import draw_scheme, figure_of, page, table_of
+    from voussoir.plot.assess_page import dimensions_of, draw_scheme, figure_of, page, table_of
     from voussoir.plot.case_picture import draw_case
     from voussoir.plot.figure_style import house_style
     from voussoir.plot.position_chart import draw_positions
@@ -144,20 +150,23 @@ def assess(text: str, deck: Path) -> str:
     start = float(own_run.setting("vehicle%position") or "nan")
     placed = [(start + sum(steps[:k]), float(weight)) for k, weight in enumerate(own_run.settings("vehicle%axles"))]
     safety = thickness_safety(own_run)
-    own_run.cases["safety_thickness"][0] = safety[0]  # for the titles of arches of any shape, too
+    own_run.cases["safety_thickness"][0] = safety[0]
+    if factor is not None:  # the title has the factor of the page
+        own_run.cases["critical"][0] = factor["critical"]
     free = np.vstack([block.corners for block in own_run.blocks_of(1) if block.state != "fixed"])
     height = own_run.setting("fill%height")
     surface = None if height is None else float(free[:, 1].max()) + float(height)
     with house_style():
         scheme = draw_scheme(own_run, placed, surface)
         parts = [
-            ("Drawing", figure_of(scheme, "Blocks, supports (hatched), overall dimensions, axles at their position.")),
+            ("Drawing", figure_of(scheme, f"Blocks, supports (hatched), axles in place. {dimensions_of(own_run)}")),
             ("Safety", table_of(_numbers(own, factor, safety, force_unit(own_run)))),
         ]
-        cases = _positions(fixed, free[:, 0], steps, place) if placed else None
+        flow = {"analysis%flow": "associated"} if _slides(own_run) else {}
+        cases = _positions(fixed, free[:, 0], steps, place, flow) if placed else None
         if cases is not None:
             chart = draw_positions(own_run, cases, None if math.isnan(place) else place)
-            parts.append(("Position of the vehicle", figure_of(chart, "Factor of the live loads that brings it down.")))
+            parts.append(("Position of the vehicle", figure_of(chart, _POSITIONS[_slides(own_run)])))
         parts.append(("Thrust under the loads given", figure_of(draw_case(own_run, 1))))
         if found is not None and factor is not None and factor["verdict"] == "found":
             parts.append(("Collapse under the live loads multiplied", figure_of(draw_case(found, 1))))
@@ -176,7 +185,12 @@ def _at_position(text: str, place: float, deck: Path) -> str:
     return _TRUE.sub(f"position = {float(place)!r}", text)
 
 
-def _positions(text: str, x: np.ndarray, steps: list[float], worst: float) -> Table | None:
+def _slides(run: Results) -> bool:
+    """Whether rings slide on one another, so that a loading path for every position takes too long."""
+    return int(run.setting("arch%rings") or 1) > 1
+
+
+def _positions(text: str, x: np.ndarray, steps: list[float], worst: float, flow: dict[str, str]) -> Table | None:
     """Load factors along the road, and at the worst position if there is one: it may lie where they jump, as the arch
     begins to lean against the fill of its other side. Nothing where no position can be computed.
     """
@@ -189,7 +203,8 @@ def _positions(text: str, x: np.ndarray, steps: list[float], worst: float) -> Ta
         values = ", ".join(repr(float(place)) for place in places)
         try:
             return run_deck(
-                f"{text}\n&search parameter = 'load_factor' /\n&sweep parameter = 'position', values = {values} /\n"
+                f"{text}\n&search parameter = 'load_factor' /\n&sweep parameter = 'position', values = {values} /\n",
+                **flow,
             ).cases
         except DdaError:
             continue

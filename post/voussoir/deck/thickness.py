@@ -53,8 +53,9 @@ def thickness_safety(run: Results, number: int = 1) -> tuple[float, str]:
     if found["verdict"] == "found":
         between = ends_of(found["critical_low"], found["critical_high"])
         return value / found["critical"], f"under dead load; the critical {name} lies between {between}"
-    known = math.inf if found["verdict"] == "stable" else math.nan
-    return known, f"under dead load {found['verdict']} at any smaller {name} down to a thousandth"
+    if found["verdict"] == "stable":
+        return math.inf, f"under dead load it stands at any smaller {name} down to a thousandth"
+    return math.nan, f"not found: the search for the critical {name} under dead load is {found['verdict']}"
 
 
 def dead_groups(run: Results, row: dict[str, Any]) -> dict[str, Any]:

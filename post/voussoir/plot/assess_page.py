@@ -12,9 +12,14 @@ from matplotlib.figure import Figure
 from voussoir.plot.case_picture import draw_blocks, draw_supports, new_figure
 from voussoir.plot.case_scene import scene_of, view
 from voussoir.plot.figure_style import INK
-from voussoir.plot.units import force_text
+from voussoir.plot.units import force_text, value_label
 from voussoir.results import Results
 
+#: Keys that say how large an arch is
+DIMENSIONS = (
+    "span", "rise", "right_rise", "radius", "half_angle_deg", "thickness", "thickness_ratio", "crown_thickness",
+    "springing_thickness", "pier_width", "pier_height", "buttress_width", "buttress_height",
+)
 STYLE = """
 body{font:16px/1.45 Georgia,serif;color:#222;max-width:62rem;margin:1.5rem auto;padding:0 1rem}
 h1{font-size:1.6rem;margin:0 0 .3rem}h2{font-size:1.15rem;margin:1.4rem 0 .4rem;border-bottom:1px solid #bbb}
@@ -27,7 +32,7 @@ figure{margin:.6rem 0;break-inside:avoid}svg{width:100%;height:auto}figcaption{f
 pre{white-space:pre-wrap;overflow-wrap:anywhere;background:#f5f5f2;padding:.7rem;font-size:.85rem}
 .note{font-size:.9rem;color:#555}@page{size:A4;margin:14mm}
 @media print{body{margin:0;padding:0;font-size:10pt;max-width:none}h2{break-after:avoid;margin:.7rem 0 .2rem}
-section{break-inside:avoid}svg{max-height:62mm}.verdict{margin:.4rem 0}*{print-color-adjust:exact}}
+section{break-inside:avoid}svg{max-height:70mm}.verdict{margin:.4rem 0}*{print-color-adjust:exact}}
 """
 
 
@@ -82,6 +87,13 @@ def draw_scheme(run: Results, axles: Sequence[tuple[float, float]], surface: flo
         axes.annotate("", (place, road), (place, road + 0.13 * size), arrowprops=tip)
         axes.text(place, road + 0.14 * size, f"{force_text(weight)}", ha="center", fontsize=8, color=INK[2])
     return figure
+
+
+def dimensions_of(run: Results) -> str:
+    """What the deck says of the size of the arch, as a sentence."""
+    given = ((name, run.setting(f"arch%{name}")) for name in DIMENSIONS)
+    words = [value_label(name, float(value)) for name, value in given if value]
+    return f"{', '.join(words).capitalize()}." if words else ""
 
 
 def table_of(rows: Sequence[tuple[str, str]]) -> str:

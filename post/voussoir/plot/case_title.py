@@ -73,13 +73,16 @@ def _ending(row: Row, run: Results | None) -> str:
 def safety_of(row: Row, run: Results | None) -> str:
     """The safety numbers of what stands, as far as they are told."""
     words = ""
-    safety, factor = (row.get(name, math.nan) for name in ("safety_thickness", "exact_low"))
+    names = ("safety_thickness", "critical", "exact_low")
+    safety, factor, limit = (row.get(name, math.nan) for name in names)
     if math.isinf(safety):
         words += ", at any smaller thickness, too"
     elif not math.isnan(safety):
         words += f", thickness {safety:.3g} × critical"
     if not math.isnan(factor):
         words += f", load factor {factor:.4g}"
+    elif not math.isnan(limit):  # of limit analysis: joints that slide may fall before
+        words += f", load factor at most {limit:.4g}"
     thrust = thrust_of(row, force_unit(run))
     return f"{words}, thrust {thrust}" if thrust else words
 
