@@ -21,18 +21,18 @@ module dda_coulomb_fall
 
 contains
 
-   !> Velocities of the fall, the largest one
+   !> Velocities of the fall, the largest one, and the forces with which it goes on
    pure subroutine find_coulomb_fall(graph, load, force, most, velocity, found, n_factorisation)
       type(joint_graph_t), intent(in) :: graph
       !> The load: (n_dof, n_block) [N/m, N/m, N ...]
       real(wp), intent(in) :: load(:, :)
-      !> Forces that the joints can carry: (3, n_joint) [N/m]
-      real(wp), intent(in) :: force(:, :)
+      !> Forces that the joints can carry; those of the fall where one is found: (3, n_joint) [N/m]
+      real(wp), intent(inout) :: force(:, :)
       !> Factorisations that it may take
       integer, intent(in) :: most
       !> Velocities: (n_dof, n_block)
       real(wp), intent(inout) :: velocity(:, :)
-      !> Whether a motion without end was found; otherwise the velocities are left alone
+      !> Whether a motion without end was found; otherwise velocities and forces are left alone
       logical, intent(out) :: found
       !> Factorisations
       integer, intent(out) :: n_factorisation
@@ -58,6 +58,7 @@ contains
       if (.not. found) return
       velocity = in_metres(joints, jump%mechanism)
       velocity = velocity/max(maxval(abs(velocity(:2, :))), tiny(1.0_wp))
+      force = joints%force_unit*state%force
    end subroutine find_coulomb_fall
 
    !> The state of joints with given forces; what is next to nothing is nothing

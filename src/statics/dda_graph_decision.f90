@@ -227,16 +227,20 @@ contains
       real(wp), intent(in) :: load(:, :)
       !> Forces of limit analysis: (3, n_joint)
       real(wp), intent(in) :: force(:, :)
-      !> A collapse; its mechanism is set where one is found
+      !> A collapse; its mechanism and forces are set where one is found
       type(graph_verdict_t), intent(inout) :: verdict
+      real(wp) :: falling(3, size(graph%kind))
       integer :: n
       logical :: found
 
       if (settings%verdict_flow == flow_rule%associated .or. .not. has_friction(graph) &
          & .or. crushes(graph)) return
-      call find_coulomb_fall(graph, load, force, few, verdict%mechanism, found, n)
+      falling = force
+      call find_coulomb_fall(graph, load, falling, few, verdict%mechanism, found, n)
       verdict%n_factorisation = verdict%n_factorisation + n
-      if (found) verdict%flow = flow_rule%coulomb
+      if (.not. found) return
+      verdict%flow = flow_rule%coulomb
+      verdict%fall_force = falling
    end subroutine slide_along
 
    !> Whether friction has a say: where joints cannot slide, or slide freely, both rules are one

@@ -33,7 +33,7 @@ contains
       type(contacts_t), intent(inout) :: contacts
       type(joint_graph_t) :: graph
       real(wp), allocatable :: rate(:, :)
-      real(wp) :: dilatancy, least
+      real(wp) :: dilatancy, least, share
       integer :: j
 
       call scene_graph(settings, system, contacts, graph)
@@ -41,12 +41,19 @@ contains
       call joint_motion(graph, verdict%mechanism, rate)
       contacts%increment = rate(:, :size(contacts%joint))
       if (allocated(verdict%force)) contacts%force = verdict%force(:, :size(contacts%joint))
+      if (allocated(verdict%fall_force)) &
+         & contacts%force = verdict%fall_force(:, :size(contacts%joint))
       ! a block that turns about its one corner moves, its joint does not
       least = still*max(maxval(abs(rate)), maxval(abs(verdict%mechanism(1:2, :))))
+      ! what presses is closed, and moves by what the solution leaves
+      share = 0.0_wp
+      if (allocated(verdict%force)) share = least/still &
+         & /max(maxval(abs(contacts%force)), tiny(1.0_wp))
       do j = 1, size(contacts%joint)
          dilatancy = 0.0_wp
          if (verdict%flow == flow_rule%associated) dilatancy = graph%friction(j)*abs(rate(3, j))
-         contacts%face(j)%open = rate(1:2, j) - dilatancy > least
+         contacts%face(j)%open = rate(1:2, j) - dilatancy > max(least, &
+            & share*contacts%force(1:2, j))
          if (allocated(verdict%state)) contacts%face(j)%open = contacts%face(j)%open &
             & .or. verdict%state%gap(:, j) > still*maxval(abs(verdict%state%motion(1:2, :)))
          if (contacts%springs%cone(j)%single) contacts%face(j)%open(2) = .true.

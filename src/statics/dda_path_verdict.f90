@@ -32,6 +32,8 @@ module dda_path_verdict
       type(coulomb_state_t), allocatable :: state
       !> Forces of what stands under the associated rule: (3, n_joint) [N/m]
       real(wp), allocatable :: force(:, :)
+      !> Forces with which it goes on falling, where they are others: (3, n_joint) [N/m]
+      real(wp), allocatable :: fall_force(:, :)
       !> Whether the mechanism is the one in which the blocks fall; otherwise a run tells it
       logical :: is_told = .false.
       !> Whether something live was followed to the state
