@@ -229,8 +229,9 @@ contains
       allocate (proof%velocity, source=critical%limit_velocity)
       proof%force_at = critical%limit(1)
       proof%motion_at = critical%limit(2)
-      call check_forces(graph, load, proof%force, proof%imbalance, proof%law_violation)
       allocate (live, source=critical%limit_live)
+      call check_forces(graph, load, proof%force, proof%imbalance, proof%law_violation, &
+         & critical%limit(1)*live)
       call check_velocities(graph, live, proof%velocity, violation, power)
       proof%law_violation = max(proof%law_violation, violation)
       proof%power = power/most_power(live, proof%velocity)

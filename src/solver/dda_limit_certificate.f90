@@ -69,7 +69,7 @@ contains
    end function stopping_factor
 
    !> How far forces are from balance with a load and from the law of the joints
-   pure subroutine check_forces(graph, load, force, imbalance, violation)
+   pure subroutine check_forces(graph, load, force, imbalance, violation, part)
       type(joint_graph_t), intent(in) :: graph
       !> Loads: (n_dof, n_block) [N/m, N/m, N ...]
       real(wp), intent(in) :: load(:, :)
@@ -79,12 +79,15 @@ contains
       real(wp), intent(out) :: imbalance
       !> Largest force beyond the law of a joint, over the largest load [1]
       real(wp), intent(out) :: violation
+      !> A part of the load, which the others may cancel: (n_dof, n_block) [N/m, N/m, N ...]
+      real(wp), intent(in), optional :: part(:, :)
       real(wp) :: left(size(load, 1), size(load, 2)), largest
       integer :: j
 
       left = load
       call add_joint_forces(graph, force, left)
       largest = larger_load(graph, load)
+      if (present(part)) largest = max(largest, larger_load(graph, part))
       imbalance = larger_load(graph, left)/max(largest, tiny(largest))
       violation = 0.0_wp
       do j = 1, size(force, 2)

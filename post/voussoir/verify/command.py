@@ -15,6 +15,7 @@ from voussoir.verify.contacts import TOUCH, Block, find_joints, make_block
 from voussoir.verify.deck import Deck, VerifyError, read_record
 from voussoir.verify.exact import MOST_JOINTS, check_exactly
 from voussoir.verify.lines import read_lines
+from voussoir.verify.loads import loads_on
 from voussoir.verify.proofs import TOLERANCE, Finding, Row, Scene, check_forces, check_motion
 from voussoir.verify.sums import sums_of, told_sums
 from voussoir.verify.tables import check_joints, check_rigid
@@ -204,13 +205,11 @@ def _check_told(
     deck: Deck, of_case: Deck, result: Row, rows: dict[str, list[Row]], places: list[Path], finding: Finding
 ) -> None:
     """Check what joints.csv and blocks.csv tell: forces of what stands, the mechanism of what falls."""
-    at_value, width = of_case, 0.0
+    at_value, at_end = of_case, None
     if deck.searched is not None and result["verdict"] == "found":
         stands = "critical_high" if result["collapses_at"] == "low" else "critical_low"
         at_value = of_case.with_value(deck.searched, result[stands])
-        # where a path ends, the forces are those of the very end
-        width = float(result["critical_high"]) - float(result["critical_low"])
-        width *= max(1.0, 1.0 / abs(float(result["critical"])))
+        at_end = of_case.with_value(deck.searched, result["critical"])
     elif deck.searched is not None and rows["proof_forces"]:
         at_value = of_case.with_value(deck.searched, rows["proof_forces"][0]["value"])
     elif deck.searched is not None:
@@ -218,7 +217,9 @@ def _check_told(
     scene = scene_of(at_value, rows["blocks"], places, Finding())
     _check_stage(scene.source, result, finding)
     bars = [float(row["force"]) for row in rows["bars"]] if result["verdict"] in ("stable", "found") else None
-    check_joints(scene, rows["joints"], bars, finding, width)
+    # where a path ends, the forces are those of the very end
+    there, here = (loads_on(of, scene.source, scene.blocks) for of in (at_end or at_value, at_value))
+    check_joints(scene, rows["joints"], bars, finding, there - here)
     strain = 0.0 if result["exact_high"] else STRAIN
     check_rigid(scene, rows["blocks"], finding, math.inf if result["verdict"] == "stable" else strain)
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 
 import numpy as np
 
@@ -42,27 +43,55 @@ def loads_on(deck: Deck, source: Source, blocks: list[Block]) -> np.ndarray:
     ndarray
         Force along x and y, and moment, of each block: (n, 3).
     """
-    direction, push = deck.direction(), deck.push()
     load = np.zeros((len(blocks), 3), dtype=object if deck.exact else float)
+    for i, part in _parts_on(deck, source, blocks):
+        load[i] += part
+    return load
+
+
+def sizes_on(deck: Deck, source: Source, blocks: list[Block]) -> np.ndarray:
+    """Sizes of all loads on blocks, which may cancel one another: beside them rounding is small.
+
+    Parameters
+    ----------
+    deck : Deck
+        The deck of the case.
+    source : Source
+        Its file of blocks, or nothing.
+    blocks : list of Block
+        The blocks.
+
+    Returns
+    -------
+    ndarray
+        Sums of the sizes of forces along x and y, and of moments, of each block: (n, 3).
+    """
+    size = np.zeros((len(blocks), 3))
+    for i, part in _parts_on(deck, source, blocks):
+        size[i] += np.abs(part.astype(float))
+    return size
+
+
+def _parts_on(deck: Deck, source: Source, blocks: list[Block]) -> Iterator[tuple[int, np.ndarray]]:
+    """Place of a block and force and moment of a load on it, for all loads."""
+    direction, push = deck.direction(), deck.push()
     for i, block in enumerate(blocks):
         material = source.material[i] if source.material else 1
         weight = source.weights.get(material, deck.unit_weight()) * block.area
         mass = source.densities.get(material, deck.number("material%density")) * block.area
-        load[i, 0] = weight * (direction[0] + push) + mass * source.shaking[0]
-        load[i, 1] = weight * direction[1] + mass * source.shaking[1]
-        if deck.gives("arch%lune_deg"):
-            load[i] *= 0
-            if not block.fixed:
-                _add(_wedge(deck, block, weight / block.area), 1, blocks, load)
+        if not deck.gives("arch%lune_deg"):
+            yield i, np.array([weight * (direction[0] + push) + mass * source.shaking[0],
+                               weight * direction[1] + mass * source.shaking[1], 0 * weight])
+        elif not block.fixed:
+            yield _on_block(_wedge(deck, block, weight / block.area), 1, blocks)
     factor = deck.number("load%load_factor")
     for force in [*source.forces, *live_of(deck, blocks)]:
-        _add(force, factor if force.live else 1, blocks, load)
+        yield _on_block(force, factor if force.live else 1, blocks)
     for water in source.water:
         for number, place, vector in water_loads(water, deck.number("load%water_rise"), blocks):
-            _add(PointForce(number, tuple(place), tuple(vector), False), 1, blocks, load)
+            yield _on_block(PointForce(number, tuple(place), tuple(vector), False), 1, blocks)
     for number, x, weight in fill_weights(deck, blocks) if has_fill(deck) else ():
-        _add(PointForce(number, (x, blocks[number - 1].centre[1]), (0, -weight), False), 1, blocks, load)
-    return load
+        yield _on_block(PointForce(number, (x, blocks[number - 1].centre[1]), (0, -weight), False), 1, blocks)
 
 
 def live_of(deck: Deck, blocks: list[Block]) -> list[PointForce]:
@@ -191,14 +220,14 @@ def _live_of_deck(deck: Deck) -> list[PointForce]:
     return [PointForce(0, place, force, True) for place, force in zip(zip(x, y), zip(fx, fy))]
 
 
-def _add(force: PointForce, factor: float, blocks: list[Block], load: np.ndarray) -> None:
-    """Add a force to the load of its block."""
+def _on_block(force: PointForce, factor: float, blocks: list[Block]) -> tuple[int, np.ndarray]:
+    """Place of the block that a force acts on, force and moment about its centre."""
     number = force.block
     if number == 0:
         number = max(blocks, key=lambda block: depth(block, np.array(force.point))).number
     block = next(block for block in blocks if block.number == number)
     vector, arm = factor * np.array(force.force), np.array(force.point) - block.centre
-    load[number - 1] += [*vector, arm[0] * vector[1] - arm[1] * vector[0]]
+    return number - 1, np.array([*vector, arm[0] * vector[1] - arm[1] * vector[0]])
 
 
 def friction_of(deck: Deck, source: Source, joint: Joint, springing: bool) -> float:

@@ -12,7 +12,7 @@ from voussoir.verify.blocks import Source
 from voussoir.verify.contacts import TOUCH, Block, Joint, depth, numbers_of
 from voussoir.verify.deck import Deck
 from voussoir.verify.fill import Pull
-from voussoir.verify.loads import friction_of, loads_on, may_hold, pulls_of, strength_of
+from voussoir.verify.loads import friction_of, loads_on, may_hold, pulls_of, sizes_on, strength_of
 
 Row = dict[str, str]
 #: Largest figure of a proof that holds
@@ -93,7 +93,7 @@ def check_forces(scene: Scene, rows: list[Row], finding: Finding) -> None:
     """
     left = loads_on(scene.deck, scene.source, scene.blocks)
     free = np.array([not block.fixed for block in scene.blocks])
-    largest = largest_of(left[free], scene.length)
+    largest = largest_of(sizes_on(scene.deck, scene.source, scene.blocks)[free], scene.length)
     pairs = numbers_of(scene.joints)
     used: set[int] = set()
     spent: set[int] = set()
@@ -277,8 +277,10 @@ def check_motion(scene: Scene, rows: list[Row], finding: Finding) -> float:
         else:
             power += pull.most * min(0.0, along)
     load = loads_on(scene.deck, scene.source, scene.blocks)
-    most = float((np.linalg.norm(load[:, :2], axis=1) * np.linalg.norm(velocity[:, :2], axis=1)
-                  + np.abs(load[:, 2] * velocity[:, 2])).sum())
+    # what the power of a decision is a share of is what the program takes, too
+    size = load if scene.deck.searched is None else sizes_on(scene.deck, scene.source, scene.blocks)
+    most = float((np.linalg.norm(size[:, :2], axis=1) * np.linalg.norm(velocity[:, :2], axis=1)
+                  + np.abs(size[:, 2] * velocity[:, 2])).sum())
     return (float((load * velocity).sum()) + power) / max(most, 1e-300)
 
 

@@ -8,7 +8,7 @@ import numpy as np
 
 from voussoir.verify.contacts import TOUCH, Block, Joint, numbers_of
 from voussoir.verify.fill import Pull
-from voussoir.verify.loads import loads_on
+from voussoir.verify.loads import loads_on, sizes_on
 from voussoir.verify.proofs import Finding, Row, Scene, largest_of, push
 
 #: What told forces may leave of a load: those of a search are of the bracket's end that stands
@@ -22,7 +22,7 @@ NONE = 1e-12
 
 
 def check_joints(
-    scene: Scene, rows: list[Row], bars: list[float] | None, finding: Finding, allowed: float = 0.0
+    scene: Scene, rows: list[Row], bars: list[float] | None, finding: Finding, allowed: np.ndarray
 ) -> None:
     """Check that told joint forces keep the law of every joint, and balance the loads of what stands.
 
@@ -36,12 +36,13 @@ def check_joints(
         Told forces of the bars; None where nothing stands and forces need not balance.
     finding : Finding
         Receives the figures.
-    allowed : float
-        What the forces may leave besides, as the bracket of a search is as wide.
+    allowed : ndarray
+        What the forces may leave besides, as the bracket of a search is so wide: (n, 3).
     """
     left = loads_on(scene.deck, scene.source, scene.blocks)
     free = np.array([not block.fixed and not _is_held(scene, block.number) for block in scene.blocks])
-    largest = largest_of(left[free], scene.length) if free.any() else 1.0
+    size = sizes_on(scene.deck, scene.source, scene.blocks)
+    largest = largest_of(size[free], scene.length) if free.any() else 1.0
     pairs = numbers_of(scene.joints)
     for pull, force in zip([pull for pull in scene.pulls if pull.kind == "bar"], bars or []):
         beyond = max(-force, 0.0 if pull.most is None else force - float(pull.most), 0.0)
@@ -77,7 +78,8 @@ def check_joints(
         if free[block.number - 1]:
             _lean(left, block, [pull for pull in scene.pulls if pull.kind == "bounded"], scene.length)
     if free.any():
-        finding.keep("balance of told forces", largest_of(left[free], scene.length) / largest, TOLD + allowed)
+        finding.keep("balance of told forces", largest_of(left[free], scene.length) / largest,
+                     TOLD + largest_of(allowed[free], scene.length) / largest)
 
 
 def _lean(left: np.ndarray, block: Block, pulls: list[Pull], length: float) -> None:
