@@ -11,10 +11,11 @@ module dda_dead_rest
    use dda_coulomb_joints, only : coulomb_joints_t, end_role, new_coulomb_joints
    use dda_coulomb_law, only : coulomb_state_t, face, shear_face, unloaded_state
    use dda_forward, only : outcome_t, run_to_verdict
-   use dda_path_verdict, only : graph_verdict_t
+   use dda_graph_decision, only : no_start
+   use dda_path_verdict, only : follow_stations, graph_verdict_t
    use dda_joint_graph, only : add_joint_forces, joint_graph_t
    use dda_kinds, only : wp
-   use dda_load_stations, only : history_times, leads_at_once
+   use dda_load_stations, only : history_times, leads_at_once, load_stations_t
    use dda_loading_path, only : path_end
    use dda_scene_graph, only : scene_graph
    use dda_settings, only : flow_rule, settings_t
@@ -22,9 +23,39 @@ module dda_dead_rest
    implicit none
    private
 
-   public :: fall_at_once, rest_under_dead_loads
+   public :: fall_at_once, follow_from_rest, rest_under_dead_loads
 
 contains
+
+   !> Follow the path from its dead loads; where it finds no state under them though forces balance
+   !> them, from the rest that blocks come to
+   pure subroutine follow_from_rest(settings, system, contacts, graph, stations, is_balanced, &
+      & proof)
+      type(settings_t), intent(in) :: settings
+      type(block_system_t), intent(in) :: system
+      type(contacts_t), intent(in) :: contacts
+      type(joint_graph_t), intent(in) :: graph
+      type(load_stations_t), intent(in) :: stations
+      !> Whether forces balance the dead loads
+      logical, intent(in) :: is_balanced
+      !> How the path went
+      type(graph_verdict_t), intent(inout) :: proof
+      type(coulomb_state_t), allocatable :: start
+      integer :: n
+      logical :: slides
+
+      call follow_stations(settings, system, graph, stations, proof)
+      if (.not. (proof%no_start .and. is_balanced)) return
+      call rest_under_dead_loads(settings, system, contacts, start, slides, n)
+      if (allocated(start)) then
+         call follow_stations(settings, system, graph, stations, proof, start)
+      else
+         proof%end = path_end%undecided
+         proof%reason = no_start
+         if (slides) call fall_at_once(proof)
+      end if
+      proof%n_factorisation = proof%n_factorisation + n
+   end subroutine follow_from_rest
 
    !> Run the blocks under their dead loads alone
    pure subroutine rest_under_dead_loads(settings, system, contacts, start, slides, n)

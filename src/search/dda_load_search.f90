@@ -3,11 +3,10 @@
 !>
 !> The coefficient comes last on the path, so one path finds its critical value.
 module dda_load_search
-   use dda_coulomb_law, only : coulomb_state_t
-   use dda_dead_rest, only : fall_at_once, rest_under_dead_loads
+   use dda_dead_rest, only : follow_from_rest
    use dda_decision, only : record_collapse, record_rest
    use dda_error, only : error_t
-   use dda_graph_decision, only : has_friction, no_start, see_fall, slide_along
+   use dda_graph_decision, only : has_friction, see_fall, slide_along
    use dda_joint_graph, only : joint_graph_t
    use dda_kinds, only : wp
    use dda_limit_load, only : find_limit, limit_load_t, limit_state
@@ -15,7 +14,7 @@ module dda_load_search
       & only_weight, value_at_end, with_coefficient
    use dda_load_stations, only : load_stations, load_stations_t
    use dda_loading_path, only : path_end
-   use dda_path_verdict, only : follow_stations, graph_verdict_t
+   use dda_path_verdict, only : graph_verdict_t
    use dda_scene, only : family_t, scene_t, searched_load
    use dda_scene_graph, only : scene_graph
    use dda_search, only : critical_t, search_t
@@ -48,6 +47,8 @@ module dda_load_search
       real(wp), allocatable :: beyond(:, :)
       !> Whether the path leads further than its dead loads
       logical :: stands_upright = .true.
+      !> Whether no forces balance the dead loads
+      logical :: falls_dead = .false.
       !> How it falls, or stands at the end of the range
       type(graph_verdict_t) :: proof
    end type side_t
@@ -136,6 +137,7 @@ contains
       real(wp) :: far
 
       call find_associated(load, scene, graph, last, search, side, limit)
+      side%falls_dead = limit%state == limit_state%no_dead_equilibrium
       associate (proof => side%proof)
          proof%n_factorisation = limit%n_factorisation
          far = last
@@ -145,7 +147,7 @@ contains
             call take_associated(last, search, limit, side)
             return
          end if
-         if (limit%state == limit_state%no_dead_equilibrium) then
+         if (side%falls_dead) then
             call take_associated(last, search, limit, side)
             side%value = 0.0_wp
             side%stands_upright = .false.
@@ -154,8 +156,10 @@ contains
          if (abs(far) < abs(last)) far = far*(1.0_wp - path_resolution)
          settings = with_coefficient(scene%settings, load, far)
          stations = load_stations(settings, .true.)
-         call follow_from_rest(settings, scene, graph, stations, side%has_limit, proof)
+         call follow_from_rest(settings, scene%system, scene%contacts, graph, stations, &
+            & side%has_limit .or. limit%state == limit_state%unbounded, proof)
          proof%n_factorisation = proof%n_factorisation + limit%n_factorisation
+         side%falls_dead = proof%no_start
          side%end = proof%end
          side%value = value_at_end(load, far, stations, proof)
          if (proof%end == path_end%reached .and. abs(far) < abs(last)) then
@@ -169,40 +173,12 @@ contains
          side%half = max(0.5_wp*search%tolerance, path_resolution)*abs(side%value)
          ! where nothing slides in the collapse both rules agree, and limit analysis is sharper;
          ! what does not settle so near to the limit falls there
-         if (.not. side%has_limit .or. side%end == path_end%reached) return
-         if (abs(side%value - side%limit(2)) <= merge(10.0_wp, 100.0_wp, &
-            & side%end == path_end%collapsed)*path_resolution*abs(side%value)) &
-            & call take_associated(last, search, limit, side)
+         if (side%falls_dead .or. .not. side%has_limit .or. side%end == path_end%reached) return
+         if (product(side%limit) <= 0.0_wp .or. abs(side%value - side%limit(2)) &
+            & <= merge(10.0_wp, 100.0_wp, side%end == path_end%collapsed)*path_resolution &
+            & *abs(side%value)) call take_associated(last, search, limit, side)
       end associate
    end subroutine follow_side
-
-   !> Follow the path from its dead loads; where it finds no state under them though forces balance
-   !> them, from the rest that blocks come to
-   pure subroutine follow_from_rest(settings, scene, graph, stations, is_balanced, proof)
-      type(settings_t), intent(in) :: settings
-      type(scene_t), intent(in) :: scene
-      type(joint_graph_t), intent(in) :: graph
-      type(load_stations_t), intent(in) :: stations
-      !> Whether forces balance the dead loads
-      logical, intent(in) :: is_balanced
-      !> How the path went
-      type(graph_verdict_t), intent(inout) :: proof
-      type(coulomb_state_t), allocatable :: start
-      integer :: n
-      logical :: slides
-
-      call follow_stations(settings, scene%system, graph, stations, proof)
-      if (.not. (proof%no_start .and. is_balanced)) return
-      call rest_under_dead_loads(settings, scene%system, scene%contacts, start, slides, n)
-      if (allocated(start)) then
-         call follow_stations(settings, scene%system, graph, stations, proof, start)
-      else
-         proof%end = path_end%undecided
-         proof%reason = no_start
-         if (slides) call fall_at_once(proof)
-      end if
-      proof%n_factorisation = proof%n_factorisation + n
-   end subroutine follow_from_rest
 
    !> The associated limit of what is searched, where it is linear in the load
    pure subroutine find_associated(load, scene, graph, last, search, side, limit)
@@ -266,6 +242,11 @@ contains
          side%half = max(0.5_wp*abs(side%limit(2) - side%limit(1)), &
             & 4.0_wp*epsilon(1.0_wp)*abs(side%value), &
             & 0.5_wp*min(search%tolerance, path_resolution)*abs(side%value))
+         ! a limit that may be nothing is nothing
+         if (product(side%limit) <= 0.0_wp) then
+            side%value = 0.0_wp
+            side%half = maxval(abs(side%limit))
+         end if
          select case (limit%state)
          case (limit_state%found, limit_state%no_dead_equilibrium)
             proof%mechanism = limit%velocity
@@ -299,18 +280,22 @@ contains
       type(side_t), intent(in) :: right, left
       !> Receives the verdict
       type(critical_t), intent(inout) :: critical
-      logical :: falls_left, falls_right
+      logical :: falls_left, falls_right, falls_at_once
 
       falls_right = right%end == path_end%collapsed
       falls_left = left%end == path_end%collapsed
+      ! where forces balance what acts without the coefficient, it stands there
+      falls_at_once = falls_left .and. .not. right%value > left%value &
+         & .and. (right%falls_dead .or. left%falls_dead)
+      if (.not. right%value - right%half > low) falls_at_once = falls_at_once .or. &
+         & abs(low) > 0.0_wp .or. right%falls_dead
       if (right%end == path_end%undecided) then
          call keep_limit(search, low, high, right, critical)
          critical%reason = right%proof%reason
       else if (left%end == path_end%undecided) then
          call keep_limit(search, low, high, left, critical)
          critical%reason = left%proof%reason
-      else if (falls_right .and. (.not. right%value - right%half > low .or. falls_left .and. .not. &
-         & right%value > left%value)) then
+      else if (falls_right .and. falls_at_once) then
          ! at the lower end, or where the coefficient does nothing
          critical%verdict = verdict%collapsed
          critical%falls = search%low + max(0.0_wp, right%value - right%half - low) &

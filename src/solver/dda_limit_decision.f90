@@ -5,12 +5,13 @@
 !> more. The interior-point method starts at those forces, in balance, and stops as soon as forces
 !> reach the end of the path or velocities say that none do.
 module dda_limit_decision
-   use dda_interior_point, only : solve_cones, start_by_forces
+   use dda_interior_point, only : solve_cones, start_by_forces, start_by_springs
    use dda_interior_state, only : interior_goal_t, interior_point_t, interior_state, &
       & load_path_t, set_path, size_of_load
    use dda_joint_graph, only : crushes, joint_graph_t
    use dda_joint_layers, only : add_layers, joint_layers_t, no_layers, touch_parabola
-   use dda_joint_rays, only : add_ray_forces, forces_of_rays, joint_rays_t, scale_load, set_rays
+   use dda_joint_rays, only : add_ray_forces, forces_of_rays, joint_rays_t, n_side, ray_rates, &
+      & scale_load, set_rays
    use dda_kinds, only : wp
    use dda_limit_certificate, only : check_forces, check_velocities, crushing_power
    use dda_ray_matrix, only : plan_matrix, ray_matrix_t
@@ -18,7 +19,7 @@ module dda_limit_decision
    private
 
    public :: load_decision_t, load_state
-   public :: decide_load, decide_on_way
+   public :: decide_load, decide_on_way, drives
    public :: begin_inside, go_on_to_load, go_to_load, state_at_end, unit_of_force
    public :: keep_velocities, resolution
    public :: crush_tolerance, most_rounds
@@ -55,6 +56,8 @@ module dda_limit_decision
       integer :: n_factorisation = 0
    end type load_decision_t
 
+   !> Rates below this share of the largest velocity are rounding
+   real(wp), parameter :: free = 1.0e-12_wp
    !> Gap at which a decision that is not made ends
    real(wp), parameter :: resolution = 1.0e-12_wp
 
@@ -196,7 +199,51 @@ contains
       call scale_load(rays, load, unit_of_force(load), finish)
       call begin_inside(rays, finish, point)
       call go_on_to_load(rays, finish, resolution, springs, point)
+      if (state_at_end(point) == load_state%undecided) call see_free_motion(rays, finish, springs, &
+         & point)
    end subroutine go_to_load
+
+   !> A load drives blocks along a motion that no joint resists, where there is one: no forces then
+   !> balance any share of it
+   pure subroutine see_free_motion(rays, load, springs, point)
+      type(joint_rays_t), intent(in) :: rays
+      !> The load in the units of the rays: (3, 0:n_block)
+      real(wp), intent(in) :: load(:, 0:)
+      type(ray_matrix_t), intent(inout) :: springs
+      !> Receives the motion, and that it blocks the load
+      type(interior_point_t), intent(inout) :: point
+      type(interior_point_t) :: soft
+      type(load_path_t) :: path
+
+      call set_path(0.0_wp*load, load, path)
+      call start_by_springs(rays, path, springs, soft)
+      if (.not. (is_free(rays, soft%v) .and. drives(load, soft%v))) return
+      call move_alloc(soft%v, point%v)
+      point%state = interior_state%blocked
+   end subroutine see_free_motion
+
+   !> Whether a load has more power on a motion than rounded coordinates make
+   pure logical function drives(load, velocity)
+      !> Loads: (:, n_block)
+      real(wp), intent(in) :: load(:, :)
+      !> Velocities: (:, n_block)
+      real(wp), intent(in) :: velocity(:, :)
+
+      drives = sum(load*velocity) > rounding*sum(norm2(load(1:2, :), dim=1) &
+         & *norm2(velocity(1:2, :), dim=1))
+   end function drives
+
+   !> Whether a motion neither opens joints nor closes them nor slides against friction, but for
+   !> rounding
+   pure logical function is_free(rays, velocity)
+      type(joint_rays_t), intent(in) :: rays
+      !> Velocities of the blocks: (3, 0:n_block)
+      real(wp), intent(in) :: velocity(:, 0:)
+      real(wp) :: rate(n_side, size(rays%block, 2))
+
+      call ray_rates(rays, velocity, rate)
+      is_free = maxval(abs(rate)*(rays%bounded + rays%free)) <= free*maxval(abs(velocity))
+   end function is_free
 
    !> Forces that are equal along all rays, of the size of a load
    pure subroutine begin_inside(rays, load, point)
@@ -306,8 +353,7 @@ contains
       call check_forces(graph, load, decision%force, imbalance, beyond_cone)
       call check_velocities(graph, load, decision%velocity, beyond_flow, power)
       decision%state = state_at_end(point)
-      if (decision%state == load_state%falls .and. .not. power > rounding*sum( &
-         & norm2(load(1:2, :), dim=1)*norm2(decision%velocity(1:2, :), dim=1))) &
+      if (decision%state == load_state%falls .and. .not. drives(load(1:3, :), decision%velocity)) &
          & decision%state = load_state%undecided
       select case (decision%state)
       case (load_state%stands)

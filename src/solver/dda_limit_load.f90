@@ -15,8 +15,8 @@ module dda_limit_load
    use dda_kinds, only : wp
    use dda_limit_certificate, only : balance_margin, carried_factor, check_forces, &
       & check_velocities, crushing_power, flow_margin, stopping_factor
-   use dda_limit_decision, only : crush_tolerance, decide_load, go_to_load, keep_velocities, &
-      & load_decision_t, load_state, most_rounds, state_at_end, unit_of_force
+   use dda_limit_decision, only : crush_tolerance, decide_load, drives, go_to_load, &
+      & keep_velocities, load_decision_t, load_state, most_rounds, state_at_end, unit_of_force
    use dda_ray_matrix, only : plan_matrix, ray_matrix_t
    implicit none
    private
@@ -211,7 +211,7 @@ contains
          limit%state = limit_state%no_dead_equilibrium
       else
          call raise_live_load(rays, dead, live, tolerance, many, springs, point)
-         if (point%state /= interior_state%optimal .and. point%factor > 0.0_wp) &
+         if (point%state /= interior_state%optimal) &
             & call try_live_load_alone(rays, live, springs, unit, point, limit)
          if (limit%state == limit_state%not_converged) then
             if (point%state == interior_state%unbounded) &
@@ -260,8 +260,12 @@ contains
       if (worst(before) > tolerance .and. before%state /= interior_state%unbounded) then
          call start_by_springs(rays, path, springs, point)
          call solve_cones(rays, path, goal, springs, point)
-         if (worst(before) < worst(point)) point = before
+         if (point%state /= interior_state%unbounded .and. worst(before) < worst(point)) &
+            & point = before
       end if
+      ! rounded coordinates may make a mechanism of what has none
+      if (point%state == interior_state%optimal .and. .not. drives(scaled_live, point%v)) &
+         & point%state = interior_state%stalled
       point%factor = point%factor/path%size
    end subroutine raise_live_load
 
@@ -323,7 +327,8 @@ contains
          limit%upper = limit%upper + flow_margin(graph, limit%force, limit%velocity)/limit%power
          rounding = 8.0_wp*spacing(max(abs(limit%lower), abs(limit%upper)))
          limit%lower = limit%lower - rounding
-         limit%upper = limit%upper + rounding
+         ! the dead load stands, but for rounding
+         limit%upper = max(limit%upper + rounding, 0.0_wp)
       end select
    end subroutine certify
 end module dda_limit_load

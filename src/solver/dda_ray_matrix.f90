@@ -74,18 +74,22 @@ contains
       type(joint_rays_t), intent(in) :: rays
       !> Masses: (3, 0:n_block)
       real(wp), intent(in) :: mass(:, 0:)
-      !> Share of itself that each diagonal entry is raised by; what no spring holds gets one
+      !> Share of itself that each diagonal entry is raised by; what no spring holds gets as much of
+      !> the block's largest, or one
       real(wp), intent(in) :: lift
       !> The matrix with its stiffness; its factor may be unusable
       type(ray_matrix_t), intent(inout) :: springs
+      real(wp) :: largest
       integer :: b, k
 
       call assemble(rays, springs)
       do b = 1, rays%n_block
+         largest = maxval([(springs%matrix%diagonal(k, k, b) + mass(k, b), k=1, 3)])
+         if (.not. largest > 0.0_wp) largest = 1.0_wp/lift
          do k = 1, 3
             associate (d => springs%matrix%diagonal(k, k, b))
                d = d + mass(k, b)
-               d = merge(d*(1.0_wp + lift), 1.0_wp, d > 0.0_wp)
+               d = merge(d*(1.0_wp + lift), lift*largest, d > 0.0_wp)
             end associate
          end do
       end do

@@ -1,0 +1,69 @@
+"""Odd assemblies: decisions, limits and told forces that the checker proves and a linear programme repeats."""
+
+from __future__ import annotations
+
+import csv
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+pytest.importorskip("voussoir.verify.command", reason="PYTHONPATH wants python/")
+
+from voussoir.command.main import main  # noqa: E402
+from voussoir.verify import command as verify_command  # noqa: E402
+from voussoir.verify.deck import read_record  # noqa: E402
+
+sys.path.insert(0, str(Path(__file__).parents[1] / "cli"))
+
+from live_assemblies import programme  # noqa: E402
+from odd_assemblies import UNIT_WEIGHT, odd_assembly  # noqa: E402
+
+#: Assemblies of every kind: smooth, lifted by as much as they weigh, on one corner, held by what rounding leaves
+SEEDS = [0, 3, 9, 15, 18, 34, 37, 38, 46, 77, 83, 95, 97, 110, 115, 123, 126, 128, 140, 150, 153]
+#: The largest factor that is looked for
+MOST = 50.0
+
+
+def run(folder: Path, seed: int, flow: str, task: str) -> dict[str, str]:
+    """Row of results of a deck of an odd assembly; its proofs hold."""
+    blocks, friction = odd_assembly(seed)
+    (folder / "x.blocks").write_text(blocks)
+    (folder / "x.nml").write_text(
+        "&scene kind = 'blocks', geometry = 'x.blocks' /\n&output joints = .true., blocks = .true. /\n"
+        f"&material density = 2000, unit_weight = {UNIT_WEIGHT!r} /\n&joint friction_deg = {friction!r} /\n"
+        f"&analysis flow = '{flow}' /\n{task} /\n")
+    done = subprocess.run([os.environ["DDA"], "run", "x.nml", "--quiet"], cwd=folder, capture_output=True, text=True)
+    assert done.returncode == 0, done.stdout + done.stderr
+    assert main(["verify", str(folder / "x"), "--quiet"]) == 0
+    with (folder / "x" / "results.csv").open(newline="") as table:
+        return next(csv.DictReader(table))
+
+
+@pytest.mark.parametrize("flow", ["associated", "coulomb"])
+@pytest.mark.parametrize("seed", SEEDS)
+def test_decisions_on_both_sides_of_a_limit_are_proven(tmp_path: Path, seed: int, flow: str) -> None:
+    dead = run(tmp_path, seed, flow, "&load load_factor = 0")
+    row = run(tmp_path, seed, flow, f"&search parameter = 'load_factor', low = 0, high = {MOST}")
+    assert (row["verdict"] == "collapsed") == (dead["verdict"] == "collapsed")
+    if flow == "associated":
+        compare_with_programme(tmp_path, row)
+    if row["verdict"] == "found":
+        for share, verdict in ((0.97, "stable"), (1.03, "collapsed")):
+            factor = share * float(row["critical"]) + (share - 1) * 1e-3
+            assert run(tmp_path, seed, flow, f"&load load_factor = {max(factor, 0.0)!r}")["verdict"] == verdict
+
+
+def compare_with_programme(folder: Path, row: dict[str, str]) -> None:
+    """The associated limit is that of a linear programme of the joints that the checker finds."""
+    pytest.importorskip("scipy", reason="the linear programme wants scipy")
+    tables = {name: verify_command.read_table(folder / "x" / f"{name}.csv") for name in verify_command.TABLES}
+    deck = read_record(folder / "x").with_value("load_factor", "1")
+    scene = verify_command.scene_of(deck, tables["blocks"][1], [folder], verify_command.Finding())
+    limit = programme(scene)
+    if row["verdict"] == "found" and float(row["critical"]) > 0.0:
+        assert limit == pytest.approx(float(row["critical"]), rel=1e-7, abs=1e-9)
+    elif row["verdict"] == "stable":
+        assert limit is None or limit > MOST
