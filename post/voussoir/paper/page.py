@@ -47,8 +47,8 @@ summary { cursor: pointer; }
   th { white-space: normal; } }
 @media print { @page { margin: 12mm; } body { max-width: none; padding: 0; font-size: 10pt; }
   .wide, pre { overflow: visible; } table { font-size: 7pt; } th, td { padding: 1pt 3pt; }
-  th { white-space: normal; } pre { white-space: pre-wrap; } figure, tr { break-inside: avoid; }
-  figure svg, figure img { max-height: 230mm; width: auto; max-width: 100%; }
+  th { white-space: normal; } pre { white-space: pre-wrap; } figure, tr, .caption { break-inside: avoid; }
+  figure svg, figure img { max-height: 190mm; width: auto; max-width: 100%; }
   h2, h3, .caption { break-after: avoid; } #top img { max-width: min(34rem, 100%); }
 .pair { display: block; } }
 """
