@@ -27,8 +27,8 @@ module dda_dead_rest
 
 contains
 
-   !> Follow the path from its dead loads; where it finds no state under them though forces balance
-   !> them, from the rest that blocks come to
+   !> Follow the path from its dead loads; where it finds no state under them though forces
+   !> balance them, from the rest that blocks come to
    pure subroutine follow_from_rest(settings, system, contacts, graph, stations, is_balanced, &
       & proof)
       type(settings_t), intent(in) :: settings

@@ -17,7 +17,7 @@ module dda_load_coefficient
    private
 
    public :: added_loads, can_follow, carry_load, coefficient, full_loads, only_weight
-   public :: value_at_end, with_coefficient
+   public :: is_push, restore_weight, value_at_end, with_coefficient
 
    !> A coefficient beside which rounding of the constant loads is not felt
    real(wp), parameter :: many = 2.0_wp**40
@@ -25,11 +25,13 @@ module dda_load_coefficient
 contains
 
    !> Whether the coefficient comes last on a path that the joint graph can follow
-   pure logical function can_follow(load, scene)
+   pure logical function can_follow(load, scene, largest)
       !> One of searched_load
       integer, intent(in) :: load
       !> The scene at the high end
       type(scene_t), intent(in) :: scene
+      !> Largest size of the coefficient in the range
+      real(wp), intent(in) :: largest
 
       associate (settings => scene%settings)
          can_follow = decides_as_graph(settings, scene%contacts) &
@@ -39,9 +41,18 @@ contains
             & can_follow = can_follow .and. settings%verdict_flow == flow_rule%associated
          if (load == searched_load%tilt) can_follow = can_follow &
             & .and. .not. abs(settings%push) > 0.0_wp &
-            & .and. (settings%verdict_flow == flow_rule%coulomb .or. only_weight(settings))
+            & .and. (settings%verdict_flow == flow_rule%coulomb .or. only_weight(settings) &
+            & .and. is_push(largest))
       end associate
    end function can_follow
+
+   !> Whether gravity that tilts so far is upright gravity and a push, but for its size
+   pure logical function is_push(tilt)
+      !> The angle from upright [rad]
+      real(wp), intent(in) :: tilt
+
+      is_push = cos(tilt) > 1.0e-6_wp .and. abs(tilt) < 2.0_wp
+   end function is_push
 
    !> Settings whose push is not live
    pure function with_dead_push(settings) result(other)
@@ -173,4 +184,20 @@ contains
          end select
       end associate
    end function value_at_end
+
+   !> Give blocks their whole weight where a path has ended on a chord between two directions of it
+   pure subroutine restore_weight(stations, proof)
+      type(load_stations_t), intent(in) :: stations
+      !> How the path ended; its forces grow by a few millionths
+      type(graph_verdict_t), intent(inout) :: proof
+      real(wp) :: weight, half
+
+      if (ubound(stations%tilt, 1) == 0) return
+      associate (tilt => stations%tilt(proof%station:proof%station + 1), share => proof%share)
+         half = 0.5_wp*(tilt(2) - tilt(1))
+         weight = sqrt(1.0_wp - 4.0_wp*share*(1.0_wp - share)*sin(half)**2)
+      end associate
+      proof%state%force = proof%state%force/weight
+      proof%state%load = proof%state%load/weight
+   end subroutine restore_weight
 end module dda_load_coefficient

@@ -11,7 +11,7 @@ module dda_load_search
    use dda_kinds, only : wp
    use dda_limit_load, only : find_limit, limit_load_t, limit_state
    use dda_load_coefficient, only : added_loads, can_follow, carry_load, coefficient, full_loads, &
-      & only_weight, value_at_end, with_coefficient
+      & is_push, only_weight, restore_weight, value_at_end, with_coefficient
    use dda_load_stations, only : load_stations, load_stations_t
    use dda_loading_path, only : path_end
    use dda_path_verdict, only : graph_verdict_t
@@ -83,7 +83,7 @@ contains
       if (done) call family%build(search%high, scene, error)
       done = done .and. .not. allocated(error)
       if (done) high = coefficient(family%load, scene%settings)
-      if (done) done = high > low .and. can_follow(family%load, scene)
+      if (done) done = high > low .and. can_follow(family%load, scene, max(abs(low), abs(high)))
       if (.not. done) return
       call scene_graph(scene%settings, scene%system, scene%contacts, graph)
       right%value = high
@@ -162,6 +162,8 @@ contains
          side%falls_dead = proof%no_start
          side%end = proof%end
          side%value = value_at_end(load, far, stations, proof)
+         if (load == searched_load%tilt .and. only_weight(scene%settings)) &
+            & call restore_weight(stations, proof)
          if (proof%end == path_end%reached .and. abs(far) < abs(last)) then
             ! no forces go on from here, whatever the law of friction
             side%end = path_end%collapsed
@@ -171,14 +173,21 @@ contains
             proof%flow = flow_rule%associated
          end if
          side%half = max(0.5_wp*search%tolerance, path_resolution)*abs(side%value)
-         ! where nothing slides in the collapse both rules agree, and limit analysis is sharper;
-         ! what does not settle so near to the limit falls there
-         if (side%falls_dead .or. .not. side%has_limit .or. side%end == path_end%reached) return
-         if (product(side%limit) <= 0.0_wp .or. abs(side%value - side%limit(2)) &
-            & <= merge(10.0_wp, 100.0_wp, side%end == path_end%collapsed)*path_resolution &
-            & *abs(side%value)) call take_associated(last, search, limit, side)
+         if (is_at_limit(side)) call take_associated(last, search, limit, side)
       end associate
    end subroutine follow_side
+
+   !> Whether a path ends at the associated limit: where nothing slides in the collapse both rules
+   !> agree, and limit analysis is sharper; what does not settle so near to the limit falls there
+   pure logical function is_at_limit(side)
+      type(side_t), intent(in) :: side
+
+      is_at_limit = .false.
+      if (side%falls_dead .or. .not. side%has_limit .or. side%end == path_end%reached) return
+      is_at_limit = product(side%limit) <= 0.0_wp .or. abs(side%value - side%limit(2)) &
+         & <= merge(10.0_wp, 100.0_wp, side%end == path_end%collapsed)*path_resolution &
+         & *abs(side%value)
+   end function is_at_limit
 
    !> The associated limit of what is searched, where it is linear in the load
    pure subroutine find_associated(load, scene, graph, last, search, side, limit)
@@ -198,7 +207,8 @@ contains
       real(wp) :: tolerance
       integer :: varied
 
-      if (load == searched_load%tilt .and. .not. only_weight(scene%settings)) return
+      if (load == searched_load%tilt .and. .not. (only_weight(scene%settings) &
+         & .and. is_push(last))) return
       varied = load
       settings = scene%settings
       if (load == searched_load%tilt) then
@@ -314,12 +324,16 @@ contains
          call close_bracket(search, low, high, scene, left, -1.0_wp, critical)
       else
          critical%verdict = verdict%stable
-         critical%stands = search%high
          allocate (critical%standing)
-         if (high > 0.0_wp) call record_rest(scene%settings, scene%system, scene%contacts, &
-            & right%proof, critical%standing)
-         if (.not. high > 0.0_wp) call record_rest(scene%settings, scene%system, scene%contacts, &
-            & left%proof, critical%standing)
+         if (high > 0.0_wp) then
+            critical%stands = search%high
+            call record_rest(scene%settings, scene%system, scene%contacts, right%proof, &
+               & critical%standing)
+         else
+            critical%stands = search%low
+            call record_rest(scene%settings, scene%system, scene%contacts, left%proof, &
+               & critical%standing)
+         end if
       end if
    end subroutine conclude
 

@@ -27,9 +27,11 @@ SEEDS = [0, 3, 9, 15, 18, 34, 37, 38, 46, 77, 83, 95, 97, 110, 115, 123, 126, 12
 MOST = 50.0
 
 
-def run(folder: Path, seed: int, flow: str, task: str) -> dict[str, str]:
-    """Row of results of a deck of an odd assembly; its proofs hold."""
+def run(folder: Path, seed: int, flow: str, task: str, live: bool = True) -> dict[str, str]:
+    """Row of results of a deck of an odd assembly, with its live loads or without; its proofs hold."""
     blocks, friction = odd_assembly(seed)
+    if not live:
+        blocks = "".join(line for line in blocks.splitlines(keepends=True) if not line.startswith("live"))
     (folder / "x.blocks").write_text(blocks)
     (folder / "x.nml").write_text(
         "&scene kind = 'blocks', geometry = 'x.blocks' /\n&output joints = .true., blocks = .true. /\n"
@@ -67,3 +69,29 @@ def compare_with_programme(folder: Path, row: dict[str, str]) -> None:
         assert limit == pytest.approx(float(row["critical"]), rel=1e-7, abs=1e-9)
     elif row["verdict"] == "stable":
         assert limit is None or limit > MOST
+
+
+#: Seed, what is searched and from where to where: to the low side alone, to both, beyond the horizontal
+SIDES = [
+    (7, "horizontal_coefficient", -4, 0), (12, "horizontal_coefficient", -3, 3), (19, "horizontal_coefficient", -4, 0),
+    (26, "horizontal_coefficient", -4, 0), (9, "gravity_direction_deg", -150, -30),
+    (23, "gravity_direction_deg", -90, -10), (27, "gravity_direction_deg", -60, 60),
+    (31, "gravity_direction_deg", -170, -90), (77, "gravity_direction_deg", 0, 80),
+    (146, "gravity_direction_deg", 0, 80),
+]
+
+
+@pytest.mark.parametrize("flow", ["associated", "coulomb"])
+@pytest.mark.parametrize(("seed", "key", "low", "high"), SIDES)
+def test_searches_to_either_side_agree_with_decisions(
+    tmp_path: Path, seed: int, key: str, low: float, high: float, flow: str
+) -> None:
+    row = run(tmp_path, seed, flow, f"&search parameter = '{key}', low = {low}, high = {high}", live=False)
+    if row["verdict"] == "found":
+        critical, way = float(row["critical"]), 1 if row["collapses_at"] == "high" else -1
+        off = way * 0.02 * abs(critical)
+        asked = [(critical - off, "stable"), (critical + off, "collapsed")]
+    else:
+        asked = [(low, row["verdict"]), (high, row["verdict"])]
+    for value, verdict in asked:
+        assert run(tmp_path, seed, flow, f"&load {key} = {value!r}", live=False)["verdict"] == verdict

@@ -157,6 +157,8 @@ def _check_case(deck: Deck, number: int, tables: dict[str, dict[int, list[Row]]]
             finding.faults.append("figures of a proof without its rows")
         return finding
     of_case, _ = _case_of(deck, number, result, places)
+    # what falls to the low side is carried from above
+    carried, stopped = ("exact_high", "exact_low") if result["collapses_at"] == "low" else ("exact_low", "exact_high")
     for rows, name in ((forces, "forces"), (motion, "motion")):
         if not rows:
             continue
@@ -168,7 +170,7 @@ def _check_case(deck: Deck, number: int, tables: dict[str, dict[int, list[Row]]]
         scene = scene_of(at_value, tables["blocks"].get(number, []), places, finding)
         if name == "forces":
             check_forces(scene, rows, finding)
-            _check_bound(result, "exact_low", rows[0]["value"], finding)
+            _check_bound(result, carried, rows[0]["value"], finding)
         else:
             power = check_motion(scene, rows, finding)
             if power < -TOLERANCE or deck.searched is None and not power > 0.0:
@@ -177,7 +179,7 @@ def _check_case(deck: Deck, number: int, tables: dict[str, dict[int, list[Row]]]
                 # the program may let bars and fill take more than they can
                 off = float(result["mechanism_power"]) - power
                 finding.keep("power told", max(off, 0.0) if scene.pulls else abs(off))
-            _check_bound(result, "exact_high", rows[0]["value"], finding)
+            _check_bound(result, stopped, rows[0]["value"], finding)
             if deck.searched is not None and result["exact_high"]:
                 finding.keep("power at the limit", abs(power))
     _check_told(deck, of_case, result, {name: tables[name].get(number, []) for name in TABLES}, places, finding)
