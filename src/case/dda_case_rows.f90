@@ -196,6 +196,9 @@ contains
             remark = "the bracket cannot be narrowed further"
             if (allocated(critical%reason)) &
                & remark = "at "//to_text(critical%undecided_at)//" "//critical%reason
+            if (allocated(critical%fallen) .and. allocated(critical%standing)) remark = remark &
+               & //"; collapsed at "//to_text(critical%falls)//", stable at " &
+               & //to_text(critical%stands)
          end if
          if (critical%verdict == verdict%found) call tell_bracket(critical, row)
          if (critical%has_limit) then

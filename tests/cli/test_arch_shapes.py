@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import csv
 import math
+import re
 from pathlib import Path
 
 import pytest
@@ -89,6 +90,20 @@ def test_a_semicircle_of_one_ring_is_the_circular_arch(tmp_path: Path) -> None:
     )
     (found,) = rows(tmp_path, deck, head="")
     assert float(found["critical"]) == pytest.approx(ratio, rel=1e-8)
+
+
+def test_an_undecided_search_tells_its_bracket(tmp_path: Path) -> None:
+    """A catenary so thin that its rounded corners hide how it falls: the exact value, of 40 digits, is near."""
+    deck = "&arch shape = 'catenary', span = 20.541, rise = 4.905, right_rise = 3.758, voussoirs = 43 /\n"
+    search = "&search parameter = 'thickness', low = 2e-7, high = 2 /\n"
+    (tmp_path / "x.nml").write_text(deck + "&joint friction_deg = 60 /\n" + search)
+    status = run_dda("run", "x.nml", "--quiet", cwd=tmp_path).returncode
+    with (tmp_path / "x" / "results.csv").open(newline="") as lines:
+        (row,) = csv.DictReader(lines)
+    told = (tmp_path / "x" / "log.txt").read_text()
+    assert status == (3 if row["verdict"] == "undecided" else 0)
+    values = re.findall(r"(?:collapsed|stable) at ([\d.e-]+)", told) or [row["critical"], row["critical"]]
+    assert [float(value) for value in values] == pytest.approx([1.45321918691568e-5] * 2, rel=1e-6)
 
 
 def test_the_blocks_written_carry_what_the_arch_does(tmp_path: Path) -> None:
