@@ -127,11 +127,21 @@ def main() -> int:
         status = subprocess.run([*build, "--config-file", stage / "mkdocs.yml"]).returncode
         (out / "404.html").unlink(missing_ok=True)  # for servers: opened as a file it finds no script
         if status == 0:
+            search_without_server(out / "search")
             ford = [sys.executable, "-m", "ford", ROOT / "docs/site/ford.md", "-o", out / "fortran"]
             status = subprocess.run([*ford, "--quiet"], cwd=ROOT / "docs/site").returncode
     if status == 0:
         print(out / "index.html")
     return status
+
+
+def search_without_server(folder: Path) -> None:
+    """Put the site's own search in place of that of MkDocs, and its index into a script."""
+    index = (folder / "search_index.json").read_text(encoding="utf-8")
+    (folder / "search_index.js").write_text(f"const search_data = {index};\n", encoding="utf-8")
+    shutil.copy(ROOT / "docs/site/search.js", folder / "main.js")
+    for name in ("search_index.json", "worker.js"):
+        (folder / name).unlink()
 
 
 def settings(docs: Path) -> dict:

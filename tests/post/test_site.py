@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import re
+import shutil
 import subprocess
 import sys
 from html.parser import HTMLParser
@@ -113,6 +114,19 @@ def test_formulas_are_drawn_and_no_network_is_wanted(site: Path) -> None:
     for page in site.glob("*.html"):
         text = page.read_text(encoding="utf-8")
         assert not re.search(r'<(?:script|link|img)[^>]+(?:src|href)="(?:https?:)?//', text), page.name
+
+
+@pytest.mark.parametrize(("words", "page"), [
+    ("newmark", "howto_slope.html"), ("friction_deg", "keys.html"), ("to_pandas", "python.html"), ("arch:", "arch"),
+])
+def test_search_finds_pages_that_are_opened_as_files(site: Path, tmp_path: Path, words: str, page: str) -> None:
+    browser = shutil.which("chromium") or pytest.skip("no chromium")
+    options = ["--headless=new", "--no-sandbox", "--disable-gpu", f"--user-data-dir={tmp_path}", "--timeout=20000"]
+    logged = ["--enable-logging=stderr", "--dump-dom", f"{(site / 'search.html').as_uri()}?q={words}"]
+    done = subprocess.run([browser, *options, *logged], capture_output=True, text=True)
+    results = done.stdout.partition("mkdocs-search-results")[2].partition("</body>")[0]
+    assert any(page in link for link in re.findall(r'<article><h3><a href="([^"]+)"', results)), results[:500]
+    assert "CONSOLE" not in done.stderr  # no script fails
 
 
 def test_missing_packages_are_told(tmp_path: Path) -> None:
