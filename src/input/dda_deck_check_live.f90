@@ -153,8 +153,8 @@ contains
          problem = needs//"an arch or a file of blocks, got lines; remove it"
       else if (deck%analysis%mode%word /= "static" &
          & .or. deck%analysis%geometry%word /= "reference") then
-         problem = needs//"mode = 'static' and geometry = 'reference', got others: joints of "// &
-            & "blocks that move are not crushed; change the run, or remove it"
+         problem = needs//"mode = 'static' and geometry = 'reference', got others: corners of "// &
+            & "blocks that move have no strip to crush; make the arch thinner, or remove it"
       else if (deck%analysis%collapse_displacement%given .or. has_bond(deck)) then
          problem = needs//"joints without cohesion and tension, and no collapse_displacement, "// &
             & "got one; remove one of the two"
