@@ -68,17 +68,14 @@ def test_an_arch_from_a_file_and_a_generated_one_agree_to_1e12(
 
 
 @pytest.mark.skipif(not HAS_XML, reason="this build reads no XML")
-@pytest.mark.parametrize("path", sorted(HELD.glob("arches/*.geo")))
+@pytest.mark.parametrize("path", sorted(HELD.glob("arches/*.geo")) or [HELD])
 def test_arches_of_the_original_stand_when_rigid(tmp_path: Path, path: Path) -> None:
+    if path == HELD:
+        pytest.skip(f"{HELD} is not here: its arches were not run")
     # both sides of the original's limit are thicker than the exact rigid value
     ana = HELD / "arches" / "arch20000.ana"
     text = f"&scene kind='lines', geometry='{path}', analysis='{ana}' /\n"
     assert row_of(tmp_path, "held", text)["verdict"] == "stable"
-
-
-def test_held_arches_are_there() -> None:
-    if not list(HELD.glob("arches/*.geo")):
-        pytest.skip(f"{HELD} is not here: its arches and examples were not run")
 
 
 def test_a_deck_key_goes_before_the_file(tmp_path: Path) -> None:
