@@ -64,8 +64,10 @@ contains
 
       call scene_graph(settings, system, contacts, graph)
       allocate (load(3, graph%n_block), opening(3, size(graph%kind)))
-      stations = load_stations(settings, .true.)
-      if (abs(settings%tilt) > 0.0_wp .and. .not. present(start)) then
+      ! the order of the loads does not matter under the associated rule
+      stations = load_stations(settings, settings%verdict_flow == flow_rule%coulomb)
+      if (abs(settings%tilt) > 0.0_wp .and. .not. present(start) &
+         & .and. settings%verdict_flow == flow_rule%coulomb) then
          ! what does not stand upright was drawn for gravity as it is
          call loads_at(stations, 0, settings, system, graph, load, opening)
          call decide_load(graph, load, decision)

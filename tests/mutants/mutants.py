@@ -178,9 +178,9 @@ def judge(fault: Fault, copy: Copy, units: list[str], asked: argparse.Namespace)
     levels = [("room", [own] if own in units else []), ("unit", [name for name in units if name != own]),
               ("physics", ["physics"])]
     for level, programs in levels:
-        programs = [program for program in programs if copy.reaches(program, fault)]
         if level not in asked.levels:
             continue
+        programs = [program for program in programs if copy.reaches(program, fault)]
         if programs and not copy.make(*programs):
             return {"result": "does not compile"}
         start = time.monotonic() if level == "room" else start
