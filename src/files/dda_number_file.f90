@@ -76,6 +76,7 @@ contains
             & file, 1)
       else
          inquire (unit=unit, size=length)
+         n = 0
          read (unit, iostat=stat) n
          if (stat == 0 .and. any(n < 0)) stat = 1
          if (stat == 0) then
