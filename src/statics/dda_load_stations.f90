@@ -34,6 +34,8 @@ module dda_load_stations
 
    !> Longest leg of gravity that tilts: its chord is off by the square of it [rad]
    real(wp), parameter :: longest_tilt = 4.4e-3_wp
+   !> Loads below this share of those that they are left of are rounding
+   real(wp), parameter :: rounding = 16.0_wp*epsilon(1.0_wp)
 
 contains
 
@@ -102,7 +104,7 @@ contains
       real(wp), intent(out) :: load(:, :)
       !> Opening of the joints by what supports have gone: (3, n_joint) [m]
       real(wp), intent(out) :: opening(:, :)
-      real(wp) :: direction(2), force(2), shaking(2), of_block(6)
+      real(wp) :: direction(2), force(2), shaking(2), of_block(6), total(size(load, 2))
       integer :: b, e, i
 
       load = 0.0_wp
@@ -125,6 +127,7 @@ contains
       opening = 0.0_wp
       call lead_pins(stations, station, settings, system, graph, opening)
       if (.not. allocated(settings%boundary%loaded)) return
+      total = norm2(load(1:2, :), dim=1)
       do i = 1, size(settings%boundary%loaded)
          associate (loaded => settings%boundary%loaded(i))
             e = system%equation(loaded%block)
@@ -133,7 +136,16 @@ contains
             if (loaded%live) force = stations%live(station)*force
             of_block = point_load(force, loaded%point, system%centroid(:, loaded%block))
             load(:, e) = load(:, e) + of_block(:size(load, 1))
+            total(e) = total(e) + norm2(force)
          end associate
+      end do
+      ! what is left of loads that cancel is rounding, and must move nothing
+      do b = 1, size(system%equation)
+         e = system%equation(b)
+         if (e == 0) cycle
+         where (abs(load(1:2, e)) <= rounding*total(e)) load(1:2, e) = 0.0_wp
+         if (abs(load(3, e)) <= rounding*total(e)*(norm2(system%centroid(:, b)) &
+            & + sqrt(system%area(b)))) load(3, e) = 0.0_wp
       end do
    end subroutine loads_at
 

@@ -27,9 +27,12 @@ SEEDS = [0, 3, 9, 15, 18, 34, 37, 38, 46, 77, 83, 95, 97, 110, 115, 123, 126, 12
 MOST = 50.0
 
 
-def run(folder: Path, seed: int, flow: str, task: str, live: bool = True) -> dict[str, str]:
+def run(
+    folder: Path, seed: int, flow: str, task: str, live: bool = True, friction: float | None = None
+) -> dict[str, str]:
     """Row of results of a deck of an odd assembly, with its live loads or without; its proofs hold."""
-    blocks, friction = odd_assembly(seed)
+    blocks, own = odd_assembly(seed)
+    friction = own if friction is None else friction
     if not live:
         blocks = "".join(line for line in blocks.splitlines(keepends=True) if not line.startswith("live"))
     (folder / "x.blocks").write_text(blocks)
@@ -95,3 +98,17 @@ def test_searches_to_either_side_agree_with_decisions(
         asked = [(low, row["verdict"]), (high, row["verdict"])]
     for value, verdict in asked:
         assert run(tmp_path, seed, flow, f"&load {key} = {value!r}", live=False)["verdict"] == verdict
+
+
+@pytest.mark.parametrize("friction", [1.0, 40.0, 85.0])
+def test_what_floats_at_just_its_weight_stands_whatever_the_friction(tmp_path: Path, friction: float) -> None:
+    """Pieces of a box, each lifted by as much as it weighs but for the last digit."""
+    row = run(tmp_path, 9, "associated", "&load load_factor = 1", friction=friction)
+    assert (row["verdict"], row["collapse_mode"]) == ("stable", "none")
+
+
+@pytest.mark.parametrize("seed", [19, 24, 56, 362, 395])
+def test_blocks_that_jam_are_proven_by_forces_without_bound(tmp_path: Path, seed: int) -> None:
+    search = "&search parameter = 'friction_deg', low = 1, high = 85"
+    row = run(tmp_path, seed, "associated", f"&load load_factor = 1 /\n{search}")
+    assert row["verdict"] == "found"

@@ -17,6 +17,12 @@ from voussoir.verify.loads import friction_of, loads_on, may_hold, pulls_of, siz
 Row = dict[str, str]
 #: Largest figure of a proof that holds
 TOLERANCE = 1e-8
+#: What rounding leaves of forces, as a share of the largest
+DIGITS = 2e-15
+
+#: Imbalance that rounding of forces far larger than the loads excuses at most
+JAMMED = 1e-6
+
 #: Points nearer than this share of a block's size are one
 SAME_POINT = 1e-8
 #: What closes more slowly than this share of the fastest velocity does so by rounding
@@ -122,7 +128,24 @@ def check_forces(scene: Scene, rows: list[Row], finding: Finding) -> None:
                            (force[2] * way * joint.tangent, ends.mean(axis=0))):
             push(left, scene.blocks[pair[1] - 1], at, vector)
             push(left, scene.blocks[pair[0] - 1], at, -vector)
-    finding.keep("imbalance", largest_of(left[free], scene.length) / largest)
+    most = max((abs(float(row[name] or 0)) for row in rows for name in ("normal_1", "normal_2", "shear")), default=0.0)
+    finding.keep("imbalance", largest_of(left[free], scene.length) / largest, TOLERANCE + digits_of(most / largest))
+
+
+def digits_of(force: float) -> float:
+    """What rounding makes of a force.
+
+    Parameters
+    ----------
+    force : float
+        The force over the largest load: blocks that jam press one another with forces far larger than that.
+
+    Returns
+    -------
+    float
+        A share of the largest load.
+    """
+    return min(DIGITS * force, JAMMED)
 
 
 def _check_pull(

@@ -9,7 +9,7 @@ import numpy as np
 from voussoir.verify.contacts import TOUCH, Block, Joint, numbers_of
 from voussoir.verify.fill import Pull
 from voussoir.verify.loads import loads_on, sizes_on
-from voussoir.verify.proofs import Finding, Row, Scene, largest_of, push
+from voussoir.verify.proofs import Finding, Row, Scene, digits_of, largest_of, push
 
 #: What told forces may leave of a load: those of a search are of the bracket's end that stands
 TOLD = 1e-7
@@ -43,7 +43,7 @@ def check_joints(
     free = np.array([not block.fixed and not _is_held(scene, block.number) for block in scene.blocks])
     size = sizes_on(scene.deck, scene.source, scene.blocks)
     largest = largest_of(size[free], scene.length) if free.any() else 1.0
-    pairs = numbers_of(scene.joints)
+    pairs, digits = numbers_of(scene.joints), 0.0
     for pull, force in zip([pull for pull in scene.pulls if pull.kind == "bar"], bars or []):
         beyond = max(-force, 0.0 if pull.most is None else force - float(pull.most), 0.0)
         finding.keep("law of told forces", beyond / largest, TOLD)
@@ -62,7 +62,8 @@ def check_joints(
         way = 1.0 if joint.first == first else -1.0
         normal, shear = float(row["normal_force"]), float(row["shear_force"])
         apart = max(abs(way * float(vector @ joint.normal) - normal), abs(way * float(vector @ joint.tangent) - shear))
-        finding.keep("columns of a joint", apart / largest, SAME)
+        digits = max(digits, digits_of(float(np.abs(vector).max()) / largest))
+        finding.keep("columns of a joint", apart / largest, SAME + digits)
         _check_place(row, joint, at, normal, scene.crush(joint) if bars is not None else math.inf, finding)
         friction = scene.friction(joint)
         beyond = max(0.0, -normal)
@@ -79,7 +80,7 @@ def check_joints(
             _lean(left, block, [pull for pull in scene.pulls if pull.kind == "bounded"], scene.length)
     if free.any():
         finding.keep("balance of told forces", largest_of(left[free], scene.length) / largest,
-                     TOLD + largest_of(allowed[free], scene.length) / largest)
+                     TOLD + digits + largest_of(allowed[free], scene.length) / largest)
 
 
 def _lean(left: np.ndarray, block: Block, pulls: list[Pull], length: float) -> None:
