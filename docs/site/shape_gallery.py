@@ -8,8 +8,9 @@ import matplotlib.pyplot as plt
 from matplotlib.collections import PolyCollection
 
 import voussoir
-from voussoir.plot.case_picture import draw_ring_thrust, draw_supports
+from voussoir.plot.case_picture import draw_ring_thrust, draw_supports, row_with_safety
 from voussoir.plot.case_scene import scene_of
+from voussoir.plot.case_title import safety_of
 from voussoir.plot.figure_style import STONE, house_style
 
 #: Title, then keys of each
@@ -33,7 +34,7 @@ SHAPES = {
 def main() -> None:
     """Draw."""
     with house_style():
-        figure, grid = plt.subplots(3, 3, figsize=(10.0, 9.0), layout="constrained")
+        figure, grid = plt.subplots(3, 3, figsize=(11.0, 9.5), layout="constrained")
         for axes, (title, keys) in zip(grid.flat, SHAPES.items()):
             run = voussoir.run(f"&arch {keys} /\n&joint friction_deg = 60 /\n")
             scene = scene_of(run, 1)
@@ -43,7 +44,8 @@ def main() -> None:
             axes.autoscale_view()
             axes.set_aspect("equal")
             axes.set_axis_off()
-            axes.set_title(f"{title}: {run.case(1)['verdict']}", fontsize=10)
+            row = row_with_safety(run, 1)
+            axes.set_title(f"{title}\n{row['verdict']}{safety_of(row, run)}", fontsize=9)
         figure.savefig(Path(__file__).parents[1] / "images" / "shapes.svg", metadata={"Date": None})
 
 

@@ -578,3 +578,13 @@ def test_titles_do_without_a_program(arches: results.Results, monkeypatch: pytes
     monkeypatch.setenv("VOUSSOIR_DDA", str(tmp_path / "none"))
     title = title_of(row_with_safety(run, 1), run)
     assert "Stable, thrust" in title
+
+
+def test_two_thicknesses_that_are_equal_have_the_safety_of_one(tmp_path: Path) -> None:
+    safety = []
+    for number, keys in enumerate(("thickness = 0.7", "crown_thickness = 0.7, springing_thickness = 0.7")):
+        (tmp_path / str(number)).mkdir()
+        text = f"&arch shape = 'basket', span = 8, rise = 2.6, {keys}, voussoirs = 29 /\n&joint friction_deg = 60 /\n"
+        safety.append(row_with_safety(compute(tmp_path / str(number), text), 1)["safety_thickness"])
+    assert 1.0 < safety[0] < 2.0
+    assert safety[1] == pytest.approx(safety[0], rel=1e-6)

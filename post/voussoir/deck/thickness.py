@@ -12,6 +12,10 @@ from voussoir.results import Results
 
 #: How far the search for the critical thickness goes below the thickness
 THINNEST = 1e-3
+#: Thickness over radius of a deck that gives none
+DEFAULT_RATIO = 0.15
+#: Shares of both thicknesses of a tapered arch that are decided at once, and how often between the last two
+SHARES, ROUNDS = 20, 6
 #: Groups that say nothing of an arch under its dead load
 _OTHERS = ("scene", "output", "search", "live", "vehicle")
 
@@ -41,10 +45,11 @@ def thickness_safety(run: Results, number: int = 1) -> tuple[float, str]:
     if not math.isnan(told):
         return told, "thickness over the exact critical thickness of the same voussoirs"
     groups = dead_groups(run, row)
-    name = next((key for key in ("thickness", "thickness_ratio") if key in groups.get("arch", {})), None)
-    if name is None:
-        return math.nan, "not searched: the thickness is no single number"
-    value = float(groups["arch"][name])
+    arch = groups.get("arch", {})
+    if "crown_thickness" in arch:
+        return tapered_safety(groups)
+    name = "thickness" if "thickness" in arch else "thickness_ratio"
+    value = float(arch.get(name, DEFAULT_RATIO))
     search = {"parameter": name, "low": value * THINNEST, "high": value}
     try:
         found = run_deck(merged(groups, {"search": search})).case(1)
@@ -56,6 +61,34 @@ def thickness_safety(run: Results, number: int = 1) -> tuple[float, str]:
     if found["verdict"] == "stable":
         return math.inf, f"under dead load it stands at any smaller {name} down to a thousandth"
     return math.nan, f"not found: the search for the critical {name} under dead load is {found['verdict']}"
+
+
+def tapered_safety(groups: dict[str, Any]) -> tuple[float, str]:
+    """The same of an arch of two thicknesses, both of which change in proportion.
+
+    Parameters
+    ----------
+    groups : dict
+        What a deck says of it, without live loads.
+    """
+    names = ("crown_thickness", "springing_thickness")
+    ends = (THINNEST, 1.0)
+    for _ in range(ROUNDS):
+        shares = [ends[0] * (ends[1] / ends[0]) ** (k / (SHARES - 1)) for k in range(SHARES)]
+        sweeps = [{"parameter": f"arch%{name}", "values": [share * float(groups["arch"][name]) for share in shares],
+                   "linked": name == names[1]} for name in names]
+        try:
+            verdicts = list(run_deck(merged(groups, {"sweep": sweeps})).cases["verdict"])
+        except DdaError as error:
+            return math.nan, f"not found: {str(error).rpartition('error: ')[2]}"
+        if all(verdict == "stable" for verdict in verdicts):
+            return math.inf, "under dead load it stands at any smaller thickness in proportion down to a thousandth"
+        last = max(k for k, verdict in enumerate(verdicts) if verdict != "stable")
+        if last == SHARES - 1 or verdicts[last] == "undecided":
+            return math.nan, "not found: a decision at smaller thicknesses in proportion is undecided"
+        ends = (shares[last], shares[last + 1])
+    between = ends_of(1.0 / ends[1], 1.0 / ends[0])
+    return 1.0 / ends[1], f"under dead load, both thicknesses in proportion; it lies between {between}"
 
 
 def dead_groups(run: Results, row: dict[str, Any]) -> dict[str, Any]:
