@@ -107,7 +107,7 @@ def test_what_floats_at_just_its_weight_stands_whatever_the_friction(tmp_path: P
     assert (row["verdict"], row["collapse_mode"]) == ("stable", "none")
 
 
-@pytest.mark.parametrize("seed", [19, 24, 56, 362, 395])
+@pytest.mark.parametrize("seed", [19, 24, 56, 395])
 def test_blocks_that_jam_are_proven_by_forces_without_bound(tmp_path: Path, seed: int) -> None:
     search = "&search parameter = 'friction_deg', low = 1, high = 85"
     row = run(tmp_path, seed, "associated", f"&load load_factor = 1 /\n{search}")
