@@ -137,3 +137,22 @@ def test_run_without_cases_reads_as_empty(searched: results.Results, tmp_path: P
     head = (searched.folder / "results.csv").read_text().splitlines()[0]
     (tmp_path / "results.csv").write_text(head + "\n")
     assert len(results.read(tmp_path).cases) == 0
+
+
+def test_tables_read_in_pieces_are_those_read_at_once(searched: results.Results, tmp_path: Path) -> None:
+    from voussoir.results._tables import DamagedTable, read_columns
+
+    table = searched.folder / "results.csv"
+    whole = read_columns(table, None)
+    for rows in (1, 2, 5, 6, 7):
+        pieces = read_columns(table, rows)
+        assert list(pieces) == list(whole)
+        for name, column in whole.items():
+            assert pieces[name].dtype.kind == column.dtype.kind
+            assert [repr(cell) for cell in pieces[name].tolist()] == [repr(cell) for cell in column.tolist()]
+    mixed = tmp_path / "other.csv"
+    mixed.write_text("case,record\n1,7\n2,8\n3,quake\n4,9\n")
+    assert read_columns(mixed, 2)["record"].tolist() == ["7", "8", "quake", "9"]
+    mixed.write_text("case,record\n1,7\n2,8\nx,9\n4,9\n")
+    with pytest.raises(DamagedTable, match="other.csv:4: error: expected case"):
+        read_columns(mixed, 1)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+from itertools import islice
 from pathlib import Path
 
 import numpy as np
@@ -20,6 +21,8 @@ _WORDS = frozenset(
 )
 #: What to do about a table that is damaged
 _AGAIN = "run the deck again with --resume"
+#: Rows that are text at one time: text takes ten times the memory of numbers
+_AT_ONCE = 50000
 #: Columns that a table must have, each once; results.csv has those of swept parameters beside them
 _NEEDED = {
     "results.csv": (
@@ -55,8 +58,13 @@ class DamagedTable(ValueError):
     """A table that dda does not write so: the message begins with file and line."""
 
 
-def read_columns(file: Path) -> dict[str, np.ndarray]:
+def read_columns(file: Path, at_once: int | None = _AT_ONCE) -> dict[str, np.ndarray]:
     """Read a table.
+
+    Parameters
+    ----------
+    at_once : int, optional
+        Rows that are text at one time; None for all of them.
 
     Returns
     -------
@@ -68,29 +76,36 @@ def read_columns(file: Path) -> dict[str, np.ndarray]:
     DamagedTable
         If dda does not write such a table.
     """
+    pieces: list[list[np.ndarray]] = []
+    names: list[str] = []
     try:
-        names, rows = _cells_of(file)
+        with file.open(newline="", encoding="utf-8") as lines:
+            reader = csv.reader(lines)
+            names = next(reader, [])
+            lost = [name for name in _NEEDED.get(file.name, ("case",)) if names.count(name) != 1]
+            if lost:
+                found = names.count(lost[0])
+                raise DamagedTable(f"{file}:1: error: expected one column {lost[0]}, got {found}; " + _AGAIN)
+            while rows := [(reader.line_num, row) for row in islice(reader, at_once)]:
+                pieces.append(_columns(file, names, rows))
     except (UnicodeDecodeError, csv.Error) as problem:
         raise DamagedTable(
             f"{file}:{_spoilt_line(file)}: error: expected a table, got: {problem}; " + _AGAIN
         ) from problem
-    lost = [name for name in _NEEDED.get(file.name, ("case",)) if names.count(name) != 1]
-    if lost:
-        raise DamagedTable(f"{file}:1: error: expected one column {lost[0]}, got {names.count(lost[0])}; " + _AGAIN)
+    columns = dict(zip(names, zip(*(pieces or [_columns(file, names, [])]))))
+    if any(len({piece.dtype.kind for piece in column}) > 1 for column in columns.values()):
+        return read_columns(file, None)  # a swept parameter whose words are numbers here and there
+    return {name: np.concatenate(column) for name, column in columns.items()}
+
+
+def _columns(file: Path, names: list[str], rows: list[tuple[int, list[str]]]) -> list[np.ndarray]:
+    """Columns of some rows, each row with its line."""
     for number, row in rows:
         if len(row) != len(names):
             raise DamagedTable(f"{file}:{number}: error: expected {len(names)} cells, got {len(row)}; " + _AGAIN)
     cells = list(zip(*(row for _, row in rows))) or [()] * len(names)
     lines = [number for number, _ in rows]
-    return {name: _typed(file, lines, name, column) for name, column in zip(names, cells)}
-
-
-def _cells_of(file: Path) -> tuple[list[str], list[tuple[int, list[str]]]]:
-    """Names of the columns, and each row with its line."""
-    with file.open(newline="", encoding="utf-8") as lines:
-        reader = csv.reader(lines)
-        names = next(reader, [])
-        return names, [(reader.line_num, row) for row in reader]
+    return [_typed(file, lines, name, column) for name, column in zip(names, cells)]
 
 
 def _spoilt_line(file: Path) -> int:
