@@ -93,7 +93,8 @@ contains
 
       nd = settings%n_dof
       n = maxval(system%equation)
-      allocate (equations%mass(nd, nd, n), equations%elastic(nd, nd, n), equations%base(nd, nd, n))
+      allocate (equations%mass(nd, nd, n), equations%elastic(nd, nd, n))
+      allocate (equations%base(nd, nd, n), source=0.0_wp)
       allocate (equations%glued(nd, nd, n), equations%weight(nd, n), equations%outer(nd, n))
       allocate (equations%load(nd, n), equations%felt(nd, n), equations%changed(n))
       equations%bars = new_bar_springs(system, settings, nd)
