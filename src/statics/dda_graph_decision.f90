@@ -64,15 +64,7 @@ contains
 
       call scene_graph(settings, system, contacts, graph)
       allocate (load(3, graph%n_block), opening(3, size(graph%kind)))
-      ! the order of the loads does not matter under the associated rule
-      stations = load_stations(settings, settings%verdict_flow == flow_rule%coulomb)
-      if (abs(settings%tilt) > 0.0_wp .and. .not. present(start) &
-         & .and. settings%verdict_flow == flow_rule%coulomb) then
-         ! what does not stand upright was drawn for gravity as it is
-         call loads_at(stations, 0, settings, system, graph, load, opening)
-         call decide_load(graph, load, decision)
-         stations = load_stations(settings, decision%state /= load_state%falls)
-      end if
+      stations = stations_of(settings, system, graph, present(start))
       call loads_at(stations, ubound(stations%tilt, 1), settings, system, graph, load, opening)
       call decide_full(settings, system, graph, stations, load, bare, decision, on_way)
       verdict%n_factorisation = decision%n_factorisation
@@ -107,6 +99,28 @@ contains
       path%no_start = path%no_start .and. verdict%end == path_end%reached
       verdict = path
    end subroutine decide_graph
+
+   !> The stations of the loads. Gravity that tilts is upright at first where the blocks stand then,
+   !> for others were drawn for gravity as it is; the associated rule knows no order of loads
+   pure function stations_of(settings, system, graph, goes_on) result(stations)
+      type(settings_t), intent(in) :: settings
+      type(block_system_t), intent(in) :: system
+      type(joint_graph_t), intent(in) :: graph
+      !> Whether a stage before has left a state
+      logical, intent(in) :: goes_on
+      !> The stations
+      type(load_stations_t) :: stations
+      type(load_decision_t) :: decision
+      real(wp) :: load(3, graph%n_block), opening(3, size(graph%kind))
+      logical :: coulomb
+
+      coulomb = settings%verdict_flow == flow_rule%coulomb
+      stations = load_stations(settings, coulomb)
+      if (goes_on .or. .not. (coulomb .and. abs(settings%tilt) > 0.0_wp)) return
+      call loads_at(stations, 0, settings, system, graph, load, opening)
+      call decide_load(graph, load, decision)
+      stations = load_stations(settings, decision%state /= load_state%falls)
+   end function stations_of
 
    !> Decide the full load: on the way from the dead load out of which it grows, unless it is not
    !> asked how it falls
