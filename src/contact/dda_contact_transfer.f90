@@ -17,8 +17,6 @@ module dda_contact_transfer
    !> An open end takes part in the slip of a joint as far as this share of its length allows
    real(wp), parameter :: closeness = 1.0e-4_wp
 
-   !> Way by which corners inside a neighbour come out in a step, over the size of the smaller block
-   real(wp), parameter :: recovery = 1.0e-12_wp
 
 contains
 
@@ -87,7 +85,7 @@ contains
          call keep_shear(system, past, source(:, j), contacts%springs%stiffness(j), &
             & contacts%joint(j))
          call place_joint(system, system%moved, contacts%joint(j), gap)
-         if (.not. contacts%remember) call stay_inside(system, contacts%joint(j), gap)
+         if (.not. contacts%remember) call stay_inside(contacts%joint(j), gap)
          contacts%gap(:, j) = gap
          contacts%trial(:, j) = -contacts%springs%stiffness(j)*gap
          call guess_face(source(:, j), j, contacts)
@@ -200,21 +198,18 @@ contains
       end do
    end subroutine keep_shear
 
-   !> Let a corner that is inside its neighbour go no deeper, and come out slowly: pushing it out
-   !> would bring in energy
-   pure subroutine stay_inside(system, joint, gap)
-      type(block_system_t), intent(in) :: system
+   !> Let a corner that is inside its neighbour go no deeper: pushing it out, however slowly, would
+   !> bring in energy, for in the shortest steps the least way is a speed
+   pure subroutine stay_inside(joint, gap)
       type(joint_t), intent(inout) :: joint
       !> Opening at the two contacts, and slip: (3) [m]
       real(wp), intent(inout) :: gap(3)
-      real(wp) :: least
       integer :: k
 
-      least = -recovery*sqrt(minval(system%area(joint%block)))
       do k = 1, joint%n_contact
-         if (gap(k) >= least) cycle
-         joint%contact(k)%closed_at = joint%contact(k)%closed_at + gap(k) - least
-         gap(k) = least
+         if (gap(k) >= 0.0_wp) cycle
+         joint%contact(k)%closed_at = joint%contact(k)%closed_at + gap(k)
+         gap(k) = 0.0_wp
       end do
    end subroutine stay_inside
 

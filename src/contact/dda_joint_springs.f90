@@ -12,7 +12,7 @@ module dda_joint_springs
    implicit none
    private
 
-   public :: joint_springs_t, new_joint_springs, mohr_coulomb, unbounded
+   public :: joint_springs_t, new_joint_springs, place_rows, mohr_coulomb, unbounded
 
    !> Springs of all joints, as the solver wants them
    type :: joint_springs_t
@@ -67,20 +67,36 @@ contains
       allocate (springs%equation(2, n), springs%row(n_dof, 3, 2, n), springs%stiffness(n))
       allocate (springs%cone(n), springs%shift(3, n))
       springs%give = any(joint%found)
+      call place_rows(system, motion, joint, springs)
       do j = 1, n
          springs%equation(:, j) = system%equation(joint(j)%block)
-         associate (first => joint(j)%block(1), second => joint(j)%block(2))
-            springs%row(:, :, 1, j) = -joint_rows(joint(j), 1, centroid(:, first), &
-               & motion(:, first), n_dof)
-            springs%row(:, :, 2, j) = joint_rows(joint(j), 2, centroid(:, second), &
-               & motion(:, second), n_dof)
-         end associate
          springs%stiffness(j) = penalty_ratio*block_stiffness(system, centroid, joint(j))
          call mohr_coulomb(joint(j), [1.0_wp, 1.0_wp], springs%cone(j), springs%shift(:, j))
       end do
       if (n > 0 .and. .not. springs%give) &
          & springs%stiffness = min(springs%stiffness, stiffest*minval(springs%stiffness))
    end subroutine new_joint_springs
+
+   !> Rows of the springs of joints that have been placed
+   pure subroutine place_rows(system, motion, joint, springs)
+      type(block_system_t), intent(in) :: system
+      !> How the blocks have moved where the joints are placed: (6, n_block)
+      real(wp), intent(in) :: motion(:, :)
+      !> The joints: (n_joint)
+      type(joint_t), intent(in) :: joint(:)
+      !> The springs; their rows are set
+      type(joint_springs_t), intent(inout) :: springs
+      integer :: j, side
+
+      do j = 1, size(joint)
+         do side = 1, 2
+            associate (b => joint(j)%block(side))
+               springs%row(:, :, side, j) = real(2*side - 3, wp)*joint_rows(joint(j), side, &
+                  & system%centroid(:, b) + motion(1:2, b), motion(:, b), size(springs%row, 1))
+            end associate
+         end do
+      end do
+   end subroutine place_rows
 
    !> What the joint sees of one block's unknowns
    pure function joint_rows(joint, side, centroid, motion, n_dof) result(row)

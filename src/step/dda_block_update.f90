@@ -38,6 +38,7 @@ contains
             system%velocity(:, b) = 2.0_wp*motion/step%dt - system%velocity(:, b)
          end if
          d = elasticity_matrix(system%materials(system%material(b)))
+         if (settings%dynamic .and. settings%current) cycle
          if (settings%current) then
             call move_block(b, motion, d, system)
          else
@@ -45,6 +46,10 @@ contains
             system%stress(:, b) = system%stress(:, b) + matmul(d, motion(4:6))
          end if
       end do
+      if (.not. (settings%dynamic .and. settings%current)) return
+      system%motion = step%after%motion
+      system%moved = step%after%moved
+      system%stress = step%after%stress
    end subroutine update_blocks
 
    !> Blocks where a motion carries them, where blocks move; velocities stay
@@ -108,7 +113,7 @@ contains
       contacts%force = step%state%force
       contacts%increment = step%state%increment
       contacts%gap = contacts%gap + step%state%increment
-      if (allocated(step%curve)) contacts%gap(1:2, :) = contacts%gap(1:2, :) + step%curve
+      if (allocated(step%curve)) contacts%gap = contacts%gap + step%curve
       if (settings%current .and. settings%dynamic) then
          contacts%past_slip = contacts%past_slip + contacts%gap(3, :)
       else if (settings%current .and. contacts%springs%give) then

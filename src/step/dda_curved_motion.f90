@@ -1,84 +1,192 @@
-!> Gaps at the end of a step that turns the blocks: rows are straight, ways of corners are not
+!> Rows of the contacts for a step that turns the blocks: ways of corners are not straight
+!>
+!> With normals, corners and centres half way between the beginning and the end of a step, and
+!> 2 tan(t/2) for a turn t, a row tells the gap of rigid blocks at the end to rounding. Forces
+!> that act by such rows work on gaps and slips alone, so that a step brings in no energy (Simo,
+!> Tarnow 1992, ZAMP 43, 757-792).
 module dda_curved_motion
-   use dda_assembly, only : equations_t
+   use dda_assembly, only : equations_t, take_springs
+   use dda_block_inertia, only : packed_velocity
    use dda_block_system, only : block_system_t
    use dda_block_update, only : displaced_blocks
    use dda_contact_detection, only : contacts_t
    use dda_contact_types, only : joint_t, place_joint
+   use dda_joint_springs, only : joint_springs_t, place_rows
    use dda_kinds, only : wp
    use dda_settings, only : settings_t
    use dda_settle_in_time, only : settle_in_time
+   use dda_spring_products, only : relative_displacement
    use dda_step_context, only : step_context_t
    use dda_step_state, only : step_state_t
    implicit none
    private
 
-   public :: follow_curves
+   public :: follow_curves, foresee_curves
 
    !> Most passes of the correction
    integer, parameter :: max_passes = 8
    !> Gap at a closed contact, or depth at an open one, that is left, over the size of the smallest
    !> block
    real(wp), parameter :: left_over = 1.0e-8_wp
+   !> The same over what many blocks leave: less than that is no better
+   real(wp), parameter :: of_unseen = 1.0e-2_wp
 
    !> Depth that is left where nothing settles, over the same
    real(wp), parameter :: jammed = 1.0e-5_wp
 
 contains
 
-   !> Settle the contacts again with what the gaps really are at the end of the step, until closed
-   !> contacts have none
+   !> Begin with the rows of blocks that go on as they are
+   pure subroutine foresee_curves(settings, system, contacts, step)
+      type(settings_t), intent(in) :: settings
+      !> The blocks before the step
+      type(block_system_t), intent(in) :: system
+      !> The contacts before the step; rows of their springs are set
+      type(contacts_t), intent(inout) :: contacts
+      !> The step; its curves and trial forces are set
+      type(step_context_t), intent(inout) :: step
+      real(wp) :: motion(size(step%state%motion, 1), size(step%state%motion, 2)), error
+
+      motion = step%dt*packed_velocity(system, size(motion, 1))
+      step%curve = 0.0_wp*contacts%gap
+      step%state%increment = 0.0_wp
+      call see_curves(settings, system, contacts, motion, step, error)
+      call take_turned_rows(system, motion, contacts, step)
+   end subroutine foresee_curves
+
+   !> Settle the contacts again with rows of the motion that was found, until closed contacts have
+   !> no gap at the end of the step
    pure subroutine follow_curves(settings, system, contacts, equations, step)
+      type(settings_t), intent(in) :: settings
+      !> The blocks before the step
+      type(block_system_t), intent(in) :: system
+      !> The contacts before the step; rows of their springs are set
+      type(contacts_t), intent(inout) :: contacts
+      !> Blocks assembled; matrix and factor are made anew
+      type(equations_t), intent(inout) :: equations
+      !> The step; its curves, and blocks and joints at its end, are set
+      type(step_context_t), intent(inout) :: step
+      type(step_state_t) :: last
+      real(wp) :: curve(3, size(contacts%joint)), size_of, error
+      type(joint_springs_t) :: springs
+      integer :: pass
+
+      size_of = sqrt(minval(system%area, mask=system%equation > 0))
+      do pass = 0, max_passes
+         call see_curves(settings, system, contacts, step%state%motion, step, error)
+         if (error <= max(left_over*size_of, of_unseen*step%state%unseen) &
+            & .or. pass == max_passes) return
+         last = step%state
+         curve = step%curve
+         springs = contacts%springs
+         step%state%multiplier = step%state%force
+         call take_turned_rows(system, last%motion, contacts, step)
+         call take_springs(equations)
+         call settle_in_time(settings, (equations%fixed%target), equations, contacts%springs, &
+            & step%state, in_vain=error <= jammed*size_of)
+         if (step%state%settled) cycle
+         if (error > jammed*size_of) return
+         ! blocks that jam where they turn: what they lie in one another is left
+         step%state = last
+         step%curve = curve
+         contacts%springs = springs
+         return
+      end do
+   end subroutine follow_curves
+
+   !> Blocks and joints after a motion, and how far its rows are from telling the gaps there
+   pure subroutine see_curves(settings, system, contacts, motion, step, error)
       type(settings_t), intent(in) :: settings
       !> The blocks before the step
       type(block_system_t), intent(in) :: system
       !> The contacts before the step
       type(contacts_t), intent(in) :: contacts
-      !> Blocks assembled; matrix and factor are made anew
-      type(equations_t), intent(inout) :: equations
+      !> The motion: (n_dof, n_equation)
+      real(wp), intent(in) :: motion(:, :)
+      !> The step; its gaps, blocks and joints are set
       type(step_context_t), intent(inout) :: step
-      type(block_system_t) :: after
-      type(joint_t) :: joint
-      type(step_state_t) :: last
-      real(wp) :: curve(2, size(contacts%joint))
-      real(wp) :: gap(3), tolerance, error, excess
-      integer :: j, k, pass
+      !> The largest at closed contacts, and depth that open ones do not tell [m]
+      real(wp), intent(out) :: error
+      real(wp) :: told
+      integer :: j, k
 
-      tolerance = left_over*sqrt(minval(system%area, mask=system%equation > 0))
-      step%curve = 0.0_wp*contacts%gap(1:2, :)
-      do pass = 1, max_passes
-         after = displaced_blocks(system, settings, step%state%motion)
-         error = 0.0_wp
-         curve = step%curve
-         do j = 1, size(contacts%joint)
-            joint = contacts%joint(j)
-            call place_joint(after, after%moved, joint, gap)
-            do k = 1, joint%n_contact
-               excess = gap(k) - contacts%gap(k, j) - step%state%increment(k, j)
-               if (.not. step%state%face(j)%open(k)) then
-                  error = max(error, abs(excess - step%curve(k, j)))
-               else
-                  error = max(error, min(-gap(k), step%curve(k, j) - excess))
-               end if
-               step%curve(k, j) = excess
-            end do
+      step%after = displaced_blocks(system, settings, motion)
+      step%joint = contacts%joint
+      step%end_gap = 0.0_wp*contacts%gap
+      error = 0.0_wp
+      do j = 1, size(step%joint)
+         call place_joint(step%after, step%after%moved, step%joint(j), step%end_gap(:, j))
+         do k = 1, step%joint(j)%n_contact
+            told = contacts%gap(k, j) + step%state%increment(k, j) + step%curve(k, j)
+            associate (gap => step%end_gap(k, j))
+               error = max(error, merge(min(-gap, told - gap), abs(gap - told), &
+                  & step%state%face(j)%open(k)))
+            end associate
          end do
-         if (error <= tolerance) return
-         last = step%state
-         step%state%multiplier = step%state%force
-         step%state%start = step%state%force
-         do k = 1, 2
-            step%state%start(k, :) = step%state%force(k, :) &
-               & - contacts%springs%stiffness*(contacts%gap(k, :) + step%curve(k, :))
-         end do
-         call settle_in_time(settings, (equations%fixed%target), equations, contacts%springs, &
-            & step%state, in_vain=error <= jammed*tolerance/left_over)
-         if (step%state%settled) cycle
-         if (error > jammed*tolerance/left_over) return
-         ! blocks that jam where they turn: what they lie in one another is left
-         step%state = last
-         step%curve = curve
-         return
       end do
-   end subroutine follow_curves
+   end subroutine see_curves
+
+   !> Rows half way of a motion, and trial forces to begin with; what strain lets them lack of the
+   !> gaps at the end are curves
+   pure subroutine take_turned_rows(system, motion, contacts, step)
+      !> The blocks before the step
+      type(block_system_t), intent(in) :: system
+      !> The motion: (n_dof, n_equation)
+      real(wp), intent(in) :: motion(:, :)
+      !> The contacts before the step; rows of their springs are set
+      type(contacts_t), intent(inout) :: contacts
+      !> The step, with joints and gaps after the motion; its curves and trial forces are set
+      type(step_context_t), intent(inout) :: step
+      type(joint_t) :: joint(size(step%joint))
+      real(wp) :: told(3, size(joint))
+      integer :: e, j, side
+
+      do j = 1, size(joint)
+         joint(j) = half_way(contacts%joint(j), step%joint(j))
+      end do
+      call place_rows(system, (system%motion + step%after%motion)/2.0_wp, joint, contacts%springs)
+      do j = 1, size(joint)
+         do side = 1, 2
+            e = contacts%springs%equation(side, j)
+            if (e > 0) contacts%springs%row(3, :, side, j) = contacts%springs%row(3, :, side, j) &
+               & *turn_ratio(motion(3, e))
+         end do
+      end do
+      told = relative_displacement(contacts%springs, motion)
+      do j = 1, size(joint)
+         associate (n => joint(j)%n_contact)
+            step%curve(:, j) = 0.0_wp
+            step%curve(:n, j) = step%end_gap(:n, j) - contacts%gap(:n, j) - told(:n, j)
+         end associate
+         step%state%start(:, j) = step%state%multiplier(:, j) - contacts%springs%stiffness(j) &
+            & *([contacts%gap(1:2, j), 0.0_wp] + step%curve(:, j))
+      end do
+   end subroutine take_turned_rows
+
+   !> A joint half way between where it is before and after a step
+   pure type(joint_t) function half_way(before, after) result(joint)
+      !> The joint before the step
+      type(joint_t), intent(in) :: before
+      !> The joint after it
+      type(joint_t), intent(in) :: after
+      integer :: k
+
+      joint = before
+      do k = 1, joint%n_contact
+         joint%contact(k)%normal = (before%contact(k)%normal + after%contact(k)%normal)/2.0_wp
+         joint%contact(k)%point = (before%contact(k)%point + after%contact(k)%point)/2.0_wp
+         joint%contact(k)%foot = (before%contact(k)%foot + after%contact(k)%foot)/2.0_wp
+      end do
+      joint%tangent = (before%tangent + after%tangent)/2.0_wp
+      joint%middle = (before%middle + after%middle)/2.0_wp
+   end function half_way
+
+   !> 2 tan(t/2)/t of a turn t
+   pure real(wp) function turn_ratio(turn)
+      !> The turn [rad]
+      real(wp), intent(in) :: turn
+
+      turn_ratio = 1.0_wp + turn**2/12.0_wp
+      if (abs(turn) > 1.0e-3_wp) turn_ratio = 2.0_wp*tan(turn/2.0_wp)/turn
+   end function turn_ratio
 end module dda_curved_motion

@@ -6,11 +6,9 @@
 !> then the lines are chosen anew by the way the blocks have taken.
 module dda_parting
    use dda_block_system, only : block_system_t
-   use dda_block_update, only : displaced_blocks
    use dda_contact_detection, only : contacts_t
    use dda_kinds, only : wp
    use dda_parting_line, only : block_gap
-   use dda_settings, only : settings_t
    use dda_step_context, only : march_t, step_context_t, step_outcome_t
    implicit none
    private
@@ -29,8 +27,7 @@ contains
    !> Check the lines of a settled step: where they were wrong they must be chosen anew by its
    !> motion; if blocks still enter one another the step is cut, and if some are still held off in
    !> thin air, they are
-   pure function check_axes(settings, system, contacts, march, step) result(outcome)
-      type(settings_t), intent(in) :: settings
+   pure function check_axes(system, contacts, march, step) result(outcome)
       !> The blocks before the step
       type(block_system_t), intent(in) :: system
       !> The contacts of the step
@@ -39,19 +36,17 @@ contains
       type(step_context_t), intent(in) :: step
       !> What the check says
       type(step_outcome_t) :: outcome
-      type(block_system_t) :: after
       real(wp) :: gap, matters
       logical :: entered, held_off
       integer :: j
 
-      after = displaced_blocks(system, settings, step%state%motion)
       entered = .false.
       held_off = .false.
       do j = 1, size(contacts%joint)
          associate (block => contacts%joint(j)%block)
             if (.not. all(contacts%search%outline%convex(block))) cycle
             matters = no_matter*sqrt(minval(system%area(block)))
-            gap = block_gap(system%first_vertex, after%moved, block)
+            gap = block_gap(system%first_vertex, step%after%moved, block)
             if (gap > matters .and. .not. all(step%state%face(j)%open)) held_off = .true.
             if (gap > -matters) cycle
             if (gap < block_gap(system%first_vertex, system%moved, block) - matters) &

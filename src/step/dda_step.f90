@@ -9,7 +9,7 @@ module dda_step
    use dda_block_update, only : update_blocks, update_contacts
    use dda_contact_detection, only : contacts_t, follow_contacts
    use dda_contact_transfer, only : renew_contacts
-   use dda_curved_motion, only : follow_curves
+   use dda_curved_motion, only : follow_curves, foresee_curves
    use dda_energy, only : audit_step
    use dda_error, only : error_t, fatal_error
    use dda_kinds, only : wp
@@ -152,6 +152,7 @@ contains
       step%state%unseen = unseen*march%free_acceleration*step%dt**2
       call assemble_blocks(system, settings, step%dt, equations, &
          & merge(march%time, march%clock%now, settings%dynamic))
+      if (in_time) call foresee_curves(settings, system, contacts, step)
       call settle_joints(settings, equations, contacts%springs, step%state)
       if (in_time .and. step%state%settled) &
          & call follow_curves(settings, system, contacts, equations, step)

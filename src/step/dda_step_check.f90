@@ -40,7 +40,7 @@ contains
       if (.not. (settings%dynamic .and. settings%current)) return
       if (outcome%accepted) outcome = check_impact(settings, system, contacts, equations, step)
       if (outcome%accepted .and. searched) &
-         & outcome = check_axes(settings, system, contacts, march, step)
+         & outcome = check_axes(system, contacts, march, step)
    end function check_motion
 
    !> Check the velocities of a try: settled, and no corner inside a neighbour

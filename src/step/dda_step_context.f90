@@ -1,5 +1,7 @@
 !> What one step finds out; made new for each step
 module dda_step_context
+   use dda_block_system, only : block_system_t
+   use dda_contact_types, only : joint_t
    use dda_kinds, only : wp
    use dda_load_clock, only : load_clock_t
    use dda_step_state, only : step_state_t
@@ -54,9 +56,15 @@ module dda_step_context
       real(wp) :: longest = 0.0_wp
       !> Motion of the blocks and states of the joints
       type(step_state_t) :: state
-      !> Gaps at its end beyond those of the linear motion, where blocks move in time:
-      !> (2, n_joint) [m]
+      !> Gaps at its end beyond those that the rows tell, where blocks move in time:
+      !> (3, n_joint) [m]
       real(wp), allocatable :: curve(:, :)
+      !> Gaps at its end: (3, n_joint) [m]
+      real(wp), allocatable :: end_gap(:, :)
+      !> The blocks at its end, but for their velocities, likewise
+      type(block_system_t) :: after
+      !> The joints there: (n_joint)
+      type(joint_t), allocatable :: joint(:)
       !> Velocities at its end, where blocks move in time: (n_dof, n_equation)
       real(wp), allocatable :: velocity(:, :)
       !> Mean forces of the joints that change the velocities, where blocks move in time:

@@ -1,30 +1,33 @@
 !> Velocities at the end of a dynamic step where blocks move: the law of impact, equation (M5)
 !>
-!> The motion of the step says which contacts are closed. What their impulses make of the velocities
-!> is a problem of its own, with the same cones, in the metric of mass:
+!> The motion D of the step says which contacts are closed, and what v = 2 D/dt - v0 they would have
+!> by constant acceleration. Its forces f have acted half way; where the contacts are at the end,
+!> with their rows B1, the forces N that the law of impact asks for replace them, with the same
+!> cones, in the metric of mass:
 !>
-!>    M (v1 - v0) = dt (f + B' N),   B v1 >= -e B v0,   N in its cone,   N = 0 where B v1 is more
+!>    M (v1 - v) = dt B1' (N - f),   B1 v1 >= -e B1 v,   N in its cone,   N = 0 where it is more
 !>
-!> Impulses are total ones, those of persistent contacts included. So a closed contact ends at rest
-!> if e = 0, whatever the step: Shi's v1 = 2 D/dt - v0 would end with any restitution between 0 and
-!> 1, and has never less energy. Without contact the two are the same.
+!> At the end of a step that an impact ends, contacts that were closed before have borne f up to it:
+!> that is not taken back, and N is what the impact adds. So a closed contact ends at rest if e = 0,
+!> whatever the step: v would end with any restitution between 0 and 1, and has never less energy.
+!> Without contact the two are the same. All of it is exact to the second order, impacts too.
 module dda_velocity
    use dda_assembly, only : equations_t, take_springs
-   use dda_bar_springs, only : couple_bars, push_bars
+   use dda_bar_springs, only : couple_bars
    use dda_block_inertia, only : damping_rate, hold_energy, kinetic_energy, packed_velocity, &
       & strain_follows
    use dda_block_system, only : block_system_t
    use dda_contact_detection, only : contacts_t
-   use dda_elasticity, only : stress_load
    use dda_fixed_points, only : add_fixed_springs, hold_rigidly, turn_fixed_row
-   use dda_joint_springs, only : joint_springs_t
+   use dda_friction_cone, only : joint_face_t
+   use dda_joint_springs, only : joint_springs_t, place_rows
    use dda_kinds, only : wp
    use dda_settle_in_time, only : settle_in_time
    use dda_settings, only : settings_t
    use dda_step_context, only : step_context_t
    use dda_step_state, only : step_state_t
    use dda_vector, only : cross
-   use dda_spring_products, only : relative_displacement
+   use dda_spring_products, only : add_load, relative_displacement
    implicit none
    private
 
@@ -60,20 +63,26 @@ contains
       !> The step; its velocities are set, if they settle
       type(step_context_t), intent(inout) :: step
       logical :: closed(2, size(contacts%joint))
-      real(wp) :: part(2, size(contacts%joint)), allowed, before, less
-      real(wp) :: steady(size(step%state%motion, 1), size(step%state%motion, 2)), share
+      real(wp) :: part(2, size(contacts%joint)), borne(3, size(contacts%joint)), less
+      real(wp) :: steady(size(step%state%motion, 1), size(step%state%motion, 2))
+      real(wp) :: allowed, before, share
+      type(joint_springs_t) :: springs
       integer :: try
 
+      springs = contacts%springs
+      call place_rows(system, step%after%motion, step%joint, springs)
       closed = closed_contacts(system, contacts, step)
-      part = parting_speed(settings, system, contacts, closed, step)
       steady = 2.0_wp/step%dt*step%state%motion &
          & - packed_velocity(system, size(step%state%motion, 1))
+      call see_impacts(settings, system, contacts, closed, relative_displacement(springs, steady), &
+         & step, part, borne)
       before = kinetic_energy(equations, steady)
       allowed = before - sum(step%state%force*step%state%increment)
       less = least_less
       do try = 0, max_tries
          if (try == max_tries) part = 0.0_wp
-         call settle_impulses(settings, system, contacts, closed, part, equations, step)
+         call settle_impulses(settings, system, contacts, springs, closed, part, borne, steady, &
+            & equations, step)
          if (.not. step%has_velocity) return
          if (kinetic_energy(equations, step%velocity) <= allowed + energy_noise*before) exit
          if (.not. any(part > 0.0_wp)) exit
@@ -89,16 +98,23 @@ contains
    end subroutine settle_velocities
 
    !> Velocities for given speeds at which the contacts must part
-   pure subroutine settle_impulses(settings, system, contacts, closed, part, equations, step)
+   pure subroutine settle_impulses(settings, system, contacts, after, closed, part, borne, &
+      & steady, equations, step)
       type(settings_t), intent(in) :: settings
       !> The blocks before the step
       type(block_system_t), intent(in) :: system
       !> The contacts before the step
       type(contacts_t), intent(in) :: contacts
+      !> Their springs where the contacts are after it
+      type(joint_springs_t), intent(in) :: after
       !> Contacts that are closed: (2, n_joint)
       logical, intent(in) :: closed(:, :)
       !> The speeds: (2, n_joint) [m/s]
       real(wp), intent(in) :: part(:, :)
+      !> Forces borne up to an impact that ends the step: (3, n_joint) [N/m]
+      real(wp), intent(in) :: borne(:, :)
+      !> Velocities by constant acceleration: (n_dof, n_equation)
+      real(wp), intent(in) :: steady(:, :)
       !> The equations; matrix and factor are made anew
       type(equations_t), intent(inout) :: equations
       !> The step; its velocities are set, if they settle
@@ -111,13 +127,15 @@ contains
 
       follows = strain_follows(system, step%longest)
       held_force = equations%fixed%force
-      call assemble_rates(settings, system, follows, step, equations)
+      call assemble_rates(settings, system, follows, after, step%state%force - borne, steady, &
+         & step, equations)
       state = step%state
       ! what a speed leaves of a gap counts as in the longest step
       state%fineness = finer*step%dt/step%longest
       state%unseen = 10.0_wp*step%state%unseen
       state%rates = .true.
-      springs = contacts%springs
+      state%multiplier = state%force - borne
+      springs = after
       do j = 1, size(contacts%joint)
          springs%stiffness(j) = over_inertia*joint_mass(system, contacts%joint(j)%block)/step%dt**2
          call keep_closed(closed(:, j), follows(contacts%joint(j)%block), j, springs, state)
@@ -125,6 +143,7 @@ contains
       end do
       call take_springs(equations)
       call settle_in_time(settings, step%dt*equations%fixed%rate, equations, springs, state)
+      state%force = state%force + borne
       ! half of the forces of the motion have acted as they did
       step%held_impulse = equations%fixed%force + held_force/2.0_wp
       step%impulse = state%force
@@ -132,7 +151,7 @@ contains
       step%has_velocity = state%settled
       if (.not. step%has_velocity) return
       step%velocity = state%motion/step%dt
-      call keep_moment(system, contacts, springs, equations, state%force, step)
+      call keep_moment(system, contacts, after, equations, state%force, step)
    end subroutine settle_impulses
 
    !> Contacts that are closed at the end of a step: those that carry a force, and those without a
@@ -156,72 +175,74 @@ contains
       end do
    end function closed_contacts
 
-   !> Speed at which the contacts must part: restitution times the speed at which they have met, if
-   !> they have met at the very end of the step and faster than weight makes resting contacts meet
-   pure function parting_speed(settings, system, contacts, closed, step) result(speed)
+   !> Contacts that have met at the very end of the step, faster than weight makes resting contacts
+   !> meet: they must part with restitution times that speed, and up to then contacts that were
+   !> closed before the step have borne their forces
+   pure subroutine see_impacts(settings, system, contacts, closed, opening, step, part, borne)
       type(settings_t), intent(in) :: settings
-      !> The blocks before the step
       type(block_system_t), intent(in) :: system
       !> The contacts before the step
       type(contacts_t), intent(in) :: contacts
       !> Contacts that are closed at its end: (2, n_joint)
       logical, intent(in) :: closed(:, :)
+      !> How fast the contacts open without impacts, and the joints slip: (3, n_joint) [m/s]
+      real(wp), intent(in) :: opening(:, :)
       type(step_context_t), intent(in) :: step
       !> The speeds: (2, n_joint) [m/s]
-      real(wp) :: speed(2, size(contacts%joint))
-      real(wp) :: before(3, size(contacts%joint)), meeting
+      real(wp), intent(out) :: part(:, :)
+      !> The forces; none where there is no impact: (3, n_joint) [N/m]
+      real(wp), intent(out) :: borne(:, :)
+      logical :: has_impact
       integer :: j, k
 
-      speed = 0.0_wp
-      if (.not. settings%restitution > 0.0_wp) return
-      before = relative_displacement(contacts%springs, packed_velocity(system, &
-         & size(step%state%motion, 1)))
+      part = 0.0_wp
+      borne = 0.0_wp
+      has_impact = .false.
       do j = 1, size(contacts%joint)
          do k = 1, 2
-            if (.not. closed(k, j) .or. .not. step%state%face(j)%open(k)) cycle
-            meeting = before(k, j) - 2.0_wp*step%state%increment(k, j)/step%dt
-            if (meeting > step%slowest_impact) speed(k, j) = settings%restitution*meeting
+            if (.not. closed(k, j)) cycle
+            if (step%state%face(j)%open(k)) then
+               if (-opening(k, j) > step%slowest_impact) then
+                  has_impact = .true.
+                  part(k, j) = -settings%restitution*opening(k, j)
+               end if
+            else if (contacts%gap(k, j) <= near_gap(system, contacts%joint(j)%block)) then
+               borne([k, 3], j) = step%state%force([k, 3], j)
+            end if
          end do
       end do
-   end function parting_speed
+      if (.not. has_impact) borne = 0.0_wp
+   end subroutine see_impacts
 
-   !> Equations of the velocities, as motions v1*dt: M/dt**2 (v1 dt) = M v0/dt + f
-   pure subroutine assemble_rates(settings, system, follows, step, equations)
+   !> Equations of the velocities, as motions v1*dt: M/dt**2 (v1 dt) = M/dt v - B1' f
+   pure subroutine assemble_rates(settings, system, follows, springs, force, steady, step, &
+      & equations)
       type(settings_t), intent(in) :: settings
       !> The blocks before the step
       type(block_system_t), intent(in) :: system
       !> Blocks without strain rates: (n_block)
       logical, intent(in) :: follows(:)
+      !> Springs of the joints after the step
+      type(joint_springs_t), intent(in) :: springs
+      !> Forces that are taken back: (3, n_joint) [N/m]
+      real(wp), intent(in) :: force(:, :)
+      !> Velocities by constant acceleration: (n_dof, n_equation)
+      real(wp), intent(in) :: steady(:, :)
       type(step_context_t), intent(in) :: step
       !> Receives base and load
       type(equations_t), intent(inout) :: equations
-      real(wp) :: share, stress(6)
-      integer :: b, e, i, nd
+      integer :: b, e, i, j
 
-      nd = size(equations%load, 1)
-      share = damping_rate(settings, step%dt)*step%dt/2.0_wp
-      equations%base = (1.0_wp + share)/step%dt**2*equations%mass
+      equations%base = (1.0_wp/step%dt + damping_rate(settings, step%dt)/2.0_wp)/step%dt &
+         & *equations%mass
       if (size(equations%dashpot) > 0) &
          & equations%base = equations%base + equations%dashpot/(2.0_wp*step%dt)
-      do b = 1, size(system%equation)
-         e = system%equation(b)
-         if (e == 0) cycle
-         equations%load(:, e) = equations%outer(:, e) + (1.0_wp - share)/step%dt &
-            & *matmul(equations%mass(:, :, e), system%velocity(:nd, b))
-         if (size(equations%dashpot) > 0) equations%load(:, e) = equations%load(:, e) &
-            & - matmul(equations%dashpot(:, :, e), system%velocity(:nd, b))/2.0_wp
-         if (nd < 6) cycle
-         if (follows(b)) then
-            equations%base(4:, :3, e) = 0.0_wp
-            equations%base(:3, 4:, e) = 0.0_wp
-            equations%load(4:, e) = 0.0_wp
-         else
-            stress = stress_load(system%stress(:, b), system%area(b))
-            equations%load(:, e) = equations%load(:, e) + stress &
-               & - matmul(equations%elastic(:, :, e), step%state%motion(:, e))
-         end if
+      do e = 1, size(steady, 2)
+         equations%load(:, e) = step%dt*matmul(equations%base(:, :, e), steady(:, e))
       end do
-      call push_bars(equations%bars, step%state%motion, equations%load)
+      do j = 1, size(force, 2)
+         call add_load(springs, springs%cone(j), joint_face_t(), -force(:, j), j, equations%load)
+      end do
       do i = 1, size(equations%fixed%point)
          e = equations%fixed%equation(i)
          call turn_fixed_row(system, settings, i, step%state%motion(:, e), equations%fixed, &
@@ -229,7 +250,9 @@ contains
       end do
       do b = 1, size(follows)
          e = system%equation(b)
-         if (e == 0 .or. .not. follows(b)) cycle
+         if (size(steady, 1) < 6 .or. e == 0 .or. .not. follows(b)) cycle
+         equations%base(4:, :3, e) = 0.0_wp
+         equations%base(:3, 4:, e) = 0.0_wp
          call hold_rigidly(e, equations%fixed)
          equations%load(4:, e) = 0.0_wp
       end do
@@ -252,8 +275,7 @@ contains
       type(step_state_t), intent(inout) :: state
       integer :: k, side
 
-      state%multiplier(:, j) = state%force(:, j)
-      state%start(:, j) = state%force(:, j)
+      state%start(:, j) = state%multiplier(:, j)
       do k = 1, 2
          state%face(j)%open(k) = .not. closed(k)
          if (closed(k)) cycle
@@ -272,49 +294,57 @@ contains
       end do
    end subroutine keep_closed
 
-   !> Keep the moment of momentum of each pair of blocks. The centres have moved while their
-   !> impulses acted as at the beginning: the pair's centres bring in
-   !> dt**2 (F/2 - N) x (v2 - v1), F the force of the motion, N that of the impulse; and the rows of
-   !> a joint between turned edges may lie off one line. The two blocks give it back by one change
-   !> of spin
-   pure subroutine keep_moment(system, contacts, springs, equations, impulse, step)
+   !> Keep the moment of momentum of each pair of blocks: the rows of a joint between turned edges
+   !> may lie off one line. The two blocks give back what that brings in by one change of spin
+   pure subroutine keep_moment(system, contacts, after, equations, force, step)
       !> The blocks before the step
       type(block_system_t), intent(in) :: system
-      !> The contacts before the step
+      !> The contacts before the step, with the springs that half of the impulses have acted by
       type(contacts_t), intent(in) :: contacts
-      !> Springs that the impulses have acted by
-      type(joint_springs_t), intent(in) :: springs
+      !> The springs after it, which the other half acts by
+      type(joint_springs_t), intent(in) :: after
       !> The equations, for the moments of inertia
       type(equations_t), intent(in) :: equations
-      !> Forces that stand for the impulses: (3, n_joint) [N/m]
-      real(wp), intent(in) :: impulse(:, :)
+      !> The forces of that half: (3, n_joint) [N/m]
+      real(wp), intent(in) :: force(:, :)
       !> The step; its spins are changed
       type(step_context_t), intent(inout) :: step
-      real(wp) :: change(size(step%velocity, 2)), force(2), excess(3), moment, turn(3)
-      integer :: b, j, one, other, side
+      real(wp) :: change(size(step%velocity, 2)), half_way(6, size(system%area)), moment
+      integer :: j, pair(2)
 
       change = 0.0_wp
+      half_way = (system%motion + step%after%motion)/2.0_wp
       do j = 1, size(contacts%joint)
-         one = contacts%springs%equation(1, j)
-         other = contacts%springs%equation(2, j)
-         if (one == 0 .or. other == 0) cycle
-         excess = step%state%force(:, j)/2.0_wp - impulse(:, j)
-         associate (joint => contacts%joint(j))
-            force = excess(1)*joint%contact(1)%normal + excess(2)*joint%contact(2)%normal &
-               & + excess(3)*joint%tangent
-         end associate
-         moment = step%dt**2*cross(force, step%velocity(1:2, other) - step%velocity(1:2, one))
-         do side = 1, 2
-            b = contacts%joint(j)%block(side)
-            turn = matmul(springs%row(1:3, :, side, j), impulse(:, j))
-            moment = moment + step%dt*(turn(3) + cross(system%centroid(:, b) &
-               & + system%motion(1:2, b), turn(1:2)))
-         end do
-         moment = moment/(equations%mass(3, 3, one) + equations%mass(3, 3, other))
-         change(one) = change(one) - moment
-         change(other) = change(other) - moment
+         pair = after%equation(:, j)
+         if (any(pair == 0)) cycle
+         moment = step%dt/sum(equations%mass(3, 3, pair)) &
+            & *(excess(contacts%springs, j, step%state%force(:, j), half_way) &
+            & + excess(after, j, force(:, j) - step%state%force(:, j), step%after%motion))
+         change(pair) = change(pair) - moment
       end do
       step%velocity(3, :) = step%velocity(3, :) + change
+
+   contains
+
+      !> Moment of the forces of a joint on both its blocks
+      pure real(wp) function excess(springs, j, force, motion)
+         type(joint_springs_t), intent(in) :: springs
+         !> Number of the joint
+         integer, intent(in) :: j
+         !> Its forces: (3) [N/m]
+         real(wp), intent(in) :: force(3)
+         !> How the blocks have moved: (6, n_block)
+         real(wp), intent(in) :: motion(:, :)
+         real(wp) :: turn(3)
+         integer :: b, side
+
+         excess = 0.0_wp
+         do side = 1, 2
+            b = contacts%joint(j)%block(side)
+            turn = matmul(springs%row(1:3, :, side, j), force)
+            excess = excess + turn(3) + cross(system%centroid(:, b) + motion(1:2, b), turn(1:2))
+         end do
+      end function excess
    end subroutine keep_moment
 
    !> Springs of contacts whose forces are multipliers: stiff beside inertia however short the step,

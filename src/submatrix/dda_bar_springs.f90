@@ -13,7 +13,7 @@ module dda_bar_springs
    private
 
    public :: bar_springs_t, bar_motion, add_bars, bar_energies, couple_bars, follow_bars
-   public :: judge_bars, keep_bars, longest_give, new_bar_springs, push_bars
+   public :: judge_bars, keep_bars, longest_give, new_bar_springs
 
    !> Springs of all bars in a step; the first of two rows is along a bar, the second across it
    type :: bar_springs_t
@@ -255,33 +255,6 @@ contains
       where (off > 0.0_wp .and. (.not. one_by_one .or. off >= maxval(off))) &
          & bars%condition = wanted
    end subroutine judge_bars
-
-   !> Forces of bars that have acted in a step, as loads
-   pure subroutine push_bars(bars, motion, load)
-      type(bar_springs_t), intent(in) :: bars
-      !> Motion of the step: (n_dof, n_equation)
-      real(wp), intent(in) :: motion(:, :)
-      !> Receives them: (n_dof, n_equation)
-      real(wp), intent(inout) :: load(:, :)
-      real(wp) :: force(2), stiffness(2), turn
-      integer :: i, side
-
-      do i = 1, size(bars%trial)
-         stiffness = acting(bars, i)
-         turn = 0.0_wp
-         do side = 1, 2
-            if (bars%equation(side, i) > 0) turn = turn &
-               & + dot_product(bars%row(:, 2, side, i), motion(:, bars%equation(side, i)))
-         end do
-         force = [acting_force(bars, i), 0.0_wp] &
-            & + stiffness*[elongation_by(bars, motion, i), turn]
-         do side = 1, 2
-            associate (e => bars%equation(side, i))
-               if (e > 0) load(:, e) = load(:, e) - matmul(bars%row(:, :, side, i), force)
-            end associate
-         end do
-      end do
-   end subroutine push_bars
 
    !> What an accepted step leaves of the bars
    pure subroutine keep_bars(bars, settings, motion, system)

@@ -131,9 +131,9 @@ contains
       end do
    end subroutine add_fixed_springs
 
-   !> Let half the force that held a point in the motion act as it did, and half where the point is
-   !> at the end, as its velocity needs: with all of it along the old row a pendulum would gain
-   !> energy (Andersen 1983, J. Comput. Phys. 52:24)
+   !> Take back the last half of the force that held a point in the motion: it acts where the point
+   !> is at the end. With all of it along the old row a pendulum would gain energy (Andersen 1983,
+   !> J. Comput. Phys. 52:24)
    pure subroutine turn_fixed_row(system, settings, i, motion, fixed, load)
       !> The blocks before the step
       type(block_system_t), intent(in) :: system
@@ -148,7 +148,7 @@ contains
       real(wp), intent(inout) :: load(:)
       real(wp) :: end_motion(6), place(2), t(2, 6)
 
-      load = load + fixed%force(i)/2.0_wp*fixed%row(:, i)
+      load = load - fixed%force(i)/2.0_wp*fixed%row(:, i)
       fixed%force(i) = 0.0_wp
       associate (held => settings%boundary%held(fixed%point(i)), &
          & b => settings%boundary%held(fixed%point(i))%block)

@@ -44,11 +44,12 @@ def test_a_block_that_slides_turns_height_into_speed_and_friction(tmp_path: Path
     assert last["time"] == pytest.approx(0.5)
     assert last["kinetic"] == pytest.approx(MASS * (acceleration * 0.5) ** 2 / 2.0, rel=EXACT)
     assert last["gravity"] == pytest.approx(-MASS * G * way * math.sin(slope), rel=EXACT)
-    assert last["friction"] == pytest.approx(mu * MASS * G * math.cos(slope) * way, rel=EXACT)
+    # gaps that rounding makes ask for no force: 2e-14 m of a block of 1 m
+    assert last["friction"] == pytest.approx(mu * MASS * G * math.cos(slope) * way, rel=3.0 * EXACT)
     for name in ("elastic", "contact", "work", "damping"):
         assert last[name] == 0.0
     for name in ("impact", "numerical"):
-        assert last[name] == pytest.approx(0.0, abs=EXACT * last["kinetic"])
+        assert last[name] == pytest.approx(0.0, abs=3.0 * EXACT * last["kinetic"])
     assert max(abs(total(row)) for row in rows) < 1e-10 * last["kinetic"]
     point = rows_of(tmp_path / "out" / "points.csv")[-1]
     expected = {"u": -way * math.cos(slope), "v": -way * math.sin(slope), "x": x - way * math.cos(slope),
