@@ -1,7 +1,7 @@
 !> A text of many lines, whose room doubles where it must
 module dda_growing_text
    use dda_kinds, only : wp
-   use dda_text, only : to_text
+   use dda_text, only : print_number
    implicit none
    private
 
@@ -53,14 +53,21 @@ contains
       !> A comma where it is left out
       character, intent(in), optional :: between
       character(len=:), allocatable :: text
+      character(len=33*size(value)) :: buffer
       character :: parting
-      integer :: i
+      integer :: i, k, n
 
       parting = ","
       if (present(between)) parting = between
-      text = to_text(value(1))
-      do i = 2, size(value)
-         text = text//parting//to_text(value(i))
+      n = 0
+      do i = 1, size(value)
+         if (i > 1) then
+            n = n + 1
+            buffer(n:n) = parting
+         end if
+         call print_number(value(i), buffer(n + 1:n + 32), k)
+         n = n + k
       end do
+      text = buffer(:n)
    end function fields
 end module dda_growing_text

@@ -7,7 +7,7 @@ module dda_text
    implicit none
    private
 
-   public :: to_text, lower_case, read_number, read_integer
+   public :: to_text, print_number, lower_case, read_number, read_integer
 
    !> Shortest text that reads back as the same number
    interface to_text
@@ -18,6 +18,9 @@ module dda_text
    !> Formats of 15, 16 and 17 significant digits
    character(len=11), parameter :: scientific_form(15:17) = &
       & ["(es24.14e3)", "(es24.15e3)", "(es24.16e3)"]
+
+   !> Length that every number has room in
+   integer, parameter :: longest = 32
 
    !> Rounding of what is left of a product of a number and a power of ten, as a share of the 17th
    !> digit
@@ -31,6 +34,21 @@ contains
       real(wp), intent(in) :: value
       !> Text without blanks
       character(len=:), allocatable :: text
+      character(len=longest) :: buffer
+      integer :: n
+
+      call print_number(value, buffer, n)
+      text = buffer(:n)
+   end function real_to_text
+
+   !> Put the shortest decimal text that reads back as the same double into a text
+   pure subroutine print_number(value, text, n)
+      !> Number to write
+      real(wp), intent(in) :: value
+      !> Receives it, without blanks before
+      character(len=longest), intent(out) :: text
+      !> Its length
+      integer, intent(out) :: n
       character(len=24) :: buffer
       integer(int64) :: digits
       integer :: exponent
@@ -39,7 +57,8 @@ contains
 
       if (.not. ieee_is_finite(value)) then
          write (buffer, scientific_form(17)) value
-         text = trim(adjustl(buffer))
+         text = adjustl(buffer)
+         n = len_trim(text)
          return
       end if
       known = abs(value) < 1.0e15_wp
@@ -59,9 +78,10 @@ contains
          call shorten(value, beyond, doubt, digits, exponent, known)
          if (.not. known) call try_forms(value, digits, exponent)
       end if
-      text = plain_form(digits, exponent)
-      if (sign(1.0_wp, value) < 0.0_wp) text = "-"//text
-   end function real_to_text
+      n = 0
+      if (sign(1.0_wp, value) < 0.0_wp) call append("-", text, n)
+      call put_plain(digits, exponent, text, n)
+   end subroutine print_number
 
    !> The 17 digits of a number of usual size: a power of ten up to the 22nd is a double, up to the
    !> 44th the sum of two, and so is the product of two doubles
@@ -177,49 +197,57 @@ contains
    end subroutine take_digits
 
    !> Plain decimals where they are as short as scientific notation
-   pure function plain_form(number, exponent) result(text)
+   pure subroutine put_plain(number, exponent, text, n)
       !> Significant digits as a whole number; zeros at its end do not count
       integer(int64), intent(in) :: number
       !> Power of ten of the first digit
       integer, intent(in) :: exponent
-      !> Text without trailing zeros
-      character(len=:), allocatable :: text
+      !> Receives them without trailing zeros, with at least one digit after a point
+      character(len=*), intent(inout) :: text
+      !> Its length
+      integer, intent(inout) :: n
       character(len=20) :: digits
       integer(int64) :: rest
-      integer :: n
+      integer :: n_digits
 
       rest = number
       do while (rest > 9)
          if (mod(rest, 10_int64) /= 0) exit
          rest = rest/10_int64
       end do
-      call put_digits(rest, digits, n)
+      call put_digits(rest, digits, n_digits)
       if (exponent >= 0 .and. exponent < 16) then
-         text = left_of_point(digits(:n), exponent)
+         call append(digits(:min(n_digits, exponent + 1)), text, n)
+         if (n_digits <= exponent + 1) then
+            call append(repeat("0", exponent + 1 - n_digits), text, n)
+         else
+            call append("."//digits(exponent + 2:n_digits), text, n)
+         end if
       else if (exponent < 0 .and. exponent > -5) then
-         text = "0."//repeat("0", -exponent - 1)//digits(:n)
-      else if (n == 1) then
-         text = digits(:n)//"e"//integer_to_text(exponent)
+         call append("0."//repeat("0", -exponent - 1), text, n)
+         call append(digits(:n_digits), text, n)
       else
-         text = digits(1:1)//"."//digits(2:n)//"e"//integer_to_text(exponent)
+         call append(digits(1:1), text, n)
+         if (n_digits > 1) call append("."//digits(2:n_digits), text, n)
+         call append(merge("e-", "e ", exponent < 0), text, n)
+         if (exponent >= 0) n = n - 1
+         call put_digits(abs(int(exponent, int64)), digits, n_digits)
+         call append(digits(:n_digits), text, n)
       end if
-   end function plain_form
+   end subroutine put_plain
 
-   !> Place the decimal point of a number not below one
-   pure function left_of_point(digits, exponent) result(text)
-      !> Significant digits
-      character(len=*), intent(in) :: digits
-      !> Power of ten of the first digit
-      integer, intent(in) :: exponent
-      !> Text with at least one digit after the point where there is a point
-      character(len=:), allocatable :: text
+   !> Put a text behind another one
+   pure subroutine append(more, text, n)
+      !> What is put there
+      character(len=*), intent(in) :: more
+      !> Has room for it
+      character(len=*), intent(inout) :: text
+      !> Length of what is there
+      integer, intent(inout) :: n
 
-      if (len(digits) <= exponent + 1) then
-         text = digits//repeat("0", exponent + 1 - len(digits))
-      else
-         text = digits(1:exponent + 1)//"."//digits(exponent + 2:)
-      end if
-   end function left_of_point
+      text(n + 1:n + len(more)) = more
+      n = n + len(more)
+   end subroutine append
 
    !> How many digits a whole number has
    pure integer function count_digits(number)
@@ -265,11 +293,7 @@ contains
       integer :: n
 
       call put_digits(abs(int(value, int64)), digits, n)
-      if (value < 0) then
-         text = "-"//digits(:n)
-      else
-         text = digits(:n)
-      end if
+      text = repeat("-", merge(1, 0, value < 0))//digits(:n)
    end function integer_to_text
 
    !> The same text with A-Z turned into a-z
