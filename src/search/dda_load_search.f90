@@ -86,6 +86,10 @@ contains
       if (done) done = high > low .and. can_follow(family%load, scene, max(abs(low), abs(high)))
       if (.not. done) return
       call scene_graph(scene%settings, scene%system, scene%contacts, graph)
+      ! smooth joints follow no path, and gravity that tilts farther than a push is no limit
+      if (family%load == searched_load%tilt .and. .not. has_friction(graph)) done &
+         & = only_weight(scene%settings) .and. is_push(max(abs(low), abs(high)))
+      if (.not. done) return
       right%value = high
       left%value = low
       ! from an unloaded state outside the range, the path leads through it
@@ -324,16 +328,12 @@ contains
          call close_bracket(search, low, high, scene, left, -1.0_wp, critical)
       else
          critical%verdict = verdict%stable
+         critical%stands = merge(search%high, search%low, high > 0.0_wp)
          allocate (critical%standing)
-         if (high > 0.0_wp) then
-            critical%stands = search%high
-            call record_rest(scene%settings, scene%system, scene%contacts, right%proof, &
-               & critical%standing)
-         else
-            critical%stands = search%low
-            call record_rest(scene%settings, scene%system, scene%contacts, left%proof, &
-               & critical%standing)
-         end if
+         if (high > 0.0_wp) call record_rest(scene%settings, scene%system, scene%contacts, &
+            & right%proof, critical%standing)
+         if (.not. high > 0.0_wp) call record_rest(scene%settings, scene%system, scene%contacts, &
+            & left%proof, critical%standing)
       end if
    end subroutine conclude
 

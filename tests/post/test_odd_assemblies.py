@@ -80,7 +80,7 @@ SIDES = [
     (26, "horizontal_coefficient", -4, 0), (9, "gravity_direction_deg", -150, -30),
     (23, "gravity_direction_deg", -90, -10), (27, "gravity_direction_deg", -60, 60),
     (31, "gravity_direction_deg", -170, -90), (77, "gravity_direction_deg", 0, 80),
-    (146, "gravity_direction_deg", 0, 80),
+    (146, "gravity_direction_deg", 0, 80), (1004, "gravity_direction_deg", -60, 60),
 ]
 
 
