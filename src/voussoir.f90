@@ -36,11 +36,9 @@ contains
 
    !> Compute one case of a deck. Not from two threads at a time: texts are made
    subroutine solve_case(deck, number, row, joint, remark, error)
-      !> The deck with its sweeps
       type(deck_t), intent(in) :: deck
       !> Number of the case, from 1 to n_cases(deck)
       integer, intent(in) :: number
-      !> Its row of results.csv
       type(result_row_t), intent(out) :: row
       !> Its rows of joints.csv: (n_joint), (0) where there are none
       type(joint_row_t), allocatable, intent(out) :: joint(:)

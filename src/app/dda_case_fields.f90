@@ -134,7 +134,6 @@ contains
    pure function rounded(value, width) result(text)
       !> The number
       real(wp), intent(in) :: value
-      !> Width of its column
       integer, intent(in) :: width
       character(len=:), allocatable :: text
       character(len=30) :: buffer
@@ -176,10 +175,8 @@ contains
    pure function shown_angles(angle, width) result(text)
       !> The angles: (n) [deg]
       real(wp), intent(in) :: angle(:)
-      !> Width of the column
       integer, intent(in) :: width
-      character(len=:), allocatable :: text
-      character(len=:), allocatable :: next
+      character(len=:), allocatable :: text, next
       integer :: i, left_over
 
       text = ""
@@ -215,7 +212,6 @@ contains
    pure function wrapped(text, width) result(lines)
       !> The remark
       character(len=*), intent(in) :: text
-      !> Width of the screen
       integer, intent(in) :: width
       character(len=:), allocatable :: lines
       integer :: blank, finish, margin, start

@@ -150,7 +150,6 @@ contains
       type(case_table_t), intent(in) :: table
       type(deck_t), intent(in) :: deck
       type(result_row_t), intent(in) :: row
-      !> What the user should know beside the row
       character(len=*), intent(in) :: remark
       character(len=:), allocatable :: lines
       integer :: c
@@ -193,8 +192,7 @@ contains
 
    !> Move what waits without copying its text
    pure subroutine move_waiting(from, to)
-      type(waiting_t), intent(inout) :: from
-      type(waiting_t), intent(inout) :: to
+      type(waiting_t), intent(inout) :: from, to
 
       to%number = from%number
       call move_alloc(from%lines, to%lines)

@@ -170,7 +170,6 @@ contains
 
    !> The points that are held, loaded and measured
    pure function points_text(boundary) result(text)
-      !> The points of the scene
       type(boundary_t), intent(in) :: boundary
       character(len=:), allocatable :: text
       integer :: n(3)
@@ -219,8 +218,7 @@ contains
       end if
       call tell(screen, "half size", &
          & to_text(half_size(model))//" m: the scale of penetration, opening and motion")
-      call tell(screen, "contacts", &
-         & "vertex to edge or vertex to vertex; detected in each step")
+      call tell(screen, "contacts", "vertex to edge or vertex to vertex; detected in each step")
       call tell(screen, "unknowns", "6 per block, "//to_text(6*n)//" in all")
       call tell(screen, "penalty", merge("follows the penetration, up or down", &
          & "fixed                              ", model%constants%auto_penalty))
@@ -260,8 +258,7 @@ contains
          & to_text(plan%unknowns)//" per block, "//to_text(plan%unknowns*blocks) &
          & //" in all: "//trim(why(plan%reason)))
       if (plan%chain) then
-         call tell(screen, "equations", &
-            & "chain: each block touches only its two neighbours")
+         call tell(screen, "equations", "chain: each block touches only its two neighbours")
             if (plan%halved) call tell(screen, "", "half model (vertical loads)")
       else
          call tell(screen, "equations", "general sparse system")

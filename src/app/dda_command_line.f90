@@ -212,9 +212,7 @@ contains
 
    !> Understand one option and its value
    pure subroutine take_option(argument, length, i, command, error)
-      !> The arguments: (n)
       character(len=*), intent(in) :: argument(:)
-      !> Their lengths, blanks at their ends counted: (n) [characters]
       integer, intent(in) :: length(:)
       !> Place of the option in, of its last part out
       integer, intent(inout) :: i

@@ -39,7 +39,6 @@ contains
    !> Length of results.csv up to which rows count [bytes]; a folder without a record was written as
    !> a whole
    integer(int64) function trusted_length(file)
-      !> Name of the record
       character(len=*), intent(in) :: file
       character(len=:), allocatable :: text
       type(error_t), allocatable :: error

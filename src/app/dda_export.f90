@@ -102,7 +102,6 @@ contains
       !> Name of the file without its ending
       character(len=*), intent(in) :: stem
       type(deck_t), intent(in) :: deck
-      !> Exit status of this deck
       integer, intent(out) :: status
       type(error_t), allocatable :: error
       character(len=:), allocatable :: text, losses
@@ -144,8 +143,7 @@ contains
       type(error_t), allocatable, intent(out) :: error
 
       call write_text(stem//".geo", plain_geometry(model), error)
-      if (.not. allocated(error)) &
-         & call write_text(stem//"_ddaml.geo", ddaml_geometry(model), error)
+      if (.not. allocated(error)) call write_text(stem//"_ddaml.geo", ddaml_geometry(model), error)
       if (.not. allocated(error)) call write_text(stem//".ana", ddaml_analysis(analysis), error)
       if (.not. allocated(error)) &
          & call write_text(stem//"_plain.ana", plain_analysis(analysis), error)
@@ -154,7 +152,6 @@ contains
    !> Say what was written, and what was lost
    subroutine tell(screen, stem, deck)
       type(screen_t), intent(in) :: screen
-      !> Name of the files without their endings
       character(len=*), intent(in) :: stem
       type(deck_t), intent(in) :: deck
 

@@ -100,7 +100,6 @@ contains
 
    !> Write what each line and point is for
    subroutine write_table(file, model, error)
-      !> Name of the file
       character(len=*), intent(in) :: file
       type(line_model_t), intent(in) :: model
       type(error_t), allocatable, intent(out) :: error

@@ -29,7 +29,6 @@ contains
       integer, intent(in) :: number
       !> Whether VTU files are wanted beside the tables
       logical, intent(in) :: vtu
-      !> The blocks, for their shapes
       type(block_system_t), intent(in) :: system
       !> Where the origin of their coordinates is: (2) [m]
       real(wp), intent(in) :: origin(2)
@@ -76,9 +75,7 @@ contains
 
    !> Write the ways of the measured points of a case
    subroutine write_track(number, origin, album, points, error)
-      !> Number of the case
       integer, intent(in) :: number
-      !> Where the origin of the coordinates is: (2) [m]
       real(wp), intent(in) :: origin(2)
       type(album_t), intent(in) :: album
       !> points.csv
@@ -97,7 +94,6 @@ contains
 
    !> Write the energies of a case
    subroutine write_energies(number, album, table, error)
-      !> Number of the case
       integer, intent(in) :: number
       type(album_t), intent(in) :: album
       !> energy.csv
@@ -123,14 +119,11 @@ contains
       character(len=*), intent(in) :: folder
       !> Name of the picture without ending
       character(len=*), intent(in) :: stem
-      !> The blocks, for their shapes
       type(block_system_t), intent(in) :: system
-      !> Where the origin of their coordinates is: (2) [m]
       real(wp), intent(in) :: origin(2)
       type(frame_t), intent(in) :: frame
       !> Its joints: (n_joint)
       type(frame_joint_row_t), intent(in) :: row(:)
-      !> Receives the names of the files
       type(pvd_index_t), intent(inout) :: index
       !> Time of the picture [s]; of a static run its number
       real(wp), intent(in) :: time

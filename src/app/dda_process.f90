@@ -58,7 +58,6 @@ module dda_process
          import :: c_funptr, c_int
          !> Number of the signal
          integer(c_int), intent(in), value :: number
-         !> What handles it
          type(c_funptr), intent(in), value :: handler
          !> What handled it before
          type(c_funptr) :: before

@@ -178,8 +178,7 @@ contains
    !> are
    pure function left_out(deck) result(text)
       type(deck_t), intent(in) :: deck
-      character(len=:), allocatable :: text
-      character(len=:), allocatable :: files, keys
+      character(len=:), allocatable :: text, files, keys
       integer :: i
 
       text = ""
@@ -231,7 +230,6 @@ contains
    !> Write down what was asked for
    subroutine write_record(tables, record, error)
       type(result_tables_t), intent(in) :: tables
-      !> What was asked for
       character(len=*), intent(in) :: record
       type(error_t), allocatable, intent(out) :: error
       type(table_file_t) :: file

@@ -62,8 +62,7 @@ contains
       if (.not. finished%same_deck) return
       allocate (whole(total))
       call compare_sizes(tables, whole)
-      call read_results(tables%at(table%results), trusted_length(tables%disk_file), whole, &
-         & finished)
+      call read_results(tables%at(table%results), trusted_length(tables%disk_file), whole, finished)
    end subroutine find_finished
 
    !> Whether each case has the bytes and lines that were written down of it in the tables beside
@@ -222,7 +221,6 @@ contains
       type(layout_t), intent(in) :: layout
       !> The line
       character(len=*), intent(in) :: line
-      !> Number of cases
       integer, intent(in) :: total
       real(wp) :: seconds
       integer :: unknowns
@@ -233,8 +231,7 @@ contains
       else
          ok = n_fields(line) == layout%columns
          if (ok) call read_integer(field(line, layout%case), case_of, ok)
-         if (ok .and. layout%seconds > 0) &
-            & call read_number(field(line, layout%seconds), seconds, ok)
+         if (ok .and. layout%seconds > 0) call read_number(field(line, layout%seconds), seconds, ok)
          if (ok .and. layout%unknowns > 0) &
             & call read_integer(field(line, layout%unknowns), unknowns, ok)
       end if
@@ -244,7 +241,6 @@ contains
 
    !> Place of a column, 0 if there is none of that name
    pure integer function column(header, name)
-      !> First line of a table
       character(len=*), intent(in) :: header
       !> Name of the column
       character(len=*), intent(in) :: name

@@ -107,7 +107,6 @@ contains
    !> No two decks may write into the same folder
    subroutine check_folder(command, number, good, error)
       type(command_t), intent(in) :: command
-      !> Number of the deck
       integer, intent(in) :: number
       !> Which of the decks before it will run: (number - 1)
       logical, intent(in) :: good(:)
@@ -144,7 +143,6 @@ contains
    !> Run all cases of one deck
    subroutine run_deck(command, name, deck, status)
       type(command_t), intent(in) :: command
-      !> Name of the deck
       character(len=*), intent(in) :: name
       type(deck_t), intent(in) :: deck
       !> Exit status of this deck
@@ -192,7 +190,6 @@ contains
    !> Begin the tables, or go on with those of an earlier run of the same deck
    subroutine begin_tables(command, name, deck, total, tables, finished, error)
       type(command_t), intent(in) :: command
-      !> Name of the deck
       character(len=*), intent(in) :: name
       type(deck_t), intent(in) :: deck
       !> Number of cases
@@ -223,13 +220,11 @@ contains
    !> Print what --resume has found
    subroutine print_resumed(screen, name, same_deck, finished, total)
       type(screen_t), intent(in) :: screen
-      !> Name of the deck
       character(len=*), intent(in) :: name
       !> Whether there are results of the same deck
       logical, intent(in) :: same_deck
       !> Cases that are finished
       integer, intent(in) :: finished
-      !> Number of cases
       integer, intent(in) :: total
 
       if (same_deck) then
@@ -244,7 +239,6 @@ contains
    !> Print the last line
    subroutine print_total(screen, name, folder, count, left_out)
       type(screen_t), intent(in) :: screen
-      !> Name of the deck
       character(len=*), intent(in) :: name
       !> Where the results are
       character(len=*), intent(in) :: folder
@@ -264,7 +258,6 @@ contains
       character(len=*), intent(in) :: folder
       !> Whether no warning is printed
       logical, intent(in) :: quiet
-      !> Allocated if another run has it, or no file can be written there
       type(error_t), allocatable, intent(out) :: error
       character(len=:), allocatable :: file
       type(binary_file_t) :: held

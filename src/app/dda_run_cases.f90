@@ -47,7 +47,6 @@ contains
       integer, intent(inout) :: next
       type(result_tables_t), intent(inout) :: tables
       type(progress_t), intent(inout) :: progress
-      !> The table on the screen
       type(case_table_t), intent(inout) :: shown
       !> Cases decided, undecided, written: (3)
       integer, intent(inout) :: count(3)
@@ -97,11 +96,9 @@ contains
 
    !> Take the next chosen cases
    pure subroutine take_cases(chosen, most, next, number, n)
-      !> Cases to be computed
       logical, intent(in) :: chosen(:)
       !> How many to take at most
       integer, intent(in) :: most
-      !> The last case that was begun
       integer, intent(inout) :: next
       !> Their numbers: (max_batch), n of them set
       integer, intent(inout) :: number(:)
@@ -136,7 +133,6 @@ contains
 
    !> The first chosen case behind another one; 0 if there is none
    pure integer function next_chosen(chosen, last)
-      !> Cases to be computed
       logical, intent(in) :: chosen(:)
       !> The other one
       integer, intent(in) :: last
@@ -167,20 +163,15 @@ contains
    end function deck_stem
 
    !> Write a computed case down
-   subroutine write_down(command, name, deck, number, this, tables, progress, shown, count, &
-      & error)
+   subroutine write_down(command, name, deck, number, this, tables, progress, shown, count, error)
       type(command_t), intent(in) :: command
-      !> Name of the deck
       character(len=*), intent(in) :: name
       type(deck_t), intent(in) :: deck
-      !> Number of the case
       integer, intent(in) :: number
       type(case_t), intent(in) :: this
       type(result_tables_t), intent(inout) :: tables
       type(progress_t), intent(inout) :: progress
-      !> The table on the screen
       type(case_table_t), intent(inout) :: shown
-      !> Cases decided, undecided, written: (3)
       integer, intent(inout) :: count(3)
       type(error_t), allocatable, intent(inout) :: error
       type(result_row_t) :: row
@@ -210,7 +201,6 @@ contains
    !> Write what is seen of a case on its way: pictures, measured points, energies
    subroutine write_pictures(tables, number, this, error)
       type(result_tables_t), intent(inout) :: tables
-      !> Number of the case
       integer, intent(in) :: number
       type(case_t), intent(in) :: this
       type(error_t), allocatable, intent(inout) :: error
@@ -231,7 +221,6 @@ contains
    !> Write what proves the verdict of a case
    subroutine write_proof(tables, number, this, error)
       type(result_tables_t), intent(inout) :: tables
-      !> Number of the case
       integer, intent(in) :: number
       type(case_t), intent(in) :: this
       type(error_t), allocatable, intent(inout) :: error
@@ -252,7 +241,6 @@ contains
    subroutine write_end(folder, number, this, error)
       !> Folder of the deck's results
       character(len=*), intent(in) :: folder
-      !> Number of the case
       integer, intent(in) :: number
       type(case_t), intent(in) :: this
       type(error_t), allocatable, intent(out) :: error

@@ -41,16 +41,14 @@ contains
    end function equal_joints
 
    !> Number of equal chords of a voussoir none of which spans more than a facet
-   elemental function facet_count(span_deg, facet_deg) result(count)
+   elemental integer function facet_count(span_deg, facet_deg)
       !> Angle of the voussoir [deg]
       real(wp), intent(in) :: span_deg
       !> Largest angle of a chord; zero or less for one chord [deg]
       real(wp), intent(in) :: facet_deg
-      !> Number of chords, at least 1
-      integer :: count
 
-      count = 1
-      if (facet_deg > 0.0_wp) count = max(1, ceiling(span_deg/facet_deg - 1.0e-9_wp))
+      facet_count = 1
+      if (facet_deg > 0.0_wp) facet_count = max(1, ceiling(span_deg/facet_deg - 1.0e-9_wp))
    end function facet_count
 
    !> Corners of the arch's sections from the crown to the springing
@@ -97,7 +95,6 @@ contains
       type(arch_shape_t), intent(in) :: shape
       !> Unit vectors; the last is the crown's if there is a section: (2, m)
       real(wp), allocatable, intent(out) :: direction(:, :)
-      !> Which sections are joints: (m)
       logical, allocatable, intent(out) :: is_joint(:)
       real(wp), allocatable :: angle(:)
       logical, allocatable :: half_joint(:)
@@ -117,9 +114,7 @@ contains
    !> the right one; mirrored to the last bit
    pure subroutine section_directions(shape, direction, is_joint)
       type(arch_shape_t), intent(in) :: shape
-      !> Unit vectors: (2, m)
       real(wp), allocatable, intent(out) :: direction(:, :)
-      !> Which sections are joints: (m)
       logical, allocatable, intent(out) :: is_joint(:)
       real(wp), allocatable :: half(:, :)
       logical, allocatable :: half_joint(:)
@@ -189,8 +184,7 @@ contains
       !> Where the joint starts, seen from the block: (2) [m]
       real(wp), intent(in) :: finish(2)
       !> Corners, counter-clockwise: (2, 4) [m]
-      real(wp) :: vertex(2, 4)
-      real(wp) :: outward(2), joint(2)
+      real(wp) :: vertex(2, 4), outward(2), joint(2)
 
       joint = along(start, finish)
       outward = norm2(finish - start)*[joint(2), -joint(1)]

@@ -50,7 +50,6 @@ contains
    pure subroutine assemble_arch(form, assembly, problem)
       type(arch_form_t), intent(in) :: form
       type(arch_assembly_t), intent(out) :: assembly
-      !> What makes no arch
       type(form_problem_t), intent(out) :: problem
       type(arch_sections_t) :: sections
       real(wp) :: shift(2)
@@ -88,13 +87,11 @@ contains
    !> The voussoirs of one span
    pure subroutine add_voussoirs(form, sections, shift, span, assembly)
       type(arch_form_t), intent(in) :: form
-      !> Sections of the first span
       type(arch_sections_t), intent(in) :: sections
       !> Where the span is, from the first: (2) [m]
       real(wp), intent(in) :: shift(2)
       !> Number of the span
       integer, intent(in) :: span
-      !> Receives the voussoirs
       type(arch_assembly_t), intent(inout) :: assembly
       real(wp), allocatable :: inner(:, :), outer(:, :)
       integer, allocatable :: joint(:)
@@ -136,9 +133,7 @@ contains
    !> Piers, buttresses and what is fixed
    pure subroutine add_supports(form, sections, assembly, problem)
       type(arch_form_t), intent(in) :: form
-      !> Sections of the first span
       type(arch_sections_t), intent(in) :: sections
-      !> Receives the blocks
       type(arch_assembly_t), intent(inout) :: assembly
       !> A pier too narrow for its springings
       type(form_problem_t), intent(inout) :: problem
@@ -191,7 +186,6 @@ contains
 
       !> Height of a pier or a buttress [m]
       pure real(wp) function height(s)
-         !> Its number, from 0
          integer, intent(in) :: s
 
          height = merge(form%pier(2), form%buttress(2), s > 0 .and. s < form%spans)
@@ -208,9 +202,7 @@ contains
       real(wp), intent(in) :: right(2, 2)
       !> Its height up to the lower springing [m]
       real(wp), intent(in) :: height
-      !> Receives the courses
       type(arch_assembly_t), intent(inout) :: assembly
-      !> A pier too narrow for its springings
       type(form_problem_t), intent(inout) :: problem
       real(wp) :: base, course, gap, low, width
       real(wp), allocatable :: corner(:, :)
@@ -281,8 +273,7 @@ contains
       !> Where it ends: (2) [m]
       real(wp), intent(in) :: finish(2)
       !> Corners, counter-clockwise: (2, 4) [m]
-      real(wp) :: corner(2, 4)
-      real(wp) :: outward(2)
+      real(wp) :: corner(2, 4), outward(2)
 
       outward = norm2(finish - start)*right_normal(along(start, finish))
       corner = reshape([start, start + outward, finish + outward, finish], [2, 4])
@@ -290,7 +281,6 @@ contains
 
    !> Add a block
    pure subroutine add_block(plan, corner, fixed, material)
-      !> Receives it
       type(block_plan_t), intent(inout) :: plan
       !> Its corners, counter-clockwise: (2, n) [m]
       real(wp), intent(in) :: corner(:, :)
@@ -313,7 +303,6 @@ contains
 
    !> Add a chord of the upper face of the last block; what leans over carries nothing
    pure subroutine add_top(assembly, left, right, span)
-      !> Receives it
       type(arch_assembly_t), intent(inout) :: assembly
       !> Its left end: (2) [m]
       real(wp), intent(in) :: left(2)

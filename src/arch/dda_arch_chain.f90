@@ -227,7 +227,6 @@ contains
 
    !> Make the last joint the plane of symmetry
    pure subroutine add_plane(rays, chain)
-      !> Sections of the left half
       type(arch_rays_t), intent(in) :: rays
       type(chain_t), intent(inout) :: chain
       integer :: last

@@ -98,14 +98,12 @@ contains
    end function curve_length
 
    !> The place at a length along the line; at a bend, that of the left or of the right piece
-   pure function station_at(curve, length, from_right) result(station)
+   pure type(station_t) function station_at(curve, length, from_right) result(station)
       type(curve_t), intent(in) :: curve
       !> Length from the left end [m]
       real(wp), intent(in) :: length
       !> Whether the right piece counts where two meet
       logical, intent(in) :: from_right
-      !> The place
-      type(station_t) :: station
       real(wp) :: u, rate(2), bend(2), speed
       integer :: i
 
@@ -186,7 +184,6 @@ contains
    !> Parameter of a piece at a length from its left end, by Newton's method
    pure real(wp) function parameter_at(piece, length, whole) result(u)
       type(piece_t), intent(in) :: piece
-      !> The length [m]
       real(wp), intent(in) :: length
       !> Length of the piece [m]
       real(wp), intent(in) :: whole

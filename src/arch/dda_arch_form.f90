@@ -59,7 +59,6 @@ contains
    pure subroutine form_curve(form, curve, problem)
       type(arch_form_t), intent(in) :: form
       type(curve_t), intent(out) :: curve
-      !> What makes no line
       type(form_problem_t), intent(out) :: problem
 
       allocate (curve%piece(1))
@@ -79,25 +78,21 @@ contains
    end subroutine form_curve
 
    !> A circular arc
-   pure function arc(centre, radius, ends) result(piece)
+   pure type(piece_t) function arc(centre, radius, ends)
       !> Its centre: (2) [m]
       real(wp), intent(in) :: centre(2)
       !> Its radius [m]
       real(wp), intent(in) :: radius
       !> Angles of its ends from upright, to the right: (2) [rad]
       real(wp), intent(in) :: ends(2)
-      !> The arc
-      type(piece_t) :: piece
 
-      piece = piece_t(piece_form%ellipse, centre, radius, radius, ends)
+      arc = piece_t(piece_form%ellipse, centre, radius, radius, ends)
    end function arc
 
    !> The line of a form by span and rise; the left springing is half a span left of the origin
    pure subroutine span_curve(form, curve, problem)
       type(arch_form_t), intent(in) :: form
-      !> Its line, with one piece
       type(curve_t), intent(inout) :: curve
-      !> What makes no line
       type(form_problem_t), intent(inout) :: problem
       real(wp) :: a, left, crown(2)
 
@@ -143,7 +138,6 @@ contains
    !> A circular arc over springings that may lie at different heights
    pure subroutine add_arc(form, curve, problem)
       type(arch_form_t), intent(in) :: form
-      !> Receives the arc as its piece
       type(curve_t), intent(inout) :: curve
       !> A rise that is no segment's
       type(form_problem_t), intent(inout) :: problem
@@ -168,7 +162,7 @@ contains
    end subroutine add_arc
 
    !> Half of a pointed arch: an arc whose centre is as high as its springing
-   pure function half_pointed(half_span, rise, level, is_right) result(piece)
+   pure type(piece_t) function half_pointed(half_span, rise, level, is_right)
       !> Distance of the crown from the springing along x [m]
       real(wp), intent(in) :: half_span
       !> Height of the crown above the springing [m]
@@ -177,21 +171,18 @@ contains
       real(wp), intent(in) :: level
       !> Whether it is the right half
       logical, intent(in) :: is_right
-      !> The arc
-      type(piece_t) :: piece
       real(wp) :: radius, apex, way
 
       radius = 0.5_wp*(half_span**2 + rise**2)/half_span
       apex = atan2(radius - half_span, rise)
       way = merge(-1.0_wp, 1.0_wp, is_right)
-      piece = arc([way*(radius - half_span), level], radius, [-0.5_wp*pi, -apex])
-      if (is_right) piece%ends = [apex, 0.5_wp*pi]
+      half_pointed = arc([way*(radius - half_span), level], radius, [-0.5_wp*pi, -apex])
+      if (is_right) half_pointed%ends = [apex, 0.5_wp*pi]
    end function half_pointed
 
    !> The three-centred arch whose radii differ by the least factor
    pure subroutine add_basket(form, curve, problem)
       type(arch_form_t), intent(in) :: form
-      !> Receives three arcs
       type(curve_t), intent(inout) :: curve
       !> Springings of different heights, or a rise above half the span
       type(form_problem_t), intent(inout) :: problem
@@ -244,7 +235,6 @@ contains
    pure real(wp) function half_catenary(a, rise)
       !> Radius at the crown [m]
       real(wp), intent(in) :: a
-      !> Height of the crown above the springing [m]
       real(wp), intent(in) :: rise
 
       half_catenary = 2.0_wp*a*asinh(sqrt(0.5_wp*rise/a))
@@ -253,7 +243,6 @@ contains
    !> Where the crown is along the line: its highest point, or the middle of a flat one
    pure subroutine find_crown(form, curve)
       type(arch_form_t), intent(in) :: form
-      !> The line, measured
       type(curve_t), intent(inout) :: curve
       type(curve_t) :: left
       integer :: i

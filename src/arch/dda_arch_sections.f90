@@ -31,7 +31,6 @@ contains
    pure subroutine arch_sections(form, sections, problem)
       type(arch_form_t), intent(in) :: form
       type(arch_sections_t), intent(out) :: sections
-      !> What makes no arch
       type(form_problem_t), intent(out) :: problem
       type(curve_t) :: curve
       type(station_t) :: crown
@@ -194,13 +193,11 @@ contains
 
    !> Where the extrados of the two arcs of a pointed arch meet
    pure function outer_apex(curve, thickness) result(point)
-      !> The line, with two arcs
       type(curve_t), intent(in) :: curve
       !> Thickness at the crown [m]
       real(wp), intent(in) :: thickness
       !> The point: (2) [m]
-      real(wp) :: point(2)
-      real(wp) :: apart(2), distance, radius(2), foot
+      real(wp) :: point(2), apart(2), distance, radius(2), foot
 
       radius = curve%piece%a + thickness
       apart = curve%piece(2)%centre - curve%piece(1)%centre
@@ -215,7 +212,6 @@ contains
    !> Check that no two joints cross
    pure subroutine check_sections(sections, problem)
       type(arch_sections_t), intent(in) :: sections
-      !> Joints that do
       type(form_problem_t), intent(inout) :: problem
       integer :: i
 

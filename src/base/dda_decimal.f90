@@ -42,8 +42,7 @@ contains
       !> The one
       real(wp), intent(in) :: value
       !> The two
-      real(wp) :: halves(2)
-      real(wp) :: high
+      real(wp) :: halves(2), high
 
       high = 134217729.0_wp*value
       halves(1) = high - (high - value)
@@ -91,7 +90,6 @@ contains
 
    !> Digits of a decimal number as a whole number, and its power of ten
    pure subroutine split_decimal(text, digits, power, ok)
-      !> The text
       character(len=*), intent(in) :: text
       !> All digits, without sign
       integer(int64), intent(out) :: digits
@@ -130,7 +128,6 @@ contains
    pure subroutine add_exponent(text, power, ok)
       !> Text such as e-3, not empty
       character(len=*), intent(in) :: text
-      !> The power
       integer, intent(inout) :: power
       !> Whether it is a letter and a whole number of at most 4 digits
       logical, intent(out) :: ok

@@ -44,7 +44,6 @@ contains
    pure subroutine room_for_logicals(array, n)
       !> The values
       logical, allocatable, intent(inout) :: array(:)
-      !> How many there may be
       integer, intent(in) :: n
       logical, allocatable :: longer(:)
 
@@ -59,7 +58,6 @@ contains
    pure subroutine room_for_columns(array, n)
       !> The columns, at least one of them if their height is not 2
       real(wp), allocatable, intent(inout) :: array(:, :)
-      !> How many there may be
       integer, intent(in) :: n
       real(wp), allocatable :: longer(:, :)
 

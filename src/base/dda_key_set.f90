@@ -45,7 +45,6 @@ contains
    pure subroutine add_key(set, key)
       !> The set; it holds fewer than it is made for
       type(key_set_t), intent(inout) :: set
-      !> The number, above 0
       integer(int64), intent(in) :: key
 
       set%key(place_of(set, key)) = key
@@ -54,7 +53,6 @@ contains
    !> Where a number is, or would be
    pure integer function place_of(set, key)
       type(key_set_t), intent(in) :: set
-      !> The number
       integer(int64), intent(in) :: key
       integer :: last
 

@@ -75,7 +75,6 @@ contains
    !> The next number of the standard normal law (Box and Muller)
    pure subroutine draw_normal(random, number)
       type(random_t), intent(inout) :: random
-      !> The number
       real(wp), intent(out) :: number
       real(wp), parameter :: two_pi = 8.0_wp*atan(1.0_wp)
       real(wp) :: u, v

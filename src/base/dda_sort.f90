@@ -70,7 +70,6 @@ contains
 
    !> Sort by digits, the last one first, each keeping the order of the one before; linear
    pure subroutine radix_sort(number, least, most, order)
-      !> The numbers: (n)
       integer(int64), intent(in) :: number(:)
       !> The least of them
       integer(int64), intent(in) :: least
@@ -118,7 +117,6 @@ contains
       integer(int64), intent(in) :: major(:)
       !> What counts next: (n)
       real(wp), intent(in) :: minor(:)
-      !> Places of the items, smallest first: (n)
       integer, intent(out) :: order(:)
       integer :: other(size(order)), i, n, width, start, middle, finish
 
@@ -139,9 +137,7 @@ contains
 
    !> Merge two sorted runs that lie side by side
    pure subroutine merge_runs(major, minor, order, start, middle, finish, merged)
-      !> What counts first: (n)
       integer(int64), intent(in) :: major(:)
-      !> What counts next: (n)
       real(wp), intent(in) :: minor(:)
       !> The runs: places start to middle - 1 and middle to finish - 1
       integer, intent(in) :: order(:)
@@ -174,9 +170,7 @@ contains
 
    !> Whether one item comes strictly before another
    pure logical function is_before(major, minor, a, b)
-      !> What counts first: (n)
       integer(int64), intent(in) :: major(:)
-      !> What counts next: (n)
       real(wp), intent(in) :: minor(:)
       !> One item
       integer, intent(in) :: a

@@ -43,7 +43,6 @@ contains
 
    !> Put the shortest decimal text that reads back as the same double into a text
    pure subroutine print_number(value, text, n)
-      !> Number to write
       real(wp), intent(in) :: value
       !> Receives it, without blanks before
       character(len=longest), intent(out) :: text
@@ -118,15 +117,11 @@ contains
 
    !> Leave out of 17 digits those that the number does not need to be read back
    pure subroutine shorten(value, beyond, doubt, digits, exponent, known)
-      !> The number
-      real(wp), intent(in) :: value
-      !> What rounding has taken from its 17 digits
-      real(wp), intent(in) :: beyond
+      real(wp), intent(in) :: value, beyond
       !> How far that may be wrong
       real(wp), intent(in) :: doubt
       !> Its 17 digits in, the shorter ones out
       integer(int64), intent(inout) :: digits
-      !> Power of ten of the first digit
       integer, intent(in) :: exponent
       !> Whether it could be told without reading the digits back, so that they were changed
       logical, intent(out) :: known
@@ -155,11 +150,8 @@ contains
 
    !> The fewest digits that read back as the same number, by reading them
    pure subroutine try_forms(value, digits, exponent)
-      !> The number
       real(wp), intent(in) :: value
-      !> Its digits
       integer(int64), intent(out) :: digits
-      !> Power of ten of the first one
       integer, intent(out) :: exponent
       character(len=24) :: buffer
       real(wp) :: again
@@ -200,11 +192,9 @@ contains
    pure subroutine put_plain(number, exponent, text, n)
       !> Significant digits as a whole number; zeros at its end do not count
       integer(int64), intent(in) :: number
-      !> Power of ten of the first digit
       integer, intent(in) :: exponent
       !> Receives them without trailing zeros, with at least one digit after a point
       character(len=*), intent(inout) :: text
-      !> Its length
       integer, intent(inout) :: n
       character(len=20) :: digits
       integer(int64) :: rest
@@ -242,7 +232,6 @@ contains
       character(len=*), intent(in) :: more
       !> Has room for it
       character(len=*), intent(inout) :: text
-      !> Length of what is there
       integer, intent(inout) :: n
 
       text(n + 1:n + len(more)) = more
@@ -265,7 +254,6 @@ contains
 
    !> Write the digits of a whole number
    pure subroutine put_digits(number, digits, n)
-      !> The number, not negative
       integer(int64), intent(in) :: number
       !> The digits, from the left
       character(len=20), intent(out) :: digits
@@ -363,7 +351,6 @@ contains
 
    !> Read one integer, and nothing else, from a text
    pure subroutine read_integer(text, value, ok)
-      !> Text such as 36 or +4
       character(len=*), intent(in) :: text
       !> The number; 0 if the text is none
       integer, intent(out) :: value

@@ -17,7 +17,6 @@ module dda_watch
       !> Tell how far a task is
       subroutine tell_of_task(watch, task, share)
          import :: watch_t, wp
-         !> Who is told
          class(watch_t), intent(inout) :: watch
          !> What is done
          character(len=*), intent(in) :: task

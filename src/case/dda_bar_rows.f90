@@ -60,7 +60,6 @@ contains
 
    !> Add a row a bar
    pure subroutine add_rows(number, time, bar, rows)
-      !> Number of the case
       integer, intent(in) :: number
       !> The time [s]
       real(wp), intent(in) :: time

@@ -101,7 +101,6 @@ contains
    !> What a deck asks to be searched
    pure subroutine prepare_search(deck, plan, searched, family, search)
       type(deck_t), intent(in) :: deck
-      !> What its scenes need
       type(scene_plan_t), intent(in) :: plan
       !> Name of the searched parameter
       character(len=*), intent(in) :: searched

@@ -54,7 +54,6 @@ contains
    !> What the user should know of the path of a static run
    pure function path_remark(outcome, before) result(remark)
       type(outcome_t), intent(in) :: outcome
-      !> What else there is to know
       character(len=*), intent(in) :: before
       !> All of it
       character(len=:), allocatable :: remark
@@ -77,7 +76,6 @@ contains
    !> Why forces after stages are not those of the last shape built at once
    pure function order_remark(outcome, before) result(remark)
       type(outcome_t), intent(in) :: outcome
-      !> What else there is to know
       character(len=*), intent(in) :: before
       !> All of it
       character(len=:), allocatable :: remark
@@ -112,7 +110,6 @@ contains
    !> What a search in time has found on both sides of its bracket
    pure function change_remark(critical, before) result(remark)
       type(critical_t), intent(in) :: critical
-      !> What else there is to know
       character(len=*), intent(in) :: before
       !> All of it
       character(len=:), allocatable :: remark
@@ -140,7 +137,6 @@ contains
       integer, intent(in) :: jumps
       !> The largest displacement of one [m]
       real(wp), intent(in) :: largest
-      !> What else there is to know
       character(len=*), intent(in) :: before
       !> All of it
       character(len=:), allocatable :: remark

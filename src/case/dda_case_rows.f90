@@ -17,8 +17,7 @@ module dda_case_rows
    use dda_mechanism, only : mechanism_of, mechanism_t
    use dda_scene, only : build_once, scene_t, searched_load
    use dda_text, only : to_text
-   use dda_told_blocks, only : scale_to_one, tell_blocks, tell_mechanism_motion, &
-      & tell_total_motion
+   use dda_told_blocks, only : scale_to_one, tell_blocks, tell_mechanism_motion, tell_total_motion
    use dda_verdict, only : verdict
    use dda_write_tables, only : told_blocks_t
    use dda_write_results, only : joint_row_t, result_row_t, some_number
@@ -132,7 +131,6 @@ contains
    pure subroutine tell_decision(this, row, joint_row, blocks, remark)
       type(case_t), intent(in) :: this
       type(result_row_t), intent(inout) :: row
-      !> Rows of the joints
       type(joint_row_t), allocatable, intent(inout) :: joint_row(:)
       type(told_blocks_t), intent(inout) :: blocks
       !> Why the verdict is undecided
@@ -187,7 +185,6 @@ contains
       !> falls
       type(joint_row_t), allocatable, intent(inout) :: joint_row(:)
       type(told_blocks_t), intent(inout) :: blocks
-      !> Why the verdict is undecided
       character(len=:), allocatable, intent(inout) :: remark
 
       associate (critical => this%critical)
@@ -226,7 +223,6 @@ contains
    !> Joints and blocks of the decision nearest to critical that stands, else of that which falls
    pure subroutine tell_nearest(this, joint_row, blocks)
       type(case_t), intent(in) :: this
-      !> Rows of the joints
       type(joint_row_t), allocatable, intent(inout) :: joint_row(:)
       type(told_blocks_t), intent(inout) :: blocks
       type(scene_t) :: scene
@@ -296,8 +292,7 @@ contains
       middle = (critical%falls + critical%stands)/2.0_wp
       half = abs(critical%stands - critical%falls)/2.0_wp
       off = abs(critical%stop - middle)
-      if (critical%stops .and. off > lopsided*half .and. off < 2.0_wp*half) &
-         & middle = critical%stop
+      if (critical%stops .and. off > lopsided*half .and. off < 2.0_wp*half) middle = critical%stop
       half = max(abs(critical%stands - middle), abs(critical%falls - middle), critical%half)
       row%critical = some_number(middle)
       row%critical_low = some_number(middle - half)

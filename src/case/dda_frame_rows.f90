@@ -19,7 +19,6 @@ contains
 
    !> Rows of all joints of a picture
    pure function frame_joint_rows(system, frame) result(row)
-      !> The blocks, for their shapes
       type(block_system_t), intent(in) :: system
       type(frame_t), intent(in) :: frame
       !> The rows: (n_joint)

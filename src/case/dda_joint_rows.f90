@@ -51,7 +51,6 @@ contains
       type(joint_t), intent(in) :: joint
       !> Its force N1, N2, T: (3) [N/m]
       real(wp), intent(in) :: force(3)
-      !> Where the origin of the blocks' coordinates is: (2) [m]
       real(wp), intent(in) :: origin(2)
       type(joint_row_t), intent(inout) :: row
 

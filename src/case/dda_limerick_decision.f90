@@ -80,7 +80,6 @@ contains
       type(deck_t), intent(in) :: deck
       type(scene_t), intent(in) :: scene
       type(limerick_model_t), intent(in) :: model
-      !> The run as it ended
       type(limerick_run_t), intent(out) :: run
       type(limerick_outcome_t), intent(out) :: outcome
       type(album_t), intent(inout) :: album

@@ -24,7 +24,6 @@ contains
 
    !> Search the critical value
    pure subroutine find_limerick_critical(family, search, critical)
-      !> The deck and its parameter
       type(deck_family_t), intent(in) :: family
       !> What is searched; where the far end needs no check, the search strides out from the start
       type(search_t), intent(in) :: search
@@ -53,7 +52,6 @@ contains
 
    !> Pictures of the run nearest to critical that was found to fall, else to stand
    pure subroutine repeat_with_pictures(family, critical, album)
-      !> The deck and its parameter
       type(deck_family_t), intent(in) :: family
       type(critical_t), intent(in) :: critical
       type(album_t), intent(inout) :: album
@@ -83,7 +81,6 @@ contains
 
    !> Go up from the start while it falls, or down while it stands, with steps that double
    pure subroutine stride_out(family, search, critical, answer)
-      !> The deck and its parameter
       type(deck_family_t), intent(in) :: family
       type(search_t), intent(in) :: search
       type(critical_t), intent(inout) :: critical
@@ -109,12 +106,10 @@ contains
 
    !> Run one value and keep the decision on its side of the bracket
    pure subroutine decide_at(family, value, critical, answer)
-      !> The deck and its parameter
       type(deck_family_t), intent(in) :: family
       !> The value
       real(wp), intent(in) :: value
       type(critical_t), intent(inout) :: critical
-      !> One of verdict
       integer, intent(out) :: answer
       type(decision_t), allocatable :: decision
       type(error_t), allocatable :: error

@@ -79,10 +79,8 @@ contains
 
    !> Rows of bounded forces, along x and y, with the bound as the third; empty without one
    pure subroutine add_bounded(start, proof, n, rows)
-      !> First fields of a row
       character(len=*), intent(in) :: start
       type(proof_t), intent(in) :: proof
-      !> Number of the last joint before them; theirs are added
       integer, intent(inout) :: n
       type(growing_text_t), intent(inout) :: rows
       character(len=:), allocatable :: line
@@ -107,7 +105,6 @@ contains
 
    !> Rows of bars: the force that pulls their ends together
    pure subroutine add_bars(start, proof, rows)
-      !> First fields of a row
       character(len=*), intent(in) :: start
       type(proof_t), intent(in) :: proof
       type(growing_text_t), intent(inout) :: rows
@@ -128,9 +125,7 @@ contains
 
    !> Velocities of the mechanism: of the centres of blocks that move, and their spins
    pure function proof_motion_lines(number, value, proof) result(lines)
-      !> Number of the case
       integer, intent(in) :: number
-      !> Value of what is searched as text; empty if nothing is
       character(len=*), intent(in) :: value
       type(proof_t), intent(in) :: proof
       !> Rows, parted by line ends

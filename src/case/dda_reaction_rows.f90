@@ -81,12 +81,9 @@ contains
    !> least forces
    pure subroutine share_among_points(settings, system, contacts, time, support, block, reaction)
       type(settings_t), intent(in) :: settings
-      !> The blocks at rest
       type(block_system_t), intent(in) :: system
       type(contacts_t), intent(in) :: contacts
-      !> Time of the loads [s]
       real(wp), intent(in) :: time
-      !> The supports: (2, n)
       integer, intent(in) :: support(:, :)
       !> The block
       integer, intent(in) :: block
@@ -152,10 +149,7 @@ contains
    pure function moved(wrench, place, length) result(seen)
       !> Force, and moment about the origin: (3)
       real(wp), intent(in) :: wrench(3)
-      !> The point: (2) [m]
-      real(wp), intent(in) :: place(2)
-      !> The length [m]
-      real(wp), intent(in) :: length
+      real(wp), intent(in) :: place(2), length
       !> The same with the other moment: (3)
       real(wp) :: seen(3)
 
@@ -180,13 +174,11 @@ contains
    pure function outer_force(settings, system, time, block) result(wrench)
       type(settings_t), intent(in) :: settings
       type(block_system_t), intent(in) :: system
-      !> The time [s]
       real(wp), intent(in) :: time
       !> The block, which can move
       integer, intent(in) :: block
       !> Force and moment: (3) [N/m, N/m, N]
-      real(wp) :: wrench(3)
-      real(wp) :: weight(3, maxval(system%equation)), of_block(6)
+      real(wp) :: wrench(3), weight(3, maxval(system%equation)), of_block(6)
       real(wp), dimension(3, maxval(system%equation)) :: load, felt
       real(wp) :: place(2)
       integer :: b

@@ -108,13 +108,11 @@ contains
 
    !> Put blocks, contacts and march into the state of a file
    subroutine load_restart(file, settings, system, contacts, march, error)
-      !> Name of the file
       character(len=*), intent(in) :: file
       type(settings_t), intent(in) :: settings
       !> The blocks at their beginning in, those of the file out
       type(block_system_t), intent(inout) :: system
       type(contacts_t), intent(inout) :: contacts
-      !> The march of the file
       type(march_t), intent(out) :: march
       !> Allocated if the file is missing, broken, of another scene or made up
       type(error_t), allocatable, intent(out) :: error
@@ -154,9 +152,7 @@ contains
 
    !> Check that a file is whole and a restart file, whatever its blocks
    subroutine check_restart(file, error)
-      !> Name of the file
       character(len=*), intent(in) :: file
-      !> Allocated if the file is missing, broken or another one
       type(error_t), allocatable, intent(out) :: error
       integer(int32), allocatable :: whole(:)
       real(wp), allocatable :: number(:)
@@ -191,7 +187,6 @@ contains
    !> Check what a file says of its owner and of its lengths
    pure subroutine check_counts(settings, system, contacts, whole, n_number, fault)
       type(settings_t), intent(in) :: settings
-      !> The blocks at their beginning
       type(block_system_t), intent(in) :: system
       type(contacts_t), intent(in) :: contacts
       !> Whole numbers of the file: (:)
@@ -222,7 +217,6 @@ contains
    subroutine pass_state(reading, whole, number, state)
       !> Whether the state is made from the numbers; otherwise they are made from it
       logical, intent(in) :: reading
-      !> Whole numbers of the file: (:)
       integer(int32), intent(inout) :: whole(:)
       !> Its other numbers: (:)
       real(wp), intent(inout) :: number(:)
@@ -284,11 +278,9 @@ contains
    !> their motion, as each step makes them
    pure subroutine take_blocks(settings, state, system, fault)
       type(settings_t), intent(in) :: settings
-      !> The state, finite
       type(state_t), intent(in) :: state
       !> The blocks at their beginning in, where they were out
       type(block_system_t), intent(inout) :: system
-      !> What is wrong; left as it is if nothing is
       character(len=*), intent(inout) :: fault
       real(wp) :: no_motion(settings%n_dof, maxval(system%equation)), size_of_all
       integer :: b
@@ -324,7 +316,6 @@ contains
 
    !> Whether strain has left blocks their shapes: no edge is gone, none is turned inside out
    pure logical function are_blocks(system)
-      !> The blocks where they are
       type(block_system_t), intent(in) :: system
       integer :: b
 
@@ -356,10 +347,8 @@ contains
    pure subroutine take_march(settings, contacts, state, march, fault)
       type(settings_t), intent(in) :: settings
       type(contacts_t), intent(in) :: contacts
-      !> The state, finite
       type(state_t), intent(in) :: state
       type(march_t), intent(out) :: march
-      !> What is wrong; left as it is if nothing is
       character(len=*), intent(inout) :: fault
 
       march%steps = state%count(8)

@@ -51,11 +51,8 @@ contains
    !> the state that they had
    pure subroutine unpack_joints(settings, system, whole, number, contacts, sound)
       type(settings_t), intent(in) :: settings
-      !> The blocks where they are
       type(block_system_t), intent(in) :: system
-      !> Whole numbers: (n_joint_whole, n_joint)
       integer(int32), intent(in) :: whole(:, :)
-      !> Numbers: (n_joint_number, n_joint)
       real(wp), intent(in) :: number(:, :)
       !> The contacts at their beginning in, with these joints out
       type(contacts_t), intent(inout) :: contacts
@@ -96,15 +93,11 @@ contains
    !> Joints that a search had found, where the blocks are
    pure subroutine make_joints(system, contacts, whole, number, joint, sound)
       type(block_system_t), intent(in) :: system
-      !> Hold the laws
       type(contacts_t), intent(in) :: contacts
-      !> Whole numbers: (n_joint_whole, n_joint)
       integer(int32), intent(in) :: whole(:, :)
-      !> Numbers: (n_joint_number, n_joint)
       real(wp), intent(in) :: number(:, :)
       !> The joints: (n_joint)
       type(joint_t), intent(out) :: joint(:)
-      !> Whether the numbers are those of joints between the blocks
       logical, intent(out) :: sound
       type(outline_t) :: outline
       real(wp) :: gap(3)
@@ -142,7 +135,6 @@ contains
    !> Whether numbers are those of a joint of two blocks, of which one moves
    pure logical function is_joint(system, outline, whole, number)
       type(block_system_t), intent(in) :: system
-      !> Their corners by number
       type(outline_t), intent(in) :: outline
       !> Whole numbers: (n_joint_whole)
       integer(int32), intent(in) :: whole(:)
@@ -162,9 +154,7 @@ contains
 
    !> Whether the edges of a joint run against one another, if they are of both blocks
    pure logical function edges_face(system, outline, whole)
-      !> The blocks where they are
       type(block_system_t), intent(in) :: system
-      !> Their corners by number
       type(outline_t), intent(in) :: outline
       !> Whole numbers of the joint: (n_joint_whole)
       integer(int32), intent(in) :: whole(:)
@@ -176,9 +166,7 @@ contains
 
    !> The two blocks that a contact is of
    pure function blocks_of(outline, whole, k) result(block)
-      !> Corners by number
       type(outline_t), intent(in) :: outline
-      !> Whole numbers of the joint: (n_joint_whole)
       integer(int32), intent(in) :: whole(:)
       !> Which of its contacts
       integer, intent(in) :: k

@@ -117,7 +117,6 @@ contains
    !> Check that the modes of a deck can run the blocks that were cut from its lines
    pure subroutine check_lines(deck, error)
       type(deck_t), intent(inout) :: deck
-      !> What cannot be run
       type(error_t), allocatable, intent(out) :: error
       type(scene_t) :: scene
 
@@ -127,7 +126,6 @@ contains
    !> Check the first case of each mode
    pure subroutine check_modes(deck, scene, error)
       type(deck_t), intent(inout) :: deck
-      !> The scene of the first case, if its blocks are from a file
       type(scene_t), intent(out) :: scene
       type(error_t), allocatable, intent(out) :: error
       type(deck_t) :: work

@@ -51,8 +51,7 @@ contains
 
       of_block = 0.0_wp
       do b = 1, size(system%equation)
-         if (system%equation(b) > 0) &
-            & of_block(:size(motion, 1), b) = motion(:, system%equation(b))
+         if (system%equation(b) > 0) of_block(:size(motion, 1), b) = motion(:, system%equation(b))
       end do
       blocks%displacement = small_displacements(system, of_block)
       call scale_to_one(blocks%displacement)
@@ -73,7 +72,6 @@ contains
       type(block_system_t), intent(in) :: system
       !> Whether corners follow the motion; otherwise displacements are small
       logical, intent(in) :: moves
-      !> The blocks; displacements are set
       type(told_blocks_t), intent(inout) :: blocks
 
       if (moves) then

@@ -59,7 +59,6 @@ contains
    !> Find the worst position
    pure subroutine find_worst_position(deck, scene, position, found)
       type(deck_t), intent(in) :: deck
-      !> Its scene with a vehicle anywhere
       type(scene_t), intent(in) :: scene
       !> The position of the first axle [m]
       real(wp), intent(out) :: position
@@ -92,7 +91,6 @@ contains
    !> What a deck has of a bridge
    pure subroutine take_bridge(deck, scene, bridge)
       type(deck_t), intent(in) :: deck
-      !> Its scene with a vehicle anywhere
       type(scene_t), intent(in) :: scene
       type(bridge_t), intent(out) :: bridge
       type(arch_assembly_t) :: assembly
@@ -143,8 +141,7 @@ contains
       type(stretch_t), allocatable, intent(out) :: stretch(:)
       real(wp), allocatable :: passage(:)
       real(wp) :: at(4), turn
-      integer :: side(2)
-      integer :: i, k, n
+      integer :: side(2), i, k, n
 
       allocate (passage, source=passages(bridge%vehicle, bridge%road, bridge%scene%origin))
       allocate (stretch(2*size(passage)))
@@ -190,7 +187,6 @@ contains
    !> Which fill the bridge leans against with the vehicle at a position
    pure integer function side_at(bridge, position) result(side)
       type(bridge_t), intent(in) :: bridge
-      !> The position [m]
       real(wp), intent(in) :: position
 
       side = 0
@@ -201,7 +197,6 @@ contains
    !> Loads of the vehicle at a position
    pure function axles_at(bridge, position) result(axles)
       type(bridge_t), intent(in) :: bridge
-      !> The position [m]
       real(wp), intent(in) :: position
       !> The loads: (n)
       type(loaded_point_t), allocatable :: axles(:)
@@ -215,9 +210,7 @@ contains
    !> Seek the least factor on stretches on which the bridge leans against the same fill
    pure subroutine seek_on_side(bridge, stretch, least)
       type(bridge_t), intent(in) :: bridge
-      !> The stretches: (n)
       type(stretch_t), intent(in) :: stretch(:)
-      !> The least factor so far
       type(least_factor_t), intent(inout) :: least
       type(load_arc_t) :: arc(size(stretch))
       type(joint_graph_t) :: graph

@@ -73,9 +73,7 @@ contains
       real(wp), intent(in) :: motion(:, :)
       !> The joints, placed: (n_joint); they become those of the contacts
       type(joint_t), allocatable, intent(inout) :: joint(:)
-      !> Contact stiffness over the stiffness of the block across the joint
       real(wp), intent(in) :: penalty_ratio
-      !> Unknowns of one block
       integer, intent(in) :: n_dof
       !> The contacts; their search is kept
       type(contacts_t), intent(inout) :: contacts
@@ -91,8 +89,7 @@ contains
       allocate (contacts%trial(3, n), source=0.0_wp)
       allocate (contacts%force, contacts%gap, contacts%increment, source=contacts%trial)
       contacts%past_slip = 0.0_wp
-      call new_joint_springs(system, motion, contacts%joint, penalty_ratio, n_dof, &
-         & contacts%springs)
+      call new_joint_springs(system, motion, contacts%joint, penalty_ratio, n_dof, contacts%springs)
    end subroutine set_joints
 
    !> Keep some of the joints with what they carry; blocks may have other numbers in the equations
@@ -100,9 +97,7 @@ contains
       type(block_system_t), intent(in) :: system
       !> Which: (n_joint)
       logical, intent(in) :: kept(:)
-      !> Contact stiffness over the stiffness of the block across the joint
       real(wp), intent(in) :: penalty_ratio
-      !> Unknowns of one block
       integer, intent(in) :: n_dof
       type(contacts_t), intent(inout) :: contacts
       type(contacts_t) :: old
@@ -142,9 +137,7 @@ contains
    !> before as multipliers, so that the springs only carry what changes
    pure subroutine follow_contacts(system, penalty_ratio, n_dof, contacts)
       type(block_system_t), intent(in) :: system
-      !> Contact stiffness over the stiffness of the block across the joint
       real(wp), intent(in) :: penalty_ratio
-      !> Unknowns of one block
       integer, intent(in) :: n_dof
       !> The contacts; what they carry is kept
       type(contacts_t), intent(inout) :: contacts

@@ -87,7 +87,6 @@ contains
 
    !> The contact of the step before of the same corner and edge that none has taken over, or 0
    pure integer function same_contact(past, past_key, key)
-      !> The contacts of the step before
       type(past_contact_t), intent(in) :: past(:)
       !> Their keys, rising
       integer(int64), intent(in) :: past_key(:)
@@ -107,13 +106,11 @@ contains
    !> The nearest contact of the same blocks that none has taken over and that carried a force, or 0
    pure integer function next_contact(system, past, order, past_pair, contact, pair, reach)
       type(block_system_t), intent(in) :: system
-      !> The contacts of the step before
       type(past_contact_t), intent(in) :: past(:)
       !> Their order by blocks
       integer, intent(in) :: order(:)
       !> Keys of their blocks in that order, rising
       integer(int64), intent(in) :: past_pair(:)
-      !> The contact that looks for one
       type(contact_t), intent(in) :: contact
       !> Key of its blocks
       integer(int64), intent(in) :: pair
@@ -140,13 +137,11 @@ contains
    end function next_contact
 
    !> Numbers that tell pairs of blocks apart
-   elemental function pair_keys(contact, n_block) result(key)
+   elemental integer(int64) function pair_keys(contact, n_block) result(key)
       !> A contact of the pair
       type(contact_t), intent(in) :: contact
       !> Number of all blocks
       integer, intent(in) :: n_block
-      !> The number
-      integer(int64) :: key
 
       key = int(min(contact%vertex_block, contact%edge_block), int64)*int(n_block + 1, int64) &
          & + int(max(contact%vertex_block, contact%edge_block), int64)

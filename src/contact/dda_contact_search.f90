@@ -36,15 +36,13 @@ module dda_contact_search
 contains
 
    !> Search for the joints of a system
-   pure function new_joint_search(system, law) result(search)
+   pure type(joint_search_t) function new_joint_search(system, law)
       type(block_system_t), intent(in) :: system
       !> Law of the joints between two materials: (n_material, n_material)
       type(joint_law_t), intent(in) :: law(:, :)
-      !> The search
-      type(joint_search_t) :: search
 
-      search%outline = outline_of(system)
-      allocate (search%law, source=law)
+      new_joint_search%outline = outline_of(system)
+      allocate (new_joint_search%law, source=law)
    end function new_joint_search
 
    !> Look everywhere again: blocks have come or gone
@@ -78,8 +76,7 @@ contains
       !> How far each block can reach: (n_block) [m]
       real(wp), intent(in) :: reach(:)
       !> The least reach: (n_block) [m]
-      real(wp) :: least(size(reach))
-      real(wp) :: high(2, size(reach)), low(2, size(reach))
+      real(wp) :: least(size(reach)), high(2, size(reach)), low(2, size(reach))
       real(wp), allocatable :: least_below(:)
       type(box_tree_t) :: tree
       integer :: b
@@ -118,11 +115,9 @@ contains
       real(wp), intent(in) :: travel(:, :)
       !> Keys of the contacts that were closed, rising: (n_closed)
       integer(int64), intent(in) :: closed(:)
-      !> Most that the corners of each block may move: (n_block) [m]
       real(wp), intent(in) :: reach(:)
       !> Whether blocks move in time: then a line parts convex blocks
       logical, intent(in) :: in_time
-      !> The joints, in the order of their blocks: (n_joint)
       type(joint_t), allocatable, intent(out) :: joint(:)
       type(neighbourhood_t) :: near
 
@@ -155,7 +150,6 @@ contains
       real(wp), intent(in) :: reach(:)
       !> Where the corners are; completed here
       type(neighbourhood_t), intent(inout) :: near
-      !> The joints: (n_joint)
       type(joint_t), allocatable, intent(out) :: joint(:)
       !> Least reach beside each block; one that lies beside both counts at the beginning, too:
       !> (n_block) [m]

@@ -52,9 +52,7 @@ contains
       real(wp), intent(in) :: travel(:, :)
       !> Most that the corners of each block may move in the step: (n_block) [m]
       real(wp), intent(in) :: reach(:)
-      !> Contact stiffness over the stiffness of the block across the joint
       real(wp), intent(in) :: penalty_ratio
-      !> Unknowns of one block
       integer, intent(in) :: n_dof
       !> The contacts of the step before in, those of the next out
       type(contacts_t), intent(inout) :: contacts
@@ -96,7 +94,6 @@ contains
    !> The contacts of the step before in the order of their keys, and the keys of the closed ones
    pure subroutine list_past(system, contacts, past, closed)
       type(block_system_t), intent(in) :: system
-      !> The contacts of the step before
       type(contacts_t), intent(in) :: contacts
       !> The contacts one by one: (n_contact)
       type(past_contact_t), allocatable, intent(out) :: past(:)
@@ -180,9 +177,7 @@ contains
    !> Let the shear force stay the same where the stiffness does not
    pure subroutine keep_shear(system, past, source, stiffness, joint)
       type(block_system_t), intent(in) :: system
-      !> The contacts of the step before
       type(past_contact_t), intent(in) :: past(:)
-      !> Which of them go on, 0 for none: (2)
       integer, intent(in) :: source(2)
       !> Stiffness now [N/m per metre depth]
       real(wp), intent(in) :: stiffness
@@ -252,7 +247,6 @@ contains
       integer, intent(in) :: source(2)
       !> Number of the joint
       integer, intent(in) :: j
-      !> Receives the joint's state
       type(contacts_t), intent(inout) :: contacts
       integer :: k
 
@@ -274,7 +268,6 @@ contains
    pure subroutine guess_face(source, j, contacts)
       !> Contacts of the step before that go on in the joint, 0 for none: (2)
       integer, intent(in) :: source(2)
-      !> Number of the joint
       integer, intent(in) :: j
       type(contacts_t), intent(inout) :: contacts
 

@@ -92,14 +92,12 @@ contains
 
    !> Joint of two edges that coincide and run against each other: both vertices of the second
    !> block's edge touch the first block's edge
-   pure function edge_to_edge_joint(system, edge_pair, law) result(joint)
+   pure type(joint_t) function edge_to_edge_joint(system, edge_pair, law) result(joint)
       type(block_system_t), intent(in) :: system
       !> Block and edge of the first, block and edge of the second: (4)
       integer, intent(in) :: edge_pair(4)
       !> Law of the joint
       type(joint_law_t), intent(in) :: law
-      !> The joint
-      type(joint_t) :: joint
       real(wp) :: start(2), finish(2), gap(3)
 
       start = system%vertex(:, vertex_number(system, edge_pair(1), edge_pair(2)))
@@ -166,7 +164,6 @@ contains
    !> How far the joint's second block has slipped at a contact, along the edges of the first
    pure real(wp) function slip_at(system, vertex, contact)
       type(block_system_t), intent(in) :: system
-      !> Their corners: (2, n_vertex) [m]
       real(wp), intent(in) :: vertex(:, :)
       type(contact_t), intent(in) :: contact
       real(wp) :: edge(2), way(2)

@@ -37,7 +37,6 @@ contains
 
    !> Edges of different blocks whose boxes overlap, in the order of their blocks
    pure subroutine find_edge_pairs(known, outline, equation, vertex, reach, pair)
-      !> What is remembered
       type(edge_pairs_t), intent(in) :: known
       !> How the corners follow one another
       type(outline_t), intent(in) :: outline
@@ -74,17 +73,11 @@ contains
 
    !> Remember what is near, unless what is remembered will do
    pure subroutine remember_edge_pairs(outline, equation, area, vertex, reach, known)
-      !> How the corners follow one another
       type(outline_t), intent(in) :: outline
-      !> Number of each block in the equations; 0 for a block that cannot move: (n_block)
       integer, intent(in) :: equation(:)
       !> Areas of the blocks: (n_block) [m2]
       real(wp), intent(in) :: area(:)
-      !> Where the corners are: (2, n_vertex) [m]
-      real(wp), intent(in) :: vertex(:, :)
-      !> How far each block can reach: (n_block) [m]
-      real(wp), intent(in) :: reach(:)
-      !> What is remembered
+      real(wp), intent(in) :: vertex(:, :), reach(:)
       type(edge_pairs_t), intent(inout) :: known
       real(wp) :: low(2, size(vertex, 2)), high(2, size(vertex, 2))
 
@@ -98,14 +91,9 @@ contains
 
    !> Whether all pairs that are near are among those that are remembered
    pure logical function covers(known, outline, vertex, reach)
-      !> What is remembered
       type(edge_pairs_t), intent(in) :: known
-      !> How the corners follow one another
       type(outline_t), intent(in) :: outline
-      !> Where the corners are: (2, n_vertex) [m]
-      real(wp), intent(in) :: vertex(:, :)
-      !> How far each block can reach: (n_block) [m]
-      real(wp), intent(in) :: reach(:)
+      real(wp), intent(in) :: vertex(:, :), reach(:)
       real(wp) :: way
       integer :: v
 
@@ -123,12 +111,8 @@ contains
 
    !> Boxes that edges can get to
    pure subroutine edge_boxes(outline, vertex, reach, low, high)
-      !> How the corners follow one another
       type(outline_t), intent(in) :: outline
-      !> Where the corners are: (2, n_vertex) [m]
-      real(wp), intent(in) :: vertex(:, :)
-      !> How far each block can reach: (n_block) [m]
-      real(wp), intent(in) :: reach(:)
+      real(wp), intent(in) :: vertex(:, :), reach(:)
       !> Lower left corners of the boxes: (2, n_vertex) [m]
       real(wp), intent(out) :: low(:, :)
       !> Upper right corners: (2, n_vertex) [m]
@@ -145,14 +129,9 @@ contains
 
    !> Edges of different blocks whose boxes overlap, by a tree of all boxes
    pure subroutine search_pairs(outline, equation, low, high, pair)
-      !> How the corners follow one another
       type(outline_t), intent(in) :: outline
-      !> Number of each block in the equations; 0 for a block that cannot move: (n_block)
       integer, intent(in) :: equation(:)
-      !> Lower left corners of the boxes: (2, n_vertex) [m]
-      real(wp), intent(in) :: low(:, :)
-      !> Upper right corners: (2, n_vertex) [m]
-      real(wp), intent(in) :: high(:, :)
+      real(wp), intent(in) :: low(:, :), high(:, :)
       !> The pairs in the order of their blocks: (2, n_pair)
       integer, allocatable, intent(out) :: pair(:, :)
       integer :: group(size(outline%block))

@@ -51,17 +51,15 @@ module dda_entrance
 contains
 
    !> A number that tells contacts apart
-   elemental function contact_key(corner, edge, n_vertex) result(key)
+   elemental integer(int64) function contact_key(corner, edge, n_vertex)
       !> Number of the corner among all
       integer, intent(in) :: corner
       !> Number of the edge among all
       integer, intent(in) :: edge
       !> Number of all corners
       integer, intent(in) :: n_vertex
-      !> The number
-      integer(int64) :: key
 
-      key = int(corner, int64)*int(n_vertex + 1, int64) + int(edge, int64)
+      contact_key = int(corner, int64)*int(n_vertex + 1, int64) + int(edge, int64)
    end function contact_key
 
    !> Add the joints of two blocks
@@ -71,7 +69,6 @@ contains
       integer, intent(in) :: edge_pair(:, :)
       !> Gaps wider than this are no matter [m]
       real(wp), intent(in) :: reach
-      !> Receives the joints
       type(joint_list_t), intent(inout) :: list
       type(key_set_t) :: taken
       integer :: i
@@ -96,11 +93,9 @@ contains
       type(neighbourhood_t), intent(in) :: near
       !> Edge of the first block, edge of the second: (2)
       integer, intent(in) :: pair(2)
-      !> Gaps wider than this are no matter [m]
       real(wp), intent(in) :: reach
       !> Keys of the contacts that belong to a joint
       type(key_set_t), intent(inout) :: taken
-      !> Receives the joint
       type(joint_list_t), intent(inout) :: list
       type(joint_t) :: joint
       type(corner_view_t) :: view
@@ -156,10 +151,7 @@ contains
       real(wp), intent(in) :: ahead
       !> Corners that lie nearer have met [m]
       real(wp), intent(in) :: zone
-      !> The corner
-      integer, intent(out) :: corner
-      !> The edge
-      integer, intent(out) :: edge
+      integer, intent(out) :: corner, edge
       logical :: by_first
 
       by_first = ahead >= 0.0_wp
@@ -176,17 +168,11 @@ contains
    !> beginning by what counts as touching, later by where corners have met
    pure subroutine join_corner(near, corner, edge, edge_side, reach, taken, list)
       type(neighbourhood_t), intent(in) :: near
-      !> Number of the corner
-      integer, intent(in) :: corner
-      !> Number of the edge
-      integer, intent(in) :: edge
+      integer, intent(in) :: corner, edge
       !> 1 if the edge belongs to the first block, 2 if to the second
       integer, intent(in) :: edge_side
-      !> Gaps wider than this are no matter [m]
       real(wp), intent(in) :: reach
-      !> Keys of the contacts that belong to a joint
       type(key_set_t), intent(inout) :: taken
-      !> Receives the joint
       type(joint_list_t), intent(inout) :: list
       type(corner_view_t) :: view
       real(wp) :: zone(2)
@@ -208,11 +194,8 @@ contains
       type(neighbourhood_t), intent(in) :: near
       !> Corner of the first block, corner of the second: (2)
       integer, intent(in) :: pair(2)
-      !> Gaps wider than this are no matter [m]
       real(wp), intent(in) :: reach
-      !> Keys of the contacts that belong to a joint
       type(key_set_t), intent(inout) :: taken
-      !> Receives the joint
       type(joint_list_t), intent(inout) :: list
       type(corner_view_t) :: view
       real(wp) :: distance, zone, time, best_gap, best_time
@@ -257,11 +240,7 @@ contains
    !> outside, before all times if it is inside and stays there
    pure real(wp) function crossing_time(near, corner, edge, view, slack)
       type(neighbourhood_t), intent(in) :: near
-      !> Number of the corner
-      integer, intent(in) :: corner
-      !> Number of the edge
-      integer, intent(in) :: edge
-      !> The corner seen from the edge
+      integer, intent(in) :: corner, edge
       type(corner_view_t), intent(in) :: view
       !> A corner no deeper than this has not crossed: springs that carry give a little [m]
       real(wp), intent(in) :: slack
@@ -279,10 +258,7 @@ contains
    !> How near to the ends of an edge a corner has met them, where they stick out [m]
    pure function meeting_zone(near, corner, edge) result(zone)
       type(neighbourhood_t), intent(in) :: near
-      !> Number of the corner
-      integer, intent(in) :: corner
-      !> Number of the edge
-      integer, intent(in) :: edge
+      integer, intent(in) :: corner, edge
       !> At the start and at the end of the edge: (2) [m]
       real(wp) :: zone(2)
 
@@ -295,10 +271,7 @@ contains
    !> Whether a contact was closed before
    pure logical function was_closed(near, corner, edge)
       type(neighbourhood_t), intent(in) :: near
-      !> Number of the corner
-      integer, intent(in) :: corner
-      !> Number of the edge
-      integer, intent(in) :: edge
+      integer, intent(in) :: corner, edge
       integer(int64) :: key
       integer :: place
 
@@ -311,15 +284,8 @@ contains
    !> Add the joint of one corner and one edge
    pure subroutine add_single(near, corner, edge, edge_side, taken, list)
       type(neighbourhood_t), intent(in) :: near
-      !> Number of the corner
-      integer, intent(in) :: corner
-      !> Number of the edge
-      integer, intent(in) :: edge
-      !> 1 if the edge belongs to the first block, 2 if to the second
-      integer, intent(in) :: edge_side
-      !> Keys of the contacts that belong to a joint
+      integer, intent(in) :: corner, edge, edge_side
       type(key_set_t), intent(inout) :: taken
-      !> Receives the joint
       type(joint_list_t), intent(inout) :: list
       type(joint_t) :: joint
       integer :: pair(2)
@@ -335,18 +301,11 @@ contains
    end subroutine add_single
 
    !> A contact of a corner and an edge
-   pure function new_contact(near, corner, edge, edge_side, length) result(contact)
+   pure type(contact_t) function new_contact(near, corner, edge, edge_side, length) result(contact)
       type(neighbourhood_t), intent(in) :: near
-      !> Number of the corner
-      integer, intent(in) :: corner
-      !> Number of the edge
-      integer, intent(in) :: edge
-      !> 1 if the edge belongs to the first block, 2 if to the second
-      integer, intent(in) :: edge_side
+      integer, intent(in) :: corner, edge, edge_side
       !> Part of the joint's length that the contact stands for [m]
       real(wp), intent(in) :: length
-      !> The contact
-      type(contact_t) :: contact
 
       associate (block => near%outline%block, first => near%first_vertex)
          contact%vertex_block = block(corner)

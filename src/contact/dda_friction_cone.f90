@@ -83,11 +83,9 @@ contains
    !> |T| - multiplier = limit + friction*sum(max(N + friction*multiplier, 0)),
    !> which falls piecewise linearly, so that trying none, one and both corners open finds it
    pure subroutine return_to_limit(cone, trial, force, face)
-      !> Bounds of the force
       type(cone_t), intent(in) :: cone
       !> Trial force beyond the limit: (3) [N/m]
       real(wp), intent(in) :: trial(3)
-      !> Admissible force: (3) [N/m]
       real(wp), intent(out) :: force(3)
       type(joint_face_t), intent(out) :: face
       real(wp) :: mu, multiplier, excess, high, low
@@ -115,7 +113,6 @@ contains
 
    !> Largest shear force that a joint carries; one that cannot slide can part
    pure real(wp) function shear_bound(cone, normal)
-      !> Bounds of the force
       type(cone_t), intent(in) :: cone
       !> Normal forces beyond the tension that the contacts carry: (3), the third not used [N/m]
       real(wp), intent(in) :: normal(3)
@@ -137,7 +134,6 @@ contains
 
    !> A face as an affine map: force = tangent*trial + constant as long as the face is held
    pure subroutine apply_face(cone, face, tangent, constant)
-      !> Bounds of the force
       type(cone_t), intent(in) :: cone
       type(joint_face_t), intent(in) :: face
       !> Projector onto the face's directions: symmetric (3, 3)

@@ -82,7 +82,6 @@ contains
       type(block_system_t), intent(in) :: system
       !> How the blocks have moved where the joints are placed: (6, n_block)
       real(wp), intent(in) :: motion(:, :)
-      !> The joints: (n_joint)
       type(joint_t), intent(in) :: joint(:)
       !> The springs; their rows are set
       type(joint_springs_t), intent(inout) :: springs
@@ -107,11 +106,9 @@ contains
       real(wp), intent(in) :: centroid(2)
       !> How the block has moved: (6)
       real(wp), intent(in) :: motion(6)
-      !> Unknowns of the block
       integer, intent(in) :: n_dof
       !> Displacement along the normal at both contacts, along the edge halfway: (n_dof, 3)
-      real(wp) :: row(n_dof, 3)
-      real(wp) :: t(2, 6)
+      real(wp) :: row(n_dof, 3), t(2, 6)
       integer :: k
 
       row = 0.0_wp
@@ -135,8 +132,7 @@ contains
       real(wp), intent(in) :: centroid(:, :)
       type(joint_t), intent(in) :: joint
       !> The stiffness [N/m per metre depth]
-      real(wp) :: stiffness
-      real(wp) :: young, size_across
+      real(wp) :: stiffness, young, size_across
       integer :: side
 
       stiffness = huge(stiffness)

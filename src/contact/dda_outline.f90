@@ -47,10 +47,8 @@ module dda_outline
 contains
 
    !> The outline of a system
-   pure function outline_of(system) result(outline)
+   pure type(outline_t) function outline_of(system) result(outline)
       type(block_system_t), intent(in) :: system
-      !> The outline
-      type(outline_t) :: outline
       integer :: b, first, last, n, v
 
       n = size(system%vertex, 2)
@@ -75,7 +73,6 @@ contains
    pure subroutine measure_edges(vertex, outline)
       !> Corners: (2, n_vertex) [m]
       real(wp), intent(in) :: vertex(:, :)
-      !> Receives directions and lengths
       type(outline_t), intent(inout) :: outline
       integer :: e
 
@@ -90,9 +87,8 @@ contains
    end subroutine measure_edges
 
    !> See a corner from an edge
-   pure function view_corner(outline, vertex, corner, edge, reach) result(view)
+   pure type(corner_view_t) function view_corner(outline, vertex, corner, edge, reach) result(view)
       type(outline_t), intent(in) :: outline
-      !> Corners: (2, n_vertex) [m]
       real(wp), intent(in) :: vertex(:, :)
       !> Number of the corner
       integer, intent(in) :: corner
@@ -100,8 +96,6 @@ contains
       integer, intent(in) :: edge
       !> A corner farther from the line does not face the edge [m]
       real(wp), intent(in) :: reach
-      !> The view
-      type(corner_view_t) :: view
       real(wp) :: tangent(2), sides(2)
 
       tangent = edge_direction(outline, vertex, edge)
@@ -119,9 +113,7 @@ contains
    !> Whether a corner is no notch
    pure logical function is_convex(outline, vertex, corner)
       type(outline_t), intent(in) :: outline
-      !> Corners: (2, n_vertex) [m]
       real(wp), intent(in) :: vertex(:, :)
-      !> Number of the corner
       integer, intent(in) :: corner
       real(wp) :: before(2), after(2)
 
@@ -134,9 +126,7 @@ contains
    !> Unit vector along an edge
    pure function edge_direction(outline, vertex, edge) result(direction)
       type(outline_t), intent(in) :: outline
-      !> Corners: (2, n_vertex) [m]
       real(wp), intent(in) :: vertex(:, :)
-      !> Number of the edge
       integer, intent(in) :: edge
       !> The vector: (2)
       real(wp) :: direction(2)
@@ -151,9 +141,7 @@ contains
    !> Length of an edge [m]
    pure real(wp) function edge_length(outline, vertex, edge)
       type(outline_t), intent(in) :: outline
-      !> Corners: (2, n_vertex) [m]
       real(wp), intent(in) :: vertex(:, :)
-      !> Number of the edge
       integer, intent(in) :: edge
 
       if (allocated(outline%length)) then

@@ -56,7 +56,6 @@ contains
 
    !> Heights of a block's corners above the line of an edge
    pure function heights(vertex, edge, next, from, to) result(height)
-      !> Corners: (2, n_vertex) [m]
       real(wp), intent(in) :: vertex(:, :)
       !> Where the edge starts
       integer, intent(in) :: edge
@@ -67,8 +66,7 @@ contains
       !> Its last corner
       integer, intent(in) :: to
       !> The heights: (to - from + 1) [m]
-      real(wp) :: height(from:to)
-      real(wp) :: normal(2)
+      real(wp) :: height(from:to), normal(2)
 
       normal = right_normal(along(vertex(:, edge), vertex(:, next)))
       height = normal(1)*(vertex(1, from:to) - vertex(1, edge)) &
@@ -83,7 +81,6 @@ contains
       integer, intent(in) :: edge_pair(:, :)
       !> Gaps wider than this are no matter [m]
       real(wp), intent(in) :: reach
-      !> Receives the joint
       type(joint_list_t), intent(inout) :: list
       type(line_t) :: line
       type(key_set_t) :: taken
@@ -105,13 +102,10 @@ contains
    !> part them now, the one that the other block would cross last
    pure function parting_line(near, edge_pair, reach) result(best)
       type(neighbourhood_t), intent(in) :: near
-      !> Edges near one another: (2, n_pair)
       integer, intent(in) :: edge_pair(:, :)
       !> Blocks farther from one another than this are no matter [m]
       real(wp), intent(in) :: reach
-      !> The line
-      type(line_t) :: best
-      type(line_t) :: line, held, widest
+      type(line_t) :: best, line, held, widest
       integer :: i, side
 
       do side = 1, 2
@@ -130,14 +124,12 @@ contains
    end function parting_line
 
    !> One edge and the other block
-   pure function line_of(near, edge, block) result(line)
+   pure type(line_t) function line_of(near, edge, block) result(line)
       type(neighbourhood_t), intent(in) :: near
       !> Number of the edge
       integer, intent(in) :: edge
       !> The other block
       integer, intent(in) :: block
-      !> The line
-      type(line_t) :: line
       real(wp), allocatable :: height(:)
       real(wp) :: after, margin
       integer :: next
@@ -180,7 +172,6 @@ contains
    !> Length of an edge [m]
    pure real(wp) function edge_size(near, edge)
       type(neighbourhood_t), intent(in) :: near
-      !> Number of the edge
       integer, intent(in) :: edge
 
       edge_size = norm2(near%vertex(:, near%outline%next(edge)) - near%vertex(:, edge))

@@ -85,7 +85,6 @@ contains
    subroutine sync_binary(file, error)
       !> The file; nothing happens to one that is not open
       type(binary_file_t), intent(in) :: file
-      !> Allocated if anything could not be written since the file was opened
       type(error_t), allocatable, intent(inout) :: error
 
       if (.not. c_associated(file%handle) .or. allocated(error)) return
@@ -105,17 +104,14 @@ contains
 
    !> Close a file
    subroutine close_binary(file, error)
-      !> The file; nothing happens to one that is not open
       type(binary_file_t), intent(inout) :: file
-      !> Allocated if anything could not be written since the file was opened
       type(error_t), allocatable, intent(out) :: error
       integer(c_int) :: failed
 
       if (.not. c_associated(file%handle)) return
       call flush_binary(file, error)
       failed = c_fclose(file%handle)
-      if (failed /= 0 .and. .not. allocated(error)) &
-         & call fatal_error(error, no_room, file%name, 1)
+      if (failed /= 0 .and. .not. allocated(error)) call fatal_error(error, no_room, file%name, 1)
       file%handle = c_null_ptr
    end subroutine close_binary
 
@@ -144,8 +140,7 @@ contains
       !> The numbers: (:, :)
       real(wp), intent(in), target, contiguous :: values(:, :)
 
-      if (size(values) > 0) &
-         & call append_bytes(file, c_loc(values), 8*size(values, kind=c_size_t))
+      if (size(values) > 0) call append_bytes(file, c_loc(values), 8*size(values, kind=c_size_t))
    end subroutine append_reals
 
    !> Write integers of 32 bits in the machine's own form
@@ -154,8 +149,7 @@ contains
       !> The integers: (:)
       integer(int32), intent(in), target, contiguous :: values(:)
 
-      if (size(values) > 0) &
-         & call append_bytes(file, c_loc(values), 4*size(values, kind=c_size_t))
+      if (size(values) > 0) call append_bytes(file, c_loc(values), 4*size(values, kind=c_size_t))
    end subroutine append_integers
 
    !> Write one integer of 64 bits in the machine's own form
@@ -169,9 +163,7 @@ contains
 
    !> Write bytes; C keeps in mind whether that failed
    subroutine append_bytes(file, bytes, n)
-      !> The file; nothing happens to one that is not open
       type(binary_file_t), intent(in) :: file
-      !> Where they are
       type(c_ptr), intent(in) :: bytes
       !> How many
       integer(c_size_t), intent(in) :: n

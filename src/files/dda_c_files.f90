@@ -25,7 +25,6 @@ module dda_c_files
          import :: c_char, c_int, c_ptr
          !> The system's number of the file
          integer(c_int), intent(in), value :: descriptor
-         !> What is wanted of it, ended by a null character
          character(kind=c_char), intent(in) :: mode(*)
          !> The file, null if there is none of that number
          type(c_ptr) :: handle
@@ -40,7 +39,6 @@ module dda_c_files
          integer(c_size_t), intent(in), value :: size
          !> Number of items
          integer(c_size_t), intent(in), value :: count
-         !> The file
          type(c_ptr), intent(in), value :: handle
          !> Number of items written
          integer(c_size_t) :: written
@@ -49,7 +47,6 @@ module dda_c_files
       !> C: hand what is buffered to the system
       function c_fflush(handle) bind(c, name="fflush") result(failed)
          import :: c_int, c_ptr
-         !> The file
          type(c_ptr), intent(in), value :: handle
          !> 0 if all is well
          integer(c_int) :: failed
@@ -58,7 +55,6 @@ module dda_c_files
       !> C: go to a place of a file
       function c_fseek(handle, offset, origin) bind(c, name="fseek") result(failed)
          import :: c_int, c_long, c_ptr
-         !> The file
          type(c_ptr), intent(in), value :: handle
          !> Bytes from the origin
          integer(c_long), intent(in), value :: offset
@@ -71,7 +67,6 @@ module dda_c_files
       !> C: the place that is written next
       function c_ftell(handle) bind(c, name="ftell") result(place)
          import :: c_long, c_ptr
-         !> The file
          type(c_ptr), intent(in), value :: handle
          !> Bytes before it
          integer(c_long) :: place
@@ -80,7 +75,6 @@ module dda_c_files
       !> C: the system's number of a file
       function c_fileno(handle) bind(c, name="fileno") result(descriptor)
          import :: c_int, c_ptr
-         !> The file
          type(c_ptr), intent(in), value :: handle
          integer(c_int) :: descriptor
       end function c_fileno
@@ -88,7 +82,6 @@ module dda_c_files
       !> C: wait until the disk has what the system was given
       function c_fsync(descriptor) bind(c, name="fsync") result(failed)
          import :: c_int
-         !> The system's number of the file
          integer(c_int), intent(in), value :: descriptor
          !> 0 if all is well
          integer(c_int) :: failed
@@ -97,7 +90,6 @@ module dda_c_files
       !> C: whether anything has failed since the file was opened
       function c_ferror(handle) bind(c, name="ferror") result(failed)
          import :: c_int, c_ptr
-         !> The file
          type(c_ptr), intent(in), value :: handle
          !> 0 if all is well
          integer(c_int) :: failed
@@ -106,7 +98,6 @@ module dda_c_files
       !> C: close a file
       function c_fclose(handle) bind(c, name="fclose") result(failed)
          import :: c_int, c_ptr
-         !> The file
          type(c_ptr), intent(in), value :: handle
          !> 0 if all is well
          integer(c_int) :: failed
@@ -117,11 +108,7 @@ module dda_c_files
          import :: c_ptr, c_size_t
          !> Where the items go
          type(c_ptr), intent(in), value :: items
-         !> Size of an item
-         integer(c_size_t), intent(in), value :: size
-         !> Number of items
-         integer(c_size_t), intent(in), value :: count
-         !> The file
+         integer(c_size_t), intent(in), value :: size, count
          type(c_ptr), intent(in), value :: handle
          !> Number of items read; fewer at the end of the file
          integer(c_size_t) :: got
@@ -130,7 +117,6 @@ module dda_c_files
       !> C: what may be done with a file
       function c_access(path, mode) bind(c, name="access") result(failed)
          import :: c_char, c_int
-         !> Its name, ended by a null character
          character(kind=c_char), intent(in) :: path(*)
          !> What is wanted; 0: that it exists
          integer(c_int), intent(in), value :: mode

@@ -122,7 +122,6 @@ contains
 
    !> Stand at the beginning of a text
    pure subroutine start(text, scan)
-      !> The text
       character(len=*), intent(in) :: text
       !> Scanner without tokens
       type(deck_scan_t), intent(out) :: scan
@@ -183,7 +182,6 @@ contains
    !> Place of the last letter of the word at the scanner's place; one before the
    !> scanner's if a word end stands there
    pure integer function word_end(scan)
-      !> Scanner at the first letter
       type(deck_scan_t), intent(in) :: scan
 
       word_end = scan%position

@@ -69,7 +69,6 @@ contains
    pure function numbers(length, total) result(text)
       !> Length [bytes]
       integer(int64), intent(in) :: length
-      !> The sums: (2)
       integer(int64), intent(in) :: total(2)
       !> The digits
       character(len=:), allocatable :: text

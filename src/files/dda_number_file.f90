@@ -48,13 +48,10 @@ contains
 
    !> Read a file that is whole
    subroutine read_numbers(file, title, whole, number, error)
-      !> Name of the file
       character(len=*), intent(in) :: file
       !> What its first bytes must be
       character(len=*), intent(in) :: title
-      !> Its whole numbers: (:)
       integer(int32), allocatable, intent(out) :: whole(:)
-      !> Its numbers: (:)
       real(wp), allocatable, intent(out) :: number(:)
       !> Allocated if it is missing, another file, or damaged
       type(error_t), allocatable, intent(out) :: error
@@ -113,9 +110,7 @@ contains
    pure integer(int64) function check_sum(n, whole, number)
       !> How many numbers there are: (2)
       integer(int32), intent(in) :: n(2)
-      !> The whole ones: (n(1))
       integer(int32), intent(in) :: whole(:)
-      !> The others: (n(2))
       real(wp), intent(in) :: number(:)
       integer :: i
 

@@ -98,7 +98,6 @@ contains
 
    !> Close a table
    subroutine close_table(table, error)
-      !> The table; nothing happens to one that is not open
       type(table_file_t), intent(inout) :: table
       !> An earlier failure, or that of closing it
       type(error_t), allocatable, intent(inout) :: error
@@ -112,10 +111,8 @@ contains
    subroutine open_part(file, header, table, error)
       !> Name of the table
       character(len=*), intent(in) :: file
-      !> First line
       character(len=*), intent(in) :: header
       type(table_file_t), intent(out) :: table
-      !> Allocated if the file cannot be written
       type(error_t), allocatable, intent(out) :: error
 
       call open_table(part_name(file), header, table, error)
@@ -133,7 +130,6 @@ contains
    !> Write one line that need not be safe yet
    subroutine keep_line(table, line)
       type(table_file_t), intent(in) :: table
-      !> The line
       character(len=*), intent(in) :: line
 
       call append_text(table%file, line//new_line("a"))
@@ -141,10 +137,8 @@ contains
 
    !> Put a table begun beside in the place of the one that it replaces; it stays open
    subroutine settle_part(file, table, error)
-      !> Name of the table
       character(len=*), intent(in) :: file
       type(table_file_t), intent(in) :: table
-      !> Allocated if the file cannot be written
       type(error_t), allocatable, intent(out) :: error
 
       ! on the disk first: its name must not outlive its lines
@@ -154,7 +148,6 @@ contains
 
    !> Give a file begun beside another one the other's name
    subroutine rename_part(file, error)
-      !> Name of the file that is replaced
       character(len=*), intent(in) :: file
       !> Allocated if it cannot be replaced
       type(error_t), allocatable, intent(out) :: error
@@ -166,7 +159,6 @@ contains
 
    !> Remove a file of an earlier run; one that is not there is no failure
    subroutine remove_file(file)
-      !> Name of the file
       character(len=*), intent(in) :: file
       integer(c_int) :: failed
 

@@ -107,7 +107,6 @@ contains
 
    !> One field of a line as it stands there; empty if there is none of that number
    pure function field(line, number) result(text)
-      !> Fields parted by commas; commas between double quotes part nothing
       character(len=*), intent(in) :: line
       !> Which, from 1
       integer, intent(in) :: number

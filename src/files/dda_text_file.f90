@@ -1,7 +1,6 @@
 !> A text file as one string, whatever its line ends, or a failure with a line
 module dda_text_file
-   use, intrinsic :: iso_c_binding, only : c_associated, c_int, c_loc, c_null_char, c_ptr, &
-      & c_size_t
+   use, intrinsic :: iso_c_binding, only : c_associated, c_int, c_loc, c_null_char, c_ptr, c_size_t
    use dda_c_files, only : c_fopen, c_ferror, c_fclose, c_fread, c_access
    use dda_error, only : error_t, fatal_error
    use dda_text, only : to_text
@@ -37,7 +36,6 @@ contains
 
    !> Read a whole file as it is, be it a pipe
    subroutine read_bytes(file, bytes, error)
-      !> Name of the file
       character(len=*), intent(in) :: file
       !> Its bytes; empty after a failure
       character(len=:), allocatable, intent(out) :: bytes
@@ -68,7 +66,6 @@ contains
 
    !> Whether a name stands for something that may be a file
    subroutine check_name(file, error)
-      !> Name of the file
       character(len=*), intent(in) :: file
       type(error_t), allocatable, intent(out) :: error
       integer(c_int), parameter :: exists = 0

@@ -139,7 +139,6 @@ contains
    !> Take numbers that belong together, all within a bound
    pure subroutine take_word_numbers(words, what, bound, value, error)
       type(word_list_t), intent(inout) :: words
-      !> What each of them is, for the message
       character(len=*), intent(in) :: what
       !> Largest magnitude
       real(wp), intent(in) :: bound
@@ -165,9 +164,7 @@ contains
    !> Take a number from 0 to 1e30
    pure subroutine take_property(words, what, value, error)
       type(word_list_t), intent(inout) :: words
-      !> What the number is, for the message
       character(len=*), intent(in) :: what
-      !> The number
       real(wp), intent(out) :: value
       !> Another one, or none
       type(error_t), allocatable, intent(out) :: error
@@ -184,7 +181,6 @@ contains
    !> Take a whole number within bounds; 3.0 is one too
    pure subroutine take_whole(words, what, low, high, value, error)
       type(word_list_t), intent(inout) :: words
-      !> What the number is, for the message
       character(len=*), intent(in) :: what
       !> Smallest value
       integer, intent(in) :: low
@@ -213,11 +209,8 @@ contains
    !> Take the number of a material
    pure subroutine take_material(words, what, value, error)
       type(word_list_t), intent(inout) :: words
-      !> What the number is, for the message
       character(len=*), intent(in) :: what
-      !> The number
       integer, intent(out) :: value
-      !> The end of the text, or no such number
       type(error_t), allocatable, intent(out) :: error
 
       call take_whole(words, what, 1, largest_material, value, error)

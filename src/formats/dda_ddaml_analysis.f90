@@ -128,9 +128,7 @@ contains
    !> Read the phase that turns gravity on
    pure subroutine read_gravity(tree, at, analysis, error)
       type(xml_tree_t), intent(in) :: tree
-      !> Place of the element
       integer, intent(in) :: at
-      !> Receives its steps and tolerances
       type(limerick_analysis_t), intent(inout) :: analysis
       type(error_t), allocatable, intent(out) :: error
       character(len=*), parameter :: tolerance(2) = ["Normaltolerance", "Sheartolerance "]
@@ -185,7 +183,6 @@ contains
    !> Read what bolts are like: the first of these elements counts for all, as in the original
    pure subroutine read_bolt(tree, at, property, error)
       type(xml_tree_t), intent(in) :: tree
-      !> Place of the element
       integer, intent(in) :: at
       !> Stiffness, strength and prestress: (3)
       real(wp), intent(out) :: property(3)
@@ -210,7 +207,6 @@ contains
       integer, intent(in) :: at
       !> Its number
       integer, intent(in) :: number
-      !> Receives another type
       type(warnings_t), intent(inout) :: warnings
       character(len=:), allocatable :: given
 
@@ -224,7 +220,6 @@ contains
    !> Read the forces on load points
    pure subroutine read_loads(tree, part, analysis, error)
       type(xml_tree_t), intent(in) :: tree
-      !> Place of Analysis
       integer, intent(in) :: part
       type(limerick_analysis_t), intent(inout) :: analysis
       type(error_t), allocatable, intent(out) :: error
@@ -283,7 +278,6 @@ contains
    !> Whether all is there that an analysis needs
    pure subroutine check_complete(tree, part, analysis, warnings, error)
       type(xml_tree_t), intent(in) :: tree
-      !> Place of Analysis
       integer, intent(in) :: part
       type(limerick_analysis_t), intent(in) :: analysis
       type(warnings_t), intent(inout) :: warnings

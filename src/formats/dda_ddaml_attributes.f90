@@ -39,9 +39,7 @@ contains
    !> Read an attribute that chooses between two meanings
    pure subroutine choose(tree, at, name, words_for_yes, word_for_no, yes, error)
       type(xml_tree_t), intent(in) :: tree
-      !> Place of the element
       integer, intent(in) :: at
-      !> Name of the attribute
       character(len=*), intent(in) :: name
       !> Words that mean yes, parted by blanks
       character(len=*), intent(in) :: words_for_yes
@@ -63,9 +61,7 @@ contains
    !> Read an attribute that is a number
    pure subroutine number_attribute(tree, at, name, low, value, error)
       type(xml_tree_t), intent(in) :: tree
-      !> Place of the element
       integer, intent(in) :: at
-      !> Name of the attribute
       character(len=*), intent(in) :: name
       !> Smallest value
       real(wp), intent(in) :: low
@@ -87,9 +83,7 @@ contains
    !> Read an attribute that is a whole number
    pure subroutine whole_attribute(tree, at, name, low, value, error)
       type(xml_tree_t), intent(in) :: tree
-      !> Place of the element
       integer, intent(in) :: at
-      !> Name of the attribute
       character(len=*), intent(in) :: name
       !> Smallest value
       integer, intent(in) :: low

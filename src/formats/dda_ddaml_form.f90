@@ -119,8 +119,7 @@ contains
       !> Entry of each element in the form: 0 for the root and the part, below 0 if it is not read
       integer, allocatable :: entry(:)
       !> Where each entry of the form was met last: (size of form)
-      integer :: met_in(size(form))
-      integer :: i, outer
+      integer :: met_in(size(form)), i, outer
 
       allocate (entry(tree%n))
       entry(1) = 0
@@ -155,9 +154,7 @@ contains
       type(xml_tree_t), intent(in) :: tree
       !> Place of the element
       integer, intent(in) :: at
-      !> Place of the part that is read
       integer, intent(in) :: part
-      !> What may be in it
       type(form_t), intent(in) :: form(:)
       integer :: i
 
@@ -179,7 +176,6 @@ contains
    !> Refuse an element among numbers, warn of one elsewhere
    pure subroutine refuse_element(tree, at, outer, form, warnings, error)
       type(xml_tree_t), intent(in) :: tree
-      !> Place of the element
       integer, intent(in) :: at
       !> Entry of the outer element in the form
       integer, intent(in) :: outer
@@ -206,7 +202,6 @@ contains
    !> Refuse the second of what may be there once
    pure subroutine refuse_second(tree, at, error)
       type(xml_tree_t), intent(in) :: tree
-      !> Place of the element
       integer, intent(in) :: at
       type(error_t), allocatable, intent(inout) :: error
 
@@ -220,9 +215,7 @@ contains
    !> Warn of attributes without a meaning, refuse one that is given twice
    pure subroutine check_attributes(tree, at, form, warnings, error)
       type(xml_tree_t), intent(in) :: tree
-      !> Place of the element
       integer, intent(in) :: at
-      !> Its entry in the form
       type(form_t), intent(in) :: form
       type(warnings_t), intent(inout) :: warnings
       type(error_t), allocatable, intent(inout) :: error
@@ -249,7 +242,6 @@ contains
    !> Warn of text in an element that holds none
    pure subroutine check_text(tree, at, warnings)
       type(xml_tree_t), intent(in) :: tree
-      !> Place of the element
       integer, intent(in) :: at
       type(warnings_t), intent(inout) :: warnings
       type(word_list_t) :: words

@@ -80,11 +80,9 @@ contains
          case ("Jointlist")
             call read_entities(tree, at, type_is%material, model%line, warnings, error)
          case ("Boundlist")
-            call read_entities(tree, at, type_is%material_or_first, boundary, &
-               & warnings, error)
+            call read_entities(tree, at, type_is%material_or_first, boundary, warnings, error)
          case ("Matlinelist")
-            call read_entities(tree, at, type_is%material, model%material_line, &
-               & warnings, error)
+            call read_entities(tree, at, type_is%material, model%material_line, warnings, error)
          case ("Fixedpointlist")
             call read_entities(tree, at, type_is%none, model%fixed, warnings, error)
          case ("Loadpointlist")
@@ -143,7 +141,6 @@ contains
    !> Read bolts; what they are like may stand in attributes of ours, else the analysis file says it
    pure subroutine read_bolts(tree, list, model, warnings, error)
       type(xml_tree_t), intent(in) :: tree
-      !> Place of the list
       integer, intent(in) :: list
       type(line_model_t), intent(inout) :: model
       type(warnings_t), intent(inout) :: warnings
@@ -161,8 +158,7 @@ contains
          call read_entity(tree, at, type_is%none, bolt, warnings, error)
          property = -1.0_wp
          do k = 1, merge(3, 0, attribute_place(tree, at, trim(name(1))) > 0)
-            if (.not. allocated(error)) &
-               & call attribute_words(tree, at, trim(name(k)), words, error)
+            if (.not. allocated(error)) call attribute_words(tree, at, trim(name(k)), words, error)
             if (.not. allocated(error)) call take_property(words, "the "//trim(name(k)) &
                & //" of a bolt", property(k), error)
          end do
@@ -175,10 +171,7 @@ contains
    !> Read one element of a list
    pure subroutine read_entity(tree, at, type, entities, warnings, error)
       type(xml_tree_t), intent(in) :: tree
-      !> Place of the element
-      integer, intent(in) :: at
-      !> What its type says
-      integer, intent(in) :: type
+      integer, intent(in) :: at, type
       type(entities_t), intent(inout) :: entities
       type(warnings_t), intent(inout) :: warnings
       type(error_t), allocatable, intent(out) :: error

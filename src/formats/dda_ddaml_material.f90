@@ -61,9 +61,7 @@ contains
    !> The original weighs a block by unit mass times gravity, whatever the unit weight says
    pure subroutine check_weight(tree, at, gravity, material, warnings)
       type(xml_tree_t), intent(in) :: tree
-      !> Place of the element
       integer, intent(in) :: at
-      !> Acceleration of gravity
       real(wp), intent(in) :: gravity
       type(analysis_material_t), intent(inout) :: material
       !> Receives a unit weight that is not taken
@@ -81,7 +79,6 @@ contains
    !> Read a Jointproperties
    pure subroutine read_joint(tree, at, joint, warnings, error)
       type(xml_tree_t), intent(in) :: tree
-      !> Place of the element
       integer, intent(in) :: at
       type(limerick_joint_t), intent(out) :: joint
       type(warnings_t), intent(inout) :: warnings
@@ -136,7 +133,6 @@ contains
    !> Read a Loadpoint: records of time and force, parted by semicolons
    pure subroutine read_history(tree, at, history, error)
       type(xml_tree_t), intent(in) :: tree
-      !> Place of the element
       integer, intent(in) :: at
       type(load_history_t), intent(out) :: history
       type(error_t), allocatable, intent(out) :: error

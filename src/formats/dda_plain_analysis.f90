@@ -107,7 +107,6 @@ contains
    !> Read the materials of the joints
    pure subroutine read_joints(words, n, analysis, error)
       type(word_list_t), intent(inout) :: words
-      !> How many there are
       integer, intent(in) :: n
       type(limerick_analysis_t), intent(inout) :: analysis
       type(error_t), allocatable, intent(out) :: error
@@ -137,7 +136,6 @@ contains
    !> Whether a block material can exist
    pure subroutine check_material(material, file, row, error)
       type(analysis_material_t), intent(in) :: material
-      !> Name of the file
       character(len=*), intent(in) :: file
       !> Line of the file
       integer, intent(in) :: row
@@ -161,9 +159,7 @@ contains
    !> Whether a joint material can exist
    pure subroutine check_joint(joint, file, row, error)
       type(limerick_joint_t), intent(in) :: joint
-      !> Name of the file
       character(len=*), intent(in) :: file
-      !> Line of the file
       integer, intent(in) :: row
       type(error_t), allocatable, intent(out) :: error
 
@@ -179,9 +175,7 @@ contains
    !> Whether the bounds of a step make sense
    pure subroutine check_steps(analysis, file, row, error)
       type(limerick_analysis_t), intent(in) :: analysis
-      !> Name of the file
       character(len=*), intent(in) :: file
-      !> Line of the file
       integer, intent(in) :: row
       type(error_t), allocatable, intent(out) :: error
 

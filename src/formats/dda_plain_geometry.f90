@@ -132,7 +132,6 @@ contains
       type(word_list_t), intent(inout) :: words
       !> What a record is called
       character(len=*), intent(in) :: what
-      !> How many there are
       integer, intent(in) :: n
       !> Coordinates of each, 2 or 4
       integer, intent(in) :: n_number

@@ -60,11 +60,9 @@ contains
 
    !> Read an analysis file
    subroutine read_analysis(file, analysis, warnings, error)
-      !> Name of the file
       character(len=*), intent(in) :: file
       type(limerick_analysis_t), intent(out) :: analysis
       type(warnings_t), intent(inout) :: warnings
-      !> What is wrong, with file and line
       type(error_t), allocatable, intent(out) :: error
       character(len=:), allocatable :: text
       type(xml_tree_t) :: tree
@@ -139,7 +137,6 @@ contains
 
    !> Form of a file
    pure integer function form_of(text)
-      !> Its text
       character(len=*), intent(in) :: text
       integer :: first
 
@@ -155,7 +152,6 @@ contains
    pure subroutine refuse_form(text, file, error)
       !> The file's text
       character(len=*), intent(in) :: text
-      !> Name of the file
       character(len=*), intent(in) :: file
       type(error_t), allocatable, intent(out) :: error
 

@@ -61,7 +61,6 @@ contains
 
    !> A field of plane vectors
    pure type(field_t) function vector_field(name, values)
-      !> Its name
       character(len=*), intent(in) :: name
       !> Components x and y: (2, n)
       real(wp), intent(in) :: values(:, :)
@@ -73,7 +72,6 @@ contains
 
    !> A field of symmetric plane tensors
    pure type(field_t) function tensor_field(name, values)
-      !> Its name
       character(len=*), intent(in) :: name
       !> Components xx, yy and xy: (3, n)
       real(wp), intent(in) :: values(:, :)
@@ -85,7 +83,6 @@ contains
 
    !> A field of whole numbers
    pure type(field_t) function state_field(name, states) result(field)
-      !> Its name
       character(len=*), intent(in) :: name
       !> The numbers: (n)
       integer, intent(in) :: states(:)
@@ -165,7 +162,6 @@ contains
    !> Write plane vectors with z = 0
    subroutine append_vectors(file, values)
       type(binary_file_t), intent(in) :: file
-      !> Components x and y: (2, n)
       real(wp), intent(in) :: values(:, :)
       real(wp) :: spatial(3, chunk)
       integer :: first, n

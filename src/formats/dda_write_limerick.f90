@@ -137,8 +137,7 @@ contains
       !> Last of them
       integer, intent(in) :: last
       !> Lines, each with its line end; empty for an empty list
-      character(len=:), allocatable :: text
-      character(len=:), allocatable :: kind
+      character(len=:), allocatable :: text, kind
       integer :: i
 
       text = ""
@@ -158,7 +157,6 @@ contains
 
    !> An element without text
    pure function empty(name, attribute, value, more) result(text)
-      !> Its name
       character(len=*), intent(in) :: name
       !> Name of its attribute
       character(len=*), intent(in) :: attribute
@@ -176,7 +174,6 @@ contains
 
    !> An element with text
    pure function filled(name, inside) result(text)
-      !> Its name
       character(len=*), intent(in) :: name
       !> What stands inside
       character(len=*), intent(in) :: inside

@@ -92,7 +92,6 @@ contains
    !> Add text behind the last tag
    pure subroutine add_text(builder, text)
       type(xml_builder_t), intent(inout) :: builder
-      !> The text
       character(len=*), intent(in) :: text
       character(len=:), allocatable :: longer
       integer :: length

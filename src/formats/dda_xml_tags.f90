@@ -96,7 +96,6 @@ contains
 
    !> Go past the declaration of a document's type
    pure subroutine skip_doctype(text, scan, error)
-      !> The text
       character(len=*), intent(in) :: text
       type(scan_t), intent(inout) :: scan
       type(error_t), allocatable, intent(out) :: error
@@ -113,7 +112,6 @@ contains
 
    !> Go past a tag
    pure subroutine skip_tag(text, scan, error)
-      !> The text
       character(len=*), intent(in) :: text
       type(scan_t), intent(inout) :: scan
       type(error_t), allocatable, intent(out) :: error
@@ -138,7 +136,6 @@ contains
 
    !> Go past text whose references must be of single characters
    pure subroutine skip_text(text, last, scan, error)
-      !> The text
       character(len=*), intent(in) :: text
       !> Place of its last character
       integer, intent(in) :: last
@@ -164,7 +161,6 @@ contains
 
    !> Length of the name that begins a text
    pure integer function name_length(text)
-      !> The text
       character(len=*), intent(in) :: text
 
       name_length = scan(text, " ;<>""'&="//achar(9)//lf) - 1
@@ -173,9 +169,7 @@ contains
 
    !> Go past a character, or to the end of the text, and count lines
    pure subroutine skip(text, last, scan)
-      !> The text
       character(len=*), intent(in) :: text
-      !> Place of the character
       integer, intent(in) :: last
       type(scan_t), intent(inout) :: scan
 
@@ -185,7 +179,6 @@ contains
 
    !> Whether a piece stands at a place of a text
    pure logical function stands(text, first, piece)
-      !> The text
       character(len=*), intent(in) :: text
       !> The place
       integer, intent(in) :: first
@@ -199,7 +192,6 @@ contains
 
    !> Where the next mark ends; behind the text by one if there is none
    pure integer function mark_end(text, first, mark)
-      !> The text
       character(len=*), intent(in) :: text
       !> Where to begin
       integer, intent(in) :: first
@@ -216,9 +208,7 @@ contains
 
    !> Find one of some characters outside quotes
    pure subroutine find_outside_quotes(text, first, wanted, tag)
-      !> The text
       character(len=*), intent(in) :: text
-      !> Where to begin
       integer, intent(in) :: first
       !> The characters
       character(len=*), intent(in) :: wanted
@@ -249,7 +239,6 @@ contains
    pure integer function count_of(letter, text)
       !> The character
       character(len=1), intent(in) :: letter
-      !> The text
       character(len=*), intent(in) :: text
       integer :: i
 

@@ -59,7 +59,6 @@ contains
    !> The element that follows another inside the same one and is read; 0 if there is none
    pure integer function next_sibling(tree, at)
       type(xml_tree_t), intent(in) :: tree
-      !> Place of the element
       integer, intent(in) :: at
 
       next_sibling = 0
@@ -88,7 +87,6 @@ contains
    !> The first element of a name inside another
    pure integer function find_child(tree, at, name)
       type(xml_tree_t), intent(in) :: tree
-      !> Place of the outer element
       integer, intent(in) :: at
       !> The name
       character(len=*), intent(in) :: name
@@ -103,9 +101,7 @@ contains
    !> How many elements of a name are inside another
    pure integer function count_children(tree, at, name)
       type(xml_tree_t), intent(in) :: tree
-      !> Place of the outer element
       integer, intent(in) :: at
-      !> The name
       character(len=*), intent(in) :: name
       integer :: child
 
@@ -120,7 +116,6 @@ contains
    !> Where an element has an attribute: the first of this name; 0 if there is none
    pure integer function attribute_place(tree, at, name)
       type(xml_tree_t), intent(in) :: tree
-      !> Place of the element
       integer, intent(in) :: at
       !> Name of the attribute
       character(len=*), intent(in) :: name
@@ -137,9 +132,7 @@ contains
    !> Value of an attribute
    pure function attribute_of(tree, at, name) result(value)
       type(xml_tree_t), intent(in) :: tree
-      !> Place of the element
       integer, intent(in) :: at
-      !> Name of the attribute
       character(len=*), intent(in) :: name
       !> Its value without blanks around it; empty if there is none
       character(len=:), allocatable :: value

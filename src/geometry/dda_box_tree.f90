@@ -133,10 +133,7 @@ contains
       type(box_tree_t), intent(in) :: tree
       !> Least value below each node: (2*n_leaf - 1)
       real(wp), intent(in) :: least(:)
-      !> Lower left corner of the other box: (2) [m]
-      real(wp), intent(in) :: low(2)
-      !> Upper right corner: (2) [m]
-      real(wp), intent(in) :: high(2)
+      real(wp), intent(in) :: low(2), high(2)
       !> The guess in, the least of all out
       real(wp), intent(inout) :: value
       integer :: stack(max_levels), top, node
@@ -181,8 +178,7 @@ contains
       !> Ends of the segment: (4) [m]
       real(wp), intent(in) :: segment(4)
       !> Numbers of the boxes: (n)
-      integer, allocatable :: box(:)
-      integer, allocatable :: found(:)
+      integer, allocatable :: box(:), found(:)
       integer :: n
 
       call find_boxes(tree, min(segment(1:2), segment(3:4)), max(segment(1:2), segment(3:4)), &
@@ -207,12 +203,7 @@ contains
 
    !> Whether the line of a segment meets a box, or passes it by no more than rounding
    pure logical function meets_line(low, high, segment)
-      !> Lower left corner: (2) [m]
-      real(wp), intent(in) :: low(2)
-      !> Upper right corner: (2) [m]
-      real(wp), intent(in) :: high(2)
-      !> Ends of the segment: (4) [m]
-      real(wp), intent(in) :: segment(4)
+      real(wp), intent(in) :: low(2), high(2), segment(4)
       real(wp) :: along(2), arm(2), half(2), room
 
       along = segment(3:4) - segment(1:2)
@@ -227,7 +218,6 @@ contains
    pure subroutine new_box_tree(low, high, tree)
       !> Lower left corners: (2, n), n >= 1 [m]
       real(wp), intent(in) :: low(:, :)
-      !> Upper right corners: (2, n) [m]
       real(wp), intent(in) :: high(:, :)
       type(box_tree_t), intent(out) :: tree
       real(wp), allocatable :: centre(:, :)
@@ -305,7 +295,6 @@ contains
    pure subroutine part_at(centre, item, axis, n)
       !> Centres of the boxes: (2, :) [m]
       real(wp), intent(inout) :: centre(:, :)
-      !> Their numbers
       integer, intent(inout) :: item(:)
       !> Which coordinate counts
       integer, intent(in) :: axis

@@ -47,8 +47,7 @@ contains
       span = sqrt(max(side(1), 1.0e-6_wp*side(2))*max(side(2), 1.0e-6_wp*side(1)) &
          & /real(max(n, 1_int64), wp))
       grid%n = 1
-      if (span > 0.0_wp) &
-         & grid%n = min(max_side, max(1, int(min(side/span, real(max_side, wp)))))
+      if (span > 0.0_wp) grid%n = min(max_side, max(1, int(min(side/span, real(max_side, wp)))))
       do
          grid%width = max(side/grid%n, tiny(1.0_wp))
          call count_cells(segment, margin, grid, entries)
@@ -78,7 +77,6 @@ contains
    !> Column and row of a point
    pure function place_of(grid, point) result(at)
       type(cell_grid_t), intent(in) :: grid
-      !> The point: (2) [m]
       real(wp), intent(in) :: point(2)
       !> Column and row: (2)
       integer :: at(2)
@@ -88,7 +86,6 @@ contains
 
    !> The box around all segments
    pure subroutine bounding_box(segment, margin, box)
-      !> Ends: (4, n) [m]
       real(wp), intent(in) :: segment(:, :)
       !> Room around them [m]
       real(wp), intent(in) :: margin
@@ -108,7 +105,6 @@ contains
    pure subroutine column_range(segment, margin, grid, from, to)
       !> Ends: (4) [m]
       real(wp), intent(in) :: segment(4)
-      !> Room around it [m]
       real(wp), intent(in) :: margin
       type(cell_grid_t), intent(in) :: grid
       !> First column
@@ -125,10 +121,7 @@ contains
 
    !> Rows that a segment passes within one column
    pure subroutine row_range(segment, margin, grid, column, from, to)
-      !> Ends: (4) [m]
-      real(wp), intent(in) :: segment(4)
-      !> Room around it [m]
-      real(wp), intent(in) :: margin
+      real(wp), intent(in) :: segment(4), margin
       type(cell_grid_t), intent(in) :: grid
       !> The column
       integer, intent(in) :: column
@@ -156,11 +149,7 @@ contains
 
    !> Count the segments of each cell; first(c + 1) receives the number of cell c
    pure subroutine count_cells(segment, margin, grid, entries)
-      !> Ends: (4, n) [m]
-      real(wp), intent(in) :: segment(:, :)
-      !> Room around them [m]
-      real(wp), intent(in) :: margin
-      !> The grid, its cells laid out
+      real(wp), intent(in) :: segment(:, :), margin
       type(cell_grid_t), intent(inout) :: grid
       !> Number of all entries
       integer(int64), intent(out) :: entries
@@ -185,11 +174,7 @@ contains
 
    !> Put the segments into their cells
    pure subroutine fill_cells(segment, margin, grid)
-      !> Ends: (4, n) [m]
-      real(wp), intent(in) :: segment(:, :)
-      !> Room around them [m]
-      real(wp), intent(in) :: margin
-      !> The grid, its cells counted
+      real(wp), intent(in) :: segment(:, :), margin
       type(cell_grid_t), intent(inout) :: grid
       integer, allocatable :: next(:)
       integer :: i, c, column, row, from, to, low, high

@@ -61,7 +61,6 @@ contains
    pure function box_of(vertex, tree) result(box)
       !> Its corners: (2, n) [m]
       real(wp), intent(in) :: vertex(:, :)
-      !> Its edges, where they are many
       type(box_tree_t), intent(in), optional :: tree
       !> Lower left and upper right corner: (2, 2) [m]
       real(wp) :: box(2, 2)
@@ -82,7 +81,6 @@ contains
       real(wp), intent(in) :: one(:, :)
       !> Corners of the other: (2, m) [m]
       real(wp), intent(in) :: other(:, :)
-      !> The tolerance [m]
       real(wp), intent(in) :: tolerance
       real(wp) :: ends(4), normal(2), top, bottom
       integer :: e, i
@@ -106,17 +104,13 @@ contains
 
    !> Whether a polygon holds all corners of another
    pure logical function holds_all(vertex, other, box, common, tolerance, tree)
-      !> Corners of the one: (2, n) [m]
-      real(wp), intent(in) :: vertex(:, :)
-      !> Corners of the other: (2, m) [m]
-      real(wp), intent(in) :: other(:, :)
+      real(wp), intent(in) :: vertex(:, :), other(:, :)
       !> Box around the other: (2, 2) [m]
       real(wp), intent(in) :: box(2, 2)
       !> What is common to both boxes, and the tolerance around it: (2, 2) [m]
       real(wp), intent(in) :: common(2, 2)
       !> How far corners may lie outside [m]
       real(wp), intent(in) :: tolerance
-      !> Edges of the one, where they are many
       type(box_tree_t), intent(in), optional :: tree
       integer :: i
 
@@ -132,15 +126,12 @@ contains
    pure subroutine deepest_on_outline(outline, other, common, deepest, point, tree, other_tree)
       !> Corners of the one: (2, n) [m]
       real(wp), intent(in) :: outline(:, :)
-      !> Corners of the other: (2, m) [m]
       real(wp), intent(in) :: other(:, :)
       !> Where both of them can be: lower left and upper right corner: (2, 2) [m]
       real(wp), intent(in) :: common(2, 2)
       !> How deep it lies, negative outside [m]
       real(wp), intent(out) :: deepest
-      !> The point: (2) [m]
       real(wp), intent(out) :: point(2)
-      !> Edges of the one, where they are many
       type(box_tree_t), intent(in), optional :: tree
       !> Edges of the other, where they are many
       type(box_tree_t), intent(in), optional :: other_tree

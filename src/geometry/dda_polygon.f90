@@ -42,10 +42,7 @@ contains
 
    !> Distance of a point from the boundary of a polygon
    pure real(wp) function polygon_distance(vertex, point)
-      !> Corners in order: (2, n) [m]
-      real(wp), intent(in) :: vertex(:, :)
-      !> The point: (2) [m]
-      real(wp), intent(in) :: point(2)
+      real(wp), intent(in) :: vertex(:, :), point(2)
       integer :: edge
 
       call nearest_edge(vertex, point, edge, polygon_distance)
@@ -55,9 +52,7 @@ contains
    pure real(wp) function depth_in(vertex, point, tree)
       !> Corners, counter-clockwise: (2, n) [m]
       real(wp), intent(in) :: vertex(:, :)
-      !> The point: (2) [m]
       real(wp), intent(in) :: point(2)
-      !> Its edges, where they are many
       type(box_tree_t), intent(in), optional :: tree
       real(wp) :: distance
       integer :: edge
@@ -81,7 +76,6 @@ contains
 
    !> A tree of the edges of a polygon
    pure subroutine edge_tree(vertex, tree)
-      !> Corners in order: (2, n) [m]
       real(wp), intent(in) :: vertex(:, :)
       type(box_tree_t), intent(out) :: tree
       real(wp) :: next(2, size(vertex, 2))
@@ -92,7 +86,6 @@ contains
 
    !> Ends of an edge
    pure function edge_ends(vertex, edge) result(ends)
-      !> Corners in order: (2, n) [m]
       real(wp), intent(in) :: vertex(:, :)
       !> Number of the edge, that of the corner where it starts
       integer, intent(in) :: edge
@@ -108,11 +101,7 @@ contains
 
    !> The edge of a polygon that is nearest to a point
    pure subroutine nearest_edge(vertex, point, edge, distance)
-      !> Corners in order: (2, n) [m]
-      real(wp), intent(in) :: vertex(:, :)
-      !> The point: (2) [m]
-      real(wp), intent(in) :: point(2)
-      !> Its number
+      real(wp), intent(in) :: vertex(:, :), point(2)
       integer, intent(out) :: edge
       !> Its distance [m]
       real(wp), intent(out) :: distance
@@ -131,14 +120,10 @@ contains
 
    !> The same by a tree of the edges
    pure subroutine search_nearest(vertex, point, tree, edge, distance)
-      !> Corners in order: (2, n) [m]
-      real(wp), intent(in) :: vertex(:, :)
-      !> The point: (2) [m]
-      real(wp), intent(in) :: point(2)
+      real(wp), intent(in) :: vertex(:, :), point(2)
       type(box_tree_t), intent(in) :: tree
       !> Number of the nearest
       integer, intent(out) :: edge
-      !> Its distance [m]
       real(wp), intent(out) :: distance
       integer :: stack(max_levels), top, node
       real(wp) :: here
@@ -170,11 +155,7 @@ contains
    !> Whether a point lies on the inner side of the edge that is nearest to it; at a corner, of both
    !> its edges: a notch is nearest to points inside, a corner that sticks out to points outside
    pure logical function is_left_of(vertex, point, edge)
-      !> Corners, counter-clockwise: (2, n) [m]
-      real(wp), intent(in) :: vertex(:, :)
-      !> The point: (2) [m]
-      real(wp), intent(in) :: point(2)
-      !> The edge
+      real(wp), intent(in) :: vertex(:, :), point(2)
       integer, intent(in) :: edge
       real(wp) :: ends(4), beside(4), before(2), after(2), arm(2), turn
       logical :: straight
@@ -201,17 +182,14 @@ contains
    !> Ends of the parts of a segment that lie in a polygon or on its outline, in order along it;
    !> parts that follow one another count as one
    pure function parts_inside(vertex, segment, reach, tree) result(part)
-      !> Corners, counter-clockwise: (2, n) [m]
       real(wp), intent(in) :: vertex(:, :)
       !> Ends of the segment: (4) [m]
       real(wp), intent(in) :: segment(4)
       !> Distance within which things touch [m]
       real(wp), intent(in) :: reach
-      !> Its edges, where they are many
       type(box_tree_t), intent(in), optional :: tree
       !> Ends of each part: (2, 2*n_part) [m]
-      real(wp), allocatable :: part(:, :)
-      real(wp), allocatable :: place(:)
+      real(wp), allocatable :: part(:, :), place(:)
       integer, allocatable :: near(:), order(:)
       real(wp) :: point(2, 2), along(2), from, length
       integer :: i, j, n, n_near, met
@@ -252,7 +230,6 @@ contains
 
    !> The first two edges of a polygon that cross, or touch where they do not follow one another
    pure subroutine find_crossing(vertex, edge, point)
-      !> Corners in order: (2, n) [m]
       real(wp), intent(in) :: vertex(:, :)
       !> The edges, 0 if none cross: (2)
       integer, intent(out) :: edge(2)
@@ -303,12 +280,7 @@ contains
 
    !> Edges of a polygon that may touch a segment; all of them where there is no tree
    pure subroutine edges_near(vertex, segment, reach, near, n, tree)
-      !> Corners in order: (2, n) [m]
-      real(wp), intent(in) :: vertex(:, :)
-      !> Ends of the segment: (4) [m]
-      real(wp), intent(in) :: segment(4)
-      !> Distance within which things touch [m]
-      real(wp), intent(in) :: reach
+      real(wp), intent(in) :: vertex(:, :), segment(4), reach
       !> Their numbers, the first n of them set; its room is used again
       integer, allocatable, intent(inout) :: near(:)
       !> How many there are

@@ -58,10 +58,7 @@ contains
    !> The points that two segments have in common: ends that touch the other segment, taken as they
    !> are; else the crossing. Two points where the segments lie together
    pure subroutine meeting_points(first, second, reach, n, point)
-      !> Ends of one segment: (4) [m]
-      real(wp), intent(in) :: first(4)
-      !> Ends of the other: (4) [m]
-      real(wp), intent(in) :: second(4)
+      real(wp), intent(in) :: first(4), second(4)
       !> Distance within which things touch [m]
       real(wp), intent(in) :: reach
       !> Number of points, 0 to 2
@@ -88,15 +85,9 @@ contains
    !> The point where two segments cross, each coordinate from the segment along which it changes
    !> less: upright and level lines keep their coordinates
    pure function crossing_point(first, second, share) result(point)
-      !> Ends of one segment: (4) [m]
-      real(wp), intent(in) :: first(4)
-      !> Ends of the other: (4) [m]
-      real(wp), intent(in) :: second(4)
-      !> Place of the crossing on each: (2)
-      real(wp), intent(in) :: share(2)
+      real(wp), intent(in) :: first(4), second(4), share(2)
       !> The point: (2) [m]
-      real(wp) :: point(2)
-      real(wp) :: a(2), b(2)
+      real(wp) :: point(2), a(2), b(2)
 
       a = first(3:4) - first(1:2)
       b = second(3:4) - second(1:2)
@@ -109,11 +100,8 @@ contains
       real(wp), intent(in) :: end_point(2)
       !> Ends of the other segment: (4) [m]
       real(wp), intent(in) :: segment(4)
-      !> Distance within which things touch [m]
       real(wp), intent(in) :: reach
-      !> Number of points
       integer, intent(inout) :: n
-      !> The points: (2, 2) [m]
       real(wp), intent(inout) :: point(2, 2)
 
       if (n == 2) return

@@ -30,7 +30,6 @@ contains
       type(site_t), intent(in) :: site
       !> Name of the file, for warnings
       character(len=*), intent(in) :: file
-      !> Receives ends that no block has
       type(warnings_t), intent(inout) :: warnings
       type(error_t), allocatable, intent(out) :: error
       type(bar_t) :: bar
@@ -179,8 +178,7 @@ contains
       given = .false.
       point%line = entry%head%number
       call take_numbers(entry%head, i, ends, error)
-      if (.not. allocated(error)) &
-         & call take_words(entry%head, i, key, point%speed, given, error)
+      if (.not. allocated(error)) call take_words(entry%head, i, key, point%speed, given, error)
       if (.not. allocated(error) .and. all(given(:2))) call fatal_error(error, &
          & "expected one direction, got both x and y", line=point%line)
       if (allocated(error)) return

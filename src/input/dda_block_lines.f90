@@ -151,7 +151,6 @@ contains
 
    !> Take the text between two quotes
    pure subroutine take_quoted(text, first, next, line, error)
-      !> The line
       character(len=*), intent(in) :: text
       !> Place of the first quote
       integer, intent(in) :: first

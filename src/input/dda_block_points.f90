@@ -36,7 +36,6 @@ contains
       type(site_t), intent(inout) :: site
       !> Name of the file, for warnings and records beside it
       character(len=*), intent(in) :: file
-      !> Receives points that several blocks have
       type(warnings_t), intent(inout) :: warnings
       type(error_t), allocatable, intent(out) :: error
       class(watch_t), intent(inout), optional :: watch
@@ -75,7 +74,6 @@ contains
 
    !> Lists as long as the file says; lines may hold more points than these
    pure subroutine make_lists(later, boundary)
-      !> Entries of the file
       type(waiting_entry_t), intent(in) :: later(:)
       type(boundary_t), intent(inout) :: boundary
       integer :: i, n_held, n_loaded, n_measured
@@ -181,11 +179,8 @@ contains
    pure subroutine take_point(entry, plan, site, file, warnings, error)
       type(entry_t), intent(in) :: entry
       type(block_plan_t), intent(inout) :: plan
-      !> Where the blocks are, and which points hold them
       type(site_t), intent(inout) :: site
-      !> Name of the file, for warnings
       character(len=*), intent(in) :: file
-      !> Receives points that several blocks have
       type(warnings_t), intent(inout) :: warnings
       type(error_t), allocatable, intent(out) :: error
       type(history_t) :: history
@@ -286,7 +281,6 @@ contains
       integer, intent(in) :: block
       !> The others: (n)
       integer, intent(in) :: rival(:)
-      !> Name of the file
       character(len=*), intent(in) :: file
       type(warnings_t), intent(inout) :: warnings
       character(len=:), allocatable :: others

@@ -94,13 +94,11 @@ contains
    pure function rivals_at(plan, site, point, block) result(rival)
       type(block_plan_t), intent(in) :: plan
       type(site_t), intent(in) :: site
-      !> The point, seen from the origin of the plan: (2) [m]
       real(wp), intent(in) :: point(2)
       !> The block, which holds it
       integer, intent(in) :: block
       !> The others: (n)
-      integer, allocatable :: rival(:)
-      integer, allocatable :: near(:)
+      integer, allocatable :: rival(:), near(:)
       real(wp) :: depth, margin
       integer :: i, n
 
@@ -124,7 +122,6 @@ contains
       type(site_t), intent(in) :: site
       !> Number of the block
       integer, intent(in) :: block
-      !> The point, seen from the origin of the plan: (2) [m]
       real(wp), intent(in) :: point(2)
 
       holds_point = depth_of(plan, site, block, point) >= -rounded*site%size_of(block)
@@ -134,9 +131,7 @@ contains
    pure real(wp) function depth_of(plan, site, block, point)
       type(block_plan_t), intent(in) :: plan
       type(site_t), intent(in) :: site
-      !> Number of the block
       integer, intent(in) :: block
-      !> The point, seen from the origin of the plan: (2) [m]
       real(wp), intent(in) :: point(2)
 
       depth_of = depth_in(plan%vertex(:, plan%first_vertex(block): &
@@ -189,9 +184,7 @@ contains
 
    !> Points that tell all that is known of how a block is held
    pure function held_before(site, block) result(list)
-      !> Where the points are
       type(site_t), intent(in) :: site
-      !> Number of the block
       integer, intent(in) :: block
       !> Their numbers: (n)
       integer, allocatable :: list(:)

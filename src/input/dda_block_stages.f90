@@ -90,7 +90,6 @@ contains
    pure subroutine blocks_inside(entry, plan, block, error)
       type(entry_t), intent(in) :: entry
       type(block_plan_t), intent(in) :: plan
-      !> Their numbers: (n)
       integer, allocatable, intent(out) :: block(:)
       type(error_t), allocatable, intent(out) :: error
       type(area_moments_t) :: moments

@@ -43,7 +43,6 @@ contains
 
    !> Read a number, or two with a dash between
    pure subroutine read_range(text, low, high, ok)
-      !> Such as 7 or 1-4
       character(len=*), intent(in) :: text
       !> First number
       integer, intent(out) :: low

@@ -57,9 +57,7 @@ contains
    !> Whether all materials of blocks are given; a law of others is of no use
    pure subroutine check_materials(plan, file, warnings, error)
       type(block_plan_t), intent(in) :: plan
-      !> Name of the file, for warnings
       character(len=*), intent(in) :: file
-      !> Receives laws that no joint has
       type(warnings_t), intent(inout) :: warnings
       type(error_t), allocatable, intent(out) :: error
       logical :: known(most_materials)
@@ -144,7 +142,6 @@ contains
    !> Warn of coordinates so large that their spacing shows in a block
    pure subroutine check_digits(plan, file, warnings)
       type(block_plan_t), intent(in) :: plan
-      !> Name of the file
       character(len=*), intent(in) :: file
       type(warnings_t), intent(inout) :: warnings
       real(wp) :: extent, farthest

@@ -126,8 +126,7 @@ contains
    pure function scene_kind(deck) result(kind)
       type(deck_t), intent(in) :: deck
       !> arch, shape, lines or blocks
-      character(len=word_length) :: kind
-      character(len=word_length) :: name
+      character(len=word_length) :: kind, name
       integer :: first, last
       logical :: shaped
 

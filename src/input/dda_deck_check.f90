@@ -130,7 +130,6 @@ contains
    !> Check that a linked sweep is as long as the one before it
    pure subroutine check_link(deck, s, problem)
       type(deck_t), intent(in) :: deck
-      !> Number of the sweep
       integer, intent(in) :: s
       !> What is wrong; left as it was if nothing is
       character(len=:), allocatable, intent(inout) :: problem
@@ -184,7 +183,6 @@ contains
    !> Check every case of the sweeps
    pure subroutine check_cases(deck, cases, error)
       type(deck_t), intent(in) :: deck
-      !> Cases that will be computed, as choose_cases reads them; empty for all
       character(len=*), intent(in) :: cases
       type(error_t), allocatable, intent(out) :: error
       type(deck_t) :: work

@@ -53,8 +53,7 @@ contains
       if (ground_key > 0) then
          if (deck_key(ground_key)%group == "ground") return
       end if
-      ground_key = findloc(deck_key%group == "ground" .and. deck%value(1:)%given, .true., &
-         & dim=1)
+      ground_key = findloc(deck_key%group == "ground" .and. deck%value(1:)%given, .true., dim=1)
    end function ground_key
 
    !> Whether a key of &ground is given, or searched

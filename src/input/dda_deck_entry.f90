@@ -56,13 +56,8 @@ contains
    !> Whether the values of a key are of its kind and not too many
    pure subroutine check_values(scan, first, last, parameter, place, deck, error)
       type(deck_scan_t), intent(in) :: scan
-      !> First token of the values
-      integer, intent(in) :: first
-      !> Last token
-      integer, intent(in) :: last
-      !> The key, with the item if only that one is set
+      integer, intent(in) :: first, last
       type(parameter_t), intent(in) :: parameter
-      !> Where the key stands
       type(deck_place_t), intent(in) :: place
       type(deck_t), intent(in) :: deck
       type(error_t), allocatable, intent(out) :: error
@@ -71,8 +66,7 @@ contains
       integer :: kind, n, i
 
       kind = deck_key(parameter%key)%kind
-      takes_list = parameter%item == 0 .and. &
-         (kind == key_kind%numbers .or. kind == key_kind%texts)
+      takes_list = parameter%item == 0 .and. (kind == key_kind%numbers .or. kind == key_kind%texts)
       n = nint(min(sum(real(scan%token(first:last)%count, wp)), 1.0e9_wp))
       i = first
       found = ""
@@ -139,8 +133,7 @@ contains
       !> Name of the group
       character(len=*), intent(in) :: group
       !> A guess in parentheses; empty if there is none
-      character(len=:), allocatable :: text
-      character(len=:), allocatable :: name
+      character(len=:), allocatable :: text, name
 
       text = ""
       if (scan%token(i)%kind /= token_kind%word) return
@@ -157,7 +150,6 @@ contains
       type(deck_scan_t), intent(in) :: scan
       !> Place of the token; past the end if there is none
       integer, intent(in) :: i
-      !> Where its key stands
       type(deck_place_t), intent(in) :: place
 
       place_at = place
@@ -179,10 +171,7 @@ contains
    !> Numbers that tokens stand for, repeat counts written out
    pure function all_numbers(scan, first, last) result(numbers)
       type(deck_scan_t), intent(in) :: scan
-      !> First token
-      integer, intent(in) :: first
-      !> Last token
-      integer, intent(in) :: last
+      integer, intent(in) :: first, last
       !> The numbers: (n)
       real(wp), allocatable :: numbers(:)
       integer :: i, n
@@ -198,10 +187,7 @@ contains
    !> Words that tokens stand for, repeat counts written out
    pure function all_texts(scan, first, last) result(texts)
       type(deck_scan_t), intent(in) :: scan
-      !> First token
-      integer, intent(in) :: first
-      !> Last token
-      integer, intent(in) :: last
+      integer, intent(in) :: first, last
       !> The words: (n)
       character(len=word_length), allocatable :: texts(:)
       integer :: i, n

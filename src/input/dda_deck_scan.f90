@@ -48,9 +48,7 @@ contains
    pure subroutine scan_values(text, scan, error)
       !> Text after the equals sign
       character(len=*), intent(in) :: text
-      !> The tokens, values all of them
       type(deck_scan_t), intent(out) :: scan
-      !> What the grammar does not allow
       type(error_t), allocatable, intent(out) :: error
       integer :: i
 
@@ -72,7 +70,6 @@ contains
 
    !> Scan the head of a group: & and a name
    pure subroutine scan_group(scan, error)
-      !> Scanner between two groups
       type(deck_scan_t), intent(inout) :: scan
       type(error_t), allocatable, intent(out) :: error
       integer :: first, last
@@ -133,7 +130,6 @@ contains
 
    !> Scan an ampersand inside a group: &end, or a group that lacks its slash
    pure subroutine scan_ampersand(scan, error)
-      !> Scanner at the ampersand
       type(deck_scan_t), intent(inout) :: scan
       type(error_t), allocatable, intent(out) :: error
       integer :: last
@@ -149,7 +145,6 @@ contains
 
    !> Scan a comma: the second one in a row leaves an empty value
    pure subroutine scan_comma(scan, error)
-      !> Scanner at the comma
       type(deck_scan_t), intent(inout) :: scan
       type(error_t), allocatable, intent(out) :: error
       logical :: has_value
@@ -166,7 +161,6 @@ contains
 
    !> Scan a text in quotes
    pure subroutine scan_quoted(scan, count, error)
-      !> Scanner at the opening quote
       type(deck_scan_t), intent(inout) :: scan
       !> Repeat count
       integer, intent(in) :: count
@@ -199,7 +193,6 @@ contains
 
    !> Scan a word without quotes: a key if an equals sign follows, else a value
    pure subroutine scan_word(scan, error)
-      !> Scanner at the first letter
       type(deck_scan_t), intent(inout) :: scan
       type(error_t), allocatable, intent(out) :: error
       integer :: first, last, star, count, line
@@ -232,13 +225,11 @@ contains
 
    !> Read the repeat count r of r*c
    pure subroutine repeat_count(scan, first, star, count, error)
-      !> Scanner at the word
       type(deck_scan_t), intent(in) :: scan
       !> First character of the word
       integer, intent(in) :: first
       !> Place of the star in the word
       integer, intent(in) :: star
-      !> The repeat count
       integer, intent(out) :: count
       type(error_t), allocatable, intent(out) :: error
       logical :: ok

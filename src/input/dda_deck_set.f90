@@ -64,7 +64,6 @@ contains
       !> The numbers in the unit of the registry: (n)
       real(wp), intent(in) :: values(:)
       type(deck_place_t), intent(in) :: place
-      !> One of them is out of range
       type(error_t), allocatable, intent(out) :: error
       character(len=:), allocatable :: problem
       integer :: i
@@ -116,9 +115,7 @@ contains
 
    !> Why a number cannot be the value of a key
    pure function number_problem(key, value) result(problem)
-      !> Place of the key in the registry
       integer, intent(in) :: key
-      !> The number
       real(wp), intent(in) :: value
       !> What was wanted and what was found; empty if the number will do
       character(len=:), allocatable :: problem
@@ -131,9 +128,7 @@ contains
 
    !> Whether a number can be the value of a key
    pure logical function number_fits(key, value)
-      !> Place of the key in the registry
       integer, intent(in) :: key
-      !> The number in the unit of the registry
       real(wp), intent(in) :: value
 
       number_fits = is_numeric(key)
@@ -142,9 +137,7 @@ contains
 
    !> Why a text cannot be the value of a key
    pure function text_problem(key, text) result(problem)
-      !> Place of the key in the registry
       integer, intent(in) :: key
-      !> The text
       character(len=*), intent(in) :: text
       !> What was wanted and what was found; empty if the text will do
       character(len=:), allocatable :: problem
@@ -181,7 +174,6 @@ contains
 
    !> Read .true., .false., T, F and what is like them
    pure subroutine read_flag(text, flag, ok)
-      !> The text
       character(len=*), intent(in) :: text
       !> The flag; left as it was if the text is none
       logical, intent(inout) :: flag
@@ -201,7 +193,6 @@ contains
 
    !> Whether a key takes numbers
    pure logical function is_numeric(key)
-      !> Place of the key in the registry
       integer, intent(in) :: key
 
       is_numeric = any(deck_key(key)%kind == [key_kind%number, key_kind%whole, key_kind%numbers])

@@ -89,7 +89,6 @@ contains
 
    !> Take the values of a sweep from exactly one of: values, texts, (first, last, count)
    pure subroutine take_values(deck, sweep, error)
-      !> The deck, the keys of &sweep filled
       type(deck_t), intent(in) :: deck
       type(deck_sweep_t), intent(inout) :: sweep
       type(error_t), allocatable, intent(out) :: error
@@ -129,7 +128,6 @@ contains
 
    !> Values from first to last in equal steps
    pure subroutine space_evenly(deck, sweep, error)
-      !> The deck, the keys of &sweep filled
       type(deck_t), intent(in) :: deck
       type(deck_sweep_t), intent(inout) :: sweep
       type(error_t), allocatable, intent(out) :: error
@@ -144,8 +142,7 @@ contains
             to_text(first)//" and "//to_text(last)//"; make them equal, or count larger", deck, &
             place_of(deck, key_index("sweep", "count")))
       else
-         sweep%numbers = [(first + (last - first)*real(i - 1, wp)/real(max(n - 1, 1), wp), &
-            i=1, n)]
+         sweep%numbers = [(first + (last - first)*real(i - 1, wp)/real(max(n - 1, 1), wp), i=1, n)]
          sweep%numbers(n) = last
       end if
    end subroutine space_evenly
@@ -196,8 +193,7 @@ contains
    pure function n_cases(deck) result(n)
       type(deck_t), intent(in) :: deck
       !> Product over the sweeps that are not linked; 1 without a sweep; at most huge(1)
-      integer :: n
-      integer :: s
+      integer :: n, s
 
       n = 1
       do s = 1, size(deck%sweeps)
@@ -216,8 +212,7 @@ contains
       !> Number of the case, from 1 to n_cases
       integer, intent(in) :: number
       !> Place of the value in each sweep: (n)
-      integer :: position(size(deck%sweeps))
-      integer :: s, rest
+      integer :: position(size(deck%sweeps)), s, rest
 
       rest = number - 1
       do s = size(deck%sweeps), 1, -1
@@ -234,9 +229,7 @@ contains
    pure subroutine put_case(swept, number, deck, error)
       !> A deck with the sweeps
       type(deck_t), intent(in) :: swept
-      !> Number of the case, from 1 to n_cases
       integer, intent(in) :: number
-      !> The deck that receives them
       type(deck_t), intent(inout) :: deck
       type(error_t), allocatable, intent(out) :: error
       integer :: position(size(swept%sweeps)), s
@@ -258,7 +251,6 @@ contains
    !> The deck of one case
    pure subroutine case_deck(deck, number, result, error)
       type(deck_t), intent(in) :: deck
-      !> Number of the case, from 1 to n_cases
       integer, intent(in) :: number
       !> The same deck with the swept values of the case
       type(deck_t), intent(out) :: result
@@ -273,11 +265,9 @@ contains
    !> the deck is copied, and later the swept values alone
    pure subroutine turn_to_case(deck, number, result, error)
       type(deck_t), intent(in) :: deck
-      !> Number of the case, from 1 to n_cases
       integer, intent(in) :: number
       !> The deck of a case, without sweeps; new, or as this routine left it
       type(deck_t), intent(inout) :: result
-      !> As in put_case
       type(error_t), allocatable, intent(out) :: error
 
       if (.not. allocated(result%value)) then
@@ -303,7 +293,6 @@ contains
    !> Values of the swept parameters in a case, as text
    pure function swept_texts(deck, number) result(texts)
       type(deck_t), intent(in) :: deck
-      !> Number of the case, from 1 to n_cases
       integer, intent(in) :: number
       !> One text a sweep; numbers read back as the same doubles: (n)
       character(len=word_length) :: texts(size(deck%sweeps))

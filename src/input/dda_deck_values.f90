@@ -165,9 +165,7 @@ contains
 
    !> Take the next texts
    pure recursive subroutine take_texts(value, k, a, b)
-      !> All values: (0:n)
       type(deck_value_t), intent(in) :: value(0:)
-      !> Place of the last key that was taken
       integer, intent(inout) :: k
       type(input_text_t), intent(inout) :: a
       type(input_text_t), intent(inout), optional :: b
@@ -180,9 +178,7 @@ contains
 
    !> Take the next lists; of words only whether they are given
    pure recursive subroutine take_lists(value, k, a, b, c, d, e, f, g)
-      !> All values: (0:n)
       type(deck_value_t), intent(in) :: value(0:)
-      !> Place of the last key that was taken
       integer, intent(inout) :: k
       type(input_list_t), intent(inout) :: a
       type(input_list_t), intent(inout), optional :: b, c, d, e, f, g

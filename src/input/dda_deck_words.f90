@@ -197,7 +197,6 @@ contains
    pure function nearest_word(word, list) result(found)
       !> Word to compare
       character(len=*), intent(in) :: word
-      !> Words to choose from: (n)
       character(len=*), intent(in) :: list(:)
       !> The first of the nearest ones
       character(len=:), allocatable :: found

@@ -78,9 +78,7 @@ contains
       integer, intent(in) :: first
       !> Token that closes it
       integer, intent(in) :: last
-      !> Groups that there are
       type(group_t), intent(in) :: groups(:)
-      !> Keys that there are
       type(key_t), intent(in) :: keys(:)
       !> The group, empty before
       type(key_group_t), intent(inout) :: group
@@ -129,7 +127,6 @@ contains
    !> Read and check the values of one key
    pure subroutine read_value(scan, first, last, key, value, error)
       type(deck_scan_t), intent(in) :: scan
-      !> Token with its name
       integer, intent(in) :: first
       !> Last token of its values
       integer, intent(in) :: last
@@ -163,7 +160,6 @@ contains
    !> Whether a text is a value of a key
    pure logical function fits(key, text, kind)
       type(key_t), intent(in) :: key
-      !> The text
       character(len=*), intent(in) :: text
       !> Kind of its token
       integer, intent(in) :: kind
@@ -189,7 +185,6 @@ contains
 
    !> Whether a text is one form of a truth value
    pure logical function is_flag(text, letter)
-      !> The text
       character(len=*), intent(in) :: text
       !> Its letter, t or f
       character(len=1), intent(in) :: letter
@@ -223,7 +218,6 @@ contains
    !> One number of a key
    pure real(wp) function number_in(group, name, without)
       type(key_group_t), intent(in) :: group
-      !> Name of the key
       character(len=*), intent(in) :: name
       !> Its value where it is not given and has no default
       real(wp), intent(in), optional :: without
@@ -238,7 +232,6 @@ contains
    !> One whole number of a key
    pure integer function whole_in(group, name, without)
       type(key_group_t), intent(in) :: group
-      !> Name of the key
       character(len=*), intent(in) :: name
       !> Its value where it is not given and has no default
       integer, intent(in), optional :: without
@@ -253,7 +246,6 @@ contains
    !> A word of a key, in lower case
    pure function word_in(group, name) result(word)
       type(key_group_t), intent(in) :: group
-      !> Name of the key
       character(len=*), intent(in) :: name
       character(len=:), allocatable :: word
       integer :: k
@@ -270,7 +262,6 @@ contains
    !> Words of a list
    pure function texts_in(group, name) result(text)
       type(key_group_t), intent(in) :: group
-      !> Name of the key
       character(len=*), intent(in) :: name
       !> The words, in lower case; none where the key is not given: (n)
       character(len=16), allocatable :: text(:)
@@ -289,7 +280,6 @@ contains
    !> A truth value
    pure logical function flag_in(group, name)
       type(key_group_t), intent(in) :: group
-      !> Name of the key
       character(len=*), intent(in) :: name
       integer :: k
 

@@ -145,7 +145,6 @@ contains
    !> A polygon of two lists, anticlockwise whichever way it was given
    pure subroutine take_polygon(group, x_name, y_name, corner, error)
       type(key_group_t), intent(in) :: group
-      !> Names of the keys
       character(len=*), intent(in) :: x_name, y_name
       !> Its corners: (2, n) [m]
       real(wp), allocatable, intent(out) :: corner(:, :)
@@ -163,7 +162,6 @@ contains
    !> Whether a polygon is simple and has an area
    pure subroutine check_polygon(group, corner, error)
       type(key_group_t), intent(in) :: group
-      !> Its corners: (2, n) [m]
       real(wp), intent(in) :: corner(:, :)
       type(error_t), allocatable, intent(out) :: error
       type(area_moments_t) :: moments
@@ -186,7 +184,6 @@ contains
    pure subroutine take_opening(group, map, error)
       type(key_group_t), intent(in) :: group
       type(joint_map_t), intent(inout) :: map
-      !> No simple outline
       type(error_t), allocatable, intent(out) :: error
       type(opening_t) :: opening
       real(wp) :: at(2), width, wall

@@ -114,10 +114,7 @@ contains
    pure function search_problem(key, kind, mode) result(why)
       !> The key, which has real values
       type(key_t), intent(in) :: key
-      !> Word of scene%kind
-      character(len=*), intent(in) :: kind
-      !> Word of analysis%mode
-      character(len=*), intent(in) :: mode
+      character(len=*), intent(in) :: kind, mode
       !> The reason; empty if it can
       character(len=:), allocatable :: why
       integer :: i
@@ -134,7 +131,6 @@ contains
    !> Kinds in which keys are searched with a mode
    pure function kinds_of(rule, mode) result(list)
       type(search_t), intent(in) :: rule
-      !> Word of analysis%mode
       character(len=*), intent(in) :: mode
       !> The kinds, parted by blanks
       character(len=24) :: list
@@ -157,7 +153,6 @@ contains
 
    !> Modes and geometries that blocks of a kind are run with
    pure function models_of(kind) result(text)
-      !> Word of scene%kind
       character(len=*), intent(in) :: kind
       !> Such as: static reference, static current
       character(len=:), allocatable :: text
@@ -173,10 +168,7 @@ contains
 
    !> What is searched in scenes of a kind with a mode
    pure function searches_of(kind, mode) result(text)
-      !> Word of scene%kind
-      character(len=*), intent(in) :: kind
-      !> Word of analysis%mode
-      character(len=*), intent(in) :: mode
+      character(len=*), intent(in) :: kind, mode
       !> Such as: numbers of &material, numbers of &load
       character(len=:), allocatable :: text
       integer :: i
@@ -241,7 +233,6 @@ contains
    !> Modes in which keys are searched in scenes of a kind
    pure function modes_of(rule, kind) result(text)
       type(search_t), intent(in) :: rule
-      !> Word of scene%kind
       character(len=*), intent(in) :: kind
       !> Such as: static, limerick
       character(len=:), allocatable :: text

@@ -34,7 +34,6 @@ contains
 
    !> Add a block; corners given twice are merged, clockwise ones are turned
    pure subroutine add_plan_block(growing, corner, fixed, material, line, file, warnings, error)
-      !> Receives the block as its last
       type(growing_plan_t), intent(inout) :: growing
       !> Corners in order: (2, n) [m]
       real(wp), intent(in) :: corner(:, :)
@@ -88,12 +87,8 @@ contains
       type(growing_plan_t), intent(inout) :: growing
       !> Its corners, counter-clockwise: (2, n) [m]
       real(wp), intent(in) :: vertex(:, :)
-      !> Whether it cannot move
       logical, intent(in) :: fixed
-      !> Number of its material
-      integer, intent(in) :: material
-      !> Line of the file
-      integer, intent(in) :: line
+      integer, intent(in) :: material, line
 
       associate (plan => growing%plan, n => growing%n_block, n_vertex => growing%n_vertex)
          call make_room(plan%vertex, n_vertex + size(vertex, 2))
@@ -134,7 +129,6 @@ contains
 
    !> Hand over the plan, its arrays as long as what they hold
    pure subroutine close_plan(growing, plan)
-      !> The plan that has grown
       type(growing_plan_t), intent(in) :: growing
       type(block_plan_t), intent(out) :: plan
 
@@ -154,7 +148,6 @@ contains
 
    !> Leave out corners that follow one another at the same place
    pure subroutine merge_corners(corner, near, vertex)
-      !> Corners in order: (2, n) [m]
       real(wp), intent(in) :: corner(:, :)
       !> Corners nearer than this are one [m]
       real(wp), intent(in) :: near

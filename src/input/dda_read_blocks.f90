@@ -89,7 +89,6 @@ contains
 
    !> Place of the last character of a line
    pure integer function line_end(text, start)
-      !> Lines ended by line feeds
       character(len=*), intent(in) :: text
       !> Place of its first character
       integer, intent(in) :: start

@@ -85,10 +85,8 @@ contains
       character(len=*), intent(in) :: text
       !> Name that errors will show
       character(len=*), intent(in) :: file
-      !> The --set values: group%key=value: (n)
       character(len=*), intent(in) :: settings(:)
       type(deck_t), intent(out) :: deck
-      !> Bad input, with file and line, or with --set and its number
       type(error_t), allocatable, intent(out) :: error
       !> As of read_deck
       character(len=*), intent(in), optional :: cases
@@ -212,12 +210,10 @@ contains
 
    !> Find a key of a known group
    pure subroutine find_key(group, name, deck, place, key, error)
-      !> Name of the group
       character(len=*), intent(in) :: group
       !> Name of the key
       character(len=*), intent(in) :: name
       type(deck_t), intent(in) :: deck
-      !> Where the key stands
       type(deck_place_t), intent(in) :: place
       !> Place in the registry
       integer, intent(out) :: key
@@ -242,7 +238,6 @@ contains
    pure subroutine apply_setting(setting, place, deck, error)
       !> Such as arch%radius=5.0
       character(len=*), intent(in) :: setting
-      !> Its number on the command line
       type(deck_place_t), intent(in) :: place
       type(deck_t), intent(inout) :: deck
       type(error_t), allocatable, intent(out) :: error
@@ -283,7 +278,6 @@ contains
       character(len=*), intent(in) :: text
       !> The key, with its item if one is set
       type(parameter_t), intent(in) :: parameter
-      !> Number of the --set
       type(deck_place_t), intent(in) :: place
       type(deck_t), intent(inout) :: deck
       type(error_t), allocatable, intent(out) :: error

@@ -41,7 +41,6 @@ contains
       !> Name that errors show
       character(len=*), intent(in) :: file
       type(joint_map_t), intent(out) :: map
-      !> Whether lines are to be written in DDAML
       logical, intent(out) :: is_ddaml
       type(error_t), allocatable, intent(out) :: error
       type(key_group_t), allocatable :: group(:)

@@ -51,11 +51,8 @@ contains
    pure subroutine parse_record(text, column, scale, row, error)
       !> The text, lines ended by line feeds
       character(len=*), intent(in) :: text
-      !> Columns of time, x and y: numbers from 1, 0 for none, or names of the header: (3)
       character(len=*), intent(in) :: column(3)
-      !> What the two components are multiplied by
       real(wp), intent(in) :: scale
-      !> Time and components: (3, n)
       real(wp), allocatable, intent(out) :: row(:, :)
       type(error_t), allocatable, intent(out) :: error
       integer :: place(3), start, finish, number, n, header(2)
@@ -106,7 +103,6 @@ contains
 
    !> Whether the first field of a line is a number
    pure logical function begins_with_number(line)
-      !> The line
       character(len=*), intent(in) :: line
       real(wp) :: value
 
@@ -115,7 +111,6 @@ contains
 
    !> One field of a line: between commas if there are any, else between blanks
    pure function field_of(line, number) result(field)
-      !> The line
       character(len=*), intent(in) :: line
       !> Its number, from 1
       integer, intent(in) :: number
@@ -156,7 +151,6 @@ contains
    pure subroutine find_columns(header, column, line, place, error)
       !> That line; empty if there is none
       character(len=*), intent(in) :: header
-      !> Columns of time, x and y: (3)
       character(len=*), intent(in) :: column(3)
       !> Number of the line below it
       integer, intent(in) :: line
@@ -184,7 +178,6 @@ contains
 
    !> Number of fields of a line
    pure integer function n_fields(line)
-      !> The line
       character(len=*), intent(in) :: line
       integer :: i
 
@@ -200,13 +193,10 @@ contains
 
    !> Take the numbers of a row
    pure subroutine take_row(line, number, place, scale, row, error)
-      !> The line
       character(len=*), intent(in) :: line
-      !> Its number
       integer, intent(in) :: number
       !> Columns of time, x and y; 0 for none: (3)
       integer, intent(in) :: place(3)
-      !> What the two components are multiplied by
       real(wp), intent(in) :: scale
       !> Time and components: (3)
       real(wp), intent(out) :: row(3)
@@ -231,7 +221,6 @@ contains
    pure subroutine check_time(time, line, error)
       !> Time of the row before and of this one: (2) [s]
       real(wp), intent(in) :: time(2)
-      !> Number of the line
       integer, intent(in) :: line
       type(error_t), allocatable, intent(out) :: error
 

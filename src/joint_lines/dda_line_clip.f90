@@ -41,9 +41,7 @@ contains
    pure subroutine clip_one(line, corner, inside, part, m)
       !> Its ends: (4) [m]
       real(wp), intent(in) :: line(4)
-      !> Corners of the polygon: (2, n_corner) [m]
       real(wp), intent(in) :: corner(:, :)
-      !> Whether the parts inside are kept
       logical, intent(in) :: inside
       !> Receives columns of ends: (4, m or more) [m]
       real(wp), allocatable, intent(inout) :: part(:, :)
@@ -75,7 +73,6 @@ contains
 
    !> Where a line crosses a polygon, its own ends included, in order
    pure function crossings(line, corner) result(share)
-      !> Its ends: (4) [m]
       real(wp), intent(in) :: line(4)
       !> Corners of the polygon: (2, n) [m]
       real(wp), intent(in) :: corner(:, :)
@@ -101,7 +98,6 @@ contains
 
    !> A point inside a polygon: half way between its first two crossings with a level line
    pure function inner_point(corner) result(point)
-      !> Its corners: (2, n) [m]
       real(wp), intent(in) :: corner(:, :)
       !> The point: (2) [m]
       real(wp) :: point(2)
@@ -122,7 +118,6 @@ contains
 
    !> Where a ray leaves a polygon for the last time
    pure function ray_exit(corner, origin, direction) result(point)
-      !> Corners: (2, n) [m]
       real(wp), intent(in) :: corner(:, :)
       !> A point inside: (2) [m]
       real(wp), intent(in) :: origin(2)

@@ -21,7 +21,6 @@ contains
    !> Lines and points of a map
    pure subroutine map_lines(map, model, error)
       type(joint_map_t), intent(in) :: map
-      !> Lines and points
       type(line_model_t), intent(out) :: model
       !> What cannot be drawn, with file and line
       type(error_t), allocatable, intent(out) :: error
@@ -56,7 +55,6 @@ contains
    !> Whether all openings lie apart inside the outline
    pure subroutine check_openings(map, error)
       type(joint_map_t), intent(in) :: map
-      !> One that does not
       type(error_t), allocatable, intent(out) :: error
       integer :: i, k, j
 
@@ -88,7 +86,6 @@ contains
       integer, intent(in) :: material
       !> Line of the file
       integer, intent(in) :: row
-      !> Receives them
       type(line_model_t), intent(inout) :: model
       integer :: i
 
@@ -101,7 +98,6 @@ contains
    !> Hold the blocks along sides of the outline
    pure subroutine hold_sides(map, model)
       type(joint_map_t), intent(in) :: map
-      !> Receives a line a side
       type(line_model_t), intent(inout) :: model
       real(wp) :: low(2), high(2), x
 
@@ -126,9 +122,7 @@ contains
       type(joint_map_t), intent(in) :: map
       !> Number of the set
       integer, intent(in) :: i
-      !> Receives its traces
       type(line_model_t), intent(inout) :: model
-      !> Too many traces
       type(error_t), allocatable, intent(out) :: error
       real(wp), allocatable :: trace(:, :)
       real(wp) :: centre(2), radius
@@ -170,9 +164,7 @@ contains
    pure subroutine add_line(map, line, model, error)
       type(joint_map_t), intent(in) :: map
       type(map_line_t), intent(in) :: line
-      !> Receives it
       type(line_model_t), intent(inout) :: model
-      !> A joint outside the outline
       type(error_t), allocatable, intent(out) :: error
       real(wp), allocatable :: part(:, :)
       integer :: k, n
@@ -207,9 +199,7 @@ contains
    pure subroutine add_bolts(map, bolts, model, error)
       type(joint_map_t), intent(in) :: map
       type(bolts_t), intent(in) :: bolts
-      !> Receives them
       type(line_model_t), intent(inout) :: model
-      !> A bolt that leaves the outline
       type(error_t), allocatable, intent(out) :: error
       real(wp) :: centre(2), head(2), tip(2), along(2), angle
       integer :: i

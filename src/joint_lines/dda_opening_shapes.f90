@@ -52,7 +52,6 @@ contains
 
    !> A horseshoe: half a circle above, walls that draw in to the floor on arcs of twice its radius
    pure function horseshoe(middle, radius, wall, n) result(corner)
-      !> Middle of the floor: (2) [m]
       real(wp), intent(in) :: middle(2)
       !> Radius of the roof [m]
       real(wp), intent(in) :: radius
@@ -76,17 +75,13 @@ contains
 
    !> Points on an ellipse
    pure function arc(centre, half_axis, from, to, n) result(point)
-      !> Its centre: (2) [m]
-      real(wp), intent(in) :: centre(2)
-      !> Half axes along x and y: (2) [m]
-      real(wp), intent(in) :: half_axis(2)
+      real(wp), intent(in) :: centre(2), half_axis(2)
       !> First and last angle [rad]
       real(wp), intent(in) :: from, to
       !> Number of points
       integer, intent(in) :: n
       !> The points: (2, n) [m]
-      real(wp) :: point(2, n)
-      real(wp) :: angle
+      real(wp) :: point(2, n), angle
       integer :: i
 
       do i = 1, n

@@ -42,9 +42,7 @@ contains
    !> A length that covers a given point: long ones do so more often
    pure subroutine draw_covering_length(length, random, value)
       type(length_t), intent(in) :: length
-      !> Random numbers
       type(random_t), intent(inout) :: random
-      !> The length [m]
       real(wp), intent(out) :: value
       real(wp) :: more, number
 

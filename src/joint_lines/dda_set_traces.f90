@@ -48,7 +48,6 @@ contains
       type(joint_set_t), intent(in) :: set
       !> Centre of the circle: (2) [m]
       real(wp), intent(in) :: centre(2)
-      !> Its radius [m]
       real(wp), intent(in) :: radius
       !> Columns of ends x1, y1, x2, y2: (4, n or more) [m]
       real(wp), allocatable, intent(out) :: trace(:, :)
@@ -86,17 +85,13 @@ contains
    !> Add the traces of one joint
    pure subroutine add_joint(set, centre, radius, distance, number, trace, n)
       type(joint_set_t), intent(in) :: set
-      !> Centre of the circle: (2) [m]
-      real(wp), intent(in) :: centre(2)
-      !> Its radius [m]
-      real(wp), intent(in) :: radius
+      real(wp), intent(in) :: centre(2), radius
       !> How far the joint is from the anchor, along the normal [m]
       real(wp), intent(in) :: distance
       !> Number of the joint, negative on one side
       integer, intent(in) :: number
       !> Receives the traces: (4, n or more) [m]
       real(wp), allocatable, intent(inout) :: trace(:, :)
-      !> Their number
       integer, intent(inout) :: n
       type(random_t) :: random
       type(axis_t) :: axis
@@ -122,12 +117,9 @@ contains
    pure subroutine add_traces(set, axis, number, random, trace, n)
       type(joint_set_t), intent(in) :: set
       type(axis_t), intent(in) :: axis
-      !> Its number
       integer, intent(in) :: number
       type(random_t), intent(inout) :: random
-      !> Receives the traces: (4, n or more) [m]
       real(wp), allocatable, intent(inout) :: trace(:, :)
-      !> Their number
       integer, intent(inout) :: n
       type(random_t) :: outward
       real(wp) :: at(2), length, u
@@ -172,7 +164,6 @@ contains
       type(axis_t), intent(in) :: axis
       !> Where the part begins and ends along it: (2) [m]
       real(wp), intent(in) :: part(2)
-      !> Receives it: (4, n or more) [m]
       real(wp), allocatable, intent(inout) :: trace(:, :)
       !> Number of traces
       integer, intent(inout) :: n

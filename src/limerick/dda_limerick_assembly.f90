@@ -41,7 +41,6 @@ contains
 
    !> Make the pattern, if other blocks are coupled than before, and tell each contact its entry
    pure subroutine couple_blocks(model, contacts, n_block, equations, spring)
-      !> The model, for its bolts
       type(limerick_model_t), intent(in) :: model
       !> Contacts, those of the same two blocks one after the other
       type(contact_list_t), intent(in) :: contacts
@@ -178,7 +177,6 @@ contains
    pure subroutine add_contacts(model, contacts, spring, march, first_pass, equations)
       type(limerick_model_t), intent(in) :: model
       type(contact_list_t), intent(in) :: contacts
-      !> Their springs: (at least contacts%n)
       type(contact_spring_t), intent(in) :: spring(:)
       type(limerick_march_t), intent(in) :: march
       !> Whether nothing was solved in this step yet
@@ -216,8 +214,7 @@ contains
                   & march%penalty/model%constants%stiffness_ratio, damper, &
                   & spring(c)%along, spring(c)%shear, equations)
             else if (first_pass .or. contact%before /= limerick_state%open) then
-               call add_friction(model, contact, spring(c), march%used_penalty, &
-                  & equations%motion)
+               call add_friction(model, contact, spring(c), march%used_penalty, equations%motion)
             end if
          end associate
       end do

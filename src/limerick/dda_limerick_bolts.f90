@@ -27,8 +27,7 @@ contains
       !> Number of the bolt
       integer, intent(in) :: i
       !> (6, 2)
-      real(wp) :: row(6, 2)
-      real(wp) :: along(2)
+      real(wp) :: row(6, 2), along(2)
       integer :: side
 
       row = 0.0_wp
@@ -47,7 +46,6 @@ contains
       type(limerick_model_t), intent(in) :: model
       !> The blocks at the beginning of the step
       type(limerick_blocks_t), intent(in) :: blocks
-      !> Number of the bolt
       integer, intent(in) :: i
       !> Motion of the blocks: (6, n_block)
       real(wp), intent(in) :: motion(:, :)

@@ -94,8 +94,7 @@ contains
       finish = turn(corners%direction(blocks%previous(i)), corners%direction(blocks%previous(j)))
       steep_i = steepness(corners%direction(i) + corners%angle(i)/2.0_wp)
       steep_j = steepness(corners%direction(j) + corners%angle(j)/2.0_wp)
-      if (start <= 180.0_wp - slack &
-         & .or. (start <= 180.0_wp + slack .and. steep_j >= steep_i)) then
+      if (start <= 180.0_wp - slack .or. (start <= 180.0_wp + slack .and. steep_j >= steep_i)) then
          line(:, 1) = [i, blocks%next(j), j]
          steep(1) = steepness(corners%direction(j))
       else

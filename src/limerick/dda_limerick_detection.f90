@@ -75,11 +75,7 @@ contains
       integer, intent(in) :: a
       !> Second block
       integer, intent(in) :: b
-      !> Distance within which contacts are sought [m]
-      real(wp), intent(in) :: reach
-      !> Overlap that is overlooked [deg]
-      real(wp), intent(in) :: overlap_deg
-      !> Receives the contacts
+      real(wp), intent(in) :: reach, overlap_deg
       type(contact_list_t), intent(inout) :: list
       integer :: i, j
 
@@ -104,7 +100,6 @@ contains
       integer, intent(in) :: i
       !> Second vertex
       integer, intent(in) :: j
-      !> Distance [m]
       real(wp), intent(in) :: reach
 
       near = (blocks%vertex(1, i) - blocks%vertex(1, j))**2 &
@@ -115,11 +110,9 @@ contains
    pure logical function above_edge(blocks, corners, i, j, reach)
       type(limerick_blocks_t), intent(in) :: blocks
       type(corners_t), intent(in) :: corners
-      !> The vertex
       integer, intent(in) :: i
       !> Where the edge starts
       integer, intent(in) :: j
-      !> Distance [m]
       real(wp), intent(in) :: reach
       real(wp) :: edge(2), arm(2), square
 
@@ -141,9 +134,7 @@ contains
       integer, intent(in) :: i
       !> Vertex of the second block
       integer, intent(in) :: j
-      !> Overlap that is overlooked [deg]
       real(wp), intent(in) :: overlap_deg
-      !> Receives the contacts
       type(contact_list_t), intent(inout) :: list
 
       if (corners%angle(i) >= straight) then
@@ -162,13 +153,8 @@ contains
    pure subroutine meet_edge(blocks, corners, i, j, overlap_deg, list)
       type(limerick_blocks_t), intent(in) :: blocks
       type(corners_t), intent(in) :: corners
-      !> The vertex
-      integer, intent(in) :: i
-      !> Where the edge starts
-      integer, intent(in) :: j
-      !> Overlap that is overlooked [deg]
+      integer, intent(in) :: i, j
       real(wp), intent(in) :: overlap_deg
-      !> Receives the contact
       type(contact_list_t), intent(inout) :: list
       type(limerick_contact_t) :: contact
       real(wp) :: between
@@ -187,13 +173,8 @@ contains
    pure subroutine meet_corner(blocks, corners, i, j, overlap_deg, list)
       type(limerick_blocks_t), intent(in) :: blocks
       type(corners_t), intent(in) :: corners
-      !> Vertex of the first block
-      integer, intent(in) :: i
-      !> Vertex of the second block
-      integer, intent(in) :: j
-      !> Overlap that is overlooked [deg]
+      integer, intent(in) :: i, j
       real(wp), intent(in) :: overlap_deg
-      !> Receives the contacts
       type(contact_list_t), intent(inout) :: list
       type(limerick_contact_t) :: contact
       real(wp) :: between
@@ -225,9 +206,7 @@ contains
    !> Of two edges that lie together, the vertex whose foot lies on the other edge makes the contact
    pure subroutine settle_pair(blocks, contact, list)
       type(limerick_blocks_t), intent(in) :: blocks
-      !> The contact, either line first
       type(limerick_contact_t), intent(in) :: contact
-      !> Receives the contact
       type(contact_list_t), intent(inout) :: list
       type(limerick_contact_t) :: settled
       real(wp), dimension(2) :: p1, p2, p3
@@ -247,7 +226,6 @@ contains
    pure subroutine settle(blocks, contact, list)
       type(limerick_blocks_t), intent(in) :: blocks
       type(limerick_contact_t), intent(in) :: contact
-      !> Receives the contact
       type(contact_list_t), intent(inout) :: list
       type(limerick_contact_t) :: settled
 

@@ -47,8 +47,7 @@ contains
          longest = growth*march%time_step
          acceleration = max(march%penetration*march%half_size*march%used_penalty, &
             & largest_load(model, march%time, .false.))/mass
-         if (model%constants%dynamic) &
-            & velocity = march%displacement_ratio*allowed/march%time_step
+         if (model%constants%dynamic) velocity = march%displacement_ratio*allowed/march%time_step
       end if
       ! the root of velocity*t + acceleration*t**2/2 = allowed in the form that loses no digits
       velocity = velocity + sqrt(velocity**2 + 2.0_wp*acceleration*allowed)
@@ -116,8 +115,7 @@ contains
       moved_too_far = march%displacement_ratio > too_far
       accepted = settled .and. .not. moved_too_far
       if (.not. settled) then
-         if (model%constants%auto_time_step) &
-            & march%time_step = max(cut*march%time_step, shortest)
+         if (model%constants%auto_time_step) march%time_step = max(cut*march%time_step, shortest)
       else if (moved_too_far) then
          march%time_step = max(march%time_step/sqrt(march%displacement_ratio), shortest)
       else if (model%constants%auto_penalty) then
@@ -132,7 +130,6 @@ contains
    pure subroutine adapt_penalty(model, contacts, march)
       type(limerick_model_t), intent(in) :: model
       type(contact_list_t), intent(in) :: contacts
-      !> The march; penalty and penetration are set
       type(limerick_march_t), intent(inout) :: march
       real(wp) :: opening
       integer :: c

@@ -63,24 +63,20 @@ contains
    end function half_size
 
    !> The scheme knows friction alone: a joint that cannot slide has the most of it
-   elemental function finite_law(given) result(law)
+   elemental type(joint_law_t) function finite_law(given)
       type(joint_law_t), intent(in) :: given
-      !> The law of the scheme
-      type(joint_law_t) :: law
 
-      law = given
-      if (law%no_slip) law%friction = friction_coefficient(no_slip_deg)
+      finite_law = given
+      if (finite_law%no_slip) finite_law%friction = friction_coefficient(no_slip_deg)
    end function finite_law
 
    !> Law of a corner on an edge: that of the edge, for corners of the block's kind
-   pure function contact_law(model, block, edge) result(law)
+   pure type(joint_law_t) function contact_law(model, block, edge) result(law)
       type(limerick_model_t), intent(in) :: model
       !> Block of the corner
       integer, intent(in) :: block
       !> Vertex at which the edge starts
       integer, intent(in) :: edge
-      !> The law
-      type(joint_law_t) :: law
 
       law = model%law(model%kind(block), model%edge_law(edge))
    end function contact_law
@@ -93,8 +89,7 @@ contains
       !> The time [s]
       real(wp), intent(in) :: time
       !> The force: (2) [N/m]
-      real(wp) :: force(2)
-      real(wp) :: share
+      real(wp) :: force(2), share
       integer :: i, n
 
       associate (load => model%boundary%loaded(point)%force)
@@ -127,7 +122,6 @@ contains
    !> Time of the first record of any load after a time; huge if there is none
    pure real(wp) function next_record(model, time)
       type(limerick_model_t), intent(in) :: model
-      !> The time [s]
       real(wp), intent(in) :: time
       integer :: i, n
 

@@ -93,9 +93,7 @@ contains
 
    !> Open or closed; of two corners, at which line: that which is penetrated less
    pure subroutine judge_opening(constants, law, march, gap, contact)
-      !> Constants of the scheme
       type(limerick_constants_t), intent(in) :: constants
-      !> Law of the joint
       type(joint_law_t), intent(in) :: law
       type(limerick_march_t), intent(in) :: march
       !> Opening at both lines: (2) [m]
@@ -123,9 +121,7 @@ contains
    !> Locked or sliding: by the strength of a contact that closes or was locked, by the direction of
    !> slip if it was sliding
    pure subroutine judge_slip(constants, law, march, slip, contact)
-      !> Constants of the scheme
       type(limerick_constants_t), intent(in) :: constants
-      !> Law of the joint
       type(joint_law_t), intent(in) :: law
       type(limerick_march_t), intent(in) :: march
       !> Slip since the shear spring was set [m]
@@ -154,7 +150,6 @@ contains
    !> A contact that closes gets its shear spring where the vertex meets the edge
    pure subroutine set_shear_spring(blocks, motion, half_size, contact, spring)
       type(limerick_blocks_t), intent(in) :: blocks
-      !> Motion of the blocks: (6, n_block)
       real(wp), intent(in) :: motion(:, :)
       !> Half the larger side of the model [m]
       real(wp), intent(in) :: half_size

@@ -80,9 +80,7 @@ contains
    !> Run a model to its verdict
    pure subroutine run_limerick(model, run, outcome, n_track)
       type(limerick_model_t), intent(in) :: model
-      !> The run as it ended
       type(limerick_run_t), intent(out) :: run
-      !> How it ended
       type(limerick_outcome_t), intent(out) :: outcome
       !> Of how many measured points the way is kept; none if it is not given
       integer, intent(in), optional :: n_track
@@ -103,9 +101,7 @@ contains
    !> What is known before the first step; gravity is turned on where the model asks for it
    pure subroutine begin_outcome(model, run, n_track, outcome)
       type(limerick_model_t), intent(in) :: model
-      !> The run, begun
       type(limerick_run_t), intent(inout) :: run
-      !> Of how many measured points the way is kept
       integer, intent(in) :: n_track
       type(limerick_outcome_t), intent(out) :: outcome
       type(error_t), allocatable :: error
@@ -164,9 +160,7 @@ contains
    !> forces change no more; time begins after it (MacLaughlin 1997)
    pure subroutine turn_gravity_on(model, run, error)
       type(limerick_model_t), intent(in) :: model
-      !> The run, begun
       type(limerick_run_t), intent(inout) :: run
-      !> Allocated if a step fails
       type(error_t), allocatable, intent(out) :: error
       type(limerick_model_t) :: phase
       real(wp), allocatable :: before(:, :), now(:, :)
@@ -251,7 +245,6 @@ contains
    !> Keep where the measured points are at the end of a step
    pure subroutine keep_track(run, outcome)
       type(limerick_run_t), intent(in) :: run
-      !> Receives the places
       type(limerick_outcome_t), intent(inout) :: outcome
       real(wp), allocatable :: time(:), track(:, :, :)
       integer :: n, n_track

@@ -133,8 +133,7 @@ contains
          blocks%next(first:last) = [(v, v=first + 1, last), first]
          blocks%previous(first:last) = [last, (v, v=first, last - 1)]
          associate (material => model%material(model%block_material(b)))
-            blocks%stress(:, b) = material%stress &
-               & + blocks%centroid(2, b)*material%stress_gradient
+            blocks%stress(:, b) = material%stress + blocks%centroid(2, b)*material%stress_gradient
             blocks%velocity(1:3, b) = material%velocity
          end associate
       end do
@@ -157,11 +156,9 @@ contains
    end subroutine measure_blocks
 
    !> Scales of a run before its first step
-   pure function new_march(model, blocks) result(march)
+   pure type(limerick_march_t) function new_march(model, blocks) result(march)
       type(limerick_model_t), intent(in) :: model
       type(limerick_blocks_t), intent(in) :: blocks
-      !> The march
-      type(limerick_march_t) :: march
 
       associate (constants => model%constants)
          march%half_size = half_size(model)

@@ -16,10 +16,8 @@ contains
       type(limerick_blocks_t), intent(in) :: blocks
       !> Contacts of the step before
       type(contact_list_t), intent(in) :: before
-      !> Contacts of this step
       type(contact_list_t), intent(inout) :: now
-      integer :: head(size(blocks%area)), following(before%n)
-      integer :: c, b, p
+      integer :: head(size(blocks%area)), following(before%n), c, b, p
       logical :: keeps_place
 
       head = 0
@@ -76,7 +74,6 @@ contains
    !> Half the length along which two edges lie together, and where a new shear spring is set
    pure subroutine measure_line(blocks, contact, keeps_place)
       type(limerick_blocks_t), intent(in) :: blocks
-      !> The contact of a vertex and an edge
       type(limerick_contact_t), intent(inout) :: contact
       !> Whether the shear spring stays where it was set
       logical, intent(in) :: keeps_place

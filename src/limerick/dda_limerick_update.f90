@@ -72,7 +72,6 @@ contains
    !> What an accepted step leaves behind (Shi: df25)
    pure subroutine update(model, motion, blocks, march, moved)
       type(limerick_model_t), intent(in) :: model
-      !> Motion of the blocks: (6, n_block)
       real(wp), intent(in) :: motion(:, :)
       type(limerick_blocks_t), intent(inout) :: blocks
       !> The march; time and steps are set

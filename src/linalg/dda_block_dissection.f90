@@ -90,7 +90,6 @@ contains
       integer, intent(in) :: first
       !> Last place
       integer, intent(in) :: last
-      !> Receives the group
       type(dissection_t), intent(inout) :: d
 
       d%group(d%order(first:last)) = first
@@ -101,10 +100,7 @@ contains
 
    !> Search a connected group in breadth from its corners: each is farthest from those before it
    pure subroutine search_from_corners(first, last, d, n)
-      !> First place of the group in the order
-      integer, intent(in) :: first
-      !> Last place
-      integer, intent(in) :: last
+      integer, intent(in) :: first, last
       !> The blocks; steps and queue are set
       type(dissection_t), intent(inout) :: d
       !> Number of blocks that a search has reached
@@ -160,10 +156,7 @@ contains
 
    !> Part a group into those that nothing couples
    pure subroutine part_groups(first, last, d)
-      !> First place of the group in the order
-      integer, intent(in) :: first
-      !> Last place
-      integer, intent(in) :: last
+      integer, intent(in) :: first, last
       type(dissection_t), intent(inout) :: d
       integer :: head(last - first + 2), i, m, n
 
@@ -186,10 +179,7 @@ contains
    !> Part a connected group in two parts, and the blocks between them behind both: by how much
    !> nearer blocks are to one corner than to another
    pure subroutine part_in_two(first, last, d)
-      !> First place of the group in the order
-      integer, intent(in) :: first
-      !> Last place
-      integer, intent(in) :: last
+      integer, intent(in) :: first, last
       type(dissection_t), intent(inout) :: d
       integer :: block(last - first + 1), part(last - first + 1), i, k
       real :: least
@@ -218,7 +208,6 @@ contains
       integer, intent(in) :: block(:)
       !> Cost of the best cut in, and out
       real, intent(inout) :: least
-      !> The blocks and their levels
       type(dissection_t), intent(in) :: d
       !> Receives 1 and 2 for the two sides, 3 for what is between, if the cut is better
       integer, intent(inout) :: part(:)

@@ -38,10 +38,7 @@ contains
 
    !> Neighbour lists of all blocks
    pure subroutine neighbour_lists(n_block, pair, start, neighbour)
-      !> Number of blocks
-      integer, intent(in) :: n_block
-      !> Coupled blocks: (2, n_pair)
-      integer, intent(in) :: pair(:, :)
+      integer, intent(in) :: n_block, pair(:, :)
       !> First entry of each block, and one beyond the last: (n_block + 1)
       integer, allocatable, intent(out) :: start(:)
       !> Blocks coupled to each block, one list after the other: (2*n_pair)
@@ -76,8 +73,7 @@ contains
       !> Neighbour lists
       integer, intent(in) :: neighbour(:)
       !> The block to begin with
-      integer :: rim
-      integer :: queue(size(start) - 1), level(size(start) - 1), head, tail, reached, i
+      integer :: rim, queue(size(start) - 1), level(size(start) - 1), head, tail, reached, i
 
       rim = root
       reached = -1
@@ -106,10 +102,7 @@ contains
    pure subroutine enqueue_neighbours(block, start, neighbour, queue, tail, queued)
       !> The block
       integer, intent(in) :: block
-      !> First entry of each block's list: (n_block + 1)
-      integer, intent(in) :: start(:)
-      !> Neighbour lists
-      integer, intent(in) :: neighbour(:)
+      integer, intent(in) :: start(:), neighbour(:)
       !> Blocks in order of visit: (n_block)
       integer, intent(inout) :: queue(:)
       !> Number of blocks in the queue

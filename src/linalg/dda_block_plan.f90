@@ -97,7 +97,6 @@ contains
    pure subroutine choose_panels(n_triple, elimination, first, panel)
       !> Triples of one block
       integer, intent(in) :: n_triple
-      !> The order of elimination
       type(elimination_t), intent(in) :: elimination
       !> First column of each panel, and one beyond the last: (n_panel + 1)
       integer, allocatable, intent(out) :: first(:)
@@ -148,11 +147,8 @@ contains
 
    !> Rows of each panel: those of its last column
    pure subroutine list_rows(elimination, panel, plan)
-      !> The order of elimination
       type(elimination_t), intent(in) :: elimination
-      !> Panel of each column: (n_block)
       integer, intent(in) :: panel(:)
-      !> Receives the rows
       type(elimination_plan_t), intent(inout) :: plan
       integer, dimension(size(panel)) :: seen
       integer, dimension(size(plan%first)) :: next
@@ -187,7 +183,6 @@ contains
 
    !> Panels that have rows in each panel's columns
    pure subroutine list_sources(panel, plan)
-      !> Panel of each column: (n_block)
       integer, intent(in) :: panel(:)
       !> The plan with its rows; receives the sources
       type(elimination_plan_t), intent(inout) :: plan

@@ -55,9 +55,7 @@ contains
    pure subroutine list_columns(place, pair, elimination)
       !> Place of each block in the order of elimination: (n_block)
       integer, intent(in) :: place(:)
-      !> Coupled blocks: (2, n_entry)
       integer, intent(in) :: pair(:, :)
-      !> Receives the list
       type(elimination_t), intent(inout) :: elimination
       integer :: e, i, next(size(place))
 
@@ -81,11 +79,9 @@ contains
 
    !> The column that each column is eliminated into first; 0 for a root
    pure function tree(elimination) result(parent)
-      !> Couplings by rows
       type(elimination_t), intent(in) :: elimination
       !> The parents: (n_block)
-      integer :: parent(size(elimination%first) - 1)
-      integer :: ancestor(size(parent)), above, g, i, j
+      integer :: parent(size(elimination%first) - 1), ancestor(size(parent)), above, g, i, j
 
       parent = 0
       ancestor = 0
@@ -106,10 +102,7 @@ contains
    !> The same order as far as the fill goes, but such that what is eliminated into a block is
    !> eliminated shortly before it, and still near at hand: branch by branch of the tree
    pure function by_branches(place, pair) result(better)
-      !> Place of each block: (n_block)
-      integer, intent(in) :: place(:)
-      !> Coupled blocks: (2, n_entry)
-      integer, intent(in) :: pair(:, :)
+      integer, intent(in) :: place(:), pair(:, :)
       !> Better place of each block: (n_block)
       integer :: better(size(place))
       type(elimination_t) :: rows
@@ -139,8 +132,7 @@ contains
       !> Couplings by rows and the tree
       type(elimination_t), intent(in) :: elimination
       !> Number of rows: (n_block)
-      integer :: below(size(elimination%parent))
-      integer :: seen(size(below)), g, i, j
+      integer :: below(size(elimination%parent)), seen(size(below)), g, i, j
 
       seen = 0
       below = 0

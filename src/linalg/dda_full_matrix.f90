@@ -38,7 +38,6 @@ contains
 
    !> Solve with the factors
    pure subroutine substitute_full(a, exchange, x)
-      !> Factors: (n, n)
       real(wp), intent(in) :: a(:, :)
       !> Exchanges of rows: (n)
       integer, intent(in) :: exchange(:)

@@ -87,11 +87,7 @@ contains
 
    !> The whole graph
    pure subroutine new_quotient(start, neighbour, late, q)
-      !> First entry of each block's list: (n_block + 1)
-      integer, intent(in) :: start(:)
-      !> Lists of neighbours
-      integer, intent(in) :: neighbour(:)
-      !> Blocks that wait: (n_block)
+      integer, intent(in) :: start(:), neighbour(:)
       logical, intent(in) :: late(:)
       type(quotient_t), intent(out) :: q
       integer :: b, i, n
@@ -165,7 +161,6 @@ contains
    !> The neighbours of a block that goes become a group; its own groups are part of that
    pure subroutine gather(q, p)
       type(quotient_t), intent(inout) :: q
-      !> The block
       integer, intent(in) :: p
       integer :: member(size(q%weight)), i, n
 
@@ -303,7 +298,6 @@ contains
       type(quotient_t), intent(inout) :: q
       !> The block that stands for both
       integer, intent(in) :: a
-      !> The other one
       integer, intent(in) :: b
 
       q%next_same(q%last_same(a)) = b
@@ -328,7 +322,6 @@ contains
    !> Take a block out of the list of its degree
    pure subroutine take_out(q, b)
       type(quotient_t), intent(inout) :: q
-      !> The block
       integer, intent(in) :: b
 
       if (q%previous(b) > 0) then

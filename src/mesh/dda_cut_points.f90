@@ -29,19 +29,17 @@ module dda_cut_points
 contains
 
    !> Boxes around all blocks
-   pure function block_boxes(cut) result(boxes)
+   pure type(boxes_t) function block_boxes(cut)
       type(cut_model_t), intent(in) :: cut
-      !> Their boxes
-      type(boxes_t) :: boxes
       integer :: b, n, i
 
       n = size(cut%area)
-      allocate (boxes%low(2, n), boxes%high(2, n))
+      allocate (block_boxes%low(2, n), block_boxes%high(2, n))
       do b = 1, n
          associate (vertex => cut%vertex(:, cut%first_vertex(b):cut%first_vertex(b + 1) - 1))
             do i = 1, 2
-               boxes%low(i, b) = minval(vertex(i, :))
-               boxes%high(i, b) = maxval(vertex(i, :))
+               block_boxes%low(i, b) = minval(vertex(i, :))
+               block_boxes%high(i, b) = maxval(vertex(i, :))
             end do
          end associate
       end do
@@ -76,7 +74,6 @@ contains
 
    !> Take out the blocks that hold hole points (Shi: dc11)
    pure subroutine remove_holes(model, cut, error)
-      !> Lines and points
       type(line_model_t), intent(in) :: model
       !> The blocks; those with a hole point go
       type(cut_model_t), intent(inout) :: cut
@@ -127,11 +124,8 @@ contains
    !> Points and fixed lines to blocks; a fixed line holds the block on each edge that it crosses,
    !> or else the block of its first end (Shi: dc10, dc11)
    pure subroutine place_points(model, cut, error)
-      !> Lines and points
       type(line_model_t), intent(in) :: model
-      !> Receives the points
       type(cut_model_t), intent(inout) :: cut
-      !> A point that lies in no block
       type(error_t), allocatable, intent(out) :: error
       type(boxes_t) :: boxes
       type(block_point_t), allocatable :: point(:)
@@ -164,9 +158,7 @@ contains
 
    !> A point in one block
    pure subroutine add_single(model, entities, what, kind, i, boxes, cut, point, n, error)
-      !> Lines and points
       type(line_model_t), intent(in) :: model
-      !> The list of the point
       type(entities_t), intent(in) :: entities
       !> What the point is called
       character(len=*), intent(in) :: what
@@ -174,14 +166,12 @@ contains
       integer, intent(in) :: kind
       !> Number of the point in its list
       integer, intent(in) :: i
-      !> Boxes of the blocks
       type(boxes_t), intent(in) :: boxes
       type(cut_model_t), intent(in) :: cut
       !> Receives the point
       type(block_point_t), allocatable, intent(inout) :: point(:)
       !> Number of points
       integer, intent(inout) :: n
-      !> The point lies in no block
       type(error_t), allocatable, intent(out) :: error
       real(wp) :: place(2)
       integer :: b
@@ -201,12 +191,10 @@ contains
       real(wp), intent(in) :: line(4)
       !> Its number
       integer, intent(in) :: source
-      !> Boxes of the blocks
       type(boxes_t), intent(in) :: boxes
       type(cut_model_t), intent(in) :: cut
       !> Receives the points
       type(block_point_t), allocatable, intent(inout) :: point(:)
-      !> Number of points
       integer, intent(inout) :: n
       real(wp) :: segment(4), edge(4), share(2), crossing(2)
       logical :: crossed
@@ -257,9 +245,7 @@ contains
 
    !> Find the blocks of the bolts (Shi: dc14); an end in no block is held by the ground
    pure subroutine place_bolts(model, cut)
-      !> Lines and points
       type(line_model_t), intent(in) :: model
-      !> Receives the bolts
       type(cut_model_t), intent(inout) :: cut
       type(boxes_t) :: boxes
       type(cut_bolt_t) :: bolt(model%bolt%n)
@@ -285,9 +271,7 @@ contains
    !> Blocks get the material of the last material line that crosses one of their edges, or that
    !> starts in them and crosses none; the first material otherwise (Shi: dc13)
    pure subroutine give_materials(model, cut, error)
-      !> Lines and points
       type(line_model_t), intent(in) :: model
-      !> Receives the materials
       type(cut_model_t), intent(inout) :: cut
       !> A material line that meets no block
       type(error_t), allocatable, intent(out) :: error
@@ -327,7 +311,6 @@ contains
    pure subroutine append_point(point, n, new)
       !> The list
       type(block_point_t), allocatable, intent(inout) :: point(:)
-      !> Number of points
       integer, intent(inout) :: n
       type(block_point_t), intent(in) :: new
       type(block_point_t), allocatable :: longer(:)
@@ -346,11 +329,8 @@ contains
       type(error_t), allocatable, intent(out) :: error
       !> What the thing is called
       character(len=*), intent(in) :: what
-      !> Lines and points
       type(line_model_t), intent(in) :: model
-      !> The list of the thing
       type(entities_t), intent(in) :: entities
-      !> Its number in the list
       integer, intent(in) :: i
 
       call fatal_error(error, "expected a "//what//" inside a block, got one at (" &

@@ -24,10 +24,8 @@ module dda_cut_scale
 contains
 
    !> The scales of a model with at least one line that has a length
-   pure function cut_scale(model) result(scale)
+   pure type(cut_scale_t) function cut_scale(model) result(scale)
       type(line_model_t), intent(in) :: model
-      !> Its scales
-      type(cut_scale_t) :: scale
       real(wp) :: low(2), high(2), largest
       integer :: i
 

@@ -22,7 +22,6 @@ contains
 
    !> Cut lines into blocks, and give each block its material and its points
    pure subroutine cut_blocks(model, cut, error)
-      !> Lines and points
       type(line_model_t), intent(in) :: model
       type(cut_model_t), intent(out) :: cut
       !> What keeps the lines from making blocks
@@ -47,12 +46,10 @@ contains
 
    !> Nodes and edges that bound blocks (Shi: dc04 to dc06)
    pure subroutine make_network(model, cut, network, error)
-      !> Lines and points
       type(line_model_t), intent(in) :: model
       !> Receives the scales and what was dropped
       type(cut_model_t), intent(inout) :: cut
       type(network_t), intent(out) :: network
-      !> No lines, or too many crossings, or boundary lines that cross
       type(error_t), allocatable, intent(out) :: error
       type(crossings_t) :: crossings
       real(wp), allocatable :: line(:, :)

@@ -84,7 +84,6 @@ contains
       integer, intent(in) :: side(2)
       !> The place: (2) [m]
       real(wp), intent(in) :: point(2)
-      !> Receives the corner
       type(corners_t), intent(inout) :: corners
       integer :: first, n, at
       real(wp) :: finish(2)
@@ -127,7 +126,6 @@ contains
 
    !> Number, within its block, of the new edge that begins at a place of an old one
    pure integer function edge_at(split, start, old, place, block)
-      !> The blocks with more corners
       type(cut_model_t), intent(in) :: split
       !> First new edge of each old one, and one beyond the last: (n_old + 1)
       integer, intent(in) :: start(:)

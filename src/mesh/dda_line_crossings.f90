@@ -58,15 +58,10 @@ contains
 
    !> Crossings that lie in one cell: each point belongs to one cell, so that none is found twice
    pure subroutine cross_in_cell(line, reach, grid, cell, crossings)
-      !> Ends of the lines: (4, n) [m]
-      real(wp), intent(in) :: line(:, :)
-      !> Distance within which things touch [m]
-      real(wp), intent(in) :: reach
-      !> The grid of the lines
+      real(wp), intent(in) :: line(:, :), reach
       type(cell_grid_t), intent(in) :: grid
       !> Number of the cell
       integer, intent(in) :: cell
-      !> Receives the crossings
       type(crossings_t), intent(inout) :: crossings
       real(wp) :: point(2, 2), low(2), high(2)
       integer :: a, b, i, j, k, n

@@ -76,7 +76,6 @@ contains
 
    !> Add a bolt
    pure subroutine add_bolt(model, place, property, row)
-      !> Receives it
       type(line_model_t), intent(inout) :: model
       !> Its ends: (4) [m]
       real(wp), intent(in) :: place(4)
@@ -93,11 +92,9 @@ contains
    !> Add a segment or a point
    pure subroutine add_entity(entities, place, material, row)
       type(entities_t), intent(inout) :: entities
-      !> Its ends: (4) [m]
       real(wp), intent(in) :: place(4)
       !> Its material; 0 if the kind has none
       integer, intent(in) :: material
-      !> Line of the file
       integer, intent(in) :: row
       type(entities_t) :: longer
 

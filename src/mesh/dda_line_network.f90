@@ -37,7 +37,6 @@ contains
       integer, intent(in) :: n_boundary
       !> Scales of the cut
       type(cut_scale_t), intent(in) :: scale
-      !> The crossings in their order
       type(crossings_t), intent(in) :: crossings
       type(network_t), intent(out) :: network
       !> Receives the lines that make no edge, and edges that are there twice
@@ -65,13 +64,11 @@ contains
    !> Drop an edge and say why
    pure subroutine drop_edge(network, edge, reason, other, remarks)
       type(network_t), intent(inout) :: network
-      !> Number of the edge
       integer, intent(in) :: edge
       !> One of cut_reason
       integer, intent(in) :: reason
       !> Number of the line in the way, or 0
       integer, intent(in) :: other
-      !> Receives the reason
       type(cut_remarks_t), intent(inout) :: remarks
 
       network%alive(edge) = .false.
@@ -81,10 +78,8 @@ contains
    !> The node of each crossing: the nearest one that is there already within 1.25 e00 w0, else a
    !> new one; two boundary lines share a node only with crossings at the very same place
    pure subroutine merge_nodes(scale, crossings, network, node_of)
-      !> Scales of the cut
       type(cut_scale_t), intent(in) :: scale
       type(crossings_t), intent(in) :: crossings
-      !> Receives the nodes
       type(network_t), intent(inout) :: network
       !> Node of each crossing: (n)
       integer, allocatable, intent(out) :: node_of(:)
@@ -110,14 +105,10 @@ contains
 
    !> Edges between neighbouring nodes of each line
    pure subroutine chain_lines(line, crossings, node_of, network, remarks)
-      !> Ends of the lines: (4, n_line) [m]
       real(wp), intent(in) :: line(:, :)
       type(crossings_t), intent(in) :: crossings
-      !> Node of each crossing: (n)
       integer, intent(in) :: node_of(:)
-      !> Receives the edges
       type(network_t), intent(inout) :: network
-      !> Receives the lines that make no edge
       type(cut_remarks_t), intent(inout) :: remarks
       integer, allocatable :: on_line(:), node(:), order(:), seen(:), last(:)
       real(wp), allocatable :: along(:)
@@ -159,10 +150,8 @@ contains
 
    !> Lines with fewer than two nodes have no edge
    pure subroutine tell_loose_lines(line, network, remarks)
-      !> Ends of the lines: (4, n_line) [m]
       real(wp), intent(in) :: line(:, :)
       type(network_t), intent(in) :: network
-      !> Receives the lines
       type(cut_remarks_t), intent(inout) :: remarks
       logical, allocatable :: has_edge(:)
       integer :: i
@@ -182,7 +171,6 @@ contains
    !> Of edges between the same two nodes the one of the first line stays: lines that lie together
    pure subroutine drop_doubled(network, remarks)
       type(network_t), intent(inout) :: network
-      !> Receives what is dropped
       type(cut_remarks_t), intent(inout) :: remarks
       integer, allocatable :: order(:)
       integer :: k, kept

@@ -118,7 +118,6 @@ contains
       real(wp), intent(in) :: start(2)
       !> Where it ends: (2) [m]
       real(wp), intent(in) :: finish(2)
-      !> Distance within which things touch [m]
       real(wp), intent(in) :: reach
       real(wp) :: way(2), arm(2)
 
@@ -131,17 +130,11 @@ contains
    !> Store the corners of a block and tell its half-edges which edge they belong to
    pure subroutine add_corners(network, half_edge, corner, joint, block, n_vertex, cut, owner)
       type(network_t), intent(in) :: network
-      !> The half-edges of the loop: (n)
-      integer, intent(in) :: half_edge(:)
-      !> Half-edges of the loop that start at a corner: (n_corner)
-      integer, intent(in) :: corner(:)
-      !> Joint material of each line: (n_line)
-      integer, intent(in) :: joint(:)
+      integer, intent(in) :: half_edge(:), corner(:), joint(:)
       !> Number of the block
       integer, intent(in) :: block
       !> Number of vertices so far
       integer, intent(inout) :: n_vertex
-      !> Receives the corners
       type(cut_model_t), intent(inout) :: cut
       !> Receives block and edge of each half-edge: (2, n_half_edge)
       integer, intent(inout) :: owner(:, :)
@@ -167,9 +160,7 @@ contains
       type(network_t), intent(in) :: network
       !> Block and edge of each half-edge, 0 for none: (2, n_half_edge)
       integer, intent(in) :: owner(:, :)
-      !> Joint material of each line: (n_line)
       integer, intent(in) :: joint(:)
-      !> Receives the pairs
       type(cut_model_t), intent(inout) :: cut
       type(edge_pair_t), allocatable :: part(:)
       integer, allocatable :: order(:)

@@ -37,12 +37,9 @@ contains
    !> No group of blocks may lie inside a block of another group, unless that block is taken out: a
    !> block is one polygon, without holes
    pure subroutine check_nesting(model, network, loops, cut, error)
-      !> Lines and points
       type(line_model_t), intent(in) :: model
       type(network_t), intent(in) :: network
-      !> All loops
       type(loops_t), intent(in) :: loops
-      !> The blocks, holes still among them
       type(cut_model_t), intent(in) :: cut
       !> A group lies inside a block
       type(error_t), allocatable, intent(out) :: error
@@ -76,10 +73,8 @@ contains
 
    !> Say which block holds what
    pure subroutine tell_nested(model, network, loops, inner, cut, block, error)
-      !> Lines and points
       type(line_model_t), intent(in) :: model
       type(network_t), intent(in) :: network
-      !> All loops
       type(loops_t), intent(in) :: loops
       !> Number of the loop around the inner group
       integer, intent(in) :: inner

@@ -25,7 +25,6 @@ contains
 
    !> Walk along all edges on both sides, at each node turning as far left as possible
    pure subroutine trace_loops(network, loops)
-      !> The network, free of loose ends
       type(network_t), intent(in) :: network
       type(loops_t), intent(out) :: loops
       integer, allocatable :: next(:)
@@ -52,8 +51,7 @@ contains
       loops%first = [loops%first(:n_loop), n_item + 1]
       allocate (loops%area(n_loop))
       do h = 1, n_loop
-         loops%area(h) = loop_area(network, &
-            & loops%half_edge(loops%first(h):loops%first(h + 1) - 1))
+         loops%area(h) = loop_area(network, loops%half_edge(loops%first(h):loops%first(h + 1) - 1))
       end do
    end subroutine trace_loops
 
@@ -68,7 +66,6 @@ contains
 
    !> The half-edge on the other side of the same edge
    elemental integer function opposite(half_edge)
-      !> Number of the half-edge
       integer, intent(in) :: half_edge
 
       opposite = half_edge - 1 + 2*mod(half_edge, 2)

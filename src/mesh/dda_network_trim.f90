@@ -17,7 +17,6 @@ contains
    !> Drop edges that end in nothing, until none is left: trees hang on no block (Shi: dc05)
    pure subroutine cut_trees(network, remarks)
       type(network_t), intent(inout) :: network
-      !> Receives what is dropped
       type(cut_remarks_t), intent(inout) :: remarks
       integer, allocatable :: first(:), item(:), degree(:), loose(:)
       integer :: n, node, k, e
@@ -57,8 +56,7 @@ contains
 
       allocate (first(size(network%node, 2) + 1), source=0)
       do e = 1, size(network%line)
-         if (network%alive(e)) &
-            & first(network%edge(:, e) + 1) = first(network%edge(:, e) + 1) + 1
+         if (network%alive(e)) first(network%edge(:, e) + 1) = first(network%edge(:, e) + 1) + 1
       end do
       first(1) = 1
       do node = 2, size(first)
@@ -82,7 +80,6 @@ contains
       type(network_t), intent(inout) :: network
       !> Scales of the cut
       type(cut_scale_t), intent(in) :: scale
-      !> Receives what is dropped
       type(cut_remarks_t), intent(inout) :: remarks
       !> Two boundary lines that still cross; 0 if none do: (2)
       integer, intent(out) :: crossing(2)
@@ -121,7 +118,6 @@ contains
       integer, intent(in) :: number(:)
       !> Their ends: (4, n) [m]
       real(wp), intent(in) :: place(:, :)
-      !> The grid of the living edges
       type(cell_grid_t), intent(in) :: grid
       !> Edges, the smaller number first: (2, n_pair)
       integer, allocatable, intent(out) :: pair(:, :)
@@ -151,7 +147,6 @@ contains
    !> Whether two edges cross between their nodes
    pure logical function edges_cross(network, reach, edge, first, second)
       type(network_t), intent(in) :: network
-      !> Distance within which things touch [m]
       real(wp), intent(in) :: reach
       !> Numbers of the edges: (2)
       integer, intent(in) :: edge(2)
@@ -176,9 +171,7 @@ contains
    !> Drop joints that pass a node of other lines closer than e00 w0 (Shi: dc06)
    pure subroutine drop_close_edges(network, scale, remarks)
       type(network_t), intent(inout) :: network
-      !> Scales of the cut
       type(cut_scale_t), intent(in) :: scale
-      !> Receives what is dropped
       type(cut_remarks_t), intent(inout) :: remarks
       type(cell_grid_t) :: grid
       real(wp), allocatable :: place(:, :)
@@ -211,9 +204,7 @@ contains
    !> Edges that were not dropped
    pure subroutine living_edges(network, number, place)
       type(network_t), intent(in) :: network
-      !> Their numbers: (n)
       integer, allocatable, intent(out) :: number(:)
-      !> Their ends: (4, n) [m]
       real(wp), allocatable, intent(out) :: place(:, :)
       integer :: e, n
 

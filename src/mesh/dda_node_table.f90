@@ -83,7 +83,6 @@ contains
    !> The square that holds a point
    pure function square_of(table, point) result(square)
       type(node_table_t), intent(in) :: table
-      !> The point: (2) [m]
       real(wp), intent(in) :: point(2)
       !> Column and row: (2)
       integer(int64) :: square(2)

@@ -121,7 +121,6 @@ contains
 
    !> Go from a block to its leader, and halve the way for those who come after (Tarjan 1975)
    pure subroutine find_leader(leader, block)
-      !> A block that each follows, itself at the end: (0:n_block)
       integer, intent(inout) :: leader(0:)
       !> The block in, its leader out
       integer, intent(inout) :: block

@@ -65,7 +65,6 @@ contains
       real(wp), intent(in) :: vertex(:, :)
       !> Blocks that cannot move: (n_block)
       logical, intent(in) :: fixed(:)
-      !> The one material of all blocks
       type(material_t), intent(in) :: material
       type(block_system_t) :: system
       type(area_moments_t) :: moments

@@ -189,11 +189,9 @@ contains
    !> Value of a history at a time
    pure function value_at(history, time) result(value)
       type(history_t), intent(in) :: history
-      !> The time [s]
       real(wp), intent(in) :: time
       !> Components along x and y: (2)
-      real(wp) :: value(2)
-      real(wp) :: share
+      real(wp) :: value(2), share
       integer :: i
 
       value = 0.0_wp
@@ -228,8 +226,7 @@ contains
       !> End of the time, after its beginning [s]
       real(wp), intent(in) :: finish
       !> Components along x and y: (2)
-      real(wp) :: mean(2)
-      real(wp) :: before(2), after(2), left, right
+      real(wp) :: mean(2), before(2), after(2), left, right
       integer :: i
 
       mean = value_at(history, (start + finish)/2.0_wp)
@@ -255,7 +252,6 @@ contains
    !> Rate of a history just before a time
    pure function rate_at(history, time) result(rate)
       type(history_t), intent(in) :: history
-      !> The time [s]
       real(wp), intent(in) :: time
       !> Components along x and y, per second: (2)
       real(wp) :: rate(2)
@@ -273,7 +269,6 @@ contains
    pure integer function records_before(times, time)
       !> The times: (n) [s]
       real(wp), intent(in) :: times(:)
-      !> The time [s]
       real(wp), intent(in) :: time
       integer :: high, middle
 

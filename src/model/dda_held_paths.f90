@@ -57,7 +57,6 @@ contains
 
    !> Whether a way is ever off the mixture of others; all are linear between their times
    pure logical function far_from(held, other, share, more, axis, tolerance)
-      !> Points that are held: (n)
       type(held_point_t), intent(in) :: held(:)
       !> Numbers of the others: (m)
       integer, intent(in) :: other(:)

@@ -150,7 +150,6 @@ contains
       real(wp), intent(in) :: row(3, 3, 2, n_joint)
       !> Motion of the blocks: (3, n_block)
       real(wp), intent(in), contiguous :: motion(:, :)
-      !> Opening 1, opening 2, slip: (3, n_joint)
       real(wp), intent(out), contiguous :: opening(:, :)
       integer :: b, j, k, side
       real(wp) :: x(3), y(3)
@@ -197,13 +196,8 @@ contains
 
    !> The same for 3 unknowns of a block
    pure subroutine add_joint_forces_3(n_joint, block, row, force, load)
-      !> Number of joints
-      integer, intent(in) :: n_joint
-      !> Blocks of each joint
-      integer, intent(in) :: block(2, n_joint)
-      !> Opening and slip by unit motion of each block
+      integer, intent(in) :: n_joint, block(2, n_joint)
       real(wp), intent(in) :: row(3, 3, 2, n_joint)
-      !> N1, N2, T of each joint: (3, n_joint)
       real(wp), intent(in), contiguous :: force(:, :)
       !> Forces on the blocks, to which theirs are added: (3, n_block)
       real(wp), intent(inout), contiguous :: load(:, :)

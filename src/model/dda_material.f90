@@ -47,8 +47,7 @@ contains
    pure function elasticity_matrix(material) result(d)
       type(material_t), intent(in) :: material
       !> Symmetric matrix: (3, 3) [Pa]
-      real(wp) :: d(3, 3)
-      real(wp) :: young, poisson
+      real(wp) :: d(3, 3), young, poisson
 
       young = material%young
       poisson = material%poisson
@@ -78,8 +77,7 @@ contains
       !> Share of the strength that is left
       real(wp), intent(in) :: intact
 
-      friction_left = law%friction &
-         & - (1.0_wp - intact)*max(0.0_wp, law%friction - law%residual)
+      friction_left = law%friction - (1.0_wp - intact)*max(0.0_wp, law%friction - law%residual)
    end function friction_left
 
    !> Coefficient of friction of a friction angle

@@ -42,8 +42,7 @@ contains
       !> Its ends: (4) [m]
       real(wp), intent(in) :: part(4)
       !> At its start and at its end: (2, 2) [N/m]
-      real(wp) :: force(2, 2)
-      real(wp) :: low, high, share(2), way, reach
+      real(wp) :: force(2, 2), low, high, share(2), way, reach
       integer :: k
 
       force = 0.0_wp
@@ -71,7 +70,6 @@ contains
    !> Add the pressure below one leg of the line of heads
    pure subroutine add_leg(water, rise, part, leg, share, force)
       type(water_t), intent(in) :: water
-      !> By how much the line of heads has risen [m]
       real(wp), intent(in) :: rise
       !> Ends of the part of the edge: (4) [m]
       real(wp), intent(in) :: part(4)

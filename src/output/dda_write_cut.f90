@@ -55,8 +55,7 @@ contains
       integer, intent(in) :: block
       !> Its fixed, load and measured points: (3)
       integer, intent(in) :: held(3)
-      character(len=:), allocatable :: line
-      character(len=:), allocatable :: x, y, joint
+      character(len=:), allocatable :: line, x, y, joint
       type(area_moments_t) :: moments
       integer :: k, first, last
 
@@ -81,7 +80,6 @@ contains
 
    !> Write the blocks for ParaView
    subroutine write_cut_vtu(file, cut, error)
-      !> Name of the file; one that exists is replaced
       character(len=*), intent(in) :: file
       type(cut_model_t), intent(in) :: cut
       type(error_t), allocatable, intent(out) :: error

@@ -57,8 +57,7 @@ contains
       real(wp), intent(in) :: point(:, :)
       !> Blocks that have no rows, as they are not there: (n_block)
       logical, intent(in), optional :: absent(:)
-      character(len=:), allocatable :: lines
-      character(len=:), allocatable :: common
+      character(len=:), allocatable :: lines, common
       type(growing_text_t) :: rows
       integer :: block, vertex
 

@@ -39,8 +39,7 @@ contains
       !> Number of the case
       integer, intent(in) :: number
       type(told_blocks_t), intent(in) :: blocks
-      character(len=:), allocatable :: lines
-      character(len=:), allocatable :: common
+      character(len=:), allocatable :: lines, common
       type(growing_text_t) :: rows
       integer :: b, v
 
@@ -62,7 +61,6 @@ contains
 
    !> Rows of one case
    pure function energy_lines(number, value) result(lines)
-      !> Number of the case
       integer, intent(in) :: number
       !> Time and energies after each step, as the columns have them: (10, n_step) [s, J per metre]
       real(wp), intent(in) :: value(:, :)
@@ -78,7 +76,6 @@ contains
 
    !> Rows of one case
    pure function reaction_lines(number, time, support, reaction, origin) result(lines)
-      !> Number of the case
       integer, intent(in) :: number
       !> The times: (n_time) [s]
       real(wp), intent(in) :: time(:)

@@ -79,13 +79,11 @@ contains
    !> Write single points, such as those that contact forces act on; the file is whole when there is
    !> no error
    subroutine write_points(file, point, point_fields, error)
-      !> Name of the file; one that exists is replaced
       character(len=*), intent(in) :: file
       !> The points: (2, n_point) [m]
       real(wp), intent(in) :: point(:, :)
       !> Fields with a value at each point: (:)
       type(field_t), intent(in) :: point_fields(:)
-      !> Allocated if the arrays do not fit together or the file cannot be written
       type(error_t), allocatable, intent(out) :: error
       type(field_t) :: none(0)
       integer :: i
@@ -96,15 +94,12 @@ contains
 
    !> Write cells of one kind that own the points in their order
    subroutine write_grid(file, kind, point, next_point, point_fields, cell_fields, error)
-      !> Name of the file
       character(len=*), intent(in) :: file
       !> One of cell_type
       integer, intent(in) :: kind
-      !> The points: (2, n_point) [m]
       real(wp), intent(in) :: point(:, :)
       !> The point behind the last one of each cell: (n_cell)
       integer, intent(in) :: next_point(:)
-      !> Fields with a value at each point: (:)
       type(field_t), intent(in) :: point_fields(:)
       !> Fields with a value for each cell: (:)
       type(field_t), intent(in) :: cell_fields(:)
@@ -140,11 +135,9 @@ contains
    !> Write which points the cells own, where each ends and what it is
    subroutine append_cells(vtu, kind, n_point, next_point)
       type(binary_file_t), intent(in) :: vtu
-      !> One of cell_type
       integer, intent(in) :: kind
       !> Number of points
       integer, intent(in) :: n_point
-      !> The point behind the last one of each cell: (n_cell)
       integer, intent(in) :: next_point(:)
       integer(int32), allocatable :: connectivity(:)
       integer :: i
@@ -163,14 +156,10 @@ contains
 
    !> All of the file before its data: arrays in the order in which they are written
    pure function grid_header(n_point, n_cell, point_fields, cell_fields) result(text)
-      !> Number of points
       integer, intent(in) :: n_point
       !> Number of cells
       integer, intent(in) :: n_cell
-      !> Fields with a value at each point: (:)
-      type(field_t), intent(in) :: point_fields(:)
-      !> Fields with a value for each cell: (:)
-      type(field_t), intent(in) :: cell_fields(:)
+      type(field_t), intent(in) :: point_fields(:), cell_fields(:)
       !> The text, up to the mark behind which the data begin
       character(len=:), allocatable :: text
       type(header_t) :: header

@@ -70,7 +70,6 @@ contains
    !> Corners of an abutment: the face first, from the intrados to the extrados, prolonged on both
    !> sides
    pure function abutment(system, springing, is_right, size, overhang) result(corner)
-      !> The blocks of the arch
       type(block_system_t), intent(in) :: system
       !> Number of the springing block, whose fourth edge is the joint
       integer, intent(in) :: springing
@@ -81,8 +80,7 @@ contains
       !> How far it reaches beyond the joint at either end [m]
       real(wp), intent(in) :: overhang
       !> The corners: (2, 4) [m]
-      real(wp) :: corner(2, 4)
-      real(wp) :: direction(2), depth(2)
+      real(wp) :: corner(2, 4), direction(2), depth(2)
       integer :: first
 
       first = system%first_vertex(springing)
@@ -100,7 +98,6 @@ contains
 
    !> Chords of a voussoir at the intrados and at the extrados
    pure subroutine add_chords(system, block, model)
-      !> The blocks of the arch
       type(block_system_t), intent(in) :: system
       !> Number of the voussoir
       integer, intent(in) :: block
@@ -117,7 +114,6 @@ contains
 
    !> The joint between a voussoir and the next one, a little too long
    pure subroutine add_joint(system, block, model)
-      !> The blocks of the arch
       type(block_system_t), intent(in) :: system
       !> Number of the voussoir on the left
       integer, intent(in) :: block
@@ -163,7 +159,6 @@ contains
       real(wp), intent(in) :: start(2)
       !> Where it ends: (2) [m]
       real(wp), intent(in) :: finish(2)
-      !> Joint material
       integer, intent(in) :: material
 
       call add_entity(model%line, [start, finish], material, 0)

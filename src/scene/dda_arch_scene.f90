@@ -64,8 +64,7 @@ contains
    pure function joint_angles_deg(deck) result(angle)
       type(deck_t), intent(in) :: deck
       !> The angles, from left to right: (n_joint) [deg]
-      real(wp), allocatable :: angle(:)
-      real(wp), allocatable :: half(:)
+      real(wp), allocatable :: angle(:), half(:)
       integer :: n
 
       allocate (half, source=half_joints_deg(deck))
@@ -195,7 +194,6 @@ contains
    !> Acceleration over that of free fall that rounding feigns: a corner off by eps r makes the
    !> weight of a voussoir wrong by eps over the thickness ratio
    pure real(wp) function weight_rounding(half_angle, thickness_ratio)
-      !> Angle from the crown to a springing [rad]
       real(wp), intent(in) :: half_angle
       !> Thickness over radius
       real(wp), intent(in) :: thickness_ratio

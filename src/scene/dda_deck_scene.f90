@@ -63,9 +63,7 @@ contains
    !> The family of a deck, its numbers read
    pure subroutine new_family(deck, plan, parameter, family)
       type(deck_t), intent(in) :: deck
-      !> What its scenes need
       type(scene_plan_t), intent(in) :: plan
-      !> The parameter that varies
       type(parameter_t), intent(in) :: parameter
       type(deck_family_t), intent(out) :: family
 

@@ -133,8 +133,7 @@ contains
       !> Height of the line [m]
       real(wp), intent(in) :: top
       !> Area and moment: (2) [m2, m3]
-      real(wp) :: part(2)
-      real(wp) :: depth(2), width
+      real(wp) :: part(2), depth(2), width
 
       depth = top - [left(2), right(2)]
       width = right(1) - left(1)
@@ -161,7 +160,6 @@ contains
       type(fill_t), intent(in) :: fill
       !> Where the live load is, see live_side
       integer, intent(in) :: side
-      !> The scene; its bounded forces are set
       type(scene_t), intent(inout) :: scene
       type(bounded_force_t) :: force(size(fill%chord))
       real(wp) :: middle(2), rise
@@ -217,7 +215,6 @@ contains
 
    !> Add the sizes of live loads, and their moments along x
    pure subroutine add_live(loaded, total)
-      !> Loads, live ones among them: (n)
       type(loaded_point_t), intent(in) :: loaded(:)
       !> The sums: (2) [N/m, N]
       real(wp), intent(inout) :: total(2)

@@ -75,8 +75,7 @@ contains
          associate (first => plan%first_vertex(b), last => plan%first_vertex(b + 1) - 1)
             held(n + 1:n + 1 + last - first)%block = b
             do v = 1, 2
-               held(n + 1:n + 1 + last - first)%point(v) = &
-                  & inner_points(plan%vertex(v, first:last))
+               held(n + 1:n + 1 + last - first)%point(v) = inner_points(plan%vertex(v, first:last))
             end do
             n = n + 1 + last - first
          end associate

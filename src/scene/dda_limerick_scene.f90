@@ -31,8 +31,7 @@ contains
       type(limerick_model_t), intent(out) :: model
       real(wp) :: acceleration
 
-      if (allocated(deck%file_analysis)) &
-         & model%constants = deck%file_analysis%limerick_constants_t
+      if (allocated(deck%file_analysis)) model%constants = deck%file_analysis%limerick_constants_t
       select case (deck%scene%kind%word)
       case ("arch")
          call arch_model(deck, scene, model)
@@ -176,7 +175,6 @@ contains
       !> The deck of one case, with its blocks; checked
       type(deck_t), intent(in) :: deck
       type(scene_t), intent(in) :: scene
-      !> The model; its parts but for the direction of the weight are set
       type(limerick_model_t), intent(inout) :: model
       integer :: j
 

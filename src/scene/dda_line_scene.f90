@@ -78,11 +78,9 @@ contains
 
    !> Points of the files that hold, load and measure blocks
    pure subroutine points_of_lines(deck, fixed, boundary)
-      !> The deck of a case, with its blocks
       type(deck_t), intent(in) :: deck
       !> Whether a block needs no points to be held: (n_block)
       logical, intent(in) :: fixed(:)
-      !> Receives the points
       type(boundary_t), intent(inout) :: boundary
       integer :: n(3), i
 
@@ -112,19 +110,17 @@ contains
    end subroutine points_of_lines
 
    !> Force on a load point; one of which the analysis says nothing has none
-   pure function force_of(deck, source) result(force)
+   pure type(history_t) function force_of(deck, source)
       type(deck_t), intent(in) :: deck
       !> Number of the load point
       integer, intent(in) :: source
-      !> The force
-      type(history_t) :: force
 
-      force = constant_history([0.0_wp, 0.0_wp])
+      force_of = constant_history([0.0_wp, 0.0_wp])
       if (.not. allocated(deck%file_analysis)) return
       if (source > size(deck%file_analysis%load)) return
       associate (record => deck%file_analysis%load(source)%record)
-         force%time = record(1, :)
-         force%value = record(2:3, :)
+         force_of%time = record(1, :)
+         force_of%value = record(2:3, :)
       end associate
    end function force_of
 

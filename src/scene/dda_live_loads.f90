@@ -46,8 +46,7 @@ contains
       type(deck_t), intent(in) :: deck
       type(scene_t), intent(in) :: scene
       !> The forces; those in no block are left out: (n)
-      type(loaded_point_t), allocatable :: of_live(:)
-      type(loaded_point_t), allocatable :: loaded(:)
+      type(loaded_point_t), allocatable :: of_live(:), loaded(:)
       real(wp), allocatable :: point(:, :), force(:, :)
       integer :: b, i, n
 
@@ -102,7 +101,6 @@ contains
       type(block_system_t), intent(in) :: system
       !> Which of them: (n_block)
       logical, intent(in) :: of(:)
-      !> The point: (2) [m]
       real(wp), intent(in) :: point(2)
       real(wp) :: deepest, depth, low(2), high(2), margin
       integer :: b

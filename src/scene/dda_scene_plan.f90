@@ -97,7 +97,6 @@ contains
    !> is one of the equations with a pattern, and a displacement that means collapse one of corners
    pure subroutine see_chain(deck, plan)
       type(deck_t), intent(in) :: deck
-      !> Its plan, otherwise made
       type(scene_plan_t), intent(inout) :: plan
 
       plan%row = scene_kind(deck) == "arch" .and. deck%analysis%mode%word == "static" &

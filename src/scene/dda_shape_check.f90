@@ -21,7 +21,6 @@ contains
 
    !> Check every case of a deck; the ends of a search take the place of what is searched
    pure subroutine check_shapes(deck, error)
-      !> The deck, checked otherwise
       type(deck_t), intent(in) :: deck
       !> An arch that cannot be, or be run so
       type(error_t), allocatable, intent(out) :: error

@@ -56,7 +56,6 @@ contains
    pure subroutine check_lines(deck, form, problem)
       type(deck_t), intent(in) :: deck
       type(arch_form_t), intent(in) :: form
-      !> Keys that do not go together
       type(form_problem_t), intent(inout) :: problem
       logical :: flat
 
@@ -96,7 +95,6 @@ contains
    pure subroutine check_supports(deck, form, problem)
       type(deck_t), intent(in) :: deck
       type(arch_form_t), intent(in) :: form
-      !> Keys that do not go together
       type(form_problem_t), intent(inout) :: problem
       logical :: buttressed
 
@@ -163,7 +161,6 @@ contains
    pure subroutine shape_assembly(deck, assembly, problem)
       type(deck_t), intent(in) :: deck
       type(arch_assembly_t), intent(out) :: assembly
-      !> What makes no arch
       type(form_problem_t), intent(out) :: problem
       type(arch_form_t) :: form
 

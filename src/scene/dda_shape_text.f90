@@ -89,7 +89,6 @@ contains
    !> Add a bar
    pure subroutine add_bar(bar, origin, lines)
       type(bar_t), intent(in) :: bar
-      !> Where the origin of its coordinates is: (2) [m]
       real(wp), intent(in) :: origin(2)
       type(growing_text_t), intent(inout) :: lines
       character(len=:), allocatable :: text

@@ -64,7 +64,6 @@ contains
 
    !> Check the ties of a case
    pure subroutine check_ties(deck, error)
-      !> The deck of the case, with &tie
       type(deck_t), intent(in) :: deck
       !> Lists that do not go together, or an end in no block
       type(error_t), allocatable, intent(out) :: error
@@ -98,7 +97,6 @@ contains
 
    !> Check that ties lie between blocks
    pure subroutine check_ends(deck, error)
-      !> The deck of the case, its lists checked
       type(deck_t), intent(in) :: deck
       type(error_t), allocatable, intent(out) :: error
       character(len=2), parameter :: name(2) = ["x1", "x2"]

@@ -103,7 +103,6 @@ contains
 
    !> See which edge is the highest where
    pure subroutine see_highest(road)
-      !> Its edges in, the highest of them out
       type(road_t), intent(inout) :: road
       real(wp) :: top, y
       integer :: i, k
@@ -175,7 +174,6 @@ contains
    pure real(wp) function half_length(vehicle, road, origin, x) result(half)
       type(vehicle_t), intent(in) :: vehicle
       type(road_t), intent(in) :: road
-      !> Origin of the coordinates of the blocks: (2) [m]
       real(wp), intent(in) :: origin(2)
       !> Where the axle is, in these coordinates [m]
       real(wp), intent(in) :: x
@@ -190,11 +188,9 @@ contains
    pure function passages(vehicle, road, origin) result(at)
       type(vehicle_t), intent(in) :: vehicle
       type(road_t), intent(in) :: road
-      !> Origin of the coordinates of the blocks: (2) [m]
       real(wp), intent(in) :: origin(2)
       !> The positions, rising: (n) [m]
-      real(wp), allocatable :: at(:)
-      real(wp), allocatable :: corner(:), edge(:), place(:)
+      real(wp), allocatable :: at(:), corner(:), edge(:), place(:)
       real(wp) :: far, half, middle
       integer :: i, j, n
 
@@ -236,7 +232,6 @@ contains
    !> The highest edge at a place
    pure subroutine find_top(road, x, edge, top)
       type(road_t), intent(in) :: road
-      !> The place [m]
       real(wp), intent(in) :: x
       !> Its number; 0 if there is none
       integer, intent(out) :: edge
@@ -267,15 +262,12 @@ contains
 
    !> Take an edge that is higher than the others
    pure subroutine take_higher(road, k, x, edge, top)
-      !> What axles stand on
       type(road_t), intent(in) :: road
       !> Number of the edge, or 0
       integer, intent(in) :: k
-      !> The place [m]
       real(wp), intent(in) :: x
       !> Number of the highest edge so far
       integer, intent(inout) :: edge
-      !> Its height [m]
       real(wp), intent(inout) :: top
 
       if (k == 0) return
@@ -287,11 +279,8 @@ contains
 
    !> Height of an edge at a place
    pure real(wp) function height(road, k, x)
-      !> What axles stand on
       type(road_t), intent(in) :: road
-      !> Number of the edge
       integer, intent(in) :: k
-      !> The place [m]
       real(wp), intent(in) :: x
 
       height = road%left(2, k) + (x - road%left(1, k))/(road%right(1, k) - road%left(1, k)) &

@@ -108,13 +108,9 @@ contains
 
    !> Add the pressure on a part of an edge to both ends of the edge
    pure subroutine add_part(plan, water, rise, time, part, covered, edge, at_start, at_end)
-      !> The blocks, for their origin
       type(block_plan_t), intent(in) :: plan
       type(water_t), intent(in) :: water
-      !> By how much all lines of heads have risen [m]
-      real(wp), intent(in) :: rise
-      !> Times: (n) [s]
-      real(wp), intent(in) :: time(:)
+      real(wp), intent(in) :: rise, time(:)
       !> Ends of the part: (4) [m]
       real(wp), intent(in) :: part(4)
       !> Whether another block lies on it: a joint
@@ -161,11 +157,9 @@ contains
    !> Parts of an edge between the corners of other blocks on it, and which of them are joints
    pure subroutine split_edge(plan, tree, block, edge, part, covered)
       type(block_plan_t), intent(in) :: plan
-      !> Boxes of the blocks
       type(box_tree_t), intent(in) :: tree
       !> Block of the edge
       integer, intent(in) :: block
-      !> Its ends: (4) [m]
       real(wp), intent(in) :: edge(4)
       !> Ends of the parts: (4, n) [m]
       real(wp), allocatable, intent(out) :: part(:, :)

@@ -101,7 +101,6 @@ contains
    !> Prove both sides of what a search has found
    pure subroutine prove_search(family, critical, stands, falls, proof)
       class(family_t), intent(in) :: family
-      !> What was found
       type(critical_t), intent(in) :: critical
       !> The scenes of its two sides; made here if they are not there yet
       type(scene_t), intent(inout) :: stands
@@ -142,7 +141,6 @@ contains
       type(scene_t), intent(in) :: scene
       !> Number of the bar
       integer, intent(in) :: bar
-      !> Receives them
       type(proof_t), intent(inout) :: proof
       type(settings_t) :: settings
       type(joint_graph_t) :: graph
@@ -188,7 +186,6 @@ contains
       type(joint_graph_t), intent(in) :: graph
       !> The verdict that is to be proven: stable or collapsed
       integer, intent(in) :: wanted
-      !> Receives them
       type(proof_t), intent(inout) :: proof
       type(load_decision_t) :: decision
       real(wp) :: load(3, graph%n_block)
@@ -213,7 +210,6 @@ contains
    !> The two proofs of the limit of a load coefficient
    pure subroutine prove_limit(family, critical, proof)
       class(family_t), intent(in) :: family
-      !> What was found
       type(critical_t), intent(in) :: critical
       type(proof_t), intent(inout) :: proof
       type(joint_graph_t) :: graph

@@ -2,8 +2,7 @@
 !> is, a mechanism on which the loads do work that it is not
 module dda_chain_decision
    use dda_chain, only : chain_t
-   use dda_chain_balance, only : carry_forces, cone_of, holds, influence, &
-      & rounding_of_forces
+   use dda_chain_balance, only : carry_forces, cone_of, holds, influence, rounding_of_forces
    use dda_chain_path, only : stick_all_along
    use dda_chain_power, only : chain_mechanism_t, chain_power, freeze_mechanism
    use dda_chain_thrust, only : approach_cones, find_thrust, thrust_t
@@ -106,7 +105,6 @@ contains
       real(wp), intent(in) :: force(:, :)
       !> The part of each that its cone does not let pass: (3, n + 1) [N/m]
       real(wp), intent(in) :: beyond(:, :)
-      !> Receives them
       type(decision_t), intent(inout) :: decision
       real(wp) :: admissible(3), fastest, inertia, power, spinning, speed
       integer :: b, j, n
@@ -138,7 +136,6 @@ contains
    !> structure opens joint by joint
    pure subroutine concentrate(chain, beyond, face, opening, power)
       type(chain_t), intent(in) :: chain
-      !> The part of the forces that the cones do not let pass: (3, n + 1) [N/m]
       real(wp), intent(in) :: beyond(:, :)
       !> The faces: (n + 1)
       type(joint_face_t), intent(inout) :: face(:)

@@ -45,8 +45,7 @@ contains
          if (.not. allocated(outcome%motion)) return
          ! a keystone moves up or down alone
          if (decision%keystone) outcome%motion(:, m) = outcome%motion(:, m)*[0.0_wp, 1.0_wp, 0.0_wp]
-         call mirror(size(outcome%motion, 2), n - 1, [-1.0_wp, 1.0_wp, -1.0_wp], &
-            & outcome%motion)
+         call mirror(size(outcome%motion, 2), n - 1, [-1.0_wp, 1.0_wp, -1.0_wp], outcome%motion)
       end associate
    end subroutine unfold
 

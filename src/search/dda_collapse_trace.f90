@@ -63,7 +63,6 @@ contains
    !> from the third value on the parabola through three tells what the secant leaves
    pure subroutine trace(family, search, limit, critical, proposal)
       class(family_t), intent(in) :: family
-      !> What is searched
       type(search_t), intent(in) :: search
       !> The end of the range on the side that stands
       real(wp), intent(in) :: limit
@@ -120,7 +119,6 @@ contains
    !> Where a mechanism stops, and how near to that to decide
    pure subroutine propose(family, search, mechanism, next, coarse_slope, noise, critical, proposal)
       class(family_t), intent(in) :: family
-      !> What is searched
       type(search_t), intent(in) :: search
       type(frozen_t), intent(in) :: mechanism
       !> Where it stops
@@ -129,7 +127,6 @@ contains
       real(wp), intent(in) :: coarse_slope
       !> Noise of the power; raised where rounding shows
       real(wp), intent(inout) :: noise
-      !> What was found so far; the factorisations are counted
       type(critical_t), intent(inout) :: critical
       type(proposal_t), intent(inout) :: proposal
 
@@ -150,12 +147,10 @@ contains
    end subroutine propose
 
    !> Freeze the last collapse
-   pure function frozen(family, critical) result(mechanism)
+   pure type(frozen_t) function frozen(family, critical) result(mechanism)
       class(family_t), intent(in) :: family
       !> What was found so far, a collapse among it
       type(critical_t), intent(in) :: critical
-      !> The mechanism
-      type(frozen_t) :: mechanism
       type(chain_t) :: chain
       type(settings_t) :: settings
       type(joint_face_t), allocatable :: face(:)
@@ -178,9 +173,7 @@ contains
 
    !> Half the width of a bracket over its value: of the tolerance, or of what rounding leaves
    pure real(wp) function least_half(search, critical)
-      !> What is searched
       type(search_t), intent(in) :: search
-      !> What was found so far, a collapse among it
       type(critical_t), intent(in) :: critical
       real(wp) :: resolution
 
@@ -198,7 +191,6 @@ contains
       type(frozen_t), intent(in) :: mechanism
       !> Change of the power with the value
       real(wp), intent(in) :: slope
-      !> The factorisations are counted
       type(critical_t), intent(inout) :: critical
       !> The proposal; its value is set
       type(proposal_t), intent(inout) :: proposal
@@ -223,9 +215,7 @@ contains
       type(frozen_t), intent(in) :: mechanism
       !> The value
       real(wp), intent(in) :: value
-      !> The factorisations are counted
       type(critical_t), intent(inout) :: critical
-      !> Noise of the power; raised where rounding shows
       real(wp), intent(inout) :: noise
       type(frozen_t) :: other
       real(wp) :: power(3), ignored
@@ -243,7 +233,6 @@ contains
 
    !> How near to its stop a mechanism becomes too slow for a decision to tell it from rest
    pure real(wp) function rest_resolution(critical, stop)
-      !> What was found so far
       type(critical_t), intent(in) :: critical
       !> Value at which the last collapse stops
       real(wp), intent(in) :: stop
@@ -258,9 +247,7 @@ contains
    pure subroutine power_at(family, mechanism, value, critical, power, noise, usable)
       class(family_t), intent(in) :: family
       type(frozen_t), intent(in) :: mechanism
-      !> The value
       real(wp), intent(in) :: value
-      !> The factorisations are counted
       type(critical_t), intent(inout) :: critical
       !> The power
       real(wp), intent(out) :: power

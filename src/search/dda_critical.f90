@@ -42,9 +42,7 @@ contains
    !> Search the critical value of a family of scenes
    pure subroutine find_critical(family, search, critical)
       class(family_t), intent(in) :: family
-      !> What is searched
       type(search_t), intent(in) :: search
-      !> What was found
       type(critical_t), intent(out) :: critical
       logical :: done
 
@@ -62,7 +60,6 @@ contains
    !> Close the bracket around the value
    pure subroutine close_bracket(family, search, critical)
       class(family_t), intent(in) :: family
-      !> What is searched
       type(search_t), intent(in) :: search
       !> What was found; chains may be halves
       type(critical_t), intent(out) :: critical
@@ -116,7 +113,6 @@ contains
    !> Go to the first collapse: from the start towards the low end, or else at the high end
    pure subroutine find_collapse(family, search, limit, critical)
       class(family_t), intent(in) :: family
-      !> What is searched
       type(search_t), intent(in) :: search
       !> The end of the range on the side that stands [unit of the parameter]
       real(wp), intent(out) :: limit
@@ -147,11 +143,9 @@ contains
    !> Go up from an undecided value to the first decided one
    pure subroutine ascend(family, search, value, critical, answer)
       class(family_t), intent(in) :: family
-      !> What is searched
       type(search_t), intent(in) :: search
       !> The undecided value
       real(wp), intent(in) :: value
-      !> Receives the decisions
       type(critical_t), intent(inout) :: critical
       !> One of verdict
       integer, intent(out) :: answer
@@ -167,11 +161,8 @@ contains
    !> Decide one value and keep the decision on its side of the bracket
    pure subroutine decide_at(family, value, critical, answer)
       class(family_t), intent(in) :: family
-      !> The value
       real(wp), intent(in) :: value
-      !> Receives the decision
       type(critical_t), intent(inout) :: critical
-      !> One of verdict
       integer, intent(out) :: answer
       type(decision_t), allocatable :: decision
       type(error_t), allocatable :: error
@@ -250,17 +241,13 @@ contains
 
    !> Where to decide next: just beyond the proposal, then just before it, then inside the bracket
    pure function candidate(critical, proposal, limit, in_vain) result(value)
-      !> What was found so far
       type(critical_t), intent(in) :: critical
       !> Where the last collapse stops
       type(proposal_t), intent(in) :: proposal
-      !> The end of the range on the side that stands
       real(wp), intent(in) :: limit
       !> Decisions since the last collapse
       integer, intent(in) :: in_vain
-      !> The value
-      real(wp) :: value
-      real(wp) :: beyond, before, far, toward
+      real(wp) :: value, beyond, before, far, toward
 
       far = limit
       if (allocated(critical%standing)) far = critical%stands
@@ -299,7 +286,6 @@ contains
    pure real(wp) function not_again(value, critical, undecided)
       !> The value to decide next
       real(wp), intent(in) :: value
-      !> What was found so far
       type(critical_t), intent(in) :: critical
       !> How many values in a row were undecided
       integer, intent(in) :: undecided
@@ -326,9 +312,7 @@ contains
    !> Whether the last two decisions are those that the proposal asked for, at the tolerance, so
    !> that another trace would tell nothing new
    pure logical function proved(search, critical, proposal)
-      !> What is searched
       type(search_t), intent(in) :: search
-      !> What was found so far
       type(critical_t), intent(in) :: critical
       !> Where the collapse before the last stops
       type(proposal_t), intent(in) :: proposal
@@ -342,11 +326,8 @@ contains
 
    !> Whether the bracket is as narrow as the proposal asks for
    pure logical function closed(search, critical, proposal)
-      !> What is searched
       type(search_t), intent(in) :: search
-      !> What was found so far
       type(critical_t), intent(in) :: critical
-      !> Where the last collapse stops
       type(proposal_t), intent(in) :: proposal
 
       closed = allocated(critical%standing) &

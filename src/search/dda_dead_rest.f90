@@ -29,8 +29,7 @@ contains
 
    !> Follow the path from its dead loads; where it finds no state under them though forces
    !> balance them, from the rest that blocks come to
-   pure subroutine follow_from_rest(settings, system, contacts, graph, stations, is_balanced, &
-      & proof)
+   pure subroutine follow_from_rest(settings, system, contacts, graph, stations, is_balanced, proof)
       type(settings_t), intent(in) :: settings
       type(block_system_t), intent(in) :: system
       type(contacts_t), intent(in) :: contacts

@@ -88,7 +88,6 @@ contains
       !> Whether forces and motions of what stands are not asked for
       logical, intent(in) :: bare
       type(decision_t), intent(out) :: decision
-      !> Receives pictures of the state that is told
       type(album_t), intent(inout), optional :: album
       type(graph_verdict_t) :: proof
       type(coulomb_state_t), allocatable :: start
@@ -130,7 +129,6 @@ contains
    !> Whether joints slide in the state that Coulomb's law has led to: no elastic sharing without
    !> slip is looked for then
    pure logical function has_slid(proof)
-      !> What stands
       type(graph_verdict_t), intent(in) :: proof
 
       has_slid = .false.
@@ -158,11 +156,8 @@ contains
       type(settings_t), intent(in) :: settings
       type(block_system_t), intent(in) :: system
       type(contacts_t), intent(in) :: contacts
-      !> That it stands
       type(graph_verdict_t), intent(in) :: proof
-      !> Receives blocks and contacts
       type(decision_t), intent(inout) :: decision
-      !> Receives pictures of them
       type(album_t), intent(inout), optional :: album
       logical :: shared
 
@@ -180,11 +175,9 @@ contains
       type(block_system_t), intent(in) :: system
       !> The contacts, with the faces to begin with
       type(contacts_t), intent(in) :: contacts
-      !> Receives blocks and contacts
       type(decision_t), intent(inout) :: decision
       !> Whether that is how they are shared out: not where joints slide under Coulomb friction
       logical, intent(out) :: shared
-      !> Receives pictures of them
       type(album_t), intent(inout), optional :: album
       type(settings_t) :: convex
 
@@ -204,7 +197,6 @@ contains
       type(settings_t), intent(in) :: settings
       type(block_system_t), intent(in) :: system
       type(contacts_t), intent(in) :: contacts
-      !> That it stands
       type(graph_verdict_t), intent(in) :: proof
       !> Receives them; what its outcome counts is kept
       type(decision_t), intent(inout) :: decision
@@ -224,9 +216,7 @@ contains
       type(contacts_t), intent(in) :: contacts
       !> That it falls
       type(graph_verdict_t), intent(in) :: proof
-      !> Receives them
       type(decision_t), intent(inout) :: decision
-      !> Receives pictures of them
       type(album_t), intent(inout), optional :: album
       type(settings_t) :: convex
 
@@ -256,7 +246,6 @@ contains
    pure subroutine show_end(settings, decision, album)
       type(settings_t), intent(in) :: settings
       type(decision_t), intent(in) :: decision
-      !> Receives it alone
       type(album_t), intent(inout) :: album
       type(march_t) :: march
 
@@ -268,12 +257,9 @@ contains
    !> Decide by steps to rest or collapse
    pure subroutine decide_by_steps(settings, system, contacts, decision, album)
       type(settings_t), intent(in) :: settings
-      !> The blocks at the beginning
       type(block_system_t), intent(in) :: system
-      !> The contacts at the beginning
       type(contacts_t), intent(in) :: contacts
       type(decision_t), intent(out) :: decision
-      !> Receives pictures of the run that decides
       type(album_t), intent(inout), optional :: album
       type(settings_t) :: convex
 
@@ -300,15 +286,11 @@ contains
    !> that the blocks were given
    pure subroutine run_in_time(settings, system, contacts, decision, album, onward)
       type(settings_t), intent(in) :: settings
-      !> The blocks at the beginning
       type(block_system_t), intent(in) :: system
-      !> The contacts at the beginning
       type(contacts_t), intent(in) :: contacts
       !> The decision; the counts of the run are added to those that it has
       type(decision_t), intent(inout) :: decision
-      !> Receives pictures
       type(album_t), intent(inout), optional :: album
-      !> Where the run goes on and where it ended
       type(march_t), intent(inout), optional :: onward
       type(settings_t) :: static
       type(decision_t) :: settled
@@ -347,15 +329,10 @@ contains
    !> Run a structure under Coulomb friction from its beginning
    pure subroutine follow_coulomb(settings, system, contacts, decision, album, onward)
       type(settings_t), intent(in) :: settings
-      !> The blocks at the beginning
       type(block_system_t), intent(in) :: system
-      !> The contacts at the beginning
       type(contacts_t), intent(in) :: contacts
-      !> The decision; the counts of the run are added to those that it has
       type(decision_t), intent(inout) :: decision
-      !> Receives pictures
       type(album_t), intent(inout), optional :: album
-      !> Where the run goes on and where it ended
       type(march_t), intent(inout), optional :: onward
       type(settings_t) :: coulomb
       type(outcome_t) :: before

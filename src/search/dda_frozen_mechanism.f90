@@ -100,7 +100,6 @@ contains
 
    !> Multiply a motion by the inertia
    pure subroutine weigh(equations, dt, motion)
-      !> The equations, for the mass
       type(equations_t), intent(in) :: equations
       !> Length of the step [s]
       real(wp), intent(in) :: dt
@@ -114,16 +113,14 @@ contains
    end subroutine weigh
 
    !> Relative error of a block's area by the rounding of its corners' coordinates
-   pure function area_rounding(system, block) result(error)
+   pure real(wp) function area_rounding(system, block)
       type(block_system_t), intent(in) :: system
       !> Number of the block
       integer, intent(in) :: block
-      !> The relative error
-      real(wp) :: error
 
       associate (vertex => system%vertex(:, &
          & system%first_vertex(block):system%first_vertex(block + 1) - 1))
-         error = epsilon(1.0_wp)*maxval(abs(vertex)) &
+         area_rounding = epsilon(1.0_wp)*maxval(abs(vertex)) &
             & *sum(norm2(vertex - cshift(vertex, 1, dim=2), dim=1))/system%area(block)
       end associate
    end function area_rounding

@@ -55,14 +55,12 @@ contains
    end function is_push
 
    !> Settings whose push is not live
-   pure function with_dead_push(settings) result(other)
+   pure type(settings_t) function with_dead_push(settings)
       type(settings_t), intent(in) :: settings
-      !> The settings
-      type(settings_t) :: other
 
-      other = settings
-      other%push = full_push(settings)
-      other%live_push = .false.
+      with_dead_push = settings
+      with_dead_push%push = full_push(settings)
+      with_dead_push%live_push = .false.
    end function with_dead_push
 
    !> Whether nothing but weight acts, so that gravity that tilts is a push of fixed weight
@@ -76,7 +74,6 @@ contains
 
    !> What is searched, from where it does nothing
    pure real(wp) function coefficient(load, settings)
-      !> One of searched_load
       integer, intent(in) :: load
       type(settings_t), intent(in) :: settings
 
@@ -86,14 +83,11 @@ contains
    end function coefficient
 
    !> Settings with another value of what is searched
-   pure function with_coefficient(settings, load, value) result(other)
+   pure type(settings_t) function with_coefficient(settings, load, value) result(other)
       type(settings_t), intent(in) :: settings
-      !> One of searched_load
       integer, intent(in) :: load
       !> The value
       real(wp), intent(in) :: value
-      !> The settings
-      type(settings_t) :: other
 
       other = settings
       select case (load)
@@ -125,9 +119,7 @@ contains
 
    !> Forces that carry the loads at a value that stands; those that carry a limit do not carry less
    pure subroutine carry_load(load, value, scene, graph, force)
-      !> One of searched_load
       integer, intent(in) :: load
-      !> The value
       real(wp), intent(in) :: value
       type(scene_t), intent(in) :: scene
       type(joint_graph_t), intent(in) :: graph
@@ -142,9 +134,7 @@ contains
 
    !> What a coefficient of one adds to the loads
    pure function added_loads(load, settings, scene, graph) result(live)
-      !> One of searched_load
       integer, intent(in) :: load
-      !> Settings of the run, without histories
       type(settings_t), intent(in) :: settings
       type(scene_t), intent(in) :: scene
       type(joint_graph_t), intent(in) :: graph
@@ -157,13 +147,11 @@ contains
 
    !> Value of what is searched at which a path ended
    pure real(wp) function value_at_end(load, far, stations, proof) result(value)
-      !> One of searched_load
       integer, intent(in) :: load
       !> Its value at the end of the path
       real(wp), intent(in) :: far
       !> Stations of the path
       type(load_stations_t), intent(in) :: stations
-      !> How it ended
       type(graph_verdict_t), intent(in) :: proof
       real(wp) :: angle(2)
       integer :: i

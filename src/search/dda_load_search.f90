@@ -65,9 +65,7 @@ contains
    !> Search a family whose parameter is a load coefficient
    pure subroutine find_critical_load(family, search, critical, done)
       class(family_t), intent(in) :: family
-      !> What is searched
       type(search_t), intent(in) :: search
-      !> What was found
       type(critical_t), intent(inout) :: critical
       !> Whether the search could be done so; otherwise nothing was
       logical, intent(out) :: done
@@ -131,9 +129,7 @@ contains
       type(joint_graph_t), intent(in) :: graph
       !> End of the range on this side
       real(wp), intent(in) :: last
-      !> What is searched
       type(search_t), intent(in) :: search
-      !> Where it falls
       type(side_t), intent(inout) :: side
       type(load_stations_t) :: stations
       type(limit_load_t) :: limit
@@ -195,20 +191,15 @@ contains
 
    !> The associated limit of what is searched, where it is linear in the load
    pure subroutine find_associated(load, scene, graph, last, search, side, limit)
-      !> One of searched_load
       integer, intent(in) :: load
       type(scene_t), intent(in) :: scene
       type(joint_graph_t), intent(in) :: graph
-      !> End of the range on this side
       real(wp), intent(in) :: last
-      !> What is searched
       type(search_t), intent(in) :: search
-      !> Receives the limit
       type(side_t), intent(inout) :: side
       type(limit_load_t), intent(out) :: limit
       type(settings_t) :: settings
-      real(wp) :: dead(3, graph%n_block), live(3, graph%n_block)
-      real(wp) :: tolerance
+      real(wp) :: dead(3, graph%n_block), live(3, graph%n_block), tolerance
       integer :: varied
 
       if (load == searched_load%tilt .and. .not. (only_weight(scene%settings) &
@@ -241,12 +232,9 @@ contains
 
    !> Take the associated limit as the answer
    pure subroutine take_associated(last, search, limit, side)
-      !> End of the range on this side
       real(wp), intent(in) :: last
-      !> What is searched
       type(search_t), intent(in) :: search
       type(limit_load_t), intent(in) :: limit
-      !> Where it falls
       type(side_t), intent(inout) :: side
 
       associate (proof => side%proof)
@@ -285,14 +273,12 @@ contains
    !> The verdict of the range. Where it falls on both sides, the critical value is that to the
    !> right, and the other one is told beside it
    pure subroutine conclude(search, low, high, scene, right, left, critical)
-      !> What is searched
       type(search_t), intent(in) :: search
       !> Ends of the range, from where the coefficient does nothing
       real(wp), intent(in) :: low, high
       type(scene_t), intent(in) :: scene
       !> Where it falls to the right and to the left
       type(side_t), intent(in) :: right, left
-      !> Receives the verdict
       type(critical_t), intent(inout) :: critical
       logical :: falls_left, falls_right, falls_at_once
 
@@ -340,13 +326,11 @@ contains
    !> The bracket about the value at which it falls to one side
    pure subroutine close_bracket(search, low, high, scene, side, outward, critical)
       type(search_t), intent(in) :: search
-      !> Ends of the range, from where the coefficient does nothing
       real(wp), intent(in) :: low, high
       type(scene_t), intent(in) :: scene
       type(side_t), intent(in) :: side
       !> 1 to the right, -1 to the left
       real(wp), intent(in) :: outward
-      !> Receives the bracket
       type(critical_t), intent(inout) :: critical
       real(wp) :: scale
 
@@ -366,10 +350,8 @@ contains
    !> Keep the associated limit of a side, and how far its path was followed
    pure subroutine keep_limit(search, low, high, side, critical)
       type(search_t), intent(in) :: search
-      !> Ends of the range, from where the coefficient does nothing
       real(wp), intent(in) :: low, high
       type(side_t), intent(in) :: side
-      !> Receives them
       type(critical_t), intent(inout) :: critical
       real(wp) :: scale
 

@@ -62,7 +62,6 @@ contains
    !> Follow a collapse under Coulomb friction where joints slide in it, for its motion to be that
    !> of joints that do not open by sliding
    pure subroutine follow_collapse(scene, decision, album)
-      !> The scene that fell
       type(scene_t), intent(in) :: scene
       !> Its decision; becomes that of the run under Coulomb friction if that one falls too
       type(decision_t), intent(inout) :: decision
@@ -159,9 +158,7 @@ contains
 
    !> Largest displacement in the last step: of a centre, or of the sides of a joint past another
    pure real(wp) function largest_of(contacts, motion)
-      !> Contacts at the end of the step
       type(contacts_t), intent(in) :: contacts
-      !> Motion of the blocks in the step, where it is known: (n_dof, n_equation)
       real(wp), intent(in), optional :: motion(:, :)
 
       largest_of = max(0.0_wp, maxval(abs(contacts%increment)))

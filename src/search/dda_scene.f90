@@ -64,7 +64,6 @@ module dda_scene
          !> Value of its parameter
          real(wp), intent(in) :: value
          type(scene_t), intent(out) :: scene
-         !> Allocated if no scene has this value
          type(error_t), allocatable, intent(out) :: error
       end subroutine build_scene
    end interface
@@ -74,21 +73,18 @@ contains
    !> Make the scene of one value where it is not there yet; without joints where there is none
    pure subroutine build_once(family, value, scene)
       class(family_t), intent(in) :: family
-      !> Value of its parameter
       real(wp), intent(in) :: value
       type(scene_t), intent(inout) :: scene
       type(error_t), allocatable :: error
 
       if (allocated(scene%contacts%joint)) return
       call family%build(value, scene, error)
-      if (allocated(error) .and. allocated(scene%contacts%joint)) &
-         & deallocate (scene%contacts%joint)
+      if (allocated(error) .and. allocated(scene%contacts%joint)) deallocate (scene%contacts%joint)
    end subroutine build_once
 
    !> Scenes that are no chains
    pure subroutine link_nothing(family, value, settings, chain, linked)
       class(family_t), intent(in) :: family
-      !> Value of its parameter
       real(wp), intent(in) :: value
       type(settings_t), intent(out) :: settings
       type(chain_t), intent(out) :: chain

@@ -43,7 +43,6 @@ contains
       type(scene_t), intent(inout) :: scene
       !> The decision of the last stage; its counts are those of all
       type(decision_t), intent(out) :: decision
-      !> Receives pictures
       type(album_t), intent(inout) :: album
       !> Where a dynamic run goes on and where it ended
       type(march_t), intent(inout) :: onward
@@ -87,9 +86,7 @@ contains
       real(wp), intent(in) :: time(:)
       !> The decision; blocks and contacts at the beginning in, at the end out
       type(decision_t), intent(inout) :: decision
-      !> Receives pictures
       type(album_t), intent(inout) :: album
-      !> Where the run goes on and where it ended
       type(march_t), intent(inout) :: onward
       !> Time at which the last stage began [s]
       real(wp), intent(inout) :: last
@@ -113,13 +110,9 @@ contains
 
    !> Go on in time to the end of a stage
    pure subroutine move_on(stage, album, onward, decision)
-      !> Settings of the stage
       type(settings_t), intent(in) :: stage
-      !> Receives pictures
       type(album_t), intent(inout) :: album
-      !> Where the run goes on and where it ended
       type(march_t), intent(inout) :: onward
-      !> Blocks and contacts: at the beginning in, at the end out
       type(decision_t), intent(inout) :: decision
       type(block_system_t) :: system
       type(contacts_t) :: contacts
@@ -135,11 +128,9 @@ contains
    !> Follow the loading path through all stages
    pure subroutine decide_at_rest(settings, time, decision, last)
       type(settings_t), intent(in) :: settings
-      !> Times at which stages begin, and the end: (n_stage + 1) [s]
       real(wp), intent(in) :: time(:)
       !> The decision; blocks and contacts at the beginning in, those of the last stage out
       type(decision_t), intent(inout) :: decision
-      !> Time at which the last stage began [s]
       real(wp), intent(inout) :: last
       type(settings_t) :: stage
       type(block_system_t) :: system
@@ -191,18 +182,13 @@ contains
 
    !> Blocks and contacts of the last stage
    pure subroutine record_stage(settings, stage, system, contacts, proof, in_order, decision)
-      type(settings_t), intent(in) :: settings
-      !> Those of the stage
-      type(settings_t), intent(in) :: stage
-      !> The blocks that are there
+      type(settings_t), intent(in) :: settings, stage
       type(block_system_t), intent(in) :: system
       type(contacts_t), intent(in) :: contacts
-      !> How the stage ended
       type(graph_verdict_t), intent(in) :: proof
       !> Whether joints have slid or blocks were built in any stage; otherwise forces are those of
       !> the last shape built at once
       logical, intent(in) :: in_order
-      !> Receives them
       type(decision_t), intent(inout) :: decision
       logical :: slides
 
@@ -214,8 +200,7 @@ contains
             call decide(settings, system, contacts, decision)
             slides = has_slipped(decision)
          end if
-         if (in_order .or. slides) &
-            & call record_rest(stage, system, contacts, proof, decision)
+         if (in_order .or. slides) call record_rest(stage, system, contacts, proof, decision)
          decision%outcome%slides_at_once = slides
       else
          decision%system = system
@@ -287,12 +272,8 @@ contains
       type(settings_t), intent(in) :: settings
       !> Time at which the next stage begins [s]
       real(wp), intent(in) :: time
-      !> The blocks of the stage that has ended
       type(block_system_t), intent(in) :: system
-      type(contacts_t), intent(in) :: contacts
-      !> The contacts of all blocks
-      type(contacts_t), intent(in) :: all
-      !> How it ended
+      type(contacts_t), intent(in) :: contacts, all
       type(graph_verdict_t), intent(in) :: proof
       type(coulomb_state_t), allocatable, intent(out) :: start
       type(joint_graph_t) :: before, after
@@ -344,11 +325,8 @@ contains
    !> all blocks, then of the held point, then of the bar
    pure function labels(settings, system, all, graph) result(label)
       type(settings_t), intent(in) :: settings
-      !> The blocks of the stage
       type(block_system_t), intent(in) :: system
-      !> The contacts of all blocks
       type(contacts_t), intent(in) :: all
-      !> The joints of the stage
       type(joint_graph_t), intent(in) :: graph
       !> The numbers: (n_joint)
       integer, allocatable :: label(:)

@@ -43,9 +43,7 @@ contains
    !> Search the critical value
    pure subroutine find_critical_in_time(family, search, critical)
       class(family_t), intent(in) :: family
-      !> What is searched
       type(search_t), intent(in) :: search
-      !> What was found
       type(critical_t), intent(out) :: critical
       type(runs_t) :: runs
       real(wp) :: value
@@ -104,11 +102,8 @@ contains
    !> Halve the first change till its neighbours are as near as was asked for
    pure subroutine close_bracket(family, search, runs, critical)
       class(family_t), intent(in) :: family
-      !> What is searched
       type(search_t), intent(in) :: search
-      !> What has been run; not all alike
       type(runs_t), intent(inout) :: runs
-      !> Receives the bracket
       type(critical_t), intent(inout) :: critical
       real(wp) :: pair(2), width
       integer :: answer, i, try
@@ -137,9 +132,7 @@ contains
    !> Have the decisions of the two neighbours, which may be none of the last
    pure subroutine keep_decisions(family, runs, critical)
       class(family_t), intent(in) :: family
-      !> What has been run
       type(runs_t), intent(inout) :: runs
-      !> Receives the decisions
       type(critical_t), intent(inout) :: critical
       integer :: answer
 
@@ -151,9 +144,7 @@ contains
 
    !> Keep where else the answer changes
    pure subroutine keep_changes(runs, critical)
-      !> What has been run
       type(runs_t), intent(in) :: runs
-      !> Receives the neighbours of each other change
       type(critical_t), intent(inout) :: critical
       integer :: i, first
 
@@ -171,9 +162,7 @@ contains
       class(family_t), intent(in) :: family
       !> The value
       real(wp), intent(in) :: value
-      !> Receives the answer
       type(runs_t), intent(inout) :: runs
-      !> Receives the decision
       type(critical_t), intent(inout) :: critical
       !> Stable, collapsed or undecided
       integer, intent(out) :: answer

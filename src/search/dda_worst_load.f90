@@ -107,7 +107,6 @@ contains
 
    !> Whether an arc begins with the load that the arc before ends with
    pure logical function goes_on(arc, k)
-      !> The live loads: (n)
       type(load_arc_t), intent(in) :: arc(:)
       !> Number of the arc
       integer, intent(in) :: k
@@ -130,15 +129,11 @@ contains
    !> factor carries are a cone: a piece has none if its ends and the load in which its tangents
    !> meet are in it
    pure recursive subroutine find_bounded(arc, k, from, to, chase, least)
-      !> The live loads: (n)
       type(load_arc_t), intent(in) :: arc(:)
-      !> Number of the arc
       integer, intent(in) :: k
       !> Shares of the way along it
       real(wp), intent(in) :: from, to
-      !> What the search works on
       type(chase_t), intent(in) :: chase
-      !> The least factor so far
       type(least_factor_t), intent(inout) :: least
       type(limit_load_t) :: limit
       real(wp) :: live(3, size(chase%dead, 2)), middle
@@ -159,13 +154,10 @@ contains
 
    !> Pass a load: carry it at the least factor so far, or go down from it
    pure subroutine pass(arc, k, share, chase, least)
-      !> The live loads: (n)
       type(load_arc_t), intent(in) :: arc(:)
-      !> Number of its arc
       integer, intent(in) :: k
       !> Share of the way along it
       real(wp), intent(in) :: share
-      !> What the search works on
       type(chase_t), intent(inout) :: chase
       type(least_factor_t), intent(inout) :: least
       logical :: carried
@@ -176,13 +168,9 @@ contains
 
    !> Pass the loads between two of an arc that are passed
    pure recursive subroutine pass_between(arc, k, from, to, chase, least)
-      !> The live loads: (n)
       type(load_arc_t), intent(in) :: arc(:)
-      !> Number of their arc
       integer, intent(in) :: k
-      !> Shares of the way along it
       real(wp), intent(in) :: from, to
-      !> What the search works on
       type(chase_t), intent(inout) :: chase
       type(least_factor_t), intent(inout) :: least
       real(wp) :: middle
@@ -209,7 +197,6 @@ contains
       real(wp), intent(in) :: weight(3)
       !> The factor
       real(wp), intent(in) :: factor
-      !> What the search works on
       type(chase_t), intent(inout) :: chase
       !> Whether it is
       logical, intent(out) :: carried
@@ -225,13 +212,9 @@ contains
    !> The factor of a load of an arc; then that of the load with most power on its mechanism, if the
    !> mechanism lets that load be carried at less than the least so far, and so on
    pure subroutine descend(arc, k, share, chase, least)
-      !> The live loads: (n)
       type(load_arc_t), intent(in) :: arc(:)
-      !> Number of the arc
       integer, intent(in) :: k
-      !> Share of the way along it
       real(wp), intent(in) :: share
-      !> What the search works on
       type(chase_t), intent(in) :: chase
       type(least_factor_t), intent(inout) :: least
       type(limit_load_t) :: limit
@@ -258,7 +241,6 @@ contains
 
    !> The load of all arcs with most power on a mechanism
    pure subroutine find_most_power(arc, velocity, least, k, share)
-      !> The live loads: (n)
       type(load_arc_t), intent(in) :: arc(:)
       !> Velocities of the mechanism: (3, n_block)
       real(wp), intent(in) :: velocity(:, :)
@@ -266,7 +248,6 @@ contains
       real(wp), intent(in) :: least
       !> Number of its arc; 0 where none has
       integer, intent(out) :: k
-      !> Share of the way along it
       real(wp), intent(out) :: share
       real(wp) :: most, power(3), place(3), slope, bend
       integer :: i, j
@@ -309,7 +290,6 @@ contains
 
    !> Shares of the three loads of an arc in that at a share of the way
    pure function weights(share)
-      !> Share of the way
       real(wp), intent(in) :: share
       !> Shares of the loads
       real(wp) :: weights(3)

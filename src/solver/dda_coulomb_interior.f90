@@ -124,9 +124,7 @@ contains
    !> An iterate in the middle of the cones
    pure subroutine begin(joints, load, face, x)
       type(coulomb_joints_t), intent(in) :: joints
-      !> The load: (n_dof, n_block)
       real(wp), intent(in) :: load(:, :)
-      !> Whether there is a face: (4, n_joint)
       logical, intent(in) :: face(:, :)
       type(coulomb_interior_t), intent(out) :: x
       real(wp) :: push
@@ -164,14 +162,9 @@ contains
    !> What an iterate leaves of the equations
    pure subroutine find_rest(joints, load, damping, face, x, rest)
       type(coulomb_joints_t), intent(in) :: joints
-      !> The load: (n_dof, n_block)
-      real(wp), intent(in) :: load(:, :)
-      !> Multiple of the mass
-      real(wp), intent(in) :: damping
-      !> Whether there is a face: (4, n_joint)
+      real(wp), intent(in) :: load(:, :), damping
       logical, intent(in) :: face(:, :)
       type(coulomb_interior_t), intent(in) :: x
-      !> What is left
       type(rest_t), intent(inout) :: rest
       integer :: n_joint
 
@@ -195,9 +188,7 @@ contains
    pure subroutine factor_springs(joints, matrix, damping, face, x)
       type(coulomb_joints_t), intent(in) :: joints
       type(coulomb_matrix_t), intent(inout) :: matrix
-      !> Multiple of the mass
       real(wp), intent(in) :: damping
-      !> Whether there is a face: (4, n_joint)
       logical, intent(in) :: face(:, :)
       type(coulomb_interior_t), intent(in) :: x
       real(wp) :: ratio(4), spring(3, 3, size(face, 2))
@@ -223,14 +214,10 @@ contains
    !> The step that brings what is left to nothing, corrected until forces balance
    pure subroutine find_step(joints, matrix, damping, face, x, rest, step)
       type(coulomb_joints_t), intent(in) :: joints
-      !> Their matrix, factored
       type(coulomb_matrix_t), intent(in) :: matrix
-      !> Multiple of the mass
       real(wp), intent(in) :: damping
-      !> Whether there is a face: (4, n_joint)
       logical, intent(in) :: face(:, :)
       type(coulomb_interior_t), intent(in) :: x
-      !> What is left of the equations
       type(rest_t), intent(in) :: rest
       type(coulomb_interior_t), intent(inout) :: step
       integer, parameter :: max_correction = 3
@@ -274,13 +261,11 @@ contains
    !> nothing
    pure subroutine answer_joints(joints, face, ratio, drive, part)
       type(coulomb_joints_t), intent(in) :: joints
-      !> Whether there is a face: (4, n_joint)
       logical, intent(in) :: face(:, :)
       !> Flow over slack: (4, n_joint)
       real(wp), intent(in) :: ratio(:, :)
       !> What the springs are pressed together by: (3, n_joint)
       real(wp), intent(in) :: drive(:, :)
-      !> Receives forces and slacks
       type(coulomb_interior_t), intent(inout) :: part
       real(wp) :: bound, spring
       integer :: i, j
@@ -307,10 +292,8 @@ contains
 
    !> The longest step, 1 at most, that keeps a share of every slack and flow
    pure real(wp) function longest(face, x, step, share)
-      !> Whether there is a face: (4, n_joint)
       logical, intent(in) :: face(:, :)
-      type(coulomb_interior_t), intent(in) :: x
-      type(coulomb_interior_t), intent(in) :: step
+      type(coulomb_interior_t), intent(in) :: x, step
       !> How much of the way to the first zero is gone
       real(wp), intent(in) :: share
       integer :: i, j

@@ -60,7 +60,6 @@ contains
 
    !> Joints in units of their own
    pure subroutine new_coulomb_joints(graph, load, joints)
-      !> The joints in SI units
       type(joint_graph_t), intent(in) :: graph
       !> What they carry, by which their unit of force is chosen: (n_dof, n_block)
       real(wp), intent(in) :: load(:, :)
@@ -103,7 +102,6 @@ contains
 
    !> Roles of corners and of joints by their kind
    pure subroutine set_roles(joints)
-      !> Receives them
       type(coulomb_joints_t), intent(inout) :: joints
       integer :: j
 
@@ -198,7 +196,6 @@ contains
    !> Mean magnitude of those of some numbers that are positive, 1 if there are none: a few soft
    !> joints of fill or bolts are no measure of the others
    pure real(wp) function typical(x)
-      !> The numbers: (:)
       real(wp), intent(in) :: x(:)
 
       typical = exp(mean(log(pack(x, x > 0.0_wp))))

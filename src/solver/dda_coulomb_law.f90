@@ -57,11 +57,10 @@ module dda_coulomb_law
 
 contains
 
-   !> The state of joints that carry nothing
-   pure function unloaded_state(joints) result(state)
+   !> The state of joints that carry nothing: no force, no motion; corners are open where they have
+   !> gaps
+   pure type(coulomb_state_t) function unloaded_state(joints) result(state)
       type(coulomb_joints_t), intent(in) :: joints
-      !> No force, no motion; corners are open where they have gaps
-      type(coulomb_state_t) :: state
       integer :: i, j, n_block, n_dof, n_joint
 
       n_dof = joints%graph%n_dof
@@ -149,15 +148,13 @@ contains
          end if
          after%face(3, j) = shear_face(joints, j, after%face(:2, j), after%face(3, j))
          if (after%face(3, j) == face%free) after%force(3, j) = 0.0_wp
-         after%slip(j) = before%slip(j) &
-            & + joints%graph%compliance(3, j)*(after%force(3, j) - trial)
+         after%slip(j) = before%slip(j) + joints%graph%compliance(3, j)*(after%force(3, j) - trial)
       end do
    end subroutine apply_law
 
    !> How the forces of a joint answer its openings: rate of force = -stiffness*rate of opening
    pure function joint_stiffness(joints, j, faces) result(stiffness)
       type(coulomb_joints_t), intent(in) :: joints
-      !> Number of the joint
       integer, intent(in) :: j
       !> What it does: (3)
       integer, intent(in) :: faces(3)
@@ -184,7 +181,6 @@ contains
       type(coulomb_joints_t), intent(in) :: joints
       !> What corners and joints do: (3, n_joint)
       integer, intent(in), contiguous :: faces(:, :)
-      !> Opening 1, opening 2, slip: (3, n_joint)
       real(wp), intent(in), contiguous :: opening(:, :)
       !> N1, N2, T: (3, n_joint)
       real(wp), intent(out), contiguous :: force(:, :)
@@ -225,7 +221,6 @@ contains
    pure subroutine force_faces(joints, state, faces, change)
       type(coulomb_joints_t), intent(in) :: joints
       type(coulomb_state_t), intent(in) :: state
-      !> What corners and joints are to do: (3, n_joint)
       integer, intent(in), contiguous :: faces(:, :)
       !> Change of N1, N2 and T: (3, n_joint)
       real(wp), intent(out), contiguous :: change(:, :)

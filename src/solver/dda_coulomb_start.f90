@@ -56,7 +56,6 @@ contains
    pure subroutine find_elastic_motion(joints, equations, load, state, largest)
       type(coulomb_joints_t), intent(in) :: joints
       type(coulomb_equations_t), intent(inout) :: equations
-      !> The load: (n_dof, n_block)
       real(wp), intent(in) :: load(:, :)
       type(coulomb_state_t), intent(in) :: state
       !> The displacement
@@ -72,7 +71,6 @@ contains
    pure subroutine try_interior(joints, equations, load, first, state, stands)
       type(coulomb_joints_t), intent(in) :: joints
       type(coulomb_equations_t), intent(inout) :: equations
-      !> The load: (n_dof, n_block)
       real(wp), intent(in) :: load(:, :)
       !> Damping to begin with
       real(wp), intent(in) :: first
@@ -120,7 +118,6 @@ contains
    pure subroutine settle_faces(joints, equations, load, damping, most, before, after, left, passes)
       type(coulomb_joints_t), intent(in) :: joints
       type(coulomb_equations_t), intent(inout) :: equations
-      !> The load: (n_dof, n_block)
       real(wp), intent(in) :: load(:, :)
       !> Multiple of the mass
       real(wp), intent(in) :: damping
@@ -168,17 +165,12 @@ contains
       & state, settled)
       type(coulomb_joints_t), intent(in) :: joints
       type(coulomb_equations_t), intent(inout) :: equations
-      !> The load: (n_dof, n_block)
-      real(wp), intent(in) :: load(:, :)
-      !> Multiple of the mass
-      real(wp), intent(in) :: damping
+      real(wp), intent(in) :: load(:, :), damping
       !> Tolerance of the interior springs
       real(wp), intent(in) :: tolerance
-      !> Joints that carry nothing
       type(coulomb_state_t), intent(in) :: unloaded
       !> The iterate, from which it goes on
       type(coulomb_interior_t), intent(inout) :: inner
-      !> Receives motion, forces and faces
       type(coulomb_state_t), intent(inout) :: state
       !> Whether the interior springs have settled
       logical, intent(out) :: settled

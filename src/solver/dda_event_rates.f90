@@ -38,10 +38,8 @@ module dda_event_rates
 contains
 
    !> Room for rates, of a state that does not change
-   pure function new_rates(state) result(rates)
+   pure type(rates_t) function new_rates(state) result(rates)
       type(coulomb_state_t), intent(in) :: state
-      !> Its rates
-      type(rates_t) :: rates
 
       allocate (rates%face, source=state%face)
       allocate (rates%motion, mold=state%motion)
@@ -96,7 +94,6 @@ contains
       type(coulomb_joints_t), intent(in) :: joints
       !> Their equations, those of the rates
       type(coulomb_equations_t), intent(inout) :: equations
-      !> Rate of the load: (n_dof, n_block)
       real(wp), intent(in), contiguous :: load_rate(:, :)
       type(rates_t), intent(inout) :: rates
       integer, parameter :: max_turn = 40
@@ -123,13 +120,8 @@ contains
    pure subroutine solve_rates(joints, equations, load_rate, opening_rate, damping, rates)
       type(coulomb_joints_t), intent(in) :: joints
       type(coulomb_equations_t), intent(inout) :: equations
-      !> Rate of the load: (n_dof, n_block)
-      real(wp), intent(in), contiguous :: load_rate(:, :)
-      !> Rates of opening that are prescribed: (3, n_joint)
-      real(wp), intent(in), contiguous :: opening_rate(:, :)
-      !> Multiple of the mass
+      real(wp), intent(in), contiguous :: load_rate(:, :), opening_rate(:, :)
       real(wp), intent(in) :: damping
-      !> The rates, with their faces
       type(rates_t), intent(inout) :: rates
       real(wp) :: load(size(load_rate, 1), size(load_rate, 2))
 

@@ -64,10 +64,8 @@ contains
    !> Springs of equal stiffness beside the masses; forces and rates are then pushed inside
    pure subroutine begin(rays, path, springs, point)
       type(joint_rays_t), intent(in) :: rays
-      !> The load and the masses
       type(load_path_t), intent(in) :: path
       type(ray_matrix_t), intent(inout) :: springs
-      !> Where the iteration begins
       type(interior_point_t), intent(out) :: point
       real(wp), parameter :: inside = 10.0_wp
 

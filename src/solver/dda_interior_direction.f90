@@ -50,7 +50,6 @@ contains
       type(joint_rays_t), intent(in) :: rays
       type(load_path_t), intent(in) :: path
       type(ray_matrix_t), intent(inout) :: springs
-      !> Receives it
       type(turn_t), intent(inout) :: turn
 
       call solve_springs(rays, springs, path%live, turn%unit_response, turn%unit_rate)
@@ -79,7 +78,6 @@ contains
       type(load_path_t), intent(in) :: path
       type(interior_point_t), intent(in) :: point
       type(ray_matrix_t), intent(inout) :: springs
-      !> Aim in, direction out
       type(turn_t), intent(inout) :: turn
 
       call set_wide_springs(rays, path%mass, springs)
@@ -95,9 +93,7 @@ contains
       type(interior_point_t), intent(in) :: point
       !> Imbalance that needs no correction
       real(wp), intent(in) :: enough
-      !> The matrix with a usable factor
       type(ray_matrix_t), intent(inout) :: springs
-      !> Aim in, direction out
       type(turn_t), intent(inout) :: turn
 
       turn%dv = 0.0_wp
@@ -114,9 +110,7 @@ contains
       type(joint_rays_t), intent(in) :: rays
       type(load_path_t), intent(in) :: path
       type(interior_point_t), intent(in) :: point
-      !> Imbalance that needs no correction
       real(wp), intent(in) :: enough
-      !> The matrix with a usable factor
       type(ray_matrix_t), intent(inout) :: springs
       type(turn_t), intent(inout) :: turn
       integer, parameter :: max_correction = 3

@@ -87,7 +87,6 @@ contains
    pure subroutine solve_cones(rays, path, goal, springs, point)
       type(joint_rays_t), intent(in) :: rays
       type(load_path_t), intent(in) :: path
-      !> What is asked for
       type(interior_goal_t), intent(in) :: goal
       type(ray_matrix_t), intent(inout) :: springs
       !> Where it begins and ends
@@ -142,12 +141,10 @@ contains
    !> Whether the iteration ends here
    pure subroutine judge(path, goal, turn, idle, point)
       type(load_path_t), intent(in) :: path
-      !> What is asked for
       type(interior_goal_t), intent(in) :: goal
       type(turn_t), intent(in) :: turn
       !> Turns without progress
       integer, intent(in) :: idle
-      !> Receives its state
       type(interior_point_t), intent(inout) :: point
       real(wp) :: live
 

@@ -39,12 +39,10 @@ contains
    pure subroutine begin_turns(rays, path, goal, turn)
       type(joint_rays_t), intent(in) :: rays
       type(load_path_t), intent(in) :: path
-      !> What is asked for
       type(interior_goal_t), intent(in) :: goal
       type(turn_t), intent(out) :: turn
 
-      allocate (turn%lack, turn%rest, turn%unit_response, turn%response, turn%dv, &
-         & mold=path%dead)
+      allocate (turn%lack, turn%rest, turn%unit_response, turn%response, turn%dv, mold=path%dead)
       turn%lack = 0.0_wp
       turn%rest = 0.0_wp
       turn%unit_response = 0.0_wp
@@ -61,7 +59,6 @@ contains
       type(load_path_t), intent(in) :: path
       !> The point; receives the figures
       type(interior_point_t), intent(inout) :: point
-      !> Receives the residuals
       type(turn_t), intent(inout) :: turn
       real(wp) :: against, power
 
@@ -117,7 +114,6 @@ contains
       type(load_path_t), intent(in) :: path
       type(ray_matrix_t), intent(inout) :: springs
       type(interior_point_t), intent(in) :: point
-      !> Receives the direction
       type(turn_t), intent(inout) :: turn
 
       turn%accepted = max(min(1.0e-9_wp, 0.01_wp*point%gap)*path%largest_dead, &
@@ -138,7 +134,6 @@ contains
       type(joint_rays_t), intent(in) :: rays
       type(load_path_t), intent(in) :: path
       type(interior_point_t), intent(in) :: point
-      !> Receives it
       type(ray_matrix_t), intent(inout) :: springs
       real(wp) :: mean
 
@@ -153,7 +148,6 @@ contains
    pure subroutine correct(rays, path, goal, springs, point, turn)
       type(joint_rays_t), intent(in) :: rays
       type(load_path_t), intent(in) :: path
-      !> What is asked for
       type(interior_goal_t), intent(in) :: goal
       type(ray_matrix_t), intent(inout) :: springs
       type(interior_point_t), intent(in) :: point
@@ -187,7 +181,6 @@ contains
    !> The product x*s that a turn aims at
    pure real(wp) function aimed_product(rays, goal, point, turn, reach) result(product)
       type(joint_rays_t), intent(in) :: rays
-      !> What is asked for
       type(interior_goal_t), intent(in) :: goal
       type(interior_point_t), intent(in) :: point
       type(turn_t), intent(in) :: turn
@@ -216,7 +209,6 @@ contains
       type(ray_matrix_t), intent(inout) :: springs
       type(interior_point_t), intent(in) :: point
       type(turn_t), intent(inout) :: turn
-      !> Steps along it
       real(wp), intent(out) :: reach(2)
       real(wp), dimension(size(change, 1), size(change, 2)) :: dx, ds, soft
       real(wp) :: dv(3, 0:rays%n_block), dfactor, share, steps(2, n_share)
@@ -247,13 +239,11 @@ contains
    !> Longest steps along a direction of which the first, second ... n_share-th part of what the
    !> turn changed is taken
    pure function steps_of_shares(turn, dx, ds) result(steps)
-      !> The turn with the changed direction
       type(turn_t), intent(in) :: turn
       !> The direction before: (n_side, n_joint)
       real(wp), intent(in) :: dx(:, :), ds(:, :)
       !> Steps of forces and of rates: (2, n_share)
-      real(wp) :: steps(2, n_share)
-      real(wp) :: hurry(n_side, 2, n_share), from(n_side, 2), more(n_side, 2)
+      real(wp) :: steps(2, n_share), hurry(n_side, 2, n_share), from(n_side, 2), more(n_side, 2)
       integer :: i, j
 
       hurry = share_of_way
@@ -274,8 +264,7 @@ contains
    pure function longest_steps(turn) result(reach)
       type(turn_t), intent(in) :: turn
       !> Steps
-      real(wp) :: reach(2)
-      real(wp) :: hurry(n_side, 2)
+      real(wp) :: reach(2), hurry(n_side, 2)
       integer :: j
 
       hurry = share_of_way

@@ -36,11 +36,9 @@ module dda_joint_layers
 contains
 
    !> No tangents
-   pure function no_layers() result(layers)
-      !> None
-      type(joint_layers_t) :: layers
+   pure type(joint_layers_t) function no_layers()
 
-      allocate (layers%joint(0), layers%side(0), layers%share(0))
+      allocate (no_layers%joint(0), no_layers%side(0), no_layers%share(0))
    end function no_layers
 
    !> How far the forces of a joint lie beyond what it can carry without being crushed [N/m]
@@ -64,7 +62,6 @@ contains
       real(wp), intent(in) :: force(:, :)
       !> How far beyond they may lie [N/m]
       real(wp), intent(in) :: most
-      !> Receives the tangents
       type(joint_layers_t), intent(inout) :: layers
       !> Whether there are new ones
       logical, intent(out) :: touched
@@ -86,7 +83,6 @@ contains
    !> Bound the forces of all joints by their strengths
    pure subroutine bound_all(graph, layers)
       type(joint_graph_t), intent(in) :: graph
-      !> Receives the tangents
       type(joint_layers_t), intent(inout) :: layers
       integer :: j
 
@@ -105,7 +101,6 @@ contains
       integer, intent(in) :: side
       !> Normal force where it touches, over the strength
       real(wp), intent(in) :: share
-      !> Receives it
       type(joint_layers_t), intent(inout) :: layers
 
       layers%joint = [layers%joint, joint]
@@ -147,9 +142,7 @@ contains
    !> What a loading path needs of layers: springs that hardly give, plates that hardly weigh
    pure subroutine add_springs(graph, layers, layered)
       type(joint_graph_t), intent(in) :: graph
-      !> Tangents of their parabolas
       type(joint_layers_t), intent(in) :: layers
-      !> Joints and layers
       type(joint_graph_t), intent(inout) :: layered
       integer :: i, m, n
 
@@ -170,7 +163,6 @@ contains
 
    !> Put a plate in the place of a joint's second block, and a layer between the two
    pure subroutine place_layer(layers, number, strength, at, plate, layered, couple)
-      !> Tangents of the parabolas
       type(joint_layers_t), intent(in) :: layers
       !> Number of the layer
       integer, intent(in) :: number

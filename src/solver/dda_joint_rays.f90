@@ -186,7 +186,6 @@ contains
       type(joint_rays_t), intent(in) :: rays
       !> Their factors: (n_side, n_joint)
       real(wp), intent(in) :: x(:, :)
-      !> Unit of force: [N/m]
       real(wp), intent(in) :: unit
       !> N1, N2, T: (3, n_joint) [N/m]
       real(wp), intent(out) :: force(:, :)

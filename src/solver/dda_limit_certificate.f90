@@ -55,10 +55,7 @@ contains
 
    !> Factor at which the loads have no power on a mechanism: above it they drive it
    pure real(wp) function stopping_factor(dead, live, velocity) result(factor)
-      !> Loads at factor zero: (n_dof, n_block) [N/m, N/m, N ...]
-      real(wp), intent(in) :: dead(:, :)
-      !> What a factor of one adds: (n_dof, n_block) [N/m, N/m, N ...]
-      real(wp), intent(in) :: live(:, :)
+      real(wp), intent(in) :: dead(:, :), live(:, :)
       !> Velocities: (n_dof, n_block) [m/s, m/s, 1/s ...]
       real(wp), intent(in) :: velocity(:, :)
       real(wp) :: power
@@ -73,7 +70,6 @@ contains
       type(joint_graph_t), intent(in) :: graph
       !> Loads: (n_dof, n_block) [N/m, N/m, N ...]
       real(wp), intent(in) :: load(:, :)
-      !> N1, N2, T of each joint: (3, n_joint) [N/m]
       real(wp), intent(in) :: force(:, :)
       !> Largest force or moment left on a block, over the largest load [1]
       real(wp), intent(out) :: imbalance
@@ -103,12 +99,7 @@ contains
    !> load
    pure real(wp) function balance_margin(graph, load, force, velocity) result(margin)
       type(joint_graph_t), intent(in) :: graph
-      !> Loads: (n_dof, n_block) [N/m, N/m, N ...]
-      real(wp), intent(in) :: load(:, :)
-      !> N1, N2, T of each joint: (3, n_joint) [N/m]
-      real(wp), intent(in) :: force(:, :)
-      !> Velocities: (n_dof, n_block) [m/s, m/s, 1/s ...]
-      real(wp), intent(in) :: velocity(:, :)
+      real(wp), intent(in) :: load(:, :), force(:, :), velocity(:, :)
       real(wp) :: left(size(load, 1), size(load, 2))
 
       left = load
@@ -121,10 +112,7 @@ contains
    !> the forces are the factor's slope in any gap
    pure real(wp) function flow_margin(graph, force, velocity) result(margin)
       type(joint_graph_t), intent(in) :: graph
-      !> N1, N2, T of each joint: (3, n_joint) [N/m]
-      real(wp), intent(in) :: force(:, :)
-      !> Velocities: (n_dof, n_block) [m/s, m/s, 1/s ...]
-      real(wp), intent(in) :: velocity(:, :)
+      real(wp), intent(in) :: force(:, :), velocity(:, :)
       real(wp) :: rate(3, size(graph%kind)), fastest, slip
       integer :: j, k
 
@@ -171,7 +159,6 @@ contains
    !> which fibres along them close, as far as they do; sliding opens a joint by its friction
    pure real(wp) function crushing_power(graph, velocity) result(power)
       type(joint_graph_t), intent(in) :: graph
-      !> Velocities: (n_dof, n_block) [m/s, m/s, 1/s ...]
       real(wp), intent(in) :: velocity(:, :)
       real(wp) :: rate(3, size(graph%kind)), close(2), least
       integer :: j
@@ -198,7 +185,6 @@ contains
    !> Largest force or moment on a block that moves as a rigid body
    pure real(wp) function larger_load(graph, load) result(largest)
       type(joint_graph_t), intent(in) :: graph
-      !> Loads: (n_dof, n_block)
       real(wp), intent(in) :: load(:, :)
 
       largest = 0.0_wp
@@ -237,10 +223,7 @@ contains
    !> How far velocities are from a mechanism, and the power of a load on them
    pure subroutine check_velocities(graph, load, velocity, violation, power)
       type(joint_graph_t), intent(in) :: graph
-      !> Loads: (n_dof, n_block) [N/m, N/m, N ...]
-      real(wp), intent(in) :: load(:, :)
-      !> Velocities: (n_dof, n_block) [m/s, m/s, 1/s ...]
-      real(wp), intent(in) :: velocity(:, :)
+      real(wp), intent(in) :: load(:, :), velocity(:, :)
       !> Largest rate at which a joint is closed that cannot close, over the largest velocity [1]
       real(wp), intent(out) :: violation
       !> Power of the load [W/m]
@@ -266,9 +249,7 @@ contains
    !> How fast one joint moves against what it resists, along the worst of its forces whose normal
    !> part is one; of joints with much friction, whose shear part is one [m/s]
    pure real(wp) function beyond_flow(kind, friction, rate) result(beyond)
-      !> What it can carry, one of joint_kind
       integer, intent(in) :: kind
-      !> Coefficient of friction
       real(wp), intent(in) :: friction
       !> Opening 1, opening 2, slip: (3)
       real(wp), intent(in) :: rate(3)

@@ -130,7 +130,6 @@ contains
    !> Whether joints that do not crush can carry a load
    pure subroutine decide_cones(graph, load, decision)
       type(joint_graph_t), intent(in) :: graph
-      !> Loads: (n_dof, n_block) [N/m, N/m, N ...]
       real(wp), intent(in) :: load(:, :)
       type(load_decision_t), intent(out) :: decision
       type(joint_rays_t) :: rays
@@ -189,7 +188,6 @@ contains
    !> Follow the path from a load that strictly admissible forces carry to a given one
    pure subroutine go_to_load(rays, load, springs, point)
       type(joint_rays_t), intent(in) :: rays
-      !> Loads: (n_dof, n_block) [N/m, N/m, N ...]
       real(wp), intent(in) :: load(:, :)
       type(ray_matrix_t), intent(inout) :: springs
       !> Where the path ends; the load is at factor one
@@ -248,7 +246,6 @@ contains
    !> Forces that are equal along all rays, of the size of a load
    pure subroutine begin_inside(rays, load, point)
       type(joint_rays_t), intent(in) :: rays
-      !> The load in the units of the rays: (3, 0:n_block)
       real(wp), intent(in) :: load(:, 0:)
       !> Has these forces
       type(interior_point_t), intent(out) :: point
@@ -295,7 +292,6 @@ contains
 
    !> Mean load of a block; moments count where no forces do
    pure real(wp) function unit_of_force(load) result(unit)
-      !> Loads: (n_dof, n_block) [N/m, N/m, N ...]
       real(wp), intent(in) :: load(:, :)
 
       unit = sum(hypot(load(1, :), load(2, :)))
@@ -342,11 +338,8 @@ contains
    !> The decision, and the figures that prove it
    pure subroutine conclude(graph, load, point, decision)
       type(joint_graph_t), intent(in) :: graph
-      !> Loads: (n_dof, n_block) [N/m, N/m, N ...]
       real(wp), intent(in) :: load(:, :)
-      !> Where the path has ended
       type(interior_point_t), intent(in) :: point
-      !> Forces and velocities in, state and figures out
       type(load_decision_t), intent(inout) :: decision
       real(wp) :: imbalance, beyond_cone, beyond_flow, power
 

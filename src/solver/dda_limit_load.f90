@@ -5,8 +5,7 @@
 !>
 !> Equation (M6) of docs/method.md
 module dda_limit_load
-   use dda_interior_point, only : solve_cones, start_by_forces, start_by_springs, &
-      & worst
+   use dda_interior_point, only : solve_cones, start_by_forces, start_by_springs, worst
    use dda_interior_state, only : interior_goal_t, interior_point_t, interior_state, &
       & load_path_t, no_limit, set_path, size_of_load
    use dda_joint_graph, only : crushes, joint_graph_t
@@ -104,7 +103,6 @@ contains
       real(wp), intent(in) :: dead(:, :)
       !> What a factor of one adds: (3, n_block) [N/m, N/m, N]
       real(wp), intent(in) :: live(:, :)
-      !> Relative gap of the two factors
       real(wp), intent(in) :: tolerance
       !> Whether the dead load is taken to stand
       logical, intent(in) :: decided
@@ -152,14 +150,8 @@ contains
    !> The limit load of joints with layers for the parabolas of those that crush
    pure subroutine limit_layers(graph, layers, dead, live, tolerance, limit)
       type(joint_graph_t), intent(in) :: graph
-      !> Tangents of their parabolas
       type(joint_layers_t), intent(in) :: layers
-      !> Loads at factor zero: (3, n_block) [N/m, N/m, N]
-      real(wp), intent(in) :: dead(:, :)
-      !> What a factor of one adds: (3, n_block) [N/m, N/m, N]
-      real(wp), intent(in) :: live(:, :)
-      !> Relative gap of the two factors
-      real(wp), intent(in) :: tolerance
+      real(wp), intent(in) :: dead(:, :), live(:, :), tolerance
       !> The limit, forces and velocities of joints and blocks alone
       type(limit_load_t), intent(out) :: limit
       type(joint_graph_t) :: layered
@@ -189,13 +181,7 @@ contains
    !> The limit load of joints that do not crush
    pure subroutine limit_cones(graph, dead, live, tolerance, stands, limit)
       type(joint_graph_t), intent(in) :: graph
-      !> Loads at factor zero: (n_dof, n_block) [N/m, N/m, N ...]
-      real(wp), intent(in) :: dead(:, :)
-      !> What a factor of one adds: (n_dof, n_block) [N/m, N/m, N ...]
-      real(wp), intent(in) :: live(:, :)
-      !> Relative gap of the two factors
-      real(wp), intent(in) :: tolerance
-      !> Whether the dead load is taken to stand
+      real(wp), intent(in) :: dead(:, :), live(:, :), tolerance
       logical, intent(in) :: stands
       type(limit_load_t), intent(out) :: limit
       type(joint_rays_t) :: rays
@@ -231,12 +217,7 @@ contains
    !> any, or where these lead nowhere, from springs
    pure subroutine raise_live_load(rays, dead, live, tolerance, ceiling, springs, point)
       type(joint_rays_t), intent(in) :: rays
-      !> Loads at factor zero: (n_dof, n_block) [N/m, N/m, N ...]
-      real(wp), intent(in) :: dead(:, :)
-      !> What a factor of one adds: (n_dof, n_block) [N/m, N/m, N ...]
-      real(wp), intent(in) :: live(:, :)
-      !> Relative gap
-      real(wp), intent(in) :: tolerance
+      real(wp), intent(in) :: dead(:, :), live(:, :), tolerance
       !> Live loads so many times as large as the dead load are beyond bounds
       real(wp), intent(in) :: ceiling
       type(ray_matrix_t), intent(inout) :: springs
@@ -272,14 +253,12 @@ contains
    !> A live load that is carried alone is carried at any factor
    pure subroutine try_live_load_alone(rays, live, springs, unit, point, limit)
       type(joint_rays_t), intent(in) :: rays
-      !> What a factor of one adds: (n_dof, n_block) [N/m, N/m, N ...]
       real(wp), intent(in) :: live(:, :)
       type(ray_matrix_t), intent(inout) :: springs
       !> Unit of force, that of the live load where it is carried: [N/m]
       real(wp), intent(inout) :: unit
       !> The forces that carry it, if there are any
       type(interior_point_t), intent(inout) :: point
-      !> Receives the state
       type(limit_load_t), intent(inout) :: limit
       type(interior_point_t) :: alone
 
@@ -293,10 +272,7 @@ contains
    !> Factors and figures from forces and velocities alone
    pure subroutine certify(graph, dead, live, limit)
       type(joint_graph_t), intent(in) :: graph
-      !> Loads at factor zero: (n_dof, n_block) [N/m, N/m, N ...]
-      real(wp), intent(in) :: dead(:, :)
-      !> What a factor of one adds: (n_dof, n_block) [N/m, N/m, N ...]
-      real(wp), intent(in) :: live(:, :)
+      real(wp), intent(in) :: dead(:, :), live(:, :)
       !> State, forces and velocities in, the rest out
       type(limit_load_t), intent(inout) :: limit
       real(wp) :: rounding

@@ -96,7 +96,6 @@ contains
       real(wp), intent(in) :: left
       !> The state, left as it is unless another in balance is found
       type(coulomb_state_t), intent(inout) :: state
-      !> Receives the mechanism of a fall
       type(jump_t), intent(inout) :: jump
       !> How much was gained
       real(wp), intent(out) :: gained
@@ -133,18 +132,12 @@ contains
       & moved, end)
       type(coulomb_joints_t), intent(in) :: joints
       type(coulomb_equations_t), intent(inout) :: equations
-      !> What grows of the load: (n_dof, n_block)
-      real(wp), intent(in) :: load_rate(:, :)
-      !> Openings that grow with it: (3, n_joint)
-      real(wp), intent(in) :: opening_rate(:, :)
+      real(wp), intent(in) :: load_rate(:, :), opening_rate(:, :)
       !> By how much
       real(wp), intent(in) :: more
       type(coulomb_state_t), intent(in) :: state
-      !> Receives the mechanism of a fall
       type(jump_t), intent(inout) :: jump
-      !> Where the motion ends
       type(coulomb_state_t), intent(out) :: moved
-      !> How it ends, one of motion_end
       integer, intent(out) :: end
 
       jump%tolerance = max(rounding*max(1.0_wp, maxval(abs(state%force))), nudge_left*more)
@@ -164,13 +157,11 @@ contains
       !> The state; where it is in balance it carries the load
       type(coulomb_state_t), intent(inout) :: state
       type(jump_t), intent(inout) :: jump
-      !> How it ends, one of motion_end
       integer, intent(out) :: end
       type(rates_t) :: rates
       type(event_t) :: event
       real(wp) :: damping, firm, still(3, size(state%slip))
-      real(wp) :: rest(size(load, 1), size(load, 2)), start(size(load, 1), size(load, 2))
-      real(wp) :: far
+      real(wp) :: rest(size(load, 1), size(load, 2)), start(size(load, 1), size(load, 2)), far
       integer :: i, most, standstill
       logical :: calm, found, pushed
 
@@ -222,7 +213,6 @@ contains
       type(coulomb_joints_t), intent(in) :: joints
       !> What the forces leave of the load: (n_dof, n_block)
       real(wp), intent(in) :: rest(:, :)
-      !> Rates of motion
       type(rates_t), intent(in) :: rates
       real(wp), parameter :: bend = 0.3_wp
       real(wp) :: change(size(rest, 1), size(rest, 2)), share, largest
@@ -240,16 +230,13 @@ contains
    pure subroutine see_end(joints, equations, rest, start, state, far, jump, end)
       type(coulomb_joints_t), intent(in) :: joints
       type(coulomb_equations_t), intent(inout) :: equations
-      !> What the forces leave of the load: (n_dof, n_block)
       real(wp), intent(in) :: rest(:, :)
       !> Motion where it began: (n_dof, n_block)
       real(wp), intent(in) :: start(:, :)
       type(coulomb_state_t), intent(in) :: state
       !> A motion beyond this is far
       real(wp), intent(in) :: far
-      !> Receives the mechanism
       type(jump_t), intent(inout) :: jump
-      !> One of motion_end
       integer, intent(out) :: end
       type(rates_t) :: rates
       type(event_t) :: event
@@ -278,13 +265,11 @@ contains
    pure subroutine see_ray(joints, state, rest, rates, event, jump, end)
       type(coulomb_joints_t), intent(in) :: joints
       type(coulomb_state_t), intent(in) :: state
-      !> What the forces leave of the load: (n_dof, n_block)
       real(wp), intent(in) :: rest(:, :)
       !> Rates of a motion; their forces are held
       type(rates_t), intent(inout) :: rates
       !> The gap that closes, or none
       type(event_t), intent(out) :: event
-      !> Receives the mechanism
       type(jump_t), intent(inout) :: jump
       !> endless if no gap closes and the load drives the motion, otherwise unsettled
       integer, intent(out) :: end

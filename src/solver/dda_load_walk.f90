@@ -70,7 +70,6 @@ contains
 
    !> Go on to a load
    pure subroutine walk_to(load, walk, state)
-      !> The load: (3, n_block) [N/m, N/m, N]
       real(wp), intent(in) :: load(:, :)
       !> The walk; its forces are those of the last load that took more than a correction
       type(load_walk_t), intent(inout) :: walk

@@ -149,7 +149,6 @@ contains
       type(joint_graph_t), intent(in) :: graph
       !> Load that is there from the beginning: (n_dof, n_block) [N/m, N/m, N ...]
       real(wp), intent(in) :: dead_load(:, :)
-      !> What is made once
       type(loading_path_t), intent(out) :: path
       !> The state, where one was reached
       type(coulomb_state_t), intent(out) :: state
@@ -175,11 +174,9 @@ contains
       type(loading_path_t), intent(inout) :: path
       !> In: a state in balance; out: the last one in balance on the way
       type(coulomb_state_t), intent(inout) :: state
-      !> What grows
       type(path_rate_t), intent(in) :: rate
       !> How much of it is asked for, as a multiple
       real(wp), intent(in) :: h_end
-      !> How it went
       type(path_result_t), intent(out) :: result
       type(path_rate_t) :: way
       real(wp) :: target(size(rate%load, 1), size(rate%load, 2)), strength
@@ -193,8 +190,7 @@ contains
       state%slip = state%slip/path%joints%motion_unit
       way%load = in_units(path%joints, rate%load)
       way%opening = rate%opening/path%joints%motion_unit
-      strength = max(maxval(abs(way%load)), &
-         & maxval(abs(way%opening/path%joints%graph%compliance)))
+      strength = max(maxval(abs(way%load)), maxval(abs(way%opening/path%joints%graph%compliance)))
       if (.not. path%softness > 0.0_wp) then
          path%softness = max(1.0_wp, &
             & maxval(abs(state%motion))/max(1.0_wp, maxval(abs(state%force))))
@@ -227,14 +223,11 @@ contains
 
    !> From event to event, with jumps where no rates go on
    pure subroutine follow(path, state, way, h_end, result)
-      !> What was made once
       type(loading_path_t), intent(inout) :: path
       type(coulomb_state_t), intent(inout) :: state
       !> What grows, in units of the joints; the largest force is one
       type(path_rate_t), intent(in) :: way
-      !> How much of it is asked for
       real(wp), intent(in) :: h_end
-      !> How it went
       type(path_result_t), intent(inout) :: result
       type(event_t) :: event
       type(rates_t) :: rates
@@ -252,8 +245,7 @@ contains
          if (result%n_jump > max_jump) exit
          call find_rates(path%joints, path%equations, state, way%load, way%opening, path_damping, &
             & rates, found)
-         found = found .and. rates%unbalanced <= moves_unbalanced &
-            & .and. standstill <= max_standstill
+         found = found .and. rates%unbalanced <= moves_unbalanced .and. standstill <= max_standstill
          if (found) call undamp_rates(path%joints, path%equations, way%load, rates)
          if (found .and. rates%unbalanced <= rests_unbalanced) then
             event = next_event(path%joints, state, rates, h_end - result%reached)
@@ -278,11 +270,9 @@ contains
 
    !> Go on by a jump
    pure subroutine jump_on(path, state, way, width, h_end, result)
-      !> What was made once
       type(loading_path_t), intent(inout) :: path
       !> The state, left as it is unless another in balance is found
       type(coulomb_state_t), intent(inout) :: state
-      !> What grows
       type(path_rate_t), intent(in) :: way
       !> By how much, to see how the blocks move
       real(wp), intent(in) :: width
@@ -311,9 +301,7 @@ contains
    pure subroutine note_fall(end, jump, result)
       !> How the motion ended
       integer, intent(in) :: end
-      !> What it tells
       type(jump_t), intent(in) :: jump
-      !> Receives it
       type(path_result_t), intent(inout) :: result
 
       result%end = path_end%collapsed
@@ -330,9 +318,7 @@ contains
 
    !> Take away what the forces leave of the load, but for rounding
    pure subroutine balance_rest(path, state)
-      !> What was made once
       type(loading_path_t), intent(inout) :: path
-      !> A state in balance
       type(coulomb_state_t), intent(inout) :: state
       integer, parameter :: max_turn = 3
       type(event_t) :: event
@@ -356,11 +342,8 @@ contains
 
    !> Counts, the last imbalance, and SI units
    pure subroutine finish(path, state, result)
-      !> What was made once
       type(loading_path_t), intent(in) :: path
-      !> The state, brought to SI units
       type(coulomb_state_t), intent(inout) :: state
-      !> How it went
       type(path_result_t), intent(inout) :: result
       real(wp) :: rest(size(state%load, 1), size(state%load, 2))
 

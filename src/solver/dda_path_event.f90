@@ -55,16 +55,14 @@ contains
       rates%force = 0.0_wp
    end subroutine hold_forces
 
-   !> The next event, or none within a distance
-   pure function next_event(joints, state, rates, longest) result(event)
+   !> The next event, or none within a distance: its distance is the longest one if there is none
+   pure type(event_t) function next_event(joints, state, rates, longest) result(event)
       type(coulomb_joints_t), intent(in) :: joints
       !> Where the assembly is
       type(coulomb_state_t), intent(in) :: state
       type(rates_t), intent(in) :: rates
       !> Distance within which an event counts
       real(wp), intent(in) :: longest
-      !> The event; its distance is the longest one if there is none
-      type(event_t) :: event
       real(wp) :: bound(2)
       integer :: i, j
 
@@ -101,7 +99,6 @@ contains
       integer, intent(in) :: joint
       !> Corner of the joint, or 0
       integer, intent(in) :: corner
-      !> The first event so far
       type(event_t), intent(inout) :: event
 
       if (.not. (rate < 0.0_wp .and. rest > 0.0_wp)) return

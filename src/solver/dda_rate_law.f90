@@ -109,15 +109,14 @@ contains
       !> Rates of opening 1, opening 2, slip
       real(wp), intent(in) :: opening(3)
       !> Rate of the shear force less that of the limit: of a positive one, of a negative one
-      real(wp) :: beyond(2)
-      real(wp) :: push(3)
+      real(wp) :: beyond(2), push(3)
 
       push = -opening/joints%graph%compliance(:, j)
       beyond = [push(3), -push(3)] - joints%graph%friction(j)*sum(push(:2), ends == face%closed)
    end function beyond_limit
 
-   !> The first bend of the law on a line of rates of opening
-   pure function next_break(joints, law, faces, opening, change) result(first)
+   !> The first bend of the law on a line of rates of opening: without a joint if there is none
+   pure type(break_t) function next_break(joints, law, faces, opening, change)
       type(coulomb_joints_t), intent(in) :: joints
       type(rate_law_t), intent(in) :: law
       !> What the joints do: (3, n_joint)
@@ -126,24 +125,22 @@ contains
       real(wp), intent(in) :: opening(:, :)
       !> Where it leads: (3, n_joint)
       real(wp), intent(in) :: change(:, :)
-      !> The bend; without a joint if there is none
-      type(break_t) :: first
       real(wp) :: beyond(2), rate(2)
       integer :: i, j
       logical :: slides
 
-      first%distance = huge(1.0_wp)
+      next_break%distance = huge(1.0_wp)
       do j = 1, size(faces, 2)
          do i = 1, 2
             if (law%weak(i, j)) call meet(faces(i, j) == face%closed, -opening(i, j), &
-               & -change(i, j), j, i, first)
+               & -change(i, j), j, i, next_break)
          end do
          if (faces(3, j) == face%free .or. .not. any(law%limit(:, j))) cycle
          beyond = beyond_limit(joints, j, faces(:2, j), opening(:, j))
          rate = beyond_limit(joints, j, faces(:2, j), change(:, j))
          do i = 1, 2
             slides = faces(3, j) == merge(face%slides, face%slides_back, i == 1)
-            if (law%limit(i, j)) call meet(slides, beyond(i), rate(i), j, i + 2, first)
+            if (law%limit(i, j)) call meet(slides, beyond(i), rate(i), j, i + 2, next_break)
          end do
       end do
    end function next_break
@@ -161,7 +158,6 @@ contains
       integer, intent(in) :: joint
       !> Part of the joint
       integer, intent(in) :: part
-      !> The first bend so far
       type(break_t), intent(inout) :: first
       real(wp) :: distance
 
@@ -175,7 +171,6 @@ contains
    pure real(wp) function break_rate(joints, break, faces, change)
       type(coulomb_joints_t), intent(in) :: joints
       type(break_t), intent(in) :: break
-      !> What the joints do: (3, n_joint)
       integer, intent(in) :: faces(:, :)
       !> Where the line leads: (3, n_joint)
       real(wp), intent(in) :: change(:, :)
@@ -195,9 +190,7 @@ contains
    pure subroutine cross_break(joints, break, opening, faces)
       type(coulomb_joints_t), intent(in) :: joints
       type(break_t), intent(in) :: break
-      !> Rates of opening there: (3, n_joint)
       real(wp), intent(in) :: opening(:, :)
-      !> What the joints do: (3, n_joint)
       integer, intent(inout) :: faces(:, :)
       integer :: j
 

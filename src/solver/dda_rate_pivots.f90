@@ -23,7 +23,6 @@ contains
    pure subroutine pivot_to_load(joints, equations, law, load, drive, motion, opening, faces, found)
       type(coulomb_joints_t), intent(in) :: joints
       type(coulomb_equations_t), intent(inout) :: equations
-      !> The law for rates
       type(rate_law_t), intent(in) :: law
       !> The load that is asked for: (n_dof, n_block)
       real(wp), intent(in) :: load(:, :)

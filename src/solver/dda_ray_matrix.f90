@@ -63,8 +63,7 @@ contains
       do j = 1, size(springs%entry)
          springs%second_is_row(j) = .false.
          if (springs%entry(j) == 0) cycle
-         springs%second_is_row(j) = &
-            & springs%matrix%pair(1, springs%entry(j)) == rays%block(2, j)
+         springs%second_is_row(j) = springs%matrix%pair(1, springs%entry(j)) == rays%block(2, j)
       end do
       allocate (springs%stiffness(n_side, size(rays%block, 2)))
    end subroutine plan_matrix
@@ -102,9 +101,7 @@ contains
    !> Assemble and factor the same springs and masses with more digits
    pure subroutine set_wide_springs(rays, mass, springs)
       type(joint_rays_t), intent(in) :: rays
-      !> Masses: (3, 0:n_block)
       real(wp), intent(in) :: mass(:, 0:)
-      !> The matrix with its stiffness
       type(ray_matrix_t), intent(inout) :: springs
 
       call factorise_wide(rays, springs%stiffness, mass, springs%matrix, springs%entry, &
@@ -117,7 +114,6 @@ contains
    !> Sum of all springs
    pure subroutine assemble(rays, springs)
       type(joint_rays_t), intent(in) :: rays
-      !> Stiffness in, matrix out
       type(ray_matrix_t), intent(inout) :: springs
       real(wp) :: pushed(n_side, 6)
       integer :: a, b, j, k
@@ -166,7 +162,6 @@ contains
    !> Motion of the blocks by loads
    pure subroutine solve_springs(rays, springs, load, motion, rate)
       type(joint_rays_t), intent(in) :: rays
-      !> The matrix with a usable factor
       type(ray_matrix_t), intent(inout) :: springs
       !> Loads: (3, 0:n_block)
       real(wp), intent(in) :: load(:, 0:)

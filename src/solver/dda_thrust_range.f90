@@ -63,11 +63,9 @@ contains
    !> The same joints, with a block without weight between one of them and one of its blocks
    pure subroutine split_graph(graph, joint, side, split)
       type(joint_graph_t), intent(in) :: graph
-      !> Number of the joint
       integer, intent(in) :: joint
       !> Its block, 1 or 2, from which it is parted
       integer, intent(in) :: side
-      !> The joints with the tie as the last
       type(joint_graph_t), intent(out) :: split
       integer :: n
 

@@ -73,7 +73,6 @@ contains
    !> may be small differences of large motions
    pure subroutine substitute_wide(rays, plan, wide, x, rate)
       type(joint_rays_t), intent(in) :: rays
-      !> Plan of the factor
       type(elimination_plan_t), intent(in) :: plan
       type(wide_factor_t), intent(in) :: wide
       !> Right-hand side in, solution out: (3, n_block)

@@ -25,7 +25,6 @@ contains
    !> Nodes of the bars that yield
    pure subroutine add_nodes(settings, graph)
       type(settings_t), intent(in) :: settings
-      !> Receives them
       type(joint_graph_t), intent(inout) :: graph
 
       allocate (graph%bound(0))
@@ -54,7 +53,6 @@ contains
       type(block_system_t), intent(in) :: system
       !> Joints before those of the bars
       integer, intent(in) :: first
-      !> Receives them
       type(joint_graph_t), intent(inout) :: graph
       real(wp) :: row(6, 2)
       integer :: equation(2), i, j, node, side

@@ -64,7 +64,6 @@ contains
    !> Add what held points do; one that is held along one axis is so by both of its forces
    pure subroutine add_pins(settings, pin_force, system, moment)
       type(settings_t), intent(in) :: settings
-      !> Their forces: (3, n_pin) [N/m]
       real(wp), intent(in) :: pin_force(:, :)
       type(block_system_t), intent(in) :: system
       !> Forces on the unknowns of all blocks: (6, n_block)

@@ -15,14 +15,12 @@ module dda_chain_balance
 contains
 
    !> Bounds of the force of one joint
-   pure function cone_of(chain, j) result(cone)
+   pure type(cone_t) function cone_of(chain, j)
       type(chain_t), intent(in) :: chain
       !> Number of the joint
       integer, intent(in) :: j
-      !> The bounds
-      type(cone_t) :: cone
 
-      cone = cone_t(friction=chain%friction(j), limit=chain%limit(j), &
+      cone_of = cone_t(friction=chain%friction(j), limit=chain%limit(j), &
          & mirror=chain%keystone .and. j == size(chain%half))
    end function cone_of
 
@@ -69,11 +67,9 @@ contains
       real(wp), intent(in) :: load(:, :)
       !> The unknowns
       real(wp), intent(in) :: reaction(3)
-      !> Number of the joint
       integer, intent(in) :: j
       !> The force
-      real(wp) :: force(3)
-      real(wp) :: s(3), normal, moment
+      real(wp) :: force(3), s(3), normal, moment
 
       s = reaction + load(:, j)
       normal = chain%tangent(2, j)*s(1) - chain%tangent(1, j)*s(2)
@@ -86,11 +82,9 @@ contains
    !> What each unknown makes of the force of one joint
    pure function influence(chain, j) result(g)
       type(chain_t), intent(in) :: chain
-      !> Number of the joint
       integer, intent(in) :: j
       !> Rows N1, N2, T: (3, 3)
-      real(wp) :: g(3, 3)
-      real(wp) :: normal(3), moment(3)
+      real(wp) :: g(3, 3), normal(3), moment(3)
 
       normal = [chain%tangent(2, j), -chain%tangent(1, j), 0.0_wp]
       moment = [chain%middle(2, j), -chain%middle(1, j), 1.0_wp]/chain%half(j)
@@ -104,7 +98,6 @@ contains
       type(chain_t), intent(in) :: chain
       !> N1, N2, T [N/m]
       real(wp), intent(in) :: force(3)
-      !> Number of the joint
       integer, intent(in) :: j
 
       holds = force(1) >= 0.0_wp .and. force(2) >= 0.0_wp &
@@ -114,10 +107,7 @@ contains
    !> Those of some joints whose forces lie outside their cones, with these forces
    pure subroutine find_failing(chain, load, reaction, watched, n, failing, force)
       type(chain_t), intent(in) :: chain
-      !> Sums of the loads: (3, n + 1)
-      real(wp), intent(in) :: load(:, :)
-      !> The unknowns
-      real(wp), intent(in) :: reaction(3)
+      real(wp), intent(in) :: load(:, :), reaction(3)
       !> The joints
       integer, intent(in) :: watched(:)
       !> How many fail
@@ -142,10 +132,7 @@ contains
       type(chain_t), intent(in) :: chain
       !> Forces of all joints: (3, n + 1) [N/m]
       real(wp), intent(in) :: force(:, :)
-      !> How many fail
-      integer, intent(out) :: n
-      !> Their numbers: (n), with room for all
-      integer, intent(out) :: failing(:)
+      integer, intent(out) :: n, failing(:)
       integer :: j
 
       n = 0
@@ -176,10 +163,7 @@ contains
    !> moment of a shallow arch, seen from afar, would lose its digits
    pure subroutine carry_forces(chain, load, reaction, force)
       type(chain_t), intent(in) :: chain
-      !> Sums of the loads: (3, n + 1)
-      real(wp), intent(in) :: load(:, :)
-      !> The unknowns
-      real(wp), intent(in) :: reaction(3)
+      real(wp), intent(in) :: load(:, :), reaction(3)
       !> The forces N1, N2, T: (3, n + 1) [N/m]
       real(wp), intent(out) :: force(:, :)
       real(wp) :: s(2), normal, along, moment
@@ -211,7 +195,6 @@ contains
    !> Rounding of forces that are carried from joint to joint
    pure real(wp) function rounding_of_forces(chain, force) result(noise)
       type(chain_t), intent(in) :: chain
-      !> The forces: (3, n + 1) [N/m]
       real(wp), intent(in) :: force(:, :)
       integer :: j
 

@@ -106,7 +106,6 @@ contains
    pure subroutine stand_upright(chain, state, push, stands)
       type(chain_t), intent(in) :: chain
       type(chain_state_t), intent(out) :: state
-      !> The leg of the push
       type(chain_leg_t), intent(out) :: push
       !> Whether forces hold it and no joint slides
       logical, intent(out) :: stands
@@ -167,13 +166,11 @@ contains
    end subroutine new_state
 
    !> A leg along which a load grows
-   pure function new_leg(chain, load, state) result(leg)
+   pure type(chain_leg_t) function new_leg(chain, load, state) result(leg)
       type(chain_t), intent(in) :: chain
       !> Sums of the loads: (3, n + 1)
       real(wp), intent(in) :: load(:, :)
       type(chain_state_t), intent(in) :: state
-      !> The leg
-      type(chain_leg_t) :: leg
       real(wp), parameter :: nothing(3) = 0.0_wp
       integer :: j
 
@@ -209,7 +206,6 @@ contains
       !> Whether joints that would slide end it
       logical, intent(in) :: may_slide
       type(chain_state_t), intent(inout) :: state
-      !> Whether forces are found to its end, and no joint slides
       logical, intent(out) :: sticks
       real(wp) :: rate(3, size(chain%half)), change(3), left, step
       type(open_corner_t) :: opening
@@ -335,7 +331,6 @@ contains
    !> Open a corner. Where as many are open as there are unknowns, all turn about these hinges at
    !> once until another one closes; if none does the chain falls
    pure subroutine open_corner(corner, state, opens)
-      !> The corner
       type(open_corner_t), intent(in) :: corner
       type(chain_state_t), intent(inout) :: state
       !> Whether one could

@@ -28,7 +28,6 @@ contains
 
    !> Freeze the joints of a collapse. Their openings are what the forces that least hinder it leave
    pure subroutine freeze_mechanism(chain, face, mechanism)
-      !> The chain that falls
       type(chain_t), intent(in) :: chain
       !> Faces of its joints: (n + 1)
       type(joint_face_t), intent(in) :: face(:)

@@ -82,7 +82,6 @@ contains
    !> Joints around those that fail, or are nearer to it than their neighbours
    pure function around_weak(chain, load, reaction, stride, coarse) result(around)
       type(chain_t), intent(in) :: chain
-      !> Sums of the loads: (3, n + 1)
       real(wp), intent(in) :: load(:, :)
       !> The place
       real(wp), intent(in) :: reaction(3)
@@ -113,7 +112,6 @@ contains
    !> Newton's method on the energy of some joints
    pure subroutine descend(chain, load, glued, watched, thrust)
       type(chain_t), intent(in) :: chain
-      !> Sums of the loads: (3, n + 1)
       real(wp), intent(in) :: load(:, :)
       !> Energy if no joint could fail, at zero
       type(chain_energy_t), intent(in) :: glued
@@ -146,15 +144,11 @@ contains
    !> The function that is made least, at one place
    pure subroutine find_energy(chain, load, glued, watched, reaction, energy)
       type(chain_t), intent(in) :: chain
-      !> Sums of the loads: (3, n + 1)
       real(wp), intent(in) :: load(:, :)
       !> Its part if no joint could fail, at zero
       type(chain_energy_t), intent(in) :: glued
-      !> The joints that count
       integer, intent(in) :: watched(:)
-      !> The place
       real(wp), intent(in) :: reaction(3)
-      !> The function with its derivatives
       type(chain_energy_t), intent(out) :: energy
       real(wp) :: beyond(3), force(3, size(watched) + 1), slope(3)
       integer :: failing(size(watched)), i, n
@@ -164,22 +158,17 @@ contains
          call add_failing(chain, force(:, i), failing(i), energy, beyond)
       end do
       slope = matmul(glued%curvature, reaction)
-      energy%value = energy%value + glued%value &
-         & + dot_product(reaction, glued%slope + slope/2.0_wp)
+      energy%value = energy%value + glued%value + dot_product(reaction, glued%slope + slope/2.0_wp)
       energy%slope = energy%slope + glued%slope + slope
       energy%curvature = energy%curvature + glued%curvature
       if (chain%halved) call hold_upright(energy%slope, energy%curvature)
    end subroutine find_energy
 
    !> Energy of the springs if no joint could fail, at zero
-   pure function glued_energy(chain, load, watched) result(energy)
+   pure type(chain_energy_t) function glued_energy(chain, load, watched) result(energy)
       type(chain_t), intent(in) :: chain
-      !> Sums of the loads: (3, n + 1)
       real(wp), intent(in) :: load(:, :)
-      !> The joints that count
       integer, intent(in) :: watched(:)
-      !> The energy
-      type(chain_energy_t) :: energy
       real(wp) :: n(3), t(3), m(3), force(3), give
       integer :: c, i, j
 
@@ -215,7 +204,6 @@ contains
       real(wp), intent(in) :: force(3)
       !> Number of the joint
       integer, intent(in) :: j
-      !> What it is added to
       type(chain_energy_t), intent(inout) :: energy
       !> The part of the force that the cone does not let pass [N/m]
       real(wp), intent(out) :: beyond(3)

@@ -102,24 +102,22 @@ contains
 
    !> The stations of the loads. Gravity that tilts is upright at first where the blocks stand then,
    !> for others were drawn for gravity as it is; the associated rule knows no order of loads
-   pure function stations_of(settings, system, graph, goes_on) result(stations)
+   pure type(load_stations_t) function stations_of(settings, system, graph, goes_on)
       type(settings_t), intent(in) :: settings
       type(block_system_t), intent(in) :: system
       type(joint_graph_t), intent(in) :: graph
       !> Whether a stage before has left a state
       logical, intent(in) :: goes_on
-      !> The stations
-      type(load_stations_t) :: stations
       type(load_decision_t) :: decision
       real(wp) :: load(3, graph%n_block), opening(3, size(graph%kind))
       logical :: coulomb
 
       coulomb = settings%verdict_flow == flow_rule%coulomb
-      stations = load_stations(settings, coulomb)
+      stations_of = load_stations(settings, coulomb)
       if (goes_on .or. .not. (coulomb .and. abs(settings%tilt) > 0.0_wp)) return
-      call loads_at(stations, 0, settings, system, graph, load, opening)
+      call loads_at(stations_of, 0, settings, system, graph, load, opening)
       call decide_load(graph, load, decision)
-      stations = load_stations(settings, decision%state /= load_state%falls)
+      stations_of = load_stations(settings, decision%state /= load_state%falls)
    end function stations_of
 
    !> Decide the full load: on the way from the dead load out of which it grows, unless it is not
@@ -159,7 +157,6 @@ contains
    pure logical function is_feigned(settings, system, decision)
       type(settings_t), intent(in) :: settings
       type(block_system_t), intent(in) :: system
-      !> What limit analysis has found
       type(load_decision_t), intent(in) :: decision
 
       is_feigned = decision%state == load_state%falls
@@ -200,7 +197,6 @@ contains
    pure subroutine see_first_fall(settings, graph, load, force, verdict)
       type(settings_t), intent(in) :: settings
       type(joint_graph_t), intent(in) :: graph
-      !> The load: (3, n_block)
       real(wp), intent(in) :: load(:, :)
       !> Forces in the mechanism in which it falls first: (3, n_joint)
       real(wp), intent(in) :: force(:, :)
@@ -216,9 +212,7 @@ contains
    pure subroutine see_fall(settings, graph, load, verdict)
       type(settings_t), intent(in) :: settings
       type(joint_graph_t), intent(in) :: graph
-      !> The load: (3, n_block)
       real(wp), intent(in) :: load(:, :)
-      !> A collapse; its mechanism is set
       type(graph_verdict_t), intent(inout) :: verdict
       real(wp) :: force(3, size(graph%kind)), motion(3, graph%n_block)
       integer :: n
@@ -239,7 +233,6 @@ contains
    pure subroutine slide_along(settings, graph, load, force, verdict)
       type(settings_t), intent(in) :: settings
       type(joint_graph_t), intent(in) :: graph
-      !> The load: (3, n_block)
       real(wp), intent(in) :: load(:, :)
       !> Forces of limit analysis: (3, n_joint)
       real(wp), intent(in) :: force(:, :)

@@ -27,7 +27,6 @@ contains
    pure subroutine show_mechanism(settings, system, verdict, contacts)
       type(settings_t), intent(in) :: settings
       type(block_system_t), intent(in) :: system
-      !> The verdict, a collapse
       type(graph_verdict_t), intent(in) :: verdict
       !> The contacts; their increments and faces are set
       type(contacts_t), intent(inout) :: contacts
@@ -52,8 +51,7 @@ contains
       do j = 1, size(contacts%joint)
          dilatancy = 0.0_wp
          if (verdict%flow == flow_rule%associated) dilatancy = graph%friction(j)*abs(rate(3, j))
-         contacts%face(j)%open = rate(1:2, j) - dilatancy > max(least, &
-            & share*contacts%force(1:2, j))
+         contacts%face(j)%open = rate(1:2, j) - dilatancy > max(least, share*contacts%force(1:2, j))
          if (allocated(verdict%state)) contacts%face(j)%open = contacts%face(j)%open &
             & .or. verdict%state%gap(:, j) > still*maxval(abs(verdict%state%motion(1:2, :)))
          if (contacts%springs%cone(j)%single) contacts%face(j)%open(2) = .true.
@@ -71,7 +69,6 @@ contains
    !> Forces, openings and faces of the joints of what stands, and motion and strain of its blocks
    pure subroutine show_state(settings, verdict, system, contacts)
       type(settings_t), intent(in) :: settings
-      !> The verdict of what stands
       type(graph_verdict_t), intent(in) :: verdict
       !> The blocks; their motions are set where they are known
       type(block_system_t), intent(inout) :: system

@@ -41,10 +41,8 @@ module dda_load_clock
 contains
 
    !> The clock of a static run at the beginning of its path
-   pure function new_load_clock(settings) result(clock)
+   pure type(load_clock_t) function new_load_clock(settings) result(clock)
       type(settings_t), intent(in) :: settings
-      !> The clock
-      type(load_clock_t) :: clock
       real(wp), allocatable :: time(:)
       integer :: first
 

@@ -40,12 +40,10 @@ module dda_load_stations
 contains
 
    !> Stations of a scene, or of a later stage of it: histories alone go on there
-   pure function load_stations(settings, upright) result(stations)
+   pure type(load_stations_t) function load_stations(settings, upright) result(stations)
       type(settings_t), intent(in) :: settings
       !> Whether gravity is upright at first and then tilts; otherwise it is dead as it is
       logical, intent(in) :: upright
-      !> The stations
-      type(load_stations_t) :: stations
       real(wp), allocatable :: time(:)
       integer :: at, n_led, n_live, n_push, n_tilt
       logical :: later
@@ -171,7 +169,6 @@ contains
    !> What led points make of their pins
    pure subroutine lead_pins(stations, station, settings, system, graph, opening)
       type(load_stations_t), intent(in) :: stations
-      !> Number of the station
       integer, intent(in) :: station
       type(settings_t), intent(in) :: settings
       type(block_system_t), intent(in) :: system

@@ -70,7 +70,6 @@ contains
       type(block_system_t), intent(in) :: system
       type(joint_graph_t), intent(in) :: graph
       type(load_stations_t), intent(in) :: stations
-      !> How it ended
       type(graph_verdict_t), intent(out) :: verdict
       !> State that a stage before has left, with the load that it balances; the path begins there.
       !> Joints that crush begin unloaded
@@ -129,7 +128,6 @@ contains
 
    !> Leave joints and blocks alone of those with layers
    pure subroutine take_layers_away(graph, verdict)
-      !> The joints without layers
       type(joint_graph_t), intent(in) :: graph
       type(graph_verdict_t), intent(inout) :: verdict
 
@@ -149,16 +147,10 @@ contains
    pure subroutine follow_joints(settings, system, graph, layered, couple, stations, verdict, start)
       type(settings_t), intent(in) :: settings
       type(block_system_t), intent(in) :: system
-      !> Their joints without layers
-      type(joint_graph_t), intent(in) :: graph
-      !> The joints with layers
-      type(joint_graph_t), intent(in) :: layered
-      !> Loads by the couples of the layers: (3, n_block of layered)
+      type(joint_graph_t), intent(in) :: graph, layered
       real(wp), intent(in) :: couple(:, :)
       type(load_stations_t), intent(in) :: stations
-      !> How it ended
       type(graph_verdict_t), intent(out) :: verdict
-      !> State that a stage before has left, with the load that it balances; the path begins there
       type(coulomb_state_t), intent(in), optional :: start
       type(loading_path_t) :: path
       type(coulomb_state_t) :: state
@@ -204,7 +196,6 @@ contains
    pure subroutine conclude(result, verdict)
       !> How its last leg ended
       type(path_result_t), intent(inout) :: result
-      !> Receives it
       type(graph_verdict_t), intent(inout) :: verdict
 
       verdict%end = result%end
@@ -219,9 +210,7 @@ contains
 
    !> Add what one leg took
    pure subroutine count_up(result, verdict)
-      !> How the leg ended
       type(path_result_t), intent(in) :: result
-      !> Receives it
       type(graph_verdict_t), intent(inout) :: verdict
 
       verdict%n_event = verdict%n_event + result%n_event

@@ -53,8 +53,7 @@ contains
             graph%row(:, :, :, j) = contacts%springs%row(:n_rigid, :, :, j)
             graph%length(j) = contacts%joint(j)%length
             graph%friction(j) = law%friction
-            if (law%strength < huge(1.0_wp)) &
-               & graph%crush(j) = law%strength*contacts%joint(j)%length
+            if (law%strength < huge(1.0_wp)) graph%crush(j) = law%strength*contacts%joint(j)%length
             graph%compliance(:, j) = block_compliance(system, contacts%joint(j))
             if (law%no_slip) then
                graph%kind(j) = merge(joint_kind%corner_no_slip, joint_kind%no_slip, cone%single)
@@ -118,7 +117,6 @@ contains
       real(wp), intent(in) :: compliance
       !> Joints and pins before them
       integer, intent(in) :: before
-      !> Receives the joints
       type(joint_graph_t), intent(inout) :: graph
       real(wp) :: t(2, 6)
       integer :: e, i, j
@@ -200,8 +198,7 @@ contains
       !> Centre of gravity of its block: (2) [m]
       real(wp), intent(in) :: centroid(2)
       !> Motion of the point that its two forces prevent; there is no second corner: (3, 3)
-      real(wp) :: row(n_rigid, 3)
-      real(wp) :: t(2, 6)
+      real(wp) :: row(n_rigid, 3), t(2, 6)
       integer :: axis(2)
 
       axis = [1, 2]

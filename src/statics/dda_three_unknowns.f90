@@ -27,10 +27,7 @@ contains
 
    !> Whether a place along a direction is good enough: lower, and not as steep by far
    pure logical function is_better(here, there, direction, fall, way)
-      !> The function where the direction begins
-      type(chain_energy_t), intent(in) :: here
-      !> The function at the place
-      type(chain_energy_t), intent(in) :: there
+      type(chain_energy_t), intent(in) :: here, there
       !> The direction
       real(wp), intent(in) :: direction(3)
       !> How steeply the function falls at the beginning
@@ -46,9 +43,7 @@ contains
    !> Where along a direction to try next, between a place with a negative slope and one with a
    !> positive one: Newton's method on the slope and the secant in turns
    pure subroutine try_between(there, direction, bracket, steepness, try, way)
-      !> The function at the last place
       type(chain_energy_t), intent(in) :: there
-      !> The direction
       real(wp), intent(in) :: direction(3)
       !> How far its ends are: (2)
       real(wp), intent(inout) :: bracket(2)

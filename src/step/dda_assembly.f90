@@ -83,7 +83,6 @@ contains
    !> Equations of a system at rest: pattern, mass, stiffness and weight
    pure subroutine new_equations(system, springs, settings, equations)
       type(block_system_t), intent(in) :: system
-      !> The springs of the joints
       type(joint_springs_t), intent(in) :: springs
       type(settings_t), intent(in) :: settings
       type(equations_t), intent(out) :: equations
@@ -119,13 +118,11 @@ contains
 
    !> Take in new joints: lists, pattern, plan of the factor, springs
    pure subroutine new_springs(springs, n_dof, n_equation, equations)
-      !> The springs of the joints
       type(joint_springs_t), intent(in) :: springs
       !> Unknowns of one block
       integer, intent(in) :: n_dof
       !> Number of movable blocks
       integer, intent(in) :: n_equation
-      !> Receives them
       type(equations_t), intent(inout) :: equations
 
       call list_joints(springs, n_dof, n_equation, equations)
@@ -141,7 +138,6 @@ contains
    pure subroutine renew_springs(before, springs, equations)
       !> Equations of the blocks of each joint so far: (2, n_joint)
       integer, intent(in) :: before(:, :)
-      !> The springs of the joints now
       type(joint_springs_t), intent(in) :: springs
       type(equations_t), intent(inout) :: equations
       logical :: same
@@ -161,9 +157,7 @@ contains
 
    !> Bring pattern and numbers up to these springs, if they are not
    pure subroutine refresh(springs, equations)
-      !> The springs of the joints
       type(joint_springs_t), intent(in) :: springs
-      !> Receives pattern and stiffness
       type(equations_t), intent(inout) :: equations
 
       if (equations%new_pattern) then
@@ -177,13 +171,8 @@ contains
 
    !> Which joints couple which blocks, and the joints of each block
    pure subroutine list_joints(springs, n_dof, n_equation, equations)
-      !> The springs of the joints
       type(joint_springs_t), intent(in) :: springs
-      !> Unknowns of one block
-      integer, intent(in) :: n_dof
-      !> Number of movable blocks
-      integer, intent(in) :: n_equation
-      !> Receives lists and pattern
+      integer, intent(in) :: n_dof, n_equation
       type(equations_t), intent(inout) :: equations
       integer :: e, j, side, next(n_equation)
       integer :: pair(2, size(springs%equation, 2) + size(equations%bars%entry))
@@ -231,9 +220,7 @@ contains
 
    !> Stiffness of the springs if all joints are stuck
    pure subroutine add_stuck_springs(springs, equations)
-      !> The springs of the joints
       type(joint_springs_t), intent(in) :: springs
-      !> Receives the stiffness of the springs
       type(equations_t), intent(inout) :: equations
       integer :: e, j, k
 
@@ -257,7 +244,6 @@ contains
    pure subroutine solve_faces(equations, springs, cone, face, trial, motion)
       !> Blocks assembled; matrix and factor are made anew if they are not those of these faces
       type(equations_t), intent(inout) :: equations
-      !> The springs of the joints
       type(joint_springs_t), intent(in) :: springs
       !> Bounds of the joint forces: (n_joint)
       type(cone_t), intent(in) :: cone(:)
@@ -281,13 +267,9 @@ contains
 
    !> Matrix and factor of these faces: what has changed is made anew
    pure subroutine hold_faces(equations, springs, cone, face)
-      !> Blocks assembled
       type(equations_t), intent(inout) :: equations
-      !> The springs of the joints
       type(joint_springs_t), intent(in) :: springs
-      !> Bounds of the joint forces: (n_joint)
       type(cone_t), intent(in) :: cone(:)
-      !> Faces: (n_joint)
       type(joint_face_t), intent(in) :: face(:)
       integer :: e, j, side
 
@@ -329,13 +311,9 @@ contains
 
    !> Stiffness between the two blocks of a joint on the face held: p R P R'
    pure subroutine couple(springs, cone, j, equations)
-      !> The springs of the joints
       type(joint_springs_t), intent(in) :: springs
-      !> Bounds of the joint's force
       type(cone_t), intent(in) :: cone
-      !> Number of the joint
       integer, intent(in) :: j
-      !> Receives the coupling
       type(equations_t), intent(inout) :: equations
       integer :: e, first, second
 
@@ -350,13 +328,10 @@ contains
 
    !> Diagonal block of one equation: the block and its springs on the faces held
    pure subroutine add_springs(springs, cone, e, equations)
-      !> The springs of the joints
       type(joint_springs_t), intent(in) :: springs
-      !> Bounds of the joint forces: (n_joint)
       type(cone_t), intent(in) :: cone(:)
       !> Number of the equation
       integer, intent(in) :: e
-      !> Receives the diagonal block
       type(equations_t), intent(inout) :: equations
       integer :: first, j, k, last, side
 

@@ -27,7 +27,6 @@ contains
    !> Largest acceleration that the loads would give to free blocks
    pure real(wp) function free_acceleration(system, equations)
       type(block_system_t), intent(in) :: system
-      !> The equations, with all loads
       type(equations_t), intent(in) :: equations
 
       free_acceleration = maxval(own_load(system, equations)/equations%mass(1, 1, :))
@@ -36,7 +35,6 @@ contains
    !> Sizes of the loads from outside on each block: forces, and moments over its radius of gyration
    pure function own_load(system, equations) result(own)
       type(block_system_t), intent(in) :: system
-      !> The equations, with all loads
       type(equations_t), intent(in) :: equations
       !> The loads: (n_equation) [N/m]
       real(wp) :: own(size(equations%felt, 2))
@@ -56,7 +54,6 @@ contains
       !> The joints, placed: (n_joint)
       type(joint_t), intent(in) :: joint(:)
       type(joint_springs_t), intent(in) :: springs
-      !> The equations, with all loads
       type(equations_t), intent(in) :: equations
       real(wp) :: least, own(size(equations%felt, 2)), rounding
       integer :: j, k, side
@@ -92,9 +89,7 @@ contains
    pure subroutine measure_balance(system, springs, equations, step)
       !> The blocks before the step
       type(block_system_t), intent(in) :: system
-      !> The springs of the joints
       type(joint_springs_t), intent(in) :: springs
-      !> The equations of the step
       type(equations_t), intent(in) :: equations
       !> The step; acceleration and residues are set
       type(step_context_t), intent(inout) :: step
@@ -142,9 +137,7 @@ contains
    !> How far the strains are from balance: the largest share that their inertia has of all that
    !> strains a block
    pure subroutine measure_strain(system, equations, around, step)
-      !> The blocks before the step
       type(block_system_t), intent(in) :: system
-      !> The equations of the step
       type(equations_t), intent(in) :: equations
       !> Sizes of the forces around each block: (n_dof, n_equation)
       real(wp), intent(in) :: around(:, :)
@@ -168,9 +161,7 @@ contains
    !> Sizes of all forces around the blocks, as their unknowns feel them: loads from outside, forces
    !> of joints and of held points
    pure function forces_around(springs, equations, step) result(around)
-      !> The springs of the joints
       type(joint_springs_t), intent(in) :: springs
-      !> The equations of the step
       type(equations_t), intent(in) :: equations
       type(step_context_t), intent(in) :: step
       !> The forces: (n_dof, n_equation)

@@ -18,12 +18,10 @@ contains
    !> The joints of a step and behind them its bars
    pure subroutine append_bars(bars, contacts, step, springs, state, load)
       type(bar_springs_t), intent(in) :: bars
-      !> The springs of the joints
       type(joint_springs_t), intent(in) :: contacts
       type(step_state_t), intent(in) :: step
       !> Springs of joints and bars
       type(joint_springs_t), intent(out) :: springs
-      !> The step with both
       type(step_state_t), intent(out) :: state
       !> Receives what the bars carry in the middle of their bounds: (n_dof, n_equation) [N/m]
       real(wp), intent(inout) :: load(:, :)
@@ -33,8 +31,7 @@ contains
       more = n + size(bars%trial)
       allocate (springs%equation(2, more), source=0)
       allocate (springs%row(size(contacts%row, 1), 3, 2, more), source=0.0_wp)
-      allocate (springs%shift(3, more), springs%soft(3, more), springs%rest(3, more), &
-         & source=0.0_wp)
+      allocate (springs%shift(3, more), springs%soft(3, more), springs%rest(3, more), source=0.0_wp)
       allocate (springs%stiffness(more), source=1.0_wp)
       allocate (springs%cone(more))
       springs%equation(:, :n) = contacts%equation
@@ -68,7 +65,6 @@ contains
       integer, intent(in) :: i
       !> Number of the joint
       integer, intent(in) :: j
-      !> Receives the joint
       type(joint_springs_t), intent(inout) :: springs
       !> Receives what the bar carries in the middle of its bounds: (n_dof, n_equation) [N/m]
       real(wp), intent(inout) :: load(:, :)
@@ -108,7 +104,6 @@ contains
 
    !> Give the joints of a step back what was found beside its bars
    pure subroutine drop_bars(state, step)
-      !> The step with bars
       type(step_state_t), intent(in) :: state
       type(step_state_t), intent(inout) :: step
       integer :: n

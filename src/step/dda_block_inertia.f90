@@ -31,7 +31,6 @@ contains
       type(settings_t), intent(in) :: settings
       !> Length of the step [s]
       real(wp), intent(in) :: dt
-      !> Receives base and load
       type(equations_t), intent(inout) :: equations
       !> Time at the beginning of a dynamic step, or of the loads in a static one; zero if it is
       !> left out [s]
@@ -80,7 +79,6 @@ contains
    !> Rate of mass damping in a dynamic step: never more than what would stop a block within it
    pure real(wp) function damping_rate(settings, dt)
       type(settings_t), intent(in) :: settings
-      !> Length of the step [s]
       real(wp), intent(in) :: dt
 
       damping_rate = 0.0_wp
@@ -90,7 +88,6 @@ contains
    !> Masses of blocks that have turned; only strain rates feel it
    pure subroutine turn_masses(system, equations)
       type(block_system_t), intent(in) :: system
-      !> Receives the masses
       type(equations_t), intent(inout) :: equations
       real(wp) :: full(6, 6)
       integer :: b, e
@@ -107,7 +104,6 @@ contains
 
    !> Energy of motion
    pure real(wp) function kinetic_energy(equations, velocity)
-      !> The equations, for the masses
       type(equations_t), intent(in) :: equations
       !> Velocities: (n_dof, n_equation)
       real(wp), intent(in) :: velocity(:, :)
@@ -123,13 +119,11 @@ contains
    !> Let the velocities have no more energy than there is: mix into them those of constant
    !> acceleration. Momentum stays, and a mixture of admissible impulses is admissible
    pure subroutine hold_energy(equations, steady, allowed, velocity, share)
-      !> The equations, for the masses
       type(equations_t), intent(in) :: equations
       !> Velocities at the end of constant acceleration: (n_dof, n_equation)
       real(wp), intent(in) :: steady(:, :)
       !> The energy [J/m]
       real(wp), intent(in) :: allowed
-      !> The velocities: (n_dof, n_equation)
       real(wp), intent(inout) :: velocity(:, :)
       !> Share of those of constant acceleration that is mixed into them
       real(wp), intent(out) :: share
@@ -157,8 +151,7 @@ contains
       integer :: b
 
       do b = 1, size(system%equation)
-         if (system%equation(b) > 0) &
-            & velocity(:, system%equation(b)) = system%velocity(:n_dof, b)
+         if (system%equation(b) > 0) velocity(:, system%equation(b)) = system%velocity(:n_dof, b)
       end do
    end function packed_velocity
 

@@ -53,24 +53,22 @@ contains
    end subroutine update_blocks
 
    !> Blocks where a motion carries them, where blocks move; velocities stay
-   pure function displaced_blocks(system, settings, motion) result(after)
+   pure type(block_system_t) function displaced_blocks(system, settings, motion)
       type(block_system_t), intent(in) :: system
       type(settings_t), intent(in) :: settings
       !> The motion: (n_dof, n_equation)
       real(wp), intent(in) :: motion(:, :)
-      !> The blocks after it
-      type(block_system_t) :: after
       real(wp) :: of_block(6)
       integer :: b, e
 
-      after = system
+      displaced_blocks = system
       do b = 1, size(system%equation)
          e = system%equation(b)
          if (e == 0) cycle
          of_block = 0.0_wp
          of_block(:settings%n_dof) = motion(:, e)
          call move_block(b, of_block, elasticity_matrix(system%materials(system%material(b))), &
-            & after)
+            & displaced_blocks)
       end do
    end function displaced_blocks
 

@@ -10,7 +10,6 @@ contains
 
    !> Groups of joints whose blocks hang together
    pure subroutine group_joints(springs, n_equation, n, first, joint)
-      !> The springs of the joints
       type(joint_springs_t), intent(in) :: springs
       !> Number of movable blocks
       integer, intent(in) :: n_equation

@@ -39,11 +39,8 @@ contains
    !> the blocks those nearest to the ones before
    pure subroutine keep_to_faces(equations, springs, view, joint, many, before, moved, force, &
       & passes, agreed)
-      !> Blocks assembled
       type(equations_t), intent(in) :: equations
-      !> The springs of the joints
       type(joint_springs_t), intent(in) :: springs
-      !> What the joints see
       type(contact_view_t), intent(in) :: view
       !> Numbers of the joints: (n)
       integer, intent(in) :: joint(:)
@@ -75,23 +72,16 @@ contains
    !> Forces of some joints, wherever the search for them begins
    pure subroutine solve_interior(equations, springs, view, joint, before, force, motion, passes, &
       & agreed)
-      !> Blocks assembled
       type(equations_t), intent(in) :: equations
-      !> The springs of the joints
       type(joint_springs_t), intent(in) :: springs
-      !> What the joints see
       type(contact_view_t), intent(in) :: view
-      !> Numbers of the joints: (n)
       integer, intent(in) :: joint(:)
-      !> Forces of all joints in the step before: (3, n_joint) [N/m]
       real(wp), intent(in) :: before(:, :)
       !> Forces of all joints to begin with, and those found: (3, n_joint) [N/m]
       real(wp), intent(inout) :: force(:, :)
       !> Motion of all blocks by these: (n_dof, n_equation) [m]
       real(wp), intent(in) :: motion(:, :)
-      !> Factorisations so far
       integer, intent(inout) :: passes
-      !> Whether forces and faces agree
       logical, intent(out) :: agreed
       type(problem_t) :: p
       type(interior_t) :: on_faces, x
@@ -107,16 +97,12 @@ contains
 
    !> Iterate from slack and flow, as near to the law of contact as that comes
    pure subroutine iterate(equations, springs, view, p, x, passes)
-      !> Blocks assembled
       type(equations_t), intent(in) :: equations
-      !> The springs of the joints
       type(joint_springs_t), intent(in) :: springs
-      !> What the joints see
       type(contact_view_t), intent(in) :: view
       type(problem_t), intent(inout) :: p
       !> The iterate to begin with, and the best one
       type(interior_t), intent(inout) :: x
-      !> Factorisations so far
       integer, intent(inout) :: passes
       type(interior_t) :: best
       real(wp) :: least, length, mean, merit
@@ -166,13 +152,11 @@ contains
 
    !> One step from an iterate: a predictor, and a corrector towards equal products
    pure subroutine improve(springs, mean, merit, p, x, length)
-      !> The springs of the joints
       type(joint_springs_t), intent(in) :: springs
       !> Mean product of slack and flow, in squares of a force
       real(wp), intent(in) :: mean
       !> Forces that are wrong, over the size of a force
       real(wp), intent(in) :: merit
-      !> The problem, factored
       type(problem_t), intent(inout) :: p
       type(interior_t), intent(inout) :: x
       !> How much of the step was gone
@@ -195,14 +179,9 @@ contains
 
    !> The forces of the step before, and the motion that they make, lifted off the bounds
    pure subroutine begin(springs, view, force, motion, shallow, p, x)
-      !> The springs of the joints
       type(joint_springs_t), intent(in) :: springs
-      !> What the joints see
       type(contact_view_t), intent(in) :: view
-      !> Forces of all joints: (3, n_joint) [N/m]
-      real(wp), intent(in) :: force(:, :)
-      !> Motion of all blocks: (n_dof, n_equation) [m]
-      real(wp), intent(in) :: motion(:, :)
+      real(wp), intent(in) :: force(:, :), motion(:, :)
       !> How far off the bounds at the least, over the size of a force
       real(wp), intent(in) :: shallow
       !> The problem; the size of a force is set
@@ -241,19 +220,13 @@ contains
 
    !> What an iterate leaves of balance and openings
    pure subroutine find_rest(equations, springs, view, p, x, mean, merit)
-      !> Blocks assembled
       type(equations_t), intent(in) :: equations
-      !> The springs of the joints
       type(joint_springs_t), intent(in) :: springs
-      !> What the joints see
       type(contact_view_t), intent(in) :: view
       !> The problem; the rests are set
       type(problem_t), intent(inout) :: p
       type(interior_t), intent(in) :: x
-      !> Mean product of slack and flow, in squares of a force
-      real(wp), intent(out) :: mean
-      !> Forces that are wrong, over the size of a force
-      real(wp), intent(out) :: merit
+      real(wp), intent(out) :: mean, merit
 
       call see_lack(equations, springs, view, x, p)
       p%opening(1:2, :) = p%opening(1:2, :) + x%flow(1:2, :)
@@ -265,14 +238,11 @@ contains
 
    !> The step that brings what is left to nothing
    pure subroutine find_step(springs, p, x, step)
-      !> The springs of the joints
       type(joint_springs_t), intent(in) :: springs
-      !> The problem, factored
       type(problem_t), intent(in) :: p
       type(interior_t), intent(in) :: x
       type(interior_t), intent(inout) :: step
-      real(wp) :: drive(3, size(p%joint)), rest(4), slack(4), source(4)
-      real(wp) :: bound
+      real(wp) :: drive(3, size(p%joint)), rest(4), slack(4), source(4), bound
       integer :: i
 
       do i = 1, size(p%joint)
@@ -329,7 +299,6 @@ contains
    !> A product that is the same for all bounds, as each joint has it
    pure function weighted(p, mean) result(product_of)
       type(problem_t), intent(in) :: p
-      !> The product in squares of a force
       real(wp), intent(in) :: mean
       !> The products: (4, n_joint) [J/m]
       real(wp) :: product_of(4, size(p%joint))
@@ -342,8 +311,7 @@ contains
    !> The longest step, 1 at most, that keeps a share of every slack and flow
    pure real(wp) function longest(p, x, step, share)
       type(problem_t), intent(in) :: p
-      type(interior_t), intent(in) :: x
-      type(interior_t), intent(in) :: step
+      type(interior_t), intent(in) :: x, step
       !> How much of the way to the first zero is gone
       real(wp), intent(in) :: share
       integer :: i, k
@@ -362,11 +330,8 @@ contains
 
    !> Forces of an iterate, those of open contacts none, and no shear force beyond its bound
    pure subroutine take_forces(equations, springs, view, x, p, force)
-      !> Blocks assembled
       type(equations_t), intent(in) :: equations
-      !> The springs of the joints
       type(joint_springs_t), intent(in) :: springs
-      !> What the joints see
       type(contact_view_t), intent(in) :: view
       type(interior_t), intent(in) :: x
       !> The problem; what is lacking is set

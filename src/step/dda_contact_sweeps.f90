@@ -45,7 +45,6 @@ contains
 
    !> Settle contact forces and motion of one step, or begin to
    pure subroutine sweep_contacts(equations, springs, state)
-      !> Blocks assembled
       type(equations_t), intent(in) :: equations
       !> The springs of the joints; their stiffness only measures gaps here
       type(joint_springs_t), intent(in) :: springs
@@ -84,11 +83,8 @@ contains
    !> rather swept until no step notices what is left
    pure subroutine settle_group(equations, springs, view, joint, noise, enough, moved, state, &
       & force, motion, settled)
-      !> Blocks assembled
       type(equations_t), intent(in) :: equations
-      !> The springs of the joints
       type(joint_springs_t), intent(in) :: springs
-      !> What the joints see
       type(contact_view_t), intent(in) :: view
       !> Joints of the group: (n)
       integer, intent(in) :: joint(:)
@@ -116,8 +112,7 @@ contains
       seen = enough
       if (size(joint) > many) seen(2) = max(enough(2), merge(look_at_speeds, look, state%rates) &
          & *state%unseen)
-      call sweep_group(joint, sweeps_for%a_look, springs, view, noise, seen, force, motion, &
-         & settled)
+      call sweep_group(joint, sweeps_for%a_look, springs, view, noise, seen, force, motion, settled)
       if (settled) return
       if (.not. state%rates .and. is_redundant(view, springs, joint)) then
          call keep_to_faces(equations, springs, view, joint, size(joint) > many, &
@@ -143,11 +138,8 @@ contains
 
    !> Whether a group has more forces than its blocks can tell apart
    pure logical function is_redundant(view, springs, joint)
-      !> What the joints see
       type(contact_view_t), intent(in) :: view
-      !> The springs of the joints
       type(joint_springs_t), intent(in) :: springs
-      !> Joints of the group: (n)
       integer, intent(in) :: joint(:)
       logical :: is_there(0:size(view%lower, 3))
       integer :: forces, i, k
@@ -163,17 +155,11 @@ contains
 
    !> Motion of the blocks of a group under its forces
    pure subroutine move_group(equations, springs, view, joint, force, motion)
-      !> Blocks assembled
       type(equations_t), intent(in) :: equations
-      !> The springs of the joints
       type(joint_springs_t), intent(in) :: springs
-      !> What the joints see
       type(contact_view_t), intent(in) :: view
-      !> Joints of the group: (n)
       integer, intent(in) :: joint(:)
-      !> Forces of all joints: (3, n_joint) [N/m]
       real(wp), intent(in) :: force(:, :)
-      !> Motion of the blocks, of those that do not move first: (n_dof, 0:n_equation)
       real(wp), intent(inout) :: motion(:, 0:)
       integer :: e, i, side
       logical :: is_there(0:size(view%lower, 3))
@@ -200,13 +186,9 @@ contains
    !> Forces and motion where the sweeps have ended, as the open-close loop knows them
    pure subroutine keep_forces(equations, springs, view, force, state)
       type(equations_t), intent(in) :: equations
-      !> The springs of the joints
       type(joint_springs_t), intent(in) :: springs
-      !> What the sweeps need of the joints
       type(contact_view_t), intent(in) :: view
-      !> Forces of the joints: (3, n_joint) [N/m]
       real(wp), intent(in) :: force(:, :)
-      !> Receives them
       type(step_state_t), intent(inout) :: state
       integer :: j, k
 
@@ -225,7 +207,6 @@ contains
 
    !> Radius of gyration of the smallest block [m]
    pure real(wp) function smallest(equations)
-      !> The equations, for the masses
       type(equations_t), intent(in) :: equations
 
       smallest = sqrt(12.0_wp*minval(equations%mass(3, 3, :)/equations%mass(1, 1, :)))
@@ -233,7 +214,6 @@ contains
 
    !> The face that a joint's force lies on
    pure type(joint_face_t) function face_of(cone, force, shift) result(face)
-      !> Bounds of the force
       type(cone_t), intent(in) :: cone
       !> The force: (3) [N/m]
       real(wp), intent(in) :: force(3)

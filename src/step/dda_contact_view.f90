@@ -31,11 +31,8 @@ contains
 
    !> How the blocks answer the forces of each joint
    pure subroutine see_joints(equations, springs, state, view)
-      !> Blocks assembled
       type(equations_t), intent(in) :: equations
-      !> The springs of the joints
       type(joint_springs_t), intent(in) :: springs
-      !> The step, for the gaps
       type(step_state_t), intent(in) :: state
       type(contact_view_t), intent(out) :: view
       real(wp) :: inverse(size(state%motion, 1), size(state%motion, 1), size(state%motion, 2))
@@ -86,11 +83,8 @@ contains
 
    !> Motion of the blocks under given joint forces
    pure subroutine move_blocks(equations, springs, view, force, motion)
-      !> Blocks assembled
       type(equations_t), intent(in) :: equations
-      !> The springs of the joints
       type(joint_springs_t), intent(in) :: springs
-      !> What the joints see
       type(contact_view_t), intent(in) :: view
       !> Joint forces: (3, n_joint) [N/m]
       real(wp), intent(in) :: force(:, :)
@@ -102,8 +96,7 @@ contains
       do j = 1, size(force, 2)
          do side = 1, 2
             e = springs%equation(side, j)
-            if (e > 0) motion(:, e) = motion(:, e) &
-               & + matmul(springs%row(:, :, side, j), force(:, j))
+            if (e > 0) motion(:, e) = motion(:, e) + matmul(springs%row(:, :, side, j), force(:, j))
          end do
       end do
       do e = 1, size(motion, 2)

@@ -58,9 +58,7 @@ contains
    !> no gap at the end of the step
    pure subroutine follow_curves(settings, system, contacts, equations, step)
       type(settings_t), intent(in) :: settings
-      !> The blocks before the step
       type(block_system_t), intent(in) :: system
-      !> The contacts before the step; rows of their springs are set
       type(contacts_t), intent(inout) :: contacts
       !> Blocks assembled; matrix and factor are made anew
       type(equations_t), intent(inout) :: equations
@@ -97,9 +95,7 @@ contains
    !> Blocks and joints after a motion, and how far its rows are from telling the gaps there
    pure subroutine see_curves(settings, system, contacts, motion, step, error)
       type(settings_t), intent(in) :: settings
-      !> The blocks before the step
       type(block_system_t), intent(in) :: system
-      !> The contacts before the step
       type(contacts_t), intent(in) :: contacts
       !> The motion: (n_dof, n_equation)
       real(wp), intent(in) :: motion(:, :)
@@ -129,11 +125,8 @@ contains
    !> Rows half way of a motion, and trial forces to begin with; what strain lets them lack of the
    !> gaps at the end are curves
    pure subroutine take_turned_rows(system, motion, contacts, step)
-      !> The blocks before the step
       type(block_system_t), intent(in) :: system
-      !> The motion: (n_dof, n_equation)
       real(wp), intent(in) :: motion(:, :)
-      !> The contacts before the step; rows of their springs are set
       type(contacts_t), intent(inout) :: contacts
       !> The step, with joints and gaps after the motion; its curves and trial forces are set
       type(step_context_t), intent(inout) :: step

@@ -31,7 +31,6 @@ contains
       type(settings_t), intent(in) :: settings
       !> The blocks after the step
       type(block_system_t), intent(in) :: system
-      !> The equations of the step
       type(equations_t), intent(in) :: equations
       !> The contacts after the step
       type(contacts_t), intent(in) :: contacts
@@ -54,10 +53,8 @@ contains
    pure subroutine store_energy(settings, system, equations, contacts, energy)
       type(settings_t), intent(in) :: settings
       type(block_system_t), intent(in) :: system
-      !> The equations, for masses and weights
       type(equations_t), intent(in) :: equations
       type(contacts_t), intent(in) :: contacts
-      !> Receives the energies
       type(energy_t), intent(inout) :: energy
       real(wp) :: d(3, 3)
       integer :: b, e
@@ -84,7 +81,6 @@ contains
    !> Add what a step brought in and took
    pure subroutine spend_energy(settings, equations, step, energy)
       type(settings_t), intent(in) :: settings
-      !> The equations of the step
       type(equations_t), intent(in) :: equations
       type(step_context_t), intent(in) :: step
       type(energy_t), intent(inout) :: energy

@@ -23,22 +23,19 @@ contains
 
    !> Check that a search at the end of a step finds no corners deeper inside than they were at its
    !> beginning, where a block with a notch is one of the two
-   pure function check_penetration(settings, system, contacts, march, step) result(outcome)
+   pure type(step_outcome_t) function check_penetration(settings, system, contacts, march, step)
       type(settings_t), intent(in) :: settings
       !> The blocks before the step
       type(block_system_t), intent(in) :: system
       !> The contacts before the step
       type(contacts_t), intent(in) :: contacts
       type(march_t), intent(in) :: march
-      !> The settled step with its velocities
       type(step_context_t), intent(in) :: step
-      !> What the check says
-      type(step_outcome_t) :: outcome
       type(block_system_t) :: after
       type(contacts_t) :: found
       logical :: breaks
 
-      outcome = step_outcome_t(accepted=.true., dt=step%dt)
+      check_penetration = step_outcome_t(accepted=.true., dt=step%dt)
       if (all(contacts%search%outline%convex) .or. step%dt <= shortest*march%longest) return
       after = system
       found = contacts
@@ -47,7 +44,7 @@ contains
       call renew_contacts(after, travel_of(after, settings, march), march%reach, &
          & settings%penalty_ratio, settings%n_dof, found)
       if (depth(after, found) > max(deep, 1.1_wp*depth(system, contacts))) &
-         & outcome = step_outcome_t(dt=step%dt/2.0_wp, was_cut=.true.)
+         & check_penetration = step_outcome_t(dt=step%dt/2.0_wp, was_cut=.true.)
    end function check_penetration
 
    !> How deep the deepest corner is, over the size of the smaller block
@@ -60,8 +57,7 @@ contains
       do j = 1, size(contacts%joint)
          associate (n => contacts%joint(j)%n_contact, block => contacts%joint(j)%block)
             if (all(contacts%search%outline%convex(block))) cycle
-            depth = max(depth, -minval(contacts%gap(:n, j)) &
-               & /sqrt(minval(system%area(block))))
+            depth = max(depth, -minval(contacts%gap(:n, j)) /sqrt(minval(system%area(block))))
          end associate
       end do
    end function depth

@@ -44,15 +44,11 @@ contains
 
    !> Find forces and motion whose faces agree, from those of an iterate
    pure subroutine settle_faces(equations, springs, view, p, x, passes, agreed)
-      !> Blocks assembled
       type(equations_t), intent(in) :: equations
-      !> The springs of the joints
       type(joint_springs_t), intent(in) :: springs
-      !> What the joints see
       type(contact_view_t), intent(in) :: view
       !> The problem; the size of a force is given
       type(problem_t), intent(inout) :: p
-      !> Forces and motion
       type(interior_t), intent(inout) :: x
       !> Factorisations so far
       integer, intent(inout) :: passes
@@ -98,17 +94,12 @@ contains
    !> The same of many joints, which rather end than keep to the way that the loads have led them:
    !> with ever firmer springs, as far as these agree
    pure subroutine settle_many_faces(equations, springs, view, p, x, passes, agreed)
-      !> Blocks assembled
       type(equations_t), intent(in) :: equations
-      !> The springs of the joints
       type(joint_springs_t), intent(in) :: springs
-      !> What the joints see
       type(contact_view_t), intent(in) :: view
       !> The problem; the size of a force is given, its springs are as they were in the end
       type(problem_t), intent(inout) :: p
-      !> Forces and motion
       type(interior_t), intent(inout) :: x
-      !> Factorisations so far
       integer, intent(inout) :: passes
       !> Whether the faces agree with springs as soft as those of few joints at the least
       logical, intent(out) :: agreed
@@ -140,20 +131,14 @@ contains
 
    !> Solve with the faces as they are and change those that disagree, again and again
    pure subroutine pass_faces(equations, springs, view, p, x, face, passes, agreed)
-      !> Blocks assembled
       type(equations_t), intent(in) :: equations
-      !> The springs of the joints
       type(joint_springs_t), intent(in) :: springs
-      !> What the joints see
       type(contact_view_t), intent(in) :: view
       type(problem_t), intent(inout) :: p
-      !> Forces and motion
       type(interior_t), intent(inout) :: x
       !> Faces: (n_joint)
       type(joint_face_t), intent(inout) :: face(:)
-      !> Factorisations so far
       integer, intent(inout) :: passes
-      !> Whether the faces agree
       logical, intent(out) :: agreed
       integer :: changes, least, pass, stale
 
@@ -179,15 +164,11 @@ contains
 
    !> Add what forces and motion lack, but to forces that their faces give
    pure subroutine move_on(equations, springs, view, p, x)
-      !> Blocks assembled
       type(equations_t), intent(in) :: equations
-      !> The springs of the joints
       type(joint_springs_t), intent(in) :: springs
-      !> What the joints see
       type(contact_view_t), intent(in) :: view
       !> The problem, factored; what is lacking afterwards is set
       type(problem_t), intent(inout) :: p
-      !> Forces and motion
       type(interior_t), intent(inout) :: x
       real(wp) :: force(3, size(p%joint)), motion(size(p%balance, 1), size(p%equation))
 
@@ -202,9 +183,7 @@ contains
 
    !> The face that force and opening of a joint speak for
    pure subroutine read_face(springs, p, x, i, face)
-      !> The springs of the joints
       type(joint_springs_t), intent(in) :: springs
-      !> The problem, for the openings
       type(problem_t), intent(in) :: p
       type(interior_t), intent(in) :: x
       !> Place of the joint
@@ -223,9 +202,7 @@ contains
 
    !> Put the forces onto their faces, and let the springs keep them there
    pure subroutine hold_faces(springs, face, p, x)
-      !> The springs of the joints
       type(joint_springs_t), intent(in) :: springs
-      !> Faces: (n_joint)
       type(joint_face_t), intent(in) :: face(:)
       !> The problem; how the bounds yield is set
       type(problem_t), intent(inout) :: p
@@ -249,12 +226,9 @@ contains
 
    !> Let joints that disagree with their faces change them
    pure subroutine change_faces(springs, p, x, face, changes)
-      !> The springs of the joints
       type(joint_springs_t), intent(in) :: springs
-      !> The problem, for the openings
       type(problem_t), intent(in) :: p
       type(interior_t), intent(in) :: x
-      !> Faces: (n_joint)
       type(joint_face_t), intent(inout) :: face(:)
       !> How many forces disagree
       integer, intent(out) :: changes

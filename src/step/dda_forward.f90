@@ -75,7 +75,6 @@ contains
       type(block_system_t), intent(inout) :: system
       !> The contacts: at the beginning in, at the end out
       type(contacts_t), intent(inout) :: contacts
-      !> How it ended
       type(outcome_t), intent(out) :: outcome
       !> Receives pictures of the run where blocks move
       type(album_t), intent(inout), optional :: album
@@ -143,9 +142,7 @@ contains
    !> What the end of a run says
    pure subroutine conclude(settings, march, error, outcome)
       type(settings_t), intent(in) :: settings
-      !> Where it ended
       type(march_t), intent(in) :: march
-      !> Why no step settled; unallocated if it did
       type(error_t), allocatable, intent(in) :: error
       !> How it ended; receives the verdict, and why it is undecided
       type(outcome_t), intent(inout) :: outcome
@@ -188,9 +185,7 @@ contains
       integer, intent(in) :: neighbours(:, :)
       !> One of verdict; undecided where the run goes on
       integer, intent(out) :: answer
-      !> Allocated if no step, however short, settles
       type(error_t), allocatable, intent(inout) :: error
-      !> Receives pictures
       type(album_t), intent(inout), optional :: album
       logical :: collapsed
 
@@ -230,9 +225,7 @@ contains
       type(rest_t), allocatable, intent(inout) :: rest
       !> One of verdict; becomes undecided where the run goes on
       integer, intent(inout) :: answer
-      !> Why no step settles; no longer allocated where there is a rest to go back to
       type(error_t), allocatable, intent(inout) :: error
-      !> Pictures
       type(album_t), intent(inout), optional :: album
       logical :: falls, returned
 
@@ -264,10 +257,8 @@ contains
    pure subroutine go_on(settings, system, onward, march, equations)
       type(settings_t), intent(in) :: settings
       type(block_system_t), intent(in) :: system
-      !> Where the run ended
       type(march_t), intent(in) :: onward
       type(march_t), intent(out) :: march
-      !> Receives the forces
       type(equations_t), intent(inout) :: equations
 
       march = onward
@@ -289,7 +280,6 @@ contains
       type(step_context_t), intent(inout) :: step
       !> How the run ended; receives the contacts of a collapse that is followed
       type(outcome_t), intent(inout) :: outcome
-      !> Receives the pictures
       type(album_t), intent(inout) :: album
       type(error_t), allocatable :: error
 

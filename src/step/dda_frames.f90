@@ -92,10 +92,8 @@ module dda_frames
 contains
 
    !> An album of the same kind without pictures, for another run
-   pure function blank_album(album) result(blank)
+   pure type(album_t) function blank_album(album) result(blank)
       type(album_t), intent(in) :: album
-      !> The blank one
-      type(album_t) :: blank
 
       blank%spacing = album%spacing
       blank%follow = album%follow
@@ -117,7 +115,6 @@ contains
       real(wp), intent(in) :: farthest
       !> Whether the run has ended here, with a step that has been offered
       logical, intent(in) :: last
-      !> Receives the picture
       type(album_t), intent(inout) :: album
 
       call keep_frame(system, contacts, march%steps, march%time, march%displacement, farthest, &
@@ -152,7 +149,6 @@ contains
    pure real(wp) function progress(time, displacement, album)
       !> Sum of the lengths of the steps [s]
       real(wp), intent(in) :: time
-      !> Farthest that a corner has moved [m]
       real(wp), intent(in) :: displacement
       type(album_t), intent(in) :: album
 
@@ -164,17 +160,9 @@ contains
    pure subroutine keep_frame(system, contacts, step, time, displacement, farthest, last, album)
       type(block_system_t), intent(in) :: system
       type(contacts_t), intent(in) :: contacts
-      !> Accepted steps so far
       integer, intent(in) :: step
-      !> Sum of their lengths [s]
-      real(wp), intent(in) :: time
-      !> Farthest that a corner has moved [m]
-      real(wp), intent(in) :: displacement
-      !> Largest motion of a point in the last step [m]
-      real(wp), intent(in) :: farthest
-      !> Whether the run ends here, so that a picture is due anyway
+      real(wp), intent(in) :: time, displacement, farthest
       logical, intent(in) :: last
-      !> Receives the picture
       type(album_t), intent(inout) :: album
       type(frame_t), allocatable :: longer(:)
       real(wp) :: spacing
@@ -212,11 +200,8 @@ contains
       type(block_system_t), intent(in) :: system
       !> Whether they move; otherwise displacements are small
       logical, intent(in) :: current
-      !> Accepted steps so far
       integer, intent(in) :: step
-      !> Sum of their lengths [s]
       real(wp), intent(in) :: time
-      !> Receives the places
       type(album_t), intent(inout) :: album
       integer :: i, n
 
@@ -243,7 +228,6 @@ contains
    !> Velocity of a point of a block
    pure function speed_of(system, current, block, place, point) result(speed)
       type(block_system_t), intent(in) :: system
-      !> Whether they move
       logical, intent(in) :: current
       !> The block
       integer, intent(in) :: block

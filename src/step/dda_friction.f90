@@ -34,7 +34,6 @@ contains
    pure subroutine iterate_friction(equations, springs, max_changes, goes_on, state)
       !> Blocks assembled; matrix and factor are made anew
       type(equations_t), intent(inout) :: equations
-      !> The springs of the joints
       type(joint_springs_t), intent(in) :: springs
       !> Most changes of faces before Newton's method takes over
       integer, intent(in) :: max_changes
@@ -69,17 +68,13 @@ contains
    !> longer change. Where blocks fall so far that rounding hides smaller changes, the bounds that
    !> changed least are taken
    pure subroutine follow_bounds(equations, springs, max_changes, tolerance, bound, state)
-      !> Blocks assembled; matrix and factor are made anew
       type(equations_t), intent(inout) :: equations
-      !> The springs of the joints
       type(joint_springs_t), intent(in) :: springs
-      !> Most changes of faces before Newton's method takes over
       integer, intent(in) :: max_changes
       !> Change of a bound that counts as none [N/m]
       real(wp), intent(in) :: tolerance
       !> Bounds: (n_joint) [N/m]
       real(wp), intent(inout) :: bound(:)
-      !> Faces to begin with in, motion and joints out
       type(step_state_t), intent(inout) :: state
       real(wp) :: change(size(bound)), best(size(bound)), least
       real(wp), dimension(size(bound), memory + 1) :: bounds, changes
@@ -146,9 +141,7 @@ contains
 
    !> Largest shear forces that the joints carry with the normal forces that they have
    pure function coulomb_bound(springs, state) result(bound)
-      !> The springs of the joints
       type(joint_springs_t), intent(in) :: springs
-      !> The step, for the normal forces
       type(step_state_t), intent(in) :: state
       !> The bounds: (n_joint) [N/m]
       real(wp) :: bound(size(springs%stiffness))

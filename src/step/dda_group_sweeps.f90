@@ -67,9 +67,7 @@ contains
       integer, intent(in) :: joint(:)
       !> One of sweeps_for
       integer, intent(in) :: purpose
-      !> The springs of the joints
       type(joint_springs_t), intent(in) :: springs
-      !> What the joints see
       type(contact_view_t), intent(in) :: view
       !> Gap that rounding can make [m]
       real(wp), intent(in) :: noise
@@ -81,8 +79,7 @@ contains
       real(wp), intent(inout) :: motion(:, 0:)
       !> Whether it is settled
       logical, intent(out) :: settled
-      real(wp) :: before(3, size(joint)), change(2), last, lately, square
-      real(wp) :: way(3, size(joint))
+      real(wp) :: before(3, size(joint)), change(2), last, lately, square, way(3, size(joint))
       logical :: active(size(joint)), ended, hasty
       integer :: sweep
 
@@ -126,7 +123,6 @@ contains
       integer, intent(in) :: sweep
       !> Largest force of the group [N/m]
       real(wp), intent(in) :: largest
-      !> Changes that count as none, of a force [N/m] and of a gap [m]: (2)
       real(wp), intent(in) :: enough(2)
       !> Changes of the last sweep, likewise: (2)
       real(wp), intent(in) :: change(2)
@@ -158,7 +154,6 @@ contains
    pure logical function takes_long(change, lately)
       !> The change over what counts as none
       real(wp), intent(in) :: change
-      !> That of a round before
       real(wp), intent(in) :: lately
 
       takes_long = .not. change < lately
@@ -167,20 +162,13 @@ contains
 
    !> One sweep over the joints forwards and one backwards
    pure subroutine sweep_twice(joint, springs, view, noise, active, force, motion, change)
-      !> The joints: (n)
       integer, intent(in) :: joint(:)
-      !> The springs of the joints
       type(joint_springs_t), intent(in) :: springs
-      !> What the sweeps need of the joints
       type(contact_view_t), intent(in) :: view
-      !> Gap that rounding can make [m]
       real(wp), intent(in) :: noise
       !> Joints that are looked at; after it, those that carry a force: (n)
       logical, intent(inout) :: active(:)
-      !> Forces of all joints: (3, n_joint) [N/m]
-      real(wp), intent(inout) :: force(:, :)
-      !> Motion of the blocks, of those that do not move first: (n_dof, 0:n_equation)
-      real(wp), intent(inout) :: motion(:, 0:)
+      real(wp), intent(inout) :: force(:, :), motion(:, 0:)
       !> Largest change of a force [N/m] and of a gap [m]: (2)
       real(wp), intent(inout) :: change(2)
       integer :: i, j, k
@@ -197,11 +185,8 @@ contains
    !> Go on in the direction of the sweeps so far, as conjugate gradients do, unless the last sweep
    !> has changed more than the one before
    pure subroutine go_on(joint, springs, view, change, square, way, force, motion)
-      !> Joints of the group: (n)
       integer, intent(in) :: joint(:)
-      !> The springs of the joints
       type(joint_springs_t), intent(in) :: springs
-      !> What the joints see
       type(contact_view_t), intent(in) :: view
       !> What the sweep has changed: (3, n) [N/m]
       real(wp), intent(in) :: change(:, :)
@@ -209,10 +194,7 @@ contains
       real(wp), intent(inout) :: square
       !> The direction: (3, n) [N/m]
       real(wp), intent(inout) :: way(:, :)
-      !> Forces of all joints: (3, n_joint) [N/m]
-      real(wp), intent(inout) :: force(:, :)
-      !> Motion of the blocks: (n_dof, 0:n_equation)
-      real(wp), intent(inout) :: motion(:, 0:)
+      real(wp), intent(inout) :: force(:, :), motion(:, 0:)
       real(wp) :: ratio, last
       integer :: j
 
@@ -238,9 +220,7 @@ contains
    pure subroutine relax(n_dof, springs, view, j, noise, force, motion, change)
       !> Unknowns of one block
       integer, intent(in) :: n_dof
-      !> The springs of the joints
       type(joint_springs_t), intent(in) :: springs
-      !> What the joints see
       type(contact_view_t), intent(in) :: view
       !> Number of the joint
       integer, intent(in) :: j
@@ -293,17 +273,12 @@ contains
 
    !> Let the two blocks of a joint answer a change of its forces
    pure subroutine push(n_dof, springs, view, j, change, motion)
-      !> Unknowns of one block
       integer, intent(in) :: n_dof
-      !> The springs of the joints
       type(joint_springs_t), intent(in) :: springs
-      !> What the joints see
       type(contact_view_t), intent(in) :: view
-      !> Number of the joint
       integer, intent(in) :: j
       !> The change: (3) [N/m]
       real(wp), intent(in) :: change(3)
-      !> Motion of the blocks: (n_dof, 0:n_equation)
       real(wp), intent(inout) :: motion(n_dof, 0:*)
       integer :: a, b, i, k
 

@@ -31,7 +31,6 @@ contains
       type(block_system_t), intent(in) :: system
       !> The contacts before the step
       type(contacts_t), intent(in) :: contacts
-      !> The equations of the step
       type(equations_t), intent(in) :: equations
       type(step_context_t), intent(in) :: step
       !> What the check says
@@ -77,7 +76,6 @@ contains
    pure real(wp) function ease_of(springs, equations, k, j) result(ease)
       !> The springs, for what the contact sees of the blocks
       type(joint_springs_t), intent(in) :: springs
-      !> The equations, for the masses
       type(equations_t), intent(in) :: equations
       !> Which contact of the joint
       integer, intent(in) :: k

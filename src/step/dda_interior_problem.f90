@@ -70,11 +70,8 @@ contains
 
    !> The joints with their blocks numbered anew, and the pattern of their matrix
    pure subroutine pose(equations, springs, view, joint, force, motion, p)
-      !> Blocks assembled
       type(equations_t), intent(in) :: equations
-      !> The springs of the joints
       type(joint_springs_t), intent(in) :: springs
-      !> What the joints see
       type(contact_view_t), intent(in) :: view
       !> Numbers of the joints: (n)
       integer, intent(in) :: joint(:)
@@ -122,9 +119,7 @@ contains
 
    !> What the forces of the joints may be, and how they are measured
    pure subroutine pose_springs(springs, view, force, p)
-      !> The springs of the joints
       type(joint_springs_t), intent(in) :: springs
-      !> What the joints see
       type(contact_view_t), intent(in) :: view
       !> Forces of all joints in the step before: (3, n_joint) [N/m]
       real(wp), intent(in) :: force(:, :)
@@ -149,9 +144,7 @@ contains
 
    !> Openings and slips after a motion, from the gaps before it
    pure subroutine see_openings(springs, view, p, motion, opening)
-      !> The springs of the joints
       type(joint_springs_t), intent(in) :: springs
-      !> What the joints see
       type(contact_view_t), intent(in) :: view
       type(problem_t), intent(in) :: p
       !> The motion: (n_dof, n_block) [m]
@@ -168,10 +161,8 @@ contains
 
    !> What a motion of the blocks adds to openings and slips
    pure subroutine move_joints(springs, p, motion, opening)
-      !> The springs of the joints
       type(joint_springs_t), intent(in) :: springs
       type(problem_t), intent(in) :: p
-      !> The motion: (n_dof, n_block) [m]
       real(wp), intent(in) :: motion(:, :)
       !> What it adds: (3, n_joint) [m]
       real(wp), intent(out) :: opening(:, :)
@@ -195,10 +186,8 @@ contains
 
    !> Let forces of the joints act on the blocks
    pure subroutine push_blocks(springs, p, force, load)
-      !> The springs of the joints
       type(joint_springs_t), intent(in) :: springs
       type(problem_t), intent(in) :: p
-      !> The forces: (3, n_joint) [N/m]
       real(wp), intent(in) :: force(:, :)
       !> Receives them: (n_dof, n_block) [N/m]
       real(wp), intent(inout) :: load(:, :)
@@ -220,13 +209,9 @@ contains
 
    !> What forces and motion lack of balance, and of openings that are closed
    pure subroutine see_lack(equations, springs, view, x, p)
-      !> Blocks assembled
       type(equations_t), intent(in) :: equations
-      !> The springs of the joints
       type(joint_springs_t), intent(in) :: springs
-      !> What the joints see
       type(contact_view_t), intent(in) :: view
-      !> Forces and motion
       type(interior_t), intent(in) :: x
       !> The problem; balance and openings are set
       type(problem_t), intent(inout) :: p
@@ -246,16 +231,12 @@ contains
 
    !> Forces and motion that give what is lacking
    pure subroutine respond(springs, p, drive, force, motion)
-      !> The springs of the joints
       type(joint_springs_t), intent(in) :: springs
       !> The problem, factored, with what it lacks of balance
       type(problem_t), intent(in) :: p
       !> By how much the springs are pressed together: (3, n_joint) [m]
       real(wp), intent(in) :: drive(:, :)
-      !> The forces: (3, n_joint) [N/m]
-      real(wp), intent(out) :: force(:, :)
-      !> The motion: (n_dof, n_block) [m]
-      real(wp), intent(out) :: motion(:, :)
+      real(wp), intent(out) :: force(:, :), motion(:, :)
       real(wp) :: moved(3, size(p%joint))
       integer :: i
 
@@ -273,10 +254,8 @@ contains
 
    !> Distance of the forces from their bounds
    pure subroutine see_bounds(springs, p, force, slack)
-      !> The springs of the joints
       type(joint_springs_t), intent(in) :: springs
       type(problem_t), intent(in) :: p
-      !> The forces: (3, n_joint) [N/m]
       real(wp), intent(in) :: force(:, :)
       !> The distances: (4, n_joint) [N/m]
       real(wp), intent(out) :: slack(:, :)
@@ -295,9 +274,7 @@ contains
 
    !> The matrix with the springs as their bounds yield, and its factor
    pure subroutine factor_springs(equations, springs, p)
-      !> Blocks assembled
       type(equations_t), intent(in) :: equations
-      !> The springs of the joints
       type(joint_springs_t), intent(in) :: springs
       !> The problem; matrix and factor are made anew
       type(problem_t), intent(inout) :: p
@@ -347,7 +324,6 @@ contains
 
    !> Forces of a joint's springs that are pressed together
    pure function answer(springs, p, i, drive) result(force)
-      !> The springs of the joints
       type(joint_springs_t), intent(in) :: springs
       type(problem_t), intent(in) :: p
       !> Place of the joint in the problem
@@ -358,8 +334,7 @@ contains
       real(wp) :: force(3)
 
       associate (yield => p%yield(:, i))
-         force(1:2) = merge(drive(1:2)/(p%soft(1:2, i) + yield(1:2)), 0.0_wp, &
-            & p%given(1:2, i))
+         force(1:2) = merge(drive(1:2)/(p%soft(1:2, i) + yield(1:2)), 0.0_wp, p%given(1:2, i))
          force(3) = 0.0_wp
          if (.not. p%given(3, i)) return
          force(3) = (drive(3) - springs%cone(p%joint(i))%friction*(yield(3) - yield(4)) &

@@ -31,7 +31,6 @@ contains
       type(settings_t), intent(in) :: settings
       !> Blocks assembled; matrix and factor are made anew
       type(equations_t), intent(inout) :: equations
-      !> The springs of the joints
       type(joint_springs_t), intent(in) :: springs
       !> Faces to begin with in, motion and joints out
       type(step_state_t), intent(inout) :: state
@@ -45,8 +44,7 @@ contains
          call judge_bars(equations%bars, state%motion, pass > few_bar_passes, agreed)
          call add_bars(equations%bars, 1.0_wp, equations%base, equations%load)
          if (agreed) return
-         call couple_bars(equations%bars, equations%matrix%pair, .true., &
-            & equations%matrix%coupling)
+         call couple_bars(equations%bars, equations%matrix%pair, .true., equations%matrix%coupling)
          equations%changed = .true.
       end do
       state%settled = .false.
@@ -55,11 +53,8 @@ contains
    !> Settle the joints for given conditions of the bars
    pure subroutine settle_with_bars(settings, equations, springs, state)
       type(settings_t), intent(in) :: settings
-      !> Blocks assembled; matrix and factor are made anew
       type(equations_t), intent(inout) :: equations
-      !> The springs of the joints
       type(joint_springs_t), intent(in) :: springs
-      !> Faces to begin with in, motion and joints out
       type(step_state_t), intent(inout) :: state
 
       if (settings%current .and. settings%dynamic) then
@@ -74,11 +69,8 @@ contains
    !> Settle the joints until neither the multipliers nor the forces at the held points change
    pure subroutine settle_exactly(settings, equations, springs, state)
       type(settings_t), intent(in) :: settings
-      !> Blocks assembled; matrix and factor are made anew
       type(equations_t), intent(inout) :: equations
-      !> The springs of the joints
       type(joint_springs_t), intent(in) :: springs
-      !> Faces to begin with in, motion and joints out
       type(step_state_t), intent(inout) :: state
       real(wp) :: multiplier(3, size(springs%stiffness)), opening(3, size(springs%stiffness))
       real(wp) :: change, scale
@@ -105,7 +97,6 @@ contains
    !> Whether the forces of the joints are multipliers; otherwise their springs are real
    pure logical function multiplies(settings, springs)
       type(settings_t), intent(in) :: settings
-      !> The springs of the joints
       type(joint_springs_t), intent(in) :: springs
 
       multiplies = settings%current .and. .not. springs%give
@@ -114,11 +105,8 @@ contains
    !> Settle the joints for given multipliers
    pure subroutine settle_once(settings, equations, springs, state)
       type(settings_t), intent(in) :: settings
-      !> Blocks assembled; matrix and factor are made anew
       type(equations_t), intent(inout) :: equations
-      !> The springs of the joints
       type(joint_springs_t), intent(in) :: springs
-      !> Faces to begin with in, motion and joints out
       type(step_state_t), intent(inout) :: state
 
       if (settings%flow == flow_rule%associated) then

@@ -27,12 +27,10 @@ contains
    pure subroutine iterate_newton(equations, springs, state)
       !> Blocks assembled; matrix and factor are made anew
       type(equations_t), intent(inout) :: equations
-      !> The springs of the joints
       type(joint_springs_t), intent(in) :: springs
       type(step_state_t), intent(inout) :: state
       type(joint_face_t) :: wanted(size(state%face))
-      real(wp) :: gap(size(state%face))
-      real(wp) :: from(size(state%motion, 1), size(state%motion, 2))
+      real(wp) :: gap(size(state%face)), from(size(state%motion, 1), size(state%motion, 2))
       real(wp) :: direction(size(state%motion, 1), size(state%motion, 2))
       integer :: pass
       logical :: balanced
@@ -58,11 +56,8 @@ contains
    !> What the admissible forces of a motion leave of the loads, and whether that is rounding: then
    !> no other motion has noticeably less energy
    pure subroutine find_unbalance(equations, springs, state, rest, balanced)
-      !> The equations of the step
       type(equations_t), intent(in) :: equations
-      !> The springs of the joints
       type(joint_springs_t), intent(in) :: springs
-      !> The step, with the forces of its motion
       type(step_state_t), intent(in) :: state
       !> Loads that nothing balances: (n_dof, n_equation)
       real(wp), intent(out) :: rest(:, :)
@@ -94,9 +89,7 @@ contains
    !> How far to go from one motion towards another for the least energy. The slope of the energy
    !> rises piecewise linearly, so its zero is found by bracketing and false position
    pure function lowest_point(equations, springs, state, from, direction) result(factor)
-      !> The equations of the step
       type(equations_t), intent(in) :: equations
-      !> The springs of the joints
       type(joint_springs_t), intent(in) :: springs
       !> The step, for bounds and forces at its beginning
       type(step_state_t), intent(in) :: state
@@ -105,8 +98,7 @@ contains
       !> Where to go: (n_dof, n_equation)
       real(wp), intent(in) :: direction(:, :)
       !> 1 is the whole way
-      real(wp) :: factor
-      real(wp) :: start(3, size(state%face)), rate(3, size(state%face))
+      real(wp) :: factor, start(3, size(state%face)), rate(3, size(state%face))
       real(wp) :: slope_at_zero, curvature, low, high, slope_low, slope_high, slope
       integer :: e, pass
 

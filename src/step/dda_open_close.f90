@@ -32,7 +32,6 @@ contains
    pure subroutine iterate_open_close(equations, springs, max_changes, state, one_by_one)
       !> Blocks assembled; matrix and factor are made anew
       type(equations_t), intent(inout) :: equations
-      !> The springs of the joints
       type(joint_springs_t), intent(in) :: springs
       !> Most changes of faces of a chain before Newton's method takes over
       integer, intent(in) :: max_changes
@@ -41,8 +40,7 @@ contains
       !> Whether only the joint that disagrees most changes its face, as it does after a repetition
       logical, intent(in), optional :: one_by_one
       type(joint_face_t) :: wanted(size(state%face))
-      real(wp) :: gap(size(state%face))
-      real(wp) :: best(size(state%motion, 1), size(state%motion, 2)), least
+      real(wp) :: gap(size(state%face)), best(size(state%motion, 1), size(state%motion, 2)), least
       integer(int64) :: seen(max_changes + 1)
       integer :: change, most, since
       logical :: peaks
@@ -88,7 +86,6 @@ contains
    !> Change the faces of a motion once: where to begin, if the motion is nearly that of a step
    pure subroutine change_faces(equations, springs, state)
       type(equations_t), intent(in) :: equations
-      !> The springs of the joints
       type(joint_springs_t), intent(in) :: springs
       !> The step; its faces are changed
       type(step_state_t), intent(inout) :: state
@@ -102,9 +99,7 @@ contains
 
    !> Joints that disagree more than all others of their two blocks
    pure function is_peak(equations, springs, gap)
-      !> The equations, for the joints of each block
       type(equations_t), intent(in) :: equations
-      !> The springs, for the blocks of each joint
       type(joint_springs_t), intent(in) :: springs
       !> Disagreement: (n_joint) [N/m]
       real(wp), intent(in) :: gap(:)
@@ -133,9 +128,7 @@ contains
    pure function hash(face) result(number)
       !> Faces: (n_joint)
       type(joint_face_t), intent(in) :: face(:)
-      !> The number
-      integer(int64) :: number
-      integer(int64) :: code
+      integer(int64) :: number, code
       integer :: j
 
       number = 0_int64

@@ -27,15 +27,12 @@ contains
    !> Check the lines of a settled step: where they were wrong they must be chosen anew by its
    !> motion; if blocks still enter one another the step is cut, and if some are still held off in
    !> thin air, they are
-   pure function check_axes(system, contacts, march, step) result(outcome)
+   pure type(step_outcome_t) function check_axes(system, contacts, march, step) result(outcome)
       !> The blocks before the step
       type(block_system_t), intent(in) :: system
-      !> The contacts of the step
       type(contacts_t), intent(in) :: contacts
       type(march_t), intent(in) :: march
       type(step_context_t), intent(in) :: step
-      !> What the check says
-      type(step_outcome_t) :: outcome
       real(wp) :: gap, matters
       logical :: entered, held_off
       integer :: j

@@ -105,10 +105,8 @@ contains
       type(block_system_t), intent(in) :: system
       !> The contacts after the step
       type(contacts_t), intent(in) :: contacts
-      !> The equations of the step
       type(equations_t), intent(in) :: equations
       type(step_context_t), intent(in) :: step
-      !> Receives the reactions
       type(album_t), intent(inout) :: album
       real(wp) :: force(2), place(2)
       integer :: h, i, k

@@ -60,7 +60,6 @@ contains
       type(contacts_t), intent(in) :: contacts
       type(equations_t), intent(in) :: equations
       type(march_t), intent(inout) :: march
-      !> Receives the rest
       type(rest_t), allocatable, intent(inout) :: rest
       !> Pictures of the run
       type(album_t), intent(in), optional :: album
@@ -100,7 +99,6 @@ contains
       type(march_t), intent(inout) :: march
       !> Whether there is a shorter stride; otherwise nothing is changed
       logical, intent(out) :: returned
-      !> Pictures of the run
       type(album_t), intent(inout), optional :: album
       type(march_t) :: before
 

@@ -45,7 +45,6 @@ contains
       real(wp), intent(in) :: target(:)
       !> Blocks assembled; matrix and factor are made anew
       type(equations_t), intent(inout) :: equations
-      !> The springs of the joints
       type(joint_springs_t), intent(in) :: springs
       !> Forces and faces to begin with in, motion and joints out
       type(step_state_t), intent(inout) :: state
@@ -118,7 +117,6 @@ contains
    pure subroutine sweep_with_bars(equations, springs, state)
       !> Blocks assembled, with their bars in a motion; the conditions of the bars are set
       type(equations_t), intent(inout) :: equations
-      !> The springs of the joints
       type(joint_springs_t), intent(in) :: springs
       type(step_state_t), intent(inout) :: state
       type(joint_springs_t) :: with_bars
@@ -144,13 +142,10 @@ contains
    !> Settle the multipliers and the forces at the held points for given cones
    pure subroutine settle_multipliers(settings, target, opening, equations, springs, state)
       type(settings_t), intent(in) :: settings
-      !> How far the held points must go: (n_fixed) [m]
       real(wp), intent(in) :: target(:)
       !> Trial forces at the beginning without multipliers: (3, n_joint) [N/m]
       real(wp), intent(in) :: opening(:, :)
-      !> Blocks assembled; matrix and factor are made anew
       type(equations_t), intent(inout) :: equations
-      !> The springs of the joints
       type(joint_springs_t), intent(in) :: springs
       !> Multipliers and faces to begin with in, motion and joints out
       type(step_state_t), intent(inout) :: state

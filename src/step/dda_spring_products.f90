@@ -13,7 +13,6 @@ contains
 
    !> Rows of one side of a joint, projected on its face: p R P
    pure function projected(springs, cone, face, side, j) result(steep)
-      !> The springs of the joints
       type(joint_springs_t), intent(in) :: springs
       !> Bounds of the joint's force
       type(cone_t), intent(in) :: cone
@@ -23,8 +22,7 @@ contains
       !> Number of the joint
       integer, intent(in) :: j
       !> The projected rows: (n_dof, 3)
-      real(wp) :: steep(size(springs%row, 1), 3)
-      real(wp) :: tangent(3, 3), constant(3)
+      real(wp) :: steep(size(springs%row, 1), 3), tangent(3, 3), constant(3)
 
       steep = springs%stiffness(j)*springs%row(:, :, side, j)
       if (is_stuck(face)) return
@@ -49,14 +47,11 @@ contains
 
    !> Add the load of one joint: R (P z + c)
    pure subroutine add_load(springs, cone, face, trial, j, load)
-      !> The springs of the joints
       type(joint_springs_t), intent(in) :: springs
-      !> Bounds of the joint's force
       type(cone_t), intent(in) :: cone
       type(joint_face_t), intent(in) :: face
       !> Its trial force before the motion: (3) [N/m]
       real(wp), intent(in) :: trial(3)
-      !> Number of the joint
       integer, intent(in) :: j
       !> Receives the load: (n_dof, n_equation)
       real(wp), intent(inout) :: load(:, :)
@@ -83,13 +78,11 @@ contains
 
    !> Openings and slips of the joints by a motion of the blocks
    pure function relative_displacement(springs, motion) result(increment)
-      !> The springs of the joints
       type(joint_springs_t), intent(in) :: springs
       !> The motion: (n_dof, n_equation)
       real(wp), intent(in) :: motion(:, :)
       !> Opening at the two contacts and slip: (3, n_joint) [m]
-      real(wp) :: increment(3, size(springs%equation, 2))
-      real(wp) :: seen(3)
+      real(wp) :: increment(3, size(springs%equation, 2)), seen(3)
       integer :: c, e, j, k, side
 
       do j = 1, size(springs%equation, 2)

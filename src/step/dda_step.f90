@@ -83,7 +83,6 @@ contains
       type(contacts_t), intent(inout) :: contacts
       !> The equations; masses are set
       type(equations_t), intent(inout) :: equations
-      !> What is carried from step to step
       type(march_t), intent(in) :: march
       type(step_context_t), intent(inout) :: step
 
@@ -114,9 +113,7 @@ contains
       type(block_system_t), intent(inout) :: system
       type(contacts_t), intent(inout) :: contacts
       type(equations_t), intent(in) :: equations
-      !> What is carried from step to step
       type(march_t), intent(inout) :: march
-      !> The step, measured
       type(step_context_t), intent(inout) :: step
       logical :: breaks
 

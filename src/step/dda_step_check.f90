@@ -26,7 +26,6 @@ contains
       type(block_system_t), intent(in) :: system
       !> The contacts before the step
       type(contacts_t), intent(in) :: contacts
-      !> The equations of the step
       type(equations_t), intent(in) :: equations
       type(march_t), intent(in) :: march
       type(step_context_t), intent(in) :: step
@@ -39,16 +38,13 @@ contains
       if (outcome%accepted .and. searched) outcome = check_margins(system, contacts, march, step)
       if (.not. (settings%dynamic .and. settings%current)) return
       if (outcome%accepted) outcome = check_impact(settings, system, contacts, equations, step)
-      if (outcome%accepted .and. searched) &
-         & outcome = check_axes(system, contacts, march, step)
+      if (outcome%accepted .and. searched) outcome = check_axes(system, contacts, march, step)
    end function check_motion
 
    !> Check the velocities of a try: settled, and no corner inside a neighbour
    pure function check_end_velocities(settings, system, contacts, march, step) result(outcome)
       type(settings_t), intent(in) :: settings
-      !> The blocks before the step
       type(block_system_t), intent(in) :: system
-      !> The contacts before the step
       type(contacts_t), intent(in) :: contacts
       type(march_t), intent(in) :: march
       type(step_context_t), intent(in) :: step
@@ -63,9 +59,7 @@ contains
 
    !> Change for the next try what the checks ask for: its length, margins, axes
    pure subroutine retry(system, outcome, march, step)
-      !> The blocks before the step
       type(block_system_t), intent(in) :: system
-      !> What the checks say
       type(step_outcome_t), intent(in) :: outcome
       !> The march; length and margins are set
       type(march_t), intent(inout) :: march

@@ -57,7 +57,6 @@ contains
    !> hide the elastic motion, which is found by gluing all joints
    pure subroutine first_interval(system, springs, settings, equations, state, march, error)
       type(block_system_t), intent(in) :: system
-      !> The springs of the joints
       type(joint_springs_t), intent(in) :: springs
       type(settings_t), intent(in) :: settings
       !> The equations; matrix and factor are made anew
@@ -65,7 +64,6 @@ contains
       !> The step's state; its motion becomes that of the glued system, its faces those to
       !> begin with
       type(step_state_t), intent(inout) :: state
-      !> The march, made new
       type(march_t), intent(out) :: march
       !> Allocated if the system cannot be solved even with all joints glued
       type(error_t), allocatable, intent(out) :: error
@@ -133,7 +131,6 @@ contains
    pure subroutine measure_scales(system, settings, equations, march)
       type(block_system_t), intent(in) :: system
       type(settings_t), intent(in) :: settings
-      !> The equations, for masses and weights
       type(equations_t), intent(in) :: equations
       !> Receives the scales, and of a dynamic run the longest step
       type(march_t), intent(inout) :: march
@@ -174,7 +171,6 @@ contains
    !> Whether the blocks fall even with all joints glued, as one that stands on a corner does: most
    !> work of the loads is then speed
    pure logical function falls_glued(equations, motion, dt)
-      !> The equations, assembled
       type(equations_t), intent(in) :: equations
       !> The motion: (n_dof, n_equation)
       real(wp), intent(in) :: motion(:, :)
@@ -198,8 +194,7 @@ contains
    pure function feigned_motion(system) result(motion)
       type(block_system_t), intent(in) :: system
       !> The motion [m]
-      real(wp) :: motion
-      real(wp) :: slender
+      real(wp) :: motion, slender
       integer :: b
 
       slender = 0.0_wp
@@ -256,13 +251,10 @@ contains
 
    !> Check that a try has settled and, where blocks move, has not moved too far for a linear step
    !> (Shi: df24)
-   pure function check_length(settings, march, step) result(outcome)
+   pure type(step_outcome_t) function check_length(settings, march, step) result(outcome)
       type(settings_t), intent(in) :: settings
       type(march_t), intent(in) :: march
-      !> The step, its motion measured
       type(step_context_t), intent(in) :: step
-      !> What the check says
-      type(step_outcome_t) :: outcome
       real(wp) :: factor, limit
 
       outcome%dt = step%dt
@@ -346,11 +338,9 @@ contains
    !> gyration by rotation
    pure function largest_motion(system, motion) result(largest)
       type(block_system_t), intent(in) :: system
-      !> Motion of the blocks: (n_dof, n_equation)
       real(wp), intent(in) :: motion(:, :)
       !> The largest motion [m]
-      real(wp) :: largest
-      real(wp) :: gyration
+      real(wp) :: largest, gyration
       integer :: b, e
 
       largest = 0.0_wp

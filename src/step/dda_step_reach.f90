@@ -27,8 +27,7 @@ contains
       !> The march, with the length of the step
       type(march_t), intent(in) :: march
       !> Most that the corners of each block are expected to move: (n_block) [m]
-      real(wp) :: reach(size(system%area))
-      real(wp) :: radius
+      real(wp) :: reach(size(system%area)), radius
       integer :: b, v
 
       reach = least_reach*sqrt(system%area)
@@ -48,7 +47,6 @@ contains
    pure subroutine next_reach(system, step, march)
       type(block_system_t), intent(in) :: system
       type(step_context_t), intent(in) :: step
-      !> Receives the reach
       type(march_t), intent(inout) :: march
 
       march%reach = max(least_reach*sqrt(system%area), &
@@ -58,15 +56,12 @@ contains
 
    !> Check that no corner moves beyond the reach of its block, or so far that a block may pass by
    !> what it meets
-   pure function check_margins(system, contacts, march, step) result(outcome)
+   pure type(step_outcome_t) function check_margins(system, contacts, march, step) result(outcome)
       !> The blocks before the step
       type(block_system_t), intent(in) :: system
-      !> The contacts of the step
       type(contacts_t), intent(in) :: contacts
       type(march_t), intent(in) :: march
       type(step_context_t), intent(in) :: step
-      !> What the check says
-      type(step_outcome_t) :: outcome
       real(wp) :: way(size(system%area)), farthest
       logical :: may_meet(size(system%area))
       integer :: j
@@ -106,8 +101,7 @@ contains
       !> Motion of the blocks: (n_dof, n_equation)
       real(wp), intent(in) :: motion(:, :)
       !> The way of the corner that moves farthest: (n_block) [m]
-      real(wp) :: way(size(system%area))
-      real(wp) :: t(2, 6), centroid(2)
+      real(wp) :: way(size(system%area)), t(2, 6), centroid(2)
       integer :: b, e, n_dof, v
 
       n_dof = size(motion, 1)
@@ -130,8 +124,7 @@ contains
       type(settings_t), intent(in) :: settings
       type(march_t), intent(in) :: march
       !> The motion: (2, n_vertex) [m]
-      real(wp) :: travel(2, size(system%vertex, 2))
-      real(wp) :: motion(6, maxval(system%equation))
+      real(wp) :: travel(2, size(system%vertex, 2)), motion(6, maxval(system%equation))
       integer :: b, e
 
       motion = 0.0_wp
@@ -152,11 +145,9 @@ contains
    !> How a motion of the blocks moves their corners
    pure function travel_by(system, motion) result(travel)
       type(block_system_t), intent(in) :: system
-      !> The motion: (n_dof, n_equation)
       real(wp), intent(in) :: motion(:, :)
       !> The motion of the corners: (2, n_vertex) [m]
-      real(wp) :: travel(2, size(system%vertex, 2))
-      real(wp) :: t(2, 6), centroid(2)
+      real(wp) :: travel(2, size(system%vertex, 2)), t(2, 6), centroid(2)
       integer :: b, e, v
 
       travel = 0.0_wp

@@ -47,11 +47,8 @@ contains
 
    !> Force that rounding alone can make: of all loads, and of the penalty on the largest motion
    pure function force_noise(equations, springs, state) result(noise)
-      !> The equations, for the loads
       type(equations_t), intent(in) :: equations
-      !> The springs, for the penalty
       type(joint_springs_t), intent(in) :: springs
-      !> The step, for the motion
       type(step_state_t), intent(in) :: state
       !> The force [N/m]
       real(wp) :: noise
@@ -62,7 +59,6 @@ contains
 
    !> How far the force that each joint's face gives is from the admissible one, beyond rounding
    pure subroutine disagreement(springs, state, gap, wanted)
-      !> The springs of the joints
       type(joint_springs_t), intent(in) :: springs
       !> The step; its increments and trial forces are set
       type(step_state_t), intent(inout) :: state
@@ -90,7 +86,6 @@ contains
 
    !> Admissible forces and faces of the joints after a motion
    pure subroutine joint_forces(springs, state)
-      !> The springs of the joints
       type(joint_springs_t), intent(in) :: springs
       !> The step; everything but the motion is set
       type(step_state_t), intent(inout) :: state

@@ -101,9 +101,7 @@ contains
    pure subroutine settle_impulses(settings, system, contacts, after, closed, part, borne, &
       & steady, equations, step)
       type(settings_t), intent(in) :: settings
-      !> The blocks before the step
       type(block_system_t), intent(in) :: system
-      !> The contacts before the step
       type(contacts_t), intent(in) :: contacts
       !> Their springs where the contacts are after it
       type(joint_springs_t), intent(in) :: after
@@ -115,9 +113,7 @@ contains
       real(wp), intent(in) :: borne(:, :)
       !> Velocities by constant acceleration: (n_dof, n_equation)
       real(wp), intent(in) :: steady(:, :)
-      !> The equations; matrix and factor are made anew
       type(equations_t), intent(inout) :: equations
-      !> The step; its velocities are set, if they settle
       type(step_context_t), intent(inout) :: step
       type(step_state_t) :: state
       type(joint_springs_t) :: springs
@@ -158,7 +154,6 @@ contains
    !> gap
    pure function closed_contacts(system, contacts, step) result(closed)
       type(block_system_t), intent(in) :: system
-      !> The contacts before the step
       type(contacts_t), intent(in) :: contacts
       type(step_context_t), intent(in) :: step
       !> For each contact of each joint: (2, n_joint)
@@ -181,14 +176,12 @@ contains
    pure subroutine see_impacts(settings, system, contacts, closed, opening, step, part, borne)
       type(settings_t), intent(in) :: settings
       type(block_system_t), intent(in) :: system
-      !> The contacts before the step
       type(contacts_t), intent(in) :: contacts
       !> Contacts that are closed at its end: (2, n_joint)
       logical, intent(in) :: closed(:, :)
       !> How fast the contacts open without impacts, and the joints slip: (3, n_joint) [m/s]
       real(wp), intent(in) :: opening(:, :)
       type(step_context_t), intent(in) :: step
-      !> The speeds: (2, n_joint) [m/s]
       real(wp), intent(out) :: part(:, :)
       !> The forces; none where there is no impact: (3, n_joint) [N/m]
       real(wp), intent(out) :: borne(:, :)
@@ -218,7 +211,6 @@ contains
    pure subroutine assemble_rates(settings, system, follows, springs, force, steady, step, &
       & equations)
       type(settings_t), intent(in) :: settings
-      !> The blocks before the step
       type(block_system_t), intent(in) :: system
       !> Blocks without strain rates: (n_block)
       logical, intent(in) :: follows(:)
@@ -226,10 +218,8 @@ contains
       type(joint_springs_t), intent(in) :: springs
       !> Forces that are taken back: (3, n_joint) [N/m]
       real(wp), intent(in) :: force(:, :)
-      !> Velocities by constant acceleration: (n_dof, n_equation)
       real(wp), intent(in) :: steady(:, :)
       type(step_context_t), intent(in) :: step
-      !> Receives base and load
       type(equations_t), intent(inout) :: equations
       integer :: b, e, i, j
 
@@ -297,13 +287,11 @@ contains
    !> Keep the moment of momentum of each pair of blocks: the rows of a joint between turned edges
    !> may lie off one line. The two blocks give back what that brings in by one change of spin
    pure subroutine keep_moment(system, contacts, after, equations, force, step)
-      !> The blocks before the step
       type(block_system_t), intent(in) :: system
       !> The contacts before the step, with the springs that half of the impulses have acted by
       type(contacts_t), intent(in) :: contacts
       !> The springs after it, which the other half acts by
       type(joint_springs_t), intent(in) :: after
-      !> The equations, for the moments of inertia
       type(equations_t), intent(in) :: equations
       !> The forces of that half: (3, n_joint) [N/m]
       real(wp), intent(in) :: force(:, :)
@@ -329,7 +317,6 @@ contains
       !> Moment of the forces of a joint on both its blocks
       pure real(wp) function excess(springs, j, force, motion)
          type(joint_springs_t), intent(in) :: springs
-         !> Number of the joint
          integer, intent(in) :: j
          !> Its forces: (3) [N/m]
          real(wp), intent(in) :: force(3)
@@ -377,7 +364,6 @@ contains
    !> Mass of the lighter of the movable blocks of a pair [kg per metre depth]
    pure real(wp) function joint_mass(system, pair)
       type(block_system_t), intent(in) :: system
-      !> The two blocks: (2)
       integer, intent(in) :: pair(2)
 
       joint_mass = minval(system%density(pair)*system%area(pair), mask=system%equation(pair) > 0)

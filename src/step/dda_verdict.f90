@@ -55,9 +55,7 @@ contains
    pure subroutine measure_step(system, springs, equations, force_before, step)
       !> The blocks before the step
       type(block_system_t), intent(in) :: system
-      !> The springs of the joints
       type(joint_springs_t), intent(in) :: springs
-      !> The equations of the step
       type(equations_t), intent(in) :: equations
       !> Joint forces before the step: (3, n_joint) [N/m]
       real(wp), intent(in) :: force_before(:, :)
@@ -110,14 +108,11 @@ contains
    !> loads' work turns into speed alone, or acceleration is steady while no energy is stored; or,
    !> where a displacement that means collapse is set, if a corner has moved as far. What rests once
    !> a block has fallen does not stand
-   pure function judge_verdict(march, step, settings) result(answer)
+   pure integer function judge_verdict(march, step, settings)
       !> The march, with the acceleration of the step before
       type(march_t), intent(in) :: march
-      !> The last step, measured
       type(step_context_t), intent(in) :: step
       type(settings_t), intent(in) :: settings
-      !> One of verdict
-      integer :: answer
       logical :: at_rest, far_beyond_elastic, all_work_is_speed, steady, most_work_is_speed
       logical :: goes_on, is_certain, stores_nothing
       real(wp) :: far, fall, moved
@@ -154,17 +149,16 @@ contains
       if (settings%current) at_rest = at_rest .and. steps >= 2 &
          & .and. step%farthest <= max(still*march%displacement, march%resolution, &
          & min(march%rounding, barely*march%displacement))
-      answer = verdict%undecided
+      judge_verdict = verdict%undecided
       if (march%has_fallen .and. (at_rest .or. .not. settings%collapse_displacement > 0.0_wp)) then
-         answer = verdict%collapsed
+         judge_verdict = verdict%collapsed
       else if (at_rest) then
-         answer = verdict%stable
+         judge_verdict = verdict%stable
       else if (far > 0.0_wp) then
-         if (moved > far .and. steps >= 2 .and. goes_on) &
-            & answer = verdict%collapsed
+         if (moved > far .and. steps >= 2 .and. goes_on) judge_verdict = verdict%collapsed
       else if (steps >= 2 .and. far_beyond_elastic) then
          if (is_certain .and. (all_work_is_speed .or. steady .and. (most_work_is_speed &
-            & .or. stores_nothing))) answer = verdict%collapsed
+            & .or. stores_nothing))) judge_verdict = verdict%collapsed
       end if
    end function judge_verdict
 
@@ -184,8 +178,7 @@ contains
       !> The blocks at another time to measure from, where they move
       type(block_system_t), intent(in), optional :: since
       !> The displacement [m]
-      real(wp) :: largest
-      real(wp) :: t(2, 6), displacement(2)
+      real(wp) :: largest, t(2, 6), displacement(2)
       integer :: b, v
 
       largest = 0.0_wp

@@ -40,13 +40,11 @@ module dda_bar_springs
 contains
 
    !> Springs of all bars, not yet placed
-   pure function new_bar_springs(system, settings, n_dof) result(bars)
+   pure type(bar_springs_t) function new_bar_springs(system, settings, n_dof) result(bars)
       type(block_system_t), intent(in) :: system
       type(settings_t), intent(in) :: settings
       !> Unknowns of a block
       integer, intent(in) :: n_dof
-      !> The springs
-      type(bar_springs_t) :: bars
       integer :: i, n, side
 
       n = 0
@@ -117,7 +115,6 @@ contains
    !> Force of a bar that acts in this step before anything moves
    pure real(wp) function acting_force(bars, i) result(force)
       type(bar_springs_t), intent(in) :: bars
-      !> Number of the bar
       integer, intent(in) :: i
 
       select case (bars%condition(i))
@@ -193,8 +190,7 @@ contains
       !> The motion: (n_dof, n_equation)
       real(wp), intent(in) :: motion(:, :)
       !> Coupling times motion: (n_dof, n_equation)
-      real(wp) :: force(size(motion, 1), size(motion, 2))
-      real(wp) :: stiffness(2)
+      real(wp) :: force(size(motion, 1), size(motion, 2)), stiffness(2)
       integer :: i, k, side
 
       force = 0.0_wp
@@ -215,9 +211,7 @@ contains
    !> Elongation of a bar by a motion
    pure real(wp) function elongation_by(bars, motion, i)
       type(bar_springs_t), intent(in) :: bars
-      !> The motion: (n_dof, n_equation)
       real(wp), intent(in) :: motion(:, :)
-      !> Number of the bar
       integer, intent(in) :: i
       integer :: side
 
@@ -231,7 +225,6 @@ contains
    !> Change the conditions of bars that a motion does not agree with
    pure subroutine judge_bars(bars, motion, one_by_one, agreed)
       type(bar_springs_t), intent(inout) :: bars
-      !> The motion: (n_dof, n_equation)
       real(wp), intent(in) :: motion(:, :)
       !> Whether only the bar that is farthest off changes
       logical, intent(in) :: one_by_one
@@ -252,8 +245,7 @@ contains
       end do
       agreed = .not. any(off > 0.0_wp)
       if (agreed) return
-      where (off > 0.0_wp .and. (.not. one_by_one .or. off >= maxval(off))) &
-         & bars%condition = wanted
+      where (off > 0.0_wp .and. (.not. one_by_one .or. off >= maxval(off))) bars%condition = wanted
    end subroutine judge_bars
 
    !> What an accepted step leaves of the bars
@@ -262,7 +254,6 @@ contains
       type(settings_t), intent(in) :: settings
       !> Motion of the step: (n_dof, n_equation)
       real(wp), intent(in) :: motion(:, :)
-      !> Receives forces and conditions
       type(block_system_t), intent(inout) :: system
       real(wp) :: trial
       integer :: i
@@ -299,11 +290,9 @@ contains
    !> Energy that elastic bars take in during a step, and work that the forces of others do
    pure function bar_energies(bars, motion) result(energy)
       type(bar_springs_t), intent(in) :: bars
-      !> Motion of the step: (n_dof, n_equation)
       real(wp), intent(in) :: motion(:, :)
       !> Stored, spent: (2) [J/m]
-      real(wp) :: energy(2)
-      real(wp) :: longer, stiffness(2)
+      real(wp) :: energy(2), longer, stiffness(2)
       integer :: i
 
       energy = 0.0_wp

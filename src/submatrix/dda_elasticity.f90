@@ -11,7 +11,6 @@ contains
 
    !> Stiffness of the strain unknowns: area * D
    pure function elastic_matrix(material, area) result(stiffness)
-      !> Material of the block
       type(material_t), intent(in) :: material
       !> Area of the block [m2]
       real(wp), intent(in) :: area
@@ -26,7 +25,6 @@ contains
    pure function stress_load(stress, area) result(load)
       !> Stress sx, sy, txy: (3) [Pa]
       real(wp), intent(in) :: stress(3)
-      !> Area of the block [m2]
       real(wp), intent(in) :: area
       !> Generalised load: (6)
       real(wp) :: load(6)

@@ -47,14 +47,12 @@ module dda_fixed_points
 contains
 
    !> Springs of all held points, free of force
-   pure function new_fixed_points(system, held, n_dof) result(fixed)
+   pure type(fixed_points_t) function new_fixed_points(system, held, n_dof) result(fixed)
       type(block_system_t), intent(in) :: system
       !> The held points
       type(held_point_t), intent(in) :: held(:)
       !> Unknowns of a block
       integer, intent(in) :: n_dof
-      !> The springs
-      type(fixed_points_t) :: fixed
       integer :: axis, h, n, number(2*size(held)), direction(2*size(held))
 
       n = 0
@@ -179,7 +177,6 @@ contains
 
    !> Add to the forces, and to the load, what the springs carry after a motion
    pure subroutine correct_fixed_forces(target, motion, fixed, load, change)
-      !> How far the points must go: (n) [m]
       real(wp), intent(in) :: target(:)
       !> Motion of the blocks: (n_dof, n_equation)
       real(wp), intent(in) :: motion(:, :)

@@ -60,7 +60,6 @@ contains
 
       !> What a force at a point of a block is to its unknowns
       pure function load_at(loaded, force) result(of_block)
-         !> Where it acts
          type(loaded_point_t), intent(in) :: loaded
          !> The force: (2) [N/m]
          real(wp), intent(in) :: force(2)

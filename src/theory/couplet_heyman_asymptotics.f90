@@ -65,7 +65,6 @@ contains
    elemental subroutine near_limit_solution(distance, which, beta, eta, h)
       !> alpha_limit - alpha [rad]
       real(wp), intent(in) :: distance
-      !> One of `theory`
       integer, intent(in) :: which
       !> Inner hinge [rad]
       real(wp), intent(out) :: beta

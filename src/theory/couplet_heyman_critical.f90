@@ -49,7 +49,6 @@ contains
    elemental subroutine critical_solution(alpha, which, beta, eta, h)
       !> Half angle of embrace, (0, alpha_limit] [rad]
       real(wp), intent(in) :: alpha
-      !> One of `theory`
       integer, intent(in) :: which
       !> Inner hinge from the crown [rad]
       real(wp), intent(out) :: beta
@@ -106,12 +105,8 @@ contains
    elemental subroutine tangent_shallow(alpha, which, beta, eta, h)
       !> Half angle of embrace, (0, near_the_limit) [rad]
       real(wp), intent(in) :: alpha
-      !> One of `theory`
       integer, intent(in) :: which
-      !> Inner hinge [rad]
-      real(wp), intent(out) :: beta
-      !> Thickness ratio [-]
-      real(wp), intent(out) :: eta
+      real(wp), intent(out) :: beta, eta
       !> Thrust [w r]
       real(wp), intent(out) :: h
 
@@ -149,14 +144,8 @@ contains
    elemental subroutine tangent_steep(alpha, which, beta, eta, h)
       !> Half angle of embrace, [near_the_limit, alpha_limit] [rad]
       real(wp), intent(in) :: alpha
-      !> One of `theory`
       integer, intent(in) :: which
-      !> Inner hinge [rad]
-      real(wp), intent(out) :: beta
-      !> Thickness ratio [-]
-      real(wp), intent(out) :: eta
-      !> Thrust [w r]
-      real(wp), intent(out) :: h
+      real(wp), intent(out) :: beta, eta, h
 
       type(limits_t) :: limits
       real(wp) :: x, y, e, a, flag, sine, cosine, q, p, value, slope, bend, ratio, change
@@ -211,14 +200,8 @@ contains
    !> Heyman at moderate half angles: a = k(beta)/S + eta/(2 + eta) with eq. (2), a sum of positive
    !> terms
    elemental subroutine heyman_shallow(alpha, beta, eta, h)
-      !> Half angle of embrace, (0, near_the_limit) [rad]
       real(wp), intent(in) :: alpha
-      !> Inner hinge [rad]
-      real(wp), intent(out) :: beta
-      !> Thickness ratio [-]
-      real(wp), intent(out) :: eta
-      !> Thrust [w r]
-      real(wp), intent(out) :: h
+      real(wp), intent(out) :: beta, eta, h
 
       real(wp) :: deficit, change
       integer :: step
@@ -241,14 +224,8 @@ contains
    !> With T = tan^2(beta/2) = (1 - sin c)/(1 + sin c),
    !> (eta_l - eta)/2 = (1 - 2/pi)(1 - T) + T (2 c - pi (1 - cos c))/(pi beta).
    elemental subroutine heyman_steep(alpha, beta, eta, h)
-      !> Half angle of embrace, [near_the_limit, alpha_limit] [rad]
       real(wp), intent(in) :: alpha
-      !> Inner hinge [rad]
-      real(wp), intent(out) :: beta
-      !> Thickness ratio [-]
-      real(wp), intent(out) :: eta
-      !> Thrust [w r]
-      real(wp), intent(out) :: h
+      real(wp), intent(out) :: beta, eta, h
 
       type(limits_t) :: limits
       real(wp) :: excess, c, squared, half_drop, change
@@ -276,7 +253,6 @@ contains
 
    !> First guess of Heyman's inner hinge, a fit within 0.03 percent
    elemental function heyman_guess(alpha) result(beta)
-      !> Half angle of embrace [rad]
       real(wp), intent(in) :: alpha
       !> Inner hinge [rad]
       real(wp) :: beta
@@ -289,7 +265,6 @@ contains
 
    !> -dA/d beta along Heyman's solution: (k/S)' + 2 eta'/(2 + eta)^2
    elemental real(wp) function heyman_rate(beta, eta) result(rate)
-      !> Inner hinge [rad]
       real(wp), intent(in) :: beta
       !> Thickness ratio there, eq. (2) [-]
       real(wp), intent(in) :: eta

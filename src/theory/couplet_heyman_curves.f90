@@ -114,9 +114,7 @@ contains
 
    !> Eq. (26), and (15) from below: eta_0, the equilibrium curve at beta = 0
    elemental function initial_thickness(alpha, which) result(eta)
-      !> Half angle of embrace, (0, alpha_limit] [rad]
       real(wp), intent(in) :: alpha
-      !> One of `theory`
       integer, intent(in) :: which
       !> 0 where A >= 1; else 2 (1/A - 1), or 3 (A - sqrt((A + 2)(A - 2/3))) for Milankovitch [-]
       real(wp) :: eta
@@ -139,9 +137,7 @@ contains
    elemental function curve_slope(beta, alpha, which) result(slope)
       !> Inner hinge, (0, alpha] [rad]
       real(wp), intent(in) :: beta
-      !> Half angle of embrace, (0, alpha_limit] [rad]
       real(wp), intent(in) :: alpha
-      !> One of `theory`
       integer, intent(in) :: which
       !> d eta/d beta [1/rad]
       real(wp) :: slope
@@ -166,11 +162,9 @@ contains
    elemental real(wp) function thrust_line(beta, alpha, eta, which)
       !> Angle of the joint, [0, alpha] [rad]
       real(wp), intent(in) :: beta
-      !> Half angle of embrace, (0, pi) [rad]
       real(wp), intent(in) :: alpha
       !> Thickness ratio, large enough for a thrust h2 > 0 [-]
       real(wp), intent(in) :: eta
-      !> One of `theory`
       integer, intent(in) :: which
 
       real(wp) :: excess, normal

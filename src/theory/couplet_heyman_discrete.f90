@@ -113,9 +113,7 @@ contains
       integer, intent(in) :: voussoirs
       !> Half angle of embrace, in (0, pi) [rad]
       real(wp), intent(in) :: half_angle
-      !> Friction angle of the joints; pi/2 or more means that no joint slides [rad]
       real(wp), intent(in) :: friction
-      !> Whether the two springing joints cannot slide
       logical, intent(in) :: springing_no_slip
       !> Critical state; joints are counted as in equal_voussoir_joints
       type(discrete_solution_t), intent(out) :: solution
@@ -130,9 +128,7 @@ contains
 
    !> Joint angles of one half of an arch of equal voussoirs, from the crown
    pure function equal_voussoir_joints(voussoirs, half_angle) result(joint_angle)
-      !> Number of voussoirs of the whole arch, 1 or more
       integer, intent(in) :: voussoirs
-      !> Half angle of embrace [rad]
       real(wp), intent(in) :: half_angle
       !> 0, 2a/n, 4a/n ... a for an even number n; a/n, 3a/n ... a for an odd one: (n/2 + 1 or (n +
       !> 1)/2) [rad]
@@ -148,7 +144,6 @@ contains
 
    !> Number of equal chords of each voussoir when none may span more than a given angle
    pure function chords(joint_angle, longest) result(facets)
-      !> Joints of one half, from the crown: (n) [rad]
       real(wp), intent(in) :: joint_angle(:)
       !> Greatest span of a chord; 0 or less: one chord a voussoir [rad]
       real(wp), intent(in) :: longest
@@ -173,7 +168,6 @@ contains
       real(wp), intent(in) :: joint_angle(:)
       !> Chords of each voussoir: (:)
       integer, intent(in) :: facets(:)
-      !> Friction angle [rad]
       real(wp), intent(in) :: friction
 
       !> Half a turn [rad]
@@ -246,8 +240,7 @@ contains
 
    !> Whether two states are pinched by the same joints: equal pairs and the same exhausted friction
    pure logical function same_joints(a, b)
-      type(pinch_t), intent(in) :: a
-      type(pinch_t), intent(in) :: b
+      type(pinch_t), intent(in) :: a, b
 
       same_joints = a%sliding == b%sliding .and. all(a%left == b%left) .and. all(a%right == b%right)
    end function same_joints

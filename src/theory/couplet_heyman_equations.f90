@@ -33,7 +33,6 @@ contains
 
    !> Eq. (2), Heyman: eta = 2 (beta - S)(1 - C)/(beta (1 + C))
    elemental function heyman_thickness(beta) result(eta)
-      !> Inner hinge, (0, pi/2] [rad]
       real(wp), intent(in) :: beta
       !> Thickness ratio [-]
       real(wp) :: eta
@@ -83,9 +82,7 @@ contains
       real(wp), intent(in) :: beta
       !> 2e/t, from -1 at the extrados to 1 at the intrados
       real(wp), intent(in) :: eccentricity_ratio
-      !> Thickness ratio [-]
       real(wp), intent(in) :: eta
-      !> One of `theory`
       integer, intent(in) :: which
       !> Horizontal thrust [w r]
       real(wp) :: h
@@ -102,9 +99,7 @@ contains
    elemental function lower_thrust(beta, eta, which) result(h)
       !> Inner hinge, (0, pi) [rad]
       real(wp), intent(in) :: beta
-      !> Thickness ratio [-]
       real(wp), intent(in) :: eta
-      !> One of `theory`
       integer, intent(in) :: which
       !> h1 [w r]
       real(wp) :: h
@@ -116,9 +111,7 @@ contains
    elemental function springing_thrust(alpha, eta, which) result(h)
       !> Half angle of embrace, (0, pi) [rad]
       real(wp), intent(in) :: alpha
-      !> Thickness ratio [-]
       real(wp), intent(in) :: eta
-      !> One of `theory`
       integer, intent(in) :: which
       !> h2 = 1 - a + (eta - delta_M eta^2/6)/(2 + eta) [w r]
       real(wp) :: h
@@ -134,7 +127,6 @@ contains
       real(wp), intent(in) :: beta
       !> Thickness ratio, below 2 [-]
       real(wp), intent(in) :: eta
-      !> One of `theory`
       integer, intent(in) :: which
       !> h_e [w r]
       real(wp) :: h
@@ -151,11 +143,9 @@ contains
    elemental real(wp) function eccentricity(beta, eta, h, which)
       !> Angle of the joint, [0, pi) [rad]
       real(wp), intent(in) :: beta
-      !> Thickness ratio [-]
       real(wp), intent(in) :: eta
       !> Horizontal thrust, positive where beta is 0 [w r]
       real(wp), intent(in) :: h
-      !> One of `theory`
       integer, intent(in) :: which
 
       real(wp) :: drop

@@ -72,9 +72,7 @@ contains
    elemental subroutine friction_solution(mu, alpha, which, beta, eta, h)
       !> Friction coefficient of the joints
       real(wp), intent(in) :: mu
-      !> Half angle of embrace, (0, alpha_limit] [rad]
       real(wp), intent(in) :: alpha
-      !> One of `theory`
       integer, intent(in) :: which
       !> Inner hinge [rad]
       real(wp), intent(out) :: beta
@@ -107,9 +105,7 @@ contains
 
    !> 1 - h of the rotational mode, exact to the last digits also for shallow arches
    elemental real(wp) function rotational_deficit(alpha, which)
-      !> Half angle of embrace [rad]
       real(wp), intent(in) :: alpha
-      !> One of `theory`
       integer, intent(in) :: which
 
       real(wp) :: beta, eta, h
@@ -127,7 +123,6 @@ contains
 
    !> Lean of the thrust at the springing: alpha - atan2(alpha, h)
    elemental function springing_lean(alpha, x) result(lean)
-      !> Half angle of embrace [rad]
       real(wp), intent(in) :: alpha
       !> asin(sqrt(1 - h)) [rad]
       real(wp), intent(in) :: x
@@ -140,7 +135,6 @@ contains
 
    !> The thrust at which springing and haunch lean alike
    elemental function double_slip(alpha, guess) result(x)
-      !> Half angle of embrace [rad]
       real(wp), intent(in) :: alpha
       !> Any thrust to start from, as asin(sqrt(1 - h)) [rad]
       real(wp), intent(in) :: guess
@@ -161,7 +155,6 @@ contains
 
    !> 1 - h at which the haunch is about to slide
    elemental function haunch_deficit(mu) result(deficit)
-      !> Friction coefficient
       real(wp), intent(in) :: mu
       !> sin^2 x with x - sin(2x)/2 = atan(mu)
       real(wp) :: deficit
@@ -183,17 +176,14 @@ contains
    !> Eq. (12) with eq. (7) or its like. Where no line touches the intrados below the crown, the
    !> hinge has reached the crown and opens there outwards: beta is 0.
    elemental subroutine mixed_hinge(alpha, deficit, through_crown, which, beta, eta)
-      !> Half angle of embrace [rad]
       real(wp), intent(in) :: alpha
       !> 1 - h
       real(wp), intent(in) :: deficit
       !> Whether the line passes the extrados at the crown, rather than at the springing
       logical, intent(in) :: through_crown
-      !> One of `theory`
       integer, intent(in) :: which
       !> A first guess of the inner hinge; then the hinge [rad]
       real(wp), intent(inout) :: beta
-      !> Thickness ratio [-]
       real(wp), intent(out) :: eta
 
       real(wp) :: ratio, change
@@ -217,9 +207,7 @@ contains
 
    !> beta cot beta - h_e of eq. (12)
    elemental real(wp) function tangency_excess(eta, which) result(excess)
-      !> Thickness ratio [-]
       real(wp), intent(in) :: eta
-      !> One of `theory`
       integer, intent(in) :: which
 
       excess = tangency_flag(which)*eta*(1.0_wp + weight_flag(which)*eta/6.0_wp)/(2.0_wp - eta)
@@ -232,15 +220,9 @@ contains
    !> (q v(beta) - q v(alpha)) = eta (N(alpha) + N(beta)) - delta_M (q(alpha) - q(beta)) eta^2/6
    !> from the springing.
    elemental function thickness_at(beta, alpha, deficit, through_crown, which) result(eta)
-      !> Inner hinge [rad]
-      real(wp), intent(in) :: beta
-      !> Half angle of embrace [rad]
-      real(wp), intent(in) :: alpha
-      !> 1 - h
-      real(wp), intent(in) :: deficit
+      real(wp), intent(in) :: beta, alpha, deficit
       !> Whether the other point is the crown's, rather than the springing's
       logical, intent(in) :: through_crown
-      !> One of `theory`
       integer, intent(in) :: which
       !> Thickness ratio [-]
       real(wp) :: eta

@@ -35,7 +35,6 @@ contains
 
    !> q(x) = 1 - cos x = 2 sin^2(x/2)
    elemental real(wp) function versine(x)
-      !> Angle [rad]
       real(wp), intent(in) :: x
 
       versine = 2.0_wp*sin(0.5_wp*x)**2
@@ -43,7 +42,6 @@ contains
 
    !> k(x) = sin x - x cos x
    elemental real(wp) function arm_excess(x)
-      !> Angle [rad]
       real(wp), intent(in) :: x
       !> Ratios of the series, 1/(2i (2i + 3))
       real(wp), parameter :: ratio(terms) = &
@@ -73,7 +71,6 @@ contains
 
    !> a(x) = 2 - A(x) = 2 - x cot(x/2) = 2 k(x/2)/sin(x/2)
    elemental function embrace_deficit(x) result(a)
-      !> Angle in (-pi, pi); 0 is allowed [rad]
       real(wp), intent(in) :: x
       !> 2 - x cot(x/2), from 0 at 0 up to 2 at pi
       real(wp) :: a

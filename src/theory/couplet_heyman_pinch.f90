@@ -78,7 +78,6 @@ contains
    !> The joints that leave the least room for the thrust at one deficit
    pure subroutine narrowest_pair(ring, eta, deficit, pair, gap)
       type(ring_t), intent(in) :: ring
-      !> Thickness ratio [-]
       real(wp), intent(in) :: eta
       !> 1 - H
       real(wp), intent(in) :: deficit
@@ -111,11 +110,7 @@ contains
    !> Gap between the extrados of one joint and the intrados of another
    pure real(wp) function pair_gap(ring, eta, deficit, pair)
       type(ring_t), intent(in) :: ring
-      !> Thickness ratio [-]
-      real(wp), intent(in) :: eta
-      !> 1 - H
-      real(wp), intent(in) :: deficit
-      !> Extrados and intrados joint: (2)
+      real(wp), intent(in) :: eta, deficit
       integer, intent(in) :: pair(2)
 
       real(wp) :: reach
@@ -130,9 +125,7 @@ contains
    !> Derivative of a pair's gap by the deficit
    pure real(wp) function gap_slope(ring, eta, pair) result(slope)
       type(ring_t), intent(in) :: ring
-      !> Thickness ratio [-]
       real(wp), intent(in) :: eta
-      !> Extrados and intrados joint: (2)
       integer, intent(in) :: pair(2)
 
       associate (j => pair(1), k => pair(2))
@@ -143,11 +136,7 @@ contains
    !> Derivative of a pair's gap by eta
    pure real(wp) function gap_growth(ring, eta, deficit, pair)
       type(ring_t), intent(in) :: ring
-      !> Thickness ratio [-]
-      real(wp), intent(in) :: eta
-      !> 1 - H
-      real(wp), intent(in) :: deficit
-      !> Extrados and intrados joint: (2)
+      real(wp), intent(in) :: eta, deficit
       integer, intent(in) :: pair(2)
 
       associate (j => pair(1), k => pair(2))
@@ -159,7 +148,6 @@ contains
    !> Where the gaps of two pairs are equal
    pure subroutine meet(ring, eta, left, right, deficit, gap)
       type(ring_t), intent(in) :: ring
-      !> Thickness ratio [-]
       real(wp), intent(in) :: eta
       !> Pair whose gap grows with the deficit: (2)
       integer, intent(in) :: left(2)
@@ -211,9 +199,7 @@ contains
    !> Step towards the vanishing of both gaps, or of one where friction holds the deficit
    pure subroutine newton_step(ring, eta, pinch, eta_step, deficit_step)
       type(ring_t), intent(in) :: ring
-      !> Thickness ratio [-]
       real(wp), intent(in) :: eta
-      !> The joints and the deficit
       type(pinch_t), intent(in) :: pinch
       !> Change of eta; huge where there is none
       real(wp), intent(out) :: eta_step

@@ -35,7 +35,6 @@ contains
    elemental real(wp) function equilibrium_polynomial(eta, beta, a, which) result(value)
       !> Thickness ratio [-]
       real(wp), intent(in) :: eta
-      !> Inner hinge [rad]
       real(wp), intent(in) :: beta
       !> A, eq. (9)
       real(wp), intent(in) :: a
@@ -52,13 +51,7 @@ contains
 
    !> Eq. (18): derivative of eq. (14) by beta; vanishes at the least thickness
    elemental real(wp) function stationary_polynomial(eta, beta, a, which) result(value)
-      !> Thickness ratio [-]
-      real(wp), intent(in) :: eta
-      !> Inner hinge [rad]
-      real(wp), intent(in) :: beta
-      !> A, eq. (9)
-      real(wp), intent(in) :: a
-      !> One of `theory`
+      real(wp), intent(in) :: eta, beta, a
       integer, intent(in) :: which
 
       real(wp) :: s, arm
@@ -70,13 +63,7 @@ contains
 
    !> Denominator of eq. (19): derivative of eq. (14) by eta
    elemental real(wp) function growth_polynomial(eta, beta, a, which) result(value)
-      !> Thickness ratio [-]
-      real(wp), intent(in) :: eta
-      !> Inner hinge [rad]
-      real(wp), intent(in) :: beta
-      !> A, eq. (9)
-      real(wp), intent(in) :: a
-      !> One of `theory`
+      real(wp), intent(in) :: eta, beta, a
       integer, intent(in) :: which
 
       real(wp) :: s, c
@@ -89,11 +76,7 @@ contains
 
    !> Eq. (20): the A at which eq. (19) has no slope
    elemental real(wp) function singular_embrace(eta, beta, which)
-      !> Thickness ratio [-]
-      real(wp), intent(in) :: eta
-      !> Inner hinge [rad]
-      real(wp), intent(in) :: beta
-      !> One of `theory`
+      real(wp), intent(in) :: eta, beta
       integer, intent(in) :: which
 
       real(wp) :: c
@@ -105,9 +88,7 @@ contains
 
    !> Eq. (21): eq. (27) at A = A_sing
    elemental real(wp) function singular_polynomial(eta, which) result(value)
-      !> Thickness ratio [-]
       real(wp), intent(in) :: eta
-      !> One of `theory`
       integer, intent(in) :: which
 
       real(wp) :: flag
@@ -118,11 +99,7 @@ contains
 
    !> Eq. (27): eq. (14) at beta = 0
    elemental real(wp) function crown_polynomial(eta, a, which)
-      !> Thickness ratio [-]
-      real(wp), intent(in) :: eta
-      !> A, eq. (9)
-      real(wp), intent(in) :: a
-      !> One of `theory`
+      real(wp), intent(in) :: eta, a
       integer, intent(in) :: which
 
       crown_polynomial = (weight_flag(which)*eta**2 - 6.0_wp*a*eta + 12.0_wp*(1.0_wp - a))*eta
@@ -133,7 +110,6 @@ contains
    elemental real(wp) function embrace_polynomial(beta, a, which) result(value)
       !> Critical hinge [rad]
       real(wp), intent(in) :: beta
-      !> A, eq. (9)
       real(wp), intent(in) :: a
       !> CCR or Milankovitch of `theory`
       integer, intent(in) :: which
@@ -151,10 +127,7 @@ contains
 
    !> Eq. (23): eq. (22) for Milankovitch
    elemental real(wp) function embrace_cubic(beta, a)
-      !> Critical hinge [rad]
-      real(wp), intent(in) :: beta
-      !> A, eq. (9)
-      real(wp), intent(in) :: a
+      real(wp), intent(in) :: beta, a
 
       real(wp) :: s, c, g
 
@@ -167,10 +140,7 @@ contains
 
    !> Eq. (24): eq. (22) for CCR without its extraneous factor
    elemental real(wp) function embrace_quadratic(beta, a)
-      !> Critical hinge [rad]
-      real(wp), intent(in) :: beta
-      !> A, eq. (9)
-      real(wp), intent(in) :: a
+      real(wp), intent(in) :: beta, a
 
       real(wp) :: s, c, g
 
@@ -184,9 +154,7 @@ contains
    elemental real(wp) function thickness_polynomial(eta, beta, which)
       !> Critical thickness ratio [-]
       real(wp), intent(in) :: eta
-      !> Critical hinge [rad]
       real(wp), intent(in) :: beta
-      !> CCR or Milankovitch of `theory`
       integer, intent(in) :: which
 
       real(wp) :: s, c
@@ -199,10 +167,7 @@ contains
 
    !> Eq. (16): the equilibrium curve of Heyman and CCR in closed form
    elemental function printed_thickness(beta, a) result(eta)
-      !> Inner hinge [rad]
-      real(wp), intent(in) :: beta
-      !> A, eq. (9)
-      real(wp), intent(in) :: a
+      real(wp), intent(in) :: beta, a
       !> Thickness ratio [-]
       real(wp) :: eta
 
@@ -219,12 +184,8 @@ contains
    elemental subroutine printed_critical(alpha, which, beta, eta, h)
       !> Half angle of embrace, (0, alpha_limit] [rad]
       real(wp), intent(in) :: alpha
-      !> One of `theory`
       integer, intent(in) :: which
-      !> Inner hinge [rad]
-      real(wp), intent(out) :: beta
-      !> Thickness ratio [-]
-      real(wp), intent(out) :: eta
+      real(wp), intent(out) :: beta, eta
       !> Thrust [w r]
       real(wp), intent(out) :: h
 
@@ -250,11 +211,7 @@ contains
 
    !> Root in beta of eq. (1), (24) or (23), by bisection to the last bit
    elemental function printed_hinge(alpha, a, which) result(beta)
-      !> Half angle of embrace [rad]
-      real(wp), intent(in) :: alpha
-      !> A, eq. (9)
-      real(wp), intent(in) :: a
-      !> One of `theory`
+      real(wp), intent(in) :: alpha, a
       integer, intent(in) :: which
       !> Inner hinge [rad]
       real(wp) :: beta
@@ -285,10 +242,7 @@ contains
    elemental function printed_cubic_root(start, beta, a) result(eta)
       !> Root of eq. (16) [-]
       real(wp), intent(in) :: start
-      !> Inner hinge [rad]
-      real(wp), intent(in) :: beta
-      !> A, eq. (9)
-      real(wp), intent(in) :: a
+      real(wp), intent(in) :: beta, a
       !> Thickness ratio [-]
       real(wp) :: eta
 

@@ -45,7 +45,6 @@ contains
       real(wp), intent(in) :: joint_angle(:)
       !> Equal chords of each voussoir: (n - 1), or (n) where the first straddles the crown
       integer, intent(in) :: facets(:)
-      !> The ring, free of friction
       type(ring_t), intent(out) :: ring
 
       real(wp) :: span, chord, middle, half_sine, chord_loss

@@ -93,7 +93,6 @@ contains
 
    !> delta_M: 1 where the weight acts in the true centre of gravity
    elemental real(wp) function weight_flag(which)
-      !> One of `theory`
       integer, intent(in) :: which
 
       weight_flag = merge(1.0_wp, 0.0_wp, which == theory%milankovitch)
@@ -101,7 +100,6 @@ contains
 
    !> delta_CCR: 1 where the line of thrust touches the intrados, 0 where the resultant does
    elemental real(wp) function tangency_flag(which)
-      !> One of `theory`
       integer, intent(in) :: which
 
       tangency_flag = merge(0.0_wp, 1.0_wp, which == theory%heyman)
@@ -111,7 +109,6 @@ contains
    elemental real(wp) function weight_arm(eta, which)
       !> Thickness ratio [-]
       real(wp), intent(in) :: eta
-      !> One of `theory`
       integer, intent(in) :: which
 
       weight_arm = 1.0_wp + weight_flag(which)*eta*eta/12.0_wp
@@ -119,7 +116,6 @@ contains
 
    !> Limits of validity of a theory
    pure type(limits_t) function limits_of(which)
-      !> One of `theory`
       integer, intent(in) :: which
 
       limits_of = limits_ccr

@@ -44,19 +44,10 @@ contains
    !> Critical solution by eqs. (1), (23), (24) and (16) or (14) as printed
    subroutine critical_as_printed(n, alpha, which, beta, eta, h, fault)
       !f2py threadsafe
-      !> Number of elements
       integer, intent(in) :: n
-      !> Half angle of embrace, (0, alpha_limit]: (n) [rad]
       real(wp), intent(in) :: alpha(n)
-      !> Theory
       integer, intent(in) :: which
-      !> Inner hinge: (n) [rad]
-      real(wp), intent(out) :: beta(n)
-      !> Thickness ratio: (n) [-]
-      real(wp), intent(out) :: eta(n)
-      !> Thrust: (n) [w r]
-      real(wp), intent(out) :: h(n)
-      !> First fault: (2)
+      real(wp), intent(out) :: beta(n), eta(n), h(n)
       integer, intent(out) :: fault(2)
 
       call printed_critical(alpha, which, beta, eta, h)
@@ -67,19 +58,10 @@ contains
    !> Critical solution by its power series at small half angles
    subroutine critical_small(n, alpha, which, beta, eta, h, fault)
       !f2py threadsafe
-      !> Number of elements
       integer, intent(in) :: n
-      !> Half angle of embrace, (0, alpha_limit]: (n) [rad]
       real(wp), intent(in) :: alpha(n)
-      !> Theory
       integer, intent(in) :: which
-      !> Inner hinge: (n) [rad]
-      real(wp), intent(out) :: beta(n)
-      !> Thickness ratio: (n) [-]
-      real(wp), intent(out) :: eta(n)
-      !> Thrust: (n) [w r]
-      real(wp), intent(out) :: h(n)
-      !> First fault: (2)
+      real(wp), intent(out) :: beta(n), eta(n), h(n)
       integer, intent(out) :: fault(2)
 
       call small_angle_solution(alpha, which, beta, eta, h)
@@ -90,19 +72,11 @@ contains
    !> Leading terms of the critical solution next to the limit of validity
    subroutine critical_near_limit(n, distance, which, beta, eta, h, fault)
       !f2py threadsafe
-      !> Number of elements
       integer, intent(in) :: n
       !> alpha_limit - alpha, [0, alpha_limit): (n) [rad]
       real(wp), intent(in) :: distance(n)
-      !> Theory
       integer, intent(in) :: which
-      !> Inner hinge: (n) [rad]
-      real(wp), intent(out) :: beta(n)
-      !> Thickness ratio: (n) [-]
-      real(wp), intent(out) :: eta(n)
-      !> Thrust: (n) [w r]
-      real(wp), intent(out) :: h(n)
-      !> First fault: (2)
+      real(wp), intent(out) :: beta(n), eta(n), h(n)
       integer, intent(out) :: fault(2)
 
       type(limits_t) :: limits
@@ -116,17 +90,12 @@ contains
    !> Eqs. (14) and (16): the equilibrium curve
    subroutine curve(n, beta, alpha, which, eta, fault)
       !f2py threadsafe
-      !> Number of elements
       integer, intent(in) :: n
       !> Inner hinge, [0, alpha]: (n) [rad]
       real(wp), intent(in) :: beta(n)
-      !> Half angle of embrace, (0, alpha_limit]: (n) [rad]
       real(wp), intent(in) :: alpha(n)
-      !> Theory
       integer, intent(in) :: which
-      !> Thickness ratio: (n) [-]
       real(wp), intent(out) :: eta(n)
-      !> First fault: (2)
       integer, intent(out) :: fault(2)
 
       fault = 0
@@ -138,15 +107,10 @@ contains
    !> Eq. (26): start of the equilibrium curve at the crown
    subroutine curve_start(n, alpha, which, eta, fault)
       !f2py threadsafe
-      !> Number of elements
       integer, intent(in) :: n
-      !> Half angle of embrace, (0, alpha_limit]: (n) [rad]
       real(wp), intent(in) :: alpha(n)
-      !> Theory
       integer, intent(in) :: which
-      !> Thickness ratio: (n) [-]
       real(wp), intent(out) :: eta(n)
-      !> First fault: (2)
       integer, intent(out) :: fault(2)
 
       fault = 0
@@ -157,17 +121,11 @@ contains
    !> Eq. (19): slope of the equilibrium curve
    subroutine slope(n, beta, alpha, which, rate, fault)
       !f2py threadsafe
-      !> Number of elements
       integer, intent(in) :: n
-      !> Inner hinge, [0, alpha]: (n) [rad]
-      real(wp), intent(in) :: beta(n)
-      !> Half angle of embrace, (0, alpha_limit]: (n) [rad]
-      real(wp), intent(in) :: alpha(n)
-      !> Theory
+      real(wp), intent(in) :: beta(n), alpha(n)
       integer, intent(in) :: which
       !> d eta/d beta: (n) [1/rad]
       real(wp), intent(out) :: rate(n)
-      !> First fault: (2)
       integer, intent(out) :: fault(2)
 
       fault = 0
@@ -179,7 +137,6 @@ contains
    !> Eq. (11): the line of thrust through the extrados of crown and springing
    subroutine line(n, beta, alpha, eta, which, ratio, fault)
       !f2py threadsafe
-      !> Number of elements
       integer, intent(in) :: n
       !> Angle of the joint, [0, alpha]: (n) [rad]
       real(wp), intent(in) :: beta(n)
@@ -187,11 +144,9 @@ contains
       real(wp), intent(in) :: alpha(n)
       !> Thickness ratio, (0, 2), with a thrust h2 > 0: (n) [-]
       real(wp), intent(in) :: eta(n)
-      !> Theory
       integer, intent(in) :: which
       !> 2e/t: (n)
       real(wp), intent(out) :: ratio(n)
-      !> First fault: (2)
       integer, intent(out) :: fault(2)
 
       fault = 0
@@ -206,7 +161,6 @@ contains
    !> Limits of validity
    subroutine limit_values(which, values)
       !f2py threadsafe
-      !> Theory
       integer, intent(in) :: which
       !> alpha, A, eta, beta, h at the limit; greatest beta and alpha, A, eta, h there; alpha where
       !> A = 1: (11)

@@ -53,21 +53,16 @@ contains
    !> Least thickness at a friction coefficient
    subroutine friction_states(n, mu, alpha, which, beta, eta, h, fault)
       !f2py threadsafe
-      !> Number of elements
       integer, intent(in) :: n
       !> Friction coefficient, [mu_mixed, infinity]: (n)
       real(wp), intent(in) :: mu(n)
-      !> Half angle of embrace, (0, alpha_limit]: (n) [rad]
       real(wp), intent(in) :: alpha(n)
-      !> Theory
       integer, intent(in) :: which
       !> Inner hinge: (n) [rad]
       real(wp), intent(out) :: beta(n)
       !> Thickness ratio: (n) [-]
       real(wp), intent(out) :: eta(n)
-      !> Thrust: (n) [w r]
       real(wp), intent(out) :: h(n)
-      !> First fault: (2)
       integer, intent(out) :: fault(2)
 
       fault = 0
@@ -103,7 +98,6 @@ contains
       real(wp), intent(out) :: joint(5, n)
       !> What each does, one of joint_role, 0 for none: (5, n)
       integer, intent(out) :: role(5, n)
-      !> First fault: (2)
       integer, intent(out) :: fault(2)
 
       integer, parameter :: most_voussoirs = 10000000
@@ -136,7 +130,6 @@ contains
       real(wp), intent(in) :: facet
       !> Friction angle, pi/2 or more for joints that cannot slide [rad]
       real(wp), intent(in) :: friction
-      !> Not 0: the springings cannot slide
       integer, intent(in) :: no_slip
       !> Outcome, one of discrete_status
       integer, intent(out) :: status
@@ -148,7 +141,6 @@ contains
       real(wp), intent(out) :: joint(5)
       !> What each does, one of joint_role, 0 for none: (5)
       integer, intent(out) :: role(5)
-      !> First fault: (2)
       integer, intent(out) :: fault(2)
 
       type(discrete_solution_t) :: solution

@@ -42,13 +42,10 @@ contains
    !> Eq. (9): the group A
    subroutine group_a(n, alpha, a, fault)
       !f2py threadsafe
-      !> Number of elements
       integer, intent(in) :: n
-      !> Half angle of embrace, (0, pi): (n) [rad]
       real(wp), intent(in) :: alpha(n)
       !> alpha cot(alpha/2): (n)
       real(wp), intent(out) :: a(n)
-      !> First fault: (2)
       integer, intent(out) :: fault(2)
 
       fault = 0
@@ -59,19 +56,14 @@ contains
    !> Eqs. (6) and (7): thrust through the crown's extrados and a point of a joint
    subroutine thrust_at_joint(n, beta, ratio, eta, which, h, fault)
       !f2py threadsafe
-      !> Number of elements
       integer, intent(in) :: n
       !> Angle of the joint, (0, pi): (n) [rad]
       real(wp), intent(in) :: beta(n)
       !> 2e/t of the point, [-1, 1]: (n)
       real(wp), intent(in) :: ratio(n)
-      !> Thickness ratio, (0, 2): (n) [-]
       real(wp), intent(in) :: eta(n)
-      !> Theory
       integer, intent(in) :: which
-      !> Thrust: (n) [w r]
       real(wp), intent(out) :: h(n)
-      !> First fault: (2)
       integer, intent(out) :: fault(2)
 
       fault = 0
@@ -84,17 +76,11 @@ contains
    !> Eq. (8): thrust through the extrados of crown and springing
    subroutine thrust_at_springing(n, alpha, eta, which, h, fault)
       !f2py threadsafe
-      !> Number of elements
       integer, intent(in) :: n
-      !> Half angle of embrace, (0, pi): (n) [rad]
-      real(wp), intent(in) :: alpha(n)
-      !> Thickness ratio, (0, 2): (n) [-]
-      real(wp), intent(in) :: eta(n)
-      !> Theory
+      real(wp), intent(in) :: alpha(n), eta(n)
       integer, intent(in) :: which
       !> Thrust, negative where none can: (n) [w r]
       real(wp), intent(out) :: h(n)
-      !> First fault: (2)
       integer, intent(out) :: fault(2)
 
       fault = 0
@@ -106,17 +92,10 @@ contains
    !> Eqs. (12) and (3): thrust that touches the intrados at a joint
    subroutine thrust_at_tangent(n, beta, eta, which, h, fault)
       !f2py threadsafe
-      !> Number of elements
       integer, intent(in) :: n
-      !> Angle of the joint, (0, pi): (n) [rad]
-      real(wp), intent(in) :: beta(n)
-      !> Thickness ratio, (0, 2): (n) [-]
-      real(wp), intent(in) :: eta(n)
-      !> Theory
+      real(wp), intent(in) :: beta(n), eta(n)
       integer, intent(in) :: which
-      !> Thrust, negative where none can: (n) [w r]
       real(wp), intent(out) :: h(n)
-      !> First fault: (2)
       integer, intent(out) :: fault(2)
 
       fault = 0

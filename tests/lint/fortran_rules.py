@@ -90,6 +90,7 @@ def _of_statements(all_of_them: list[Statement], long: Collection[str]) -> Itera
     open_procedures: list[Statement] = []
     inner = 0  # lines of internal procedures, which are judged on their own
     block, contains = 0, False
+    explained: set[tuple[str, str]] = set()  # arguments by type and name: a module explains a name once
     for this in all_of_them:
         text = this.text
         yield from ((this.first, rule) for rule in _of_one(text))
@@ -108,8 +109,11 @@ def _of_statements(all_of_them: list[Statement], long: Collection[str]) -> Itera
             if not this.documented:
                 yield this.first, "a procedure has its !> line"
             open_procedures.append(this)
-        elif "intent(" in text.replace(" ", "") and not this.documented and not _IS_NAMED_TYPE.match(text):
-            yield this.first, "an argument of an intrinsic type, or an array, has its !> line"
+        elif "intent(" in text.replace(" ", "") and not _IS_NAMED_TYPE.match(text):
+            if this.documented:
+                explained.update(_arguments(text))
+            elif not explained.issuperset(_arguments(text)):
+                yield this.first, "an argument of an intrinsic type, or an array, has its !> line"
         elif text == "contains":
             contains = True
         elif not (block or contains or open_procedures) and _is_variable(text):
@@ -120,6 +124,13 @@ def _of_statements(all_of_them: list[Statement], long: Collection[str]) -> Itera
         yield 1, "implicit none"
     if texts and texts[0].startswith("module") and "private" not in texts:
         yield 1, "a module is private, and names what is public"
+
+
+def _arguments(text: str) -> Iterator[tuple[str, str]]:
+    """Type and name, with its shape, of the arguments of a declaration."""
+    kind, names = text.split("::", 1)
+    kind = re.sub(r", *(intent *\(\w+\)|allocatable|optional|value)", "", kind).strip()
+    yield from ((kind, name.replace(" ", "")) for name in re.findall(r"\w+(?:\([^)]*\))?", names))
 
 
 def _of_one(text: str) -> Iterator[str]:

@@ -117,6 +117,16 @@ def test_what_keeps_the_rules_is_left_in_peace(tmp_path: Path) -> None:
     assert python_rules.offences(tmp_path / "good.py", strict=True) == []
 
 
+@pytest.mark.parametrize(("argument", "right"), [
+    ("real, intent(in) :: x", True), ("real, intent(in) :: y, x", True), ("real, intent(in) :: z", False),
+    ("real, intent(in) :: x(:)", False), ("integer, intent(in) :: x", False)])
+def test_a_module_explains_an_argument_once(tmp_path: Path, argument: str, right: bool) -> None:
+    more = f"   !> Another\n   subroutine more(x)\n      {argument}\n   end subroutine more\nend module good\n"
+    (tmp_path / "twice.f90").write_text(GOOD.replace("end module good\n", more))
+    found = fortran_rules.offences(tmp_path / "twice.f90")
+    assert (found == []) is right and all("has its !> line" in rule for rule in found), found
+
+
 @pytest.mark.parametrize(
     ("old", "new", "rule"),
     [

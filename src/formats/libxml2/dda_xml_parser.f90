@@ -72,11 +72,9 @@ module dda_xml_parser
       function read_memory(text, size, url, encoding, options) &
          & bind(c, name="xmlReadMemory") result(document)
          import :: c_int, c_ptr
-         !> The text
          type(c_ptr), intent(in), value :: text
          !> Its length
          integer(c_int), intent(in), value :: size
-         !> Name of the file
          type(c_ptr), intent(in), value :: url
          !> Encoding; null to find it
          type(c_ptr), intent(in), value :: encoding
@@ -89,14 +87,12 @@ module dda_xml_parser
       !> libxml2: free a document
       subroutine free_document(document) bind(c, name="xmlFreeDoc")
          import :: c_ptr
-         !> The document
          type(c_ptr), intent(in), value :: document
       end subroutine free_document
 
       !> libxml2: a reader of a document
       function reader_of(document) bind(c, name="xmlReaderWalker") result(reader)
          import :: c_ptr
-         !> The document
          type(c_ptr), intent(in), value :: document
          !> The reader; null after a failure
          type(c_ptr) :: reader
@@ -105,14 +101,12 @@ module dda_xml_parser
       !> libxml2: free a reader
       subroutine free_reader(reader) bind(c, name="xmlFreeTextReader")
          import :: c_ptr
-         !> The reader
          type(c_ptr), intent(in), value :: reader
       end subroutine free_reader
 
       !> libxml2: go to the next node
       function read_node(reader) bind(c, name="xmlTextReaderRead") result(status)
          import :: c_int, c_ptr
-         !> The reader
          type(c_ptr), intent(in), value :: reader
          !> 1 if there is one, 0 at the end, -1 after a failure
          integer(c_int) :: status
@@ -121,7 +115,6 @@ module dda_xml_parser
       !> libxml2: kind of this node
       function node_type(reader) bind(c, name="xmlTextReaderNodeType") result(kind)
          import :: c_int, c_ptr
-         !> The reader
          type(c_ptr), intent(in), value :: reader
          !> One of node_enum
          integer(c_int) :: kind
@@ -130,7 +123,6 @@ module dda_xml_parser
       !> libxml2: whether this element holds nothing, so that no node tells its end
       function is_empty(reader) bind(c, name="xmlTextReaderIsEmptyElement") result(yes)
          import :: c_int, c_ptr
-         !> The reader
          type(c_ptr), intent(in), value :: reader
          !> 1 if it does
          integer(c_int) :: yes
@@ -139,7 +131,6 @@ module dda_xml_parser
       !> libxml2: number of attributes and namespaces of this element
       function count_attributes(reader) bind(c, name="xmlTextReaderAttributeCount") result(n)
          import :: c_int, c_ptr
-         !> The reader
          type(c_ptr), intent(in), value :: reader
          !> How many
          integer(c_int) :: n
@@ -148,7 +139,6 @@ module dda_xml_parser
       !> libxml2: whether this attribute declares a namespace
       function is_namespace(reader) bind(c, name="xmlTextReaderIsNamespaceDecl") result(yes)
          import :: c_int, c_ptr
-         !> The reader
          type(c_ptr), intent(in), value :: reader
          !> 1 if it does
          integer(c_int) :: yes
@@ -158,7 +148,6 @@ module dda_xml_parser
       function next_attribute(reader) bind(c, name="xmlTextReaderMoveToNextAttribute") &
          & result(status)
          import :: c_int, c_ptr
-         !> The reader
          type(c_ptr), intent(in), value :: reader
          !> 1 if there is one
          integer(c_int) :: status
@@ -167,7 +156,6 @@ module dda_xml_parser
       !> libxml2: name without prefix
       function local_name(reader) bind(c, name="xmlTextReaderConstLocalName") result(name)
          import :: c_ptr
-         !> The reader
          type(c_ptr), intent(in), value :: reader
          !> C's text
          type(c_ptr) :: name
@@ -176,7 +164,6 @@ module dda_xml_parser
       !> libxml2: text or value
       function node_value(reader) bind(c, name="xmlTextReaderConstValue") result(value)
          import :: c_ptr
-         !> The reader
          type(c_ptr), intent(in), value :: reader
          !> C's text
          type(c_ptr) :: value
@@ -185,9 +172,7 @@ module dda_xml_parser
       !> libxml2: say who is told of errors, warnings and encodings that fail
       subroutine set_error_listener(context, listener) bind(c, name="xmlSetStructuredErrorFunc")
          import :: c_funptr, c_ptr
-         !> Passed to the listener
          type(c_ptr), intent(in), value :: context
-         !> Who is told
          type(c_funptr), intent(in), value :: listener
       end subroutine set_error_listener
 
@@ -205,7 +190,6 @@ module dda_xml_parser
       !> C: length of a text
       function c_strlen(text) bind(c, name="strlen") result(length)
          import :: c_ptr, c_size_t
-         !> The text
          type(c_ptr), intent(in), value :: text
          !> Characters before the null character
          integer(c_size_t) :: length
@@ -214,10 +198,7 @@ module dda_xml_parser
       !> C: copy bytes
       subroutine c_memcpy(to, from, n) bind(c, name="memcpy")
          import :: c_ptr, c_size_t
-         !> Where they go
-         type(c_ptr), intent(in), value :: to
-         !> Where they are
-         type(c_ptr), intent(in), value :: from
+         type(c_ptr), intent(in), value :: to, from
          !> How many
          integer(c_size_t), intent(in), value :: n
       end subroutine c_memcpy
@@ -285,7 +266,6 @@ contains
    subroutine print_nothing(context, address) bind(c)
       !> What was passed with the listener
       type(c_ptr), intent(in), value :: context
-      !> An xmlError
       type(c_ptr), intent(in), value :: address
 
       if (c_associated(context) .or. c_associated(address)) return
@@ -293,9 +273,7 @@ contains
 
    !> Take what the reader stands on
    subroutine take_node(reader, builder)
-      !> The reader
       type(c_ptr), intent(in) :: reader
-      !> Receives elements and texts
       type(xml_builder_t), intent(inout) :: builder
       type(xml_attribute_t), allocatable :: attribute(:)
       character(len=:), allocatable :: name
@@ -321,7 +299,6 @@ contains
 
    !> Take the attributes of the element that begins here
    subroutine take_attributes(reader, attribute)
-      !> The reader, on the element
       type(c_ptr), intent(in) :: reader
       !> Receives them, namespaces left out: (n)
       type(xml_attribute_t), allocatable, intent(out) :: attribute(:)
@@ -345,7 +322,6 @@ contains
 
    !> Make an error of what libxml2 says
    subroutine report_error(file, skipped, error)
-      !> Name of the file
       character(len=*), intent(in) :: file
       !> Lines of the file before what libxml2 was given
       integer, intent(in) :: skipped
