@@ -161,13 +161,7 @@ def merge_table(
 
 
 def copy_pictures(attempts: list[Path], owner: Owner, out: Path) -> None:
-    """Move the files of single cases into the folder of the campaign.
-
-    Parameters
-    ----------
-    owner : Owner
-        For each case the attempt that it is taken from.
-    """
+    """Move the files of single cases into the folder of the campaign."""
     for attempt in attempts:
         for path in [*attempt.glob("*/case_*"), *attempt.glob("case_*")]:
             case = re.match(r"case_(\d+)", path.name)

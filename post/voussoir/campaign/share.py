@@ -199,8 +199,6 @@ def split(
     ----------
     jobs : int
         Cases that each computes at the same time.
-    problems : list of str, optional
-        Receives a line for each thing that is damaged.
 
     Returns
     -------

@@ -49,11 +49,6 @@ class Deck:
         ----------
         file : str or Path
             The deck's name; its folder is made if missing.
-
-        Returns
-        -------
-        Path
-            The deck.
         """
         file = Path(file)
         file.parent.mkdir(parents=True, exist_ok=True)

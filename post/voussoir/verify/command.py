@@ -126,11 +126,6 @@ def _report(found: dict[int, Finding], quiet: bool) -> int:
 def read_table(path: Path) -> dict[int, list[Row]]:
     """Rows of a table by their case.
 
-    Parameters
-    ----------
-    path : Path
-        The table.
-
     Returns
     -------
     dict
@@ -248,8 +243,6 @@ def scene_of(deck: Deck, rows: list[Row], places: list[Path], finding: Finding) 
 
     Parameters
     ----------
-    deck : Deck
-        The deck of the case.
     rows : list of dict
         Its rows of blocks.csv.
     places : list of Path

@@ -49,8 +49,6 @@ def make_block(number: int, corners: np.ndarray, fixed: bool) -> Block:
 
     Parameters
     ----------
-    number : int
-        Its number.
     corners : ndarray
         The corners in order, (n, 2).
     fixed : bool
@@ -72,11 +70,6 @@ def make_block(number: int, corners: np.ndarray, fixed: bool) -> Block:
 
 def find_joints(blocks: list[Block]) -> list[Joint]:
     """All joints of blocks of which one can move.
-
-    Parameters
-    ----------
-    blocks : list of Block
-        The blocks.
 
     Returns
     -------
@@ -181,13 +174,6 @@ def _edges_together(first: Block, a: int, second: Block, b: int, reach: float) -
 def depth(block: Block, point: np.ndarray) -> float:
     """How deep a point lies in a block, negative outside.
 
-    Parameters
-    ----------
-    block : Block
-        The block.
-    point : ndarray
-        The point.
-
     Returns
     -------
     float
@@ -208,11 +194,6 @@ def depth(block: Block, point: np.ndarray) -> float:
 
 def numbers_of(joints: list[Joint]) -> dict[tuple[int, int], list[Joint]]:
     """Joints by their two blocks, the smaller number first.
-
-    Parameters
-    ----------
-    joints : list of Joint
-        The joints.
 
     Returns
     -------

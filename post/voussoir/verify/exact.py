@@ -50,17 +50,10 @@ def exact_scene(deck: Deck, rows: list[Row], files: list[Path]) -> ExactScene:
 
     Parameters
     ----------
-    deck : Deck
-        The deck of the case.
     rows : list of dict
         Its rows of blocks.csv.
     files : list of Path
         The file of blocks, or of lines and of their materials.
-
-    Returns
-    -------
-    ExactScene
-        The scene.
     """
     deck, source = replace(deck, exact=True), Source()
     fixed = {int(row["block"]): row["state"] == "fixed" for row in rows}
@@ -176,15 +169,8 @@ def proves(exact: ExactScene, carried: bool) -> bool:
 
     Parameters
     ----------
-    exact : ExactScene
-        The case.
     carried : bool
         Whether forces are wanted, or else a mechanism.
-
-    Returns
-    -------
-    bool
-        The answer.
     """
     number, origin = _numbers(exact), exact.corners[0][0]
     nudge = -NUDGE if carried else NUDGE
@@ -204,8 +190,6 @@ def limit(exact: ExactScene, name: str, way: int) -> tuple[Fraction, Fraction] |
 
     Parameters
     ----------
-    exact : ExactScene
-        The case.
     name : str
         The coefficient.
     way : int
@@ -241,8 +225,6 @@ def check_exactly(deck: Deck, files: list[Path], rows: dict[str, list[Row]], fin
 
     Parameters
     ----------
-    deck : Deck
-        The deck of the case.
     files : list of Path
         Its file of blocks, or of lines and of their materials.
     rows : dict

@@ -59,15 +59,8 @@ def chords_of(deck: Deck, blocks: list[Block]) -> list[Chord]:
 
     Parameters
     ----------
-    deck : Deck
-        The deck of the case.
     blocks : list of Block
         The blocks, voussoirs first, span by span.
-
-    Returns
-    -------
-    list of Chord
-        The edges.
     """
     in_span = round(float(deck.number("arch%rings") * deck.number("arch%voussoirs")))
     spans = round(float(deck.number("arch%spans")))
@@ -94,11 +87,6 @@ def is_covered(blocks: list[Block], block: Block, start: np.ndarray, end: np.nda
         Where the part starts.
     end : ndarray
         Where it ends.
-
-    Returns
-    -------
-    bool
-        The answer.
     """
     first, last = start.astype(float), end.astype(float)
     point = (first + last) / 2 + OUTSIDE * np.array([last[1] - first[1], first[0] - last[0]])
@@ -118,13 +106,6 @@ def surface_of(deck: Deck, chords: list[Chord]) -> float:
 
 def fill_weights(deck: Deck, blocks: list[Block]) -> list[tuple[int, np.ndarray, float]]:
     """Weights of what lies above the chords.
-
-    Parameters
-    ----------
-    deck : Deck
-        The deck of the case.
-    blocks : list of Block
-        The blocks.
 
     Returns
     -------
@@ -175,17 +156,8 @@ def pressures(deck: Deck, blocks: list[Block], live: list[tuple[np.ndarray, np.n
 
     Parameters
     ----------
-    deck : Deck
-        The deck of the case.
-    blocks : list of Block
-        The blocks.
     live : list of tuple
         Places and forces of the live loads on points.
-
-    Returns
-    -------
-    list of Pull
-        The forces.
     """
     chords = chords_of(deck, blocks)
     surface, backing = surface_of(deck, chords), _backing(deck, blocks)
@@ -230,15 +202,8 @@ def lowest_below(blocks: list[Block], x: float) -> float:
 
     Parameters
     ----------
-    blocks : list of Block
-        The blocks.
     x : float
         The place.
-
-    Returns
-    -------
-    float
-        The height.
     """
     free = np.concatenate([block.corners[:, 0] for block in blocks if not block.fixed])
     x = min(max(x, free.min()), free.max())

@@ -28,8 +28,6 @@ def read_lines(geometry: Path, analysis: Path, blocks: list[Block], deck: Deck) 
         File of materials.
     blocks : list of Block
         The blocks that were cut.
-    deck : Deck
-        The deck of the case.
 
     Returns
     -------

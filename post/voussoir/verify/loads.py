@@ -31,12 +31,8 @@ def loads_on(deck: Deck, source: Source, blocks: list[Block]) -> np.ndarray:
 
     Parameters
     ----------
-    deck : Deck
-        The deck of the case.
     source : Source
         Its file of blocks, or nothing.
-    blocks : list of Block
-        The blocks.
 
     Returns
     -------
@@ -51,15 +47,6 @@ def loads_on(deck: Deck, source: Source, blocks: list[Block]) -> np.ndarray:
 
 def sizes_on(deck: Deck, source: Source, blocks: list[Block]) -> np.ndarray:
     """Sizes of all loads on blocks, which may cancel one another: beside them rounding is small.
-
-    Parameters
-    ----------
-    deck : Deck
-        The deck of the case.
-    source : Source
-        Its file of blocks, or nothing.
-    blocks : list of Block
-        The blocks.
 
     Returns
     -------
@@ -97,13 +84,6 @@ def _parts_on(deck: Deck, source: Source, blocks: list[Block]) -> Iterator[tuple
 def live_of(deck: Deck, blocks: list[Block]) -> list[PointForce]:
     """Live loads of a deck.
 
-    Parameters
-    ----------
-    deck : Deck
-        The deck of the case.
-    blocks : list of Block
-        The blocks.
-
     Returns
     -------
     list of PointForce
@@ -118,22 +98,7 @@ def live_of(deck: Deck, blocks: list[Block]) -> list[PointForce]:
 
 
 def pulls_of(deck: Deck, source: Source, blocks: list[Block]) -> list[Pull]:
-    """Forces of any size up to a bound: bars that pull, fill that presses.
-
-    Parameters
-    ----------
-    deck : Deck
-        The deck of the case.
-    source : Source
-        Its file of blocks, or nothing.
-    blocks : list of Block
-        The blocks.
-
-    Returns
-    -------
-    list of Pull
-        The forces.
-    """
+    """Forces of any size up to a bound: bars that pull, fill that presses."""
     pulls = []
     for bar in [*source.bars, *_ties_of_deck(deck)]:
         numbers = []
@@ -235,19 +200,8 @@ def friction_of(deck: Deck, source: Source, joint: Joint, springing: bool) -> fl
 
     Parameters
     ----------
-    deck : Deck
-        The deck of the case.
-    source : Source
-        Its file of blocks, or nothing.
-    joint : Joint
-        The joint.
     springing : bool
         Whether it is a springing joint of an arch.
-
-    Returns
-    -------
-    float
-        The coefficient.
     """
     law = Law(*(deck.number(f"joint%{name}") for name in ("friction_deg", "cohesion", "tension")))
     if source.lines:
@@ -269,22 +223,7 @@ def friction_of(deck: Deck, source: Source, joint: Joint, springing: bool) -> fl
 
 
 def strength_of(deck: Deck, source: Source, joint: Joint) -> float | None:
-    """Compressive strength of the weaker of the two blocks of a joint; None where neither is crushed.
-
-    Parameters
-    ----------
-    deck : Deck
-        The deck of the case.
-    source : Source
-        Its file of blocks, or nothing.
-    joint : Joint
-        The joint.
-
-    Returns
-    -------
-    float or None
-        The strength.
-    """
+    """Compressive strength of the weaker of the two blocks of a joint; None where neither is crushed."""
     own = deck.number("material%compressive_strength") if deck.gives("material%compressive_strength") else None
     materials = [source.material[number - 1] if source.material else 1 for number in (joint.first, joint.second)]
     found = [source.strengths.get(material, own) for material in materials]
@@ -306,17 +245,8 @@ def may_hold(source: Source, block: Block, point: np.ndarray, force: np.ndarray)
     ----------
     source : Source
         The file of blocks.
-    block : Block
-        The block.
-    point : ndarray
-        The point.
     force : ndarray
         Its force along x and y.
-
-    Returns
-    -------
-    bool
-        The answer.
     """
     for held in source.held:
         if held.block not in (0, block.number):

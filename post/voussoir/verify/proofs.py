@@ -207,8 +207,6 @@ def push(left: np.ndarray, block: Block, at: np.ndarray, vector: np.ndarray) -> 
     ----------
     left : ndarray
         Force and moment of each block, (n, 3).
-    block : Block
-        The block.
     at : ndarray
         Where the force acts.
     vector : ndarray
@@ -243,12 +241,8 @@ def check_motion(scene: Scene, rows: list[Row], finding: Finding) -> float:
 
     Parameters
     ----------
-    scene : Scene
-        The case, at the value of the proof.
     rows : list of dict
         Rows of proof_motion.csv.
-    finding : Finding
-        Receives the figures.
 
     Returns
     -------
@@ -310,13 +304,6 @@ def check_motion(scene: Scene, rows: list[Row], finding: Finding) -> float:
 def held_points(scene: Scene, block: Block) -> list[tuple[np.ndarray, tuple[bool, bool]]]:
     """Held points of a block, and along what.
 
-    Parameters
-    ----------
-    scene : Scene
-        The case.
-    block : Block
-        The block.
-
     Returns
     -------
     list of tuple
@@ -331,14 +318,10 @@ def velocity_at(scene: Scene, velocity: np.ndarray, number: int, point: np.ndarr
 
     Parameters
     ----------
-    scene : Scene
-        The case.
     velocity : ndarray
         Velocities of the centres and spins, (n, 3).
     number : int
         Number of the block.
-    point : ndarray
-        The point.
 
     Returns
     -------

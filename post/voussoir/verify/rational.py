@@ -47,11 +47,6 @@ def square_root(value: Fraction) -> Fraction:
     ----------
     value : Fraction
         The number.
-
-    Returns
-    -------
-    Fraction
-        Its root.
     """
     # digits of the root are counted from its first one on
     scale = 10 ** (40 + max(0, len(str(value.denominator)) - len(str(value.numerator))))
@@ -105,11 +100,6 @@ class Factor:
         ----------
         right : list of Fraction
             Right-hand side.
-
-        Returns
-        -------
-        list of Fraction
-            The solution.
         """
         left, found = list(right), [Fraction(0)] * len(right)
         for row, _, _, _, multipliers in self.steps:
@@ -121,18 +111,7 @@ class Factor:
         return found
 
     def solve_transposed(self, right: list[Fraction]) -> list[Fraction]:
-        """Solve with the transpose.
-
-        Parameters
-        ----------
-        right : list of Fraction
-            Right-hand side.
-
-        Returns
-        -------
-        list of Fraction
-            The solution.
-        """
+        """Solve with the transpose."""
         left, found = list(right), [Fraction(0)] * len(right)
         for row, column, pivot, entries, _ in self.steps:
             share = found[row] = left[column] / pivot

@@ -54,11 +54,6 @@ class _Floats:
 def find_best(programme: Programme) -> Vertex | None:
     """The best vertex.
 
-    Parameters
-    ----------
-    programme : Programme
-        The programme.
-
     Returns
     -------
     Vertex or None

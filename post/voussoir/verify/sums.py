@@ -40,11 +40,6 @@ def told_sums(folder: Path) -> dict[int, int]:
 def sums_of(folder: Path) -> dict[int, int]:
     """Sums of the tables as they are: CRC-32 of each line, added up for each case.
 
-    Parameters
-    ----------
-    folder : Path
-        Folder of the results.
-
     Returns
     -------
     dict

@@ -134,12 +134,8 @@ def check_rigid(scene: Scene, rows: list[Row], finding: Finding, strain: float =
 
     Parameters
     ----------
-    scene : Scene
-        The case.
     rows : list of dict
         Rows of blocks.csv.
-    finding : Finding
-        Receives the figures.
     strain : float
         How far blocks may be from rigid, over the largest velocity; infinite where they need not be.
     """

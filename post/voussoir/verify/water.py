@@ -28,12 +28,8 @@ def water_loads(water: Water, rise: float, blocks: list[Block]) -> list[tuple[in
 
     Parameters
     ----------
-    water : Water
-        The water.
     rise : float
         By how much all lines have risen.
-    blocks : list of Block
-        The blocks.
 
     Returns
     -------
