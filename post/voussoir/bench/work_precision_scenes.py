@@ -59,11 +59,6 @@ class Scene:
     live_block: int | None = None
     live_point: tuple[float, float] = (0.0, 0.0)
 
-    @property
-    def is_searched(self) -> bool:
-        """Whether a critical value is sought."""
-        return "search" in self.groups
-
 
 def _each(group: str, key: str, values: tuple, **more: Any) -> Settings:
     """Settings that vary one key; further groups hold for all."""

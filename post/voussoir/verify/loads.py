@@ -10,15 +10,7 @@ import numpy as np
 from voussoir.verify.blocks import Bar, Law, PointForce, Source
 from voussoir.verify.contacts import TOUCH, Block, Joint, depth
 from voussoir.verify.deck import Deck, VerifyError
-from voussoir.verify.fill import (
-    Pull,
-    chords_of,
-    fill_weights,
-    has_fill,
-    lowest_below,
-    pressures,
-    surface_of,
-)
+from voussoir.verify.fill import Pull, chords_of, fill_weights, has_fill, lowest_below, pressures, surface_of
 from voussoir.verify.rational import PI
 from voussoir.verify.water import water_loads
 

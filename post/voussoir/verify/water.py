@@ -64,9 +64,7 @@ def _shares(blocks: list[Block], block: Block, start: np.ndarray, end: np.ndarra
     return sorted(set(found))
 
 
-def _on_part(
-    water: Water, rise: float, start: np.ndarray, end: np.ndarray
-) -> list[tuple[np.ndarray, np.ndarray]]:
+def _on_part(water: Water, rise: float, start: np.ndarray, end: np.ndarray) -> list[tuple[np.ndarray, np.ndarray]]:
     """Forces on a part of an edge, the block on its left: one for each leg of the line of heads above it."""
     inward = np.array([start[1] - end[1], end[0] - start[0]])
     line, size, found = water.line, abs(water.line[-1][0] - water.line[0][0]), []
