@@ -305,7 +305,6 @@ contains
       character(len=*), intent(in) :: what
       !> What it is, and why
       character(len=*), intent(in) :: how
-
       character(len=14) :: label
 
       label = what

@@ -222,7 +222,6 @@ contains
       character(len=*), intent(in) :: what
       !> Its value
       character(len=*), intent(in) :: how
-
       character(len=12) :: label
 
       label = what

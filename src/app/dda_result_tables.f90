@@ -283,7 +283,6 @@ contains
       type(deck_t), intent(in) :: deck
       !> Number of the case
       integer, intent(in) :: number
-      !> The fields
       character(len=:), allocatable :: fields
       integer :: s
 

@@ -148,7 +148,6 @@ contains
    pure function deck_stem(name) result(stem)
       !> Name of the file
       character(len=*), intent(in) :: name
-      !> The stem
       character(len=:), allocatable :: stem
       integer :: dot
 

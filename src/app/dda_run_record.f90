@@ -34,7 +34,6 @@ contains
       type(deck_t), intent(in) :: deck
       !> First line: who computes it
       character(len=*), intent(in) :: maker
-      !> Lines parted by line ends
       character(len=:), allocatable :: record
       type(growing_text_t) :: lines
       integer :: i

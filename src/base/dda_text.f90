@@ -275,7 +275,6 @@ contains
    pure function integer_to_text(value) result(text)
       !> Number to write
       integer, intent(in) :: value
-      !> Text without blanks
       character(len=:), allocatable :: text
       character(len=20) :: digits
       integer :: n

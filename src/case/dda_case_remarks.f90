@@ -55,7 +55,6 @@ contains
    pure function path_remark(outcome, before) result(remark)
       type(outcome_t), intent(in) :: outcome
       character(len=*), intent(in) :: before
-      !> All of it
       character(len=:), allocatable :: remark
 
       remark = before
@@ -77,7 +76,6 @@ contains
    pure function order_remark(outcome, before) result(remark)
       type(outcome_t), intent(in) :: outcome
       character(len=*), intent(in) :: before
-      !> All of it
       character(len=:), allocatable :: remark
 
       remark = before
@@ -111,7 +109,6 @@ contains
    pure function change_remark(critical, before) result(remark)
       type(critical_t), intent(in) :: critical
       character(len=*), intent(in) :: before
-      !> All of it
       character(len=:), allocatable :: remark
       integer :: i
 
@@ -138,7 +135,6 @@ contains
       !> The largest displacement of one [m]
       real(wp), intent(in) :: largest
       character(len=*), intent(in) :: before
-      !> All of it
       character(len=:), allocatable :: remark
 
       remark = before

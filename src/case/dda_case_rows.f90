@@ -286,7 +286,6 @@ contains
    pure subroutine tell_bracket(critical, row)
       type(critical_t), intent(in) :: critical
       type(result_row_t), intent(inout) :: row
-
       real(wp) :: middle, half, off
 
       middle = (critical%falls + critical%stands)/2.0_wp

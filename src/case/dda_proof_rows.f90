@@ -128,7 +128,6 @@ contains
       integer, intent(in) :: number
       character(len=*), intent(in) :: value
       type(proof_t), intent(in) :: proof
-      !> Rows, parted by line ends
       character(len=:), allocatable :: lines
       type(growing_text_t) :: rows
       integer :: b, e

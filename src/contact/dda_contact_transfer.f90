@@ -17,7 +17,6 @@ module dda_contact_transfer
    !> An open end takes part in the slip of a joint as far as this share of its length allows
    real(wp), parameter :: closeness = 1.0e-4_wp
 
-
 contains
 
    !> Contacts of blocks that touch in the reference shape: closed, whole and free of force
@@ -60,10 +59,9 @@ contains
       type(contacts_t) :: before
       type(joint_t), allocatable :: joint(:)
       integer(int64), allocatable :: closed(:)
-      integer :: taken(2)
+      integer :: taken(2), j
       integer, allocatable :: source(:, :)
       real(wp) :: gap(3)
-      integer :: j
 
       call list_past(system, contacts, past, closed)
       call look_around(contacts%search, system, reach)

@@ -60,7 +60,6 @@ module dda_c_files
          integer(c_long), intent(in), value :: offset
          !> 0 for the beginning of the file
          integer(c_int), intent(in), value :: origin
-         !> 0 if all is well
          integer(c_int) :: failed
       end function c_fseek
 
@@ -83,7 +82,6 @@ module dda_c_files
       function c_fsync(descriptor) bind(c, name="fsync") result(failed)
          import :: c_int
          integer(c_int), intent(in), value :: descriptor
-         !> 0 if all is well
          integer(c_int) :: failed
       end function c_fsync
 
@@ -91,7 +89,6 @@ module dda_c_files
       function c_ferror(handle) bind(c, name="ferror") result(failed)
          import :: c_int, c_ptr
          type(c_ptr), intent(in), value :: handle
-         !> 0 if all is well
          integer(c_int) :: failed
       end function c_ferror
 
@@ -99,7 +96,6 @@ module dda_c_files
       function c_fclose(handle) bind(c, name="fclose") result(failed)
          import :: c_int, c_ptr
          type(c_ptr), intent(in), value :: handle
-         !> 0 if all is well
          integer(c_int) :: failed
       end function c_fclose
 

@@ -70,7 +70,6 @@ contains
       !> Length [bytes]
       integer(int64), intent(in) :: length
       integer(int64), intent(in) :: total(2)
-      !> The digits
       character(len=:), allocatable :: text
       character(len=62) :: digits
 

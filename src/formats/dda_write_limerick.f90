@@ -75,7 +75,6 @@ contains
    !> Bolts in the plain form, as Shi's programs have them
    pure function bolt_records(model) result(text)
       type(line_model_t), intent(in) :: model
-      !> Lines, each with its line end before it
       character(len=:), allocatable :: text
       integer :: i
 
@@ -110,7 +109,6 @@ contains
    !> A geometry in DDAML
    pure function ddaml_geometry(model) result(text)
       type(line_model_t), intent(in) :: model
-      !> The file without its last line end
       character(len=:), allocatable :: text
 
       text = head//lf//"<Geometry>"//lf//empty("Edgenodedist", "distance", &
@@ -177,7 +175,6 @@ contains
       character(len=*), intent(in) :: name
       !> What stands inside
       character(len=*), intent(in) :: inside
-      !> The element with its line end
       character(len=:), allocatable :: text
 
       text = "<"//name//"> "//inside//" </"//name//">"//lf
@@ -186,7 +183,6 @@ contains
    !> An analysis in the plain form, which has no place for constants, flags and loads
    pure function plain_analysis(analysis) result(text)
       type(limerick_analysis_t), intent(in) :: analysis
-      !> The file without its last line end
       character(len=:), allocatable :: text
       integer :: i
 
@@ -210,7 +206,6 @@ contains
    !> An analysis in DDAML
    pure function ddaml_analysis(analysis) result(text)
       type(limerick_analysis_t), intent(in) :: analysis
-      !> The file without its last line end
       character(len=:), allocatable :: text
       integer :: i
 
@@ -271,7 +266,6 @@ contains
    !> The constants of the scheme
    pure function constants(analysis) result(text)
       type(limerick_analysis_t), intent(in) :: analysis
-      !> Elements, each with its line end
       character(len=:), allocatable :: text
 
       text = "<AConstants>"//lf//empty("Openclose", "value", to_text(analysis%close_ratio)) &
@@ -287,7 +281,6 @@ contains
       type(analysis_material_t), intent(in) :: material
       !> Its number
       integer, intent(in) :: number
-      !> The element with its line end
       character(len=:), allocatable :: text
 
       text = '<Blockmaterial type="'//to_text(number)//'">'//lf &

@@ -141,7 +141,6 @@ contains
 
       !> What is wrong with a line of too many or too long words
       pure function too_much() result(message)
-         !> The message
          character(len=:), allocatable :: message
 
          message = "expected at most "//to_text(max_words)//" words of "//to_text(word_size) &

@@ -248,7 +248,6 @@ contains
       type(group_t), intent(in) :: groups(:)
       !> The keys
       type(key_t), intent(in) :: keys(:)
-      !> Lines, each ended by a line feed
       character(len=:), allocatable :: text
       character(len=1), parameter :: lf = achar(10)
       integer :: g, i

@@ -59,7 +59,6 @@ contains
       real(wp), intent(in) :: wall
       !> Number of edges of the roof; each wall has half as many
       integer, intent(in) :: n
-      !> The corners, anticlockwise: (2, n_corner) [m]
       real(wp), allocatable :: corner(:, :)
       real(wp) :: centre(2), fall, right(2, max(1, n/2) + 1), left(2, max(1, n/2) + 1)
       integer :: m

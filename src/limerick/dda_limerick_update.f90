@@ -126,7 +126,6 @@ contains
          real(wp), intent(in) :: point(2)
          !> Its block
          integer, intent(in) :: block
-         !> The displacement: (2) [m]
          real(wp) :: step(2)
 
          step = displacement(motion(:, block), &

@@ -106,9 +106,8 @@ contains
       real(wp), intent(in) :: origin(2)
       !> How fast they are; left out if that is not known: (2, n_point, n or more) [m/s]
       real(wp), intent(in), optional :: speed(:, :, :)
-      character(len=:), allocatable :: lines
+      character(len=:), allocatable :: lines, fast
       type(growing_text_t) :: rows
-      character(len=:), allocatable :: fast
       integer :: i, k
 
       do k = 1, size(when, 2)
@@ -126,7 +125,6 @@ contains
    !> Case and frame as the first fields of a row
    pure function stamp_text(stamp) result(text)
       type(frame_stamp_t), intent(in) :: stamp
-      !> The fields
       character(len=:), allocatable :: text
 
       text = to_text(stamp%number)//","//to_text(stamp%frame)

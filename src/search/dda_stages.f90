@@ -137,9 +137,8 @@ contains
       type(contacts_t) :: all, contacts
       type(graph_verdict_t) :: proof
       type(coulomb_state_t), allocatable :: start
-      logical :: slid(size(decision%contacts%joint)), there(size(slid))
+      logical :: slid(size(decision%contacts%joint)), there(size(slid)), built
       integer :: factorisations, j, k, steps
-      logical :: built
 
       system = decision%system
       all = decision%contacts

@@ -145,10 +145,8 @@ contains
       pure function slope_of(way) result(slope)
          !> How far along the direction
          real(wp), intent(in) :: way
-         !> The slope
-         real(wp) :: slope
+         real(wp) :: slope, force(3), shift(3)
          type(joint_face_t) :: face
-         real(wp) :: force(3), shift(3)
          integer :: j
 
          slope = slope_at_zero + way*curvature

@@ -145,7 +145,6 @@ contains
       pure function mixed(code)
          !> Number to spread
          integer(int64), intent(in) :: code
-         !> The spread number
          integer(int64) :: mixed
 
          mixed = ieor(code, ishft(code, 21))

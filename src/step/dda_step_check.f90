@@ -48,7 +48,6 @@ contains
       type(contacts_t), intent(in) :: contacts
       type(march_t), intent(in) :: march
       type(step_context_t), intent(in) :: step
-      !> What the first check says that it does not pass
       type(step_outcome_t) :: outcome
 
       outcome = step_outcome_t(accepted=step%has_velocity, dt=step%dt)

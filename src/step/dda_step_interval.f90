@@ -218,7 +218,6 @@ contains
       type(march_t), intent(in) :: march
       !> The length [s]
       real(wp) :: dt
-
       real(wp) :: fall
 
       dt = settings%time_step

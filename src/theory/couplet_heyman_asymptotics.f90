@@ -48,7 +48,6 @@ contains
       real(wp), intent(out) :: eta
       !> 1 - alpha^2/6 + ... [w r]
       real(wp), intent(out) :: h
-
       real(wp) :: t
 
       t = alpha*alpha
@@ -72,7 +71,6 @@ contains
       real(wp), intent(out) :: eta
       !> Thrust [w r]
       real(wp), intent(out) :: h
-
       type(limits_t) :: limits
       real(wp) :: excess, c, eta_rate
 
@@ -102,7 +100,6 @@ contains
       real(wp), intent(in) :: coefficient(:)
       !> Variable
       real(wp), intent(in) :: t
-
       integer :: i
 
       power_sum = 0.0_wp

@@ -38,7 +38,6 @@ contains
       real(wp), intent(in) :: alpha
       !> One of `theory`
       integer, intent(in) :: which
-
       type(limits_t) :: limits
 
       limits = limits_of(which)
@@ -84,7 +83,6 @@ contains
       integer, intent(in) :: which
       !> Inner hinge [rad]
       real(wp) :: beta
-
       !> w0^2 of CCR and Milankovitch
       real(wp), parameter :: bend(2) = [0.0075248_wp, 0.0024009_wp]
       !> Coefficients of 1 to w^4
@@ -109,7 +107,6 @@ contains
       real(wp), intent(out) :: beta, eta
       !> Thrust [w r]
       real(wp), intent(out) :: h
-
       type(limits_t) :: limits
       real(wp) :: deficit, flag, sine, cosine, q, excess, d, p, ratio, change
       integer :: step
@@ -146,7 +143,6 @@ contains
       real(wp), intent(in) :: alpha
       integer, intent(in) :: which
       real(wp), intent(out) :: beta, eta, h
-
       type(limits_t) :: limits
       real(wp) :: x, y, e, a, flag, sine, cosine, q, p, value, slope, bend, ratio, change
       integer :: step
@@ -188,7 +184,6 @@ contains
       real(wp), intent(in) :: e
       !> delta_M
       real(wp), intent(in) :: flag
-
       real(wp) :: numerator, denominator
 
       numerator = e*(4.0_wp + flag*e*e/3.0_wp)
@@ -202,7 +197,6 @@ contains
    elemental subroutine heyman_shallow(alpha, beta, eta, h)
       real(wp), intent(in) :: alpha
       real(wp), intent(out) :: beta, eta, h
-
       real(wp) :: deficit, change
       integer :: step
 
@@ -226,7 +220,6 @@ contains
    elemental subroutine heyman_steep(alpha, beta, eta, h)
       real(wp), intent(in) :: alpha
       real(wp), intent(out) :: beta, eta, h
-
       type(limits_t) :: limits
       real(wp) :: excess, c, squared, half_drop, change
       integer :: step
@@ -254,9 +247,7 @@ contains
    !> First guess of Heyman's inner hinge, a fit within 0.03 percent
    elemental function heyman_guess(alpha) result(beta)
       real(wp), intent(in) :: alpha
-      !> Inner hinge [rad]
       real(wp) :: beta
-
       !> beta/alpha by powers of alpha^2
       real(wp), parameter :: fit(4) = [0.7070238_wp, -0.0273851_wp, 0.0025932_wp, -0.0001112_wp]
 
@@ -268,7 +259,6 @@ contains
       real(wp), intent(in) :: beta
       !> Thickness ratio there, eq. (2) [-]
       real(wp), intent(in) :: eta
-
       real(wp) :: eta_rate
 
       eta_rate = eta*(versine(beta)/arc_excess(beta) - 1.0_wp/beta + 2.0_wp/sin(beta))

@@ -27,7 +27,6 @@ contains
       real(wp), intent(in) :: alpha
       !> What alpha is short of the meant angle by; 0 where it is meant as it is [rad]
       real(wp), intent(in) :: alpha_tail
-
       real(wp) :: s, d
 
       if (4.0_wp*beta < alpha) then
@@ -52,7 +51,6 @@ contains
       integer, intent(in) :: which
       !> Thickness ratio [-]
       real(wp) :: eta
-
       real(wp) :: q, excess, d, p, root, cubic
 
       if (beta <= 0.0_wp) then
@@ -85,7 +83,6 @@ contains
       real(wp), intent(in) :: c
       !> First guess, the root for c = 0; then the root
       real(wp), intent(inout) :: eta
-
       !> Newton's method doubles the digits: 3 to 6 are needed
       integer, parameter :: most_steps = 30
       real(wp) :: change, last_change
@@ -118,7 +115,6 @@ contains
       integer, intent(in) :: which
       !> 0 where A >= 1; else 2 (1/A - 1), or 3 (A - sqrt((A + 2)(A - 2/3))) for Milankovitch [-]
       real(wp) :: eta
-
       real(wp) :: a, shortfall
 
       shortfall = max(unit_shortfall(alpha), 0.0_wp)
@@ -141,7 +137,6 @@ contains
       integer, intent(in) :: which
       !> d eta/d beta [1/rad]
       real(wp) :: slope
-
       real(wp) :: eta, deficit, q, d, p, stationary, growth
 
       eta = equilibrium_thickness(beta, alpha, which)
@@ -166,7 +161,6 @@ contains
       !> Thickness ratio, large enough for a thrust h2 > 0 [-]
       real(wp), intent(in) :: eta
       integer, intent(in) :: which
-
       real(wp) :: excess, normal
 
       thrust_line = -1.0_wp

@@ -89,7 +89,6 @@ contains
       !> Whether the two springing joints cannot slide
       logical, intent(in) :: springing_no_slip
       type(discrete_solution_t), intent(out) :: solution
-
       type(ring_t) :: ring
 
       solution%status = discrete_status%bad_input
@@ -117,7 +116,6 @@ contains
       logical, intent(in) :: springing_no_slip
       !> Critical state; joints are counted as in equal_voussoir_joints
       type(discrete_solution_t), intent(out) :: solution
-
       integer :: facets((max(voussoirs, 1) + 1)/2)
 
       facets = 1
@@ -133,7 +131,6 @@ contains
       !> 0, 2a/n, 4a/n ... a for an even number n; a/n, 3a/n ... a for an odd one: (n/2 + 1 or (n +
       !> 1)/2) [rad]
       real(wp) :: joint_angle((voussoirs + 2)/2)
-
       integer :: i, last
 
       last = size(joint_angle)
@@ -149,7 +146,6 @@ contains
       real(wp), intent(in) :: longest
       !> As discrete_critical wants them: (n - 1) with a joint at the crown, (n) without
       integer :: facets(merge(size(joint_angle), size(joint_angle) - 1, joint_angle(1) > 0.0_wp))
-
       real(wp) :: span
       integer :: j, above
 
@@ -169,7 +165,6 @@ contains
       !> Chords of each voussoir: (:)
       integer, intent(in) :: facets(:)
       real(wp), intent(in) :: friction
-
       !> Half a turn [rad]
       real(wp), parameter :: pi = acos(-1.0_wp)
       integer :: n
@@ -188,7 +183,6 @@ contains
    pure logical function stands_as_a_line(ring)
       !> A ring of two joints
       type(ring_t), intent(in) :: ring
-
       real(wp) :: deficit
 
       deficit = (ring%form(1) - ring%form(2))/(ring%versine(2) - ring%versine(1))
@@ -202,7 +196,6 @@ contains
       !> Ring of two joints or more
       type(ring_t), intent(in) :: ring
       type(discrete_solution_t), intent(out) :: solution
-
       !> More than ever needed: bisection alone takes 60
       integer, parameter :: most_rounds = 200
       real(wp) :: eta, low, high, root
@@ -250,7 +243,6 @@ contains
       !> Critical thickness ratio [-]
       real(wp), intent(in) :: eta
       type(pinch_t), intent(in) :: pinch
-
       integer :: joint(5), role(5)
       logical :: binds(5)
 

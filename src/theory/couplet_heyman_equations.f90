@@ -24,7 +24,6 @@ contains
       real(wp), intent(in) :: beta
       !> A = h + 2/(2 + eta) with eqs. (2) and (3), which is eq. (1) without its cancelling factors
       real(wp) :: a
-
       real(wp) :: eta
 
       eta = heyman_thickness(beta)
@@ -84,10 +83,7 @@ contains
       real(wp), intent(in) :: eccentricity_ratio
       real(wp), intent(in) :: eta
       integer, intent(in) :: which
-      !> Horizontal thrust [w r]
-      real(wp) :: h
-
-      real(wp) :: reach, numerator, denominator
+      real(wp) :: h, reach, numerator, denominator
 
       reach = 2.0_wp - eccentricity_ratio*eta
       numerator = reach*(2.0_wp - embrace_deficit(beta)) - 2.0_wp*weight_arm(eta, which)
@@ -147,7 +143,6 @@ contains
       !> Horizontal thrust, positive where beta is 0 [w r]
       real(wp), intent(in) :: h
       integer, intent(in) :: which
-
       real(wp) :: drop
 
       drop = (2.0_wp + eta)*((1.0_wp - h) - embrace_deficit(beta)) &

@@ -48,7 +48,6 @@ contains
       real(wp), intent(in) :: alpha
       !> One of `theory`
       integer, intent(in) :: which
-
       real(wp) :: x, springing, haunch
 
       limits%mu_mixed = ieee_value(x, ieee_quiet_nan)
@@ -80,7 +79,6 @@ contains
       real(wp), intent(out) :: eta
       !> Thrust [w r]
       real(wp), intent(out) :: h
-
       type(friction_limits_t) :: limits
       real(wp) :: deficit
 
@@ -107,7 +105,6 @@ contains
    elemental real(wp) function rotational_deficit(alpha, which)
       real(wp), intent(in) :: alpha
       integer, intent(in) :: which
-
       real(wp) :: beta, eta, h
 
       call critical_solution(alpha, which, beta, eta, h)
@@ -138,10 +135,7 @@ contains
       real(wp), intent(in) :: alpha
       !> Any thrust to start from, as asin(sqrt(1 - h)) [rad]
       real(wp), intent(in) :: guess
-      !> asin(sqrt(1 - h)) [rad]
-      real(wp) :: x
-
-      real(wp) :: change
+      real(wp) :: x, change
       integer :: step
 
       x = guess
@@ -158,7 +152,6 @@ contains
       real(wp), intent(in) :: mu
       !> sin^2 x with x - sin(2x)/2 = atan(mu)
       real(wp) :: deficit
-
       real(wp) :: x, change
       integer :: step
 
@@ -185,7 +178,6 @@ contains
       !> A first guess of the inner hinge; then the hinge [rad]
       real(wp), intent(inout) :: beta
       real(wp), intent(out) :: eta
-
       real(wp) :: ratio, change
       integer :: step
 
@@ -224,10 +216,7 @@ contains
       !> Whether the other point is the crown's, rather than the springing's
       logical, intent(in) :: through_crown
       integer, intent(in) :: which
-      !> Thickness ratio [-]
-      real(wp) :: eta
-
-      real(wp) :: q, v, q_end, v_end, h, rise, width, bend
+      real(wp) :: eta, q, v, q_end, v_end, h, rise, width, bend
 
       h = 1.0_wp - deficit
       q = versine(beta)

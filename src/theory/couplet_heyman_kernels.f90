@@ -85,7 +85,6 @@ contains
       real(wp), intent(in) :: y
       !> Each term over the one before it and over -y: (terms)
       real(wp), intent(in) :: ratio(terms)
-
       integer :: i
 
       nested_series = 1.0_wp

@@ -37,7 +37,6 @@ contains
       real(wp), intent(in) :: eta
       !> Where the gap is widest, and the joints that make it so
       type(pinch_t), intent(out) :: pinch
-
       integer :: pair(2), last
       real(wp) :: peak, previous_peak, slope
       logical :: too_low, too_high, rises_for_ever, falls_for_ever
@@ -85,7 +84,6 @@ contains
       integer, intent(out) :: pair(2)
       !> Room between them
       real(wp), intent(out) :: gap
-
       real(wp) :: roof, floor, centre, reach
       integer :: j
 
@@ -112,7 +110,6 @@ contains
       type(ring_t), intent(in) :: ring
       real(wp), intent(in) :: eta, deficit
       integer, intent(in) :: pair(2)
-
       real(wp) :: reach
 
       associate (j => pair(1), k => pair(2))
@@ -175,7 +172,6 @@ contains
       real(wp), intent(out) :: eta
       !> Whether the iteration has come to rest
       logical, intent(out) :: solved
-
       !> Quadratic convergence takes 3 to 8
       integer, parameter :: most_steps = 60
       !> A relative step this short leaves rounding alone to the next one
@@ -205,7 +201,6 @@ contains
       real(wp), intent(out) :: eta_step
       !> Change of the deficit
       real(wp), intent(out) :: deficit_step
-
       real(wp) :: gap(2), growth(2), slope(2), determinant, size_of_terms
 
       gap = [pair_gap(ring, eta, pinch%deficit, pinch%left), &

@@ -22,7 +22,6 @@ contains
    elemental real(wp) function heyman_quotient(beta)
       !> Inner hinge, (0, pi/2) [rad]
       real(wp), intent(in) :: beta
-
       real(wp) :: s, c, common
 
       s = sin(beta)
@@ -40,7 +39,6 @@ contains
       real(wp), intent(in) :: a
       !> One of `theory`
       integer, intent(in) :: which
-
       real(wp) :: s, c
 
       s = sin(beta)
@@ -53,7 +51,6 @@ contains
    elemental real(wp) function stationary_polynomial(eta, beta, a, which) result(value)
       real(wp), intent(in) :: eta, beta, a
       integer, intent(in) :: which
-
       real(wp) :: s, arm
 
       s = sin(beta)
@@ -65,7 +62,6 @@ contains
    elemental real(wp) function growth_polynomial(eta, beta, a, which) result(value)
       real(wp), intent(in) :: eta, beta, a
       integer, intent(in) :: which
-
       real(wp) :: s, c
 
       s = sin(beta)
@@ -78,7 +74,6 @@ contains
    elemental real(wp) function singular_embrace(eta, beta, which)
       real(wp), intent(in) :: eta, beta
       integer, intent(in) :: which
-
       real(wp) :: c
 
       c = cos(beta)
@@ -90,7 +85,6 @@ contains
    elemental real(wp) function singular_polynomial(eta, which) result(value)
       real(wp), intent(in) :: eta
       integer, intent(in) :: which
-
       real(wp) :: flag
 
       flag = weight_flag(which)
@@ -113,7 +107,6 @@ contains
       real(wp), intent(in) :: a
       !> CCR or Milankovitch of `theory`
       integer, intent(in) :: which
-
       real(wp) :: s, c, g, rest, head
 
       s = sin(beta)
@@ -128,7 +121,6 @@ contains
    !> Eq. (23): eq. (22) for Milankovitch
    elemental real(wp) function embrace_cubic(beta, a)
       real(wp), intent(in) :: beta, a
-
       real(wp) :: s, c, g
 
       s = sin(beta)
@@ -141,7 +133,6 @@ contains
    !> Eq. (24): eq. (22) for CCR without its extraneous factor
    elemental real(wp) function embrace_quadratic(beta, a)
       real(wp), intent(in) :: beta, a
-
       real(wp) :: s, c, g
 
       s = sin(beta)
@@ -156,7 +147,6 @@ contains
       real(wp), intent(in) :: eta
       real(wp), intent(in) :: beta
       integer, intent(in) :: which
-
       real(wp) :: s, c
 
       s = sin(beta)
@@ -168,10 +158,7 @@ contains
    !> Eq. (16): the equilibrium curve of Heyman and CCR in closed form
    elemental function printed_thickness(beta, a) result(eta)
       real(wp), intent(in) :: beta, a
-      !> Thickness ratio [-]
-      real(wp) :: eta
-
-      real(wp) :: s, c, radicand
+      real(wp) :: eta, s, c, radicand
 
       s = sin(beta)
       c = cos(beta)
@@ -188,7 +175,6 @@ contains
       real(wp), intent(out) :: beta, eta
       !> Thrust [w r]
       real(wp), intent(out) :: h
-
       real(wp) :: a, s, c
 
       beta = ieee_value(beta, ieee_quiet_nan)
@@ -215,7 +201,6 @@ contains
       integer, intent(in) :: which
       !> Inner hinge [rad]
       real(wp) :: beta
-
       !> There is one root below a quarter of a turn [rad]
       real(wp), parameter :: farthest = 0.5_wp*acos(-1.0_wp)
       real(wp) :: low, high, value
@@ -243,9 +228,7 @@ contains
       !> Root of eq. (16) [-]
       real(wp), intent(in) :: start
       real(wp), intent(in) :: beta, a
-      !> Thickness ratio [-]
       real(wp) :: eta
-
       !> Twice what full convergence takes
       integer, parameter :: steps = 12
       integer :: i

@@ -46,7 +46,6 @@ contains
       !> Equal chords of each voussoir: (n - 1), or (n) where the first straddles the crown
       integer, intent(in) :: facets(:)
       type(ring_t), intent(out) :: ring
-
       real(wp) :: span, chord, middle, half_sine, chord_loss
       real(wp) :: lightness_rise, lightness_middle, form_rise, form_carry
       integer :: n, j, above
@@ -91,7 +90,6 @@ contains
       real(wp), intent(inout) :: carry
       !> Sum after
       real(wp), intent(out) :: after
-
       real(wp) :: corrected
 
       corrected = term + carry
@@ -112,7 +110,6 @@ contains
       logical, intent(in) :: springing_no_slip
       !> The ring: its limits of the deficit are set
       type(ring_t), intent(inout) :: ring
-
       !> A quarter of a turn [rad]
       real(wp), parameter :: quarter = 0.5_wp*acos(-1.0_wp)
       integer :: j, last
@@ -141,7 +138,6 @@ contains
       integer, intent(in) :: joint
       !> The ring: its limits of the deficit are narrowed
       type(ring_t), intent(inout) :: ring
-
       real(wp) :: bound
       logical :: caps_deficit
 

@@ -78,7 +78,6 @@ contains
       integer, intent(in) :: which
       real(wp), intent(out) :: beta(n), eta(n), h(n)
       integer, intent(out) :: fault(2)
-
       type(limits_t) :: limits
 
       limits = limits_of(which)
@@ -165,7 +164,6 @@ contains
       !> alpha, A, eta, beta, h at the limit; greatest beta and alpha, A, eta, h there; alpha where
       !> A = 1: (11)
       real(wp), intent(out) :: values(11)
-
       type(limits_t) :: limits
 
       limits = limits_of(which)

@@ -33,7 +33,6 @@ contains
       integer, intent(out) :: springing(n)
       !> First fault: (2)
       integer, intent(out) :: fault(2)
-
       type(friction_limits_t) :: limits
       integer :: i
 
@@ -99,7 +98,6 @@ contains
       !> What each does, one of joint_role, 0 for none: (5, n)
       integer, intent(out) :: role(5, n)
       integer, intent(out) :: fault(2)
-
       integer, parameter :: most_voussoirs = 10000000
       integer :: i, no_fault(2)
 
@@ -142,7 +140,6 @@ contains
       !> What each does, one of joint_role, 0 for none: (5)
       integer, intent(out) :: role(5)
       integer, intent(out) :: fault(2)
-
       type(discrete_solution_t) :: solution
       integer :: i
 

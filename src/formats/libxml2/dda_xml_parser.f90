@@ -140,7 +140,6 @@ module dda_xml_parser
       function is_namespace(reader) bind(c, name="xmlTextReaderIsNamespaceDecl") result(yes)
          import :: c_int, c_ptr
          type(c_ptr), intent(in), value :: reader
-         !> 1 if it does
          integer(c_int) :: yes
       end function is_namespace
 
@@ -348,7 +347,6 @@ contains
    function fortran_text(address) result(text)
       !> Where it is; may be null
       type(c_ptr), intent(in) :: address
-      !> The same characters
       character(len=:), allocatable, target :: text
       integer(c_size_t) :: n
 
