@@ -90,6 +90,7 @@ contains
       !> The scene of its first case, if its blocks are from a file
       type(scene_t), intent(inout) :: scene
       type(deck_t) :: first
+      type(scene_plan_t) :: plan
       type(error_t), allocatable :: error
       character(len=:), allocatable :: swept
       integer :: s, blocks
@@ -97,7 +98,8 @@ contains
 
       arch = scene_kind(deck) == "arch"
       call case_deck(deck, 1, first, error)
-      if (deck%scene%kind%word /= "blocks") call deck_scene(first, scene)
+      plan = plan_scene(first)
+      if (deck%scene%kind%word /= "blocks") call deck_scene(first, plan, scene)
       blocks = maxval(scene%system%equation)
       swept = ""
       associate (names => swept_names(deck))
@@ -130,7 +132,7 @@ contains
          & "none: friction only                      ", any(scene%contacts%springs%shift > 0.0) &
          & .or. any(scene%contacts%joint%law%cohesion > 0.0)))
       call tell(screen, "points", points_text(scene%settings%boundary))
-      call print_parts(screen, first, blocks)
+      call print_parts(screen, first, plan, blocks)
       call tell(screen, "other output", tables_text(first))
       if (.not. arch) call print_blocks(screen, scene)
    end subroutine print_plan
@@ -246,14 +248,13 @@ contains
    end function joints_text
 
    !> Print which parts of the method a case needs, and why
-   subroutine print_parts(screen, deck, blocks)
+   subroutine print_parts(screen, deck, plan, blocks)
       type(screen_t), intent(in) :: screen
       type(deck_t), intent(in) :: deck
+      type(scene_plan_t), intent(in) :: plan
       !> Blocks that move
       integer, intent(in) :: blocks
-      type(scene_plan_t) :: plan
 
-      plan = plan_scene(deck)
       call tell(screen, "unknowns", &
          & to_text(plan%unknowns)//" per block, "//to_text(plan%unknowns*blocks) &
          & //" in all: "//trim(why(plan%reason)))

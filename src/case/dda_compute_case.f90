@@ -63,8 +63,8 @@ contains
          if (allocated(this%critical%fallen)) &
             & call see_collapse(this, this%critical%falls, this%critical%fallen)
       else if (this%limerick) then
-         call deck_scene(this%family%deck, this%scene)
-         call decide_limerick(this%family%deck, this%decision, this%album)
+         call deck_scene(this%family%deck, this%plan, this%scene)
+         call decide_limerick(this%family%deck, this%scene, this%decision, this%album)
       else
          call compute_decision(this)
          if (.not. allocated(this%error)) call see_collapse(this, &
@@ -95,7 +95,7 @@ contains
       real(wp) :: value
 
       position%key = key_index("vehicle", "position")
-      call deck_scene(this%family%deck, scene)
+      call deck_scene(this%family%deck, this%plan, scene)
       call find_worst_position(this%family%deck, scene, value, this%has_worst)
       if (.not. this%has_worst) return
       associate (deck => this%family%deck)
@@ -139,7 +139,7 @@ contains
       ! a chain proves that it falls; how it does is told by all of its blocks
       if (decided) decided = this%decision%outcome%verdict /= verdict%collapsed
       if (decided) return
-      call deck_scene(this%family%deck, this%scene)
+      call deck_scene(this%family%deck, this%plan, this%scene)
       call plan_fall(this)
       if (this%family%deck%analysis%restart%given) then
          system = this%scene%system

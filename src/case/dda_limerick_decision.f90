@@ -5,7 +5,6 @@ module dda_limerick_decision
    use dda_contact_types, only : place_joint
    use dda_decision, only : decision_t
    use dda_deck, only : deck_t
-   use dda_deck_scene, only : deck_scene
    use dda_frames, only : album_t, frame_is_due, keep_frame
    use dda_kinds, only : wp
    use dda_limerick_contact, only : limerick_contact_t
@@ -27,17 +26,16 @@ module dda_limerick_decision
 contains
 
    !> Run what a deck describes under the original's scheme
-   pure subroutine decide_limerick(deck, decision, album)
+   pure subroutine decide_limerick(deck, scene, decision, album)
       type(deck_t), intent(in) :: deck
+      type(scene_t), intent(in) :: scene
       type(decision_t), intent(out) :: decision
       !> Receives the ways of its points, if it has some
       type(album_t), intent(inout), optional :: album
       type(limerick_model_t) :: model
       type(limerick_run_t) :: run
       type(limerick_outcome_t) :: outcome
-      type(scene_t) :: scene
 
-      call deck_scene(deck, scene)
       call limerick_scene(deck, scene, model)
       if (present(album)) then
          call plan_pictures(deck%output%frames%whole, model%constants, album)

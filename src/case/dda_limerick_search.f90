@@ -2,12 +2,14 @@
 module dda_limerick_search
    use dda_decision, only : decision_t
    use dda_deck, only : deck_t
-   use dda_deck_scene, only : deck_family_t
+   use dda_deck_scene, only : deck_family_t, deck_scene
    use dda_deck_set, only : number_fits, put_number
    use dda_error, only : error_t
    use dda_frames, only : album_t
    use dda_kinds, only : wp
    use dda_limerick_decision, only : decide_limerick
+   use dda_scene, only : scene_t
+   use dda_scene_plan, only : plan_scene
    use dda_search, only : critical_t, search_t
    use dda_verdict, only : verdict
    implicit none
@@ -56,6 +58,7 @@ contains
       type(critical_t), intent(in) :: critical
       type(album_t), intent(inout) :: album
       type(decision_t) :: decision
+      type(scene_t) :: scene
       type(error_t), allocatable :: error
       type(deck_t) :: deck
 
@@ -69,7 +72,9 @@ contains
       else
          return
       end if
-      if (.not. allocated(error)) call decide_limerick(deck, decision, album)
+      if (allocated(error)) return
+      call deck_scene(deck, plan_scene(deck), scene)
+      call decide_limerick(deck, scene, decision, album)
    end subroutine repeat_with_pictures
 
    !> Whether a value stands and another falls
@@ -112,6 +117,7 @@ contains
       type(critical_t), intent(inout) :: critical
       integer, intent(out) :: answer
       type(decision_t), allocatable :: decision
+      type(scene_t) :: scene
       type(error_t), allocatable :: error
       type(deck_t) :: deck
 
@@ -124,7 +130,8 @@ contains
       call put_number(deck, family%parameter, value, deck%value(family%parameter%key)%place, error)
       if (allocated(error)) return
       allocate (decision)
-      call decide_limerick(deck, decision)
+      call deck_scene(deck, plan_scene(deck), scene)
+      call decide_limerick(deck, scene, decision)
       critical%steps = critical%steps + decision%outcome%steps
       critical%passes = critical%passes + decision%outcome%passes
       critical%factorisations = critical%factorisations + decision%outcome%factorisations

@@ -14,6 +14,7 @@ module dda_scene_check
    use dda_read_deck, only : geometry_file
    use dda_restart, only : check_restart, load_restart
    use dda_scene, only : scene_t
+   use dda_scene_plan, only : plan_scene
    use dda_shape_check, only : check_shapes
    use dda_step_context, only : march_t
    use dda_text, only : to_text
@@ -77,7 +78,7 @@ contains
             call deck_error(error, "load%load_factor needs a live load, got none; add "// &
                & "&live, a live line of a file of blocks, or load%live_horizontal", deck, place)
          else if (points) then
-            if (number == 1 .or. reshaped) call deck_scene(work, scene)
+            if (number == 1 .or. reshaped) call deck_scene(work, plan_scene(work), scene)
             call check_live_points(work, scene, error)
          end if
          if (allocated(error)) return
@@ -139,7 +140,8 @@ contains
          mode = findloc(["static  ", "dynamic ", "limerick"] == &
             & work%analysis%mode%word, .true., dim=1)
          if (mode == 3 .and. keeps_velocities(work)) mode = 4
-         if (number == 1 .and. work%scene%kind%word == "blocks") call deck_scene(work, scene)
+         if (number == 1 .and. work%scene%kind%word == "blocks") &
+            & call deck_scene(work, plan_scene(work), scene)
          if (.not. seen(mode)) call check_mode(work, number == 1, scene, deck%warnings, error)
          seen(mode) = .true.
          if (allocated(error) .or. all(seen) .or. .not. any(deck%sweeps%parameter%key == &
@@ -197,7 +199,7 @@ contains
          call deck_error(error, "there is no restart file '"//name//"'; check the name", deck, &
             & place_of(deck, key_index("analysis", "restart")))
       else if (n_cases(deck) == 1) then
-         call deck_scene(deck, scene)
+         call deck_scene(deck, plan_scene(deck), scene)
          call load_restart(file_beside(deck, name), scene%settings, scene%system, &
             & scene%contacts, march, error)
       else

@@ -12,6 +12,7 @@ module dda_arch_lines
    use dda_limerick_scene, only : abutment_sides, set_constants
    use dda_line_model, only : add_entity, line_model_t, new_line_model
    use dda_scene, only : scene_t
+   use dda_scene_plan, only : plan_scene
    use dda_text, only : to_text
    use dda_vector, only : along, right_normal
    implicit none
@@ -41,7 +42,7 @@ contains
       real(wp) :: depth, overhang, corner(2, 4, 2)
       integer :: n, b, side
 
-      call arch_scene(deck, scene)
+      call arch_scene(deck, plan_scene(deck), scene)
       n = size(scene%system%area) - 2
       call abutment_sides(deck, depth, overhang)
       do side = 1, 2

@@ -9,7 +9,7 @@ module dda_arch_scene
    use dda_kinds, only : wp
    use dda_material, only : friction_coefficient, joint_law_t, material_t
    use dda_scene, only : scene_t
-   use dda_scene_plan, only : plan_scene, scene_plan_t
+   use dda_scene_plan, only : scene_plan_t
    use dda_settings, only : flow_rule, settings_t
    implicit none
    private
@@ -26,8 +26,9 @@ module dda_arch_scene
 contains
 
    !> The scene that the deck of one case describes
-   pure subroutine arch_scene(deck, scene)
+   pure subroutine arch_scene(deck, plan, scene)
       type(deck_t), intent(in) :: deck
+      type(scene_plan_t), intent(in) :: plan
       type(scene_t), intent(out) :: scene
       type(joint_law_t), allocatable :: law(:)
       integer, allocatable :: edge_pair(:, :)
@@ -35,7 +36,7 @@ contains
 
       call arch_blocks(arch_shape(deck), material_of(deck), scene%system, edge_pair)
       scene%system%unit_weight = unit_weight(deck)
-      scene%settings = settings_of(deck, degree*deck%arch%half_angle_deg%number, &
+      scene%settings = settings_of(deck, plan, degree*deck%arch%half_angle_deg%number, &
          & size(half_joints_deg(deck)))
       scene%settings%rest_tolerance = max(scene%settings%rest_tolerance, &
          & weight_rounding(degree*deck%arch%half_angle_deg%number, &
@@ -145,16 +146,15 @@ contains
 
    !> Settings of the runs. The acceleration that counts as rest follows the tolerance of the search
    !> and the arch: a shallow arch that lacks the same share of its thickness accelerates less
-   pure type(settings_t) function settings_of(deck, half_angle, joints) result(settings)
+   pure type(settings_t) function settings_of(deck, plan, half_angle, joints) result(settings)
       type(deck_t), intent(in) :: deck
+      type(scene_plan_t), intent(in) :: plan
       !> Angle from the crown to a springing; a right angle for what is no arch [rad]
       real(wp), intent(in) :: half_angle
       !> Joints of one half of an arch, or all joints
       integer, intent(in) :: joints
       real(wp) :: noise, rise
-      type(scene_plan_t) :: plan
 
-      plan = plan_scene(deck)
       settings%dynamic = plan%velocities
       settings%current = plan%moving
       settings%n_dof = plan%unknowns

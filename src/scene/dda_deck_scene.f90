@@ -21,7 +21,7 @@ module dda_deck_scene
    use dda_line_scene, only : held_blocks, line_scene
    use dda_live_loads, only : add_live_loads, check_live_points
    use dda_scene, only : family_t, scene_t, searched_load
-   use dda_scene_plan, only : scene_plan_t
+   use dda_scene_plan, only : plan_scene, scene_plan_t
    use dda_settings, only : load_direction, settings_t
    use dda_shape_scene, only : add_lune_weights, find_crown_joint, shape_assembly, shape_form
    use dda_tie_bars, only : add_ties
@@ -77,7 +77,7 @@ contains
       family%chains = plan%row .and. parameter%key == key_index("arch", "thickness_ratio")
       family%decides_chains = family%chains .and. plan%chain
       if (.not. family%chains) return
-      family%settings = settings_of(deck, degree*deck%arch%half_angle_deg%number, &
+      family%settings = settings_of(deck, plan, degree*deck%arch%half_angle_deg%number, &
          & size(half_joints_deg(deck)))
       family%numbers = arch_numbers(deck)
       family%numbers%body_force = unit_weight(deck)*load_direction(family%settings)
@@ -125,32 +125,34 @@ contains
          call fatal_error(error, "the searched parameter makes no arch of this value")
          return
       end if
-      call deck_scene(deck, scene)
+      call deck_scene(deck, plan_scene(deck), scene)
       call check_live_points(deck, scene, error)
    end subroutine build_deck_scene
 
    !> The scene that the deck of one case describes
-   pure subroutine deck_scene(deck, scene)
+   pure subroutine deck_scene(deck, plan, scene)
       type(deck_t), intent(in) :: deck
+      type(scene_plan_t), intent(in) :: plan
       type(scene_t), intent(out) :: scene
 
       select case (scene_kind(deck))
       case ("arch")
-         call arch_scene(deck, scene)
+         call arch_scene(deck, plan, scene)
       case ("lines")
-         call line_scene(deck, scene)
+         call line_scene(deck, plan, scene)
       case ("blocks")
-         call file_scene(deck, deck%plan, scene)
+         call file_scene(deck, plan, deck%plan, scene)
       case ("shape")
-         call shape_scene(deck, scene)
+         call shape_scene(deck, plan, scene)
       end select
       call move_ground(deck, scene%settings%boundary%base_acceleration)
       if (scene_kind(deck) /= "shape") call add_live_loads(deck, scene)
    end subroutine deck_scene
 
    !> The scene of an arch of any shape
-   pure subroutine shape_scene(deck, scene)
+   pure subroutine shape_scene(deck, plan, scene)
       type(deck_t), intent(in) :: deck
+      type(scene_plan_t), intent(in) :: plan
       !> The scene; of an arch that cannot be, without blocks
       type(scene_t), intent(out) :: scene
       type(arch_assembly_t) :: assembly
@@ -160,7 +162,7 @@ contains
       call shape_assembly(deck, assembly, problem)
       if (len_trim(problem%text) > 0) return
       if (deck%tie%given) call add_ties(deck, assembly%plan)
-      call file_scene(deck, assembly%plan, scene)
+      call file_scene(deck, plan, assembly%plan, scene)
       call find_crown_joint(assembly, scene)
       if (deck%arch%lune_deg%given) call add_lune_weights(deck%arch%lune_deg%number, scene)
       if (deck%fill%given) then
@@ -192,9 +194,10 @@ contains
    end function movable_blocks
 
    !> The scene of blocks as a file or an arch gives them
-   pure subroutine file_scene(deck, plan, scene)
+   pure subroutine file_scene(deck, plan, blocks, scene)
       type(deck_t), intent(in) :: deck
-      type(block_plan_t), intent(in) :: plan
+      type(scene_plan_t), intent(in) :: plan
+      type(block_plan_t), intent(in) :: blocks
       type(scene_t), intent(out) :: scene
       type(base_t) :: base
       integer :: i
@@ -206,8 +209,8 @@ contains
          & deck%joint%tension%number, 90.0_wp, deck%joint%slip_length%number]
       if (deck%joint%residual_deg%given) base%law(4) = deck%joint%residual_deg%number
       base%water_rise = deck%load%water_rise%number
-      scene%settings = settings_of(deck, pi/2.0_wp, size(plan%fixed))
-      call block_scene(plan, base, scene)
+      scene%settings = settings_of(deck, plan, pi/2.0_wp, size(blocks%fixed))
+      call block_scene(blocks, base, scene)
       if (.not. deck%load%displacement_factor%given) return
       if (.not. allocated(scene%settings%boundary%held)) return
       do i = 1, size(scene%settings%boundary%held)

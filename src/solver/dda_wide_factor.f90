@@ -2,17 +2,21 @@
 !> spreads over more decades than working precision has
 module dda_wide_factor
    use dda_block_matrix, only : block_matrix_t
-   use dda_block_plan, only : elimination_plan_t
+   use dda_block_plan, only : elimination_plan_t, most_columns
    use dda_joint_rays, only : joint_rays_t
    use dda_kinds, only : wp
-   use dda_wide_panels, only : eliminate, new_panels, panels_t, substitute_panels, wide
    implicit none
    private
 
    public :: wide_factor_t, factorise_wide, substitute_wide
 
-   !> Kind of numbers with 30 digits or more where the compiler has them
-   integer, parameter :: qp = wide
+   !> Kind of numbers with 30 digits or more; where there is none, with 18
+   integer, parameter :: qp = merge(selected_real_kind(30), selected_real_kind(18), &
+      & selected_real_kind(30) > 0)
+   !> The kind that the panels are written for
+   integer, parameter :: rk = qp
+
+   include "../linalg/dda_panel_type.inc"
 
    !> The factor; its plan is that of the factor in working precision
    type :: wide_factor_t
@@ -92,4 +96,8 @@ contains
             & + matmul(real(rays%arm(:, 4:6, j), qp), motion(:, rays%block(2, j))), wp)
       end do
    end subroutine substitute_wide
+
+   include "../linalg/dda_panels.inc"
+   include "../linalg/dda_panel_factor.inc"
+   include "../linalg/dda_panel_substitution.inc"
 end module dda_wide_factor

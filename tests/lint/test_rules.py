@@ -14,8 +14,6 @@ REPOSITORY = Path(__file__).resolve().parents[2]
 LONG = {"run_to_verdict", "lowest_point", "settle_in_time"}
 #: Modules that hand on the names of others: the library's face, and the theory's
 FACADES = {"voussoir", "couplet_heyman"}
-#: Names that two modules export: one source compiled for two kinds of numbers
-TWICE = {"eliminate", "new_panels", "panels_t", "substitute_panels"}
 GOOD = """!> A module
 module good
    use other, only : thing
@@ -63,9 +61,7 @@ def test_fortran_sources_keep_the_rules() -> None:
 
 def test_no_public_name_is_exported_by_two_modules() -> None:
     files = [file for file in sorted((REPOSITORY / "src").rglob("*.f90")) if file.stem not in FACADES]
-    twice = fortran_rules.names_twice(files)
-    assert {name: modules for name, modules in twice.items() if name not in TWICE} == {}
-    assert set(twice) >= TWICE, "names that are no longer exported twice go from the list"
+    assert fortran_rules.names_twice(files) == {}
 
 
 def test_names_that_two_modules_export_are_found(tmp_path: Path) -> None:
