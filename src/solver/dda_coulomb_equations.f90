@@ -1,4 +1,5 @@
-!> Equations of a motion whose joints keep what they do: (A S A' + damping*mass) v = load
+!> Equations of a motion whose joints keep what they do, with damping:
+!> (A (S + viscosity*K) A' + damping*mass) v = load, K: joints as stiff as if closed and stuck
 !>
 !> One factor serves many sets of faces. Where the stiffness of joints differs by D from that in the
 !> factor, and U are the answers of the blocks to unit forces at these joints,
@@ -29,8 +30,8 @@ module dda_coulomb_equations
       logical :: usable = .false.
       !> Pivots that a search for faces may take, and factorisations of the matrix altogether
       integer :: most_pivots = 100, most_factorisations = huge(1)
-      !> Multiple of the mass
-      real(wp) :: damping = -1.0_wp
+      !> Multiple of the mass, and of the stiffness of all joints, open ones too
+      real(wp) :: damping = -1.0_wp, viscosity = 0.0_wp
       !> Faces in the factor: (3, n_joint)
       integer, allocatable :: base_face(:, :)
       !> Faces in the equations: (3, n_joint)
@@ -83,18 +84,25 @@ contains
    end subroutine new_coulomb_equations
 
    !> Make the equations those of a set of faces: by few changes of the factor, or by a new one
-   pure subroutine use_faces(equations, joints, faces, damping)
+   pure subroutine use_faces(equations, joints, faces, damping, viscosity)
       type(coulomb_equations_t), intent(inout) :: equations
       type(coulomb_joints_t), intent(in) :: joints
       !> What corners and joints do: (3, n_joint)
       integer, intent(in), contiguous :: faces(:, :)
       !> Multiple of the mass
       real(wp), intent(in) :: damping
+      !> Multiple of the stiffness of all joints, 0 if absent
+      real(wp), intent(in), optional :: viscosity
+      real(wp) :: viscous
       logical :: few
 
-      few = equations%usable .and. .not. abs(damping - equations%damping) > 0.0_wp
+      viscous = 0.0_wp
+      if (present(viscosity)) viscous = viscosity
+      few = equations%usable .and. .not. abs(damping - equations%damping) > 0.0_wp &
+         & .and. .not. abs(viscous - equations%viscosity) > 0.0_wp
       equations%face = faces
       equations%damping = damping
+      equations%viscosity = viscous
       if (few) call note_changes(equations, joints, few)
       if (few) call factor_capacity(equations, few)
       if (.not. few) call factor_faces(equations, joints)
@@ -105,12 +113,16 @@ contains
       type(coulomb_equations_t), intent(inout) :: equations
       type(coulomb_joints_t), intent(in) :: joints
       real(wp) :: stiffness(3, 3, size(equations%place))
-      integer :: j
+      integer :: i, j
 
       equations%usable = equations%base%n_factorisation < equations%most_factorisations
       if (.not. equations%usable) return
       do j = 1, size(stiffness, 3)
          stiffness(:, :, j) = joint_stiffness(joints, j, equations%face(:, j))
+         do i = 1, 3
+            stiffness(i, i, j) = stiffness(i, i, j) &
+               & + equations%viscosity/joints%graph%compliance(i, j)
+         end do
       end do
       call factor_stiffness(equations%base, joints, stiffness, equations%damping)
       equations%usable = equations%base%factor%usable
@@ -261,6 +273,7 @@ contains
          call joint_motion(joints%graph, motion, opening)
          if (size(equations%active) == 0) exit
          call spring_forces(joints, equations%face, opening, force)
+         force = force - equations%viscosity*opening/joints%graph%compliance
          call imbalance(joints, load - equations%damping*joints%graph%mass*motion, force, rest)
          bound = exact*maxval(abs(load)) + rounding*maxval(abs(motion))
          if (maxval(abs(rest)) <= bound) exit

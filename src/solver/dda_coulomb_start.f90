@@ -9,9 +9,10 @@ module dda_coulomb_start
    use dda_coulomb_interior, only : enough, interior_motion, coulomb_interior_t, sharp
    use dda_coulomb_joints, only : coulomb_joints_t
    use dda_coulomb_law, only : apply_law, force_faces, coulomb_state_t, imbalance, unloaded_state
+   use dda_event_rates, only : path_damping
    use dda_joint_graph, only : joint_motion
    use dda_kinds, only : wp
-   use dda_load_jump, only : far_factor, jump_t, jump_to_balance, motion_end, path_damping
+   use dda_load_jump, only : far_factor, jump_t, jump_to_balance, motion_end
    implicit none
    private
 

@@ -1,5 +1,5 @@
-!> Motion of an assembly at a load that does not change, damped by mass, from event to event: to a
-!> state in balance, or without end
+!> Motion of an assembly at a load that does not change, damped at its joints, from event to event:
+!> to a state in balance, or without end
 !>
 !> Where a load has grown by a little and no state in balance is near, the blocks move until gaps
 !> close or joints stick, and forces balance again: a jump. If nothing stops them they fall.
@@ -13,7 +13,7 @@ module dda_load_jump
    implicit none
    private
 
-   public :: motion_end, motion_end_enum, jump_t, path_damping, moves_unbalanced
+   public :: motion_end, motion_end_enum, jump_t, moves_unbalanced
    public :: far_factor, few_pivots, jump_to_balance, nudge, nudge_to_balance
 
    !> How a motion ends
@@ -41,9 +41,6 @@ module dda_load_jump
       real(wp), allocatable :: mechanism(:, :)
    end type jump_t
 
-   !> Damping along a path, by unit mass and unit compliance: at rest it takes a part of 1e-9 of the
-   !> load, in motion nearly all; results are the same from 1e-12 to 1e-9
-   real(wp), parameter :: path_damping = 1.0e-10_wp
    !> Blocks move where damping takes more than this share of the load
    real(wp), parameter :: moves_unbalanced = 0.01_wp
    !> So many times the motion under the dead load is far
@@ -65,8 +62,8 @@ module dda_load_jump
    real(wp), parameter :: calmer = 0.1_wp
    !> Damping that is tried first where there are no rates along a path
    real(wp), parameter :: first_firm = 1.0e-3_wp
-   !> With so much damping there are always rates
-   real(wp), parameter :: strongest = 1.0e5_wp
+   !> Damping that is none, and that with which there are always rates
+   real(wp), parameter :: weakest = 1.0e-10_wp, strongest = 1.0e5_wp
    !> A load is raised by this part of a block's weight at least to see how the blocks move
    real(wp), parameter :: nudge = 1.0e-6_wp
    !> Where a motion does not converge the load is raised by so many times as much, and where it is
@@ -148,7 +145,8 @@ contains
 
    !> Move from event to event at a load that does not change. Where friction lets forces drop, only
    !> motion that is damped enough has rates: damping rises until it has, and falls again with every
-   !> step that meets no event
+   !> step that meets no event. It is that of joints, in proportion to their stiffness: parts of the
+   !> assembly that move as one are free while no joint snaps
    pure subroutine jump_to_balance(joints, equations, load, state, jump, end)
       type(coulomb_joints_t), intent(in) :: joints
       type(coulomb_equations_t), intent(inout) :: equations
@@ -160,7 +158,7 @@ contains
       integer, intent(out) :: end
       type(rates_t) :: rates
       type(event_t) :: event
-      real(wp) :: damping, firm, still(3, size(state%slip))
+      real(wp) :: viscosity, firm, still(3, size(state%slip))
       real(wp) :: rest(size(load, 1), size(load, 2)), start(size(load, 1), size(load, 2)), far
       integer :: i, most, standstill
       logical :: calm, found, pushed
@@ -169,7 +167,7 @@ contains
       start = state%motion
       standstill = 0
       pushed = .false.
-      damping = path_damping
+      viscosity = 0.0_wp
       firm = first_firm
       calm = .false.
       rates = new_rates(state)
@@ -182,15 +180,15 @@ contains
          if (end == motion_end%balanced) state%load = load
          if (end /= motion_end%unsettled) return
          if (equations%base%n_factorisation >= equations%most_factorisations) return
-         if (calm) damping = max(path_damping, calmer*damping)
-         call find_rates(joints, equations, state, rest, still, damping, rates, found)
+         if (calm) viscosity = merge(calmer*viscosity, 0.0_wp, calmer*viscosity > weakest)
+         call find_rates(joints, equations, state, rest, still, viscosity, rates, found)
          if (.not. found) then
-            if (damping > strongest) return
+            if (viscosity > strongest) return
             calm = .false.
-            damping = merge(firm, damping/calmer, damping < firm)
+            viscosity = merge(firm, max(weakest, viscosity)/calmer, viscosity < firm)
             cycle
          end if
-         firm = damping
+         firm = viscosity
          if (pushed .and. rates%unbalanced > moves_unbalanced) then
             call see_ray(joints, state, rest, rates, event, jump, end)
             if (event%kind == event_kind%none) return
@@ -199,7 +197,7 @@ contains
          end if
          ! forces that drop faster than this have no rates with less damping
          calm = event%kind == event_kind%none .and. rates%unbalanced < 1.0_wp/(1.0_wp - calmer)
-         pushed = .not. damping > path_damping .and. rates%unbalanced > moves_unbalanced &
+         pushed = .not. viscosity > 0.0_wp .and. rates%unbalanced > moves_unbalanced &
             & .and. event%kind == event_kind%none
          standstill = merge(standstill + 1, 0, event%distance < no_way)
          if (standstill > max_standstill) return
@@ -253,7 +251,7 @@ contains
       end if
       still = 0.0_wp
       rates = new_rates(state)
-      call find_rates(joints, equations, state, rest, still, path_damping, rates, found)
+      call find_rates(joints, equations, state, rest, still, 0.0_wp, rates, found)
       if (found .and. rates%unbalanced > moves_unbalanced) &
          & call see_ray(joints, state, rest, rates, event, jump, end)
       if (end == motion_end%endless) return

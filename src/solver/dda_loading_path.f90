@@ -22,7 +22,7 @@ module dda_loading_path
    use dda_joint_graph, only : joint_graph_t
    use dda_kinds, only : wp
    use dda_load_jump, only : far_factor, jump_t, motion_end, moves_unbalanced, nudge, &
-      & nudge_to_balance, path_damping
+      & nudge_to_balance
    use dda_path_event, only : event_kind, event_t, move_on, next_event
    implicit none
    private
@@ -243,8 +243,8 @@ contains
       do i = 1, least_patience + patience*size(state%slip)
          if (result%reached >= h_end) return
          if (result%n_jump > max_jump) exit
-         call find_rates(path%joints, path%equations, state, way%load, way%opening, path_damping, &
-            & rates, found)
+         call find_rates(path%joints, path%equations, state, way%load, way%opening, 0.0_wp, rates, &
+            & found)
          found = found .and. rates%unbalanced <= moves_unbalanced .and. standstill <= max_standstill
          if (found) call undamp_rates(path%joints, path%equations, way%load, rates)
          if (found .and. rates%unbalanced <= rests_unbalanced) then
@@ -332,8 +332,7 @@ contains
       do turn = 1, max_turn
          call imbalance(path%joints, state%load, state%force, rest)
          if (.not. maxval(abs(rest)) > exact) return
-         call find_rates(path%joints, path%equations, state, rest, closed, path_damping, rates, &
-            & found)
+         call find_rates(path%joints, path%equations, state, rest, closed, 0.0_wp, rates, found)
          if (.not. found .or. rates%unbalanced > moves_unbalanced) return
          event = next_event(path%joints, state, rates, 1.0_wp)
          call move_on(path%joints, rates, event, state)

@@ -45,7 +45,7 @@ contains
       call follow_law(joints, law, opening, faces)
       break%joint = 0
       do pivot = 1, equations%most_pivots
-         call use_faces(equations, joints, faces, equations%damping)
+         call use_faces(equations, joints, faces, equations%damping, equations%viscosity)
          if (.not. equations%usable) return
          ! the way to the load while the faces stay
          call spring_forces(joints, faces, drive, force)
