@@ -46,7 +46,7 @@ contains
       character(len=:), allocatable, intent(out) :: remark
       !> A number out of range, or a case that cannot be made
       type(error_t), allocatable, intent(out) :: error
-      type(deck_t) :: case_of_deck
+      type(deck_t), allocatable :: case_of_deck
       type(case_t) :: this
       type(told_blocks_t) :: blocks
 
@@ -57,6 +57,7 @@ contains
             & //", got "//to_text(number))
          return
       end if
+      allocate (case_of_deck)
       call turn_to_case(deck, number, case_of_deck, error)
       if (.not. allocated(error)) call cut_lines(case_of_deck, error)
       if (allocated(error)) return

@@ -10,7 +10,7 @@ module dda_case_table
    implicit none
    private
 
-   public :: case_table_t, new_case_table, add_case, end_case_table
+   public :: case_table_t, new_case_table, may_print, add_case, end_case_table
 
    !> Lines of a case that wait for those of an earlier one
    type :: waiting_t
@@ -113,6 +113,14 @@ contains
          longest = min(max(longest, len(to_text(sweep%numbers(i)))), number_width)
       end do
    end function longest
+
+   !> Whether a computed case may make lines be printed
+   pure logical function may_print(table, row)
+      type(case_table_t), intent(in) :: table
+      type(result_row_t), intent(in) :: row
+
+      may_print = table%all_cases .or. table%n_waiting > 0 .or. row%verdict == "undecided"
+   end function may_print
 
    !> Take a computed case; its lines are printed when all before it are computed
    subroutine add_case(table, deck, row, remark)

@@ -11,6 +11,8 @@ module dda_progress
 
    !> Width of a line on the screen
    integer, parameter :: width = 60
+   !> Of so many cases each one is reported, of more they are in intervals
+   integer, parameter :: few = 100
    !> A task is reported once it has taken so long, then in intervals [s]
    real(wp), parameter :: patience = 0.5_wp, interval = 0.2_wp
 
@@ -22,8 +24,10 @@ module dda_progress
       integer :: total = 0
       !> Cases done
       integer :: done = 0
-      !> Clock at the beginning
-      integer(int64) :: start = 0
+      !> Clock at the beginning, and when the line was written
+      integer(int64) :: start = 0, last = 0
+      !> Whether it stands on the screen
+      logical :: told = .false.
    end type progress_t
 
    !> Tells of tasks on a terminal
@@ -91,6 +95,10 @@ contains
       progress%done = progress%done + 1
       if (.not. progress%shown .or. progress%done == progress%total) return
       call system_clock(now, rate)
+      if (progress%total > few &
+         & .and. real(now - progress%last, wp) < interval*real(rate, wp)) return
+      progress%last = now
+      progress%told = .true.
       left = real(now - progress%start, wp)/real(rate, wp) &
          & *real(progress%total - progress%done, wp)/real(progress%done, wp)
       write (error_unit, "(a)", advance="no") achar(13)//"case "//to_text(progress%done)//" of " &
@@ -100,9 +108,10 @@ contains
 
    !> Wipe the line
    subroutine clear_progress(progress)
-      type(progress_t), intent(in) :: progress
+      type(progress_t), intent(inout) :: progress
 
-      if (.not. progress%shown .or. progress%done == 0) return
+      if (.not. progress%told) return
       call wipe_line()
+      progress%told = .false.
    end subroutine clear_progress
 end module dda_progress

@@ -3,7 +3,7 @@ module dda_run_cases
    use dda_case, only : case_t, prepare_case
    use dda_compute_case, only : compute_case
    use dda_case_rows, only : tell_case
-   use dda_case_table, only : add_case, case_table_t
+   use dda_case_table, only : add_case, case_table_t, may_print
    use dda_command_line, only : command_t
    use dda_deck, only : deck_t
    use dda_deck_sweep, only : turn_to_case
@@ -52,7 +52,6 @@ contains
       integer, intent(inout) :: count(3)
       !> Failure to write
       type(error_t), allocatable, intent(inout) :: error
-      type(deck_t) :: case_of_deck
       type(case_t), allocatable :: batch(:)
       integer :: number(max_batch), i, most, n
 
@@ -70,7 +69,7 @@ contains
             call take_cases(chosen, min(most, 1 + (size(chosen) - next)/(4*command%jobs)), next, &
                & number, n)
             do i = 1, n
-               call prepare(deck, number(i), case_of_deck, tables, batch(i))
+               call prepare(deck, number(i), tables, batch(i))
             end do
          end if
          !$omp end critical (texts)
@@ -115,18 +114,21 @@ contains
    end subroutine take_cases
 
    !> Make one case ready to be computed
-   subroutine prepare(deck, number, case_of_deck, tables, this)
+   subroutine prepare(deck, number, tables, this)
       type(deck_t), intent(in) :: deck
       !> Number of the case
       integer, intent(in) :: number
-      !> Deck of the case before in, of this one out
-      type(deck_t), intent(inout) :: case_of_deck
       type(result_tables_t), intent(in) :: tables
-      type(case_t), intent(out) :: this
+      !> An earlier case of the deck in, if there was one: of its deck only what is swept changes
+      type(case_t), intent(inout) :: this
+      type(deck_t), allocatable :: turned
       type(error_t), allocatable :: problem
 
-      call turn_to_case(deck, number, case_of_deck, problem)
-      call prepare_case(case_of_deck, this)
+      ! a vehicle that was put elsewhere is not the deck's
+      if (.not. this%has_worst) call move_alloc(this%family%deck, turned)
+      if (.not. allocated(turned)) allocate (turned)
+      call turn_to_case(deck, number, turned, problem)
+      call prepare_case(turned, this)
       this%tells_tables = any(tables%at([table%joints, table%blocks])%wanted)
       this%proves = tables%at(table%proof_forces)%wanted
    end subroutine prepare
@@ -192,8 +194,10 @@ contains
       count(3) = count(3) + 1
       count(merge(2, 1, row%verdict == "undecided")) = &
          & count(merge(2, 1, row%verdict == "undecided")) + 1
-      call clear_progress(progress)
-      if (.not. command%quiet) call add_case(shown, deck, row, remark)
+      if (.not. command%quiet) then
+         if (may_print(shown, row)) call clear_progress(progress)
+         call add_case(shown, deck, row, remark)
+      end if
       call report_progress(progress)
    end subroutine write_down
 

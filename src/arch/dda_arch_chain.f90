@@ -158,7 +158,8 @@ contains
       type(arch_rays_t), intent(in) :: rays
       !> Thickness over radius
       real(wp), intent(in) :: thickness_ratio
-      type(chain_t), intent(out) :: chain
+      !> Any chain in, whose arrays are used again where they fit
+      type(chain_t), intent(inout) :: chain
       real(wp) :: area, centre(2), radius, thickness, way(2)
       integer :: b, first, last, n
 
@@ -180,8 +181,8 @@ contains
          chain%tangent(:, b) = rays%direction(:, first)
          chain%middle(:, b) = radius*rays%point(:, first)
          way = radius*(rays%point(:, last) - rays%point(:, first)) - centre
-         chain%arm(:, 2, b) = arms(-centre, rays%direction(:, first))
-         chain%arm(:, 1, b + 1) = arms(way, rays%direction(:, last))
+         call find_arms(-centre, rays%direction(:, first), chain%arm(:, 2, b))
+         call find_arms(way, rays%direction(:, last), chain%arm(:, 1, b + 1))
          chain%stiffness(b + 1) = numbers%penalty_ratio*numbers%young*thickness/rays%length(b)
          chain%stiffness(b) = min(chain%stiffness(b), chain%stiffness(b + 1))
          if (rays%keystone .and. b == n) cycle
@@ -240,15 +241,15 @@ contains
    end subroutine add_plane
 
    !> Moments of unit forces along the normal and along the tangent of a joint
-   pure function arms(way, tangent)
+   pure subroutine find_arms(way, tangent, arms)
       !> From the centre to the joint's middle: (2) [m]
       real(wp), intent(in) :: way(2)
       !> The tangent: (2)
       real(wp), intent(in) :: tangent(2)
       !> The moments: (2) [m]
-      real(wp) :: arms(2)
+      real(wp), intent(out) :: arms(2)
 
       arms(1) = -way(1)*tangent(1) - way(2)*tangent(2)
       arms(2) = way(1)*tangent(2) - way(2)*tangent(1)
-   end function arms
+   end subroutine find_arms
 end module dda_arch_chain

@@ -68,8 +68,8 @@ contains
 
    !> Make a case ready to be computed
    pure subroutine prepare_case(deck, this)
-      !> The deck with the values of the case
-      type(deck_t), intent(in) :: deck
+      !> The deck with the values of the case; goes into it
+      type(deck_t), allocatable, intent(inout) :: deck
       type(case_t), intent(out) :: this
       character(len=:), allocatable :: searched
 
@@ -78,14 +78,15 @@ contains
       searched = searched_name(deck)
       this%searches = deck%search%given
       this%limerick = deck%analysis%mode%word == "limerick"
-      if (this%searches) then
-         call prepare_search(deck, this%plan, searched, this%family, this%search)
-      else
-         call new_family(deck, this%plan, parameter_t(key=key_index("arch", "thickness_ratio")), &
-            & this%family)
-      end if
       this%exact_known = (searched == "" .or. searched == "thickness_ratio") &
          & .and. scene_kind(deck) == "arch"
+      call move_alloc(deck, this%family%deck)
+      if (this%searches) then
+         call prepare_search(this%plan, searched, this%family, this%search)
+      else
+         call new_family(this%plan, parameter_t(key=key_index("arch", "thickness_ratio")), &
+            & this%family)
+      end if
    end subroutine prepare_case
 
    !> Name of the searched parameter, empty if nothing is searched
@@ -99,30 +100,34 @@ contains
    end function searched_name
 
    !> What a deck asks to be searched
-   pure subroutine prepare_search(deck, plan, searched, family, search)
-      type(deck_t), intent(in) :: deck
+   pure subroutine prepare_search(plan, searched, family, search)
+      !> What its scenes need
       type(scene_plan_t), intent(in) :: plan
       !> Name of the searched parameter
       character(len=*), intent(in) :: searched
-      type(deck_family_t), intent(out) :: family
-      type(search_t), intent(out) :: search
+      !> New but for its deck
+      type(deck_family_t), intent(inout) :: family
+      !> Receives what is searched
+      type(search_t), intent(inout) :: search
 
-      call new_family(deck, plan, deck%searched, family)
-      call search_bracket(deck, search%low, search%high)
-      search%in_time = plan%velocities
-      search%tolerance = deck%search%tolerance%number
-      ! the original's own verdicts near the limit are no sharper, nor those of a motion in steps
-      if (deck%analysis%mode%word /= "static" &
-         & .and. .not. deck%search%tolerance%given) search%tolerance = 1.0e-4_wp
-      if (scene_kind(deck) == "arch") search%resolution = arch_resolution(deck)
-      search%start = search%low
-      if (searched /= "thickness_ratio" .or. plan%velocities) return
-      if (family%decides_chains) search%resolution = chain_resolution(deck)
-      if (.not. family%decides_chains) search%resolution_at = deck%arch%thickness_ratio%number
-      search%start = search_start(deck)
-      if (.not. deck%search%low%given) search%low = 1.0e-5_wp*search%start
-      search%check_far_end = deck%search%high%given
-      if (.not. search%check_far_end) search%high = 1.99_wp
-      search%start = min(max(search%start, search%low), search%high)
+      call new_family(plan, family%deck%searched, family)
+      associate (deck => family%deck)
+         call search_bracket(deck, search%low, search%high)
+         search%in_time = plan%velocities
+         search%tolerance = deck%search%tolerance%number
+         ! the original's own verdicts near the limit are no sharper, nor those of a motion in steps
+         if (deck%analysis%mode%word /= "static" &
+            & .and. .not. deck%search%tolerance%given) search%tolerance = 1.0e-4_wp
+         if (scene_kind(deck) == "arch") search%resolution = arch_resolution(deck)
+         search%start = search%low
+         if (searched /= "thickness_ratio" .or. plan%velocities) return
+         if (family%decides_chains) search%resolution = chain_resolution(deck)
+         if (.not. family%decides_chains) search%resolution_at = deck%arch%thickness_ratio%number
+         search%start = search_start(deck)
+         if (.not. deck%search%low%given) search%low = 1.0e-5_wp*search%start
+         search%check_far_end = deck%search%high%given
+         if (.not. search%check_far_end) search%high = 1.99_wp
+         search%start = min(max(search%start, search%low), search%high)
+      end associate
    end subroutine prepare_search
 end module dda_case

@@ -12,7 +12,7 @@ module dda_deck
    use dda_text, only : lower_case
    use dda_warnings, only : warnings_t
    use dda_deck_key, only : word_length
-   use dda_deck_keys, only : deck_key, key_index, group_index
+   use dda_deck_keys, only : deck_key, first_shape_key, group_index, last_shape_key
    implicit none
    private
 
@@ -126,18 +126,19 @@ contains
    pure function scene_kind(deck) result(kind)
       type(deck_t), intent(in) :: deck
       !> arch, shape, lines or blocks
-      character(len=word_length) :: kind, name
-      integer :: first, last
+      character(len=word_length) :: kind
+      character(len=word_length) :: name
       logical :: shaped
 
       kind = deck%scene%kind%word
       if (kind /= "arch") return
-      first = key_index("arch", "shape")
-      last = key_index("arch", "lune_deg")
-      shaped = any(deck%value(first + 1:last)%given) .or. deck%fill%given &
+      shaped = any(deck%value(first_shape_key + 1:last_shape_key)%given) .or. deck%fill%given &
          & .or. deck%tie%given .or. deck%material%compressive_strength%given &
          & .or. deck%arch%shape%word /= "circular"
-      if (.not. shaped .and. deck%search%given) then
+      if (.not. shaped .and. deck%searched%key > 0) then
+         shaped = deck%searched%key >= first_shape_key .and. deck%searched%key <= last_shape_key &
+            & .or. deck_key(deck%searched%key)%name == "compressive_strength"
+      else if (.not. shaped .and. deck%search%given) then
          name = lower_case(deck%search%parameter%text)
          name = name(index(name, "%") + 1:)
          shaped = any(name == shape_keys) .or. name == "compressive_strength"

@@ -267,7 +267,6 @@ contains
       character(len=*), intent(in) :: name
       type(error_t), allocatable, intent(out) :: error
       character(len=:), allocatable :: problem
-      type(deck_t) :: trial
 
       associate (bound => deck%value(key_index("search", name)))
          if (.not. bound%given) return
@@ -276,12 +275,25 @@ contains
             call deck_error(error, "search%"//name//": "//problem// &
                "; choose an end that it can take", deck, bound%place)
          else if (deck_key(deck%searched%key)%group == "arch" .and. scene_kind(deck) == "arch") then
-            trial = deck
-            call put_number(trial, deck%searched, bound%number, bound%place, error)
-            if (.not. allocated(error)) call check_shape(trial, error)
+            call check_end_shape(deck, bound%number, bound%place, error)
          end if
       end associate
    end subroutine check_end
+
+   !> Check the shape of an arch at one end of the search
+   pure subroutine check_end_shape(deck, number, place, error)
+      type(deck_t), intent(in) :: deck
+      !> The end
+      real(wp), intent(in) :: number
+      !> Where it is given
+      type(deck_place_t), intent(in) :: place
+      type(error_t), allocatable, intent(out) :: error
+      type(deck_t) :: trial
+
+      trial = deck
+      call put_number(trial, deck%searched, number, place, error)
+      if (.not. allocated(error)) call check_shape(trial, error)
+   end subroutine check_end_shape
 
    !> Where the search for a parameter begins and ends
    pure subroutine search_bracket(deck, low, high)

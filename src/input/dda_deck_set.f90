@@ -52,8 +52,12 @@ contains
          held%given = .true.
          held%place = place
       end associate
-      if (parameter%item > 0) call follow_joints(deck)
-      call name_values(deck)
+      if (parameter%item > 0) then
+         call follow_joints(deck)
+         call name_values(deck)
+      else
+         call name_values(deck, only=parameter%key)
+      end if
    end subroutine put_number
 
    !> Put a list of numbers into a key
@@ -110,7 +114,7 @@ contains
          held%given = .true.
          held%place = place
       end associate
-      call name_values(deck)
+      call name_values(deck, only=parameter%key)
    end subroutine put_text
 
    !> Why a number cannot be the value of a key

@@ -13,6 +13,14 @@ module dda_deck_values
 
    public :: name_values, new_deck
 
+   !> Where a walk along the registry is
+   type :: walk_t
+      !> Place of the last key that was passed
+      integer :: at = 0
+      !> The only key whose value is taken; 0 for all
+      integer :: only = 0
+   end type walk_t
+
    interface take
       procedure :: take_values, take_texts, take_lists
    end interface take
@@ -37,11 +45,13 @@ contains
    end subroutine new_deck
 
    !> Let the values that have names be those of the registry, key by key in its order
-   pure subroutine name_values(deck)
+   pure subroutine name_values(deck, only)
       type(deck_t), intent(inout) :: deck
-      integer :: k
+      !> The only key that has changed; any may have if it is not there
+      integer, intent(in), optional :: only
+      type(walk_t) :: k
 
-      k = 0
+      if (present(only)) k%only = only
       associate (g => deck%scene)
          g%given = deck%group(1)%line > 0
          call take(deck%value, k, g%title)
@@ -99,8 +109,8 @@ contains
    !> The groups from &ground on
    pure subroutine name_run(deck, k)
       type(deck_t), intent(inout) :: deck
-      !> Place of the last key before them
-      integer, intent(inout) :: k
+      !> The walk, at the last key before them
+      type(walk_t), intent(inout) :: k
 
       associate (g => deck%ground)
          g%given = deck%group(10)%line > 0
@@ -149,43 +159,77 @@ contains
    pure recursive subroutine take_values(value, k, a, b, c, d, e, f, g)
       !> All values: (0:n)
       type(deck_value_t), intent(in) :: value(0:)
-      !> Place of the last key that was taken
-      integer, intent(inout) :: k
+      !> The walk
+      type(walk_t), intent(inout) :: k
       type(input_value_t), intent(inout) :: a
       type(input_value_t), intent(inout), optional :: b, c, d, e, f, g
 
-      k = k + 1
-      a%given = value(k)%given
-      a%number = value(k)%number
-      a%flag = value(k)%flag
-      if (deck_key(k)%kind == key_kind%whole) a%whole = nint(a%number)
-      if (deck_key(k)%kind == key_kind%word) a%word = value(k)%text
+      if (is_over(k)) return
+      k%at = k%at + 1
+      if (is_taken(k)) call take_value(value(k%at), deck_key(k%at)%kind, a)
       if (present(b)) call take_values(value, k, b, c, d, e, f, g)
    end subroutine take_values
+
+   !> Take one value
+   pure subroutine take_value(value, kind, named)
+      type(deck_value_t), intent(in) :: value
+      !> One of key_kind
+      integer, intent(in) :: kind
+      !> The value under its name
+      type(input_value_t), intent(inout) :: named
+
+      named%given = value%given
+      named%number = value%number
+      named%flag = value%flag
+      if (kind == key_kind%whole) named%whole = nint(named%number)
+      if (kind == key_kind%word) named%word = value%text
+   end subroutine take_value
+
+   !> Whether nothing is left to be taken on a walk
+   pure logical function is_over(k)
+      type(walk_t), intent(in) :: k
+
+      is_over = k%only > 0 .and. k%at >= k%only
+   end function is_over
+
+   !> Whether the value that a walk has come to is taken
+   pure logical function is_taken(k)
+      type(walk_t), intent(in) :: k
+
+      is_taken = k%only == 0 .or. k%only == k%at
+   end function is_taken
 
    !> Take the next texts
    pure recursive subroutine take_texts(value, k, a, b)
       type(deck_value_t), intent(in) :: value(0:)
-      integer, intent(inout) :: k
+      !> The walk
+      type(walk_t), intent(inout) :: k
       type(input_text_t), intent(inout) :: a
       type(input_text_t), intent(inout), optional :: b
 
-      k = k + 1
-      a%given = value(k)%given
-      a%text = value(k)%text
+      if (is_over(k)) return
+      k%at = k%at + 1
+      if (is_taken(k)) then
+         a%given = value(k%at)%given
+         a%text = value(k%at)%text
+      end if
       if (present(b)) call take_texts(value, k, b)
    end subroutine take_texts
 
    !> Take the next lists; of words only whether they are given
    pure recursive subroutine take_lists(value, k, a, b, c, d, e, f, g)
       type(deck_value_t), intent(in) :: value(0:)
-      integer, intent(inout) :: k
+      !> The walk
+      type(walk_t), intent(inout) :: k
       type(input_list_t), intent(inout) :: a
       type(input_list_t), intent(inout), optional :: b, c, d, e, f, g
 
-      k = k + 1
-      a%given = value(k)%given
-      if (allocated(value(k)%numbers)) a%numbers = value(k)%numbers
+      if (is_over(k)) return
+      k%at = k%at + 1
+      if (is_taken(k)) then
+         a%given = value(k%at)%given
+         if (allocated(value(k%at)%numbers)) a%numbers = value(k%at)%numbers
+      end if
       if (present(b)) call take_lists(value, k, b, c, d, e, f, g)
    end subroutine take_lists
 

@@ -59,8 +59,17 @@ contains
    pure subroutine new_chain(n, chain)
       !> Number of blocks
       integer, intent(in) :: n
-      type(chain_t), intent(out) :: chain
+      !> Any chain in; where it has as many blocks its arrays stay
+      type(chain_t), intent(inout) :: chain
 
+      chain%halved = .false.
+      chain%keystone = .false.
+      if (allocated(chain%mass)) then
+         chain%stiffness = 0.0_wp
+         chain%compliance = 0.0_wp
+         if (size(chain%mass) == n) return
+         chain = chain_t()
+      end if
       allocate (chain%centroid(2, n), chain%mass(n), chain%inertia(n), chain%weight(2, n))
       allocate (chain%middle(2, n + 1), chain%tangent(2, n + 1), chain%half(n + 1))
       allocate (chain%stiffness(n + 1), chain%compliance(n + 1), source=0.0_wp)

@@ -33,7 +33,7 @@ module dda_deck_scene
    !> The scenes of one deck whose searched parameter varies
    type, extends(family_t) :: deck_family_t
       !> The deck of one case
-      type(deck_t) :: deck
+      type(deck_t), allocatable :: deck
       !> The parameter
       type(parameter_t) :: parameter
       !> Whether its scenes are chains but for strain, and differ by their thickness ratio alone
@@ -60,14 +60,14 @@ module dda_deck_scene
 
 contains
 
-   !> The family of a deck, its numbers read
-   pure subroutine new_family(deck, plan, parameter, family)
-      type(deck_t), intent(in) :: deck
+   !> Make a deck a family, its numbers read
+   pure subroutine new_family(plan, parameter, family)
+      !> What its scenes need
       type(scene_plan_t), intent(in) :: plan
       type(parameter_t), intent(in) :: parameter
-      type(deck_family_t), intent(out) :: family
+      !> New but for the deck
+      type(deck_family_t), intent(inout) :: family
 
-      family%deck = deck
       family%parameter = parameter
       if (parameter%key == key_index("load", "horizontal_coefficient")) &
          & family%load = searched_load%push
@@ -77,12 +77,14 @@ contains
       family%chains = plan%row .and. parameter%key == key_index("arch", "thickness_ratio")
       family%decides_chains = family%chains .and. plan%chain
       if (.not. family%chains) return
-      family%settings = settings_of(deck, plan, degree*deck%arch%half_angle_deg%number, &
-         & size(half_joints_deg(deck)))
-      family%numbers = arch_numbers(deck)
-      family%numbers%body_force = unit_weight(deck)*load_direction(family%settings)
-      family%numbers%halved = family%decides_chains .and. plan%halved
-      allocate (family%joint_angle_deg, source=joint_angles_deg(deck))
+      associate (deck => family%deck)
+         family%settings = settings_of(deck, degree*deck%arch%half_angle_deg%number, &
+            & size(half_joints_deg(deck)))
+         family%numbers = arch_numbers(deck)
+         family%numbers%body_force = unit_weight(deck)*load_direction(family%settings)
+         family%numbers%halved = family%decides_chains .and. plan%halved
+         allocate (family%joint_angle_deg, source=joint_angles_deg(deck))
+      end associate
    end subroutine new_family
 
    !> Make the chain of one thickness ratio
@@ -91,7 +93,8 @@ contains
       !> The thickness ratio
       real(wp), intent(in) :: value
       type(settings_t), intent(out) :: settings
-      type(chain_t), intent(out) :: chain
+      !> Any chain in, whose arrays are used again where they fit
+      type(chain_t), intent(inout) :: chain
       !> Whether the scenes are chains, and one has this value
       logical, intent(out) :: linked
 

@@ -87,7 +87,8 @@ contains
       class(family_t), intent(in) :: family
       real(wp), intent(in) :: value
       type(settings_t), intent(out) :: settings
-      type(chain_t), intent(out) :: chain
+      !> Any chain in, whose arrays are used again where they fit
+      type(chain_t), intent(inout) :: chain
       !> Whether there is one
       logical, intent(out) :: linked
 

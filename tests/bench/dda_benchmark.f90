@@ -207,7 +207,7 @@ contains
       !> Settings of the run
       type(settings_t), intent(out) :: settings
       !> The chain
-      type(chain_t), intent(out) :: chain
+      type(chain_t), intent(inout) :: chain
       !> Always
       logical, intent(out) :: linked
 

@@ -61,7 +61,8 @@ contains
       character(len=:), allocatable :: head
       character(len=1) :: none(0)
       type(case_t) :: this
-      type(deck_t) :: deck, work
+      type(deck_t) :: deck
+      type(deck_t), allocatable :: work
       type(error_t), allocatable :: error
       type(scene_t) :: scene
       integer :: i
@@ -80,6 +81,7 @@ contains
             told%warnings = told%warnings//deck%warnings%item(i)%message//"|"
          end do
       end if
+      allocate (work)
       if (.not. allocated(error)) call turn_to_case(deck, 1, work, error)
       if (allocated(error)) then
          told%row%verdict = "refused"
