@@ -78,7 +78,7 @@ contains
       family%decides_chains = family%chains .and. plan%chain
       if (.not. family%chains) return
       associate (deck => family%deck)
-         family%settings = settings_of(deck, degree*deck%arch%half_angle_deg%number, &
+         family%settings = settings_of(deck, plan, degree*deck%arch%half_angle_deg%number, &
             & size(half_joints_deg(deck)))
          family%numbers = arch_numbers(deck)
          family%numbers%body_force = unit_weight(deck)*load_direction(family%settings)

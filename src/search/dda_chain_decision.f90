@@ -14,7 +14,7 @@ module dda_chain_decision
    implicit none
    private
 
-   public :: decide_chain
+   public :: decide_chain, doubtful
 
    !> Forces beyond the cones by less than so many times their rounding prove nothing
    real(wp), parameter :: doubtful = 4.0_wp

@@ -35,6 +35,9 @@ module dda_collapse_trace
       logical :: linked = .false.
       !> The mechanism of a chain
       type(chain_mechanism_t) :: chain
+      !> The chain that was made last, and its value
+      type(chain_t) :: link
+      real(wp) :: linked_at = 0.0_wp
       !> The mechanism of any blocks
       type(frozen_mechanism_t) :: blocks
    end type frozen_t
@@ -82,7 +85,7 @@ contains
       if (allocated(critical%fallen%contacts%joint)) then
          if (any(critical%fallen%contacts%joint%law%strength < huge(1.0_wp))) return
       end if
-      mechanism = frozen(family, critical)
+      call freeze(family, critical, mechanism)
       x(1) = critical%falls
       call power_at(family, mechanism, x(1), critical, power(1), noise, usable)
       if (.not. usable) return
@@ -120,7 +123,7 @@ contains
    pure subroutine propose(family, search, mechanism, next, coarse_slope, noise, critical, proposal)
       class(family_t), intent(in) :: family
       type(search_t), intent(in) :: search
-      type(frozen_t), intent(in) :: mechanism
+      type(frozen_t), intent(inout) :: mechanism
       !> Where it stops
       real(wp), intent(in) :: next
       !> Change of its power with the value
@@ -147,16 +150,18 @@ contains
    end subroutine propose
 
    !> Freeze the last collapse
-   pure type(frozen_t) function frozen(family, critical) result(mechanism)
+   pure subroutine freeze(family, critical, mechanism)
       class(family_t), intent(in) :: family
       !> What was found so far, a collapse among it
       type(critical_t), intent(in) :: critical
-      type(chain_t) :: chain
+      type(frozen_t), intent(out) :: mechanism
       type(settings_t) :: settings
       type(joint_face_t), allocatable :: face(:)
 
-      associate (contacts => critical%fallen%contacts, outcome => critical%fallen%outcome)
+      associate (contacts => critical%fallen%contacts, outcome => critical%fallen%outcome, &
+         & chain => mechanism%link)
          call family%link(critical%falls, settings, chain, mechanism%linked)
+         mechanism%linked_at = critical%falls
          if (mechanism%linked .and. chain%halved .and. .not. critical%fallen%halved) then
             call fold(chain, critical%fallen, face)
             call freeze_mechanism(chain, face, mechanism%chain)
@@ -169,7 +174,7 @@ contains
             mechanism%blocks%dt = sqrt(free_fall)*outcome%elastic_time
          end if
       end associate
-   end function frozen
+   end subroutine freeze
 
    !> Half the width of a bracket over its value: of the tolerance, or of what rounding leaves
    pure real(wp) function least_half(search, critical)
@@ -188,7 +193,7 @@ contains
    !> parameter rounds the coordinates otherwise
    pure subroutine average_root(family, mechanism, slope, critical, proposal)
       class(family_t), intent(in) :: family
-      type(frozen_t), intent(in) :: mechanism
+      type(frozen_t), intent(inout) :: mechanism
       !> Change of the power with the value
       real(wp), intent(in) :: slope
       type(critical_t), intent(inout) :: critical
@@ -246,7 +251,9 @@ contains
    !> Power of the loads on a frozen mechanism at one value
    pure subroutine power_at(family, mechanism, value, critical, power, noise, usable)
       class(family_t), intent(in) :: family
-      type(frozen_t), intent(in) :: mechanism
+      !> The mechanism; keeps its chain
+      type(frozen_t), intent(inout) :: mechanism
+      !> The value
       real(wp), intent(in) :: value
       type(critical_t), intent(inout) :: critical
       !> The power
@@ -257,14 +264,17 @@ contains
       logical, intent(out) :: usable
       type(error_t), allocatable :: error
       type(scene_t) :: scene
-      type(chain_t) :: chain
       type(settings_t) :: settings
 
       power = 0.0_wp
       noise = 0.0_wp
       if (mechanism%linked) then
-         call family%link(value, settings, chain, usable)
-         if (usable) call chain_power(mechanism%chain, chain, power, noise, usable)
+         usable = .not. abs(value - mechanism%linked_at) > 0.0_wp
+         if (.not. usable) then
+            call family%link(value, settings, mechanism%link, usable)
+            if (usable) mechanism%linked_at = value
+         end if
+         if (usable) call chain_power(mechanism%chain, mechanism%link, power, noise, usable)
          return
       end if
       call family%build(value, scene, error)

@@ -7,6 +7,7 @@ module dda_critical
    use dda_block_system, only : block_system_t
    use dda_chain, only : chain_t
    use dda_chain_decision, only : decide_chain
+   use dda_chain_foresight, only : foresee
    use dda_chain_unfold, only : unfold
    use dda_collapse_trace, only : proposal_t, trace
    use dda_decision, only : decide, decision_t
@@ -64,11 +65,14 @@ contains
       !> What was found; chains may be halves
       type(critical_t), intent(out) :: critical
       type(proposal_t) :: proposal
-      real(wp) :: limit, value
+      real(wp) :: limit, start, value
       integer :: answer, in_vain, undecided
       logical :: may_turn
 
-      call find_collapse(family, search, limit, critical)
+      if (family%decides_chains) call foresee(family, search, proposal)
+      start = search%start
+      if (proposal%usable) start = max(search%low, proposal%value - proposal%reach)
+      call find_collapse(family, search, start, limit, critical)
       if (critical%verdict /= verdict%undecided) return
       if (.not. allocated(critical%fallen)) return
       if (search%check_far_end .and. .not. allocated(critical%standing)) &
@@ -87,7 +91,7 @@ contains
             limit = critical%undecided_at
             may_turn = .false.
          end if
-         if (answer == verdict%collapsed .and. .not. proved(search, critical, proposal)) &
+         if (answer == verdict%collapsed .and. .not. proved(search, limit, critical, proposal)) &
             & call trace(family, search, limit, critical, proposal)
          in_vain = merge(0, in_vain + 1, answer == verdict%collapsed)
          if (closed(search, critical, proposal)) then
@@ -111,9 +115,11 @@ contains
    end subroutine close_bracket
 
    !> Go to the first collapse: from the start towards the low end, or else at the high end
-   pure subroutine find_collapse(family, search, limit, critical)
+   pure subroutine find_collapse(family, search, start, limit, critical)
       class(family_t), intent(in) :: family
       type(search_t), intent(in) :: search
+      !> Where to begin
+      real(wp), intent(in) :: start
       !> The end of the range on the side that stands [unit of the parameter]
       real(wp), intent(out) :: limit
       !> Receives the first collapse, or a verdict where both ends agree
@@ -122,7 +128,7 @@ contains
       real(wp) :: value
 
       limit = search%high
-      value = search%start
+      value = start
       do attempt = 1, max_descent
          if (attempt == max_descent) value = search%low
          call decide_at(family, value, critical, answer)
@@ -309,19 +315,20 @@ contains
       if (min(a, b) > 0.0_wp .and. max(a, b) > 4.0_wp*min(a, b)) middle = sqrt(a*b)
    end function middle
 
-   !> Whether the last two decisions are those that the proposal asked for, at the tolerance, so
-   !> that another trace would tell nothing new
-   pure logical function proved(search, critical, proposal)
+   !> Whether the last collapse is the one that the proposal asked for, at the tolerance, so that
+   !> another trace would tell nothing new
+   pure logical function proved(search, limit, critical, proposal)
       type(search_t), intent(in) :: search
+      !> The end of the range on the side that stands
+      real(wp), intent(in) :: limit
       type(critical_t), intent(in) :: critical
       !> Where the collapse before the last stops
       type(proposal_t), intent(in) :: proposal
 
       proved = proposal%usable
-      if (proved) proved = closed(search, critical, proposal) &
-         & .and. proposal%half <= 0.5001_wp*search%tolerance*abs(critical%stands) &
-         & .and. abs((critical%stands + critical%falls)/2.0_wp - proposal%value) &
-         & < 1.0e-3_wp*proposal%half
+      if (proved) proved = proposal%half <= 0.5001_wp*search%tolerance*abs(proposal%value) &
+         & .and. abs((proposal%value - critical%falls)*sign(1.0_wp, limit - critical%falls) &
+         & - proposal%half) < 1.0e-3_wp*proposal%half
    end function proved
 
    !> Whether the bracket is as narrow as the proposal asks for

@@ -25,40 +25,47 @@ contains
    end function cone_of
 
    !> Sums of the loads before each joint, or of half a chain, less the sums of those behind it
-   pure subroutine sum_loads(chain, load)
+   pure subroutine sum_loads(chain, load, turned)
       type(chain_t), intent(in) :: chain
       !> The sums: (3, n + 1)
       real(wp), intent(out) :: load(:, :)
+      !> Matrix that the weights are turned by; none leaves them as they are: (2, 2)
+      real(wp), intent(in), optional :: turned(2, 2)
+      real(wp) :: weight(2, size(chain%mass))
       real(wp) :: total(3)
       integer :: b
 
       total = 0.0_wp
+      weight = chain%weight
+      if (present(turned)) weight = matmul(turned, weight)
       if (chain%halved) then
          load(:, size(chain%half)) = 0.0_wp
          do b = size(chain%mass), 1, -1
-            total = total - load_of(chain, b)
+            total(1) = total(1) - weight(1, b)
+            total(2) = total(2) - weight(2, b)
+            total(3) = total(3) - moment_of(chain%centroid(:, b), weight(:, b))
             load(:, b) = total
          end do
       else
          load(:, 1) = 0.0_wp
          do b = 1, size(chain%mass)
-            total = total + load_of(chain, b)
+            total(1) = total(1) + weight(1, b)
+            total(2) = total(2) + weight(2, b)
+            total(3) = total(3) + moment_of(chain%centroid(:, b), weight(:, b))
             load(:, b + 1) = total
          end do
       end if
    end subroutine sum_loads
 
-   !> Load of one block: force, and moment about the origin
-   pure function load_of(chain, b) result(load)
-      type(chain_t), intent(in) :: chain
-      !> Number of the block
-      integer, intent(in) :: b
-      !> The load: (3) [N/m, N/m, N]
-      real(wp) :: load(3)
+   !> Moment of a force about the origin [N]
+   pure real(wp) function moment_of(place, force)
+      !> Where it acts: (2) [m]
+      real(wp), intent(in) :: place(2)
+      !> The force: (2) [N/m]
+      real(wp), intent(in) :: force(2)
 
-      load(1:2) = chain%weight(:, b)
-      load(3) = chain%centroid(1, b)*chain%weight(2, b) - chain%centroid(2, b)*chain%weight(1, b)
-   end function load_of
+      moment_of = place(1)*force(2) - place(2)*force(1)
+   end function moment_of
 
    !> Force N1, N2, T of one joint
    pure function joint_force(chain, load, reaction, j) result(force)
@@ -116,14 +123,22 @@ contains
       integer, intent(out) :: failing(:)
       !> Forces N1, N2, T of them: (3, n), likewise [N/m]
       real(wp), intent(out) :: force(:, :)
-      integer :: i
+      real(wp) :: normal, along, moment, s(3)
+      integer :: i, j
 
       n = 0
       do i = 1, size(watched)
-         force(:, n + 1) = joint_force(chain, load, reaction, watched(i))
-         if (holds(chain, force(:, n + 1), watched(i))) cycle
+         j = watched(i)
+         ! as in `joint_force` and `holds`, whose calls would take most of the time
+         s = reaction + load(:, j)
+         normal = chain%tangent(2, j)*s(1) - chain%tangent(1, j)*s(2)
+         along = chain%tangent(1, j)*s(1) + chain%tangent(2, j)*s(2)
+         moment = (s(3) - chain%middle(1, j)*s(2) + chain%middle(2, j)*s(1))/chain%half(j)
+         if (normal >= abs(moment) &
+            & .and. abs(along) <= chain%limit(j) + chain%friction(j)*normal) cycle
          n = n + 1
-         failing(n) = watched(i)
+         failing(n) = j
+         force(:, n) = [(normal + moment)/2.0_wp, (normal - moment)/2.0_wp, along]
       end do
    end subroutine find_failing
 
@@ -152,10 +167,16 @@ contains
       real(wp), intent(in) :: before(:, :)
       !> Forces: (3, n + 1) [N/m]
       real(wp), intent(out) :: after(:, :)
+      real(wp) :: normal, moment
       integer :: j
 
       do j = 1, size(before, 2)
-         after(:, j) = before(:, j) + matmul(influence(chain, j), change)
+         normal = chain%tangent(2, j)*change(1) - chain%tangent(1, j)*change(2)
+         moment = (chain%middle(2, j)*change(1) - chain%middle(1, j)*change(2) + change(3)) &
+            & /chain%half(j)
+         after(1, j) = before(1, j) + (normal + moment)/2.0_wp
+         after(2, j) = before(2, j) + (normal - moment)/2.0_wp
+         after(3, j) = before(3, j) + chain%tangent(1, j)*change(1) + chain%tangent(2, j)*change(2)
       end do
    end subroutine add_reaction
 

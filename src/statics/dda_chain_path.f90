@@ -9,7 +9,7 @@
 !> Equation (M4) of docs/method.md
 module dda_chain_path
    use dda_chain, only : chain_t
-   use dda_chain_balance, only : influence, joint_force, sum_loads
+   use dda_chain_balance, only : add_reaction, influence, sum_loads
    use dda_friction_cone, only : joint_face_t
    use dda_kinds, only : wp
    use dda_three_unknowns, only : hold_upright, solve_3
@@ -111,23 +111,16 @@ contains
       logical, intent(out) :: stands
       type(chain_leg_t) :: crack
       real(wp) :: load(3, size(chain%half)), reaction(3)
-      type(chain_t) :: turned
-      integer :: j
+      real(wp), parameter :: to_the_side(2, 2) = reshape([0, 0, -1, 0], [2, 2])
+      real(wp), parameter :: upright(2, 2) = reshape([0, 0, 0, 1], [2, 2])
 
       call new_state(chain, state)
-      turned = chain
-      turned%weight(1, :) = -chain%weight(2, :)
-      turned%weight(2, :) = 0.0_wp
-      call sum_loads(turned, load)
-      push = new_leg(chain, load, state)
-      turned%weight(1, :) = 0.0_wp
-      turned%weight(2, :) = chain%weight(2, :)
-      call sum_loads(turned, load)
-      crack = new_leg(chain, load, state)
+      call sum_loads(chain, load, to_the_side)
+      call new_leg(chain, load, push)
+      call sum_loads(chain, load, upright)
+      call new_leg(chain, load, crack)
       reaction = -matmul(state%stiffness, crack%closing)
-      do j = 1, size(chain%half)
-         state%force(:, j) = crack%force(:, j) + matmul(state%influence(:, :, j), reaction)
-      end do
+      call add_reaction(chain, reaction, crack%force, state%force)
       ! an even pressure that goes away lets one corner open after the other
       crack%force = 0.0_wp
       crack%closing = 0.0_wp
@@ -166,21 +159,33 @@ contains
    end subroutine new_state
 
    !> A leg along which a load grows
-   pure type(chain_leg_t) function new_leg(chain, load, state) result(leg)
+   pure subroutine new_leg(chain, load, leg)
       type(chain_t), intent(in) :: chain
       !> Sums of the loads: (3, n + 1)
       real(wp), intent(in) :: load(:, :)
-      type(chain_state_t), intent(in) :: state
-      real(wp), parameter :: nothing(3) = 0.0_wp
+      type(chain_leg_t), intent(out) :: leg
+      real(wp) :: along, moment, normal
       integer :: j
 
-      allocate (leg%force, mold=load)
+      allocate (leg%force(3, size(load, 2)))
       do j = 1, size(load, 2)
-         leg%force(:, j) = joint_force(chain, load, nothing, j)
-         leg%closing = leg%closing + chain%compliance(j) &
-            & *matmul(leg%force(:, j), state%influence(:, :, j))
+         normal = chain%tangent(2, j)*load(1, j) - chain%tangent(1, j)*load(2, j)
+         along = chain%tangent(1, j)*load(1, j) + chain%tangent(2, j)*load(2, j)
+         moment = (load(3, j) - chain%middle(1, j)*load(2, j) + chain%middle(2, j)*load(1, j)) &
+            & /chain%half(j)
+         leg%force(:, j) = [(normal + moment)/2.0_wp, (normal - moment)/2.0_wp, along]
+         ! the force times what each unknown makes of it: N1**2 + N2**2 = (N**2 + (M/half)**2)/2
+         normal = chain%compliance(j)*normal/2.0_wp
+         along = chain%compliance(j)*along
+         moment = chain%compliance(j)*moment/(2.0_wp*chain%half(j))
+         leg%closing(1) = leg%closing(1) + chain%tangent(2, j)*normal &
+            & + chain%tangent(1, j)*along + chain%middle(2, j)*moment
+         leg%closing(2) = leg%closing(2) - chain%tangent(1, j)*normal &
+            & + chain%tangent(2, j)*along - chain%middle(1, j)*moment
+         leg%closing(3) = leg%closing(3) + moment
       end do
-   end function new_leg
+      if (chain%halved) leg%closing(2) = 0.0_wp
+   end subroutine new_leg
 
    !> Go along so many times a leg, or back along it
    pure subroutine follow(chain, times, leg, state, sticks)
@@ -209,16 +214,14 @@ contains
       logical, intent(out) :: sticks
       real(wp) :: rate(3, size(chain%half)), change(3), left, step
       type(open_corner_t) :: opening
-      integer :: closing, event, i, j
+      integer :: closing, event, i
       logical :: opens
 
       sticks = .false.
       left = 1.0_wp
       do event = 1, max_events
          call find_rates(leg, state, change)
-         do j = 1, size(rate, 2)
-            rate(:, j) = leg%force(:, j) + matmul(state%influence(:, :, j), change)
-         end do
+         call add_reaction(chain, change, leg%force, rate)
          call next_event(state, rate, leg%squeeze, left, step, opening, closing)
          state%force = state%force + step*rate
          do i = 1, state%n_open

@@ -126,16 +126,21 @@ contains
       real(wp), intent(in) :: force(:, :)
       !> The change: (3) [N/m, N/m, N]
       real(wp), intent(out) :: change(3)
-      real(wp) :: free(3, 3), g(3, 3), matrix(3, 3), slope(3)
-      integer :: i
+      real(wp) :: free(3), g(3, 3), matrix(3, 3), slope(3)
+      integer :: c, i, r
 
       slope = 0.0_wp
       matrix = 0.0_wp
       do i = 1, size(mechanism%joint)
          g = influence(chain, mechanism%joint(i))
-         free = matmul(mechanism%free(:, :, i), g)
-         slope = slope + matmul(force(:, mechanism%joint(i)), free)
-         matrix = matrix + matmul(transpose(g), free)
+         do c = 1, 3
+            free = mechanism%free(:, 1, i)*g(1, c) + mechanism%free(:, 2, i)*g(2, c) &
+               & + mechanism%free(:, 3, i)*g(3, c)
+            slope(c) = slope(c) + dot_product(force(:, mechanism%joint(i)), free)
+            do r = 1, 3
+               matrix(r, c) = matrix(r, c) + dot_product(g(:, r), free)
+            end do
+         end do
       end do
       if (chain%halved) call hold_upright(slope, matrix)
       call solve_3(matrix, -slope, change)

@@ -71,3 +71,25 @@ def test_critical_thickness_of_pushed_arches_is_that_of_their_joint_graphs(tmp_p
     for chain, graph in zip(chains, graphs):
         if chain["verdict"] == "found":
             assert float(chain["critical"]) == pytest.approx(float(graph["critical"]), rel=2e-9)
+
+
+def test_a_search_of_an_arch_takes_the_two_decisions_that_prove_its_bracket(tmp_path: Path) -> None:
+    deck = """&arch voussoirs = 36 /
+&search parameter = 'thickness_ratio' /
+&sweep parameter = 'half_angle_deg', first = 40, last = 120, count = 5 /
+&sweep parameter = 'horizontal_coefficient', first = -0.2, last = 0.3, count = 6 /
+&joint friction_deg = 75 /
+"""
+    rows = rows_of(tmp_path, "sweep", deck)
+    assert {row["verdict"] for row in rows} == {"found"}
+    assert {row["steps"] for row in rows} == {"2"}
+    for row in rows:
+        low, high = float(row["critical_low"]), float(row["critical_high"])
+        assert 0 < high - low <= 1.0001e-8 * float(row["critical"])
+        mirrored = [
+            float(other["critical"])
+            for other in rows
+            if other["half_angle_deg"] == row["half_angle_deg"]
+            and float(other["horizontal_coefficient"]) == -float(row["horizontal_coefficient"])
+        ]
+        assert all(value == pytest.approx(float(row["critical"]), rel=1e-12) for value in mirrored)

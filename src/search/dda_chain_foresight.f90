@@ -1,0 +1,92 @@
+!> Where the collapse of a chain stops, before anything is decided
+!>
+!> What the forces of a chain lack, over the parameter, is zero where it ceases to fall; the joints
+!> that break their bounds near there are its last mechanism. No proof rests on what is foreseen:
+!> two decisions beside it tell whether it is so.
+module dda_chain_foresight
+   use dda_chain, only : chain_t
+   use dda_chain_balance, only : carry_forces, rounding_of_forces, sum_loads
+   use dda_chain_decision, only : doubtful
+   use dda_chain_lack, only : faces_of, find_lack, lack_t
+   use dda_collapse_trace, only : proposal_t, trace
+   use dda_kinds, only : wp
+   use dda_scene, only : family_t
+   use dda_search, only : critical_t, search_t
+   use dda_settings, only : flow_rule, settings_t
+   implicit none
+   private
+
+   public :: foresee
+
+   !> Most values that are looked at
+   integer, parameter :: max_values = 12
+   !> Share of the value by which the second one lies beyond the first
+   real(wp), parameter :: first_step = 0.05_wp
+   !> How near a value must lie to where its mechanism would stop, over that
+   real(wp), parameter :: near = 0.01_wp
+   !> Largest ratio of two values in a row
+   real(wp), parameter :: largest_ratio = 3.0_wp
+   !> How fast what falls is taken to fall; only its share that rounding hides counts
+   real(wp), parameter :: some_acceleration = 1.0e-3_wp
+
+contains
+
+   !> Foresee where the collapse of a chain stops, by the secant method on what its forces lack
+   pure subroutine foresee(family, search, proposal)
+      class(family_t), intent(in) :: family
+      !> What is searched
+      type(search_t), intent(in) :: search
+      !> Where it stops, usable if that is known
+      type(proposal_t), intent(out) :: proposal
+      type(critical_t) :: foreseen
+      type(settings_t) :: settings
+      type(chain_t) :: chain
+      type(lack_t) :: lack
+      real(wp) :: before, last, next, value
+      integer :: i
+      logical :: linked
+
+      value = search%start
+      next = value*(1.0_wp + first_step)
+      do i = 1, max_values
+         call family%link(value, settings, chain, linked)
+         if (linked) call find_lack(chain, lack)
+         if (.not. (linked .and. lack%known)) return
+         if (i > 1) then
+            if (.not. abs(lack%least - last) > 0.0_wp) return
+            next = value - lack%least*(value - before)/(lack%least - last)
+            if (abs(next - value) <= near*value .and. lack%exchanges == 0) exit
+            next = min(max(next, value/largest_ratio), value*largest_ratio)
+         end if
+         before = value
+         last = lack%least
+         value = next
+      end do
+      if (i > max_values) return
+      foreseen%falls = value
+      call freeze(chain, lack, foreseen)
+      call trace(family, search, search%high, foreseen, proposal)
+   end subroutine foresee
+
+   !> What would be a collapse if it were proven
+   pure subroutine freeze(chain, lack, foreseen)
+      type(chain_t), intent(in) :: chain
+      !> What its forces lack
+      type(lack_t), intent(in) :: lack
+      !> Receives it
+      type(critical_t), intent(inout) :: foreseen
+      real(wp) :: force(3, size(chain%half)), load(3, size(chain%half))
+
+      call sum_loads(chain, load)
+      call carry_forces(chain, load, lack%reaction, force)
+      allocate (foreseen%fallen)
+      foreseen%fallen%flow = flow_rule%associated
+      foreseen%fallen%halved = chain%halved
+      foreseen%fallen%keystone = chain%keystone
+      allocate (foreseen%fallen%contacts%face(size(chain%half)))
+      foreseen%fallen%contacts%face(:) = faces_of(chain, lack)
+      foreseen%fallen%outcome%acceleration_ratio = some_acceleration
+      foreseen%fallen%outcome%rest_tolerance = some_acceleration*doubtful &
+         & *rounding_of_forces(chain, force)/max(abs(lack%least), tiny(1.0_wp))
+   end subroutine freeze
+end module dda_chain_foresight

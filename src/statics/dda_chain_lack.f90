@@ -1,0 +1,271 @@
+!> What the forces of a chain lack to lie in their cones: a linear programme in four unknowns
+!>
+!> Sought is the least s for which forces in balance with the loads exist that keep
+!>
+!>    N1 + s >= 0,  N2 + s >= 0,  limit + friction*(N1 + N2) - |T| + s >= 0
+!>
+!> at all joints, by the dual simplex method: the bound that is broken most comes in, the one whose
+!> multiplier vanishes first goes out. A chain falls where s is positive, and the bounds that make
+!> it so are its mechanism. No verdict rests on it: it tells where to decide.
+module dda_chain_lack
+   use dda_chain, only : chain_t
+   use dda_chain_balance, only : influence, joint_force, sum_loads
+   use dda_friction_cone, only : joint_face_t
+   use dda_kinds, only : wp
+   implicit none
+   private
+
+   public :: lack_t, find_lack, faces_of
+
+   !> Four bounds, and what the forces between them lack
+   type :: lack_t
+      !> The least s: positive where the chain falls [N/m]
+      real(wp) :: least = 0.0_wp
+      !> Joints of the bounds; 0 for one that only keeps the unknowns finite
+      integer :: joint(4) = 0
+      !> Which of their bounds: 1 and 2 at the corners, 3 and 4 of shear forces along the joint and
+      !> against it
+      integer :: bound(4) = 0
+      !> Multipliers of the bounds, of the sum 1 but for shares of no mechanism
+      real(wp) :: share(4) = 0.0_wp
+      !> The forces' unknowns: (3) [N/m, N/m, N]
+      real(wp) :: reaction(3) = 0.0_wp
+      !> Bounds that came in on the way from those that were given
+      integer :: exchanges = 0
+      !> Whether s was found
+      logical :: known = .false.
+   end type lack_t
+
+   !> Most bounds that come in
+   integer, parameter :: max_exchanges = 40
+   !> Forces beyond their bounds by less than this share of the load do not count
+   real(wp), parameter :: little = 1.0e-8_wp
+   !> Multipliers below this are none
+   real(wp), parameter :: no_share = 1.0e-9_wp
+   !> How far from zero the unknowns may go, over the load
+   real(wp), parameter :: far = 1.0e3_wp
+
+contains
+
+   !> Find what the forces of a chain lack
+   pure subroutine find_lack(chain, lack)
+      type(chain_t), intent(in) :: chain
+      !> Bounds to begin with, of a chain much like this one, or none; those of this one out
+      type(lack_t), intent(inout) :: lack
+      real(wp) :: load(3, size(chain%half)), inverse(4, 4), value(4), row(5)
+      real(wp) :: change(4), place(4)
+      integer :: joint, bound, leaving
+
+      call sum_loads(chain, load)
+      call begin(chain, load, lack, inverse, value)
+      lack%known = .false.
+      do
+         place = matmul(inverse, value)
+         call find_worst(chain, load, place, joint, bound)
+         if (joint == 0) exit
+         row = bound_row(chain, load, joint, bound)
+         change = matmul(row(:4), inverse)
+         leaving = first_to_vanish(inverse(4, :), change)
+         if (leaving == 0 .or. lack%exchanges == max_exchanges) return
+         call exchange(leaving, change, inverse)
+         value(leaving) = row(5)
+         lack%joint(leaving) = joint
+         lack%bound(leaving) = bound
+         lack%exchanges = lack%exchanges + 1
+      end do
+      lack%least = place(4)
+      lack%reaction = place(:3)
+      lack%share = inverse(4, :)
+      lack%known = .not. any(lack%joint == 0 .and. abs(lack%share) > no_share)
+   end subroutine find_lack
+
+   !> Faces of the joints on which a mechanism turns and slides
+   pure function faces_of(chain, lack) result(face)
+      type(chain_t), intent(in) :: chain
+      !> Its bounds
+      type(lack_t), intent(in) :: lack
+      !> The faces: (n + 1)
+      type(joint_face_t) :: face(size(chain%half))
+      integer :: r
+
+      do r = 1, 4
+         if (lack%joint(r) == 0 .or. lack%share(r) <= no_share) cycle
+         associate (this => face(lack%joint(r)))
+            if (lack%bound(r) <= 2) then
+               this%open(lack%bound(r)) = .true.
+            else
+               this%slip = merge(1, -1, lack%bound(r) == 3)
+            end if
+         end associate
+      end do
+   end function faces_of
+
+   !> Begin with the given bounds, or if these are none to begin with, with such as keep the
+   !> unknowns finite
+   pure subroutine begin(chain, load, lack, inverse, value)
+      type(chain_t), intent(in) :: chain
+      !> Sums of the loads: (3, n + 1)
+      real(wp), intent(in) :: load(:, :)
+      !> The bounds
+      type(lack_t), intent(inout) :: lack
+      !> Inverse of the rows of the bounds: (4, 4)
+      real(wp), intent(out) :: inverse(4, 4)
+      !> What these rows times the unknowns are
+      real(wp), intent(out) :: value(4)
+      type(lack_t) :: given
+      real(wp) :: change(4), row(5)
+      integer :: i, r
+
+      given = lack
+      lack = lack_t()
+      call keep_finite(chain, inverse, value)
+      do i = 1, 4
+         if (given%joint(i) == 0) cycle
+         row = bound_row(chain, load, given%joint(i), given%bound(i))
+         change = matmul(row(:4), inverse)
+         r = maxloc(abs(change), mask=lack%joint == 0, dim=1)
+         if (.not. abs(change(r)) > no_share) exit
+         call exchange(r, change, inverse)
+         value(r) = row(5)
+         lack%joint(r) = given%joint(i)
+         lack%bound(r) = given%bound(i)
+      end do
+      if (i > 4 .and. all(inverse(4, :) >= -no_share)) return
+      lack = lack_t()
+      call keep_finite(chain, inverse, value)
+   end subroutine begin
+
+   !> Bounds of the unknowns alone; a smooth plane of symmetry bears no weight
+   pure subroutine keep_finite(chain, inverse, value)
+      type(chain_t), intent(in) :: chain
+      !> Inverse of their rows: (4, 4)
+      real(wp), intent(out) :: inverse(4, 4)
+      !> What the unknowns are
+      real(wp), intent(out) :: value(4)
+      integer :: i
+
+      inverse = 0.0_wp
+      do i = 1, 4
+         inverse(i, i) = 1.0_wp
+      end do
+      value = -far*chain%whole_load
+      value(3) = value(3)*maxval(abs(chain%middle))
+      if (chain%halved) value(2) = 0.0_wp
+   end subroutine keep_finite
+
+   !> The bound that is broken most; joint 0 if none is
+   pure subroutine find_worst(chain, load, place, joint, bound)
+      type(chain_t), intent(in) :: chain
+      !> Sums of the loads: (3, n + 1)
+      real(wp), intent(in) :: load(:, :)
+      !> The unknowns, and s
+      real(wp), intent(in) :: place(4)
+      !> Its joint
+      integer, intent(out) :: joint
+      !> Which of its bounds
+      integer, intent(out) :: bound
+      real(wp) :: along, force(3), least, moment, normal, room, s(3)
+      integer :: j
+
+      least = -place(4) - little*chain%whole_load
+      joint = 0
+      bound = 0
+      do j = 1, last_joint(chain)
+         s = place(:3) + load(:, j)
+         normal = chain%tangent(2, j)*s(1) - chain%tangent(1, j)*s(2)
+         along = abs(chain%tangent(1, j)*s(1) + chain%tangent(2, j)*s(2))
+         moment = abs(s(3) - chain%middle(1, j)*s(2) + chain%middle(2, j)*s(1))
+         room = (normal - moment/chain%half(j))/2.0_wp
+         if (is_rough(chain, j)) &
+            & room = min(room, chain%limit(j) + chain%friction(j)*normal - along)
+         if (.not. room < least) cycle
+         least = room
+         joint = j
+      end do
+      if (joint == 0) return
+      force = joint_force(chain, load, place(:3), joint)
+      bound = merge(1, 2, force(1) < force(2))
+      if (is_rough(chain, joint) .and. minval(force(:2)) > least &
+         & + little*chain%whole_load) bound = merge(3, 4, force(3) > 0.0_wp)
+   end subroutine find_worst
+
+   !> The last joint that can fail: a plane of symmetry through a block does not open
+   pure integer function last_joint(chain)
+      type(chain_t), intent(in) :: chain
+
+      last_joint = size(chain%half) - merge(1, 0, chain%keystone)
+   end function last_joint
+
+   !> Whether the shear force of a joint is bounded, and not zero as on a plane of symmetry
+   pure logical function is_rough(chain, j)
+      type(chain_t), intent(in) :: chain
+      !> Number of the joint
+      integer, intent(in) :: j
+
+      is_rough = chain%limit(j) < huge(1.0_wp) &
+         & .and. .not. (chain%halved .and. j == size(chain%half))
+   end function is_rough
+
+   !> A bound as a row over the unknowns and s, and its value: (5)
+   pure function bound_row(chain, load, joint, bound) result(row)
+      type(chain_t), intent(in) :: chain
+      !> Sums of the loads: (3, n + 1)
+      real(wp), intent(in) :: load(:, :)
+      !> Number of the joint
+      integer, intent(in) :: joint
+      !> Which of its bounds
+      integer, intent(in) :: bound
+      !> The row
+      real(wp) :: row(5)
+      real(wp), parameter :: nothing(3) = 0.0_wp
+      real(wp) :: force(3), g(3, 3)
+
+      g = influence(chain, joint)
+      force = joint_force(chain, load, nothing, joint)
+      if (bound <= 2) then
+         row(:3) = g(bound, :)
+         row(5) = -force(bound)
+      else
+         row(:3) = chain%friction(joint)*(g(1, :) + g(2, :)) + merge(-1, 1, bound == 3)*g(3, :)
+         row(5) = -chain%limit(joint) - chain%friction(joint)*(force(1) + force(2)) &
+            & - merge(-1, 1, bound == 3)*force(3)
+      end if
+      if (chain%halved) row(2) = 0.0_wp
+      row(4) = 1.0_wp
+   end function bound_row
+
+   !> The bound whose multiplier vanishes first as another one's grows; 0 if none does
+   pure integer function first_to_vanish(share, change) result(first)
+      !> Multipliers: (4)
+      real(wp), intent(in) :: share(4)
+      !> What of each goes into the other one's: (4)
+      real(wp), intent(in) :: change(4)
+      real(wp) :: least
+      integer :: r
+
+      first = 0
+      least = huge(1.0_wp)
+      do r = 1, 4
+         if (.not. change(r) > no_share) cycle
+         if (.not. max(share(r), 0.0_wp) < least*change(r)) cycle
+         first = r
+         least = max(share(r), 0.0_wp)/change(r)
+      end do
+   end function first_to_vanish
+
+   !> Put another row in the place of one
+   pure subroutine exchange(r, change, inverse)
+      !> The place
+      integer, intent(in) :: r
+      !> The other row times the inverse: (4)
+      real(wp), intent(in) :: change(4)
+      !> Inverse of all rows: (4, 4)
+      real(wp), intent(inout) :: inverse(4, 4)
+      integer :: i
+
+      inverse(:, r) = inverse(:, r)/change(r)
+      do i = 1, 4
+         if (i /= r) inverse(:, i) = inverse(:, i) - change(i)*inverse(:, r)
+      end do
+   end subroutine exchange
+end module dda_chain_lack
