@@ -115,6 +115,16 @@ def test_a_bar_that_is_too_weak_yields_and_one_that_breaks_lets_go(tmp_path: Pat
         )
 
 
+def test_a_bonded_block_is_pushed_off_when_its_bond_and_its_bar_have_given_all(tmp_path: Path) -> None:
+    """Cohesion times length, friction times weight and the strength of a bar that yields at once."""
+    scene = block([(-9, -1), (9, -1), (9, 0), (-9, 0)], "fixed") + block([(0, 0), (2, 0), (2, 1), (0, 1)])
+    scene += bar((1.0, 0.5), (-5.0, 0.5), "stiffness 1e12 strength 1000") + "live block 2 1 0.25 1 0\n"
+    deck = "&material density=2000 unit_weight=2e4 /\n&joint friction_deg=30 cohesion=1e4 /\n"
+    row = run_blocks(tmp_path, scene, deck + "&search parameter='load_factor' low=0 high=1e6 /\n")
+    assert row["verdict"] == "found"
+    assert float(row["critical"]) == pytest.approx(2e4 + 4e4 / math.sqrt(3) + 1000.0, rel=1e-6)
+
+
 def test_a_prestressed_bolt_presses_a_joint_as_much(tmp_path: Path) -> None:
     scene = block([(0.0, -2.0), (2.0, -2.0), (2.0, 0.0), (0.0, 0.0)], "fixed")
     scene += block([(0.0, 0.0), (2.0, 0.0), (2.0, 1.0), (0.0, 1.0)])
