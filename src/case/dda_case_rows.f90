@@ -55,7 +55,8 @@ contains
          call tell_decision(this, row, joint_row, blocks, remark)
       end if
       if (this%has_worst) row%worst_position = some_number(this%family%deck%vehicle%position%number)
-      if (this%has_worst) remark = position_remark(row%worst_position%value, remark)
+      if (this%has_worst .and. row%verdict /= "collapsed") &
+         & remark = position_remark(row%worst_position%value, remark)
       call tell_proof(this%proof, row)
       if (row%verdict == "stable" .and. row%exact%known .and. row%thickness_ratio%known) &
          & row%safety_thickness = some_number(row%thickness_ratio%value/row%exact%value)

@@ -49,6 +49,15 @@ def test_a_block_between_two_walls_falls_unless_sliding_presses_it(tmp_path: Pat
     assert [row["verdict"] for row in found] == 4 * [verdict]
 
 
+@pytest.mark.parametrize(("ends", "verdict"), [("1.5 0.5 1.5 -2", "collapsed"), ("1.5 0.5 1.5 3", "stable")])
+def test_a_bar_holds_what_lies_between_two_walls_if_it_hangs_from_it(tmp_path: Path, ends: str, verdict: str) -> None:
+    """One that would have to push is slack."""
+    sweep = "&sweep parameter = 'load_factor', values = 0, 0.1, 1 /"
+    scene = BETWEEN_WALLS + f"live 1.5 0.5 0 -100\nbar {ends} stiffness 1e9 slack\n"
+    found = rows(tmp_path, scene, f"&joint friction_deg = 20.0 /\n{sweep}")
+    assert [row["verdict"] for row in found] == 3 * [verdict]
+
+
 def test_a_search_says_what_falls_by_its_dead_loads(tmp_path: Path) -> None:
     search = "&search parameter = 'horizontal_coefficient', high = 0.9 /"
     (row,) = rows(tmp_path, BETWEEN_WALLS, f"&joint friction_deg = 45.0 /\n{search}")
