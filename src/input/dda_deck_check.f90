@@ -153,8 +153,10 @@ contains
       character(len=*), intent(in) :: how
       type(deck_place_t), intent(in) :: place
       type(error_t), allocatable, intent(out) :: error
+      character(len=:), allocatable :: why
       logical :: is_weight
 
+      why = reason_of_no_effect(deck, deck_key(parameter%key))
       is_weight = parameter%key == key_index("material", "density") .or. &
          parameter%key == key_index("load", "gravity")
       if (deck_key(parameter%key)%group == "arch" .and. deck%scene%kind%word /= "arch") then
@@ -169,8 +171,58 @@ contains
          deck%analysis%mode%word == "static") then
          call deck_error(error, full_name(deck_key(parameter%key))//" is "//how// &
             ", but it has no effect: material%unit_weight is given; remove that", deck, place)
+      else if (len(why) > 0) then
+         call deck_error(error, full_name(deck_key(parameter%key))//" is "//how// &
+            ", but it has no effect: "//why, deck, place)
       end if
    end subroutine check_varied
+
+   !> Why a key changes nothing beside the others of a deck, and what to do; empty if it may
+   pure function reason_of_no_effect(deck, key) result(why)
+      type(deck_t), intent(in) :: deck
+      type(key_t), intent(in) :: key
+      !> The reason
+      character(len=:), allocatable :: why
+
+      why = ""
+      if ((key%group == "limerick" .or. key%name(:9) == "abutment_") .and. &
+         deck%analysis%mode%word /= "limerick" .and. .not. is_swept(deck, "analysis", "mode")) then
+         why = "analysis%mode is '"//trim(deck%analysis%mode%word)//"'; name another key"
+      else if (key%group == "vehicle" .and. .not. is_known(deck, "vehicle", "axles")) then
+         why = "vehicle%axles are not given; give them"
+      else if (key%group == "fill" .and. key%name /= "unit_weight" &
+         .and. .not. is_known(deck, "fill", "unit_weight")) then
+         why = "fill%unit_weight is not given; give it"
+      else if (key%group == "fill" .and. key%name == "friction_deg" &
+         .and. .not. is_known(deck, "fill", "passive_share")) then
+         why = "fill%passive_share is not given; give it"
+      else if (key%name == "water_rise" .and. deck%scene%kind%word /= "blocks") then
+         why = "water stands in files of blocks alone; name another key"
+      end if
+   end function reason_of_no_effect
+
+   !> Whether a key is given or varied
+   pure logical function is_known(deck, group, name)
+      type(deck_t), intent(in) :: deck
+      !> Names of its group and of itself
+      character(len=*), intent(in) :: group, name
+
+      is_known = deck%value(key_index(group, name))%given .or. is_swept(deck, group, name) &
+         .or. deck%searched%key == key_index(group, name)
+   end function is_known
+
+   !> Whether a key is swept
+   pure logical function is_swept(deck, group, name)
+      type(deck_t), intent(in) :: deck
+      !> Names of its group and of itself
+      character(len=*), intent(in) :: group, name
+      integer :: s
+
+      is_swept = .false.
+      do s = 1, size(deck%sweeps)
+         is_swept = is_swept .or. deck%sweeps(s)%parameter%key == key_index(group, name)
+      end do
+   end function is_swept
 
    !> Whether two parameters are the same
    pure logical function same(a, b)

@@ -7,6 +7,7 @@ module dda_event_rates
    use dda_coulomb_equations, only : coulomb_equations_t, solve_equations, use_faces
    use dda_coulomb_joints, only : coulomb_joints_t
    use dda_coulomb_law, only : coulomb_state_t, imbalance, spring_forces
+   use dda_joint_graph, only : add_joint_forces
    use dda_kinds, only : wp
    use dda_rate_law, only : follow_law, rate_law_t, set_rate_law
    use dda_rate_pivots, only : pivot_to_load
@@ -87,7 +88,8 @@ contains
       if (.not. found) call pivot_to_load(joints, equations, law, load_rate, opening_rate, &
          & rates%motion, rates%opening, rates%face, found)
       call spring_forces(joints, rates%face, rates%opening, rates%force)
-      call imbalance(joints, path_damping*joints%graph%mass*rates%motion, &
+      damped = path_damping*joints%graph%mass*rates%motion
+      if (viscosity > 0.0_wp) call add_joint_forces(joints%graph, &
          & viscosity*rates%opening/joints%graph%compliance, damped)
       rates%unbalanced = maxval(abs(damped))/max(rates%drive, tiny(1.0_wp))
    end subroutine find_rates
