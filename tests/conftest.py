@@ -75,7 +75,7 @@ def pytest_sessionfinish(session: pytest.Session) -> None:
     """Write the list, and fail where it has what it should not have."""
     build = os.environ.get("VOUSSOIR_BUILD")
     if build and (Path(build) / "tests").is_dir():
-        name = Path(str(session.config.args[0]).split("::")[0]).stem
+        name = Path(session.config.option.basetemp or str(session.config.args[0]).split("::")[0]).stem
         lines = [f"{count} skipped: {reason}\n" for reason, count in sorted(skipped.items())]
         (Path(build) / "tests" / f"skipped_{name}.txt").write_text("".join(lines), encoding="utf-8")
     if os.environ.get("VOUSSOIR_CI") and unexpected():

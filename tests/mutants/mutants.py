@@ -3,8 +3,9 @@
 
 The tree is copied and built once, with lines counted: a program that never runs the faulty statement cannot find
 it and is left out. Each fault is built incrementally in the copy. The unit tests of the fault's room run first,
-then those of the other rooms, then the physics, then, if asked, tests of the command and of Python, those first
-that are about the room. The table has a row for each fault as soon as it is known.
+then those of the other rooms, then the physics, at both levels with the tests of the command that are marked so,
+then, if asked, the other tests of the command and of Python, those first that are about the room. The table has
+a row for each fault as soon as it is known.
 """
 
 from __future__ import annotations
@@ -28,6 +29,8 @@ PARTS = ("CMakeLists.txt", "CMakePresets.json", "cmake", "src", "tests", "post",
          "README.md", "CITATION.cff", "LICENSE", "CHANGELOG.md")
 COLUMNS = ("number", "room", "file", "line", "kind", "before", "after", "result", "level", "found_by", "seconds")
 LEVELS = ("room", "unit", "physics", "suite")
+#: Tests of the command and of Python that ctest counts as unit tests or physics
+COMMAND = "command_"
 #: Files of tests/cli that are about a room, by the beginning of their names after test_
 ABOUT = {
     "arch": "arch mechanism_roles paper_tables bad_input",
@@ -91,11 +94,18 @@ class Copy:
         self.ran[program] = count_lines(self.root, counted) if counted.exists() else {}
         shutil.rmtree(counted, ignore_errors=True)
 
+    def make_programs(self, programs: list[str]) -> bool:
+        """Build test programs, for tests of the command what they call; whether they compile."""
+        called = ["dda", "_theory"] if any(program.startswith(COMMAND) for program in programs) else []
+        return self.make(*(program for program in programs if not program.startswith(COMMAND)), *called)
+
     def run(self, program: str) -> tuple[str, float]:
         """Run a test program: the test that failed, or nothing, and the seconds it took."""
-        command = [str(self.build / "tests" / "bin" / program)]
         shutil.rmtree(self.root / "counted", ignore_errors=True)
-        return self.finish(command, program, self.build / "tests")
+        if not program.startswith(COMMAND):
+            return self.finish([str(self.build / "tests" / "bin" / program)], program, self.build / "tests")
+        return self.finish(["ctest", "--test-dir", str(self.build), "--output-on-failure", "-R", f"^{program}$"],
+                           program, self.root)
 
     def run_pytest(self, room: str) -> tuple[str, float]:
         """Run tests of the command and of Python until one fails, first what is about the room."""
@@ -166,22 +176,30 @@ def prepare(source: Path, copy: Copy, asked: argparse.Namespace) -> list[str]:
                        check=True, stdout=subprocess.DEVNULL)
     listed = (copy.root / "tests" / "CMakeLists.txt").read_text()
     units = re.findall(r"add_pfunit_ctest\((unit_\w+)", listed)
-    if not copy.make(*units, "physics", "dda", *(["_theory"] if "suite" in asked.levels else [])):
+    if not copy.make(*units, "physics", "dda", "_theory"):
         raise SystemExit(f"{copy.build}: does not build without a fault")
     return units
+
+
+def programs_of(levels: list[str], units: list[str]) -> list[str]:
+    """All that is run once without a fault."""
+    programs = [*units, COMMAND + "unit"] if "unit" in levels else units
+    return programs + [name for level, names in (("physics", ["physics", COMMAND + "physics"]), ("suite", ["suite"]))
+                       if level in levels for name in names]
 
 
 def judge(fault: Fault, copy: Copy, units: list[str], asked: argparse.Namespace) -> dict[str, object]:
     """What becomes of one fault that is in the copy."""
     own = f"unit_{fault.path.parts[1]}"
     start = time.monotonic()
-    levels = [("room", [own] if own in units else []), ("unit", [name for name in units if name != own]),
-              ("physics", ["physics"])]
+    levels = [("room", [own] if own in units else []),
+              ("unit", [name for name in [*units, COMMAND + "unit"] if name != own]),
+              ("physics", [COMMAND + "physics", "physics"])]
     for level, programs in levels:
         if level not in asked.levels:
             continue
         programs = [program for program in programs if copy.reaches(program, fault)]
-        if programs and not copy.make(*programs):
+        if programs and not copy.make_programs(programs):
             return {"result": "does not compile"}
         start = time.monotonic() if level == "room" else start
         for program in programs:
@@ -190,7 +208,7 @@ def judge(fault: Fault, copy: Copy, units: list[str], asked: argparse.Namespace)
                 return {"result": "found", "level": level, "found_by": f"{program}: {test}",
                         "seconds": round(time.monotonic() - start, 1)}
     if "suite" in asked.levels:
-        copy.make("dda", "_theory")
+        copy.make_programs([COMMAND])
         test, _ = copy.run_pytest(fault.path.parts[1])
         if test:
             return {"result": "found", "level": "suite", "found_by": test,
@@ -246,7 +264,7 @@ def main() -> int:
     units: list[str] = []
     if not asked.list:
         units = prepare(asked.source, copy, asked)
-        for program in [*units, *(level for level in ("physics", "suite") if level in asked.levels)]:
+        for program in programs_of(asked.levels, units):
             test, copy.usual[program] = copy.run_pytest("") if program == "suite" else copy.run(program)
             if test:
                 print(f"{program} fails without a fault: {test}", file=sys.stderr)
