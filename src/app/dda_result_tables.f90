@@ -161,18 +161,18 @@ contains
          this%file = folder//name
          this%header = header
       end subroutine name_table
-
-      !> A text in parentheses, with a blank before it; nothing for nothing
-      pure function parenthesis(text) result(put)
-         !> The text
-         character(len=*), intent(in) :: text
-         !> The text put so
-         character(len=:), allocatable :: put
-
-         put = ""
-         if (len(text) > 0) put = " ("//text//")"
-      end function parenthesis
    end subroutine name_tables
+
+   !> A text in parentheses, with a blank before it; nothing for nothing
+   pure function parenthesis(text) result(put)
+      !> The text
+      character(len=*), intent(in) :: text
+      !> The text put so
+      character(len=:), allocatable :: put
+
+      put = ""
+      if (len(text) > 0) put = " ("//text//")"
+   end function parenthesis
 
    !> Which tables are not written because there are many cases, and what writes them; empty if all
    !> are

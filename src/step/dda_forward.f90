@@ -119,34 +119,36 @@ contains
       end do
       march%held_force = equations%fixed%force
       if (present(onward)) onward = march
-      outcome%rest_tolerance = settings%rest_tolerance
-      if (march%free_acceleration > 0.0_wp) then
-         outcome%acceleration_ratio = step%acceleration/march%free_acceleration
-         outcome%elastic_time = sqrt(2.0_wp*march%elastic_motion/march%free_acceleration)
-      end if
       if (settings%tells_condition) &
          & outcome%condition = factored_condition(equations%matrix, equations%factor)
       allocate (outcome%motion, source=step%state%motion)
       if (present(album)) call end_pictures(settings, system, contacts, equations, march, step, &
          & outcome, album)
+      outcome%factorisations = equations%factorisations
+      call conclude(settings, march, step%acceleration, error, outcome)
+   end subroutine run_to_verdict
+
+   !> What the end of a run says
+   pure subroutine conclude(settings, march, acceleration, error, outcome)
+      type(settings_t), intent(in) :: settings
+      type(march_t), intent(in) :: march
+      !> That of the last step [m/s2]
+      real(wp), intent(in) :: acceleration
+      type(error_t), allocatable, intent(in) :: error
+      !> How it ended; receives what the march counts, the verdict, and why it is undecided
+      type(outcome_t), intent(inout) :: outcome
+
+      outcome%rest_tolerance = settings%rest_tolerance
+      if (march%free_acceleration > 0.0_wp) then
+         outcome%acceleration_ratio = acceleration/march%free_acceleration
+         outcome%elastic_time = sqrt(2.0_wp*march%elastic_motion/march%free_acceleration)
+      end if
       outcome%has_path = has_path(march%clock)
       outcome%path_time = march%clock%now
       outcome%jumps = march%jumps
       outcome%largest_jump = march%largest_jump
       outcome%steps = march%steps
       outcome%passes = march%passes
-      outcome%factorisations = equations%factorisations
-      call conclude(settings, march, error, outcome)
-   end subroutine run_to_verdict
-
-   !> What the end of a run says
-   pure subroutine conclude(settings, march, error, outcome)
-      type(settings_t), intent(in) :: settings
-      type(march_t), intent(in) :: march
-      type(error_t), allocatable, intent(in) :: error
-      !> How it ended; receives the verdict, and why it is undecided
-      type(outcome_t), intent(inout) :: outcome
-
       if (allocated(error)) then
          outcome%verdict = verdict%undecided
          outcome%reason = error%message

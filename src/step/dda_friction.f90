@@ -13,7 +13,17 @@ module dda_friction
    implicit none
    private
 
-   public :: iterate_friction, accelerated, coulomb_bound
+   public :: anderson_t, iterate_friction, accelerate, coulomb_bound
+
+   !> What is known of a fixed-point iteration
+   type :: anderson_t
+      !> Number of remembered points
+      integer :: kept = 0
+      !> The points, the newest last: (n, kept or more)
+      real(wp), allocatable :: point(:, :)
+      !> How the iteration would change each of them: (n, kept or more)
+      real(wp), allocatable :: change(:, :)
+   end type anderson_t
 
    !> Most corrections of the bounds in one step
    integer, parameter :: max_corrections = 200
@@ -76,13 +86,13 @@ contains
       !> Bounds: (n_joint) [N/m]
       real(wp), intent(inout) :: bound(:)
       type(step_state_t), intent(inout) :: state
-      real(wp) :: change(size(bound)), best(size(bound)), least
-      real(wp), dimension(size(bound), memory + 1) :: bounds, changes
-      integer :: correction, kept, stale
+      real(wp), dimension(size(bound)) :: best, change, next
+      real(wp) :: least
+      type(anderson_t) :: known
+      integer :: correction, stale
       logical :: resolved
 
       state%cone = cone_t(friction=0.0_wp, limit=huge(1.0_wp))
-      kept = 0
       stale = 0
       least = huge(least)
       resolved = .false.
@@ -106,38 +116,42 @@ contains
             bound = best
             cycle
          end if
-         if (kept == memory + 1) then
-            bounds(:, :memory) = bounds(:, 2:)
-            changes(:, :memory) = changes(:, 2:)
-            kept = memory
-         end if
-         kept = kept + 1
-         bounds(:, kept) = bound
-         changes(:, kept) = change
-         bound = max(0.0_wp, accelerated(bounds(:, :kept), changes(:, :kept)))
+         call accelerate(known, bound, change, next)
+         bound = max(0.0_wp, next)
       end do
       state%settled = .false.
    end subroutine follow_bounds
 
    !> Anderson's acceleration of a fixed-point iteration: the mixture of the remembered points whose
    !> mixed change is least, moved by that change
-   pure function accelerated(points, changes) result(next)
-      !> Points, the newest last: (n, kept)
-      real(wp), intent(in) :: points(:, :)
-      !> How the iteration would change each of them: (n, kept)
-      real(wp), intent(in) :: changes(:, :)
+   pure subroutine accelerate(known, point, change, next)
+      type(anderson_t), intent(inout) :: known
+      !> The last point: (n)
+      real(wp), intent(in) :: point(:)
+      !> How the iteration would change it: (n)
+      real(wp), intent(in) :: change(:)
       !> The point to try next: (n)
-      real(wp) :: next(size(points, 1))
+      real(wp), intent(out) :: next(:)
       integer :: k
 
-      k = size(points, 2)
-      next = points(:, k) + changes(:, k)
+      if (.not. allocated(known%point)) allocate (known%point(size(point), memory + 1), &
+         & known%change(size(point), memory + 1))
+      if (known%kept == memory + 1) then
+         known%point(:, :memory) = known%point(:, 2:)
+         known%change(:, :memory) = known%change(:, 2:)
+         known%kept = memory
+      end if
+      k = known%kept + 1
+      known%kept = k
+      known%point(:, k) = point
+      known%change(:, k) = change
+      next = point + change
       if (k == 1) return
-      associate (steps => spread(points(:, k), 2, k - 1) - points(:, :k - 1), &
-         & turns => spread(changes(:, k), 2, k - 1) - changes(:, :k - 1))
-         next = next - matmul(steps + turns, least_squares(turns, changes(:, k), negligible))
+      associate (steps => spread(point, 2, k - 1) - known%point(:, :k - 1), &
+         & turns => spread(change, 2, k - 1) - known%change(:, :k - 1))
+         next = next - matmul(steps + turns, least_squares(turns, change, negligible))
       end associate
-   end function accelerated
+   end subroutine accelerate
 
    !> Largest shear forces that the joints carry with the normal forces that they have
    pure function coulomb_bound(springs, state) result(bound)

@@ -100,18 +100,11 @@ contains
       !> 1 is the whole way
       real(wp) :: factor, start(3, size(state%face)), rate(3, size(state%face))
       real(wp) :: slope_at_zero, curvature, low, high, slope_low, slope_high, slope
-      integer :: e, pass
+      integer :: pass
 
       start = relative_displacement(springs, from)
       rate = relative_displacement(springs, direction)
-      slope_at_zero = sum(bar_motion(equations%bars, direction)*from)
-      curvature = sum(bar_motion(equations%bars, direction)*direction)
-      do e = 1, size(from, 2)
-         slope_at_zero = slope_at_zero + dot_product(direction(:, e), &
-            & matmul(equations%base(:, :, e), from(:, e)) - equations%load(:, e))
-         curvature = curvature + dot_product(direction(:, e), &
-            & matmul(equations%base(:, :, e), direction(:, e)))
-      end do
+      call block_slope(equations, from, direction, slope_at_zero, curvature)
       low = 0.0_wp
       slope_low = slope_of(low)
       high = 1.0_wp
@@ -158,4 +151,24 @@ contains
          end do
       end function slope_of
    end function lowest_point
+
+   !> Slope of the energy of blocks and bars along a direction, and how it grows
+   pure subroutine block_slope(equations, from, direction, slope, curvature)
+      type(equations_t), intent(in) :: equations
+      real(wp), intent(in) :: from(:, :), direction(:, :)
+      !> The slope where the way begins
+      real(wp), intent(out) :: slope
+      !> Its growth by the whole way
+      real(wp), intent(out) :: curvature
+      integer :: e
+
+      slope = sum(bar_motion(equations%bars, direction)*from)
+      curvature = sum(bar_motion(equations%bars, direction)*direction)
+      do e = 1, size(from, 2)
+         slope = slope + dot_product(direction(:, e), &
+            & matmul(equations%base(:, :, e), from(:, e)) - equations%load(:, e))
+         curvature = curvature + dot_product(direction(:, e), &
+            & matmul(equations%base(:, :, e), direction(:, e)))
+      end do
+   end subroutine block_slope
 end module dda_newton

@@ -10,7 +10,7 @@ module dda_settle_in_time
    use dda_bars_in_time, only : append_bars, drop_bars
    use dda_contact_sweeps, only : sweep_contacts
    use dda_fixed_points, only : correct_fixed_forces
-   use dda_friction, only : accelerated, coulomb_bound
+   use dda_friction, only : accelerate, anderson_t, coulomb_bound
    use dda_joint_springs, only : joint_springs_t
    use dda_kinds, only : wp
    use dda_open_close, only : iterate_open_close
@@ -27,8 +27,6 @@ module dda_settle_in_time
    integer, parameter :: max_corrections = 40
    !> Joints of more than so many that did not settle are rather tried in a shorter step
    integer, parameter :: most_joints = 300
-   !> Corrections remembered by the acceleration
-   integer, parameter :: memory = 6
    !> Change of a force that counts as none, over the sum of all that bear on the blocks
    real(wp), parameter :: fine = 1.0e-10_wp
    !> Change of a force that a step may end with
@@ -50,11 +48,11 @@ contains
       type(step_state_t), intent(inout) :: state
       !> Whether it is no matter if this does not end; then little is tried
       logical, intent(in), optional :: in_vain
-      real(wp), dimension(size(springs%stiffness)) :: bound, change, wrong
+      real(wp), dimension(size(springs%stiffness)) :: bound, change, next, wrong
       logical :: glued(size(springs%stiffness))
-      real(wp), dimension(size(springs%stiffness), memory + 1) :: bounds, changes
       real(wp) :: opening(3, size(springs%stiffness)), least
-      integer :: correction, kept
+      type(anderson_t) :: known
+      integer :: correction
 
       opening = state%start - state%multiplier
       if (settings%flow == flow_rule%associated) then
@@ -72,7 +70,6 @@ contains
       glued = .not. springs%cone%limit < huge(1.0_wp)
       state%force = state%multiplier
       bound = bounds_now()
-      kept = 0
       least = huge(least)
       do correction = 1, max_corrections
          state%cone%friction = 0.0_wp
@@ -85,16 +82,8 @@ contains
             & wrong = abs(change)
          if (maxval(wrong) <= fine*equations%force_scale) return
          least = min(least, maxval(wrong))
-         if (kept == memory + 1) then
-            bounds(:, :memory) = bounds(:, 2:)
-            changes(:, :memory) = changes(:, 2:)
-            kept = memory
-         end if
-         kept = kept + 1
-         bounds(:, kept) = merge(0.0_wp, bound, glued)
-         changes(:, kept) = merge(0.0_wp, change, glued)
-         bound = max(0.0_wp, merge(bounds_now(), accelerated(bounds(:, :kept), &
-            & changes(:, :kept)), glued))
+         call accelerate(known, merge(0.0_wp, bound, glued), merge(0.0_wp, change, glued), next)
+         bound = max(0.0_wp, merge(bounds_now(), next, glued))
       end do
       state%settled = least <= coarse_bound*equations%force_scale
 

@@ -50,32 +50,14 @@ contains
          associate (loaded => settings%boundary%loaded(i))
             e = system%equation(loaded%block)
             if (e == 0) cycle
-            of_block = load_at(loaded, factor_of(settings, loaded)*now(loaded%force))
+            of_block = load_at(loaded, factor_of(settings, loaded)*now(loaded%force), system, &
+               & settings%current)
             load(:, e) = load(:, e) + of_block(:nd)
             felt(:, e) = felt(:, e) + abs(of_block(:nd))
          end associate
       end do
 
    contains
-
-      !> What a force at a point of a block is to its unknowns
-      pure function load_at(loaded, force) result(of_block)
-         type(loaded_point_t), intent(in) :: loaded
-         !> The force: (2) [N/m]
-         real(wp), intent(in) :: force(2)
-         !> Load on the unknowns: (6)
-         real(wp) :: of_block(6)
-
-         associate (centre => system%centroid(:, loaded%block), &
-            & motion => system%motion(:, loaded%block))
-            if (settings%current) then
-               of_block = point_load(force, moved_point(loaded%point, centre, motion), &
-                  & centre + motion(1:2), motion)
-            else
-               of_block = point_load(force, loaded%point, centre)
-            end if
-         end associate
-      end function load_at
 
       !> What a history is in the step
       pure function now(history) result(value)
@@ -90,4 +72,26 @@ contains
          end if
       end function now
    end subroutine outer_loads
+
+   !> What a force at a point of a block is to its unknowns
+   pure function load_at(loaded, force, system, current) result(of_block)
+      type(loaded_point_t), intent(in) :: loaded
+      !> The force: (2) [N/m]
+      real(wp), intent(in) :: force(2)
+      type(block_system_t), intent(in) :: system
+      !> Whether the point has moved with its block
+      logical, intent(in) :: current
+      !> Load on the unknowns: (6)
+      real(wp) :: of_block(6)
+
+      associate (centre => system%centroid(:, loaded%block), &
+         & motion => system%motion(:, loaded%block))
+         if (current) then
+            of_block = point_load(force, moved_point(loaded%point, centre, motion), &
+               & centre + motion(1:2), motion)
+         else
+            of_block = point_load(force, loaded%point, centre)
+         end if
+      end associate
+   end function load_at
 end module dda_outer_loads

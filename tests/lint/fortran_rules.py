@@ -54,15 +54,13 @@ def statements(lines: list[str]) -> Iterator[Statement]:
         text = ""
 
 
-def offences(path: Path, long: Collection[str] = ()) -> list[str]:
+def offences(path: Path) -> list[str]:
     """What a source breaks.
 
     Parameters
     ----------
     path : Path
         The source.
-    long : collection of str, optional
-        Procedures that may be longer.
 
     Returns
     -------
@@ -70,7 +68,7 @@ def offences(path: Path, long: Collection[str] = ()) -> list[str]:
         FILE:LINE: rule.
     """
     lines = path.read_text(encoding="utf-8").splitlines()
-    found = list(_of_lines(lines)) + list(_of_statements(list(statements(lines)), long))
+    found = list(_of_lines(lines)) + list(_of_statements(list(statements(lines))))
     return [f"{path}:{number}: {rule}" for number, rule in sorted(found)]
 
 
@@ -85,7 +83,7 @@ def _of_lines(lines: list[str]) -> Iterator[tuple[int, str]]:
             yield number, "no tabs, no blanks at the end of a line"
 
 
-def _of_statements(all_of_them: list[Statement], long: Collection[str]) -> Iterator[tuple[int, str]]:
+def _of_statements(all_of_them: list[Statement]) -> Iterator[tuple[int, str]]:
     """Rules of statements, procedures and modules."""
     open_procedures: list[Statement] = []
     inner = 0  # lines of internal procedures, which are judged on their own
@@ -103,7 +101,8 @@ def _of_statements(all_of_them: list[Statement], long: Collection[str]) -> Itera
         elif _END_PROCEDURE.match(text):
             if open_procedures:
                 begin = open_procedures.pop()
-                yield from _of_procedure(begin, this.last - (0 if open_procedures else inner), long)
+                if this.last - (0 if open_procedures else inner) - begin.first >= PROCEDURE_LINES:
+                    yield begin.first, f"a procedure has at most {PROCEDURE_LINES} lines"
                 inner = inner + this.last - begin.first + 1 if open_procedures else 0
         elif _PROCEDURE.match(text) and not text.startswith("module procedure"):
             if not this.documented:
@@ -144,13 +143,6 @@ def _of_one(text: str) -> Iterator[str]:
     if re.match(r"(common|equivalence|entry|data)\b[ /(]", text) and "::" not in text:
         if "=" not in text:
             yield "no common, equivalence, entry or data"
-
-
-def _of_procedure(begin: Statement, last: int, long: Collection[str]) -> Iterator[tuple[int, str]]:
-    """Rules of a whole procedure."""
-    name = _PROCEDURE.match(begin.text)
-    if last - begin.first + 1 > PROCEDURE_LINES and name and name[1] not in long:
-        yield begin.first, f"a procedure has at most {PROCEDURE_LINES} lines"
 
 
 def _is_variable(text: str) -> bool:
