@@ -4,14 +4,13 @@
 !> a larger outline has more joints and the same ones where the smaller one was.
 module dda_set_traces
    use dda_growth, only : make_room
-   use dda_joint_map, only : joint_set_t, length_t
+   use dda_joint_map, only : joint_set_t, length_law, length_t
    use dda_kinds, only : wp
-   use dda_random, only : draw, new_random, random_t
-   use dda_renewal, only : draw_covering_length, draw_length
+   use dda_random, only : draw, draw_normal, new_random, random_t
    implicit none
    private
 
-   public :: joint_count, set_traces
+   public :: draw_covering_length, draw_length, joint_count, set_traces
 
    !> What of a set has a sequence of numbers of its own
    integer, parameter :: n_kind = 6
@@ -176,4 +175,52 @@ contains
       n = n + 1
       trace(:, n) = [axis%foot + from*axis%along, axis%foot + to*axis%along]
    end subroutine add_part
+
+   !> A length by its law
+   pure subroutine draw_length(length, random, value)
+      type(length_t), intent(in) :: length
+      !> Random numbers
+      type(random_t), intent(inout) :: random
+      !> The length [m]
+      real(wp), intent(out) :: value
+      real(wp) :: number
+
+      value = length%mean
+      select case (length%law)
+      case (length_law%uniform)
+         call draw(random, number)
+         value = value*(1.0_wp + length%randomness*(2.0_wp*number - 1.0_wp))
+      case (length_law%exponential)
+         call draw(random, number)
+         value = -value*log(number)
+      case (length_law%normal)
+         do
+            call draw_normal(random, number)
+            if (abs(length%randomness*number) < 1.0_wp) exit
+         end do
+         value = value*(1.0_wp + length%randomness*number)
+      end select
+   end subroutine draw_length
+
+   !> A length that covers a given point: long ones do so more often. With such a one over the
+   !> origin, which lies evenly in it, no place of an axis is special: means hold in any window
+   pure subroutine draw_covering_length(length, random, value)
+      type(length_t), intent(in) :: length
+      type(random_t), intent(inout) :: random
+      real(wp), intent(out) :: value
+      real(wp) :: more, number
+
+      if (length%law == length_law%exponential) then
+         call draw_length(length, random, value)
+         call draw_length(length, random, more)
+         value = value + more
+         return
+      end if
+      do
+         call draw_length(length, random, value)
+         call draw(random, number)
+         ! no law but the exponential one goes beyond twice the mean
+         if (2.0_wp*length%mean*number <= value) exit
+      end do
+   end subroutine draw_covering_length
 end module dda_set_traces

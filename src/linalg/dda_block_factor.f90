@@ -9,13 +9,14 @@
 !> matrix is not symmetric, within three unknowns of a block alone.
 module dda_block_factor
    use dda_block_matrix, only : block_matrix_t
-   use dda_block_plan, only : elimination_plan_t, plan_panels
-   use dda_kinds, only : wp
-   use dda_panels, only : eliminate, new_panels, panels_t, substitute_panels
+   use dda_block_plan, only : elimination_plan_t, most_columns, plan_panels
+   use dda_kinds, only : rk => wp, wp
    implicit none
    private
 
-   public :: block_factor_t, plan_factor, factorise, substitute
+   public :: block_factor_t, factorise, plan_factor, substitute
+
+   include "dda_panel_type.inc"
 
    !> Factor of a block matrix
    type :: block_factor_t
@@ -93,4 +94,8 @@ contains
          end do
       end associate
    end subroutine substitute
+
+   include "dda_panels.inc"
+   include "dda_panel_factor.inc"
+   include "dda_panel_substitution.inc"
 end module dda_block_factor

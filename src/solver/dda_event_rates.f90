@@ -9,12 +9,12 @@ module dda_event_rates
    use dda_coulomb_law, only : coulomb_state_t, imbalance, spring_forces
    use dda_joint_graph, only : add_joint_forces
    use dda_kinds, only : wp
-   use dda_rate_law, only : follow_law, rate_law_t, set_rate_law
-   use dda_rate_pivots, only : pivot_to_load
+   use dda_rate_law, only : break_rate, break_t, cross_break, follow_law, next_break, rate_law_t, &
+      & set_rate_law
    implicit none
    private
 
-   public :: rates_t, path_damping, new_rates, find_rates, undamp_rates
+   public :: find_rates, new_rates, path_damping, pivot_to_load, rates_t, undamp_rates
 
    !> Rates of a state while its joints keep what they do
    type :: rates_t
@@ -142,4 +142,64 @@ contains
       rates%opening = rates%opening + opening_rate
    end subroutine solve_rates
 
+   !> Lead a motion over to a load: the last word where an open-close loop goes round in circles.
+   !> Any motion has faces that agree with it and a load that it takes, so it solves a neighbouring
+   !> problem. Its load is led over to the one that is asked for, and the motion follows in straight
+   !> pieces. At a bend of the law one face changes, and the motion goes on as the new face allows:
+   !> towards the load, or back (Katzenelson 1965; Lemke's method). It ends at the load, or never
+   !> returns: then there are no rates
+   pure subroutine pivot_to_load(joints, equations, law, load, drive, motion, opening, faces, found)
+      type(coulomb_joints_t), intent(in) :: joints
+      type(coulomb_equations_t), intent(inout) :: equations
+      type(rate_law_t), intent(in) :: law
+      !> The load that is asked for: (n_dof, n_block)
+      real(wp), intent(in) :: load(:, :)
+      !> Rates of opening that are prescribed: (3, n_joint)
+      real(wp), intent(in) :: drive(:, :)
+      !> Any motion in, the rates out: (n_dof, n_block)
+      real(wp), intent(inout) :: motion(:, :)
+      !> How the joints open with it and with the drive: (3, n_joint)
+      real(wp), intent(inout) :: opening(:, :)
+      !> What they do: (3, n_joint)
+      integer, intent(inout) :: faces(:, :)
+      !> Whether the load was reached
+      logical, intent(out) :: found
+      type(break_t) :: break
+      real(wp) :: ahead(size(load, 1), size(load, 2)), wide(3, size(opening, 2))
+      real(wp) :: rest(size(load, 1), size(load, 2)), force(3, size(opening, 2)), sense
+      integer :: pivot
+
+      found = .false.
+      call follow_law(joints, law, opening, faces)
+      break%joint = 0
+      do pivot = 1, equations%most_pivots
+         call use_faces(equations, joints, faces, equations%damping, equations%viscosity)
+         if (.not. equations%usable) return
+         ! the way to the load while the faces stay
+         call spring_forces(joints, faces, drive, force)
+         call imbalance(joints, load, force, rest)
+         call solve_equations(equations, joints, rest, ahead, wide)
+         if (.not. equations%usable) return
+         ahead = ahead - motion
+         wide = wide + drive - opening
+         sense = 1.0_wp
+         if (break%joint > 0) then
+            sense = break_rate(joints, break, faces, wide)
+            if (.not. abs(sense) > 0.0_wp) return
+            sense = merge(1.0_wp, -1.0_wp, sense > 0.0_wp .eqv. break%rises)
+         end if
+         break = next_break(joints, law, faces, opening, sense*wide)
+         if (sense > 0.0_wp .and. break%distance >= 1.0_wp) then
+            motion = motion + ahead
+            opening = opening + wide
+            found = .true.
+            return
+         else if (break%joint == 0) then
+            return
+         end if
+         motion = motion + (sense*break%distance)*ahead
+         opening = opening + (sense*break%distance)*wide
+         call cross_break(joints, break, opening, faces)
+      end do
+   end subroutine pivot_to_load
 end module dda_event_rates

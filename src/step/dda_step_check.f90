@@ -1,20 +1,37 @@
 !> Whether a try of a step counts, and what the next try changes if it does not
 module dda_step_check
    use dda_assembly, only : equations_t
+   use dda_block_inertia, only : kinetic_energy, packed_velocity
    use dda_block_system, only : block_system_t
+   use dda_block_update, only : update_blocks, update_contacts
    use dda_contact_detection, only : contacts_t
-   use dda_entry, only : check_penetration
-   use dda_impact_time, only : check_impact
+   use dda_contact_transfer, only : renew_contacts
+   use dda_joint_springs, only : joint_springs_t
    use dda_kinds, only : wp
-   use dda_parting, only : check_axes
+   use dda_parting_line, only : block_gap
    use dda_settings, only : settings_t
+   use dda_spring_products, only : relative_displacement
    use dda_step_context, only : march_t, step_context_t, step_outcome_t
    use dda_step_interval, only : check_length
-   use dda_step_reach, only : check_margins, travel_by, widen_margins
+   use dda_step_reach, only : check_margins, travel_by, travel_of, widen_margins
+   use dda_velocity, only : near_gap
    implicit none
    private
 
-   public :: check_motion, check_end_velocities, retry
+   public :: check_axes, check_end_velocities, check_impact, check_motion, retry
+
+   !> Gap or depth that is no matter, over the size of the smaller block
+   real(wp), parameter :: no_matter = 1.0e-6_wp
+   !> Choices of the lines by the way the blocks have taken
+   integer, parameter :: max_choices = 2
+   !> Steps shorter than this share of the longest one are not cut further
+   real(wp), parameter :: shortest = 1.0e-3_wp
+   !> Depth that counts as entered, over the size of the smaller block
+   real(wp), parameter :: deep = 2.0e-4_wp
+   !> Without restitution only impacts end a step that carry this share of the energy of motion, and
+   !> of what the longest step of free fall adds to it: in a pile of many blocks none does, and its
+   !> steps stay as long as they are
+   real(wp), parameter :: notable = 1.0e-2_wp
 
 contains
 
@@ -74,4 +91,169 @@ contains
       step%choices = step%choices + 1
       step%travel = travel_by(system, step%state%motion)
    end subroutine retry
+
+   !> Check the separating axes of a settled step. Where corners pass corners, which edge the one
+   !> would go in by depends on the way that both take. A line that has held off a block which turns
+   !> out to be apart was the wrong one, and so was one that has let it in: they are chosen anew by
+   !> the motion; if blocks still enter one another the step is cut, and if some are still held off
+   !> in thin air, they are
+   pure type(step_outcome_t) function check_axes(system, contacts, march, step) result(outcome)
+      !> The blocks before the step
+      type(block_system_t), intent(in) :: system
+      type(contacts_t), intent(in) :: contacts
+      type(march_t), intent(in) :: march
+      type(step_context_t), intent(in) :: step
+      real(wp) :: gap, matters
+      logical :: entered, held_off
+      integer :: j
+
+      entered = .false.
+      held_off = .false.
+      do j = 1, size(contacts%joint)
+         associate (block => contacts%joint(j)%block)
+            if (.not. all(contacts%search%outline%convex(block))) cycle
+            matters = no_matter*sqrt(minval(system%area(block)))
+            gap = block_gap(system%first_vertex, step%after%moved, block)
+            if (gap > matters .and. .not. all(step%state%face(j)%open)) held_off = .true.
+            if (gap > -matters) cycle
+            if (gap < block_gap(system%first_vertex, system%moved, block) - matters) &
+               & entered = .true.
+         end associate
+      end do
+      outcome%dt = step%dt
+      outcome%wrong_axes = (entered .or. held_off) .and. step%choices < max_choices
+      outcome%accepted = .not. outcome%wrong_axes
+      if (outcome%wrong_axes .or. .not. entered .or. step%dt <= shortest*march%longest) return
+      outcome = step_outcome_t(dt=step%dt/2.0_wp, was_cut=.true.)
+   end function check_axes
+
+   !> Check that a search at the end of a step finds no corners deeper inside than they were at its
+   !> beginning, by another edge than that of their contact, where a block with a notch is one of
+   !> the two
+   pure type(step_outcome_t) function check_penetration(settings, system, contacts, march, step)
+      type(settings_t), intent(in) :: settings
+      !> The blocks before the step
+      type(block_system_t), intent(in) :: system
+      !> The contacts before the step
+      type(contacts_t), intent(in) :: contacts
+      type(march_t), intent(in) :: march
+      type(step_context_t), intent(in) :: step
+      type(block_system_t) :: after
+      type(contacts_t) :: found
+      logical :: breaks
+
+      check_penetration = step_outcome_t(accepted=.true., dt=step%dt)
+      if (all(contacts%search%outline%convex) .or. step%dt <= shortest*march%longest) return
+      after = system
+      found = contacts
+      call update_contacts(step, settings, found, breaks)
+      call update_blocks(step, settings, after)
+      call renew_contacts(after, travel_of(after, settings, march), march%reach, &
+         & settings%penalty_ratio, settings%n_dof, found)
+      if (depth(after, found) > max(deep, 1.1_wp*depth(system, contacts))) &
+         & check_penetration = step_outcome_t(dt=step%dt/2.0_wp, was_cut=.true.)
+   end function check_penetration
+
+   !> How deep the deepest corner is, over the size of the smaller block
+   pure real(wp) function depth(system, contacts)
+      type(block_system_t), intent(in) :: system
+      type(contacts_t), intent(in) :: contacts
+      integer :: j
+
+      depth = 0.0_wp
+      do j = 1, size(contacts%joint)
+         associate (n => contacts%joint(j)%n_contact, block => contacts%joint(j)%block)
+            if (all(contacts%search%outline%convex(block))) cycle
+            depth = max(depth, -minval(contacts%gap(:n, j)) /sqrt(minval(system%area(block))))
+         end associate
+      end do
+   end function depth
+
+   !> Check that no open contact closes fast within the step, for the speed at that very moment
+   !> counts, and the time that is left after it; a step in which one does ends when the
+   !> two blocks, if nothing else touched them, would be near enough to count as touching
+   pure function check_impact(settings, system, contacts, equations, step) result(outcome)
+      type(settings_t), intent(in) :: settings
+      !> The blocks before the step
+      type(block_system_t), intent(in) :: system
+      !> The contacts before the step
+      type(contacts_t), intent(in) :: contacts
+      type(equations_t), intent(in) :: equations
+      type(step_context_t), intent(in) :: step
+      !> What the check says
+      type(step_outcome_t) :: outcome
+      real(wp) :: free(size(step%state%motion, 1), size(step%state%motion, 2))
+      real(wp) :: speed(3, size(contacts%joint)), acceleration(3, size(contacts%joint))
+      real(wp) :: near, earliest, least, meeting, time
+      integer :: e, i, j, k
+
+      outcome%accepted = .true.
+      outcome%dt = step%dt
+      free = 0.0_wp
+      do e = 1, size(free, 2)
+         do i = 1, 3
+            free(i, e) = equations%outer(i, e)/equations%mass(i, i, e)
+         end do
+      end do
+      associate (velocity => packed_velocity(system, size(free, 1)))
+         speed = relative_displacement(contacts%springs, velocity)
+         least = merge(0.0_wp, notable, settings%restitution > 0.0_wp) &
+            & *(kinetic_energy(equations, velocity) &
+            & + sum(equations%mass(1, 1, :))*step%slowest_impact**2/8.0_wp)
+      end associate
+      acceleration = relative_displacement(contacts%springs, free)
+      earliest = huge(earliest)
+      do j = 1, size(contacts%joint)
+         near = near_gap(system, contacts%joint(j)%block)
+         do k = 1, contacts%joint(j)%n_contact
+            if (step%state%face(j)%open(k) .or. contacts%gap(k, j) <= near) cycle
+            time = falling_time(contacts%gap(k, j) - near/2.0_wp, -speed(k, j), -acceleration(k, j))
+            meeting = -speed(k, j) - acceleration(k, j)*min(time, step%dt)
+            if (meeting <= step%slowest_impact) cycle
+            if (meeting**2 < 2.0_wp*least*ease_of(contacts%springs, equations, k, j)) cycle
+            earliest = min(earliest, time)
+         end do
+      end do
+      if (earliest > 2.0_wp*step%dt) return
+      outcome%accepted = .false.
+      outcome%dt = merge(earliest, step%dt/2.0_wp, earliest < 0.999_wp*step%dt)
+   end function check_impact
+
+   !> How easily an impact at a contact moves its two blocks
+   pure real(wp) function ease_of(springs, equations, k, j) result(ease)
+      !> The springs, for what the contact sees of the blocks
+      type(joint_springs_t), intent(in) :: springs
+      type(equations_t), intent(in) :: equations
+      !> Which contact of the joint
+      integer, intent(in) :: k
+      !> Number of the joint
+      integer, intent(in) :: j
+      integer :: e, i, side
+
+      ease = 0.0_wp
+      do side = 1, 2
+         e = springs%equation(side, j)
+         if (e == 0) cycle
+         do i = 1, 3
+            ease = ease + springs%row(i, k, side, j)**2/equations%mass(i, i, e)
+         end do
+      end do
+   end function ease_of
+
+   !> Time to cover a way at constant acceleration
+   pure real(wp) function falling_time(way, speed, acceleration)
+      !> The way, positive [m]
+      real(wp), intent(in) :: way
+      !> Speed at the beginning [m/s]
+      real(wp), intent(in) :: speed
+      !> Acceleration [m/s2]
+      real(wp), intent(in) :: acceleration
+      real(wp) :: square, root
+
+      falling_time = huge(falling_time)
+      square = speed**2 + 2.0_wp*acceleration*way
+      if (square < 0.0_wp) return
+      root = speed + sqrt(square)
+      if (root > 0.0_wp) falling_time = 2.0_wp*way/root
+   end function falling_time
 end module dda_step_check
