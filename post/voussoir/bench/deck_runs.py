@@ -68,25 +68,14 @@ def run_deck(
     command = [str(find_dda()), "run", "deck.nml", "--out", "out"]
     try:
         done = subprocess.run(
-            [*command, "--jobs", str(jobs)],
-            cwd=folder,
-            env={**os.environ, "OPENBLAS_NUM_THREADS": "1"},
-            capture_output=True,
-            text=True,
-            timeout=timeout,
-            check=False,
-        )
+            [*command, "--jobs", str(jobs)], cwd=folder, env={**os.environ, "OPENBLAS_NUM_THREADS": "1"},
+            capture_output=True, text=True, timeout=timeout, check=False)
     except subprocess.TimeoutExpired:
         return Finished(None, message=f"stopped after {timeout:g} s")
     out = folder / "out"
     return Finished(
-        done.returncode,
-        read_rows(out / "results.csv"),
-        _remarks(out / "log.txt"),
-        done.stderr.strip(),
-        tuple(path.name for path in sorted(out.glob("*.csv")) if _holds_no_number(path)),
-        out,
-    )
+        done.returncode, read_rows(out / "results.csv"), _remarks(out / "log.txt"), done.stderr.strip(),
+        tuple(path.name for path in sorted(out.glob("*.csv")) if _holds_no_number(path)), out)
 
 
 def read_rows(file: Path) -> list[Row]:

@@ -61,15 +61,9 @@ def stands_by_general(
     lower = np.tile([0.0, 0.0, -np.inf], joints)
     return _stands(
         linprog(
-            np.zeros(3 * joints),
-            A_ub=cone,
-            b_ub=np.zeros(2 * joints),
-            A_eq=balance,
-            b_eq=loads,
-            bounds=np.column_stack([lower, np.full(3 * joints, np.inf)]),
-            method=method,
-            options={"primal_feasibility_tolerance": tolerance},
-        )
+            np.zeros(3 * joints), A_ub=cone, b_ub=np.zeros(2 * joints), A_eq=balance, b_eq=loads,
+            bounds=np.column_stack([lower, np.full(3 * joints, np.inf)]), method=method,
+            options={"primal_feasibility_tolerance": tolerance})
     )
 
 

@@ -70,11 +70,9 @@ def assembly_of(run: Results, push: tuple[int, np.ndarray, np.ndarray] | None = 
         arm = point - centre[place[number]]
         live[place[number]] = *force, arm[0] * force[1] - arm[1] * force[0]
     ends = np.stack(
-        [np.column_stack((joints[f"x_{end}"], joints[f"y_{end}"])) for end in ("intrados", "extrados")], axis=1
-    )
+        [np.column_stack((joints[f"x_{end}"], joints[f"y_{end}"])) for end in ("intrados", "extrados")], axis=1)
     pairs = np.array(
-        [[place.get(int(joints[f"block_{side}"][row]), -1) for side in (1, 2)] for row in range(len(joints))]
-    )
+        [[place.get(int(joints[f"block_{side}"][row]), -1) for side in (1, 2)] for row in range(len(joints))])
     whole = {block.number: moments(block)[1] for block in blocks}
     for row in range(len(joints)):  # ends so that their normal points from the first block to the second
         first, second = (whole[int(joints[f"block_{side}"][row])] for side in (1, 2))
@@ -135,14 +133,10 @@ def limit_factor(assembly: Assembly, friction: float, method: str, tolerance: fl
     )
     options = {"primal_feasibility_tolerance": tolerance, "dual_feasibility_tolerance": tolerance}
     found = linprog(
-        np.append(np.zeros(3 * joints), -1.0),
-        A_ub=cone.tocsr(),
-        b_ub=np.zeros(2 * joints),
-        A_eq=balance.tocsr(),
+        np.append(np.zeros(3 * joints), -1.0), A_ub=cone.tocsr(), b_ub=np.zeros(2 * joints), A_eq=balance.tocsr(),
         b_eq=-assembly.dead.ravel() / scale,
         bounds=np.column_stack([np.append(np.tile([0.0, 0.0, -np.inf], joints), 0.0), np.full(3 * joints + 1, np.inf)]),
-        method=method,
-        options=options,
+        method=method, options=options
     )
     if found.status != 0:
         raise RuntimeError(f"HiGHS gave no answer: {found.message}")

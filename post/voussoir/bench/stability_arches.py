@@ -44,19 +44,13 @@ def exact_thickness(arch: dict[str, Any], friction_deg: float = 50.0) -> float |
         solution = theory.discrete_solution(np.radians(arch["joints_deg"]), **options)
     else:
         solution = theory.discrete_solution(
-            arch.get("voussoirs", 36), math.radians(arch.get("half_angle_deg", 90.0)), **options
-        )
+            arch.get("voussoirs", 36), math.radians(arch.get("half_angle_deg", 90.0)), **options)
     return {"found": solution.eta, "stands_always": 0.0, "none_admissible": None}[solution.status]
 
 
 def searched(
-    group: str,
-    name: str,
-    guard: str,
-    arch: dict[str, Any] | None = None,
-    friction_deg: float = 90.0,
-    current: bool = False,
-    **others: dict[str, Any],
+    group: str, name: str, guard: str, arch: dict[str, Any] | None = None, friction_deg: float = 90.0,
+    current: bool = False, **others: dict[str, Any]
 ) -> Scene:
     """A search for the critical thickness.
 
@@ -101,36 +95,21 @@ def _stiffness() -> Iterator[Scene]:
     for exponent in range(6, 19):
         for unknowns in (3, 6):
             yield searched(
-                "Young's modulus",
-                f"1e{exponent} Pa, {unknowns} unknowns",
-                guard,
-                material={"young": 10.0**exponent},
-                analysis={"unknowns": unknowns},
-            )
+                "Young's modulus", f"1e{exponent} Pa, {unknowns} unknowns", guard, material={"young": 10.0**exponent},
+                analysis={"unknowns": unknowns})
     for exponent in range(9, 19):
         yield searched(
-            "Young's modulus",
-            f"1e{exponent} Pa",
-            "collapse at 100 elastic motions",
-            current=True,
-            material={"young": 10.0**exponent},
-        )
+            "Young's modulus", f"1e{exponent} Pa", "collapse at 100 elastic motions", current=True,
+            material={"young": 10.0**exponent})
     for exponent in range(-2, 9):
         for unknowns in (3, 6):
             yield searched(
-                "penalty ratio",
-                f"1e{exponent}, {unknowns} unknowns",
-                "step no longer than 2 m/dt2 = 1e-13 p",
-                analysis={"penalty_ratio": 10.0**exponent, "unknowns": unknowns},
-            )
+                "penalty ratio", f"1e{exponent}, {unknowns} unknowns", "step no longer than 2 m/dt2 = 1e-13 p",
+                analysis={"penalty_ratio": 10.0**exponent, "unknowns": unknowns})
     for exponent in range(-2, 9, 2):
         yield searched(
-            "penalty ratio",
-            f"1e{exponent}",
-            "multipliers within the step",
-            current=True,
-            analysis={"penalty_ratio": 10.0**exponent},
-        )
+            "penalty ratio", f"1e{exponent}", "multipliers within the step", current=True,
+            analysis={"penalty_ratio": 10.0**exponent})
 
 
 def _friction() -> Iterator[Scene]:
@@ -143,13 +122,9 @@ def _friction() -> Iterator[Scene]:
         for angle in range(55, 90, 5):
             for current in (False, True):
                 yield searched(
-                    "friction, large angles",
-                    f"{half_angle:g} deg, friction {angle} deg",
-                    "convex cone first, then Coulomb by Anderson's acceleration",
-                    arch,
-                    friction_deg=float(angle),
-                    current=current,
-                )
+                    "friction, large angles", f"{half_angle:g} deg, friction {angle} deg",
+                    "convex cone first, then Coulomb by Anderson's acceleration", arch, friction_deg=float(angle),
+                    current=current)
 
 
 def _near_critical() -> Iterator[Scene]:
@@ -161,12 +136,9 @@ def _near_critical() -> Iterator[Scene]:
         for distance in (-1e-3, -1e-6, -1e-8, -1e-9, 1e-9, 1e-8, 1e-6, 1e-3):
             deck = {"arch": {**arch, "thickness_ratio": exact * (1.0 + distance)}}
             yield Scene(
-                "near critical",
-                f"{half_angle:g} deg, {voussoirs} voussoirs, {distance:+.0e}",
-                {**deck, "joint": {"friction_deg": 90.0}},
-                Verdict("stable" if distance > 0.0 else "collapsed"),
-                "rest follows the half angle and the rounding of weights",
-            )
+                "near critical", f"{half_angle:g} deg, {voussoirs} voussoirs, {distance:+.0e}",
+                {**deck, "joint": {"friction_deg": 90.0}}, Verdict("stable" if distance > 0.0 else "collapsed"),
+                "rest follows the half angle and the rounding of weights")
 
 
 def _shapes() -> Iterator[Scene]:
@@ -238,19 +210,12 @@ def _steps() -> Iterator[Scene]:
     for exponent in range(-7, 4):
         for current in (False, True)[: 1 + (exponent <= 0)]:
             yield searched(
-                "time step",
-                f"1e{exponent} s",
-                "steps grow by ten to the longest that is well conditioned",
-                current=current,
-                analysis={"time_step": 10.0**exponent},
-            )
+                "time step", f"1e{exponent} s", "steps grow by ten to the longest that is well conditioned",
+                current=current, analysis={"time_step": 10.0**exponent})
     for exponent in range(-15, -1):
         yield searched(
-            "tolerance",
-            f"1e{exponent}",
-            "bracket no narrower than rounding allows",
-            search={"parameter": "thickness_ratio", "tolerance": 10.0**exponent},
-        )
+            "tolerance", f"1e{exponent}", "bracket no narrower than rounding allows",
+            search={"parameter": "thickness_ratio", "tolerance": 10.0**exponent})
 
 
 def _refused() -> Iterator[Scene]:
@@ -311,11 +276,5 @@ def random_arches(count: int, seed: int) -> Iterator[Scene]:
         friction = float(np.round(chance.choice([chance.uniform(0.0, 89.8), 90.0]), 2))
         plan = {"analysis": {"unknowns": 6}} if chance.random() < 0.2 else {}
         yield searched(
-            "random",
-            f"{number}: {half_angle:g} deg, {shape}, friction {friction:g}",
-            "",
-            arch,
-            friction_deg=friction,
-            current=number % 5 == 0,
-            **plan,
-        )
+            "random", f"{number}: {half_angle:g} deg, {shape}, friction {friction:g}", "", arch, friction_deg=friction,
+            current=number % 5 == 0, **plan)

@@ -80,14 +80,9 @@ def _contrasts() -> Iterator[Scene]:
                 # moving blocks are strained by no more than the usual masonry
                 weight = WEIGHT if geometry == "reference" else WEIGHT * low / 5e9
                 yield block_scene(
-                    "contrast",
-                    f"{order}, E {low:g} and {high:g} Pa, {geometry}",
-                    guard,
-                    text,
+                    "contrast", f"{order}, E {low:g} and {high:g} Pa, {geometry}", guard, text,
                     weights([weight * (count - i) for i in range(count)], 1e-6),
-                    material={"unit_weight": weight, "poisson": 0.0},
-                    analysis={"geometry": geometry},
-                )
+                    material={"unit_weight": weight, "poisson": 0.0}, analysis={"geometry": geometry})
     yield from _mass_contrasts()
 
 
@@ -108,47 +103,27 @@ def _mass_contrasts() -> Iterator[Scene]:
                 ),
             ):
                 yield block_scene(
-                    "contrast",
-                    f"{name}, mass ratio {ratio:g}, {geometry}",
-                    guard,
-                    tower([1.0] * len(words), words=words) + heavy,
-                    weights(forces, 1e-6),
-                    **deck,
-                )
+                    "contrast", f"{name}, mass ratio {ratio:g}, {geometry}", guard,
+                    tower([1.0] * len(words), words=words) + heavy, weights(forces, 1e-6), **deck)
         for size in (1e-1, 1e-2, 10.0**-4.5):
             anvil = written_block(rectangle(-0.5, size, 1.0, 1.0))
             pebble = written_block(rectangle(-size / 2.0, 0.0, size, size))
             yield block_scene(
-                "contrast",
-                f"anvil on a pebble of {size:.2g} m, {geometry}",
-                guard,
-                BASE + pebble + anvil,
-                weights([1.0 + size**2, 1.0], 1e-6),
-                **deck,
-            )
+                "contrast", f"anvil on a pebble of {size:.2g} m, {geometry}", guard, BASE + pebble + anvil,
+                weights([1.0 + size**2, 1.0], 1e-6), **deck)
 
 
 def _pushed(
-    group: str,
-    name: str,
-    text: str,
-    exact: float,
-    friction_deg: float,
-    guard: str = "cone first, then Coulomb",
-    accept: float = 1e-4,
+    group: str, name: str, text: str, exact: float, friction_deg: float, guard: str = "cone first, then Coulomb",
+    accept: float = 1e-4
 ) -> Iterator[Scene]:
     """A search for the horizontal force over the weight, in both geometries."""
     for geometry, young in GEOMETRIES:
         yield block_scene(
-            group,
-            f"{name}, {geometry}",
-            guard,
-            text,
+            group, f"{name}, {geometry}", guard, text,
             Critical(exact) if geometry == "reference" else Shifted(exact, accept * exact),
-            joint={"friction_deg": friction_deg},
-            material={"unit_weight": WEIGHT, "young": young},
-            analysis={"geometry": geometry},
-            search={"parameter": "horizontal_coefficient", "low": 0.0, "high": 2.0},
+            joint={"friction_deg": friction_deg}, material={"unit_weight": WEIGHT, "young": young},
+            analysis={"geometry": geometry}, search={"parameter": "horizontal_coefficient", "low": 0.0, "high": 2.0}
         )
 
 
@@ -157,14 +132,9 @@ def _stacks() -> Iterator[Scene]:
     for count in (1, 3, 10, 100):
         for geometry, young in GEOMETRIES:
             yield block_scene(
-                "stack",
-                f"{count} cubes, {geometry}",
-                "direct factor of the chain",
-                tower([1.0] * count),
+                "stack", f"{count} cubes, {geometry}", "direct factor of the chain", tower([1.0] * count),
                 weights([WEIGHT * (count - i) for i in range(count)]),
-                material={"unit_weight": WEIGHT, "young": young, "poisson": 0.0},
-                analysis={"geometry": geometry},
-            )
+                material={"unit_weight": WEIGHT, "young": young, "poisson": 0.0}, analysis={"geometry": geometry})
         for friction in (5.0, 85.0):
             exact = min(math.tan(math.radians(friction)), 1.0 / count)
             name = f"{count} cubes pushed, friction {friction:g} deg"
@@ -185,14 +155,10 @@ def _wedge(half_deg: float) -> Iterator[Scene]:
     text = "".join(written_block(side, "fixed") for side in sides) + written_block(wedge)
     for geometry, young in GEOMETRIES:
         yield block_scene(
-            "stack",
-            f"wedge in a notch of {2 * half_deg:g} deg, no friction, {geometry}",
-            "corners in a notch are the corner of no contact",
-            text,
-            weights([force, force], 1e-8 if geometry == "reference" else 1e-6),
-            joint={"friction_deg": 0.0},
-            material={"unit_weight": WEIGHT, "young": young},
-            analysis={"geometry": geometry},
+            "stack", f"wedge in a notch of {2 * half_deg:g} deg, no friction, {geometry}",
+            "corners in a notch are the corner of no contact", text,
+            weights([force, force], 1e-8 if geometry == "reference" else 1e-6), joint={"friction_deg": 0.0},
+            material={"unit_weight": WEIGHT, "young": young}, analysis={"geometry": geometry}
         )
 
 
@@ -204,36 +170,23 @@ def _slopes() -> Iterator[Scene]:
         for distance in (-0.1, -1e-3, -1e-6, 1e-6, 1e-3, 0.1):
             for geometry, young in GEOMETRIES:
                 yield block_scene(
-                    "slope",
-                    f"{slope:g} deg, friction {distance:+g} deg, {geometry}",
-                    "rest is judged by what is left of balance",
-                    BASE + (low if slope > 70.0 else block),
-                    Verdict("stable" if distance > 0.0 else "collapsed"),
-                    joint={"friction_deg": slope + distance},
-                    material={"young": young},
-                    analysis={"geometry": geometry},
-                    load={"gravity_direction_deg": -90.0 + slope},
+                    "slope", f"{slope:g} deg, friction {distance:+g} deg, {geometry}",
+                    "rest is judged by what is left of balance", BASE + (low if slope > 70.0 else block),
+                    Verdict("stable" if distance > 0.0 else "collapsed"), joint={"friction_deg": slope + distance},
+                    material={"young": young}, analysis={"geometry": geometry},
+                    load={"gravity_direction_deg": -90.0 + slope}
                 )
         yield block_scene(
-            "slope",
-            f"{slope:g} deg, searched",
-            "the bracket holds the angle of friction itself",
-            BASE + (low if slope > 70.0 else block),
-            Critical(slope),
-            load={"gravity_direction_deg": -90.0 + slope},
-            search={"parameter": "friction_deg", "low": 0.0, "high": 89.0},
-        )
+            "slope", f"{slope:g} deg, searched", "the bracket holds the angle of friction itself",
+            BASE + (low if slope > 70.0 else block), Critical(slope), load={"gravity_direction_deg": -90.0 + slope},
+            search={"parameter": "friction_deg", "low": 0.0, "high": 89.0})
     for friction in (0.0, 1e-6, 89.9, 90.0):
         for geometry, young in GEOMETRIES:
             yield block_scene(
-                "slope",
-                f"flat, friction {friction:g} deg, {geometry}",
-                "no force, no motion",
+                "slope", f"flat, friction {friction:g} deg, {geometry}", "no force, no motion",
                 BASE + block + "measure 0.5 0.2\n",
                 Measured((verdict("stable", "verdict"), Check("drift [m]", 0.0, _aside, 1e-9, scale=1.0))),
-                joint={"friction_deg": friction},
-                material={"young": young},
-                analysis={"geometry": geometry},
+                joint={"friction_deg": friction}, material={"young": young}, analysis={"geometry": geometry}
             )
     for friction in (60.0, 89.9):
         tall = BASE + written_block(rectangle(0.0, 0.0, 0.5, 1.0))
@@ -258,44 +211,24 @@ def _corners() -> Iterator[Scene]:
         post = BASE + written_block(rectangle(0.0, 0.0, 1.0, 1.0))
         over = written_block(rectangle(1.0, 1.0, 1.0, 1.0))
         yield block_scene(
-            "corners",
-            f"corner on corner and nothing else, {geometry}",
-            guard,
-            post + over,
-            Refused("has no support"),
-            **more,
-        )
+            "corners", f"corner on corner and nothing else, {geometry}", guard, post + over, Refused("has no support"),
+            **more)
         side = written_block(rectangle(1.0, 0.0, 1.0, 1.0))
         bridge = [(0.5, 1.0), (1.5, 1.0), (1.5, 2.0), (0.5, 2.0)]
         yield block_scene(
-            "corners",
-            f"an edge over two corners that meet, {geometry}",
-            guard,
-            post + side + written_block(bridge),
-            Verdict("stable"),
-            **more,
-        )
+            "corners", f"an edge over two corners that meet, {geometry}", guard, post + side + written_block(bridge),
+            Verdict("stable"), **more)
         roof = [(0.0, 0.0), (2.0, 0.0), (1.0, 2.0)]
         saddle = [(1.0, 2.0), (2.0, 4.0), (0.0, 4.0)]
         yield block_scene(
-            "corners",
-            f"a wedge upside down on the tip of another, {geometry}",
-            guard,
-            BASE + written_block(roof) + written_block(saddle),
-            Refused("has no support"),
-            **more,
-        )
+            "corners", f"a wedge upside down on the tip of another, {geometry}", guard,
+            BASE + written_block(roof) + written_block(saddle), Refused("has no support"), **more)
     for geometry, young in GEOMETRIES:
         for tilt in (-1.0, -1e-4, 1.0, 30.0):
             yield block_scene(
-                "corners",
-                f"a square on its corner, gravity turned by {tilt:g} deg, {geometry}",
-                "one corner holds no moment",
-                BASE + written_block(square),
-                Verdict("collapsed"),
-                load={"gravity_direction_deg": -90.0 + tilt},
-                analysis={"geometry": geometry},
-                material={"young": young},
+                "corners", f"a square on its corner, gravity turned by {tilt:g} deg, {geometry}",
+                "one corner holds no moment", BASE + written_block(square), Verdict("collapsed"),
+                load={"gravity_direction_deg": -90.0 + tilt}, analysis={"geometry": geometry}, material={"young": young}
             )
 
 
@@ -337,14 +270,8 @@ def _indeterminate() -> Iterator[Scene]:
         row = [rectangle(-1.0 + 0.5 * i, 0.0, 0.5, 1.0) for i in range(4)]
         for friction, word in ((89.9, "stable"), (0.0, "collapsed")):
             yield block_scene(
-                "indeterminate",
-                f"four blocks between two walls, friction {friction:g} deg, {geometry}",
-                guard,
-                jambs + "".join(map(written_block, row)),
-                Verdict(word),
-                joint={"friction_deg": friction},
-                **more,
-            )
+                "indeterminate", f"four blocks between two walls, friction {friction:g} deg, {geometry}", guard,
+                jambs + "".join(map(written_block, row)), Verdict(word), joint={"friction_deg": friction}, **more)
 
 
 def _slivers() -> Iterator[Scene]:
@@ -358,26 +285,15 @@ def _slivers() -> Iterator[Scene]:
                 if geometry == "current" and name == "upright" and ratio > 1e4:
                     continue
                 yield block_scene(
-                    "slender block",
-                    f"{ratio:g}, {name}, {geometry}",
-                    guard,
-                    text,
-                    weights([weight], 1e-6),
-                    material={"unit_weight": WEIGHT, "young": young, "poisson": 0.0},
-                    analysis={"geometry": geometry},
-                )
+                    "slender block", f"{ratio:g}, {name}, {geometry}", guard, text, weights([weight], 1e-6),
+                    material={"unit_weight": WEIGHT, "young": young, "poisson": 0.0}, analysis={"geometry": geometry})
     for thickness in (1e-3, 1e-5, 1e-7):
         layers = rectangle(-0.5, 0.0, 1.0, thickness), rectangle(-0.5, thickness, 1.0, 1.0)
         for geometry, young in GEOMETRIES:
             yield block_scene(
-                "slender block",
-                f"a block on a sheet of {thickness:g} m, {geometry}",
-                guard,
-                BASE + "".join(map(written_block, layers)),
-                weights([WEIGHT * (1.0 + thickness), WEIGHT], 1e-6),
-                material={"unit_weight": WEIGHT, "young": young, "poisson": 0.0},
-                analysis={"geometry": geometry},
-            )
+                "slender block", f"a block on a sheet of {thickness:g} m, {geometry}", guard,
+                BASE + "".join(map(written_block, layers)), weights([WEIGHT * (1.0 + thickness), WEIGHT], 1e-6),
+                material={"unit_weight": WEIGHT, "young": young, "poisson": 0.0}, analysis={"geometry": geometry})
 
 
 def _far_away() -> Iterator[Scene]:
@@ -395,15 +311,10 @@ def _far_away() -> Iterator[Scene]:
                 # the corners are rounded to the spacing of numbers at their place
                 spacing = 4.0 * math.ulp(offset) / size
                 far = block_scene(
-                    "far away",
-                    f"{name}, {geometry}",
-                    guard,
-                    text,
-                    Shifted(exact, (1e-8 if geometry == "reference" else 1e-4) + spacing),
-                    joint={"friction_deg": 60.0},
-                    material={"unit_weight": WEIGHT, "young": young},
-                    analysis={"geometry": geometry},
-                    search={"parameter": "horizontal_coefficient"},
+                    "far away", f"{name}, {geometry}", guard, text,
+                    Shifted(exact, (1e-8 if geometry == "reference" else 1e-4) + spacing), joint={"friction_deg": 60.0},
+                    material={"unit_weight": WEIGHT, "young": young}, analysis={"geometry": geometry},
+                    search={"parameter": "horizontal_coefficient"}
                 )
                 yield far
     for scale in (1e-9, 1e-6, 1e6):
@@ -412,15 +323,10 @@ def _far_away() -> Iterator[Scene]:
             text += written_block(rectangle(0.0, i * scale, scale, scale))
         for geometry, young in GEOMETRIES:
             yield block_scene(
-                "far away",
-                f"three cubes of {scale:g} m, pushed, {geometry}",
-                "every threshold is a ratio",
-                text,
-                Shifted(1.0 / 3.0, 1e-8 if geometry == "reference" else 1e-4),
-                joint={"friction_deg": 60.0},
-                material={"unit_weight": WEIGHT, "young": young * scale},
-                analysis={"geometry": geometry},
-                search={"parameter": "horizontal_coefficient"},
+                "far away", f"three cubes of {scale:g} m, pushed, {geometry}", "every threshold is a ratio", text,
+                Shifted(1.0 / 3.0, 1e-8 if geometry == "reference" else 1e-4), joint={"friction_deg": 60.0},
+                material={"unit_weight": WEIGHT, "young": young * scale}, analysis={"geometry": geometry},
+                search={"parameter": "horizontal_coefficient"}
             )
 
 
@@ -431,14 +337,8 @@ def _directions() -> Iterator[Scene]:
         more = {"analysis": {"geometry": geometry}, "material": {"young": young}}
         for direction in (90.0, 0.0, 180.0):
             yield block_scene(
-                "direction",
-                f"a cube, gravity {direction:g} deg, {geometry}",
-                guard,
-                tower([1.0]),
-                Verdict("collapsed"),
-                load={"gravity_direction_deg": direction},
-                **more,
-            )
+                "direction", f"a cube, gravity {direction:g} deg, {geometry}", guard, tower([1.0]),
+                Verdict("collapsed"), load={"gravity_direction_deg": direction}, **more)
         for turn in (17.3, 90.0, 180.0, -133.0):
             c, s = math.cos(math.radians(turn)), math.sin(math.radians(turn))
 
@@ -450,12 +350,6 @@ def _directions() -> Iterator[Scene]:
                 text += written_block(turned(rectangle(0.0, i * 1.0, 1.0, 1.0)))
             for lean, word in ((-18.4, "stable"), (-18.5, "collapsed")):
                 yield block_scene(
-                    "direction",
-                    f"three cubes leaning by {-lean:g} of 18.435 deg, turned {turn:g}, {geometry}",
-                    guard,
-                    text,
-                    Verdict(word),
-                    joint={"friction_deg": 60.0},
-                    load={"gravity_direction_deg": (turn - 90.0 + lean + 360.0) % 360.0},
-                    **more,
-                )
+                    "direction", f"three cubes leaning by {-lean:g} of 18.435 deg, turned {turn:g}, {geometry}", guard,
+                    text, Verdict(word), joint={"friction_deg": 60.0},
+                    load={"gravity_direction_deg": (turn - 90.0 + lean + 360.0) % 360.0}, **more)

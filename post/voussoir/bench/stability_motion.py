@@ -35,14 +35,8 @@ def end(axis: int, point: int = 1) -> Callable[[Outcome], float]:
 
 
 def moving(
-    name: str,
-    guard: str,
-    blocks: str,
-    checks: tuple[Check, ...],
-    step: float,
-    duration: float,
-    group: str = "motion",
-    **groups: dict[str, Any],
+    name: str, guard: str, blocks: str, checks: tuple[Check, ...], step: float, duration: float, group: str = "motion",
+    **groups: dict[str, Any]
 ) -> Scene:
     """A scene of blocks that move in time, with its energies."""
     analysis = {
@@ -80,25 +74,15 @@ def _steps() -> Iterator[Scene]:
         # the block's strain when its weight comes on is a millionth of a metre
         way = slide * time**2 / 2.0
         yield moving(
-            f"slope in steps of {step:g} s",
-            "friction settles within the step",
-            _BASE + block + "measure 1.0 0.25\n",
-            (Check("way down 30 deg [m]", way, end(0), 1e-3, scale=way + 1e-3),),
-            step,
-            time,
-            joint={"friction_deg": 20.0},
-            load={"gravity_direction_deg": -60.0},
-            analysis={"max_displacement_ratio": 1.0},
+            f"slope in steps of {step:g} s", "friction settles within the step", _BASE + block + "measure 1.0 0.25\n",
+            (Check("way down 30 deg [m]", way, end(0), 1e-3, scale=way + 1e-3),), step, time,
+            joint={"friction_deg": 20.0}, load={"gravity_direction_deg": -60.0},
+            analysis={"max_displacement_ratio": 1.0}
         )
         still = Check("way [m]", 0.0, _farthest, 2e-6, scale=1.0)
         yield moving(
-            f"a block at rest, 100 steps of {step:g} s",
-            "an impact takes all speed",
-            _BASE + block + "measure 2.0 0.5\n",
-            (still,),
-            step,
-            100.0 * step,
-        )
+            f"a block at rest, 100 steps of {step:g} s", "an impact takes all speed",
+            _BASE + block + "measure 2.0 0.5\n", (still,), step, 100.0 * step)
 
 
 def _farthest(outcome: Outcome) -> float:
@@ -115,32 +99,17 @@ def _flights() -> Iterator[Scene]:
         time = min(1.0, 1e3 / speed)
         way = Check("way [m]", speed * time, end(0), 1e-10)
         yield moving(
-            f"flight at {speed:g} m/s",
-            "",
-            text,
-            (way,),
-            0.01,
-            time,
-            load={"gravity": 0.0},
-            analysis={"max_displacement_ratio": 1.0},
-            material={"young": 1e12},
-        )
+            f"flight at {speed:g} m/s", "", text, (way,), 0.01, time, load={"gravity": 0.0},
+            analysis={"max_displacement_ratio": 1.0}, material={"young": 1e12})
     for spin in (1e-3, 1.0, 1e2, 1e3):
         text = written_block(square, f"velocity 0 0 {spin!r}") + corners
         # rho w^2 L^2/E is the strain that the spin really makes
         real = DENSITY * spin**2 / 1e15
         turns = Check("growth of area", 0.0, _growth, 1e-10 + real, scale=1.0)
         yield moving(
-            f"spin of {spin:g} rad/s, a hundred turns",
-            "exact rotation",
-            text,
-            (turns,),
-            0.02 * math.pi / spin,
-            200.0 * math.pi / spin,
-            load={"gravity": 0.0},
-            analysis={"max_displacement_ratio": 1.0},
-            material={"young": 1e15},
-        )
+            f"spin of {spin:g} rad/s, a hundred turns", "exact rotation", text, (turns,), 0.02 * math.pi / spin,
+            200.0 * math.pi / spin, load={"gravity": 0.0}, analysis={"max_displacement_ratio": 1.0},
+            material={"young": 1e15})
 
 
 def _growth(outcome: Outcome) -> float:
@@ -166,16 +135,8 @@ def _projectiles() -> Iterator[Scene]:
                 last = 4.95 if held else 4.95 + share * (10.0 - 4.95)
                 name = f"{speed:g} m/s at a {'held' if held else 'free'} wall, steps of {step:g} s"
                 yield moving(
-                    name,
-                    guard,
-                    text,
-                    (Check("way [m]", last, end(0), 1e-3),),
-                    step,
-                    time,
-                    group="projectile",
-                    load={"gravity": 0.0},
-                    material={"young": 1e13},
-                )
+                    name, guard, text, (Check("way [m]", last, end(0), 1e-3),), step, time, group="projectile",
+                    load={"gravity": 0.0}, material={"young": 1e13})
 
 
 def _bounces() -> Iterator[Scene]:
@@ -189,16 +150,8 @@ def _bounces() -> Iterator[Scene]:
             height = restitution**2
             top = Check("height [m]", height, lambda outcome: 1.0 + float(outcome.end(1)[1]), 1e-5, scale=1.0)
             yield moving(
-                f"restitution {restitution:g}, steps of {step:g} s",
-                guard,
-                text,
-                (top,),
-                step,
-                time,
-                group="impact",
-                material={"young": 1e12},
-                analysis={"restitution": restitution},
-            )
+                f"restitution {restitution:g}, steps of {step:g} s", guard, text, (top,), step, time, group="impact",
+                material={"young": 1e12}, analysis={"restitution": restitution})
     for ratio in (1.0, 1e3, 1e6, 1e9):
         for restitution in (0.0, 1.0):
             text = written_block(rectangle(0.0, 0.0, 1.0, 1.0), "velocity 1 0 0")
@@ -208,20 +161,11 @@ def _bounces() -> Iterator[Scene]:
             other = (1.0 + restitution) / (1.0 + ratio)
             checks = tuple(
                 Check(f"speed of block {point} [m/s]", exact, _speed(point), 1e-5, scale=1.0)
-                for point, exact in ((1, first), (2, other))
-            )
+                for point, exact in ((1, first), (2, other)))
             yield moving(
-                f"collision, mass ratio {ratio:g}, restitution {restitution:g}",
-                "impulses in the metric of mass",
-                text,
-                checks,
-                0.01,
-                1.0,
-                group="impact",
-                load={"gravity": 0.0},
-                material={"young": 1e12},
-                analysis={"restitution": restitution},
-            )
+                f"collision, mass ratio {ratio:g}, restitution {restitution:g}", "impulses in the metric of mass", text,
+                checks, 0.01, 1.0, group="impact", load={"gravity": 0.0}, material={"young": 1e12},
+                analysis={"restitution": restitution})
 
 
 def _speed(point: int) -> Callable[[Outcome], float]:
@@ -240,37 +184,21 @@ def _rests() -> Iterator[Scene]:
     four = [rectangle(x, y, 1.0, 1.0) for y in (0.0, 1.0) for x in (-1.0, 0.0)]
     still = Check("farthest way [m]", 0.0, _farthest, 1e-5, scale=1.0)
     yield moving(
-        "four cubes at one point, 10000 steps",
-        "entrances stay what they were",
-        _BASE + "".join(map(written_block, four)) + "measure 1.0 2.0\n",
-        (still,),
-        0.01,
-        100.0,
-        group="rest",
-    )
+        "four cubes at one point, 10000 steps", "entrances stay what they were",
+        _BASE + "".join(map(written_block, four)) + "measure 1.0 2.0\n", (still,), 0.01, 100.0, group="rest")
     for friction in (0.0, 89.9):
         yield moving(
-            f"a flat table, friction {friction:g} deg, 10000 steps",
-            "no force, no motion",
+            f"a flat table, friction {friction:g} deg, 10000 steps", "no force, no motion",
             _BASE + written_block(rectangle(0.0, 0.0, 2.0, 0.5)) + "measure 1.0 0.25\n",
-            (Check("drift [m]", 0.0, end(0), 1e-9, scale=1.0),),
-            0.01,
-            100.0,
-            group="rest",
-            joint={"friction_deg": friction},
+            (Check("drift [m]", 0.0, end(0), 1e-9, scale=1.0),), 0.01, 100.0, group="rest",
+            joint={"friction_deg": friction}
         )
     dominoes = [written_block(rectangle(0.4 * i, 0.0, 0.15, 1.0)) for i in range(1, 12)]
     dominoes.append(written_block(rectangle(0.0, 0.0, 0.15, 1.0), "velocity 0.5 0 -1.0"))
     yield moving(
-        "a row of 12 dominoes",
-        "what meets is found before it meets",
+        "a row of 12 dominoes", "what meets is found before it meets",
         _BASE + "".join(dominoes) + "measure 4.475 0.1\nmeasure 4.475 0.9\n",
-        (Check("last domino", "fallen", _fallen, 0.0),),
-        0.005,
-        5.0,
-        group="rest",
-        joint={"friction_deg": 20.0},
-    )
+        (Check("last domino", "fallen", _fallen, 0.0),), 0.005, 5.0, group="rest", joint={"friction_deg": 20.0})
 
 
 def _fallen(outcome: Outcome) -> str:
@@ -292,26 +220,12 @@ def _stiff_motion() -> Iterator[Scene]:
         yield moving(name, "", _BASE + block, way, 0.005, 1.0, material=material, **more)
     for exponent in (-2, 0, 4, 6, 8):
         yield moving(
-            f"slope, penalty ratio 1e{exponent}",
-            "forces of contacts are multipliers",
-            _BASE + block,
-            way,
-            0.005,
-            1.0,
-            analysis={"penalty_ratio": 10.0**exponent},
-            **more,
-        )
+            f"slope, penalty ratio 1e{exponent}", "forces of contacts are multipliers", _BASE + block, way, 0.005, 1.0,
+            analysis={"penalty_ratio": 10.0**exponent}, **more)
     for exponent in (-9, -3, 6, 9):
         yield moving(
-            f"slope, density 1e{exponent} kg/m3",
-            "",
-            _BASE + block,
-            way,
-            0.005,
-            1.0,
-            material={"density": 10.0**exponent, "young": 10.0 ** (exponent + 6)},
-            **more,
-        )
+            f"slope, density 1e{exponent} kg/m3", "", _BASE + block, way, 0.005, 1.0,
+            material={"density": 10.0**exponent, "young": 10.0 ** (exponent + 6)}, **more)
     far = [(x + 1e7, y + 1e7) for x, y in rectangle(0.0, 0.0, 2.0, 0.5)]
     base = [(x + 1e7, y + 1e7) for x, y in rectangle(-10.0, -1.0, 60.0, 1.0)]
     text = written_block(base, "fixed") + written_block(far) + "measure 10000001.0 10000000.25\n"

@@ -52,15 +52,9 @@ def _slope(number: int, chance: np.random.Generator) -> Scene:
     falls = slope >= friction or math.tan(math.radians(slope)) >= width / height
     geometry, groups = _geometry(chance)
     return block_scene(
-        "random blocks",
-        f"{number}: slope {slope:g} deg, friction {friction:g}, {width:g} x {height:g} m, {geometry}",
-        "",
-        BASE + written_block(rectangle(0.0, 0.0, width, height)),
-        Verdict("collapsed" if falls else "stable"),
-        joint={"friction_deg": friction},
-        load={"gravity_direction_deg": slope - 90.0},
-        **groups,
-    )
+        "random blocks", f"{number}: slope {slope:g} deg, friction {friction:g}, {width:g} x {height:g} m, {geometry}",
+        "", BASE + written_block(rectangle(0.0, 0.0, width, height)), Verdict("collapsed" if falls else "stable"),
+        joint={"friction_deg": friction}, load={"gravity_direction_deg": slope - 90.0}, **groups)
 
 
 def _tower(number: int, chance: np.random.Generator) -> Scene:
@@ -78,20 +72,13 @@ def _tower(number: int, chance: np.random.Generator) -> Scene:
     level = np.concatenate([[0.0], np.cumsum(heights)])
     text = BASE + "".join(
         written_block(rectangle(float(x), float(y), float(w), float(h)))
-        for x, y, w, h in zip(left, level, widths, heights)
-    )
+        for x, y, w, h in zip(left, level, widths, heights))
     geometry, groups = _geometry(chance)
     expectation: Expectation = Critical(exact) if geometry == "reference" else Shifted(exact, 1e-4)
     return block_scene(
-        "random blocks",
-        f"{number}: tower of {count}, friction {friction:g}, {geometry}",
-        "",
-        text,
-        expectation,
-        joint={"friction_deg": friction},
-        search={"parameter": "horizontal_coefficient", "low": 0.0, "high": 2.0},
-        **groups,
-    )
+        "random blocks", f"{number}: tower of {count}, friction {friction:g}, {geometry}", "", text, expectation,
+        joint={"friction_deg": friction}, search={"parameter": "horizontal_coefficient", "low": 0.0, "high": 2.0},
+        **groups)
 
 
 def tower_push(left: np.ndarray, widths: np.ndarray, heights: np.ndarray, friction: float) -> float:
@@ -140,14 +127,8 @@ def _wall(number: int, chance: np.random.Generator) -> Scene:
     )
     groups["material"]["poisson"] = 0.0
     return block_scene(
-        "random blocks",
-        f"{number}: wall of {courses} x {bricks}, friction {friction:g}, {geometry}",
-        "",
-        text,
-        Measured(checks),
-        joint={"friction_deg": friction},
-        **groups,
-    )
+        "random blocks", f"{number}: wall of {courses} x {bricks}, friction {friction:g}, {geometry}", "", text,
+        Measured(checks), joint={"friction_deg": friction}, **groups)
 
 
 def _lump(number: int, chance: np.random.Generator) -> Scene:
@@ -168,15 +149,9 @@ def _lump(number: int, chance: np.random.Generator) -> Scene:
     geometry, groups = _geometry(chance)
     expectation: Expectation = Critical(exact) if geometry == "reference" else Shifted(exact, 1e-4)
     return block_scene(
-        "random blocks",
-        f"{number}: lump of {len(corners)} corners, friction {friction:g}, {geometry}",
-        "",
-        BASE + written_block([(float(x), float(y)) for x, y in corners]),
-        expectation,
-        joint={"friction_deg": friction},
-        search={"parameter": "horizontal_coefficient", "low": 0.0, "high": 10.0},
-        **groups,
-    )
+        "random blocks", f"{number}: lump of {len(corners)} corners, friction {friction:g}, {geometry}", "",
+        BASE + written_block([(float(x), float(y)) for x, y in corners]), expectation, joint={"friction_deg": friction},
+        search={"parameter": "horizontal_coefficient", "low": 0.0, "high": 10.0}, **groups)
 
 
 def _is_convex(corner: np.ndarray) -> bool:
@@ -197,14 +172,10 @@ def _pushed_wall(number: int, chance: np.random.Generator) -> Scene:
     geometry, groups = _geometry(chance)
     expectation: Expectation = Critical(exact) if geometry == "reference" else Shifted(exact, 1e-4)
     return block_scene(
-        "random blocks",
-        f"{number}: wall of {courses} x {bricks} pushed, friction {friction:g}, {geometry}",
-        "",
-        BASE + "".join(map(written_block, wall(courses, bricks, length, height)[0])),
-        expectation,
-        joint={"friction_deg": friction},
-        search={"parameter": "horizontal_coefficient", "low": 0.0, "high": 2.0},
-        **groups,
+        "random blocks", f"{number}: wall of {courses} x {bricks} pushed, friction {friction:g}, {geometry}", "",
+        BASE + "".join(map(written_block, wall(courses, bricks, length, height)[0])), expectation,
+        joint={"friction_deg": friction}, search={"parameter": "horizontal_coefficient", "low": 0.0, "high": 2.0},
+        **groups
     )
 
 
@@ -217,16 +188,10 @@ def _slide(number: int, chance: np.random.Generator) -> Scene:
     text = BASE.replace("10.0", "30.0") + written_block(rectangle(0.0, 0.0, 3.0, 0.5))
     step = float(10.0 ** chance.uniform(-3.0, -1.0))
     return moving(
-        f"{number}: slide down {slope:g} deg, friction {friction:g}, steps of {step:.1e} s",
-        "",
-        text + "measure 1.5 0.25\n",
-        (Check("way in a second [m]", pulled / 2.0, end(0), 1e-3),),
-        step,
-        1.0,
-        group="random blocks",
-        joint={"friction_deg": friction},
-        load={"gravity_direction_deg": slope - 90.0},
-        analysis={"max_displacement_ratio": 1.0},
+        f"{number}: slide down {slope:g} deg, friction {friction:g}, steps of {step:.1e} s", "",
+        text + "measure 1.5 0.25\n", (Check("way in a second [m]", pulled / 2.0, end(0), 1e-3),), step, 1.0,
+        group="random blocks", joint={"friction_deg": friction}, load={"gravity_direction_deg": slope - 90.0},
+        analysis={"max_displacement_ratio": 1.0}
     )
 
 
@@ -246,15 +211,8 @@ def _flight(number: int, chance: np.random.Generator) -> Scene:
         Check("v after a second [m]", vy - GRAVITY / 2.0, end(1), 1e-8, scale=1.0),
     )
     return moving(
-        f"{number}: flight of {corners} corners, spin {spin:g} rad/s, steps of {step:.1e} s",
-        "",
-        text,
-        checks,
-        step,
-        1.0,
-        group="random blocks",
-        analysis={"max_displacement_ratio": 1.0},
-    )
+        f"{number}: flight of {corners} corners, spin {spin:g} rad/s, steps of {step:.1e} s", "", text, checks, step,
+        1.0, group="random blocks", analysis={"max_displacement_ratio": 1.0})
 
 
 def _centre(corner: np.ndarray) -> tuple[float, float]:

@@ -21,10 +21,8 @@ def _assemblies() -> list[Scene]:
     force = "normal force of joint {} [N/m]"
     stack = tuple(Check(force.format(k + 1), _WEIGHT * (10 - k), _normal(k), 1e-8) for k in (0, 4, 9))
     notch = tuple(
-        Check(f"{force.format(k + 1)[:-6]}, friction {phi} deg [N/m]", exact, _normal(k), 1e-8, case)
-        for case, (phi, exact) in enumerate(((phi, _in_notch(phi)) for phi in (0, 10, 20)), 1)
-        for k in (0, 1)
-    )
+        Check(f"{force.format(k + 1)[:-6]}, friction {phi} deg [N/m]", exact, _normal(k), 1e-8, case) for case,
+        (phi, exact) in enumerate(((phi, _in_notch(phi)) for phi in (0, 10, 20)), 1) for k in (0, 1))
     scenes = []
     for more in ((), MOVED):
         scenes.append(Scene(ASSEMBLIES, "stack", "weight above", stack, more))
@@ -128,8 +126,7 @@ def _pressed() -> list[Scene]:
         Scene(ASSEMBLIES, "voussoir_beam", "w LL/(8h)", beam),
         Scene(ASSEMBLIES, "voussoir_beam", "w LL/(8 (h - z))", (sagging,), MOVED),
         Scene(
-            ASSEMBLIES, "snap_through", "most of 2 EA (z/l) (l0 - l)/l0", (critical("unit weight [N/m3]", bar, 1e-4),)
-        ),
+            ASSEMBLIES, "snap_through", "most of 2 EA (z/l) (l0 - l)/l0", (critical("unit weight [N/m3]", bar, 1e-4),)),
     ]
 
 

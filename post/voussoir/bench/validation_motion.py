@@ -176,12 +176,8 @@ def _flights() -> list[Scene]:
         ),
         *_spins(strain, area),
         Scene(
-            FLIGHT,
-            "damped_fall",
-            "-(g/c) (t - (1 - exp(-c t))/c)",
-            (Check("v after 10 s [m]", terminal, _moving(1), 1e-9),),
-            rate=True,
-        ),
+            FLIGHT, "damped_fall", "-(g/c) (t - (1 - exp(-c t))/c)",
+            (Check("v after 10 s [m]", terminal, _moving(1), 1e-9),), rate=True),
         Scene(FLIGHT, "momentum", "constant", _momentum_checks(), rate=True),
     ]
 
@@ -200,8 +196,7 @@ def _slides() -> list[Scene]:
         Check(s.format(*row), slide(*row) / 2.0, _way_at(1.0), 1e-3, case) for case, row in enumerate(cases, 1)
     ) + tuple(
         Check(s.format(*row).replace("1 s", "2 s"), slide(*row) * 2.0, _way_at(2.0), 1e-3, case)
-        for case, row in enumerate(cases, 1)
-    )
+        for case, row in enumerate(cases, 1))
     stop = -4.0 / (2.0 * slide(20.0, 30.0, up=True))
     top = 2.0 / slide(30.0, 15.0, up=True)
     back = slide(30.0, 15.0) * (1.0 - top) ** 2 / 2.0 - top
@@ -216,8 +211,7 @@ def _slides() -> list[Scene]:
     states = tuple(
         verdict("collapsed" if case < 3 else "stable", f"{phi}, {geometry} geometry", case)
         for case, (phi, geometry) in enumerate(
-            ((phi, g) for phi in ("29.9 deg", "30.1 deg") for g in ("reference", "current")), 1
-        )
+            ((phi, g) for phi in ("29.9 deg", "30.1 deg") for g in ("reference", "current")), 1)
     )
     return [
         Scene(SLIDING, "slope", "stands iff phi > a", states),

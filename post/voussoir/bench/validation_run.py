@@ -11,12 +11,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from voussoir.bench import (
-    validation_arches,
-    validation_assemblies,
-    validation_impact,
-    validation_motion,
-    validation_rest,
-    validation_strain,
+    validation_arches, validation_assemblies, validation_impact, validation_motion, validation_rest, validation_strain,
 )
 from voussoir.bench.validation_scene import Check, Outcome, Scene
 from voussoir.dda_program import DdaError, path_word, set_options

@@ -153,10 +153,8 @@ def _dda_points(scene: scenes.Scene, exact: Callable[[str], float], folder: Path
 def _words(setting: Mapping[str, Any]) -> str:
     """A setting in a line."""
     return ", ".join(
-        f"{key} = {value:g}" if isinstance(value, float) else f"{key} = {value}"
-        for keys in setting.values()
-        for key, value in keys.items()
-    )
+        f"{key} = {value:g}" if isinstance(value, float) else f"{key} = {value}" for keys in setting.values() for key,
+        value in keys.items())
 
 
 def _run(scene: scenes.Scene, setting: Mapping[str, Any], folder: Path, repeats: int) -> Finished:

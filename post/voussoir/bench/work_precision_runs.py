@@ -128,15 +128,8 @@ def race(arch: Arch, folder: Path, repeats: int) -> Race:
             right[name] = sum(map(bool.__eq__, answers, truth))
     least = {name: _middle_of_least(found) for name, found in times.items()}
     return Race(
-        arch,
-        least["decision"],
-        right["decision"],
-        least["search"],
-        least["general"],
-        right["general"],
-        least["compact"],
-        right["compact"],
-    )
+        arch, least["decision"], right["decision"], least["search"], least["general"], right["general"],
+        least["compact"], right["compact"])
 
 
 def _middle_of_least(times: list[list[float]]) -> float | None:

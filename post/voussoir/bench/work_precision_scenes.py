@@ -153,9 +153,7 @@ def three_rings(rings: int = 3, voussoirs: int = 16) -> Scene:
     groups = _searched({"scene": {"kind": "blocks", "geometry": BLOCKS}}, "load_factor", 35.0)
     original = tuple({"search": {"low": 1.0, "high": 100.0, "tolerance": 10.0**-k}} for k in (1, 2))
     methods = {
-        COULOMB: _FINE[1:6:2],
-        ASSOCIATED: _with(_FINE, flow="associated"),
-        ORIGINAL: _with(original, mode="limerick"),
+        COULOMB: _FINE[1:6:2], ASSOCIATED: _with(_FINE, flow="associated"), ORIGINAL: _with(original, mode="limerick")
     }
     title = "Three rings: load at the quarter point that fells them"
     return Scene("three rings", title, groups, methods, 35.0, {BLOCKS: text}, number, (x, y))

@@ -93,8 +93,7 @@ def open_campaign(dda: Path, deck: Path, settings: list[str], out: Path, anew: b
         raise DdaError(
             f"{deck}:1: error: expected the campaign that {out} was begun for, got another one "
             f"(other {changed_keys(record, asked.record)}); choose another --out, or discard what "
-            "is there with --anew"
-        )
+            "is there with --anew")
     if known != text:
         if content_of(out / "deck.record") != asked.record.encode():
             for name in ("results.csv", "disk.record"):  # of whatever was there before
@@ -158,8 +157,7 @@ def lock(out: Path, shared: bool) -> None:
     except OSError as error:
         sys.stderr.write(
             f"{out / 'run.lock'}:1: warning: this file system knows no locks "
-            f"({error.strerror}): nothing keeps another campaign from {out}\n"
-        )
+            f"({error.strerror}): nothing keeps another campaign from {out}\n")
     _LOCKS[out] = file
 
 
@@ -210,15 +208,8 @@ def split(
     size = max(1, min(LARGEST_PART, -(-len(rest) // (PARTS_A_WORKER * workers))))
     return [
         Part(
-            campaign.dda,
-            campaign.deck,
-            campaign.settings,
-            campaign.parts,
-            rest[start : start + size],
-            jobs,
-            campaign.asked.record,
-            campaign.asked.headers,
-        )
+            campaign.dda, campaign.deck, campaign.settings, campaign.parts, rest[start : start + size], jobs,
+            campaign.asked.record, campaign.asked.headers)
         for start in range(0, len(rest), size)
     ]
 

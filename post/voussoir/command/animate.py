@@ -34,12 +34,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "(default: DIR/plots/motion.gif)",
     )
     parser.add_argument(
-        "--magnify",
-        metavar="M",
-        type=magnification,
-        default=1.0,
-        help="magnification of the displacements, stated in the title (default: 1, true scale)",
-    )
+        "--magnify", metavar="M", type=magnification, default=1.0,
+        help="magnification of the displacements, stated in the title (default: 1, true scale)")
 
 
 def run(arguments: argparse.Namespace) -> int:
@@ -62,8 +58,7 @@ def run(arguments: argparse.Namespace) -> int:
     except OSError as error:
         sys.stderr.write(
             f"{error.filename or arguments.out}:1: error: the file cannot be written: "
-            f"{error.strerror}; choose another one with --out\n"
-        )
+            f"{error.strerror}; choose another one with --out\n")
         return 4
 
 
@@ -83,8 +78,7 @@ def _run(arguments: argparse.Namespace) -> int:
         still = next(number for number in cases if number not in moving)
         raise ValueError(
             f"expected frames of case {still}, got none; give the deck &analysis geometry = "
-            "'current' / and &output frames = 20 /"
-        )
+            "'current' / and &output frames = 20 /")
     file = arguments.out or arguments.folder / "plots" / "motion.gif"
     check_ending(file)
     file.parent.mkdir(parents=True, exist_ok=True)

@@ -29,22 +29,13 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     )
     parser.add_argument("deck", metavar="DECK", type=Path, help="the deck, with its &sweep groups")
     parser.add_argument(
-        "--out", metavar="DIR", type=Path, help="folder of the results (default: named as the deck without its ending)"
-    )
+        "--out", metavar="DIR", type=Path, help="folder of the results (default: named as the deck without its ending)")
     parser.add_argument(
-        "--set",
-        metavar="group%key=value",
-        action="append",
-        default=[],
-        help="override the deck; may be repeated (default: the deck as it is)",
-    )
+        "--set", metavar="group%key=value", action="append", default=[],
+        help="override the deck; may be repeated (default: the deck as it is)")
     parser.add_argument(
-        "--workers",
-        metavar="N",
-        type=whole_number(1),
-        default=os.cpu_count() or 1,
-        help="processes on this machine (default: one a processor, here %(default)s)",
-    )
+        "--workers", metavar="N", type=whole_number(1), default=os.cpu_count() or 1,
+        help="processes on this machine (default: one a processor, here %(default)s)")
     parser.add_argument(
         "--scheduler",
         metavar="ADDRESS",
@@ -62,8 +53,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--merge", action="store_true", help="compute nothing, merge what is finished so far")
     parser.add_argument("--anew", action="store_true", help="discard what an earlier campaign has finished")
     parser.add_argument(
-        "--parquet", action="store_true", help="write results.csv as results.parquet, too; needs pyarrow"
-    )
+        "--parquet", action="store_true", help="write results.csv as results.parquet, too; needs pyarrow")
     add_quiet(parser)
 
 
@@ -86,8 +76,7 @@ def run(arguments: argparse.Namespace) -> int:
         name = error.filename or arguments.out or arguments.deck
         sys.stderr.write(
             f"{name}:1: error: files cannot be written: {error.strerror}; "
-            "what is finished stays safe in the folder parts\n"
-        )
+            "what is finished stays safe in the folder parts\n")
         return 4
 
 
@@ -161,8 +150,7 @@ def _report(campaign: Campaign, arguments: argparse.Namespace, summary: Summary)
         print(
             f"{arguments.deck}: {summary.cases - summary.undecided} decided, "
             f"{summary.undecided} undecided, {missing} not finished; "
-            f"results in {campaign.out / 'results.csv'}"
-        )
+            f"results in {campaign.out / 'results.csv'}")
     if arguments.parquet and summary.cases:
         write_parquet(campaign.out / "results.csv")
     return 3 if summary.undecided or missing else 0
@@ -177,11 +165,9 @@ def _share_of(arguments: argparse.Namespace) -> tuple[int, int]:
     if arguments.anew:
         raise DdaError(
             "--anew:1: error: expected no --anew with --index, got both; the shares "
-            "would discard one another: remove the folder before they begin"
-        )
+            "would discard one another: remove the folder before they begin")
     if arguments.index > arguments.of:
         raise DdaError(
             f"--index:1: error: expected an index from 1 to {arguments.of}, got "
-            f"{arguments.index}; number the shares from 1"
-        )
+            f"{arguments.index}; number the shares from 1")
     return arguments.index, arguments.of

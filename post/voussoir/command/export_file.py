@@ -22,12 +22,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("file", metavar="FILE", type=Path, help=f"of {', '.join(WRITERS)}")
     parser.add_argument("--case", metavar="N", type=int, default=1, help="number of the case")
     parser.add_argument(
-        "--magnify",
-        metavar="M",
-        type=magnification,
-        default=0.0,
-        help="how many times their displacements the blocks have moved; 1 for where they are at the end",
-    )
+        "--magnify", metavar="M", type=magnification, default=0.0,
+        help="how many times their displacements the blocks have moved; 1 for where they are at the end")
 
 
 def run(arguments: argparse.Namespace) -> int:

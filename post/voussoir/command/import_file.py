@@ -28,24 +28,16 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("file", metavar="FILE", type=Path, help=f"of {', '.join(READERS)}")
     parser.add_argument("--out", metavar="DECK", type=Path, help="the deck (default: FILE with the ending nml)")
     parser.add_argument(
-        "--scale", metavar="S", type=_scale, help="metres a unit of the file (default: what a drawing names, else 1)"
-    )
+        "--scale", metavar="S", type=_scale, help="metres a unit of the file (default: what a drawing names, else 1)")
     parser.add_argument(
-        "--tolerance", metavar="T", type=float, default=1e-3, help="how far a chord may be from its arc [m]"
-    )
+        "--tolerance", metavar="T", type=float, default=1e-3, help="how far a chord may be from its arc [m]")
     parser.add_argument(
-        "--fixed",
-        metavar="WORD",
-        nargs="+",
-        default=list(FIXED),
-        help="layers, or values of the property role or layer, of what does not move",
-    )
+        "--fixed", metavar="WORD", nargs="+", default=list(FIXED),
+        help="layers, or values of the property role or layer, of what does not move")
     parser.add_argument(
-        "--hold", metavar="N", type=whole_number(1), nargs="+", default=[], help="numbers of blocks that do not move"
-    )
+        "--hold", metavar="N", type=whole_number(1), nargs="+", default=[], help="numbers of blocks that do not move")
     parser.add_argument(
-        "--search", metavar="PARAMETER", help="ask for the value at which it falls, such as horizontal_coefficient"
-    )
+        "--search", metavar="PARAMETER", help="ask for the value at which it falls, such as horizontal_coefficient")
     parser.add_argument("--run", action="store_true", help="run the deck, too, and draw what comes out")
 
 
@@ -88,8 +80,7 @@ def run(arguments: argparse.Namespace) -> int:
         print(f"dropped: {words}")
     print(
         f"{deck}, {name}: {len(blocks.shapes)} blocks, {fixed} of them fixed; a unit is {scale:g} m ({whose}); "
-        f"chords within {arguments.tolerance:g} m of their arcs"
-    )
+        f"chords within {arguments.tolerance:g} m of their arcs")
     layers = {shape.material: found.layer for shape, found in zip(blocks.shapes, shapes) if not shape.fixed}
     if len(layers) > 1:
         print("materials: " + ", ".join(f"{number} {layer or '(no layer)'}" for number, layer in layers.items()))

@@ -61,20 +61,14 @@ def build_parser(chosen: str | None = None) -> argparse.ArgumentParser:
         With a subparser for each subcommand.
     """
     parser = argparse.ArgumentParser(
-        prog="voussoir",
-        description="Masonry arches: theory, tables and figures.",
-        epilog="'voussoir help COMMAND' lists the options of one. " + EXIT_STATUS,
-    )
+        prog="voussoir", description="Masonry arches: theory, tables and figures.",
+        epilog="'voussoir help COMMAND' lists the options of one. " + EXIT_STATUS)
     parser.add_argument("--version", action="version", version=f"voussoir {__version__}")
     subparsers = parser.add_subparsers(dest="command", required=True, metavar="COMMAND")
     for name, (module, summary) in COMMANDS.items():
         subparser = subparsers.add_parser(
-            name,
-            help=summary,
-            description=summary[0].upper() + summary[1:] + ".",
-            epilog=EXIT_STATUS,
-            formatter_class=Formatter,
-        )
+            name, help=summary, description=summary[0].upper() + summary[1:] + ".", epilog=EXIT_STATUS,
+            formatter_class=Formatter)
         if name == chosen:
             importlib.import_module(module).add_arguments(subparser)
     subparsers.add_parser("help", help="this page, or the options of a subcommand")

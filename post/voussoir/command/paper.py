@@ -20,25 +20,15 @@ from voussoir.paper.campaign import DRAWING, FIGURES, TOGETHER, Campaign, Clock,
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the options of the subcommand."""
     parser.add_argument(
-        "--out",
-        metavar="DIR",
-        type=Path,
-        default=Path("paper"),
-        help="folder for results, tables, figures and index.html (default: paper)",
-    )
+        "--out", metavar="DIR", type=Path, default=Path("paper"),
+        help="folder for results, tables, figures and index.html (default: paper)")
     parser.add_argument(
-        "--jobs",
-        metavar="N",
-        type=whole_number(1),
-        default=os.cpu_count() or 1,
-        help="decks computed, and figures drawn, at the same time (default: one a processor)",
-    )
+        "--jobs", metavar="N", type=whole_number(1), default=os.cpu_count() or 1,
+        help="decks computed, and figures drawn, at the same time (default: one a processor)")
     parser.add_argument("--resume", action="store_true", help="keep what an earlier run has finished")
     parser.add_argument(
-        "--limerick",
-        action="store_true",
-        help="also run the decks of the original program's scheme, which take much longer",
-    )
+        "--limerick", action="store_true",
+        help="also run the decks of the original program's scheme, which take much longer")
     add_decks(parser)
     parser.add_argument("--dda", metavar="FILE", type=Path, help="the program dda (default: the one beside `voussoir`)")
     add_quiet(parser)

@@ -14,16 +14,10 @@ _COLUMNS = ("alpha_deg", "theory", "beta_deg", "beta_rad", "eta", "h")
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the options of the subcommand."""
     parser.add_argument(
-        "--alpha", metavar="DEG", nargs="+", type=_half_angle, required=True, help="half angles of embrace, in degrees"
-    )
+        "--alpha", metavar="DEG", nargs="+", type=_half_angle, required=True, help="half angles of embrace, in degrees")
     parser.add_argument(
-        "--theory",
-        metavar="NAME",
-        nargs="+",
-        choices=tuple(theory.THEORIES),
-        default=tuple(theory.THEORIES),
-        help="theories, of " + ", ".join(theory.THEORIES) + " (default: all)",
-    )
+        "--theory", metavar="NAME", nargs="+", choices=tuple(theory.THEORIES), default=tuple(theory.THEORIES),
+        help="theories, of " + ", ".join(theory.THEORIES) + " (default: all)")
     parser.add_argument("--csv", action="store_true", help="comma-separated, all digits")
 
 

@@ -15,20 +15,12 @@ from voussoir.dda_program import DdaError, find_dda, find_input, version_of
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the options of the subcommand."""
     parser.add_argument(
-        "--out",
-        metavar="DIR",
-        type=Path,
-        default=Path("validation"),
-        help="folder for validation.csv and validation.md (default: validation)",
-    )
+        "--out", metavar="DIR", type=Path, default=Path("validation"),
+        help="folder for validation.csv and validation.md (default: validation)")
     parser.add_argument("--scenes", metavar="NAME", nargs="+", help="decks by name (default: all scenes)")
     parser.add_argument(
-        "--halvings",
-        metavar="N",
-        type=whole_number(0),
-        default=2,
-        help="how often the step is halved for the convergence rate",
-    )
+        "--halvings", metavar="N", type=whole_number(0), default=2,
+        help="how often the step is halved for the convergence rate")
     add_decks(parser)
     add_quiet(parser)
 

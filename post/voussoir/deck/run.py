@@ -104,12 +104,8 @@ def run(deck: Runnable, out: Union[str, Path, None] = None, jobs: int = 1, **set
         file, settings = _as_file(deck, place, changes)
         words = [str(dda), "run", path_word(file), "--out", path_word(place), "--quiet"]
         done = subprocess.run(
-            [*words, "--jobs", str(jobs), *set_options(settings)],
-            env={**os.environ, "OPENBLAS_NUM_THREADS": "1"},
-            capture_output=True,
-            text=True,
-            errors="surrogateescape",
-        )
+            [*words, "--jobs", str(jobs), *set_options(settings)], env={**os.environ, "OPENBLAS_NUM_THREADS": "1"},
+            capture_output=True, text=True, errors="surrogateescape")
         if done.returncode not in _LEAVES_RESULTS:
             words_of = done.stderr.strip() or f"dda run ended with status {done.returncode}"
             raise DdaError(words_of, done.returncode)

@@ -19,11 +19,7 @@ POINTS = {
     "paper DDA": {"marker": "^", "color": INK[3], "markeredgecolor": INK[0], "markersize": 7},
     "ours, rigid": {"marker": "o", "color": INK[1], "markeredgecolor": INK[0], "markersize": 6},
     "ours, elastic": {
-        "marker": "s",
-        "markerfacecolor": "none",
-        "markeredgecolor": INK[2],
-        "markersize": 9,
-        "markeredgewidth": 1.3,
+        "marker": "s", "markerfacecolor": "none", "markeredgecolor": INK[2], "markersize": 9, "markeredgewidth": 1.3
     },
 }
 _OTHER = {"marker": "D", "color": "#f0c040", "markeredgecolor": INK[0], "markersize": 6}
@@ -47,12 +43,8 @@ def draw_points(axes: Axes, table: PaperTable, x: str, error: bool = False) -> A
         if error and column == "ours, rigid":
             continue
         axes.plot(
-            [float(getattr(row, x)) for row in rows],
-            [_ordinate(row, column, error) for row in rows],
-            linestyle="none",
-            label=column,
-            **POINTS.get(column, _OTHER),
-        )
+            [float(getattr(row, x)) for row in rows], [_ordinate(row, column, error) for row in rows], linestyle="none",
+            label=column, **POINTS.get(column, _OTHER))
     return axes
 
 
@@ -69,16 +61,10 @@ def legend_below(figure: Figure, axes: Axes, columns: int = 2) -> None:
     handles, labels = axes.get_legend_handles_labels()
     points = [*POINTS, *(label for label in labels if " mode" in label)]
     order = sorted(
-        range(len(labels)), key=lambda i: (points.index(labels[i]) if labels[i] in points else len(points), i)
-    )
+        range(len(labels)), key=lambda i: (points.index(labels[i]) if labels[i] in points else len(points), i))
     figure.legend(
-        [handles[i] for i in order],
-        [labels[i] for i in order],
-        loc="upper center",
-        bbox_to_anchor=(0.5, 0.02),
-        ncols=columns,
-        fontsize=9.5,
-    )
+        [handles[i] for i in order], [labels[i] for i in order], loc="upper center", bbox_to_anchor=(0.5, 0.02),
+        ncols=columns, fontsize=9.5)
 
 
 def friction(campaign: Campaign) -> Figure:
@@ -94,12 +80,8 @@ def friction(campaign: Campaign) -> Figure:
     limits = theory.friction("milankovitch")
     mu = np.linspace(limits["mu_mixed"], limits["mu_rotational"], 200)
     axes.plot(
-        np.degrees(np.arctan(mu)),
-        theory.friction_thickness(mu, "milankovitch"),
-        color=INK[2],
-        linestyle=DASHES[1],
-        label="Milankovitch, continuous arch",
-    )
+        np.degrees(np.arctan(mu)), theory.friction_thickness(mu, "milankovitch"), color=INK[2], linestyle=DASHES[1],
+        label="Milankovitch, continuous arch")
     for turning, style, label in (
         (False, POINTS["ours, rigid"], "ours, rigid: mixed"),
         (True, {**POINTS["ours, rigid"], "color": "white"}, "ours, rigid: rotational"),
@@ -110,13 +92,9 @@ def friction(campaign: Campaign) -> Figure:
         axes.axvline(value, color=INK[3], linewidth=1.0, linestyle=DASHES[3])
         side = -1 if value == lower[0] else 1
         axes.text(
-            value + 0.06 * side,
-            0.155,
+            value + 0.06 * side, 0.155,
             f"{words}\n{'below' if side < 0 else 'from'} {value:.4f}°\n($\\mu$ = {math.tan(math.radians(value)):.6f})",
-            ha="right" if side < 0 else "left",
-            va="center",
-            fontsize=9,
-        )
+            ha="right" if side < 0 else "left", va="center", fontsize=9)
     axes.set_xlim(14.7, cases["friction_deg"].max() + 0.2)
     axes.set_ylim(0.1, 0.205)
     axes.set_xlabel(r"friction angle $\varphi$ [deg]")
@@ -182,15 +160,8 @@ def _draw_imposed(axes: Axes, table: PaperTable, alpha: float) -> None:
     for name, marker in zip(THEORIES, ("+", "x", "*")):
         top, eta, _ = theory.critical(alpha, name)
         axes.plot(
-            math.degrees(top),
-            eta,
-            marker=marker,
-            color=INK[0],
-            markersize=9,
-            linestyle="none",
-            zorder=6,
-            label=f"critical, {THEORIES[name]}: {math.degrees(top):.2f}°, {float(eta):.6f}",
-        )
+            math.degrees(top), eta, marker=marker, color=INK[0], markersize=9, linestyle="none", zorder=6,
+            label=f"critical, {THEORIES[name]}: {math.degrees(top):.2f}°, {float(eta):.6f}")
     draw_points(axes, table, "joint")
 
 

@@ -112,8 +112,7 @@ def paper_elsewhere(campaign: Campaign) -> Finding:
         table = campaign.tables[name]
         worst, least = (chosen(table.rows, key=lambda row: row.values[_PAPER].error or 0.0) for chosen in (max, min))
         parts.append(
-            f"Table {name[-1]}: {_share(least, _PAPER)} ({_arch(least)}) to {_share(worst, _PAPER)} ({_arch(worst)})"
-        )
+            f"Table {name[-1]}: {_share(least, _PAPER)} ({_arch(least)}) to {_share(worst, _PAPER)} ({_arch(worst)})")
     count = sum((value.error or 0.0) > 0.0 for _, value in _values(campaign, _PAPER))
     total = sum(1 for _ in _values(campaign, _PAPER))
     return Finding(
@@ -193,17 +192,14 @@ def friction_of_50(campaign: Campaign) -> Finding:
         at_50 = theory.discrete_solution(joints, alpha, friction=math.radians(50.0))
         least = least_friction(joints, alpha=alpha)
         outcome = {
-            "none_admissible": "stands at no thickness",
-            "found": f"needs {at_50.eta:.6f} in place of {row.exact:.6f}",
+            "none_admissible": "stands at no thickness", "found": f"needs {at_50.eta:.6f} in place of {row.exact:.6f}"
         }[at_50.status]
         parts.append(
             f"with it the arch of {row.half_angle} degrees {outcome}, and turns without slip "
-            f"from {least:.2f} degrees on only"
-        )
+            f"from {least:.2f} degrees on only")
     table3 = {row.joint: least_friction_of(row) for row in campaign.tables["table3"].rows}
     high = ", ".join(
-        f"{angle:.2f} degrees with the joint at {joint}" for joint, angle in table3.items() if angle > 55.0
-    )
+        f"{angle:.2f} degrees with the joint at {joint}" for joint, angle in table3.items() if angle > 55.0)
     rest = max(angle for angle in table3.values() if angle <= 55.0)
     return Finding(
         "Friction of 50 degrees cannot hold the arches of 140 and 145 degrees",
@@ -235,15 +231,13 @@ def least_friction(joints: Any, **arch: float) -> float:
     """
     wanted = theory.discrete_solution(joints, **arch).eta * (1.0 + 1e-10)
     return _bisect(
-        lambda angle: theory.discrete_solution(joints, friction=math.radians(angle), **arch).eta <= wanted, 0.0, 89.0
-    )
+        lambda angle: theory.discrete_solution(joints, friction=math.radians(angle), **arch).eta <= wanted, 0.0, 89.0)
 
 
 def exact_threshold(blocks: int, eta: float) -> float:
     """Least friction angle at which a semicircle of blocks of a thickness stands, exactly [deg]."""
     return _bisect(
-        lambda angle: theory.discrete_solution(blocks, math.pi / 2, friction=math.radians(angle)).eta <= eta, 0.0, 60.0
-    )
+        lambda angle: theory.discrete_solution(blocks, math.pi / 2, friction=math.radians(angle)).eta <= eta, 0.0, 60.0)
 
 
 def _bisect(holds: Any, low: float, high: float) -> float:
@@ -260,8 +254,7 @@ def thresholds(campaign: Campaign) -> Finding:
     continuous = theory.friction("ccr")
     found = ", ".join(
         f"{math.tan(math.radians(angle)):.6f} ({blocks} blocks)"
-        for angle, blocks in zip(lower["critical"], lower["blocks"])
-    )
+        for angle, blocks in zip(lower["critical"], lower["blocks"]))
     return Finding(
         "The two friction thresholds that the paper cites are found",
         f"Below a coefficient of {found} the arch stands at no thickness (continuous arch: "
@@ -272,8 +265,7 @@ def thresholds(campaign: Campaign) -> Finding:
         + ", ".join(
             f"{math.tan(math.radians(exact_threshold(int(blocks), eta))):.6f}"
             for blocks, eta in (
-                *zip(lower["blocks"], lower["thickness_ratio"]),
-                (upper["blocks"][0], upper["thickness_ratio"][0]),
+                *zip(lower["blocks"], lower["thickness_ratio"]), (upper["blocks"][0], upper["thickness_ratio"][0]),
             )
         )
         + ".",
@@ -289,8 +281,7 @@ def elastic_shift(campaign: Campaign) -> Finding:
         median = float(np.median([row.values[_ELASTIC].error for row in rows]))
         parts.append(
             f"Table {name[-1]}: {100 * median:.3f} % in the middle, "
-            f"{_share(worst, _ELASTIC, 2)} at most ({_arch(worst)})"
-        )
+            f"{_share(worst, _ELASTIC, 2)} at most ({_arch(worst)})")
     shallow = campaign.tables["table4"].rows[0]
     return Finding(
         "Elastic blocks need a little more thickness, shallow and thin arches noticeably more",

@@ -49,14 +49,8 @@ def _draw_grid(axes: Axes, blocks: np.ndarray) -> None:
     for place, number in enumerate(blocks):
         joints = np.arange(number // 2 + 1) * 180.0 / number
         axes.plot(
-            np.full(joints.size, place),
-            joints,
-            marker="_",
-            markersize=16,
-            color="#a8a8a8",
-            linestyle="none",
-            label="joints of the arch" if place == 0 else None,
-            zorder=1,
+            np.full(joints.size, place), joints, marker="_", markersize=16, color="#a8a8a8", linestyle="none",
+            label="joints of the arch" if place == 0 else None, zorder=1
         )
     axes.grid(False)
 
@@ -69,15 +63,8 @@ def _draw_hinges(axes: Axes, table: Table, name: str) -> None:
     for place in np.flatnonzero(table["verdict"] == "stable"):
         word = name.removeprefix("ours, ")
         axes.text(
-            place,
-            height,
-            f"{word}:\nstands",
-            ha="center",
-            va="center",
-            fontsize=8.5,
-            bbox={"facecolor": "white", "edgecolor": "none", "pad": 1.0},
-            zorder=5,
-        )
+            place, height, f"{word}:\nstands", ha="center", va="center", fontsize=8.5,
+            bbox={"facecolor": "white", "edgecolor": "none", "pad": 1.0}, zorder=5)
 
 
 def half_angles(campaign: Campaign) -> Figure:
@@ -91,13 +78,8 @@ def half_angles(campaign: Campaign) -> Figure:
         axes.plot(np.degrees(alpha), np.degrees(beta), color=color, linestyle=dashes, label=heading)
     slope = 1.0 / math.sqrt(2.0)
     axes.plot(
-        [0.0, 80.0],
-        [0.0, 80.0 * slope],
-        color=INK[3],
-        linewidth=1.0,
-        linestyle=DASHES[3],
-        label=r"small arches, $\beta = \alpha/\sqrt{2}$",
-    )
+        [0.0, 80.0], [0.0, 80.0 * slope], color=INK[3], linewidth=1.0, linestyle=DASHES[3],
+        label=r"small arches, $\beta = \alpha/\sqrt{2}$")
     for column, aside in zip(POINTS, (-1.7, 0.0, 1.7)):
         points = [
             (float(row.half_angle) + aside, float(beta))

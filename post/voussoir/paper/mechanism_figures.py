@@ -120,14 +120,8 @@ def _angles(hinges: tuple[float, ...]) -> str:
 
 
 def gallery(
-    run: Results,
-    numbers: list[int],
-    columns: int,
-    title: Callable[[Row], str],
-    size: float,
-    width: float = 9.0,
-    together: bool = False,
-    into: SubFigure | None = None,
+    run: Results, numbers: list[int], columns: int, title: Callable[[Row], str], size: float, width: float = 9.0,
+    together: bool = False, into: SubFigure | None = None
 ) -> Figure:
     """Last pictures of some cases side by side; those of one row are of one shape, so that they stand in line.
 

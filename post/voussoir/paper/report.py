@@ -83,10 +83,7 @@ def _glance(page: Page, campaign: Campaign) -> None:
         rows.append(cells)
     page.table(
         "Largest deviation from the exact polygon value [%]",
-        ["", "arches", "paper DDA", "ours, rigid", "ours, elastic", *THEORIES.values()],
-        rows,
-        anchor="glance",
-    )
+        ["", "arches", "paper DDA", "ours, rigid", "ours, elastic", *THEORIES.values()], rows, anchor="glance")
 
 
 def _add(page: Page, campaign: Campaign, figures: Path, part: str) -> None:
@@ -170,9 +167,7 @@ def _modes(page: Page, campaign: Campaign) -> None:
     page.table(
         "Collapse modes of Fig. 8",
         ["&phi; [deg]", "&mu;", "paper", "ours", "sliding share", "intrados hinges [deg]", "extrados hinges [deg]"],
-        rows,
-        anchor="modes",
-    )
+        rows, anchor="modes")
 
 
 def _thresholds(page: Page, campaign: Campaign) -> None:
@@ -221,10 +216,7 @@ def _hinges_of_figure_10(page: Page, campaign: Campaign) -> None:
     ]
     page.table(
         "Intrados hinges of Figs. 9 and 10 [deg]; critical: exact thickness of the polygons",
-        ["blocks", "&eta;", "critical", "rigid", "elastic"],
-        rows,
-        anchor="hinges9",
-    )
+        ["blocks", "&eta;", "critical", "rigid", "elastic"], rows, anchor="hinges9")
 
 
 def _outcome(row: dict) -> str:
@@ -243,9 +235,7 @@ def _hinges_of_table_4(page: Page, campaign: Campaign) -> None:
     page.table(
         "Table 4, hinge angles &beta; [deg]; below the theories how far the paper's DDA lies from them [%]",
         ["&alpha; [deg]", "exact polygon", *map(escape, columns), *THEORIES.values()],
-        [_hinge_row(row, columns) for row in table.rows],
-        anchor="hinges4",
-    )
+        [_hinge_row(row, columns) for row in table.rows], anchor="hinges4")
 
 
 def _hinge_row(row: Row, columns: list[str]) -> list[str]:

@@ -116,11 +116,8 @@ def read_paper(file: Path, table: str) -> list[Row]:
     """The rows of one table as the paper prints them."""
     return [
         Row(
-            half_angle=row["alpha_deg"],
-            blocks=row["blocks"],
-            joint=row["beta_imposed_deg"],
-            values={"paper DDA": Value(float(row["eta_dda"]), None, row["beta_dda_deg"], row["eta_dda"])},
-        )
+            half_angle=row["alpha_deg"], blocks=row["blocks"], joint=row["beta_imposed_deg"],
+            values={"paper DDA": Value(float(row["eta_dda"]), None, row["beta_dda_deg"], row["eta_dda"])})
         for row in read_table(file)
         if row["table"] == table
     ]
@@ -151,8 +148,7 @@ def join(rows: list[Row], results: Iterator[Cells]) -> list[str]:
         if key not in by_key:
             raise ValueError(
                 f"the paper has no arch of {cells['half_angle_deg']} degrees, "
-                f"{cells['blocks']} blocks, joint {cells.get('joints_deg(2)', '-')}"
-            )
+                f"{cells['blocks']} blocks, joint {cells.get('joints_deg(2)', '-')}")
         row, method = by_key[key], method_of(cells)
         if method not in methods:
             methods.append(method)

@@ -62,8 +62,7 @@ def draw_held(axes: Axes, source: Source) -> list[Artist]:
         ends = [pair[:2] for pair in source.held if pair[2] == along]
         for start, end in ends:
             axes.plot(
-                *zip(start, end), color=INK[0], linewidth=2.2, zorder=7, markersize=8, markeredgecolor=INK[0], **mark
-            )
+                *zip(start, end), color=INK[0], linewidth=2.2, zorder=7, markersize=8, markeredgecolor=INK[0], **mark)
         if ends:
             entries.append(entry(words, markeredgecolor=INK[0], markersize=8, **mark))
     for ends in source.bars:
@@ -99,15 +98,8 @@ def draw_numbers(axes: Axes, scene: CaseScene, shapes: list[np.ndarray]) -> None
     placed += [(block.number, block.corners) for block in scene.supports]
     for number, shape in placed:
         axes.text(
-            *shape.mean(axis=0),
-            str(number),
-            fontsize=8,
-            ha="center",
-            va="center",
-            zorder=10,
-            clip_on=True,
-            path_effects=[withStroke(linewidth=2.0, foreground="white")],
-        )
+            *shape.mean(axis=0), str(number), fontsize=8, ha="center", va="center", zorder=10, clip_on=True,
+            path_effects=[withStroke(linewidth=2.0, foreground="white")])
 
 
 def show_coordinates(axes: Axes) -> None:

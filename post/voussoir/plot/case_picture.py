@@ -41,12 +41,8 @@ TOUCHES = {
 
 
 def draw_case(
-    run: Results,
-    number: int,
-    magnify: float | str | None = None,
-    with_forces: bool = True,
-    numbers: bool = False,
-    coordinates: bool = False,
+    run: Results, number: int, magnify: float | str | None = None, with_forces: bool = True, numbers: bool = False,
+    coordinates: bool = False
 ) -> Figure:
     """Draw one case of any scene.
 
@@ -140,8 +136,7 @@ def draw_supports(axes: Axes, supports: list[np.ndarray]) -> list[Artist]:
 def draw_beginning(axes: Axes, shapes: list[np.ndarray], largest: float) -> list[Artist]:
     """Draw where blocks that have moved were; gives the entries of the legend."""
     axes.add_collection(
-        PolyCollection(shapes, facecolors="none", edgecolors=INK[3], linewidths=0.7, linestyles="--", zorder=1)
-    )
+        PolyCollection(shapes, facecolors="none", edgecolors=INK[3], linewidths=0.7, linestyles="--", zorder=1))
     words = f"at the beginning; true scale, largest displacement {length_text(largest)}"
     return [entry(words, linestyle="--", color=INK[3], linewidth=0.9)]
 
@@ -183,8 +178,7 @@ def factor_of(scene: CaseScene, magnify: float | str | None, size: float) -> flo
 def draw_displaced(axes: Axes, scene: CaseScene, factor: float) -> list[Artist]:
     """Draw the displaced shape or the mechanism; gives the entries of the legend."""
     axes.add_collection(
-        PolyCollection(scene.shapes(factor), facecolors="none", edgecolors=INK[0], linewidths=0.8, zorder=2)
-    )
+        PolyCollection(scene.shapes(factor), facecolors="none", edgecolors=INK[0], linewidths=0.8, zorder=2))
     words = f"displaced shape, displacements × {factor:g} (largest {length_text(scene.largest)})"
     if scene.falls:
         words = f"collapse mechanism, drawn with a largest displacement of {length_text(factor)}"
@@ -205,14 +199,8 @@ def draw_ways(axes: Axes, scene: CaseScene, ways: list[Table], factor: float) ->
         axes.plot(*points.T, color=INK[1], linewidth=1.1, linestyle=(0, (4, 1.5)), zorder=5)
         axes.plot(*points[-1], marker="D", color=INK[1], markersize=4, zorder=6)
         axes.annotate(
-            str(way["point"][0]),
-            points[-1],
-            xytext=(5, 3),
-            textcoords="offset points",
-            fontsize=8,
-            color=INK[1],
-            zorder=8,
-        )
+            str(way["point"][0]), points[-1], xytext=(5, 3), textcoords="offset points", fontsize=8, color=INK[1],
+            zorder=8)
     if not ways:
         return []
     words = "measured points and their ways" if scene.moves or factor > 0.0 else "measured points"
@@ -262,16 +250,8 @@ def draw_forces(axes: Axes, scene: CaseScene, joints: Table, size: float) -> lis
         return []
     arrows = vectors * (FORCE_LENGTH * size / largest)
     axes.quiver(
-        *thrust_points(joints).T,
-        *arrows.T,
-        angles="xy",
-        scale_units="xy",
-        scale=1.0,
-        color=INK[2],
-        width=0.002,
-        headwidth=4.5,
-        zorder=4.5,
-    )
+        *thrust_points(joints).T, *arrows.T, angles="xy", scale_units="xy", scale=1.0, color=INK[2], width=0.002,
+        headwidth=4.5, zorder=4.5)
     words = f"contact forces, longest {force_text(largest, scene.unit)}"
     return [entry(words, linestyle="-", color=INK[2], linewidth=1.2)]
 
@@ -304,13 +284,8 @@ def draw_hinges(axes: Axes, scene: CaseScene, joints: Table) -> list[Artist]:
         if not mask.any():
             continue
         axes.plot(
-            joints[x][mask],
-            joints[y][mask],
-            linestyle="none",
-            zorder=6,
-            markersize=6.5 if len(joints) <= MANY else 4.0,
-            **MARKS[mark],
-        )
+            joints[x][mask], joints[y][mask], linestyle="none", zorder=6,
+            markersize=6.5 if len(joints) <= MANY else 4.0, **MARKS[mark])
         if mark not in seen:
             words = MEANINGS[mark] if collapses else TOUCHES[mark]
             entries.append(entry(words, **MARKS[mark]))
@@ -338,12 +313,8 @@ def draw_slips(axes: Axes, scene: CaseScene, joints: Table, size: float) -> list
         for side in (1.0, -1.0):
             start = middle + side * (0.3 * length * normal - 0.5 * length * way)
             axes.annotate(
-                "",
-                start + side * length * way,
-                start,
-                zorder=7,
-                arrowprops={"arrowstyle": "->", "color": INK[0], "linewidth": 1.3, "shrinkA": 0, "shrinkB": 0},
-            )
+                "", start + side * length * way, start, zorder=7,
+                arrowprops={"arrowstyle": "->", "color": INK[0], "linewidth": 1.3, "shrinkA": 0, "shrinkB": 0})
     if not len(slides):
         return []
     words = "sliding joint: which way its sides move" if falls else "joint at its friction limit"
@@ -356,20 +327,8 @@ def draw_scale(axes: Axes, low: np.ndarray, high: np.ndarray) -> None:
     room = 0.035 * float((high - low).max())
     start, level = low[0] + room, low[1] - room
     axes.plot(
-        [start, start + length],
-        [level, level],
-        color=INK[0],
-        linewidth=2.0,
-        solid_capstyle="butt",
-        clip_on=False,
-        zorder=9,
-    )
+        [start, start + length], [level, level], color=INK[0], linewidth=2.0, solid_capstyle="butt", clip_on=False,
+        zorder=9)
     axes.annotate(
-        length_text(length),
-        (start + length, level),
-        xytext=(5, 0),
-        textcoords="offset points",
-        va="center",
-        fontsize=9,
-        annotation_clip=False,
-    )
+        length_text(length), (start + length, level), xytext=(5, 0), textcoords="offset points", va="center",
+        fontsize=9, annotation_clip=False)

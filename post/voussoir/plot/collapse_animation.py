@@ -40,13 +40,8 @@ def check_ending(file: Path) -> None:
 
 
 def animate(
-    run: Results,
-    numbers: list[int],
-    title: Callable[[dict[str, Any]], str],
-    file: Path,
-    columns: int = 2,
-    width: float = 5.6,
-    magnify: float = 1.0,
+    run: Results, numbers: list[int], title: Callable[[dict[str, Any]], str], file: Path, columns: int = 2,
+    width: float = 5.6, magnify: float = 1.0
 ) -> Path:
     """Write the motion of some cases, side by side.
 

@@ -77,12 +77,8 @@ def draw_frame(axes: Axes, run: Results, number: int, frame: Frame, size: float 
         axes.add_collection(PolyCollection(before, facecolors="none", edgecolors="#c4c4c4", linewidths=0.5))
     axes.add_collection(
         PolyCollection(
-            [block.corners for block in scene.supports],
-            facecolors="white",
-            edgecolors=INK[3],
-            linewidths=0.6,
-            hatch="////",
-        )
+            [block.corners for block in scene.supports], facecolors="white", edgecolors=INK[3], linewidths=0.6,
+            hatch="////")
     )
     blocks = shapes_of(scene, first, frame, magnify)
     axes.add_collection(PolyCollection(blocks, facecolors=STONE, edgecolors=INK[0], linewidths=0.6))

@@ -26,12 +26,7 @@ from voussoir._theory import theory_api
 from voussoir.theory._columns import HALF_ANGLE, JOINT, THEORIES, THICKNESS, Value, evaluate, theory_number
 from voussoir.theory._discrete import DiscreteSolution, discrete_critical, discrete_solution
 from voussoir.theory._equations import (
-    eccentricity,
-    embrace,
-    lower_thrust,
-    springing_thrust,
-    tangent_thrust,
-    thrust_through,
+    eccentricity, embrace, lower_thrust, springing_thrust, tangent_thrust, thrust_through,
 )
 from voussoir.theory._friction import friction, friction_critical, friction_thickness
 

@@ -43,11 +43,8 @@ class DiscreteSolution(NamedTuple):
 
 
 def discrete_critical(
-    joints: npt.ArrayLike,
-    alpha: npt.ArrayLike | None = None,
-    facet: npt.ArrayLike | None = None,
-    friction: npt.ArrayLike | None = None,
-    springing_no_slip: bool = False,
+    joints: npt.ArrayLike, alpha: npt.ArrayLike | None = None, facet: npt.ArrayLike | None = None,
+    friction: npt.ArrayLike | None = None, springing_no_slip: bool = False
 ) -> Value:
     """Exact critical thickness ratio of an arch of rigid polygon voussoirs.
 
@@ -82,17 +79,13 @@ def discrete_critical(
     if none.size > 0:
         angle = flat[-1][none[0]].item()
         raise ValueError(
-            f"friction must be an angle at which some thickness ratio below 2 admits equilibrium, got {angle!r} rad"
-        )
+            f"friction must be an angle at which some thickness ratio below 2 admits equilibrium, got {angle!r} rad")
     return shaped(shape, eta)
 
 
 def discrete_solution(
-    joints: npt.ArrayLike,
-    alpha: float | None = None,
-    facet: float | None = None,
-    friction: float | None = None,
-    springing_no_slip: bool = False,
+    joints: npt.ArrayLike, alpha: float | None = None, facet: float | None = None, friction: float | None = None,
+    springing_no_slip: bool = False
 ) -> DiscreteSolution:
     """The same for one arch, with its thrust and the joints that bind.
 

@@ -28,20 +28,14 @@ def curve_of_the_semicircle(alpha_deg: float = 90.0) -> Figure:
     figure, axes = plt.subplots(figsize=(6.4, 4.2))
     draw_curve(axes, alpha, "ccr", color=INK[0])
     for share, word in (
-        (1.2, "super-critical:\nno hinge"),
-        (1.0, "critical:\none hinge"),
-        (0.7, "sub-critical:\ntwo hinges"),
+        (1.2, "super-critical:\nno hinge"), (1.0, "critical:\none hinge"), (0.7, "sub-critical:\ntwo hinges"),
     ):
         axes.axhline(share * eta, color=INK[1], linewidth=0.9, linestyle=DASHES[1])
         axes.text(1.02, share * eta, word, va="center", fontsize=9, color=INK[1], transform=axes.get_yaxis_transform())
     axes.plot(math.degrees(beta), eta, marker="o", color=INK[2], markersize=7, zorder=5)
     axes.annotate(
-        f"$\\beta$ = {math.degrees(beta):.4f}°\n$\\eta$ = {eta:.6f}",
-        (math.degrees(beta), eta),
-        (math.degrees(beta) - 8, 0.45 * eta),
-        ha="right",
-        arrowprops={"arrowstyle": "-", "linewidth": 0.7},
-    )
+        f"$\\beta$ = {math.degrees(beta):.4f}°\n$\\eta$ = {eta:.6f}", (math.degrees(beta), eta),
+        (math.degrees(beta) - 8, 0.45 * eta), ha="right", arrowprops={"arrowstyle": "-", "linewidth": 0.7})
     axes.set_ylim(0, 1.35 * eta)
     axes.set_xlim(0, alpha_deg)
     axes.set_title(f"CCR, $\\alpha$ = {alpha_deg:g}°", fontsize=10, loc="left")
@@ -61,26 +55,16 @@ def curves() -> Figure:
     for alpha in sorted([*plain, *marked]):
         special = alpha in marked
         draw_curve(
-            axes,
-            alpha,
-            "ccr",
-            color=INK[1] if special else INK[0],
-            linewidth=1.9 if special else 0.9,
-            linestyle=DASHES[1] if special else DASHES[0],
-        )
+            axes, alpha, "ccr", color=INK[1] if special else INK[0], linewidth=1.9 if special else 0.9,
+            linestyle=DASHES[1] if special else DASHES[0])
         beta, eta, _ = theory.critical(alpha, "ccr")
         if alpha < 1.8:
             beta = 0.85 * alpha
             eta = theory.equilibrium_thickness(beta, alpha, "ccr")
         label = marked.get(alpha, f"{math.degrees(alpha):.0f}°")
         axes.annotate(
-            label,
-            (math.degrees(beta), eta),
-            (5, 3),
-            textcoords="offset points",
-            fontsize=9,
-            color=INK[1] if special else INK[0],
-        )
+            label, (math.degrees(beta), eta), (5, 3), textcoords="offset points", fontsize=9,
+            color=INK[1] if special else INK[0])
     alpha = limits["alpha_limit"] - np.append(np.geomspace(2.6, 1e-6, 600), 0.0)
     beta, eta, _ = theory.critical(alpha, "ccr")
     axes.plot(np.degrees(beta), eta, color=INK[2], linestyle=DASHES[2], label="critical states")
@@ -134,17 +118,8 @@ def _compare(axes: Axes, alpha: float) -> None:
         beta, eta, _ = theory.critical(alpha, name)
         label = f"{_NAMES[name]}: {math.degrees(beta):.4f}°, {eta:.6f}"
         axes.plot(
-            math.degrees(beta),
-            eta,
-            marker=marker,
-            color=color,
-            markerfacecolor="white",
-            linestyle="",
-            markersize=7,
-            markeredgewidth=1.5,
-            label=label,
-            zorder=5,
-        )
+            math.degrees(beta), eta, marker=marker, color=color, markerfacecolor="white", linestyle="", markersize=7,
+            markeredgewidth=1.5, label=label, zorder=5)
 
 
 def draw_curve(axes: Axes, alpha: float, name: str, **style) -> Axes:

@@ -43,21 +43,14 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     )
     parser.add_argument("folder", metavar="DIR", type=Path, help="folder of the results")
     parser.add_argument(
-        "--decks",
-        metavar="DIR",
-        type=Path,
-        help="folder of the deck, which names a file of blocks (default: the folder that holds DIR, then this one)",
-    )
+        "--decks", metavar="DIR", type=Path,
+        help="folder of the deck, which names a file of blocks (default: the folder that holds DIR, then this one)")
     parser.add_argument(
-        "--exact",
-        action="store_true",
-        help=f"prove limits again in rational arithmetic, of cases of at most {MOST_JOINTS} joints",
-    )
+        "--exact", action="store_true",
+        help=f"prove limits again in rational arithmetic, of cases of at most {MOST_JOINTS} joints")
     parser.add_argument(
-        "--ignore-sums",
-        action="store_true",
-        help="check the proofs of tables that were written again, whose rows no longer have the check sums of the run",
-    )
+        "--ignore-sums", action="store_true",
+        help="check the proofs of tables that were written again, whose rows no longer have the check sums of the run")
     parser.add_argument("--quiet", action="store_true", help="tell the worst case alone")
 
 
