@@ -92,6 +92,8 @@ contains
       call follow_stations(settings, system, graph, stations, path, start)
       path%n_factorisation = path%n_factorisation + verdict%n_factorisation
       path%unproven = verdict%unproven .or. dead_alone
+      if (path%no_start .and. .not. dead_alone) call see_dead_fall(settings, system, graph, &
+         & stations, path)
       if (path%no_start .and. (dead_alone .or. verdict%end == path_end%reached)) then
          path%end = path_end%undecided
          path%reason = no_start
@@ -99,6 +101,28 @@ contains
       path%no_start = path%no_start .and. verdict%end == path_end%reached
       verdict = path
    end subroutine decide_graph
+
+   !> Blocks that fall by their dead loads fall before what is live could hold them
+   pure subroutine see_dead_fall(settings, system, graph, stations, path)
+      type(settings_t), intent(in) :: settings
+      type(block_system_t), intent(in) :: system
+      type(joint_graph_t), intent(in) :: graph
+      type(load_stations_t), intent(in) :: stations
+      !> A path that finds no state under the dead loads
+      type(graph_verdict_t), intent(inout) :: path
+      type(load_decision_t) :: decision
+      real(wp) :: dead(3, graph%n_block), opening(3, size(graph%kind))
+
+      call loads_at(stations, 0, settings, system, graph, dead, opening)
+      call decide_load(graph, dead, decision)
+      path%n_factorisation = path%n_factorisation + decision%n_factorisation
+      if (decision%state /= load_state%falls .or. is_feigned(settings, system, decision)) return
+      path%no_start = .false.
+      if (path%end == path_end%collapsed) return
+      path%end = path_end%collapsed
+      path%mechanism = decision%velocity
+      if (allocated(path%reason)) deallocate (path%reason)
+   end subroutine see_dead_fall
 
    !> The stations of the loads. Gravity that tilts is upright at first where the blocks stand then,
    !> for others were drawn for gravity as it is; the associated rule knows no order of loads

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+import math
 import sys
 from pathlib import Path
 
@@ -56,6 +57,23 @@ def test_a_bar_holds_what_lies_between_two_walls_if_it_hangs_from_it(tmp_path: P
     scene = BETWEEN_WALLS + f"live 1.5 0.5 0 -100\nbar {ends} stiffness 1e9 slack\n"
     found = rows(tmp_path, scene, f"&joint friction_deg = 20.0 /\n{sweep}")
     assert [row["verdict"] for row in found] == 3 * [verdict]
+
+
+@pytest.mark.parametrize(("flow", "verdict"), [("coulomb", "collapsed"), ("associated", "stable")])
+def test_what_slides_by_its_weight_is_not_held_by_a_push_that_comes_later(
+    tmp_path: Path, flow: str, verdict: str
+) -> None:
+    """A wedge on a slope of 30 degrees; a push of the weight times tan(30) balances it without friction."""
+    rise = math.tan(math.radians(30))
+    slope = f"block fixed\n0 0\n6 0\n6 {6 * rise!r}\nblock\n2 {2 * rise!r}\n4 {4 * rise!r}\n2 {4 * rise!r}\n"
+    # it is 2 wide and 2*rise high, its weight 2*rise units of area
+    scene = slope + f"live {8 / 3!r} {10 / 3 * rise!r} {2e4 * 2 * rise * rise!r} 0\n"
+    deck = f"&material unit_weight = 2e4 /\n&analysis flow = '{flow}' /\n&load load_factor = 1 /\n"
+    sweep = "&sweep parameter = 'friction_deg', values = 5, 15, 25 /"
+    assert [row["verdict"] for row in rows(tmp_path, scene, deck + sweep)] == 3 * [verdict]
+    if flow == "coulomb":
+        (row,) = rows(tmp_path, scene, deck + "&search parameter = 'friction_deg', low = 1, high = 60 /")
+        assert float(row["critical"]) == pytest.approx(30.0, rel=1e-6)
 
 
 def test_a_search_says_what_falls_by_its_dead_loads(tmp_path: Path) -> None:
