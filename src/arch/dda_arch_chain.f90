@@ -160,13 +160,14 @@ contains
       real(wp), intent(in) :: thickness_ratio
       !> Any chain in, whose arrays are used again where they fit
       type(chain_t), intent(inout) :: chain
-      real(wp) :: area, centre(2), radius, thickness, way(2)
+      real(wp) :: area, centre(2), give, radius, thickness, way(2)
       integer :: b, first, last, n
 
       n = size(rays%joint) - 1
       call new_chain(n, chain)
       radius = numbers%shape%radius
       thickness = thickness_ratio*radius
+      give = 1.0_wp/(numbers%young*thickness)
       chain%stiffness(1) = huge(1.0_wp)
       do b = 1, n
          first = rays%joint(b)
@@ -186,12 +187,12 @@ contains
          chain%stiffness(b + 1) = numbers%penalty_ratio*numbers%young*thickness/rays%length(b)
          chain%stiffness(b) = min(chain%stiffness(b), chain%stiffness(b + 1))
          if (rays%keystone .and. b == n) cycle
-         call add_compliance(numbers%young, area, chain%arm(2, 2, b), thickness, &
+         call add_compliance(give, area, chain%arm(2, 2, b), thickness, &
             & chain%compliance(b))
-         call add_compliance(numbers%young, area, chain%arm(2, 1, b + 1), thickness, &
+         call add_compliance(give, area, chain%arm(2, 1, b + 1), thickness, &
             & chain%compliance(b + 1))
       end do
-      if (rays%keystone) call add_compliance(numbers%young, 2.0_wp*area, radius &
+      if (rays%keystone) call add_compliance(give, 2.0_wp*area, radius &
          & *(rays%direction(2, first)*rays%point(1, first)) - rays%direction(1, first) &
          & *(radius*rays%point(2, first) - chain%centroid(2, n)), thickness, chain%compliance(n))
       last = rays%joint(n + 1)
@@ -209,9 +210,9 @@ contains
    end subroutine arch_chain
 
    !> Add the half of a block at a joint to its compliance
-   pure subroutine add_compliance(young, area, across, thickness, compliance)
-      !> Young's modulus [Pa]
-      real(wp), intent(in) :: young
+   pure subroutine add_compliance(give, area, across, thickness, compliance)
+      !> One over Young's modulus and thickness [m/N]
+      real(wp), intent(in) :: give
       !> Area of the block [m2]
       real(wp), intent(in) :: area
       !> How far its centre is from the joint, with any sign [m]
@@ -222,8 +223,12 @@ contains
       real(wp), intent(inout) :: compliance
       real(wp) :: least
 
-      least = least_size*sqrt(area)
-      compliance = compliance + max(abs(across), least)/(young*max(thickness, least))
+      if (min(across**2, thickness**2) >= least_size**2*area) then
+         compliance = compliance + abs(across)*give
+      else
+         least = least_size*sqrt(area)
+         compliance = compliance + max(abs(across), least)*give*thickness/max(thickness, least)
+      end if
    end subroutine add_compliance
 
    !> Make the last joint the plane of symmetry

@@ -83,11 +83,18 @@ contains
       !> Key, with its group only if the key alone would be ambiguous, and with its item
       character(len=:), allocatable :: name
       type(key_t) :: key
+      integer :: alike, i
 
       key = deck_key(parameter%key)
       name = trim(key%name)
-      if (.not. key%bare .or. count(deck_key%name == key%name .and. deck_key%varies &
-         .and. deck_key%bare) > 1) name = full_name(key)
+      alike = 0
+      do i = 1, size(deck_key)
+         if (.not. (deck_key(i)%varies .and. deck_key(i)%bare)) cycle
+         ! the first letter tells most keys apart, and a comparison of texts is a call
+         if (deck_key(i)%name(1:1) /= name(1:1)) cycle
+         if (deck_key(i)%name == key%name) alike = alike + 1
+      end do
+      if (.not. key%bare .or. alike > 1) name = full_name(key)
       if (parameter%item > 0) name = name//"("//to_text(parameter%item)//")"
    end function parameter_name
 end module dda_deck_parameter
