@@ -17,6 +17,8 @@ class CaseSet(MutableSet):
     def __init__(self, cases: Iterable[int] = ()) -> None:
         self._bytes = bytearray()
         self._count = 0
+        #: Whether each number was put in after all smaller ones, and once
+        self.in_order = True
         for case in cases:
             self.add(case)
 
@@ -38,6 +40,8 @@ class CaseSet(MutableSet):
         known = self._bytes
         if case >= len(known):
             known.extend(bytes(case + 1 - len(known)))
+        else:
+            self.in_order = False
         self._count += 1 - known[case]
         known[case] = 1
 

@@ -91,21 +91,54 @@ def merge(parts: Path, out: Path, record: str | None = None, headers: dict[str, 
     """
     candidates = [*([out] if record else []), *(sorted(parts.iterdir()) if parts.is_dir() else ())]
     owner = Owner()
+    spans: list[tuple[int, int, Path]] = []
+    in_order = True
     for attempt in candidates:
-        for case in finished_by(attempt, record, headers):
+        cases = finished_by(attempt, record, headers)
+        for case in cases:
             owner.take(case, attempt)
+        if cases:
+            in_order &= getattr(cases, "in_order", False) and (attempt / SEAL).is_file()
+            spans.append((next(iter(cases)), max(cases), attempt))
     attempts = owner.attempts or [path for path in candidates if (path / "results.csv").exists()][:1]
+    spans.sort()
+    if in_order and spans and all(one[1] < other[0] for one, other in zip(spans, spans[1:])):
+        ordered = [attempt for _, _, attempt in spans]
+    else:
+        ordered = []
     (out / SEAL).unlink(missing_ok=True)
     (out / "disk.record").unlink(missing_ok=True)  # of another run: these tables are written whole
     for name in TABLES:
         if headers is not None and name not in headers:
             (out / name).unlink(missing_ok=True)  # of another deck
+        elif ordered:
+            join_tables(name, ordered, out, headers)
         else:
             merge_table(name, attempts, owner, out, headers)
     copy_pictures(attempts, owner, out)
     if record is not None:
         replace(out / "deck.record", lambda file: file.write(record.encode()))
     write_seal(out)
+
+
+def join_tables(name: str, attempts: list[Path], out: Path, headers: dict[str, str] | None = None) -> None:
+    """Put one table of attempts one behind the other: each has its cases in order, and all before the next one.
+
+    Every case is written to all tables before the next one is, so that the order of one is that of all.
+    """
+    sources = [attempt / name for attempt in attempts if (attempt / name).exists()]
+    if not sources:
+        return
+
+    def write(file: BinaryIO) -> None:
+        for source in sources:
+            with source.open("rb") as body:
+                header = body.readline()
+                if source is sources[0]:
+                    file.write(header if headers is None else headers[name].encode() + b"\n")
+                shutil.copyfileobj(body, file, _PIECE)
+
+    replace(out / name, write)
 
 
 def merge_table(
@@ -181,10 +214,12 @@ def merged(out: Path, cases: Set[int]) -> Summary:
     """
     if not cases:
         return Summary(0, 0)
-    with (out / "results.csv").open(newline="", encoding="utf-8", errors="replace") as file:
-        rows = csv.reader(file)
-        verdict = next(rows).index("verdict")
-        return Summary(len(cases), sum(row[verdict] == "undecided" for row in rows))
+    with (out / "results.csv").open("rb") as file:
+        # most rows are told apart without parting them
+        doubtful = [line for line in file if b"undecided" in line or line.startswith(b"deck,")]
+    rows = csv.reader(line.decode("utf-8", "replace") for line in doubtful)
+    verdict = next(rows).index("verdict")
+    return Summary(len(cases), sum(row[verdict] == "undecided" for row in rows))
 
 
 def replace(path: Path, write: Callable[[BinaryIO], object]) -> None:

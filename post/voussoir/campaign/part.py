@@ -66,6 +66,8 @@ def run_part(part: Part) -> tuple[int, str]:
         status, message = run_attempt(part, rest)
         if status in (2, 4):
             return status, message
+        if status in (0, 3):  # it ended by itself: all are finished
+            return 0, ""
         if -status in (signal.SIGINT, signal.SIGTERM):
             return 3, "stopped before all cases were finished; call again to go on"
         before, done = done, finished_in(part.folder, part.cases, part.record, part.headers)
@@ -179,8 +181,8 @@ def _finished_by(attempt: Path, record: str | None, headers: dict[str, str], sai
         )
         return CaseSet()
     cases = whole_rows(attempt, said)
-    if "sizes.record" not in headers or not cases:
-        return cases
+    if "sizes.record" not in headers or not cases or (attempt / SEAL).is_file():
+        return cases  # what is sealed was written to its end
     had = bytes_of_cases(attempt, headers, max(cases))
     kept = CaseSet()
     for case, size in told_sizes(attempt):
