@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import argparse
 import os
 import random
 import subprocess
@@ -156,3 +157,44 @@ def test_tables_read_in_pieces_are_those_read_at_once(searched: results.Results,
     mixed.write_text("case,record\n1,7\n2,8\nx,9\n4,9\n")
     with pytest.raises(DamagedTable, match="other.csv:4: error: expected case"):
         read_columns(mixed, 1)
+
+
+def test_columns_of_one_value_take_no_room_and_read_the_same(tmp_path: Path) -> None:
+    from voussoir.results._tables import read_columns
+
+    rows = [f"{case},arch,,{case % 3},{'0;60' if case % 2 else '40'}" for case in range(1, 31)]
+    table = tmp_path / "some.csv"
+    table.write_text("\n".join(["case,deck,exact,friction_deg,intrados_hinge_deg", *rows, ""]))
+    whole, pieces = read_columns(table, None), read_columns(table, 4)
+    assert pieces["deck"].strides == pieces["exact"].strides == (0,)
+    assert pieces["case"].strides != (0,)
+    for name, column in whole.items():
+        assert np.array_equal(column, pieces[name], equal_nan=column.dtype.kind == "f")
+    assert pieces["intrados_hinge_deg"][0] == (0.0, 60.0)
+    some = results.Table(pieces).take(np.array([5, 2]))
+    assert some["case"].tolist() == [6, 3] and some["deck"].tolist() == ["arch"] * 2
+    assert list(read_columns(table, 4, lambda names: names[:2])) == ["case", "deck"]
+
+
+def test_chart_of_a_large_table_reads_its_columns_alone(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    from voussoir.command import plot
+    from voussoir.plot.design_chart import chart_columns
+
+    whole = run(
+        tmp_path,
+        "&arch voussoirs = 12 /\n&search parameter = 'thickness_ratio' /\n"
+        "&sweep parameter = 'half_angle_deg', values = 60, 70, 80 /\n"
+        "&sweep parameter = 'horizontal_coefficient', first = 0, last = 0.1, count = 41 /\n",
+    )
+    some = results.read(whole.folder, chart_columns)
+    assert {"horizontal_coefficient", "half_angle_deg", "critical"} <= set(some.cases) < set(whole.cases)
+    assert all(np.array_equal(whole.cases[name], some.cases[name], equal_nan=True) for name in ("case", "critical"))
+    pictures = []
+    for large in (0, plot.LARGE):
+        monkeypatch.setattr(plot, "LARGE", large)
+        out = tmp_path / str(large)
+        parser = argparse.ArgumentParser()
+        plot.add_arguments(parser)
+        assert plot.run(parser.parse_args([str(whole.folder), "--chart", "--format", "png", "--out", str(out)])) == 0
+        pictures.append((out / "chart.png").read_bytes())
+    assert pictures[0] == pictures[1]

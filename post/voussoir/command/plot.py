@@ -13,6 +13,8 @@ from voussoir.extras import advice
 #: Most cases that are drawn without being named
 MOST_CASES = 12
 _AUTO = "auto"
+#: A table of more bytes is large
+LARGE = 10_000_000
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -96,11 +98,15 @@ def run(arguments: argparse.Namespace) -> int:
 
 def _run(arguments: argparse.Namespace) -> int:
     """Draw; failures are exceptions."""
-    read = results.read(arguments.folder)
     from voussoir.plot.case_picture import draw_case
-    from voussoir.plot.design_chart import draw_chart
+    from voussoir.plot.design_chart import chart_columns, draw_chart
     from voussoir.plot.figure_style import house_style, save
 
+    # of a large table only what the chart needs is held
+    table = arguments.folder / "results.csv"
+    bare = arguments.chart and not arguments.case and not arguments.fragility
+    large = table.is_file() and table.stat().st_size > LARGE
+    read = results.read(arguments.folder, chart_columns if bare and large else None)
     out = arguments.out or arguments.folder / "plots"
     paths: list[Path] = []
     with house_style():

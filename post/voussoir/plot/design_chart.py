@@ -28,6 +28,12 @@ class ChartError(ValueError):
     """No chart can be drawn: why, and what to do."""
 
 
+def chart_columns(names: list[str]) -> set[str]:
+    """Columns that a chart needs, of the names of all."""
+    own = names[names.index(_BEFORE) : names.index(_BEHIND) + 1]
+    return {*own, *_SHARED, "verdict", "critical", "exact"} & set(names)
+
+
 def swept_columns(cases: Table) -> list[str]:
     """Columns that were swept and vary.
 
@@ -63,7 +69,8 @@ def draw_chart(run: Results, column: str | None = None) -> Figure:
     ChartError
         If nothing was found, nothing was swept, or the curves are too many.
     """
-    found = run.cases.take(run.cases["verdict"] == "found")
+    is_found = run.cases["verdict"] == "found"
+    found = run.cases if np.all(is_found) else run.cases.take(is_found)
     swept = swept_columns(run.cases)
     numeric = [name for name in swept if found[name].dtype.kind in "if"]
     if column is None:
@@ -80,7 +87,7 @@ def draw_chart(run: Results, column: str | None = None) -> Figure:
     others = [name for name in swept if name != column and not _follows(found, name, column)]
     missing = _missing(run.cases, found)
     numbers = set(others) <= set(numeric)
-    curves = len(set(zip(*(found[name].tolist() for name in others))))
+    curves = _different(*(found[name] for name in others))
     if numbers and (len(others) == 2 and curves > MOST_CURVES or len(others) == 1 and curves > MOST_COLOURS):
         across, *panels = sorted(others, key=lambda name: -len(_values(found, name)))
         return draw_field(found, column, across, panels[0] if panels else None, _searched(run), missing)
@@ -176,14 +183,22 @@ def _searched(run: Results) -> str:
 
 
 def _values(cases: Table, name: str) -> set:
-    column = cases[name]
-    return set(column[~np.isnan(column)] if column.dtype.kind == "f" else column)
+    column = np.unique(cases[name])
+    return set(column[~np.isnan(column)].tolist() if column.dtype.kind == "f" else column.tolist())
 
 
 def _follows(cases: Table, name: str, column: str) -> bool:
     """Whether a column is a function of the abscissa, as in a linked sweep."""
-    pairs = set(zip(cases[column].tolist(), cases[name].tolist()))
-    return len(pairs) == len(set(cases[column].tolist()))
+    return _different(cases[column], cases[name]) == _different(cases[column])
+
+
+def _different(*columns: np.ndarray) -> int:
+    """How many rows differ in some columns; one of none."""
+    code = np.zeros(1, dtype=np.int64)
+    for column in columns:
+        values, place = np.unique(column, return_inverse=True)
+        code = np.unique(code * len(values) + place.ravel(), return_inverse=True)[1].ravel()
+    return int(code.max(initial=0)) + 1
 
 
 def _groups(cases: Table, others: list[str]) -> list[tuple[str, Table]]:

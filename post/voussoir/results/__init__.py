@@ -21,7 +21,7 @@ import numpy as np
 from voussoir.extras import advice
 from voussoir.plot.shape_rings import is_shape
 from voussoir.results import _table_view
-from voussoir.results._tables import DamagedTable, read_columns
+from voussoir.results._tables import Choice, DamagedTable, read_columns
 
 if TYPE_CHECKING:
     import pandas
@@ -123,7 +123,13 @@ class Table(Mapping):
 
     def take(self, rows: np.ndarray) -> Table:
         """Some of the rows, by a mask or by their places."""
-        return Table({name: column[rows] for name, column in self.columns.items()})
+        count = int(np.count_nonzero(rows)) if rows.dtype == bool else len(rows)
+        return Table(
+            {
+                name: np.broadcast_to(column[:1], count) if column.strides == (0,) and len(column) else column[rows]
+                for name, column in self.columns.items()
+            }
+        )
 
 
 @dataclass(frozen=True)
@@ -365,13 +371,15 @@ class Results:
         return file if file.is_file() else None
 
 
-def read(folder: str | Path) -> Results:
+def read(folder: str | Path, choice: Choice | None = None) -> Results:
     """Read the results of one deck.
 
     Parameters
     ----------
     folder : str or Path
         Where `dda run` has written them.
+    choice : callable, optional
+        Which columns of results.csv are read, from the names of all; other tables are then left out.
 
     Returns
     -------
@@ -386,9 +394,11 @@ def read(folder: str | Path) -> Results:
         If a table holds what `dda` does not write.
     """
     folder = Path(folder)
-    cases = _read_table(folder / "results.csv")
+    cases = _read_table(folder / "results.csv", choice)
     if cases is None:
         raise FileNotFoundError(f"no results.csv in {folder}: not a folder written by 'dda run'")
+    if choice is not None:
+        return Results(folder, cases, None, None, None, None, None, None)
     return Results(
         folder=folder,
         cases=cases,
@@ -414,9 +424,11 @@ def _equal(left: np.ndarray, right: np.ndarray) -> bool:
     return np.array_equal(left, right, equal_nan=left.dtype.kind == right.dtype.kind == "f")
 
 
-def _read_table(file: Path) -> Table | None:
+def _read_table(file: Path, choice: Choice | None = None) -> Table | None:
     """A table with typed columns in the order of its cases, None if there is no such file."""
     if not file.is_file():
         return None
-    table = Table(read_columns(file))
+    table = Table(read_columns(file, choice=choice))
+    if np.all(table["case"][1:] >= table["case"][:-1]):
+        return table
     return table.take(np.argsort(table["case"], kind="stable"))

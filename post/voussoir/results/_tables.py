@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+from collections.abc import Callable, Collection
 from itertools import islice
 from pathlib import Path
 
@@ -22,7 +23,7 @@ _WORDS = frozenset(
 #: What to do about a table that is damaged
 _AGAIN = "run the deck again with --resume"
 #: Rows that are text at one time: text takes ten times the memory of numbers
-_AT_ONCE = 50000
+_AT_ONCE = 10000
 #: Columns that a table must have, each once; results.csv has those of swept parameters beside them
 _NEEDED = {
     "results.csv": (
@@ -58,18 +59,27 @@ class DamagedTable(ValueError):
     """A table that dda does not write so: the message begins with file and line."""
 
 
-def read_columns(file: Path, at_once: int | None = _AT_ONCE) -> dict[str, np.ndarray]:
+#: Of the names of all columns those that are read
+Choice = Callable[[list[str]], Collection[str]]
+
+
+def read_columns(
+    file: Path, at_once: int | None = _AT_ONCE, choice: Choice | None = None
+) -> dict[str, np.ndarray]:
     """Read a table.
 
     Parameters
     ----------
     at_once : int, optional
         Rows that are text at one time; None for all of them.
+    choice : callable, optional
+        Which columns are read, from the names of all; all without it.
 
     Returns
     -------
     dict of str to ndarray
-        Its columns with their types, rows as they stand.
+        Its columns with their types, rows as they stand. Of a table in several pieces a column of one
+        value is that value once, seen in each row, and cannot be written to.
 
     Raises
     ------
@@ -86,26 +96,49 @@ def read_columns(file: Path, at_once: int | None = _AT_ONCE) -> dict[str, np.nda
             if lost:
                 found = names.count(lost[0])
                 raise DamagedTable(f"{file}:1: error: expected one column {lost[0]}, got {found}; " + _AGAIN)
+            kept = set(names if choice is None else choice(names))
             while rows := [(reader.line_num, row) for row in islice(reader, at_once)]:
-                pieces.append(_columns(file, names, rows))
+                pieces.append([_once(piece) for piece in _columns(file, names, rows, kept)])
     except (UnicodeDecodeError, csv.Error) as problem:
         raise DamagedTable(
             f"{file}:{_spoilt_line(file)}: error: expected a table, got: {problem}; " + _AGAIN
         ) from problem
-    columns = dict(zip(names, zip(*(pieces or [_columns(file, names, [])]))))
+    columns = dict(zip([name for name in names if name in kept], zip(*(pieces or [_columns(file, names, [], kept)]))))
     if any(len({piece.dtype.kind for piece in column}) > 1 for column in columns.values()):
-        return read_columns(file, None)  # a swept parameter whose words are numbers here and there
-    return {name: np.concatenate(column) for name, column in columns.items()}
+        return read_columns(file, None, choice)  # a swept parameter whose words are numbers here and there
+    pieces.clear()  # each column is held twice only while it is joined
+    return {name: _joined(columns.pop(name)) for name in list(columns)}
 
 
-def _columns(file: Path, names: list[str], rows: list[tuple[int, list[str]]]) -> list[np.ndarray]:
-    """Columns of some rows, each row with its line."""
+def _once(piece: np.ndarray) -> np.ndarray:
+    """A column of one value in all rows as that value, seen in each row."""
+    if len(piece) < 2:
+        return piece
+    if piece.dtype.kind == "O":  # tuples, whose comparison is that of arrays
+        same = all(cell == piece[0] for cell in piece)
+    else:
+        same = np.array_equal(piece[1:], piece[:-1], equal_nan=piece.dtype.kind == "f")
+    return np.broadcast_to(piece[:1].copy(), len(piece)) if same else piece
+
+
+def _joined(pieces: tuple[np.ndarray, ...]) -> np.ndarray:
+    """Pieces of a column as one."""
+    if len(pieces) == 1:
+        return np.array(pieces[0])
+    firsts = np.concatenate([piece[:1] for piece in pieces])
+    if all(piece.strides == (0,) for piece in pieces) and _once(firsts).strides == (0,):
+        return np.broadcast_to(firsts[:1], sum(map(len, pieces)))
+    return np.concatenate(pieces)
+
+
+def _columns(file: Path, names: list[str], rows: list[tuple[int, list[str]]], kept: set[str]) -> list[np.ndarray]:
+    """Columns of some rows that are kept, each row with its line."""
     for number, row in rows:
         if len(row) != len(names):
             raise DamagedTable(f"{file}:{number}: error: expected {len(names)} cells, got {len(row)}; " + _AGAIN)
     cells = list(zip(*(row for _, row in rows))) or [()] * len(names)
     lines = [number for number, _ in rows]
-    return [_typed(file, lines, name, column) for name, column in zip(names, cells)]
+    return [_typed(file, lines, name, column) for name, column in zip(names, cells) if name in kept]
 
 
 def _spoilt_line(file: Path) -> int:
@@ -139,7 +172,8 @@ def column_of(name: str, cells: tuple[str, ...]) -> np.ndarray:
     """A column with its type; ValueError or OverflowError where a cell has another one."""
     if name in _LISTS:
         column = np.empty(len(cells), dtype=object)
-        column[:] = [tuple(float(part) for part in cell.split(";") if part) for cell in cells]
+        known = {cell: tuple(float(part) for part in cell.split(";") if part) for cell in set(cells)}
+        column[:] = [known[cell] for cell in cells]
         return column
     if name in _WHOLE:
         return np.array(cells, dtype=np.int64)
