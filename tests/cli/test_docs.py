@@ -8,6 +8,7 @@ run; here they only are known ones.
 
 from __future__ import annotations
 
+import json
 import os
 import re
 import subprocess
@@ -175,3 +176,12 @@ def test_flaws_that_are_cured_name_modules_and_tests_that_exist() -> None:
         assert re.search(rf"(subroutine|def) {name}\(", whole), name
     for name in re.findall(r"`(dda_[a-z_]+)`", page):
         assert list((ROOT / "src").rglob(f"{name}.f90")), name
+
+
+def test_pages_name_presets_that_are_there() -> None:
+    presets = json.loads((ROOT / "CMakePresets.json").read_text())
+    known = {kind: {preset["name"] for preset in presets[f"{kind}Presets"]} for kind in ("workflow", "configure")}
+    pages = PAGES
+    named = [pair for page in pages for pair in re.findall(r"cmake (--workflow )?--preset (\w+)", page.read_text())]
+    assert {"paper", "program", "test"} <= {name for _, name in named}
+    assert [name for flow, name in named if name not in known["workflow" if flow else "configure"]] == []
