@@ -4,7 +4,7 @@
 !> It is measured from where it does nothing: the horizontal coefficient or the load factor itself,
 !> or the angle of gravity from upright.
 module dda_load_coefficient
-   use dda_graph_decision, only : decides_as_graph
+   use dda_graph_decision, only : decides_as_graph, has_friction
    use dda_joint_graph, only : joint_graph_t
    use dda_kinds, only : wp
    use dda_limit_decision, only : decide_load, load_decision_t, load_state
@@ -17,7 +17,7 @@ module dda_load_coefficient
    private
 
    public :: added_loads, can_follow, carry_load, coefficient, full_loads, only_weight
-   public :: is_push, restore_weight, value_at_end, with_coefficient
+   public :: is_push, knows_no_order, restore_weight, seek_rest, value_at_end, with_coefficient
 
    !> A coefficient beside which rounding of the constant loads is not felt
    real(wp), parameter :: many = 2.0_wp**40
@@ -45,6 +45,14 @@ contains
             & .and. is_push(largest))
       end associate
    end function can_follow
+
+   !> Whether the order in which loads come is nothing to a scene
+   pure logical function knows_no_order(settings, graph)
+      type(settings_t), intent(in) :: settings
+      type(joint_graph_t), intent(in) :: graph
+
+      knows_no_order = settings%verdict_flow == flow_rule%associated .or. .not. has_friction(graph)
+   end function knows_no_order
 
    !> Whether gravity that tilts so far is upright gravity and a push, but for its size
    pure logical function is_push(tilt)
@@ -188,4 +196,45 @@ contains
       proof%state%force = proof%state%force/weight
       proof%state%load = proof%state%load/weight
    end subroutine restore_weight
+
+   !> A value of the range that stands, where 0 does not. Values that stand lie between two others:
+   !> the mechanism of one that falls says on which side of it, and how far off at least
+   pure subroutine seek_rest(load, scene, graph, low, high, value, found, n_factorisation)
+      !> One of searched_load
+      integer, intent(in) :: load
+      type(scene_t), intent(in) :: scene
+      type(joint_graph_t), intent(in) :: graph
+      !> The range
+      real(wp), intent(in) :: low, high
+      !> The value
+      real(wp), intent(out) :: value
+      !> Whether there is one
+      logical, intent(out) :: found
+      !> Factorisations
+      integer, intent(out) :: n_factorisation
+      integer, parameter :: most = 60
+      type(load_decision_t) :: decision
+      real(wp) :: dead(3, graph%n_block), live(3, graph%n_block), from, to, power, stop
+      integer :: i
+
+      dead = full_loads(with_coefficient(scene%settings, load, 0.0_wp), scene, graph)
+      live = added_loads(load, scene%settings, scene, graph)
+      from = low
+      to = high
+      value = 0.0_wp
+      n_factorisation = 0
+      do i = 1, most
+         call decide_load(graph, dead + value*live, decision)
+         n_factorisation = n_factorisation + decision%n_factorisation
+         if (decision%state /= load_state%falls) exit
+         power = sum(live*decision%velocity(:3, :))
+         if (.not. abs(power) > 0.0_wp) exit
+         stop = value - sum((dead + value*live)*decision%velocity(:3, :))/power
+         if (power < 0.0_wp) from = max(from, stop)
+         if (power > 0.0_wp) to = min(to, stop)
+         if (.not. to > from) exit
+         value = 0.5_wp*(from + to)
+      end do
+      found = decision%state == load_state%stands
+   end subroutine seek_rest
 end module dda_load_coefficient

@@ -11,7 +11,8 @@ module dda_load_search
    use dda_kinds, only : wp
    use dda_limit_load, only : find_limit, limit_load_t, limit_state
    use dda_load_coefficient, only : added_loads, can_follow, carry_load, coefficient, full_loads, &
-      & is_push, only_weight, restore_weight, value_at_end, with_coefficient
+      & is_push, knows_no_order, only_weight, restore_weight, seek_rest, value_at_end, &
+      & with_coefficient
    use dda_load_stations, only : load_stations, load_stations_t
    use dda_loading_path, only : path_end
    use dda_path_verdict, only : graph_verdict_t
@@ -31,7 +32,7 @@ module dda_load_search
       integer :: end = path_end%reached
       !> Value at which it falls, from that state; of what stands, the end of the range
       real(wp) :: value = 0.0_wp
-      !> How far the value may be off
+      !> How far it may be off
       real(wp) :: half = 0.0_wp
       !> The associated limit from below and from above, with the sign of the side
       real(wp) :: limit(2) = 0.0_wp
@@ -67,13 +68,15 @@ contains
       class(family_t), intent(in) :: family
       type(search_t), intent(in) :: search
       type(critical_t), intent(inout) :: critical
-      !> Whether the search could be done so; otherwise nothing was
+      !> Whether the search could be done so
       logical, intent(out) :: done
       type(error_t), allocatable :: error
       type(joint_graph_t) :: graph
       type(scene_t) :: scene
       type(side_t) :: right, left
-      real(wp) :: low, high
+      real(wp) :: low, high, origin
+      logical :: found
+      integer :: n
 
       call family%build(search%low, scene, error)
       done = .not. allocated(error)
@@ -88,18 +91,26 @@ contains
       if (family%load == searched_load%tilt .and. .not. has_friction(graph)) done &
          & = only_weight(scene%settings) .and. is_push(max(abs(low), abs(high)))
       if (.not. done) return
-      right%value = high
-      left%value = low
       ! from an unloaded state outside the range, the path leads through it
-      if (high > 0.0_wp) call follow_side(family%load, scene, graph, high, search, right)
-      if (low < 0.0_wp) call follow_side(family%load, scene, graph, low, search, left)
+      call follow_side(family%load, scene, graph, 0.0_wp, high, 1.0_wp, search, right)
+      call follow_side(family%load, scene, graph, 0.0_wp, low, -1.0_wp, search, left)
+      n = 0
+      if ((right%falls_dead .or. left%falls_dead) .and. family%load /= searched_load%tilt &
+         & .and. knows_no_order(scene%settings, graph)) then
+         call seek_rest(family%load, scene, graph, low, high, origin, found, n)
+         if (found) then
+            n = n + right%proof%n_factorisation + left%proof%n_factorisation
+            call follow_side(family%load, scene, graph, origin, high, 1.0_wp, search, right)
+            call follow_side(family%load, scene, graph, origin, low, -1.0_wp, search, left)
+         end if
+      end if
       call tell_fall(scene%settings, graph, right)
       call tell_fall(scene%settings, graph, left)
       if (right%proof%end == path_end%reached .and. .not. allocated(right%proof%state)) &
          & call carry_load(family%load, high, scene, graph, right%proof%force)
       if (left%proof%end == path_end%reached .and. .not. allocated(left%proof%state)) &
          & call carry_load(family%load, low, scene, graph, left%proof%force)
-      critical%factorisations = right%proof%n_factorisation + left%proof%n_factorisation
+      critical%factorisations = n + right%proof%n_factorisation + left%proof%n_factorisation
       critical%steps = right%proof%n_event + left%proof%n_event
       ! what does not stand upright may do so under gravity that acts another way from the beginning
       done = family%load /= searched_load%tilt .or. right%stands_upright .and. left%stands_upright
@@ -122,37 +133,40 @@ contains
    end subroutine tell_fall
 
    !> Follow the path to one side: limit analysis says how far it can lead at most
-   pure subroutine follow_side(load, scene, graph, last, search, side)
+   pure subroutine follow_side(load, scene, graph, origin, last, outward, search, side)
       !> One of searched_load
       integer, intent(in) :: load
       type(scene_t), intent(in) :: scene
       type(joint_graph_t), intent(in) :: graph
+      !> Value from which the range is searched: 0, or one that stands where 0 does not
+      real(wp), intent(in) :: origin
       !> End of the range on this side
       real(wp), intent(in) :: last
+      !> 1 to the right, -1 to the left
+      real(wp), intent(in) :: outward
       type(search_t), intent(in) :: search
-      type(side_t), intent(inout) :: side
+      type(side_t), intent(out) :: side
       type(load_stations_t) :: stations
       type(limit_load_t) :: limit
       type(settings_t) :: settings
       real(wp) :: far
 
-      call find_associated(load, scene, graph, last, search, side, limit)
+      side%value = last
+      if (.not. outward*(last - origin) > 0.0_wp) return
+      call find_associated(load, scene, graph, origin, last - origin, search, side, limit)
       side%falls_dead = limit%state == limit_state%no_dead_equilibrium
+      far = last
       associate (proof => side%proof)
          proof%n_factorisation = limit%n_factorisation
-         far = last
          if (side%has_limit .and. abs(side%limit(1)) < abs(last)) far = side%limit(1)
-         if (scene%settings%verdict_flow == flow_rule%associated &
-            & .or. .not. has_friction(graph)) then
-            call take_associated(last, search, limit, side)
+         side%stands_upright = knows_no_order(scene%settings, graph)
+         if (side%stands_upright .or. side%falls_dead) then
+            call take_associated(last - origin, search, limit, side)
+            side%value = origin + side%value
+            side%limit = origin + side%limit
             return
          end if
-         if (side%falls_dead) then
-            call take_associated(last, search, limit, side)
-            side%value = 0.0_wp
-            side%stands_upright = .false.
-            return
-         end if
+         side%stands_upright = .true.
          if (abs(far) < abs(last)) far = far*(1.0_wp - path_resolution)
          settings = with_coefficient(scene%settings, load, far)
          stations = load_stations(settings, .true.)
@@ -190,10 +204,13 @@ contains
    end function is_at_limit
 
    !> The associated limit of what is searched, where it is linear in the load
-   pure subroutine find_associated(load, scene, graph, last, search, side, limit)
+   pure subroutine find_associated(load, scene, graph, origin, last, search, side, limit)
       integer, intent(in) :: load
       type(scene_t), intent(in) :: scene
       type(joint_graph_t), intent(in) :: graph
+      !> Value that limit analysis begins with
+      real(wp), intent(in) :: origin
+      !> End of the range, from there
       real(wp), intent(in) :: last
       type(search_t), intent(in) :: search
       type(side_t), intent(inout) :: side
@@ -211,7 +228,7 @@ contains
          settings%tilt = 0.0_wp
          varied = searched_load%push
       end if
-      dead = full_loads(with_coefficient(settings, varied, 0.0_wp), scene, graph)
+      dead = full_loads(with_coefficient(settings, varied, origin), scene, graph)
       live = sign(1.0_wp, last)*added_loads(varied, settings, scene, graph)
       tolerance = min(path_resolution, max(least_gap, 1.0e-2_wp*search%tolerance))
       call find_limit(graph, dead, live, tolerance, limit)
@@ -232,6 +249,7 @@ contains
 
    !> Take the associated limit as the answer
    pure subroutine take_associated(last, search, limit, side)
+      !> End of the range, from where the limit is counted
       real(wp), intent(in) :: last
       type(search_t), intent(in) :: search
       type(limit_load_t), intent(in) :: limit
@@ -265,7 +283,7 @@ contains
          proof%end = side%end
          proof%force = limit%force
          if (allocated(side%force)) proof%force = side%force
-         ! a state that the path has left before the limit does not carry what is told
+         ! the path has left this state before the limit
          if (allocated(proof%state)) deallocate (proof%state)
       end associate
    end subroutine take_associated
@@ -277,7 +295,6 @@ contains
       !> Ends of the range, from where the coefficient does nothing
       real(wp), intent(in) :: low, high
       type(scene_t), intent(in) :: scene
-      !> Where it falls to the right and to the left
       type(side_t), intent(in) :: right, left
       type(critical_t), intent(inout) :: critical
       logical :: falls_left, falls_right, falls_at_once
@@ -307,9 +324,8 @@ contains
          call keep_collapse(scene, left, critical)
       else if (falls_right) then
          call close_bracket(search, low, high, scene, right, 1.0_wp, critical)
-         if (falls_left) critical%other = search%low &
-            & + (left%value - low)*(search%high - search%low)/(high - low)
          critical%has_other = falls_left
+         critical%other = search%low + (left%value - low)*(search%high - search%low)/(high - low)
       else if (falls_left) then
          call close_bracket(search, low, high, scene, left, -1.0_wp, critical)
       else
@@ -329,7 +345,6 @@ contains
       real(wp), intent(in) :: low, high
       type(scene_t), intent(in) :: scene
       type(side_t), intent(in) :: side
-      !> 1 to the right, -1 to the left
       real(wp), intent(in) :: outward
       type(critical_t), intent(inout) :: critical
       real(wp) :: scale

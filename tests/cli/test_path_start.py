@@ -59,21 +59,41 @@ def test_a_bar_holds_what_lies_between_two_walls_if_it_hangs_from_it(tmp_path: P
     assert [row["verdict"] for row in found] == 3 * [verdict]
 
 
+def wedge_on_slope() -> str:
+    """A wedge on a slope of 30 degrees; a push of its weight times tan(30) balances it without friction."""
+    rise = math.tan(math.radians(30))
+    slope = f"block fixed\n0 0\n6 0\n6 {6 * rise!r}\nblock\n2 {2 * rise!r}\n4 {4 * rise!r}\n2 {4 * rise!r}\n"
+    # it is 2 wide and 2*rise high, its area 2*rise
+    return slope + f"live {8 / 3!r} {10 / 3 * rise!r} {2e4 * 2 * rise * rise!r} 0\n"
+
+
 @pytest.mark.parametrize(("flow", "verdict"), [("coulomb", "collapsed"), ("associated", "stable")])
 def test_what_slides_by_its_weight_is_not_held_by_a_push_that_comes_later(
     tmp_path: Path, flow: str, verdict: str
 ) -> None:
-    """A wedge on a slope of 30 degrees; a push of the weight times tan(30) balances it without friction."""
-    rise = math.tan(math.radians(30))
-    slope = f"block fixed\n0 0\n6 0\n6 {6 * rise!r}\nblock\n2 {2 * rise!r}\n4 {4 * rise!r}\n2 {4 * rise!r}\n"
-    # it is 2 wide and 2*rise high, its weight 2*rise units of area
-    scene = slope + f"live {8 / 3!r} {10 / 3 * rise!r} {2e4 * 2 * rise * rise!r} 0\n"
+    scene = wedge_on_slope()
     deck = f"&material unit_weight = 2e4 /\n&analysis flow = '{flow}' /\n&load load_factor = 1 /\n"
     sweep = "&sweep parameter = 'friction_deg', values = 5, 15, 25 /"
     assert [row["verdict"] for row in rows(tmp_path, scene, deck + sweep)] == 3 * [verdict]
     if flow == "coulomb":
         (row,) = rows(tmp_path, scene, deck + "&search parameter = 'friction_deg', low = 1, high = 60 /")
         assert float(row["critical"]) == pytest.approx(30.0, rel=1e-6)
+
+
+@pytest.mark.parametrize(("low", "high"), [(0, 50), (0.5, 2), (-3, 1e9), (0, 1), (1, 50), (0, 0.6), (1.5, 9)])
+def test_a_push_holds_a_wedge_between_two_factors(tmp_path: Path, low: float, high: float) -> None:
+    """It stands while the push over the weight lies between tan(30 - 10) and tan(30 + 10)."""
+    least, most = (math.tan(math.radians(angle)) / math.tan(math.radians(30)) for angle in (20, 40))
+    task = f"&material unit_weight = 2e4 /\n&joint friction_deg = 10 /\n&analysis flow = 'associated' /\n"
+    task += f"&search parameter = 'load_factor', low = {low!r}, high = {high!r} /"
+    (row,) = rows(tmp_path, wedge_on_slope(), task)
+    falls = [(end, value) for end, value in (("high", most), ("low", least)) if low < value < high]
+    if falls:
+        assert (row["verdict"], row["collapses_at"]) == ("found", falls[0][0])
+        assert float(row["critical"]) == pytest.approx(falls[0][1], rel=1e-9)
+        assert ("it also collapses at" in (tmp_path / "deck" / "log.txt").read_text()) == (len(falls) == 2)
+    else:
+        assert row["verdict"] == "collapsed"
 
 
 def test_a_search_says_what_falls_by_its_dead_loads(tmp_path: Path) -> None:
