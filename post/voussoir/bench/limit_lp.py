@@ -27,7 +27,7 @@ def scipy_version() -> str | None:
 def stands_by_general(
     half_angle: float, voussoirs: int, ratio: float, friction: float, method: str = "highs", tolerance: float = 1e-7
 ) -> bool:
-    """Whether an arch stands, by the general program.
+    """Whether an arch stands, by the general program: whether admissible joint forces balance the weights.
 
     Parameters
     ----------
@@ -39,11 +39,6 @@ def stands_by_general(
         "highs-ds" (simplex), "highs-ipm" (interior points), or "highs", which chooses.
     tolerance : float, optional
         By how much HiGHS may violate rows.
-
-    Returns
-    -------
-    bool
-        Whether admissible joint forces balance the weights.
     """
     from scipy.optimize import linprog
     from scipy.sparse import coo_array

@@ -52,7 +52,7 @@ def searched(
     group: str, name: str, guard: str, arch: dict[str, Any] | None = None, friction_deg: float = 90.0,
     current: bool = False, **others: dict[str, Any]
 ) -> Scene:
-    """A search for the critical thickness.
+    """A search for the critical thickness: the scene with its exact answer.
 
     Parameters
     ----------
@@ -60,11 +60,6 @@ def searched(
         Friction angle [deg].
     current : bool, optional
         Whether blocks move; the answer may then differ by what elasticity explains.
-
-    Returns
-    -------
-    Scene
-        The scene with its exact answer.
     """
     arch = {"voussoirs": 36, "half_angle_deg": 90.0} if arch is None else arch
     exact = exact_thickness(arch, friction_deg)

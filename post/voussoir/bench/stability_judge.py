@@ -254,13 +254,7 @@ def _figure(value: float | str) -> str:
 
 
 def judge(expectation: Expectation, finished: Finished) -> Judgement:
-    """Judge a finished run.
-
-    Returns
-    -------
-    Judgement
-        A crash, a NaN in a table and a missing row are WRONG whatever was expected.
-    """
+    """Judge a finished run: a crash, a NaN in a table and a missing row are WRONG whatever was expected."""
     if finished.status is None:
         return Judgement(UNDECIDED, "nothing", "", finished.message)
     if finished.not_a_number:

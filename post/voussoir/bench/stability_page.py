@@ -85,13 +85,7 @@ _HEADS = ("kind", "scenes", "worst error", "undecided", "WRONG", "median time [m
 
 
 def kinds(lines: Sequence[Line]) -> list[Kind]:
-    """What came of each kind of scene, all of them last.
-
-    Returns
-    -------
-    list of Kind
-        In the order of the table.
-    """
+    """What came of each kind of scene, all of them last: in the order of the table."""
     groups = {line.group: [other for other in lines if other.group == line.group] for line in lines}
     found = []
     for name, own in {**groups, "all": list(lines)}.items():
@@ -104,13 +98,7 @@ def kinds(lines: Sequence[Line]) -> list[Kind]:
 
 
 def headline(lines: Sequence[Line]) -> str:
-    """The count that matters, in one sentence.
-
-    Returns
-    -------
-    str
-        How many are WRONG, undecided and right.
-    """
+    """The count that matters, in one sentence: how many are WRONG, undecided and right."""
     count = Counter(line.result for line in lines)
     share = 100.0 * count[UNDECIDED] / max(1, len(lines))
     return (

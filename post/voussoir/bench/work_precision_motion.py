@@ -219,7 +219,7 @@ def _bounce() -> Motion:
 
 
 def pendulum_quarter(amplitude: float, frequency: float) -> float:
-    """A quarter of a pendulum's period by the arithmetic-geometric mean of Gauss.
+    """A quarter of a pendulum's period by the arithmetic-geometric mean of Gauss: the time [s].
 
     Parameters
     ----------
@@ -227,11 +227,6 @@ def pendulum_quarter(amplitude: float, frequency: float) -> float:
         Largest angle [rad].
     frequency : float
         Of small swings [rad/s].
-
-    Returns
-    -------
-    float
-        The time [s].
     """
     a, b = 1.0, math.cos(amplitude / 2.0)
     while abs(a - b) > 1e-15:

@@ -85,17 +85,12 @@ class Race:
 
 
 def race(arch: Arch, folder: Path, repeats: int) -> Race:
-    """Time decisions of dda and of both linear programs in turn.
+    """Time decisions of dda and of both linear programs in turn: the least times of all rounds.
 
     Parameters
     ----------
     arch : Arch
         What is decided, at four distances from critical.
-
-    Returns
-    -------
-    Race
-        The least times of all rounds.
     """
     exact = arch.exact()
     ratios = [exact * (1.0 + distance) for distance in DISTANCES]

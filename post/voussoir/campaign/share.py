@@ -55,7 +55,7 @@ class Campaign:
 
 
 def open_campaign(dda: Path, deck: Path, settings: list[str], out: Path, anew: bool, shared: bool = False) -> Campaign:
-    """Begin a campaign, or go on with one.
+    """Begin a campaign, or go on with one: the campaign; its folder exists and says what it is for.
 
     Parameters
     ----------
@@ -63,11 +63,6 @@ def open_campaign(dda: Path, deck: Path, settings: list[str], out: Path, anew: b
         Whether what an earlier campaign has left in that folder is discarded.
     shared : bool, optional
         Whether others may work in the folder at the same time: shares of a job array.
-
-    Returns
-    -------
-    Campaign
-        The campaign; its folder exists and says what it is for.
 
     Raises
     ------
@@ -191,17 +186,12 @@ def finished(campaign: Campaign, cases: range, problems: list[str] | None = None
 def split(
     campaign: Campaign, cases: range, workers: int, jobs: int = 1, problems: list[str] | None = None
 ) -> list[Part]:
-    """Cut cases that are not finished into parts of equal size.
+    """Cut cases that are not finished into parts of equal size: the parts, in the order of their cases.
 
     Parameters
     ----------
     jobs : int
         Cases that each computes at the same time.
-
-    Returns
-    -------
-    list of Part
-        The parts, in the order of their cases.
     """
     done = finished(campaign, cases, problems)
     rest = array("q", (case for case in cases if case not in done)) if done else cases
@@ -215,17 +205,12 @@ def split(
 
 
 def share(total: int, index: int, of: int) -> range:
-    """Cases of one member of a job array.
+    """Cases of one member of a job array: its cases; those of all members are all cases, each once.
 
     Parameters
     ----------
     index : int
         Number of the member, from 1.
-
-    Returns
-    -------
-    range
-        Its cases; those of all members are all cases, each once.
     """
     return range((index - 1) * total // of + 1, index * total // of + 1)
 

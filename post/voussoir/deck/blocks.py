@@ -82,7 +82,7 @@ class Blocks(Deck):
     def from_shapely(
         cls, polygons: Any, fixed: Any = (), material: Union[int, Sequence[int]] = 1, **keys: Any
     ) -> Blocks:
-        """Blocks from polygons of shapely.
+        """Blocks from polygons of shapely: the blocks; `dropped` names what has no area, with a warning.
 
         Parameters
         ----------
@@ -95,11 +95,6 @@ class Blocks(Deck):
             Number of their material, or of each.
         **keys
             As for `Blocks`.
-
-        Returns
-        -------
-        Blocks
-            The blocks; `dropped` names what has no area, with a warning.
 
         Raises
         ------
@@ -122,7 +117,7 @@ class Blocks(Deck):
         return blocks
 
     def add(self, corners: npt.ArrayLike, fixed: bool = False, material: int = 1) -> int:
-        """Add a polygon.
+        """Add a polygon: its number, from 1.
 
         Parameters
         ----------
@@ -132,11 +127,6 @@ class Blocks(Deck):
             Whether it never moves.
         material : int, optional
             Number of its material.
-
-        Returns
-        -------
-        int
-            Its number, from 1.
         """
         self.shapes.append(BlockShape((_points(corners),), fixed, material))
         return len(self.shapes)

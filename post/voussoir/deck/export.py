@@ -24,17 +24,12 @@ class Outline:
 
 
 def outlines_of(run: Results, case: int, magnify: float = 0.0) -> list[Outline]:
-    """Blocks of a case.
+    """Blocks of a case: on the layer "fixed", "blocks", or "material N" for materials from 2 on.
 
     Parameters
     ----------
     magnify : float, optional
         How many times their displacements they have moved.
-
-    Returns
-    -------
-    list of Outline
-        On the layer "fixed", "blocks", or "material N" for materials from 2 on.
 
     Raises
     ------

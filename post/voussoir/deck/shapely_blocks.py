@@ -11,12 +11,7 @@ _PURPOSE = "polygons"
 
 
 def polygons_of(shapes: Any) -> tuple[list, list[str]]:
-    """Polygons of a geometry, or of several.
-
-    Returns
-    -------
-    tuple of list
-        The polygons, and in words what is none.
+    """Polygons of a geometry, or of several: the polygons, and in words what is none.
 
     Raises
     ------

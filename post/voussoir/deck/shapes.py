@@ -31,7 +31,7 @@ class ImportedShape:
 def read_shapes(
     file: Path, scale: Optional[float], tolerance: float
 ) -> tuple[list[ImportedShape], list[str], tuple[float, str]]:
-    """Outlines of a file.
+    """Outlines of a file: the outlines, in words what was dropped, and the scale with who says so.
 
     Parameters
     ----------
@@ -41,11 +41,6 @@ def read_shapes(
         Metres a unit of the file; by default what a drawing says of its unit, else 1.
     tolerance : float
         How far a chord may be from its arc [m].
-
-    Returns
-    -------
-    tuple
-        The outlines, in words what was dropped, and the scale with who says so.
 
     Raises
     ------

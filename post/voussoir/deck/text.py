@@ -17,12 +17,7 @@ _MEANT = {"geometry": "analysis", "friction_deg": "joint", "unit_weight": "mater
 
 
 def value_text(value: Any) -> str:
-    """A value as a deck writes it.
-
-    Returns
-    -------
-    str
-        Such as ".true.", "0.5", "'no-slip'" or "0, 54.5, 90".
+    """A value as a deck writes it: such as ".true.", "0.5", "'no-slip'" or "0, 54.5, 90".
 
     Raises
     ------
@@ -43,18 +38,13 @@ def value_text(value: Any) -> str:
 
 
 def deck_text(groups: Groups) -> str:
-    """A deck as text.
+    """A deck as text, a line a group.
 
     Parameters
     ----------
     groups : mapping
         Keys and values by group: {"arch": {"voussoirs": 36}, "search": {}}; "sweep" may hold a
         list of mappings.
-
-    Returns
-    -------
-    str
-        The deck, a line a group.
     """
     lines = []
     for group, keys in groups.items():
@@ -109,18 +99,13 @@ def groups_of_keys(dda: Path) -> dict[str, tuple[str, ...]]:
 
 
 def groups_of(dda: Path, keys: Mapping[str, Any]) -> dict[str, Any]:
-    """Groups from keyword arguments.
+    """Groups from keyword arguments: as for `deck_text`.
 
     Parameters
     ----------
     keys : mapping
         By bare name ("friction_deg"), with the group ("arch%radius"), or a group as a mapping
         ("search" to {"parameter": "friction_deg"}); the name of a parameter will do for "search".
-
-    Returns
-    -------
-    dict
-        As for `deck_text`.
 
     Raises
     ------

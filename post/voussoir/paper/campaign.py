@@ -88,13 +88,7 @@ class Clock:
 
 
 def run_program(part: str, command: list[str | Path]) -> tuple[int, Timing]:
-    """Run a program and measure it.
-
-    Returns
-    -------
-    tuple
-        Its exit status and its times.
-    """
+    """Run a program: its exit status and its times."""
     start = time.monotonic()
     process = subprocess.Popen(command)
     _, status, usage = os.wait4(process.pid, 0)
@@ -144,7 +138,7 @@ class Campaign:
         return [file for file in self.deck_files(slow=True) if (self.out / file.stem / "results.csv").is_file()]
 
     def run(self, dda: Path, clock: Clock, jobs: int, slow: bool, resume: bool) -> int:
-        """Run all decks, each by a process of its own.
+        """Run all decks, each by a process of its own: the worst exit status of the program.
 
         Parameters
         ----------
@@ -152,11 +146,6 @@ class Campaign:
             Whether to run those decks too that are run on demand only.
         resume : bool
             Whether to keep what an earlier run has finished.
-
-        Returns
-        -------
-        int
-            The worst exit status of the program.
         """
         files = self.deck_files(slow)
         longest_first = sorted(files, key=lambda file: -clock.left.get(file.stem, 1.0))

@@ -151,7 +151,7 @@ class Page:
 
 
 def inline_svg(text: str, prefix: str, label: str) -> str:
-    """An SVG file as an element of a page.
+    """An SVG file as an element of a page: the element, as wide as its place and at most as wide as it was drawn.
 
     Parameters
     ----------
@@ -159,11 +159,6 @@ def inline_svg(text: str, prefix: str, label: str) -> str:
         Put before all its names, which otherwise meet those of other figures of the page.
     label : str
         What it shows, for those who cannot see it; tags are left out.
-
-    Returns
-    -------
-    str
-        The element, as wide as its place and at most as wide as it was drawn.
     """
     svg = text[text.index("<svg") :].strip()
     svg = re.sub(r"<metadata>.*?</metadata>\s*", "", svg, flags=re.DOTALL)

@@ -27,7 +27,7 @@ _PLACES = {"ours, rigid": 4, "ours, elastic": 4}
 
 
 def build(campaign: Campaign, figures: Path, timings: list[Timing], dda: Path) -> str:
-    """The page as HTML.
+    """The page as HTML; `PAGE_TIME` stands for the time that making it takes.
 
     Parameters
     ----------
@@ -35,11 +35,6 @@ def build(campaign: Campaign, figures: Path, timings: list[Timing], dda: Path) -
         Folder of the figures; those that are not there are named as left out.
     timings : list of Timing
         How long the parts took so far.
-
-    Returns
-    -------
-    str
-        The page; `PAGE_TIME` stands for the time that making it takes.
     """
     page = Page("Masonry arches by DDA: section 3 of the paper, side by side")
     page.text(

@@ -105,7 +105,7 @@ def _time_of(change: Change) -> float:
 
 
 def read_blocks(path: Path, deck: Deck) -> Source:
-    """Read a file of blocks.
+    """Read a file of blocks: what it says.
 
     Parameters
     ----------
@@ -113,11 +113,6 @@ def read_blocks(path: Path, deck: Deck) -> Source:
         The file.
     deck : Deck
         Its deck, for what materials leave out.
-
-    Returns
-    -------
-    Source
-        What it says.
     """
     try:
         text = path.read_text(encoding="utf-8")

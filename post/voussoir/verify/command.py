@@ -55,17 +55,12 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Check a folder.
+    """Check a folder; exit status 0 if all proofs hold, 1 if one does not, 2 if nothing can be checked.
 
     Parameters
     ----------
     arguments : argparse.Namespace
         Parsed options.
-
-    Returns
-    -------
-    int
-        Exit status: 0 if all proofs hold, 1 if one does not, 2 if nothing can be checked.
     """
     try:
         deck = read_record(arguments.folder)
@@ -117,13 +112,7 @@ def _report(found: dict[int, Finding], quiet: bool) -> int:
 
 
 def read_table(path: Path) -> dict[int, list[Row]]:
-    """Rows of a table by their case.
-
-    Returns
-    -------
-    dict
-        The rows of each case.
-    """
+    """Rows of a table by their case."""
     if not path.exists():
         if path.stem in OPTIONAL:
             return {}
@@ -242,11 +231,6 @@ def scene_of(deck: Deck, rows: list[Row], places: list[Path], finding: Finding) 
         Folders to look for a file of blocks in.
     finding : Finding
         Receives how far corners are from those of the deck.
-
-    Returns
-    -------
-    Scene
-        The blocks with their joints.
     """
     if not rows:
         raise VerifyError("no blocks of a case in blocks.csv: run the deck with output%blocks = .true.")

@@ -45,7 +45,7 @@ class Joint:
 
 
 def make_block(number: int, corners: np.ndarray, fixed: bool) -> Block:
-    """A block from its corners in either sense.
+    """A block from its corners in either sense: with area and centre of gravity.
 
     Parameters
     ----------
@@ -53,11 +53,6 @@ def make_block(number: int, corners: np.ndarray, fixed: bool) -> Block:
         The corners in order, (n, 2).
     fixed : bool
         Whether it cannot move.
-
-    Returns
-    -------
-    Block
-        With area and centre of gravity.
     """
     shift = corners.mean(axis=0)
     x, y = (corners - shift).T
@@ -69,13 +64,7 @@ def make_block(number: int, corners: np.ndarray, fixed: bool) -> Block:
 
 
 def find_joints(blocks: list[Block]) -> list[Joint]:
-    """All joints of blocks of which one can move.
-
-    Returns
-    -------
-    list of Joint
-        Edges that lie together, and corners before edges.
-    """
+    """All joints of blocks of which one can move: edges that lie together, and corners before edges."""
     low = np.array([block.corners.min(axis=0) for block in blocks])
     high = np.array([block.corners.max(axis=0) for block in blocks])
     size = np.array([block.size for block in blocks])
@@ -172,13 +161,7 @@ def _edges_together(first: Block, a: int, second: Block, b: int, reach: float) -
 
 
 def depth(block: Block, point: np.ndarray) -> float:
-    """How deep a point lies in a block, negative outside.
-
-    Returns
-    -------
-    float
-        Its distance from the outline, with a sign.
-    """
+    """How deep a point lies in a block, negative outside: its distance from the outline, with a sign."""
     start, point = block.corners.astype(float), np.asarray(point, dtype=float)
     end = np.roll(start, -1, axis=0)
     along = end - start
@@ -193,13 +176,7 @@ def depth(block: Block, point: np.ndarray) -> float:
 
 
 def numbers_of(joints: list[Joint]) -> dict[tuple[int, int], list[Joint]]:
-    """Joints by their two blocks, the smaller number first.
-
-    Returns
-    -------
-    dict
-        The joints of each pair.
-    """
+    """Joints by their two blocks, the smaller number first: the joints of each pair."""
     pairs: dict[tuple[int, int], list[Joint]] = {}
     for joint in joints:
         pairs.setdefault((min(joint.first, joint.second), max(joint.first, joint.second)), []).append(joint)

@@ -105,13 +105,7 @@ def surface_of(deck: Deck, chords: list[Chord]) -> float:
 
 
 def fill_weights(deck: Deck, blocks: list[Block]) -> list[tuple[int, np.ndarray, float]]:
-    """Weights of what lies above the chords.
-
-    Returns
-    -------
-    list of tuple
-        The block, where the weight acts along x, and the weight.
-    """
+    """Weights of what lies above the chords: the block, where the weight acts along x, and the weight."""
     chords = chords_of(deck, blocks)
     surface, backing = surface_of(deck, chords), _backing(deck, blocks)
     of_fill = deck.number("fill%unit_weight")

@@ -18,7 +18,7 @@ Rows = list[list[str]]
 
 
 def read_lines(geometry: Path, analysis: Path, blocks: list[Block], deck: Deck) -> Source:
-    """Materials and laws of joints; keys that the deck gives go before.
+    """What files say of materials and laws of joints; keys that the deck gives go before.
 
     Parameters
     ----------
@@ -28,11 +28,6 @@ def read_lines(geometry: Path, analysis: Path, blocks: list[Block], deck: Deck) 
         File of materials.
     blocks : list of Block
         The blocks that were cut.
-
-    Returns
-    -------
-    Source
-        What the files say.
     """
     lines, crossing = _geometry(_text(geometry))
     materials, joints = _analysis(_text(analysis))

@@ -19,17 +19,12 @@ MOST_FRICTION_DEG = "89.9"
 
 
 def loads_on(deck: Deck, source: Source, blocks: list[Block]) -> np.ndarray:
-    """Forces and moments about the centres of blocks.
+    """Forces and moments about the centres of blocks: force along x and y, and moment, of each block: (n, 3).
 
     Parameters
     ----------
     source : Source
         Its file of blocks, or nothing.
-
-    Returns
-    -------
-    ndarray
-        Force along x and y, and moment, of each block: (n, 3).
     """
     load = np.zeros((len(blocks), 3), dtype=object if deck.exact else float)
     for i, part in _parts_on(deck, source, blocks):
@@ -74,13 +69,7 @@ def _parts_on(deck: Deck, source: Source, blocks: list[Block]) -> Iterator[tuple
 
 
 def live_of(deck: Deck, blocks: list[Block]) -> list[PointForce]:
-    """Live loads of a deck.
-
-    Returns
-    -------
-    list of PointForce
-        Forces of &live and of the axles of &vehicle.
-    """
+    """Live loads of a deck: forces of &live and of the axles of &vehicle."""
     free = [block for block in blocks if not block.fixed]
     forces = []
     for force in _live_of_deck(deck):

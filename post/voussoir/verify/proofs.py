@@ -133,17 +133,12 @@ def check_forces(scene: Scene, rows: list[Row], finding: Finding) -> None:
 
 
 def digits_of(force: float) -> float:
-    """What rounding makes of a force.
+    """What rounding makes of a force: a share of the largest load.
 
     Parameters
     ----------
     force : float
         The force over the largest load: blocks that jam press one another with forces far larger than that.
-
-    Returns
-    -------
-    float
-        A share of the largest load.
     """
     return min(DIGITS * force, JAMMED)
 
@@ -217,7 +212,7 @@ def push(left: np.ndarray, block: Block, at: np.ndarray, vector: np.ndarray) -> 
 
 
 def largest_of(load: np.ndarray, length: float) -> float:
-    """Largest force or moment over a length.
+    """Largest force or moment over a length: the largest, above 0.
 
     Parameters
     ----------
@@ -225,11 +220,6 @@ def largest_of(load: np.ndarray, length: float) -> float:
         Force and moment of each block, (n, 3).
     length : float
         What moments are divided by.
-
-    Returns
-    -------
-    float
-        The largest, above 0.
     """
     if len(load) == 0:
         return 1e-300
@@ -302,19 +292,13 @@ def check_motion(scene: Scene, rows: list[Row], finding: Finding) -> float:
 
 
 def held_points(scene: Scene, block: Block) -> list[tuple[np.ndarray, tuple[bool, bool]]]:
-    """Held points of a block, and along what.
-
-    Returns
-    -------
-    list of tuple
-        Each point, and whether it is held along x and along y.
-    """
+    """Held points of a block, and along what: each point, and whether it is held along x and along y."""
     return [(np.array(end), held.along) for held in scene.source.held for end in held.ends
             if held.block in (0, block.number) and depth(block, np.array(end)) >= -TOUCH * block.size]
 
 
 def velocity_at(scene: Scene, velocity: np.ndarray, number: int, point: np.ndarray) -> np.ndarray:
-    """Velocity of a point of a block.
+    """Velocity of a point of a block: (2).
 
     Parameters
     ----------
@@ -322,11 +306,6 @@ def velocity_at(scene: Scene, velocity: np.ndarray, number: int, point: np.ndarr
         Velocities of the centres and spins, (n, 3).
     number : int
         Number of the block.
-
-    Returns
-    -------
-    ndarray
-        Its velocity, (2).
     """
     u, v, spin = velocity[number - 1]
     arm = point - scene.blocks[number - 1].centre

@@ -23,11 +23,6 @@ def sine_cosine(degrees: Fraction) -> tuple[Fraction, Fraction]:
     ----------
     degrees : Fraction
         The angle.
-
-    Returns
-    -------
-    tuple
-        Sine and cosine.
     """
     quarters = round(degrees / 90)
     angle = round((degrees - 90 * quarters) * PI / 180 * FINE)

@@ -52,13 +52,7 @@ class _Floats:
 
 
 def find_best(programme: Programme) -> Vertex | None:
-    """The best vertex.
-
-    Returns
-    -------
-    Vertex or None
-        The vertex; None if there is none, or none was found.
-    """
+    """The best vertex; None if there is none, or none was found."""
     rows, count = len(programme.right), len(programme.columns)
     dense = np.zeros((rows, count))
     for j, column in enumerate(programme.columns):

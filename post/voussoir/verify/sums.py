@@ -15,17 +15,12 @@ SUMMED = (
 
 
 def told_sums(folder: Path) -> dict[int, int]:
-    """Sums that the program has written down.
+    """Sums that the program has written down: the sum of each case.
 
     Parameters
     ----------
     folder : Path
         Folder of the results.
-
-    Returns
-    -------
-    dict
-        The sum of each case.
     """
     path = folder / "sizes.record"
     if not path.exists():

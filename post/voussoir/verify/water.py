@@ -24,17 +24,12 @@ class Water:
 
 
 def water_loads(water: Water, rise: float, blocks: list[Block]) -> list[tuple[int, np.ndarray, np.ndarray]]:
-    """Forces of the water on the blocks that move.
+    """Forces of the water on the blocks that move: the block, where the force acts, and the force.
 
     Parameters
     ----------
     rise : float
         By how much all lines have risen.
-
-    Returns
-    -------
-    list of tuple
-        The block, where the force acts, and the force.
     """
     found = []
     for block in blocks:
