@@ -95,8 +95,7 @@ contains
       progress%done = progress%done + 1
       if (.not. progress%shown .or. progress%done == progress%total) return
       call system_clock(now, rate)
-      if (progress%total > few &
-         & .and. real(now - progress%last, wp) < interval*real(rate, wp)) return
+      if (progress%total > few .and. real(now - progress%last, wp) < interval*real(rate, wp)) return
       progress%last = now
       progress%told = .true.
       left = real(now - progress%start, wp)/real(rate, wp) &

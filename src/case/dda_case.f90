@@ -101,13 +101,11 @@ contains
 
    !> What a deck asks to be searched
    pure subroutine prepare_search(plan, searched, family, search)
-      !> What its scenes need
       type(scene_plan_t), intent(in) :: plan
       !> Name of the searched parameter
       character(len=*), intent(in) :: searched
       !> New but for its deck
       type(deck_family_t), intent(inout) :: family
-      !> Receives what is searched
       type(search_t), intent(inout) :: search
 
       call new_family(plan, family%deck%searched, family)

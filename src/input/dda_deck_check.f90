@@ -181,7 +181,6 @@ contains
    pure function reason_of_no_effect(deck, key) result(why)
       type(deck_t), intent(in) :: deck
       type(key_t), intent(in) :: key
-      !> The reason
       character(len=:), allocatable :: why
 
       why = ""
@@ -214,7 +213,6 @@ contains
    !> Whether a key is swept
    pure logical function is_swept(deck, group, name)
       type(deck_t), intent(in) :: deck
-      !> Names of its group and of itself
       character(len=*), intent(in) :: group, name
       integer :: s
 

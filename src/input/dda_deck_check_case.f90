@@ -285,7 +285,6 @@ contains
       type(deck_t), intent(in) :: deck
       !> The end
       real(wp), intent(in) :: number
-      !> Where it is given
       type(deck_place_t), intent(in) :: place
       type(error_t), allocatable, intent(out) :: error
       type(deck_t) :: trial

@@ -159,7 +159,6 @@ contains
    pure recursive subroutine take_values(value, k, a, b, c, d, e, f, g)
       !> All values: (0:n)
       type(deck_value_t), intent(in) :: value(0:)
-      !> The walk
       type(walk_t), intent(inout) :: k
       type(input_value_t), intent(inout) :: a
       type(input_value_t), intent(inout), optional :: b, c, d, e, f, g
@@ -175,7 +174,6 @@ contains
       type(deck_value_t), intent(in) :: value
       !> One of key_kind
       integer, intent(in) :: kind
-      !> The value under its name
       type(input_value_t), intent(inout) :: named
 
       named%given = value%given
@@ -202,7 +200,6 @@ contains
    !> Take the next texts
    pure recursive subroutine take_texts(value, k, a, b)
       type(deck_value_t), intent(in) :: value(0:)
-      !> The walk
       type(walk_t), intent(inout) :: k
       type(input_text_t), intent(inout) :: a
       type(input_text_t), intent(inout), optional :: b
@@ -219,7 +216,6 @@ contains
    !> Take the next lists; of words only whether they are given
    pure recursive subroutine take_lists(value, k, a, b, c, d, e, f, g)
       type(deck_value_t), intent(in) :: value(0:)
-      !> The walk
       type(walk_t), intent(inout) :: k
       type(input_list_t), intent(inout) :: a
       type(input_list_t), intent(inout), optional :: b, c, d, e, f, g

@@ -110,7 +110,6 @@ contains
       type(network_t), intent(in) :: network
       type(loops_t), intent(in) :: loops
       type(cut_model_t), intent(in) :: cut
-      !> A group lies inside a block
       type(error_t), allocatable, intent(out) :: error
       type(boxes_t) :: boxes
       logical, allocatable :: hole(:)

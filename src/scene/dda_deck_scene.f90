@@ -62,7 +62,6 @@ contains
 
    !> Make a deck a family, its numbers read
    pure subroutine new_family(plan, parameter, family)
-      !> What its scenes need
       type(scene_plan_t), intent(in) :: plan
       type(parameter_t), intent(in) :: parameter
       !> New but for the deck

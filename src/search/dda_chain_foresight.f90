@@ -34,7 +34,6 @@ contains
    !> Foresee where the collapse of a chain stops, by the secant method on what its forces lack
    pure subroutine foresee(family, search, proposal)
       class(family_t), intent(in) :: family
-      !> What is searched
       type(search_t), intent(in) :: search
       !> Where it stops, usable if that is known
       type(proposal_t), intent(out) :: proposal
@@ -71,9 +70,7 @@ contains
    !> What would be a collapse if it were proven
    pure subroutine freeze(chain, lack, foreseen)
       type(chain_t), intent(in) :: chain
-      !> What its forces lack
       type(lack_t), intent(in) :: lack
-      !> Receives it
       type(critical_t), intent(inout) :: foreseen
       real(wp) :: force(3, size(chain%half)), load(3, size(chain%half))
 

@@ -253,7 +253,6 @@ contains
       class(family_t), intent(in) :: family
       !> The mechanism; keeps its chain
       type(frozen_t), intent(inout) :: mechanism
-      !> The value
       real(wp), intent(in) :: value
       type(critical_t), intent(inout) :: critical
       !> The power

@@ -320,7 +320,6 @@ contains
    !> another trace would tell nothing new
    pure logical function proved(search, limit, critical, proposal)
       type(search_t), intent(in) :: search
-      !> The end of the range on the side that stands
       real(wp), intent(in) :: limit
       type(critical_t), intent(in) :: critical
       !> Where the collapse before the last stops

@@ -31,8 +31,7 @@ contains
       real(wp), intent(out) :: load(:, :)
       !> Matrix that the weights are turned by; none leaves them as they are: (2, 2)
       real(wp), intent(in), optional :: turned(2, 2)
-      real(wp) :: weight(2, size(chain%mass))
-      real(wp) :: total(3)
+      real(wp) :: weight(2, size(chain%mass)), total(3)
       integer :: b
 
       total = 0.0_wp

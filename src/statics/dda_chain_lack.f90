@@ -52,8 +52,7 @@ contains
       type(chain_t), intent(in) :: chain
       !> Bounds to begin with, of a chain much like this one, or none; those of this one out
       type(lack_t), intent(inout) :: lack
-      real(wp) :: load(3, size(chain%half)), inverse(4, 4), value(4), row(5)
-      real(wp) :: change(4), place(4)
+      real(wp) :: load(3, size(chain%half)), inverse(4, 4), value(4), row(5), change(4), place(4)
       integer :: joint, bound, leaving
 
       call sum_loads(chain, load)
@@ -82,7 +81,6 @@ contains
    !> Faces of the joints on which a mechanism turns and slides
    pure function faces_of(chain, lack) result(face)
       type(chain_t), intent(in) :: chain
-      !> Its bounds
       type(lack_t), intent(in) :: lack
       !> The faces: (n + 1)
       type(joint_face_t) :: face(size(chain%half))
@@ -106,7 +104,6 @@ contains
       type(chain_t), intent(in) :: chain
       !> Sums of the loads: (3, n + 1)
       real(wp), intent(in) :: load(:, :)
-      !> The bounds
       type(lack_t), intent(inout) :: lack
       !> Inverse of the rows of the bounds: (4, 4)
       real(wp), intent(out) :: inverse(4, 4)
@@ -138,10 +135,7 @@ contains
    !> Bounds of the unknowns alone; a smooth plane of symmetry bears no weight
    pure subroutine keep_finite(chain, inverse, value)
       type(chain_t), intent(in) :: chain
-      !> Inverse of their rows: (4, 4)
-      real(wp), intent(out) :: inverse(4, 4)
-      !> What the unknowns are
-      real(wp), intent(out) :: value(4)
+      real(wp), intent(out) :: inverse(4, 4), value(4)
       integer :: i
 
       inverse = 0.0_wp
@@ -156,7 +150,6 @@ contains
    !> The bound that is broken most; joint 0 if none is
    pure subroutine find_worst(chain, load, place, joint, bound)
       type(chain_t), intent(in) :: chain
-      !> Sums of the loads: (3, n + 1)
       real(wp), intent(in) :: load(:, :)
       !> The unknowns, and s
       real(wp), intent(in) :: place(4)
@@ -176,8 +169,7 @@ contains
          along = abs(chain%tangent(1, j)*s(1) + chain%tangent(2, j)*s(2))
          moment = abs(s(3) - chain%middle(1, j)*s(2) + chain%middle(2, j)*s(1))
          room = (normal - moment/chain%half(j))/2.0_wp
-         if (is_rough(chain, j)) &
-            & room = min(room, chain%limit(j) + chain%friction(j)*normal - along)
+         if (is_rough(chain, j)) room = min(room, chain%limit(j) + chain%friction(j)*normal - along)
          if (.not. room < least) cycle
          least = room
          joint = j
@@ -209,11 +201,9 @@ contains
    !> A bound as a row over the unknowns and s, and its value: (5)
    pure function bound_row(chain, load, joint, bound) result(row)
       type(chain_t), intent(in) :: chain
-      !> Sums of the loads: (3, n + 1)
       real(wp), intent(in) :: load(:, :)
       !> Number of the joint
       integer, intent(in) :: joint
-      !> Which of its bounds
       integer, intent(in) :: bound
       !> The row
       real(wp) :: row(5)
@@ -259,7 +249,6 @@ contains
       integer, intent(in) :: r
       !> The other row times the inverse: (4)
       real(wp), intent(in) :: change(4)
-      !> Inverse of all rows: (4, 4)
       real(wp), intent(inout) :: inverse(4, 4)
       integer :: i
 

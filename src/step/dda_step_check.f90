@@ -98,7 +98,6 @@ contains
    !> the motion; if blocks still enter one another the step is cut, and if some are still held off
    !> in thin air, they are
    pure type(step_outcome_t) function check_axes(system, contacts, march, step) result(outcome)
-      !> The blocks before the step
       type(block_system_t), intent(in) :: system
       type(contacts_t), intent(in) :: contacts
       type(march_t), intent(in) :: march
@@ -132,9 +131,7 @@ contains
    !> the two
    pure type(step_outcome_t) function check_penetration(settings, system, contacts, march, step)
       type(settings_t), intent(in) :: settings
-      !> The blocks before the step
       type(block_system_t), intent(in) :: system
-      !> The contacts before the step
       type(contacts_t), intent(in) :: contacts
       type(march_t), intent(in) :: march
       type(step_context_t), intent(in) :: step
@@ -174,9 +171,7 @@ contains
    !> two blocks, if nothing else touched them, would be near enough to count as touching
    pure function check_impact(settings, system, contacts, equations, step) result(outcome)
       type(settings_t), intent(in) :: settings
-      !> The blocks before the step
       type(block_system_t), intent(in) :: system
-      !> The contacts before the step
       type(contacts_t), intent(in) :: contacts
       type(equations_t), intent(in) :: equations
       type(step_context_t), intent(in) :: step
