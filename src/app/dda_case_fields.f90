@@ -176,7 +176,8 @@ contains
       !> The angles: (n) [deg]
       real(wp), intent(in) :: angle(:)
       integer, intent(in) :: width
-      character(len=:), allocatable :: text, next
+      character(len=:), allocatable :: text
+      character(len=:), allocatable :: next
       integer :: i, left_over
 
       text = ""

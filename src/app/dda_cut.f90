@@ -176,7 +176,8 @@ contains
       type(line_model_t), intent(in) :: model
       type(cut_model_t), intent(in) :: cut
       type(cut_remark_t), intent(in) :: remark
-      character(len=:), allocatable :: text, other
+      character(len=:), allocatable :: text
+      character(len=:), allocatable :: other
 
       text = model%file//":"//to_text(model%line%row(remark%line))//": line " &
          & //to_text(remark%line)//" from "//point_text(cut, remark%place(1:2))//" to " &

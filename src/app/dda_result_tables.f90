@@ -178,7 +178,8 @@ contains
    !> are
    pure function left_out(deck) result(text)
       type(deck_t), intent(in) :: deck
-      character(len=:), allocatable :: text, files, keys
+      character(len=:), allocatable :: text
+      character(len=:), allocatable :: files, keys
       integer :: i
 
       text = ""

@@ -184,7 +184,8 @@ contains
       !> Where the joint starts, seen from the block: (2) [m]
       real(wp), intent(in) :: finish(2)
       !> Corners, counter-clockwise: (2, 4) [m]
-      real(wp) :: vertex(2, 4), outward(2), joint(2)
+      real(wp) :: vertex(2, 4)
+      real(wp) :: outward(2), joint(2)
 
       joint = along(start, finish)
       outward = norm2(finish - start)*[joint(2), -joint(1)]

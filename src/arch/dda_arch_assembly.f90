@@ -273,7 +273,8 @@ contains
       !> Where it ends: (2) [m]
       real(wp), intent(in) :: finish(2)
       !> Corners, counter-clockwise: (2, 4) [m]
-      real(wp) :: corner(2, 4), outward(2)
+      real(wp) :: corner(2, 4)
+      real(wp) :: outward(2)
 
       outward = norm2(finish - start)*right_normal(along(start, finish))
       corner = reshape([start, start + outward, finish + outward, finish], [2, 4])

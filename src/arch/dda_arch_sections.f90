@@ -197,7 +197,8 @@ contains
       !> Thickness at the crown [m]
       real(wp), intent(in) :: thickness
       !> The point: (2) [m]
-      real(wp) :: point(2), apart(2), distance, radius(2), foot
+      real(wp) :: point(2)
+      real(wp) :: apart(2), distance, radius(2), foot
 
       radius = curve%piece%a + thickness
       apart = curve%piece(2)%centre - curve%piece(1)%centre

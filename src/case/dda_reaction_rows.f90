@@ -178,7 +178,8 @@ contains
       !> The block, which can move
       integer, intent(in) :: block
       !> Force and moment: (3) [N/m, N/m, N]
-      real(wp) :: wrench(3), weight(3, maxval(system%equation)), of_block(6)
+      real(wp) :: wrench(3)
+      real(wp) :: weight(3, maxval(system%equation)), of_block(6)
       real(wp), dimension(3, maxval(system%equation)) :: load, felt
       real(wp) :: place(2)
       integer :: b

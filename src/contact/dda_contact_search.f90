@@ -76,7 +76,8 @@ contains
       !> How far each block can reach: (n_block) [m]
       real(wp), intent(in) :: reach(:)
       !> The least reach: (n_block) [m]
-      real(wp) :: least(size(reach)), high(2, size(reach)), low(2, size(reach))
+      real(wp) :: least(size(reach))
+      real(wp) :: high(2, size(reach)), low(2, size(reach))
       real(wp), allocatable :: least_below(:)
       type(box_tree_t) :: tree
       integer :: b

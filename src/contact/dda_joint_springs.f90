@@ -108,7 +108,8 @@ contains
       real(wp), intent(in) :: motion(6)
       integer, intent(in) :: n_dof
       !> Displacement along the normal at both contacts, along the edge halfway: (n_dof, 3)
-      real(wp) :: row(n_dof, 3), t(2, 6)
+      real(wp) :: row(n_dof, 3)
+      real(wp) :: t(2, 6)
       integer :: k
 
       row = 0.0_wp
@@ -132,7 +133,8 @@ contains
       real(wp), intent(in) :: centroid(:, :)
       type(joint_t), intent(in) :: joint
       !> The stiffness [N/m per metre depth]
-      real(wp) :: stiffness, young, size_across
+      real(wp) :: stiffness
+      real(wp) :: young, size_across
       integer :: side
 
       stiffness = huge(stiffness)

@@ -66,7 +66,8 @@ contains
       !> Its last corner
       integer, intent(in) :: to
       !> The heights: (to - from + 1) [m]
-      real(wp) :: height(from:to), normal(2)
+      real(wp) :: height(from:to)
+      real(wp) :: normal(2)
 
       normal = right_normal(along(vertex(:, edge), vertex(:, next)))
       height = normal(1)*(vertex(1, from:to) - vertex(1, edge)) &
@@ -105,7 +106,8 @@ contains
       integer, intent(in) :: edge_pair(:, :)
       !> Blocks farther from one another than this are no matter [m]
       real(wp), intent(in) :: reach
-      type(line_t) :: best, line, held, widest
+      type(line_t) :: best
+      type(line_t) :: line, held, widest
       integer :: i, side
 
       do side = 1, 2

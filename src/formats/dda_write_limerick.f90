@@ -135,7 +135,8 @@ contains
       !> Last of them
       integer, intent(in) :: last
       !> Lines, each with its line end; empty for an empty list
-      character(len=:), allocatable :: text, kind
+      character(len=:), allocatable :: text
+      character(len=:), allocatable :: kind
       integer :: i
 
       text = ""

@@ -178,7 +178,8 @@ contains
       !> Ends of the segment: (4) [m]
       real(wp), intent(in) :: segment(4)
       !> Numbers of the boxes: (n)
-      integer, allocatable :: box(:), found(:)
+      integer, allocatable :: box(:)
+      integer, allocatable :: found(:)
       integer :: n
 
       call find_boxes(tree, min(segment(1:2), segment(3:4)), max(segment(1:2), segment(3:4)), &

@@ -189,7 +189,8 @@ contains
       real(wp), intent(in) :: reach
       type(box_tree_t), intent(in), optional :: tree
       !> Ends of each part: (2, 2*n_part) [m]
-      real(wp), allocatable :: part(:, :), place(:)
+      real(wp), allocatable :: part(:, :)
+      real(wp), allocatable :: place(:)
       integer, allocatable :: near(:), order(:)
       real(wp) :: point(2, 2), along(2), from, length
       integer :: i, j, n, n_near, met

@@ -87,7 +87,8 @@ contains
    pure function crossing_point(first, second, share) result(point)
       real(wp), intent(in) :: first(4), second(4), share(2)
       !> The point: (2) [m]
-      real(wp) :: point(2), a(2), b(2)
+      real(wp) :: point(2)
+      real(wp) :: a(2), b(2)
 
       a = first(3:4) - first(1:2)
       b = second(3:4) - second(1:2)

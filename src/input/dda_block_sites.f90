@@ -98,7 +98,8 @@ contains
       !> The block, which holds it
       integer, intent(in) :: block
       !> The others: (n)
-      integer, allocatable :: rival(:), near(:)
+      integer, allocatable :: rival(:)
+      integer, allocatable :: near(:)
       real(wp) :: depth, margin
       integer :: i, n
 

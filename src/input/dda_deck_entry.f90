@@ -133,7 +133,8 @@ contains
       !> Name of the group
       character(len=*), intent(in) :: group
       !> A guess in parentheses; empty if there is none
-      character(len=:), allocatable :: text, name
+      character(len=:), allocatable :: text
+      character(len=:), allocatable :: name
 
       text = ""
       if (scan%token(i)%kind /= token_kind%word) return

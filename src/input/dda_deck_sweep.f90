@@ -193,7 +193,8 @@ contains
    pure function n_cases(deck) result(n)
       type(deck_t), intent(in) :: deck
       !> Product over the sweeps that are not linked; 1 without a sweep; at most huge(1)
-      integer :: n, s
+      integer :: n
+      integer :: s
 
       n = 1
       do s = 1, size(deck%sweeps)
@@ -212,7 +213,8 @@ contains
       !> Number of the case, from 1 to n_cases
       integer, intent(in) :: number
       !> Place of the value in each sweep: (n)
-      integer :: position(size(deck%sweeps)), s, rest
+      integer :: position(size(deck%sweeps))
+      integer :: s, rest
 
       rest = number - 1
       do s = size(deck%sweeps), 1, -1

@@ -123,7 +123,8 @@ contains
       real(wp), intent(in) :: origin(2)
       !> Unit vector: (2)
       real(wp), intent(in) :: direction(2)
-      real(wp) :: point(2), reach
+      real(wp) :: point(2)
+      real(wp) :: reach
       real(wp), allocatable :: share(:)
 
       reach = 2.0_wp*norm2(maxval(corner, 2) - minval(corner, 2))

@@ -80,7 +80,8 @@ contains
       !> Number of points
       integer, intent(in) :: n
       !> The points: (2, n) [m]
-      real(wp) :: point(2, n), angle
+      real(wp) :: point(2, n)
+      real(wp) :: angle
       integer :: i
 
       do i = 1, n

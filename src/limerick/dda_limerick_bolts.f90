@@ -27,7 +27,8 @@ contains
       !> Number of the bolt
       integer, intent(in) :: i
       !> (6, 2)
-      real(wp) :: row(6, 2), along(2)
+      real(wp) :: row(6, 2)
+      real(wp) :: along(2)
       integer :: side
 
       row = 0.0_wp

@@ -94,7 +94,8 @@ contains
       !> Centre of gravity of the block: (2) [m]
       real(wp), intent(in) :: centroid(2)
       !> The row: (6)
-      real(wp) :: row(6), x, y
+      real(wp) :: row(6)
+      real(wp) :: x, y
 
       x = point(1) - centroid(1)
       y = point(2) - centroid(2)

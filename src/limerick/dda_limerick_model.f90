@@ -89,7 +89,8 @@ contains
       !> The time [s]
       real(wp), intent(in) :: time
       !> The force: (2) [N/m]
-      real(wp) :: force(2), share
+      real(wp) :: force(2)
+      real(wp) :: share
       integer :: i, n
 
       associate (load => model%boundary%loaded(point)%force)

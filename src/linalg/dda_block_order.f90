@@ -73,7 +73,8 @@ contains
       !> Neighbour lists
       integer, intent(in) :: neighbour(:)
       !> The block to begin with
-      integer :: rim, queue(size(start) - 1), level(size(start) - 1), head, tail, reached, i
+      integer :: rim
+      integer :: queue(size(start) - 1), level(size(start) - 1), head, tail, reached, i
 
       rim = root
       reached = -1

@@ -20,7 +20,8 @@ contains
       type(block_matrix_t), intent(in) :: matrix
       type(block_factor_t), intent(in) :: factor
       !> Estimate of the condition number, at least 1
-      real(wp) :: condition, root(matrix%n_dof, size(matrix%diagonal, 3))
+      real(wp) :: condition
+      real(wp) :: root(matrix%n_dof, size(matrix%diagonal, 3))
       integer :: b, c
 
       condition = huge(condition)
@@ -40,7 +41,8 @@ contains
       !> Roots of its diagonal: (n_dof, n_block)
       real(wp), intent(in) :: root(:, :)
       !> The norm
-      real(wp) :: norm, column(size(root, 1), size(root, 2)), one(size(root, 1))
+      real(wp) :: norm
+      real(wp) :: column(size(root, 1), size(root, 2)), one(size(root, 1))
       integer :: b, e
 
       one = 1.0_wp
@@ -65,7 +67,8 @@ contains
       !> Roots of the matrix's diagonal: (n_dof, n_block)
       real(wp), intent(in) :: root(:, :)
       !> The norm
-      real(wp) :: norm, x(size(root, 1), size(root, 2)), y(size(root, 1), size(root, 2))
+      real(wp) :: norm
+      real(wp) :: x(size(root, 1), size(root, 2)), y(size(root, 1), size(root, 2))
       integer :: i, place(2), step
 
       norm = 0.0_wp

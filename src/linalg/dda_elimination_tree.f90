@@ -81,7 +81,8 @@ contains
    pure function tree(elimination) result(parent)
       type(elimination_t), intent(in) :: elimination
       !> The parents: (n_block)
-      integer :: parent(size(elimination%first) - 1), ancestor(size(parent)), above, g, i, j
+      integer :: parent(size(elimination%first) - 1)
+      integer :: ancestor(size(parent)), above, g, i, j
 
       parent = 0
       ancestor = 0
@@ -132,7 +133,8 @@ contains
       !> Couplings by rows and the tree
       type(elimination_t), intent(in) :: elimination
       !> Number of rows: (n_block)
-      integer :: below(size(elimination%parent)), seen(size(below)), g, i, j
+      integer :: below(size(elimination%parent))
+      integer :: seen(size(below)), g, i, j
 
       seen = 0
       below = 0

@@ -21,7 +21,8 @@ contains
       !> Columns of which less than this share of the largest is left take no part
       real(wp), intent(in) :: drop
       !> Solution, 0 for columns that take no part: (n)
-      real(wp) :: x(size(a, 2)), q(size(a, 1), size(a, 2)), rest(size(b)), r(size(a, 2), size(a, 2))
+      real(wp) :: x(size(a, 2))
+      real(wp) :: q(size(a, 1), size(a, 2)), rest(size(b)), r(size(a, 2), size(a, 2))
       real(wp) :: z(size(a, 2)), length(size(a, 2)), first
       integer :: order(size(a, 2)), i, j, n, rank
       logical :: waits(size(a, 2))

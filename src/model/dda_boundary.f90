@@ -191,7 +191,8 @@ contains
       type(history_t), intent(in) :: history
       real(wp), intent(in) :: time
       !> Components along x and y: (2)
-      real(wp) :: value(2), share
+      real(wp) :: value(2)
+      real(wp) :: share
       integer :: i
 
       value = 0.0_wp
@@ -226,7 +227,8 @@ contains
       !> End of the time, after its beginning [s]
       real(wp), intent(in) :: finish
       !> Components along x and y: (2)
-      real(wp) :: mean(2), before(2), after(2), left, right
+      real(wp) :: mean(2)
+      real(wp) :: before(2), after(2), left, right
       integer :: i
 
       mean = value_at(history, (start + finish)/2.0_wp)

@@ -15,7 +15,8 @@ contains
       !> Centre of gravity of the block: (2) [m]
       real(wp), intent(in) :: centroid(2)
       !> Rows u, v; columns u0, v0, r0, ex, ey, gxy: (2, 6)
-      real(wp) :: t(2, 6), x, y
+      real(wp) :: t(2, 6)
+      real(wp) :: x, y
 
       x = point(1) - centroid(1)
       y = point(2) - centroid(2)
@@ -35,7 +36,8 @@ contains
       !> Translation, rotation, strain ex, ey, gxy in the block's own frame: (6)
       real(wp), intent(in) :: motion(6)
       !> Rows u, v; columns u0, v0, r0, ex, ey, gxy: (2, 6)
-      real(wp) :: t(2, 6), arm(2), strain(3), unstrained(2, 6)
+      real(wp) :: t(2, 6)
+      real(wp) :: arm(2), strain(3), unstrained(2, 6)
 
       strain = turned_tensor(motion(4:6), -motion(3), 2.0_wp)
       strain(3) = strain(3)/2.0_wp
@@ -58,7 +60,8 @@ contains
       !> Translation, rotation, strain ex, ey, gxy: (6) [m, m, rad, -, -, -]
       real(wp), intent(in) :: motion(6)
       !> The point now: (2) [m]
-      real(wp) :: now(2), arm(2), c, s
+      real(wp) :: now(2)
+      real(wp) :: arm(2), c, s
 
       arm = point - centroid
       arm = [arm(1)*(1.0_wp + motion(4)) + arm(2)*motion(6)/2.0_wp, &
@@ -77,7 +80,8 @@ contains
       !> What the third component is of the tensor's: 1 for stress, 2 for strain with gxy
       real(wp), intent(in) :: shear_factor
       !> Components in the new frame: (3)
-      real(wp) :: turned(3), c, s, shear
+      real(wp) :: turned(3)
+      real(wp) :: c, s, shear
 
       c = cos(angle)
       s = sin(angle)

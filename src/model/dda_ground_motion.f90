@@ -94,7 +94,8 @@ contains
       !> The points: (2, n)
       real(wp), intent(in) :: value(:, :)
       !> Second derivatives: (2, n)
-      real(wp) :: second(2, size(time)), length(size(time) - 1), slope(2, size(time) - 1)
+      real(wp) :: second(2, size(time))
+      real(wp) :: length(size(time) - 1), slope(2, size(time) - 1)
       real(wp) :: diagonal(size(time)), above(size(time)), below(size(time)), ratio
       integer :: i, n
 

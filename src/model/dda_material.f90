@@ -47,7 +47,8 @@ contains
    pure function elasticity_matrix(material) result(d)
       type(material_t), intent(in) :: material
       !> Symmetric matrix: (3, 3) [Pa]
-      real(wp) :: d(3, 3), young, poisson
+      real(wp) :: d(3, 3)
+      real(wp) :: young, poisson
 
       young = material%young
       poisson = material%poisson

@@ -42,7 +42,8 @@ contains
       !> Its ends: (4) [m]
       real(wp), intent(in) :: part(4)
       !> At its start and at its end: (2, 2) [N/m]
-      real(wp) :: force(2, 2), low, high, share(2), way, reach
+      real(wp) :: force(2, 2)
+      real(wp) :: low, high, share(2), way, reach
       integer :: k
 
       force = 0.0_wp

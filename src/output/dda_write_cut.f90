@@ -55,7 +55,8 @@ contains
       integer, intent(in) :: block
       !> Its fixed, load and measured points: (3)
       integer, intent(in) :: held(3)
-      character(len=:), allocatable :: line, x, y, joint
+      character(len=:), allocatable :: line
+      character(len=:), allocatable :: x, y, joint
       type(area_moments_t) :: moments
       integer :: k, first, last
 

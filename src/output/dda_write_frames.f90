@@ -57,7 +57,8 @@ contains
       real(wp), intent(in) :: point(:, :)
       !> Blocks that have no rows, as they are not there: (n_block)
       logical, intent(in), optional :: absent(:)
-      character(len=:), allocatable :: lines, common
+      character(len=:), allocatable :: lines
+      character(len=:), allocatable :: common
       type(growing_text_t) :: rows
       integer :: block, vertex
 
@@ -106,7 +107,8 @@ contains
       real(wp), intent(in) :: origin(2)
       !> How fast they are; left out if that is not known: (2, n_point, n or more) [m/s]
       real(wp), intent(in), optional :: speed(:, :, :)
-      character(len=:), allocatable :: lines, fast
+      character(len=:), allocatable :: lines
+      character(len=:), allocatable :: fast
       type(growing_text_t) :: rows
       integer :: i, k
 

@@ -39,7 +39,8 @@ contains
       !> Number of the case
       integer, intent(in) :: number
       type(told_blocks_t), intent(in) :: blocks
-      character(len=:), allocatable :: lines, common
+      character(len=:), allocatable :: lines
+      character(len=:), allocatable :: common
       type(growing_text_t) :: rows
       integer :: b, v
 

@@ -81,7 +81,8 @@ contains
       !> How far it reaches beyond the joint at either end [m]
       real(wp), intent(in) :: overhang
       !> The corners: (2, 4) [m]
-      real(wp) :: corner(2, 4), direction(2), depth(2)
+      real(wp) :: corner(2, 4)
+      real(wp) :: direction(2), depth(2)
       integer :: first
 
       first = system%first_vertex(springing)

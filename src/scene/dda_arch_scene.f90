@@ -65,7 +65,8 @@ contains
    pure function joint_angles_deg(deck) result(angle)
       type(deck_t), intent(in) :: deck
       !> The angles, from left to right: (n_joint) [deg]
-      real(wp), allocatable :: angle(:), half(:)
+      real(wp), allocatable :: angle(:)
+      real(wp), allocatable :: half(:)
       integer :: n
 
       allocate (half, source=half_joints_deg(deck))

@@ -133,7 +133,8 @@ contains
       !> Height of the line [m]
       real(wp), intent(in) :: top
       !> Area and moment: (2) [m2, m3]
-      real(wp) :: part(2), depth(2), width
+      real(wp) :: part(2)
+      real(wp) :: depth(2), width
 
       depth = top - [left(2), right(2)]
       width = right(1) - left(1)

@@ -46,7 +46,8 @@ contains
       type(deck_t), intent(in) :: deck
       type(scene_t), intent(in) :: scene
       !> The forces; those in no block are left out: (n)
-      type(loaded_point_t), allocatable :: of_live(:), loaded(:)
+      type(loaded_point_t), allocatable :: of_live(:)
+      type(loaded_point_t), allocatable :: loaded(:)
       real(wp), allocatable :: point(:, :), force(:, :)
       integer :: b, i, n
 

@@ -190,7 +190,8 @@ contains
       type(road_t), intent(in) :: road
       real(wp), intent(in) :: origin(2)
       !> The positions, rising: (n) [m]
-      real(wp), allocatable :: at(:), corner(:), edge(:), place(:)
+      real(wp), allocatable :: at(:)
+      real(wp), allocatable :: corner(:), edge(:), place(:)
       real(wp) :: far, half, middle
       integer :: i, j, n
 

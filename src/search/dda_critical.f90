@@ -254,7 +254,8 @@ contains
       real(wp), intent(in) :: limit
       !> Decisions since the last collapse
       integer, intent(in) :: in_vain
-      real(wp) :: value, beyond, before, far, toward
+      real(wp) :: value
+      real(wp) :: beyond, before, far, toward
 
       far = limit
       if (allocated(critical%standing)) far = critical%stands

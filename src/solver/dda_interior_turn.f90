@@ -243,7 +243,8 @@ contains
       !> The direction before: (n_side, n_joint)
       real(wp), intent(in) :: dx(:, :), ds(:, :)
       !> Steps of forces and of rates: (2, n_share)
-      real(wp) :: steps(2, n_share), hurry(n_side, 2, n_share), from(n_side, 2), more(n_side, 2)
+      real(wp) :: steps(2, n_share)
+      real(wp) :: hurry(n_side, 2, n_share), from(n_side, 2), more(n_side, 2)
       integer :: i, j
 
       hurry = share_of_way
@@ -264,7 +265,8 @@ contains
    pure function longest_steps(turn) result(reach)
       type(turn_t), intent(in) :: turn
       !> Steps
-      real(wp) :: reach(2), hurry(n_side, 2)
+      real(wp) :: reach(2)
+      real(wp) :: hurry(n_side, 2)
       integer :: j
 
       hurry = share_of_way

@@ -109,7 +109,8 @@ contains
       !> Rates of opening 1, opening 2, slip
       real(wp), intent(in) :: opening(3)
       !> Rate of the shear force less that of the limit: of a positive one, of a negative one
-      real(wp) :: beyond(2), push(3)
+      real(wp) :: beyond(2)
+      real(wp) :: push(3)
 
       push = -opening/joints%graph%compliance(:, j)
       beyond = [push(3), -push(3)] - joints%graph%friction(j)*sum(push(:2), ends == face%closed)

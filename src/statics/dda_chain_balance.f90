@@ -75,7 +75,8 @@ contains
       real(wp), intent(in) :: reaction(3)
       integer, intent(in) :: j
       !> The force
-      real(wp) :: force(3), s(3), normal, moment
+      real(wp) :: force(3)
+      real(wp) :: s(3), normal, moment
 
       s = reaction + load(:, j)
       normal = chain%tangent(2, j)*s(1) - chain%tangent(1, j)*s(2)
@@ -90,7 +91,8 @@ contains
       type(chain_t), intent(in) :: chain
       integer, intent(in) :: j
       !> Rows N1, N2, T: (3, 3)
-      real(wp) :: g(3, 3), normal(3), moment(3)
+      real(wp) :: g(3, 3)
+      real(wp) :: normal(3), moment(3)
 
       normal = [chain%tangent(2, j), -chain%tangent(1, j), 0.0_wp]
       moment = [chain%middle(2, j), -chain%middle(1, j), 1.0_wp]/chain%half(j)

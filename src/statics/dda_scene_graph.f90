@@ -198,7 +198,8 @@ contains
       !> Centre of gravity of its block: (2) [m]
       real(wp), intent(in) :: centroid(2)
       !> Motion of the point that its two forces prevent; there is no second corner: (3, 3)
-      real(wp) :: row(n_rigid, 3), t(2, 6)
+      real(wp) :: row(n_rigid, 3)
+      real(wp) :: t(2, 6)
       integer :: axis(2)
 
       axis = [1, 2]

@@ -98,7 +98,8 @@ contains
       !> Where to go: (n_dof, n_equation)
       real(wp), intent(in) :: direction(:, :)
       !> 1 is the whole way
-      real(wp) :: factor, start(3, size(state%face)), rate(3, size(state%face))
+      real(wp) :: factor
+      real(wp) :: start(3, size(state%face)), rate(3, size(state%face))
       real(wp) :: slope_at_zero, curvature, low, high, slope_low, slope_high, slope
       integer :: pass
 
@@ -138,7 +139,8 @@ contains
       pure function slope_of(way) result(slope)
          !> How far along the direction
          real(wp), intent(in) :: way
-         real(wp) :: slope, force(3), shift(3)
+         real(wp) :: slope
+         real(wp) :: force(3), shift(3)
          type(joint_face_t) :: face
          integer :: j
 

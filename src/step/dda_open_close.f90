@@ -128,7 +128,8 @@ contains
    pure function hash(face) result(number)
       !> Faces: (n_joint)
       type(joint_face_t), intent(in) :: face(:)
-      integer(int64) :: number, code
+      integer(int64) :: number
+      integer(int64) :: code
       integer :: j
 
       number = 0_int64

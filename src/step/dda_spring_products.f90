@@ -22,7 +22,8 @@ contains
       !> Number of the joint
       integer, intent(in) :: j
       !> The projected rows: (n_dof, 3)
-      real(wp) :: steep(size(springs%row, 1), 3), tangent(3, 3), constant(3)
+      real(wp) :: steep(size(springs%row, 1), 3)
+      real(wp) :: tangent(3, 3), constant(3)
 
       steep = springs%stiffness(j)*springs%row(:, :, side, j)
       if (is_stuck(face)) return
@@ -82,7 +83,8 @@ contains
       !> The motion: (n_dof, n_equation)
       real(wp), intent(in) :: motion(:, :)
       !> Opening at the two contacts and slip: (3, n_joint) [m]
-      real(wp) :: increment(3, size(springs%equation, 2)), seen(3)
+      real(wp) :: increment(3, size(springs%equation, 2))
+      real(wp) :: seen(3)
       integer :: c, e, j, k, side
 
       do j = 1, size(springs%equation, 2)

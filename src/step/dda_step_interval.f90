@@ -194,7 +194,8 @@ contains
    pure function feigned_motion(system) result(motion)
       type(block_system_t), intent(in) :: system
       !> The motion [m]
-      real(wp) :: motion, slender
+      real(wp) :: motion
+      real(wp) :: slender
       integer :: b
 
       slender = 0.0_wp
@@ -339,7 +340,8 @@ contains
       type(block_system_t), intent(in) :: system
       real(wp), intent(in) :: motion(:, :)
       !> The largest motion [m]
-      real(wp) :: largest, gyration
+      real(wp) :: largest
+      real(wp) :: gyration
       integer :: b, e
 
       largest = 0.0_wp

@@ -27,7 +27,8 @@ contains
       !> The march, with the length of the step
       type(march_t), intent(in) :: march
       !> Most that the corners of each block are expected to move: (n_block) [m]
-      real(wp) :: reach(size(system%area)), radius
+      real(wp) :: reach(size(system%area))
+      real(wp) :: radius
       integer :: b, v
 
       reach = least_reach*sqrt(system%area)
@@ -101,7 +102,8 @@ contains
       !> Motion of the blocks: (n_dof, n_equation)
       real(wp), intent(in) :: motion(:, :)
       !> The way of the corner that moves farthest: (n_block) [m]
-      real(wp) :: way(size(system%area)), t(2, 6), centroid(2)
+      real(wp) :: way(size(system%area))
+      real(wp) :: t(2, 6), centroid(2)
       integer :: b, e, n_dof, v
 
       n_dof = size(motion, 1)
@@ -124,7 +126,8 @@ contains
       type(settings_t), intent(in) :: settings
       type(march_t), intent(in) :: march
       !> The motion: (2, n_vertex) [m]
-      real(wp) :: travel(2, size(system%vertex, 2)), motion(6, maxval(system%equation))
+      real(wp) :: travel(2, size(system%vertex, 2))
+      real(wp) :: motion(6, maxval(system%equation))
       integer :: b, e
 
       motion = 0.0_wp
@@ -147,7 +150,8 @@ contains
       type(block_system_t), intent(in) :: system
       real(wp), intent(in) :: motion(:, :)
       !> The motion of the corners: (2, n_vertex) [m]
-      real(wp) :: travel(2, size(system%vertex, 2)), t(2, 6), centroid(2)
+      real(wp) :: travel(2, size(system%vertex, 2))
+      real(wp) :: t(2, 6), centroid(2)
       integer :: b, e, v
 
       travel = 0.0_wp

@@ -178,7 +178,8 @@ contains
       !> The blocks at another time to measure from, where they move
       type(block_system_t), intent(in), optional :: since
       !> The displacement [m]
-      real(wp) :: largest, t(2, 6), displacement(2)
+      real(wp) :: largest
+      real(wp) :: t(2, 6), displacement(2)
       integer :: b, v
 
       largest = 0.0_wp

@@ -16,7 +16,8 @@ contains
       type(block_system_t), intent(in) :: system
       type(bar_t), intent(in) :: bar
       !> For both ends: (6, 2)
-      real(wp) :: row(6, 2), along(2)
+      real(wp) :: row(6, 2)
+      real(wp) :: along(2)
       integer :: side
 
       along = bar%point(:, 1) - bar%point(:, 2)

@@ -190,7 +190,8 @@ contains
       !> The motion: (n_dof, n_equation)
       real(wp), intent(in) :: motion(:, :)
       !> Coupling times motion: (n_dof, n_equation)
-      real(wp) :: force(size(motion, 1), size(motion, 2)), stiffness(2)
+      real(wp) :: force(size(motion, 1), size(motion, 2))
+      real(wp) :: stiffness(2)
       integer :: i, k, side
 
       force = 0.0_wp
@@ -292,7 +293,8 @@ contains
       type(bar_springs_t), intent(in) :: bars
       real(wp), intent(in) :: motion(:, :)
       !> Stored, spent: (2) [J/m]
-      real(wp) :: energy(2), longer, stiffness(2)
+      real(wp) :: energy(2)
+      real(wp) :: longer, stiffness(2)
       integer :: i
 
       energy = 0.0_wp

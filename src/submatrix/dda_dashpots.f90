@@ -48,7 +48,8 @@ contains
       type(block_system_t), intent(in) :: system
       type(absorbing_point_t), intent(in) :: point
       !> Symmetric matrix: (2, 2) [N s/m2]
-      real(wp) :: c(2, 2), d(3, 3), speed(2)
+      real(wp) :: c(2, 2)
+      real(wp) :: d(3, 3), speed(2)
       integer :: i, j
 
       associate (density => system%density(point%block), t => point%tangent, &

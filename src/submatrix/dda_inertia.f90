@@ -17,7 +17,8 @@ contains
       !> Sxx, Syy, Sxy about the centre of gravity: (3) [m4]
       real(wp), intent(in) :: second(3)
       !> Symmetric matrix of the unknowns u0, v0, r0, ex, ey, gxy: (6, 6)
-      real(wp) :: mass(6, 6), sxx, syy, sxy
+      real(wp) :: mass(6, 6)
+      real(wp) :: sxx, syy, sxy
 
       sxx = second(1)
       syy = second(2)

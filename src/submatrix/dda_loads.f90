@@ -33,7 +33,8 @@ contains
       !> How the block has moved to where point and centre are; not at all if it is left out: (6)
       real(wp), intent(in), optional :: motion(6)
       !> Generalised load: (6)
-      real(wp) :: load(6), t(2, 6)
+      real(wp) :: load(6)
+      real(wp) :: t(2, 6)
 
       t = displacement_matrix(point, centroid)
       if (present(motion)) t = tangent_matrix(point, centroid, motion)

@@ -83,7 +83,8 @@ contains
       real(wp), intent(in) :: eccentricity_ratio
       real(wp), intent(in) :: eta
       integer, intent(in) :: which
-      real(wp) :: h, reach, numerator, denominator
+      real(wp) :: h
+      real(wp) :: reach, numerator, denominator
 
       reach = 2.0_wp - eccentricity_ratio*eta
       numerator = reach*(2.0_wp - embrace_deficit(beta)) - 2.0_wp*weight_arm(eta, which)

@@ -135,7 +135,8 @@ contains
       real(wp), intent(in) :: alpha
       !> Any thrust to start from, as asin(sqrt(1 - h)) [rad]
       real(wp), intent(in) :: guess
-      real(wp) :: x, change
+      real(wp) :: x
+      real(wp) :: change
       integer :: step
 
       x = guess
@@ -216,7 +217,8 @@ contains
       !> Whether the other point is the crown's, rather than the springing's
       logical, intent(in) :: through_crown
       integer, intent(in) :: which
-      real(wp) :: eta, q, v, q_end, v_end, h, rise, width, bend
+      real(wp) :: eta
+      real(wp) :: q, v, q_end, v_end, h, rise, width, bend
 
       h = 1.0_wp - deficit
       q = versine(beta)

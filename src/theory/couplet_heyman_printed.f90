@@ -158,7 +158,8 @@ contains
    !> Eq. (16): the equilibrium curve of Heyman and CCR in closed form
    elemental function printed_thickness(beta, a) result(eta)
       real(wp), intent(in) :: beta, a
-      real(wp) :: eta, s, c, radicand
+      real(wp) :: eta
+      real(wp) :: s, c, radicand
 
       s = sin(beta)
       c = cos(beta)
