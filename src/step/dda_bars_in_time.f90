@@ -42,6 +42,7 @@ contains
       state%fineness = step%fineness
       state%unseen = step%unseen
       state%rates = step%rates
+      state%swept = step%swept
       state%passes = step%passes
       state%motion = step%motion
       allocate (state%multiplier(3, more), state%start(3, more), source=0.0_wp)
@@ -118,5 +119,7 @@ contains
       step%face = state%face(:n)
       step%passes = state%passes
       step%settled = state%settled
+      step%many = state%many
+      step%swept = state%swept
    end subroutine drop_bars
 end module dda_bars_in_time

@@ -4,7 +4,13 @@ module dda_contact_groups
    implicit none
    private
 
-   public :: group_joints
+   public :: group_joints, many, vast
+
+   !> Groups of more joints than this are swept for long before interior springs are tried
+   integer, parameter :: many = 300
+   !> In groups of more joints than this, passes by a factor take as long as a hundred sweeps: these
+   !> end wherever they are, and only the firmest springs are tried before them
+   integer, parameter :: vast = 2000
 
 contains
 

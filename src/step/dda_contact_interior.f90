@@ -50,7 +50,8 @@ contains
       real(wp), intent(in) :: before(:, :)
       !> Motion of all blocks by these: (n_dof, n_equation) [m]
       real(wp), intent(in) :: moved(:, :)
-      !> Forces of all joints; those of these joints are set if they agree: (3, n_joint) [N/m]
+      !> Forces of all joints; those of these joints are set if they agree, or nearly where joints
+      !> are very many: (3, n_joint) [N/m]
       real(wp), intent(inout) :: force(:, :)
       !> Factorisations so far
       integer, intent(inout) :: passes
@@ -58,15 +59,17 @@ contains
       logical, intent(out) :: agreed
       type(problem_t) :: p
       type(interior_t) :: x
+      logical :: near
 
       call pose(equations, springs, view, joint, before, moved, p)
       call begin(springs, view, before, moved, lift, p, x)
       if (many) then
-         call settle_many_faces(equations, springs, view, p, x, passes, agreed)
+         call settle_many_faces(equations, springs, view, p, x, passes, agreed, near)
       else
          call settle_faces(equations, springs, view, p, x, passes, agreed)
+         near = agreed
       end if
-      if (agreed) call take_forces(equations, springs, view, x, p, force)
+      if (near) call take_forces(equations, springs, view, x, p, force)
    end subroutine keep_to_faces
 
    !> Forces of some joints, wherever the search for them begins

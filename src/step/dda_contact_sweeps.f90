@@ -14,7 +14,7 @@
 !> Equation (M5) of docs/method.md
 module dda_contact_sweeps
    use dda_assembly, only : equations_t
-   use dda_contact_groups, only : group_joints
+   use dda_contact_groups, only : group_joints, many, vast
    use dda_contact_interior, only : keep_to_faces, solve_interior
    use dda_contact_view, only : contact_view_t, move_blocks, see_joints
    use dda_friction_cone, only : cone_t, joint_face_t, shear_bound
@@ -35,8 +35,6 @@ module dda_contact_sweeps
    real(wp), parameter :: no_matter = 1.0e-9_wp
    !> Groups of more joints than this may go on by interior springs
    integer, parameter :: few = 2
-   !> Groups of more joints than this are swept for long before interior springs are tried
-   integer, parameter :: many = 300
    !> Gap by which a look at so many sees forces change, over what no step notices; of speeds, which
    !> the next step begins with, a finer one
    real(wp), parameter :: look = 1.0e-3_wp, look_at_speeds = 3.0e-5_wp
@@ -67,6 +65,7 @@ contains
       noise = min(1.0_wp, state%fineness)*equations%gap_noise
       enough = [tolerance*equations%force_scale, no_matter*state%fineness*smallest(equations)]
       settled = .false.
+      state%many = any(first(2:n + 1) - first(:n) > many)
       do g = 1, n
          associate (of_group => joint(first(g):first(g + 1) - 1))
             call settle_group(equations, springs, view, of_group, noise, enough, moved, state, &
@@ -114,12 +113,14 @@ contains
          & *state%unseen)
       call sweep_group(joint, sweeps_for%a_look, springs, view, noise, seen, force, motion, settled)
       if (settled) return
-      if (.not. state%rates .and. is_redundant(view, springs, joint)) then
+      if (asks_faces(view, springs, joint, state)) then
          call keep_to_faces(equations, springs, view, joint, size(joint) > many, &
             & state%multiplier, moved, force, state%passes, settled)
-         if (settled) call move_group(equations, springs, view, joint, force, motion)
+         if (settled .or. size(joint) > vast) &
+            & call move_group(equations, springs, view, joint, force, motion)
          if (settled) return
-      else
+         state%swept = size(joint) > vast
+      else if (size(joint) <= many) then
          call sweep_group(joint, sweeps_for%haste, springs, view, noise, enough, force, motion, &
             & settled)
          if (settled) return
@@ -136,22 +137,26 @@ contains
          & motion, settled)
    end subroutine settle_group
 
-   !> Whether a group has more forces than its blocks can tell apart
-   pure logical function is_redundant(view, springs, joint)
+   !> Whether faces may tell the forces of a motion: of a group that has more forces than its blocks
+   !> can tell apart
+   pure logical function asks_faces(view, springs, joint, state)
       type(contact_view_t), intent(in) :: view
       type(joint_springs_t), intent(in) :: springs
       integer, intent(in) :: joint(:)
+      type(step_state_t), intent(in) :: state
       logical :: is_there(0:size(view%lower, 3))
       integer :: forces, i, k
 
+      asks_faces = .not. state%rates .and. .not. (state%swept .and. size(joint) > vast)
+      if (.not. asks_faces) return
       is_there = .false.
       forces = 0
       do i = 1, size(joint)
          is_there(springs%equation(:, joint(i))) = .true.
          forces = forces + count([(view%give(k, k, joint(i)) > 0.0_wp, k=1, 3)])
       end do
-      is_redundant = forces > size(view%lower, 1)*count(is_there(1:))
-   end function is_redundant
+      asks_faces = forces > size(view%lower, 1)*count(is_there(1:))
+   end function asks_faces
 
    !> Motion of the blocks of a group under its forces
    pure subroutine move_group(equations, springs, view, joint, force, motion)

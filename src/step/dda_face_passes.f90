@@ -6,6 +6,7 @@
 !> may go round in circles, and interior springs find the way (`dda_contact_interior`).
 module dda_face_passes
    use dda_assembly, only : equations_t
+   use dda_contact_groups, only : vast
    use dda_contact_view, only : contact_view_t
    use dda_friction_cone, only : joint_face_t, shear_bound
    use dda_interior_problem, only : factor_springs, interior_t, problem_t
@@ -35,8 +36,10 @@ module dda_face_passes
    real(wp), parameter :: most_changes = 0.2_wp
    !> Most passes of many joints with springs of one softness
    integer, parameter :: many_passes = 12
-   !> Passes that do not bring noticeably fewer changes and end them
+   !> Passes that do not bring noticeably fewer changes and end them; of very many joints the first
    integer, parameter :: patience = 2
+   !> Share of very many joints that may still change where sweeps rather go on from there
+   real(wp), parameter :: nearly = 1.0e-2_wp
    !> What counts as noticeable
    real(wp), parameter :: falling = 0.7_wp
 
@@ -93,7 +96,7 @@ contains
 
    !> The same of many joints, which rather end than keep to the way that the loads have led them:
    !> with ever firmer springs, as far as these agree
-   pure subroutine settle_many_faces(equations, springs, view, p, x, passes, agreed)
+   pure subroutine settle_many_faces(equations, springs, view, p, x, passes, agreed, near)
       type(equations_t), intent(in) :: equations
       type(joint_springs_t), intent(in) :: springs
       type(contact_view_t), intent(in) :: view
@@ -103,14 +106,17 @@ contains
       integer, intent(inout) :: passes
       !> Whether the faces agree with springs as soft as those of few joints at the least
       logical, intent(out) :: agreed
+      !> Whether they nearly agree at the least
+      logical, intent(out) :: near
       type(joint_face_t) :: face(size(p%joint))
       type(interior_t) :: firmer
       real(wp) :: soft(3, size(p%joint))
       logical :: ended
-      integer :: i, k
+      integer :: changes, i, k
 
       soft = p%soft
       agreed = .false.
+      near = .false.
       firmer = x
       do k = 1, size(softness)
          where (.not. p%follows) p%soft = softness(k)*soft
@@ -121,16 +127,19 @@ contains
                call read_face(springs, p, firmer, i, face(i))
             end do
          end if
-         call pass_faces(equations, springs, view, p, firmer, face, passes, ended)
+         call pass_faces(equations, springs, view, p, firmer, face, passes, changes)
+         ended = changes == 0
          agreed = agreed .or. ended
-         if (ended) x = firmer
-         if (ended .eqv. k == 1) exit
+         near = size(face) > vast .and. changes <= nearly*size(face)
+         if (ended .or. near) x = firmer
+         if ((ended .eqv. k == 1) .or. size(face) > vast) exit
       end do
+      near = near .or. agreed
       p%soft = soft
    end subroutine settle_many_faces
 
    !> Solve with the faces as they are and change those that disagree, again and again
-   pure subroutine pass_faces(equations, springs, view, p, x, face, passes, agreed)
+   pure subroutine pass_faces(equations, springs, view, p, x, face, passes, changes)
       type(equations_t), intent(in) :: equations
       type(joint_springs_t), intent(in) :: springs
       type(contact_view_t), intent(in) :: view
@@ -139,10 +148,11 @@ contains
       !> Faces: (n_joint)
       type(joint_face_t), intent(inout) :: face(:)
       integer, intent(inout) :: passes
-      logical, intent(out) :: agreed
-      integer :: changes, least, pass, stale
+      !> How many forces disagree with their faces
+      integer, intent(out) :: changes
+      integer :: least, pass, stale
 
-      agreed = .false.
+      changes = huge(changes)
       stale = 0
       least = huge(least)/2
       do pass = 1, many_passes
@@ -152,14 +162,14 @@ contains
          if (.not. p%factor%usable) return
          call move_on(equations, springs, view, p, x)
          call change_faces(springs, p, x, face, changes)
-         agreed = changes == 0
-         if (agreed) exit
+         if (changes == 0) exit
          stale = merge(0, stale + 1, changes < falling*least)
-         if (stale == patience .or. changes > most_changes*size(face)) return
+         if (stale == merge(1, patience, size(face) > vast) &
+            & .or. changes > most_changes*size(face)) return
          least = min(least, changes)
       end do
       ! what rounding has left
-      if (agreed) call move_on(equations, springs, view, p, x)
+      if (changes == 0) call move_on(equations, springs, view, p, x)
    end subroutine pass_faces
 
    !> Add what forces and motion lack, but to forces that their faces give

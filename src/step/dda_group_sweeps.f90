@@ -3,6 +3,7 @@
 !>
 !> Equation (M5) of docs/method.md
 module dda_group_sweeps
+   use dda_contact_groups, only : vast
    use dda_contact_view, only : contact_view_t
    use dda_friction_cone, only : shear_bound
    use dda_joint_springs, only : joint_springs_t
@@ -36,9 +37,6 @@ module dda_group_sweeps
    integer, parameter :: most_work = 400000
    !> Multiple of what no step notices that may be left then
    real(wp), parameter :: last_resort = 3.0e1_wp
-   !> Groups of more joints than this end so wherever they are swept: interior springs would take
-   !> many times as long
-   integer, parameter :: vast = 2000
 
    !> What a group is swept for
    type :: sweeps_for_enum

@@ -50,6 +50,9 @@ module dda_interior_problem
       real(wp) :: size = 0.0_wp
       !> Compliance that each bound adds to its spring: (4, n_joint) [m/(N/m)]
       real(wp), allocatable :: yield(:, :)
+      !> Compliances that matrix and factor were made for, of springs and bounds: (7, n_joint)
+      !> [m/(N/m)]
+      real(wp), allocatable :: held(:, :)
       !> Matrix with the springs
       type(block_matrix_t) :: matrix
       !> Its factor
@@ -89,7 +92,7 @@ contains
       if (.not. any(abs(springs%row(4:, :, :, joint)) > 0.0_wp)) n_dof = 3
       allocate (p%joint, source=joint)
       allocate (p%block(2, n), p%entry(n), p%bounded(4, n), p%unit(3, n), p%before(3, n))
-      allocate (p%opening(3, n), p%product(4, n), p%given(3, n), p%yield(4, n))
+      allocate (p%opening(3, n), p%product(4, n), p%given(3, n), p%yield(4, n), p%held(7, n))
       number = 0
       e = 0
       k = 0
@@ -272,17 +275,27 @@ contains
       end do
    end subroutine see_bounds
 
-   !> The matrix with the springs as their bounds yield, and its factor
+   !> The matrix with the springs as their bounds yield, and its factor, of which stays what they do
+   !> not change
    pure subroutine factor_springs(equations, springs, p)
       type(equations_t), intent(in) :: equations
       type(joint_springs_t), intent(in) :: springs
       !> The problem; matrix and factor are made anew
       type(problem_t), intent(inout) :: p
       real(wp), dimension(size(p%balance, 1), 3, 2) :: steep
-      real(wp) :: unit(3)
+      real(wp) :: unit(3), wanted(7)
+      logical :: changed(0:size(p%equation))
       integer :: b, c, d, first, i, k, n, one
 
       n = size(p%balance, 1)
+      changed = .not. p%factor%usable
+      do i = 1, size(p%joint)
+         wanted = [p%soft(:, i), p%yield(:, i)]
+         if (p%factor%usable .and. all(abs(wanted - p%held(:, i)) <= 0.0_wp)) cycle
+         p%held(:, i) = wanted
+         changed(p%block(:, i)) = .true.
+      end do
+      if (.not. any(changed(1:))) return
       p%matrix%diagonal = equations%base(:n, :n, p%equation)
       p%matrix%coupling = 0.0_wp
       p%matrix%upper = 0.0_wp
@@ -319,7 +332,7 @@ contains
             end do
          end associate
       end do
-      call factorise(p%matrix, p%factor)
+      call factorise(p%matrix, p%factor, changed(1:))
    end subroutine factor_springs
 
    !> Forces of a joint's springs that are pressed together

@@ -212,6 +212,8 @@ contains
       state%face = contacts%face
       state%cone = contacts%springs%cone
       state%unsettled_work = 0.0_wp
+      state%many = .false.
+      state%swept = .false.
       state%passes = 0
    end subroutine begin_step
 end module dda_step

@@ -35,6 +35,11 @@ module dda_step_state
       !> Whether velocities are sought: then it does not matter which of all forces that stop the
       !> blocks are found, in a motion those nearest to the ones before count
       logical :: rates = .false.
+      !> Whether many joints hang together, so that less than that is no matter
+      logical :: many = .false.
+      !> Whether very many joints were swept in this step since their faces did not agree: once more
+      !> these would not either
+      logical :: swept = .false.
       !> Work of what the bounds of the shear forces would still change by [J/m]
       real(wp) :: unsettled_work = 0.0_wp
       !> Passes of the loop so far
