@@ -117,7 +117,8 @@ contains
    end function kinetic_energy
 
    !> Let the velocities have no more energy than there is: mix into them those of constant
-   !> acceleration. Momentum stays, and a mixture of admissible impulses is admissible
+   !> acceleration, up to the least energy of all mixtures where none has as little. Momentum stays,
+   !> and a mixture of admissible impulses is admissible
    pure subroutine hold_energy(equations, steady, allowed, velocity, share)
       type(equations_t), intent(in) :: equations
       !> Velocities at the end of constant acceleration: (n_dof, n_equation)
@@ -136,8 +137,10 @@ contains
       slope = kinetic_energy(equations, steady) - kinetic_energy(equations, velocity) - square
       ! excess + share*slope + share**2*square = 0
       root = slope**2 - 4.0_wp*excess*square
-      if (.not. root > 0.0_wp .or. .not. slope < 0.0_wp) return
-      share = min(1.0_wp, 2.0_wp*excess/(sqrt(root) - slope))
+      if (.not. slope < 0.0_wp) return
+      share = -slope/(2.0_wp*square)
+      if (root > 0.0_wp) share = 2.0_wp*excess/(sqrt(root) - slope)
+      share = min(1.0_wp, share)
       velocity = velocity + share*(steady - velocity)
    end subroutine hold_energy
 

@@ -28,7 +28,8 @@ module dda_curved_motion
    !> Gap at a closed contact, or depth at an open one, that is left, over the size of the smallest
    !> block
    real(wp), parameter :: left_over = 1.0e-8_wp
-   !> The same over what many blocks leave, where there are few and where there are many
+   !> The same over what many blocks leave, and where the faces of many joints agree: once more
+   !> brings on what is swept
    real(wp), parameter :: of_unseen = 1.0e-2_wp, of_many = 5.0e-1_wp
    !> Depth that is left where nothing settles, over the same
    real(wp), parameter :: jammed = 1.0e-5_wp
@@ -71,8 +72,8 @@ contains
       size_of = sqrt(minval(system%area, mask=system%equation > 0))
       do pass = 0, max_passes
          call see_curves(settings, system, contacts, step%state%motion, step, error)
-         if (error <= max(left_over*size_of, merge(of_many, of_unseen, step%state%many) &
-            & *step%state%unseen) .or. pass == max_passes) return
+         if (error <= max(left_over*size_of, merge(of_many, of_unseen, step%state%many &
+            & .and. .not. step%state%swept)*step%state%unseen) .or. pass == max_passes) return
          last = step%state
          curve = step%curve
          springs = contacts%springs
