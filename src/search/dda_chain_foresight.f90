@@ -9,6 +9,7 @@ module dda_chain_foresight
    use dda_chain_decision, only : doubtful
    use dda_chain_lack, only : faces_of, find_lack, lack_t
    use dda_collapse_trace, only : proposal_t, trace
+   use dda_friction_cone, only : joint_face_t
    use dda_kinds, only : wp
    use dda_scene, only : family_t
    use dda_search, only : critical_t, search_t
@@ -32,11 +33,13 @@ module dda_chain_foresight
 contains
 
    !> Foresee where the collapse of a chain stops, by the secant method on what its forces lack
-   pure subroutine foresee(family, search, proposal)
+   pure subroutine foresee(family, search, proposal, face)
       class(family_t), intent(in) :: family
       type(search_t), intent(in) :: search
       !> Where it stops, usable if that is known
       type(proposal_t), intent(out) :: proposal
+      !> Faces of the joints of that collapse, where it is known: (n + 1)
+      type(joint_face_t), allocatable, intent(out) :: face(:)
       type(critical_t) :: foreseen
       type(settings_t) :: settings
       type(chain_t) :: chain
@@ -64,7 +67,10 @@ contains
       if (i > max_values) return
       foreseen%falls = value
       call freeze(chain, lack, foreseen)
+      ! where joints slide many mechanisms stop within some tolerances of one another
+      if (any(foreseen%fallen%contacts%face%slip /= 0)) return
       call trace(family, search, search%high, foreseen, proposal)
+      call move_alloc(foreseen%fallen%contacts%face, face)
    end subroutine foresee
 
    !> What would be a collapse if it were proven

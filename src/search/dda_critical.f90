@@ -12,6 +12,7 @@ module dda_critical
    use dda_collapse_trace, only : proposal_t, trace
    use dda_decision, only : decide, decision_t
    use dda_error, only : error_t
+   use dda_friction_cone, only : joint_face_t
    use dda_graph_decision, only : decides_as_graph
    use dda_joint_springs, only : joint_springs_t
    use dda_kinds, only : wp
@@ -65,11 +66,12 @@ contains
       !> What was found; chains may be halves
       type(critical_t), intent(out) :: critical
       type(proposal_t) :: proposal
+      type(joint_face_t), allocatable :: foreseen(:)
       real(wp) :: limit, start, value
       integer :: answer, in_vain, undecided
       logical :: may_turn
 
-      if (family%decides_chains) call foresee(family, search, proposal)
+      if (family%decides_chains) call foresee(family, search, proposal, foreseen)
       start = search%start
       if (proposal%usable) start = max(search%low, proposal%value - proposal%reach)
       call find_collapse(family, search, start, limit, critical)
@@ -91,8 +93,12 @@ contains
             limit = critical%undecided_at
             may_turn = .false.
          end if
-         if (answer == verdict%collapsed .and. .not. proved(search, limit, critical, proposal)) &
-            & call trace(family, search, limit, critical, proposal)
+         if (answer == verdict%collapsed) then
+            if (.not. (proved(search, limit, critical, proposal) &
+               & .and. is_foreseen(critical%fallen, foreseen))) &
+               & call trace(family, search, limit, critical, proposal)
+            if (allocated(foreseen)) deallocate (foreseen)
+         end if
          in_vain = merge(0, in_vain + 1, answer == verdict%collapsed)
          if (closed(search, critical, proposal)) then
             critical%verdict = verdict%found
@@ -331,6 +337,22 @@ contains
          & .and. abs((proposal%value - critical%falls)*sign(1.0_wp, limit - critical%falls) &
          & - proposal%half) < 1.0e-3_wp*proposal%half
    end function proved
+
+   !> Whether a collapse is the one that was foreseen, if one was
+   pure logical function is_foreseen(fallen, foreseen)
+      type(decision_t), intent(in) :: fallen
+      !> Faces of its joints: (n), if it was
+      type(joint_face_t), allocatable, intent(in) :: foreseen(:)
+
+      is_foreseen = .not. allocated(foreseen)
+      if (is_foreseen) return
+      if (size(fallen%contacts%face) /= size(foreseen)) return
+      associate (face => fallen%contacts%face)
+         is_foreseen = all(face%slip == foreseen%slip) &
+            & .and. all(face%open(1) .eqv. foreseen%open(1)) &
+            & .and. all(face%open(2) .eqv. foreseen%open(2))
+      end associate
+   end function is_foreseen
 
    !> Whether the bracket is as narrow as the proposal asks for; where that is too wide to be an
    !> answer, as narrow as the tolerance

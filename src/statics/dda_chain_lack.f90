@@ -39,7 +39,7 @@ module dda_chain_lack
    !> Most bounds that come in
    integer, parameter :: max_exchanges = 40
    !> Forces beyond their bounds by less than this share of the load do not count
-   real(wp), parameter :: little = 1.0e-8_wp
+   real(wp), parameter :: little = 1.0e-12_wp
    !> Multipliers below this are none
    real(wp), parameter :: no_share = 1.0e-9_wp
    !> How far from zero the unknowns may go, over the load

@@ -93,3 +93,16 @@ def test_a_search_of_an_arch_takes_the_two_decisions_that_prove_its_bracket(tmp_
             and float(other["horizontal_coefficient"]) == -float(row["horizontal_coefficient"])
         ]
         assert all(value == pytest.approx(float(row["critical"]), rel=1e-12) for value in mirrored)
+
+
+@pytest.mark.parametrize("tolerance", [1e-7, 1e-8, 1e-9, 1e-10])
+def test_sliding_arches_are_as_exact_and_brackets_as_narrow_as_asked(tmp_path: Path, tolerance: float) -> None:
+    deck = f"""&arch voussoirs = 36 /
+&search parameter = 'thickness_ratio', tolerance = {tolerance} /
+&sweep parameter = 'half_angle_deg', values = 90, 121.36363636363636, 122.27272727272727, 132.27272727272725 /
+&sweep parameter = 'friction_deg', values = 50, 37.92929292929293, 39.94949494949495, 46.41414141414141, linked = .true. /
+&output joints = .false., blocks = .false. /
+"""
+    for row in rows_of(tmp_path, "exact", deck):
+        assert abs(float(row["relative_error"])) < 1e-10
+        assert float(row["critical_high"]) - float(row["critical_low"]) <= 1.0001 * tolerance * float(row["critical"])
