@@ -100,7 +100,7 @@ def test_sliding_arches_are_as_exact_and_brackets_as_narrow_as_asked(tmp_path: P
     deck = f"""&arch voussoirs = 36 /
 &search parameter = 'thickness_ratio', tolerance = {tolerance} /
 &sweep parameter = 'half_angle_deg', values = 90, 121.36363636363636, 122.27272727272727, 132.27272727272725 /
-&sweep parameter = 'friction_deg', values = 50, 37.92929292929293, 39.94949494949495, 46.41414141414141, linked = .true. /
+&sweep parameter = 'friction_deg', linked = .true., values = 50, 37.92929292929293, 39.949494949, 46.414141414 /
 &output joints = .false., blocks = .false. /
 """
     for row in rows_of(tmp_path, "exact", deck):
