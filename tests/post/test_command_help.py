@@ -5,6 +5,9 @@ from __future__ import annotations
 import argparse
 import ast
 import importlib
+import os
+import subprocess
+import sys
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -85,3 +88,12 @@ def test_every_option_is_run_by_a_test(command: str) -> None:
     for action in options_of(command):
         tested = [words for words in CALLS if {command, action.option_strings[-1]} <= words]
         assert tested, f"no test calls voussoir {command} {action.option_strings[-1]}"
+
+
+def test_a_reader_that_has_enough_is_no_error() -> None:
+    read, write = os.pipe()
+    os.close(read)
+    command = [sys.executable, "-c", "import sys; from voussoir.command.main import main; sys.exit(main(['examples']))"]
+    done = subprocess.run([*command[:1], "-u", *command[1:]], stdout=write, stderr=subprocess.PIPE, text=True, timeout=60)
+    os.close(write)
+    assert (done.returncode, done.stderr) == (0, "")

@@ -94,4 +94,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
         words = [*words[1:2], "--help"] if words[1:2] != ["help"] else ["--help"]
     os.environ["MPLBACKEND"] = "Agg"  # pictures are files: no display is wanted
     chosen = build_parser(words[0] if words else None).parse_args(words)
-    return importlib.import_module(COMMANDS[chosen.command][0]).run(chosen)
+    try:
+        return importlib.import_module(COMMANDS[chosen.command][0]).run(chosen)
+    except BrokenPipeError:  # who reads the output, such as head, has enough of it
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        return 0
