@@ -93,7 +93,8 @@ def test_every_option_is_run_by_a_test(command: str) -> None:
 def test_a_reader_that_has_enough_is_no_error() -> None:
     read, write = os.pipe()
     os.close(read)
-    command = [sys.executable, "-c", "import sys; from voussoir.command.main import main; sys.exit(main(['examples']))"]
-    done = subprocess.run([*command[:1], "-u", *command[1:]], stdout=write, stderr=subprocess.PIPE, text=True, timeout=60)
+    text = "import sys; from voussoir.command.main import main; sys.exit(main(['examples']))"
+    command = [sys.executable, "-u", "-c", text]
+    done = subprocess.run(command, stdout=write, stderr=subprocess.PIPE, text=True, timeout=60)
     os.close(write)
     assert (done.returncode, done.stderr) == (0, "")
