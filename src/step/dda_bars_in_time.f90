@@ -43,6 +43,7 @@ contains
       state%unseen = step%unseen
       state%rates = step%rates
       state%swept = step%swept
+      state%patient = step%patient
       state%passes = step%passes
       state%motion = step%motion
       allocate (state%multiplier(3, more), state%start(3, more), source=0.0_wp)

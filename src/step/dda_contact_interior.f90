@@ -37,15 +37,16 @@ contains
 
    !> Forces of some joints if these keep nearly to the faces that they had: of all forces that stop
    !> the blocks those nearest to the ones before
-   pure subroutine keep_to_faces(equations, springs, view, joint, many, before, moved, force, &
-      & passes, agreed)
+   pure subroutine keep_to_faces(equations, springs, view, joint, many, hasty, before, moved, &
+      & force, passes, agreed)
       type(equations_t), intent(in) :: equations
       type(joint_springs_t), intent(in) :: springs
       type(contact_view_t), intent(in) :: view
       !> Numbers of the joints: (n)
       integer, intent(in) :: joint(:)
-      !> Whether they are many
-      logical, intent(in) :: many
+      !> Whether they are many, and whether sweeps rather go on where they are so many that faces
+      !> take as long
+      logical, intent(in) :: many, hasty
       !> Forces of all joints in the step before: (3, n_joint) [N/m]
       real(wp), intent(in) :: before(:, :)
       !> Motion of all blocks by these: (n_dof, n_equation) [m]
@@ -64,7 +65,7 @@ contains
       call pose(equations, springs, view, joint, before, moved, p)
       call begin(springs, view, before, moved, lift, p, x)
       if (many) then
-         call settle_many_faces(equations, springs, view, p, x, passes, agreed, near)
+         call settle_many_faces(equations, springs, view, p, hasty, x, passes, agreed, near)
       else
          call settle_faces(equations, springs, view, p, x, passes, agreed)
          near = agreed

@@ -65,7 +65,7 @@ contains
       noise = min(1.0_wp, state%fineness)*equations%gap_noise
       enough = [tolerance*equations%force_scale, no_matter*state%fineness*smallest(equations)]
       settled = .false.
-      state%many = any(first(2:n + 1) - first(:n) > many)
+      state%many = any(first(2:n + 1) - first(:n) > many) .and. .not. state%patient
       do g = 1, n
          associate (of_group => joint(first(g):first(g + 1) - 1))
             call settle_group(equations, springs, view, of_group, noise, enough, moved, state, &
@@ -102,7 +102,10 @@ contains
       !> Whether it is settled
       logical, intent(out) :: settled
       real(wp) :: coarse_enough(2), seen(2)
+      integer :: purpose
+      logical :: hasty
 
+      hasty = size(joint) > vast .and. .not. state%patient
       if (size(joint) <= few) then
          call sweep_group(joint, sweeps_for%rounding, springs, view, noise, enough, force, motion, &
             & settled)
@@ -114,13 +117,12 @@ contains
       call sweep_group(joint, sweeps_for%a_look, springs, view, noise, seen, force, motion, settled)
       if (settled) return
       if (asks_faces(view, springs, joint, state)) then
-         call keep_to_faces(equations, springs, view, joint, size(joint) > many, &
+         call keep_to_faces(equations, springs, view, joint, size(joint) > many, hasty, &
             & state%multiplier, moved, force, state%passes, settled)
-         if (settled .or. size(joint) > vast) &
-            & call move_group(equations, springs, view, joint, force, motion)
+         if (settled .or. hasty) call move_group(equations, springs, view, joint, force, motion)
          if (settled) return
-         state%swept = size(joint) > vast
-      else if (size(joint) <= many) then
+         state%swept = hasty
+      else if (size(joint) <= many .or. state%patient) then
          call sweep_group(joint, sweeps_for%haste, springs, view, noise, enough, force, motion, &
             & settled)
          if (settled) return
@@ -132,9 +134,10 @@ contains
       call solve_interior(equations, springs, view, joint, state%multiplier, force, &
          & motion(:, 1:), state%passes, settled)
       call move_group(equations, springs, view, joint, force, motion)
-      if (.not. settled) call sweep_group(joint, merge(sweeps_for%the_last, sweeps_for%the_rest, &
-         & state%rates .or. size(joint) > many), springs, view, noise, coarse_enough, force, &
-         & motion, settled)
+      if (settled) return
+      purpose = merge(sweeps_for%the_last, sweeps_for%the_rest, state%rates .or. size(joint) > many)
+      if (state%patient) purpose = sweeps_for%the_end
+      call sweep_group(joint, purpose, springs, view, noise, coarse_enough, force, motion, settled)
    end subroutine settle_group
 
    !> Whether faces may tell the forces of a motion: of a group that has more forces than its blocks

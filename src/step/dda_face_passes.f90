@@ -6,7 +6,6 @@
 !> may go round in circles, and interior springs find the way (`dda_contact_interior`).
 module dda_face_passes
    use dda_assembly, only : equations_t
-   use dda_contact_groups, only : vast
    use dda_contact_view, only : contact_view_t
    use dda_friction_cone, only : joint_face_t, shear_bound
    use dda_interior_problem, only : factor_springs, interior_t, problem_t
@@ -96,12 +95,14 @@ contains
 
    !> The same of many joints, which rather end than keep to the way that the loads have led them:
    !> with ever firmer springs, as far as these agree
-   pure subroutine settle_many_faces(equations, springs, view, p, x, passes, agreed, near)
+   pure subroutine settle_many_faces(equations, springs, view, p, hasty, x, passes, agreed, near)
       type(equations_t), intent(in) :: equations
       type(joint_springs_t), intent(in) :: springs
       type(contact_view_t), intent(in) :: view
       !> The problem; the size of a force is given, its springs are as they were in the end
       type(problem_t), intent(inout) :: p
+      !> Whether joints are so many that sweeps rather go on where faces do not agree at once
+      logical, intent(in) :: hasty
       type(interior_t), intent(inout) :: x
       integer, intent(inout) :: passes
       !> Whether the faces agree with springs as soft as those of few joints at the least
@@ -127,23 +128,24 @@ contains
                call read_face(springs, p, firmer, i, face(i))
             end do
          end if
-         call pass_faces(equations, springs, view, p, firmer, face, passes, changes)
+         call pass_faces(equations, springs, view, p, hasty, firmer, face, passes, changes)
          ended = changes == 0
          agreed = agreed .or. ended
-         near = size(face) > vast .and. changes <= nearly*size(face)
+         near = hasty .and. changes <= nearly*size(face)
          if (ended .or. near) x = firmer
-         if ((ended .eqv. k == 1) .or. size(face) > vast) exit
+         if ((ended .eqv. k == 1) .or. hasty) exit
       end do
       near = near .or. agreed
       p%soft = soft
    end subroutine settle_many_faces
 
    !> Solve with the faces as they are and change those that disagree, again and again
-   pure subroutine pass_faces(equations, springs, view, p, x, face, passes, changes)
+   pure subroutine pass_faces(equations, springs, view, p, hasty, x, face, passes, changes)
       type(equations_t), intent(in) :: equations
       type(joint_springs_t), intent(in) :: springs
       type(contact_view_t), intent(in) :: view
       type(problem_t), intent(inout) :: p
+      logical, intent(in) :: hasty
       type(interior_t), intent(inout) :: x
       !> Faces: (n_joint)
       type(joint_face_t), intent(inout) :: face(:)
@@ -164,8 +166,7 @@ contains
          call change_faces(springs, p, x, face, changes)
          if (changes == 0) exit
          stale = merge(0, stale + 1, changes < falling*least)
-         if (stale == merge(1, patience, size(face) > vast) &
-            & .or. changes > most_changes*size(face)) return
+         if (stale == merge(1, patience, hasty) .or. changes > most_changes*size(face)) return
          least = min(least, changes)
       end do
       ! what rounding has left

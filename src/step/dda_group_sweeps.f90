@@ -35,6 +35,8 @@ module dda_group_sweeps
    integer, parameter :: worth = 32
    !> Joints swept, again and again, before what is left is no more to be swept
    integer, parameter :: most_work = 400000
+   !> The same where a longer step has failed
+   integer, parameter :: patient_work = 4000000
    !> Multiple of what no step notices that may be left then
    real(wp), parameter :: last_resort = 3.0e1_wp
 
@@ -52,6 +54,8 @@ module dda_group_sweeps
       integer :: the_rest = 4
       !> The same where more may be left
       integer :: the_last = 5
+      !> The same where a longer step has failed by what was left
+      integer :: the_end = 6
    end type sweeps_for_enum
 
    !> Names of what a group is swept for
@@ -140,8 +144,9 @@ contains
       if (ended) return
       if (purpose == sweeps_for%haste .and. sweep > 0) &
          & ended = takes_long(maxval(change/wanted), lately)
-      if (purpose >= sweeps_for%patience .and. sweep*n > most_work) then
-         settled = (purpose == sweeps_for%the_last .or. n > vast) &
+      if (purpose >= sweeps_for%patience .and. sweep*n &
+         & > merge(patient_work, most_work, purpose == sweeps_for%the_end)) then
+         settled = (purpose >= sweeps_for%the_last .or. n > vast) &
             & .and. change(2) <= last_resort*wanted(2)
          ended = .true.
       end if

@@ -30,6 +30,8 @@ module dda_step
 
    !> Most cuts of one step's length
    integer, parameter :: max_retries = 40
+   !> Tries in which very many joints are swept before their faces agree
+   integer, parameter :: hasty_tries = 3
    !> Opening against the law of contact that many blocks may leave, over twice the fall in a step
    real(wp), parameter :: unseen = 1.0e-3_wp
    !> Shortest step in time: stiffness that grows with its inverse square overflows [s]
@@ -58,6 +60,7 @@ contains
          if (too_short(settings, march)) exit
          if (step%renews) call place_contacts(settings, system, step%travel, kept, march, &
             & contacts, equations)
+         step%state%patient = attempt > hasty_tries
          call find_motion(settings, system, contacts, equations, march, step)
          outcome = check_motion(settings, system, contacts, equations, march, step)
          if (outcome%accepted .and. .not. contacts%remember) then

@@ -35,6 +35,8 @@ module dda_step_state
       !> Whether velocities are sought: then it does not matter which of all forces that stop the
       !> blocks are found, in a motion those nearest to the ones before count
       logical :: rates = .false.
+      !> Whether longer steps have failed: then very many joints get all the time that they take
+      logical :: patient = .false.
       !> Whether many joints hang together, so that less than that is no matter
       logical :: many = .false.
       !> Whether very many joints were swept in this step since their faces did not agree: once more
