@@ -81,7 +81,10 @@ contains
 
       proposal%half = least_half(search, critical)*max(abs(critical%falls), tiny(1.0_wp))
       if (critical%fallen%flow /= flow_rule%associated) return
-      ! what is crushed takes power that the loads alone do not tell
+      ! what is crushed takes power that the loads alone do not tell, and so does a bar that yields
+      if (allocated(critical%fallen%system%bar)) then
+         if (size(critical%fallen%system%bar) > 0) return
+      end if
       if (allocated(critical%fallen%contacts%joint)) then
          if (any(critical%fallen%contacts%joint%law%strength < huge(1.0_wp))) return
       end if

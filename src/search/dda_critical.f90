@@ -102,8 +102,7 @@ contains
          in_vain = merge(0, in_vain + 1, answer == verdict%collapsed)
          if (closed(search, critical, proposal)) then
             critical%verdict = verdict%found
-            critical%half = merge(proposal%half, abs(critical%stands - critical%falls)/2.0_wp, &
-               & is_sharp(search, critical, proposal))
+            critical%half = proposal%half
             critical%stop = proposal%value
             critical%stops = proposal%usable .and. .not. critical%current
             return
@@ -354,28 +353,15 @@ contains
       end associate
    end function is_foreseen
 
-   !> Whether the bracket is as narrow as the proposal asks for; where that is too wide to be an
-   !> answer, as narrow as the tolerance
+   !> Whether the bracket is as narrow as the proposal asks for
    pure logical function closed(search, critical, proposal)
       type(search_t), intent(in) :: search
       type(critical_t), intent(in) :: critical
       type(proposal_t), intent(in) :: proposal
-      real(wp) :: width
 
-      closed = allocated(critical%standing)
-      if (.not. closed) return
-      width = search%tolerance*abs(critical%stands)
-      if (is_sharp(search, critical, proposal)) width = 2.0001_wp*proposal%half
-      closed = abs(critical%stands - critical%falls) <= width
+      closed = allocated(critical%standing) &
+         & .and. abs(critical%stands - critical%falls) <= 2.0001_wp*proposal%half &
+         & .and. 2.0_wp*proposal%half <= max(widest, 2.0_wp*search%tolerance)*abs(critical%stands)
    end function closed
-
-   !> Whether what a proposal asks for is an answer
-   pure logical function is_sharp(search, critical, proposal)
-      type(search_t), intent(in) :: search
-      type(critical_t), intent(in) :: critical
-      type(proposal_t), intent(in) :: proposal
-
-      is_sharp = 2.0_wp*proposal%half <= max(widest, 2.0_wp*search%tolerance)*abs(critical%stands)
-   end function is_sharp
 
 end module dda_critical
