@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from pathlib import Path
 from xml.etree import ElementTree
 
@@ -9,12 +10,14 @@ import pytest
 
 from vtu_reader import read_vtu
 
-POLYGONS = Path("test_dda_write_vtu_polygons.vtu")
-POINTS = Path("test_dda_write_vtu_points.vtu")
-INDEX = Path("test_dda_write_pvd.pvd")
+#: Where the unit tests of output are run
+FOLDER = Path(os.environ.get("VOUSSOIR_BUILD", ".."), "tests")
+POLYGONS = FOLDER / "test_dda_write_vtu_polygons.vtu"
+POINTS = FOLDER / "test_dda_write_vtu_points.vtu"
+INDEX = FOLDER / "test_dda_write_pvd.pvd"
 pytestmark = pytest.mark.skipif(
     not (POLYGONS.exists() and POINTS.exists() and INDEX.exists()),
-    reason="unit_io, which writes the files, has not run in this folder",
+    reason="unit_output, which writes the files, has not run in this build",
 )
 #: The triangle, square and pentagon of test_dda_write_vtu.pf.
 CORNERS = [(0, 0), (1, 0), (0, 1), (2, 0), (3, 0), (3, 1), (2, 1), (4, 0), (6, 0), (6, 1),
