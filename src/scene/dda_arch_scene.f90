@@ -23,6 +23,9 @@ module dda_arch_scene
    !> Rotation of a block that means collapse to a search in time by default [rad]
    real(wp), parameter :: overturned = pi/4.0_wp
 
+   !> Steps that a motion may take for each of full length
+   real(wp), parameter :: cut_steps = 20.0_wp
+
 contains
 
    !> The scene that the deck of one case describes
@@ -167,6 +170,9 @@ contains
       if (deck%analysis%collapse_displacement%given) &
          & settings%collapse_displacement = deck%analysis%collapse_displacement%number
       if (deck%analysis%duration%given) settings%duration = deck%analysis%duration%number
+      if (.not. deck%analysis%steps%given .and. deck%analysis%duration%given &
+         & .and. deck%analysis%time_step%given) settings%max_steps = int(min(1.0e9_wp, &
+         & max(real(settings%max_steps, wp), cut_steps*settings%duration/settings%time_step)))
       if (deck%analysis%collapse_rotation_deg%given) then
          settings%collapse_rotation = degree*deck%analysis%collapse_rotation_deg%number
       else if (deck%search%given .and. .not. settings%collapse_displacement > 0.0_wp) then

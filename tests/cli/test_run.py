@@ -124,6 +124,16 @@ def test_first_of_4_2_3_is_the_exit_status(tmp_path: Path, decks: list[str], sta
         assert written == (deck in ("stable", "undecided"))
 
 
+def test_a_dynamic_run_may_take_the_steps_of_its_duration(tmp_path: Path) -> None:
+    """Six hundred of a millisecond, where nobody has said how many."""
+    motion = "&analysis mode = 'dynamic', geometry = 'current', duration = 0.6, time_step = 1e-3 /\n"
+    write_decks(tmp_path, deck=STABLE + motion)
+    assert run_dda("run", "deck.nml", cwd=tmp_path).returncode == 0
+    (row,) = rows_of(tmp_path / "deck")
+    assert row["verdict"] == "completed"
+    assert int(row["steps"]) >= 600
+
+
 def test_one_undecided_case_among_many_gives_3(tmp_path: Path) -> None:
     sweep = "&sweep parameter = 'steps', values = 400, 1, 400 /\n"
     write_decks(tmp_path, deck=STABLE + "&analysis geometry = 'current' /\n" + sweep)
