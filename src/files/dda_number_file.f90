@@ -7,6 +7,7 @@ module dda_number_file
    use dda_error, only : error_t, fatal_error
    use dda_kinds, only : wp
    use dda_table_file, only : part_name, rename_part
+   use dda_text_file, only : read_bytes
    implicit none
    private
 
@@ -55,55 +56,48 @@ contains
       real(wp), allocatable, intent(out) :: number(:)
       !> Allocated if it is missing, another file, or damaged
       type(error_t), allocatable, intent(out) :: error
-      character(len=len(title)) :: found
-      integer(int64) :: length
+      character(len=:), allocatable :: bytes
+      type(error_t), allocatable :: failure
       integer(int32) :: n(2)
-      integer :: unit, stat
+      logical :: sound
 
-      open (newunit=unit, file=file, access="stream", form="unformatted", status="old", &
-         & action="read", iostat=stat)
-      if (stat /= 0) then
+      ! by C: two threads may read one file
+      call read_bytes(file, bytes, failure)
+      if (allocated(failure)) then
          call fatal_error(error, "the file cannot be read; check its name", file, 1)
-         return
-      end if
-      found = ""
-      read (unit, iostat=stat) found
-      if (stat /= 0 .or. found /= title) then
+      else if (index(bytes, title) /= 1) then
          call fatal_error(error, "expected a "//title//" file, got another one; write it again", &
             & file, 1)
       else
-         inquire (unit=unit, size=length)
-         n = 0
-         read (unit, iostat=stat) n
-         if (stat == 0 .and. any(n < 0)) stat = 1
-         if (stat == 0) then
-            if (length /= len(title) + 16 + 4*int(n(1), int64) + 8*int(n(2), int64)) stat = 1
-         end if
-         if (stat == 0) call read_sealed(unit, n, whole, number, stat)
-         if (stat /= 0) call fatal_error(error, "expected a file as it was written, got a "// &
+         n = -1
+         if (len(bytes) >= len(title) + 16) n = transfer(bytes(len(title) + 1:), n)
+         sound = all(n >= 0)
+         if (sound) sound = len(bytes, int64) == len(title) + 16 + 4*int(n(1), int64) &
+            & + 8*int(n(2), int64)
+         if (sound) call read_sealed(bytes(len(title) + 9:), n, whole, number, sound)
+         if (.not. sound) call fatal_error(error, "expected a file as it was written, got a "// &
             & "damaged one; write it again", file, 1)
       end if
-      close (unit)
    end subroutine read_numbers
 
    !> Read numbers and compare their check sum
-   subroutine read_sealed(unit, n, whole, number, stat)
-      !> Unit of the file, at the first of them
-      integer, intent(in) :: unit
+   pure subroutine read_sealed(bytes, n, whole, number, sound)
+      !> The numbers and their check sum
+      character(len=*), intent(in) :: bytes
       !> How many there are: (2)
       integer(int32), intent(in) :: n(2)
       !> The whole ones: (n(1))
       integer(int32), allocatable, intent(out) :: whole(:)
       !> The others: (n(2))
       real(wp), allocatable, intent(out) :: number(:)
-      !> 0 if all is well
-      integer, intent(out) :: stat
-      integer(int64) :: seal
+      !> Whether it is theirs
+      logical, intent(out) :: sound
+      integer :: at
 
-      allocate (whole(n(1)), number(n(2)), stat=stat)
-      if (stat == 0) read (unit, iostat=stat) whole, number, seal
-      if (stat /= 0) return
-      if (seal /= check_sum(n, whole, number)) stat = 1
+      at = 4*n(1)
+      whole = transfer(bytes(:at), 0_int32, n(1))
+      number = transfer(bytes(at + 1:at + 8*n(2)), 0.0_wp, n(2))
+      sound = transfer(bytes(at + 8*n(2) + 1:), 0_int64) == check_sum(n, whole, number)
    end subroutine read_sealed
 
    !> The check sum of a file

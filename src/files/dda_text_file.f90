@@ -7,7 +7,7 @@ module dda_text_file
    implicit none
    private
 
-   public :: read_text_file, plain_text
+   public :: read_bytes, read_text_file, plain_text
 
    !> One megabyte [bytes]
    integer, parameter :: megabyte = 1024**2

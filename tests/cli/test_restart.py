@@ -172,14 +172,15 @@ def test_numbers_that_are_not_changed_are_taken(tmp_path: Path) -> None:
 def test_a_case_of_many_that_cannot_go_on_says_why(tmp_path: Path) -> None:
     assert run(tmp_path, "first", "steps = 5").returncode == 0
     change(tmp_path, lambda whole, number: whole.__setitem__(12, 99))
+    # so many that two jobs read the file at the same moment
     (tmp_path / "rest.nml").write_text(
         DECK.format(more="restart = 'first/case_1.restart', steps = 9", geometry="current")
-        + "&sweep parameter = 'restitution', values = 0, 0.5, 1 /\n"
+        + "&sweep parameter = 'restitution', first = 0, last = 1, count = 300 /\n"
     )
     done = run_dda("run", "rest.nml", "--quiet", "--jobs", "2", cwd=tmp_path)
     assert done.returncode == 3
     assert {row["verdict"] for row in rows(tmp_path / "rest")} == {"undecided"}
-    assert (tmp_path / "rest" / "log.txt").read_text().count("joints that these blocks") == 3
+    assert (tmp_path / "rest" / "log.txt").read_text().count("joints that these blocks") == 300
 
 
 def test_an_earlier_file_stays_where_a_new_one_cannot_be_written(tmp_path: Path) -> None:
