@@ -11,10 +11,10 @@ module dda_cut
    use dda_process, only : exit_status, worst_status
    use dda_read_limerick, only : read_geometry
    use dda_screen, only : print_line, screen_t
-   use dda_simplex, only : area_moments, area_moments_t
    use dda_text, only : to_text
+   use dda_vector, only : area_moments, area_moments_t
    use dda_warnings, only : warning_line, warnings_t
-   use dda_write_cut, only : write_cut_table, write_cut_vtu
+   use dda_write_vtu, only : write_cut_table, write_cut_vtu
    implicit none
    private
 

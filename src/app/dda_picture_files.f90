@@ -2,7 +2,7 @@
 module dda_picture_files
    use dda_block_system, only : block_system_t
    use dda_error, only : error_t
-   use dda_frame_rows, only : contact_states, frame_joint_rows
+   use dda_block_rows, only : contact_states, frame_joint_rows
    use dda_frames, only : album_t, frame_t
    use dda_kinds, only : wp
    use dda_process, only : make_folder

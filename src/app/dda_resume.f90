@@ -8,11 +8,10 @@ module dda_resume
    use dda_disk_record, only : trusted_length
    use dda_error, only : error_t
    use dda_kinds, only : wp
-   use dda_line_sum, only : add_sums, line_sum
    use dda_result_tables, only : common_length, common_sum, result_table_t, result_tables_t, &
       & sync_tables, table
-   use dda_table_file, only : keep_line, open_part, settle_part
-   use dda_table_lines, only : close_lines, field, n_fields, next_line, open_lines, table_lines_t
+   use dda_table_file, only : add_sums, close_lines, field, keep_line, line_sum, n_fields, &
+      & next_line, open_lines, open_part, settle_part, table_lines_t
    use dda_text, only : read_integer, read_number
    use dda_text_file, only : read_text_file
    implicit none

@@ -11,11 +11,10 @@ module dda_run_cases
    use dda_kinds, only : wp
    use dda_picture_files, only : write_album, write_energies, write_track
    use dda_progress, only : clear_progress, progress_t, report_progress
-   use dda_bar_rows, only : bar_lines
+   use dda_force_rows, only : bar_lines, reaction_text
    use dda_proof_rows, only : proof_forces_lines, proof_motion_lines
    use dda_restart, only : save_restart
    use dda_result_tables, only : result_tables_t, swept_fields, sync_when_due, table, write_case
-   use dda_reaction_rows, only : reaction_text
    use dda_table_file, only : append_line
    use dda_text, only : to_text
    use dda_write_tables, only : told_blocks_t

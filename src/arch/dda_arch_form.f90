@@ -1,8 +1,7 @@
 !> Forms of arches by span and rise, or by radius and angle
 module dda_arch_form
    use dda_arch_curve, only : close_curve, curve_t, piece_form, piece_t
-   use dda_constants, only : degree, pi
-   use dda_kinds, only : wp
+   use dda_kinds, only : degree, pi, wp
    implicit none
    private
 

@@ -2,8 +2,7 @@
 module dda_arch_sections
    use dda_arch_curve, only : curve_length, curve_t, station_at, station_t
    use dda_arch_form, only : arch_form_t, form_curve, form_problem_t
-   use dda_constants, only : degree
-   use dda_kinds, only : wp
+   use dda_kinds, only : degree, wp
    use dda_vector, only : cross
    implicit none
    private

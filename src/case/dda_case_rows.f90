@@ -12,12 +12,12 @@ module dda_case_rows
    use dda_deck_scene, only : movable_blocks
    use dda_error, only : error_line
    use dda_forward, only : outcome_t
-   use dda_joint_rows, only : joint_rows, tell_roles
+   use dda_block_rows, only : joint_rows, scale_to_one, tell_blocks, tell_mechanism_motion, &
+      & tell_roles, tell_total_motion
    use dda_kinds, only : wp
    use dda_mechanism, only : mechanism_of, mechanism_t
    use dda_scene, only : build_once, scene_t, searched_load
    use dda_text, only : to_text
-   use dda_told_blocks, only : scale_to_one, tell_blocks, tell_mechanism_motion, tell_total_motion
    use dda_verdict, only : verdict
    use dda_write_tables, only : told_blocks_t
    use dda_write_results, only : joint_row_t, result_row_t, some_number

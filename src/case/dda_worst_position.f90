@@ -15,7 +15,7 @@ module dda_worst_position
    use dda_kinds, only : wp
    use dda_limit_decision, only : decide_load, load_decision_t, load_state
    use dda_load_coefficient, only : added_loads, full_loads, with_coefficient
-   use dda_loads, only : point_load
+   use dda_submatrices, only : point_load
    use dda_scene, only : scene_t, searched_load
    use dda_scene_graph, only : scene_graph
    use dda_settings, only : factor_of

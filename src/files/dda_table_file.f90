@@ -1,17 +1,26 @@
-!> Tables written line by line, each line safe on its own
+!> Tables written line by line, each line safe on its own, and the lines of a table that a run may
+!> have left unfinished
+!>
+!> Their check sum does not depend on the order of the lines: it is the sum of their CRC-32. The
+!> sums of several tables add up to one, however their lines were written in turns; zlib and Python
+!> know CRC-32, so that others can compute it too.
 module dda_table_file
    use, intrinsic :: iso_c_binding, only : c_char, c_int, c_null_char
-   use, intrinsic :: iso_fortran_env, only : int64
+   use, intrinsic :: iso_fortran_env, only : int32, int64
    use dda_binary_file, only : append_text, binary_file_t, close_binary, flush_binary, &
       & open_binary, position_of, sync_binary
    use dda_error, only : error_t, fatal_error
-   use dda_line_sum, only : add_sums, line_sum
    implicit none
    private
 
-   public :: table_file_t, open_table, append_line, close_table, remove_file
+   public :: line_sum, add_sums, table_file_t, open_table, append_line, close_table, remove_file
    public :: open_part, keep_line, settle_part, part_name, rename_part, sync_table, length_of
-   public :: sum_of
+   public :: sum_of, table_lines_t, open_lines, next_line, close_lines, n_fields, field
+
+   !> Sums are counted modulo 2 to this power
+   integer, parameter :: bits = 32
+   !> The polynomial of ISO 3309, the lowest bit first
+   integer(int32), parameter :: polynomial = -306674912_int32
 
    !> An open table
    type :: table_file_t
@@ -44,7 +53,83 @@ module dda_table_file
       end function c_rename
    end interface
 
+   !> Bytes read at a time
+   integer, parameter :: chunk = 65536
+
+   !> A table that is read line by line
+   type :: table_lines_t
+      private
+      !> Fortran's unit
+      integer :: unit = 0
+      !> Whether there is a file
+      logical :: is_open = .false.
+      !> Bytes not read yet
+      integer(int64) :: left = 0
+      !> Bytes read but not handed out
+      character(len=:), allocatable :: ahead
+      !> Place of the first of them
+      integer :: first = 1
+   end type table_lines_t
+
 contains
+
+   !> Sum of the CRC-32 of the lines of a text; the last one need not be ended
+   pure integer(int64) function line_sum(text)
+      !> The text, lines ended by line feeds
+      character(len=*), intent(in) :: text
+      integer :: i
+      ! what eight bits do to a remainder, one after the other
+      integer(int32), parameter :: byte(0:255) = [(int(i, int32), i=0, 255)]
+      integer(int32), parameter :: bits_1(0:255) = ieor(shiftr(byte, 1), &
+         & merge(polynomial, 0_int32, btest(byte, 0)))
+      integer(int32), parameter :: bits_2(0:255) = ieor(shiftr(bits_1, 1), &
+         & merge(polynomial, 0_int32, btest(bits_1, 0)))
+      integer(int32), parameter :: bits_3(0:255) = ieor(shiftr(bits_2, 1), &
+         & merge(polynomial, 0_int32, btest(bits_2, 0)))
+      integer(int32), parameter :: bits_4(0:255) = ieor(shiftr(bits_3, 1), &
+         & merge(polynomial, 0_int32, btest(bits_3, 0)))
+      integer(int32), parameter :: bits_5(0:255) = ieor(shiftr(bits_4, 1), &
+         & merge(polynomial, 0_int32, btest(bits_4, 0)))
+      integer(int32), parameter :: bits_6(0:255) = ieor(shiftr(bits_5, 1), &
+         & merge(polynomial, 0_int32, btest(bits_5, 0)))
+      integer(int32), parameter :: bits_7(0:255) = ieor(shiftr(bits_6, 1), &
+         & merge(polynomial, 0_int32, btest(bits_6, 0)))
+      integer(int32), parameter :: bits_8(0:255) = ieor(shiftr(bits_7, 1), &
+         & merge(polynomial, 0_int32, btest(bits_7, 0)))
+      integer(int32) :: remainder
+
+      line_sum = 0
+      remainder = not(0_int32)
+      do i = 1, len(text)
+         if (text(i:i) == new_line("a")) then
+            line_sum = add_sums(line_sum, of_remainder(remainder))
+            remainder = not(0_int32)
+         else
+            remainder = ieor(shiftr(remainder, 8), &
+               & bits_8(iand(ieor(remainder, ichar(text(i:i), int32)), 255_int32)))
+         end if
+      end do
+      if (len(text) == 0) return
+      if (text(len(text):) /= new_line("a")) line_sum = add_sums(line_sum, of_remainder(remainder))
+   end function line_sum
+
+   !> Two sums as one
+   elemental integer(int64) function add_sums(first, second)
+      !> One sum; a negative one is taken away
+      integer(int64), intent(in) :: first
+      !> The other
+      integer(int64), intent(in) :: second
+
+      add_sums = modulo(first + second, shiftl(1_int64, bits))
+   end function add_sums
+
+   !> A remainder as CRC-32
+   elemental integer(int64) function of_remainder(remainder)
+      !> The remainder
+      integer(int32), intent(in) :: remainder
+
+      of_remainder = iand(int(not(remainder), int64), shiftl(1_int64, bits) - 1)
+   end function of_remainder
 
    !> Begin a table with its header
    subroutine open_table(file, header, table, error)
@@ -164,4 +249,108 @@ contains
 
       failed = c_remove(file//c_null_char)
    end subroutine remove_file
+
+   !> Begin to read; a file that is not there has no lines
+   subroutine open_lines(file, lines, most)
+      !> Name of the file
+      character(len=*), intent(in) :: file
+      type(table_lines_t), intent(out) :: lines
+      !> How much of it is read at most [bytes]; all of it without this
+      integer(int64), intent(in), optional :: most
+      integer :: stat
+
+      lines%ahead = ""
+      inquire (file=file, size=lines%left)
+      if (present(most)) lines%left = min(lines%left, most)
+      open (newunit=lines%unit, file=file, access="stream", form="unformatted", status="old", &
+         & action="read", iostat=stat)
+      lines%is_open = stat == 0
+   end subroutine open_lines
+
+   !> The next line that has its end; what follows the last line end was cut off and is no line
+   subroutine next_line(lines, line, found)
+      type(table_lines_t), intent(inout) :: lines
+      !> The line without its end
+      character(len=:), allocatable, intent(out) :: line
+      !> Whether there was one
+      logical, intent(out) :: found
+      integer :: length
+
+      found = .false.
+      if (.not. lines%is_open) return
+      length = index(lines%ahead(lines%first:), new_line("a"))
+      do while (length == 0 .and. lines%left > 0)
+         call read_ahead(lines)
+         length = index(lines%ahead(lines%first:), new_line("a"))
+      end do
+      found = length > 0
+      if (.not. found) return
+      line = lines%ahead(lines%first:lines%first + length - 2)
+      lines%first = lines%first + length
+   end subroutine next_line
+
+   !> Read more of the file
+   subroutine read_ahead(lines)
+      type(table_lines_t), intent(inout) :: lines
+      character(len=:), allocatable :: more
+      integer :: stat
+
+      more = repeat(" ", int(min(int(chunk, int64), lines%left)))
+      read (lines%unit, iostat=stat) more
+      if (stat /= 0) then
+         lines%left = 0
+         return
+      end if
+      lines%left = lines%left - len(more)
+      lines%ahead = lines%ahead(lines%first:)//more
+      lines%first = 1
+   end subroutine read_ahead
+
+   !> End reading
+   subroutine close_lines(lines)
+      type(table_lines_t), intent(inout) :: lines
+
+      if (lines%is_open) close (lines%unit)
+      lines%is_open = .false.
+   end subroutine close_lines
+
+   !> Number of fields of a line
+   pure integer function n_fields(line)
+      !> Fields parted by commas; commas between double quotes part nothing
+      character(len=*), intent(in) :: line
+      logical :: quoted
+      integer :: i
+
+      quoted = .false.
+      n_fields = 1
+      do i = 1, len(line)
+         if (line(i:i) == """") quoted = .not. quoted
+         if (line(i:i) == "," .and. .not. quoted) n_fields = n_fields + 1
+      end do
+   end function n_fields
+
+   !> One field of a line as it stands there; empty if there is none of that number
+   pure function field(line, number) result(text)
+      character(len=*), intent(in) :: line
+      !> Which, from 1
+      integer, intent(in) :: number
+      character(len=:), allocatable :: text
+      logical :: quoted
+      integer :: i, n, start
+
+      quoted = .false.
+      n = 1
+      start = 1
+      text = ""
+      do i = 1, len(line)
+         if (line(i:i) == """") quoted = .not. quoted
+         if (line(i:i) /= "," .or. quoted) cycle
+         if (n == number) text = line(start:i - 1)
+         if (n == number) return
+         n = n + 1
+         start = i + 1
+      end do
+      if (n == number) text = line(start:)
+   end function field
+
 end module dda_table_file

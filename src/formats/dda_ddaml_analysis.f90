@@ -1,12 +1,12 @@
 !> Analysis files in DDAML, the XML form
 module dda_ddaml_analysis
-   use dda_ddaml_attributes, only : choose, number_attribute, whole_attribute
    use dda_ddaml_form, only : analysis_form, check_elements, find_part
-   use dda_ddaml_material, only : read_history, read_joint, read_material
+   use dda_ddaml_material, only : choose, number_attribute, read_history, read_joint, &
+      & read_material, whole_attribute
    use dda_error, only : error_t, fatal_error
    use dda_kinds, only : wp
    use dda_limerick_analysis, only : limerick_analysis_t
-   use dda_plain_analysis, only : check_steps
+   use dda_plain_files, only : check_steps
    use dda_text, only : to_text
    use dda_warnings, only : add_warning, warnings_t
    use dda_word_list, only : quoted, split_words, take_property, word_list_t

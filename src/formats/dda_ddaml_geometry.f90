@@ -1,7 +1,7 @@
 !> Geometry files in DDAML, the XML form
 module dda_ddaml_geometry
-   use dda_ddaml_attributes, only : attribute_words
    use dda_ddaml_form, only : check_elements, find_part, geometry_form
+   use dda_ddaml_material, only : attribute_words
    use dda_error, only : error_t, fatal_error
    use dda_kinds, only : wp
    use dda_line_model, only : add_bolt, add_entity, entities_t, line_model_t, new_entities, &

@@ -1,24 +1,108 @@
-!> Materials and loads of an analysis file in DDAML
+!> Attributes of elements of DDAML, and the materials and loads that an analysis file says by them
 module dda_ddaml_material
-   use dda_ddaml_attributes, only : attribute_words
    use dda_error, only : error_t, fatal_error
    use dda_kinds, only : wp
-   use dda_limerick_analysis, only : limerick_joint_t, analysis_material_t, load_history_t
-   use dda_plain_analysis, only : check_joint, check_material, largest_value
+   use dda_limerick_analysis, only : analysis_material_t, limerick_joint_t, load_history_t
+   use dda_plain_files, only : check_joint, check_material, largest_value
    use dda_text, only : to_text
    use dda_warnings, only : add_warning, warnings_t
-   use dda_word_list, only : quoted, split_words, take_word_numbers, take_whole, this_row, &
+   use dda_word_list, only : quoted, split_words, take_whole, take_word_numbers, this_row, &
       & this_word, word_list_t, words_left
-   use dda_xml_tree, only : find_child, xml_tree_t
+   use dda_xml_tree, only : attribute_of, find_child, xml_tree_t
    implicit none
    private
 
-   public :: read_material, read_joint, read_history
+   public :: attribute_words, choose, number_attribute, whole_attribute, read_material
+   public :: read_joint, read_history
+
+   !> Largest whole number
+   integer, parameter :: largest_whole = 1000000000
 
    !> Weights that differ by less, relatively, are one weight with rounded digits
    real(wp), parameter :: same_weight = 1.0e-6_wp
 
 contains
+
+   !> The words of an attribute that must be there
+   pure subroutine attribute_words(tree, at, name, words, error)
+      type(xml_tree_t), intent(in) :: tree
+      !> Place of the element
+      integer, intent(in) :: at
+      !> Name of the attribute
+      character(len=*), intent(in) :: name
+      type(word_list_t), intent(out) :: words
+      !> It is not there
+      type(error_t), allocatable, intent(out) :: error
+
+      associate (element => tree%element(at))
+         call split_words(attribute_of(tree, at, name), tree%file, element%row, words)
+         words%row = element%row
+         if (words%n /= 1) call fatal_error(error, "expected the attribute "//name &
+            & //" with one value in "//quoted(element%name)//", got " &
+            & //quoted(attribute_of(tree, at, name))//"; write one value", tree%file, element%row)
+      end associate
+   end subroutine attribute_words
+
+   !> Read an attribute that chooses between two meanings
+   pure subroutine choose(tree, at, name, words_for_yes, word_for_no, yes, error)
+      type(xml_tree_t), intent(in) :: tree
+      integer, intent(in) :: at
+      character(len=*), intent(in) :: name
+      !> Words that mean yes, parted by blanks
+      character(len=*), intent(in) :: words_for_yes
+      !> The word that means no
+      character(len=*), intent(in) :: word_for_no
+      !> The choice
+      logical, intent(out) :: yes
+      !> Another word, or none
+      type(error_t), allocatable, intent(out) :: error
+      character(len=:), allocatable :: word
+
+      word = attribute_of(tree, at, name)
+      yes = len(word) > 0 .and. index(" "//words_for_yes//" ", " "//word//" ") > 0
+      if (.not. yes .and. word /= word_for_no) call fatal_error(error, "the attribute "//name &
+         & //" of "//quoted(tree%element(at)%name)//" must be one of "//words_for_yes//" " &
+         & //word_for_no//", got "//quoted(word)//"; choose one", tree%file, tree%element(at)%row)
+   end subroutine choose
+
+   !> Read an attribute that is a number
+   pure subroutine number_attribute(tree, at, name, low, value, error)
+      type(xml_tree_t), intent(in) :: tree
+      integer, intent(in) :: at
+      character(len=*), intent(in) :: name
+      !> Smallest value
+      real(wp), intent(in) :: low
+      !> The number
+      real(wp), intent(inout) :: value
+      type(error_t), allocatable, intent(out) :: error
+      type(word_list_t) :: words
+      real(wp) :: number(1)
+
+      call attribute_words(tree, at, name, words, error)
+      if (.not. allocated(error)) &
+         & call take_word_numbers(words, "the attribute "//name, largest_value, number, error)
+      if (allocated(error)) return
+      value = number(1)
+      if (value < low) call fatal_error(error, "the attribute "//name//" must be "//to_text(low) &
+         & //" or more, got "//to_text(value)//"; correct it", tree%file, tree%element(at)%row)
+   end subroutine number_attribute
+
+   !> Read an attribute that is a whole number
+   pure subroutine whole_attribute(tree, at, name, low, value, error)
+      type(xml_tree_t), intent(in) :: tree
+      integer, intent(in) :: at
+      character(len=*), intent(in) :: name
+      !> Smallest value
+      integer, intent(in) :: low
+      !> The number
+      integer, intent(inout) :: value
+      type(error_t), allocatable, intent(out) :: error
+      type(word_list_t) :: words
+
+      call attribute_words(tree, at, name, words, error)
+      if (.not. allocated(error)) &
+         & call take_whole(words, "the attribute "//name, low, largest_whole, value, error)
+   end subroutine whole_attribute
 
    !> Read a Blockmaterial
    pure subroutine read_material(tree, at, gravity, material, warnings, error)
@@ -166,4 +250,5 @@ contains
          return
       end do
    end subroutine read_history
+
 end module dda_ddaml_material

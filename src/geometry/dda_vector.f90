@@ -1,10 +1,21 @@
-!> The small algebra of plane vectors
+!> The small algebra of plane vectors, and areas and moments of polygons by simplex integration
+!> (Shi: area)
 module dda_vector
    use dda_kinds, only : wp
    implicit none
    private
 
-   public :: cross, right_normal, along
+   public :: cross, right_normal, along, area_moments_t, area_moments
+
+   !> Integrals over a polygon
+   type :: area_moments_t
+      !> Area, positive for a counter-clockwise polygon [m2]
+      real(wp) :: area = 0.0_wp
+      !> Centre of gravity: (2) [m]
+      real(wp) :: centroid(2) = 0.0_wp
+      !> Sxx, Syy, Sxy about the centre of gravity: (3) [m4]
+      real(wp) :: second(3) = 0.0_wp
+   end type area_moments_t
 
 contains
 
@@ -39,4 +50,36 @@ contains
 
       normal = [direction(2), -direction(1)]
    end function right_normal
+
+   !> Area, centre and central second moments; sums over the triangles seen from the first vertex,
+   !> so that a polygon far from the origin loses no digits
+   pure type(area_moments_t) function area_moments(vertex) result(moments)
+      !> Corners in order: (2, n), n >= 3 [m]
+      real(wp), intent(in) :: vertex(:, :)
+      real(wp) :: a(2), b(2), twice, first(2), second(3)
+      integer :: i
+
+      first = 0.0_wp
+      second = 0.0_wp
+      b = vertex(:, 2) - vertex(:, 1)
+      do i = 3, size(vertex, 2)
+         a = b
+         b = vertex(:, i) - vertex(:, 1)
+         twice = cross(a, b)
+         moments%area = moments%area + twice/2.0_wp
+         first = first + twice*(a + b)/6.0_wp
+         second(1:2) = second(1:2) + twice*(a*a + a*b + b*b)/12.0_wp
+         second(3) = second(3) &
+            & + twice*(2.0_wp*(a(1)*a(2) + b(1)*b(2)) + a(1)*b(2) + a(2)*b(1))/24.0_wp
+      end do
+      if (abs(moments%area) > tiny(1.0_wp)) then
+         first = first/moments%area
+      else  ! what has no area is where it begins
+         first = 0.0_wp
+      end if
+      moments%centroid = vertex(:, 1) + first
+      moments%second(1:2) = second(1:2) - moments%area*first*first
+      moments%second(3) = second(3) - moments%area*first(1)*first(2)
+   end function area_moments
+
 end module dda_vector

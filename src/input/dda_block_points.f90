@@ -1,12 +1,10 @@
 !> Points of a file of blocks, and what acts on them in time
 module dda_block_points
-   use dda_block_entries, only : take_absorbing, take_bar, take_water
+   use dda_block_entries, only : close_changes, take_absorbing, take_bar, take_change, take_water
    use dda_block_input, only : block_plan_t
-   use dda_block_lines, only : entry_t, take_entry, take_numbers, waiting_entry_t
-   use dda_block_records, only : take_record
-   use dda_block_sites, only : site_t, add_held, block_at, blocks_along, close_held, &
-      & holds_point, rivals_at
-   use dda_block_stages, only : close_changes, take_change
+   use dda_block_lines, only : entry_t, take_entry, take_numbers, take_record, waiting_entry_t
+   use dda_block_sites, only : add_held, block_at, blocks_along, close_held, holds_point, &
+      & rivals_at, site_t
    use dda_boundary, only : boundary_t, held_point_t, history_t, measured_point_t
    use dda_deck_token, only : shown
    use dda_error, only : error_t, fatal_error

@@ -1,18 +1,25 @@
-!> Where the blocks of a file are, which of them holds a point, and which points hold them
+!> Where the blocks of a file are, which of them holds a point, and which points hold them: whether
+!> one more is compatible
 module dda_block_sites
    use dda_block_input, only : block_plan_t
-   use dda_boundary, only : held_point_t
+   use dda_boundary, only : held_point_t, history_t, value_at
    use dda_box_tree, only : box_tree_t, boxes_along, new_box_tree
    use dda_error, only : error_t, fatal_error
    use dda_growth, only : make_room
-   use dda_held_paths, only : compare_paths
    use dda_kinds, only : wp
    use dda_polygon, only : depth_in, edge_tree
+   use dda_small_systems, only : least_squares
    use dda_text, only : to_text
    implicit none
    private
 
-   public :: site_t, add_held, block_at, blocks_along, close_held, holds_point, rivals_at, survey
+   public :: compare_paths, site_t, add_held, block_at, blocks_along, close_held, holds_point
+   public :: rivals_at, survey
+
+   !> Places nearer than this share of the block's size are the same
+   real(wp), parameter :: same = 1.0e-9_wp
+   !> So many points of a block along a direction, of which three would do, are kept to choose from
+   integer, parameter :: enough = 16
 
    !> A point may lie outside its block by this share of the block's size: coordinates are rounded
    real(wp), parameter :: rounded = 1.0e-4_wp
@@ -39,6 +46,89 @@ module dda_block_sites
    integer, parameter :: few_corners = 32
 
 contains
+
+   !> Whether a point is to go where the points held already do not let it. A block moves and
+   !> strains linearly, so along each direction a point that is a mixture of held ones goes where
+   !> the mixture of their ways leads
+   pure subroutine compare_paths(held, other, more, size_of_block, contradicts, telling)
+      !> Points that are held: (n)
+      type(held_point_t), intent(in) :: held(:)
+      !> Those of the same block that have told something: (n)
+      integer, intent(in) :: other(:)
+      type(held_point_t), intent(in) :: more
+      !> Size of its block [m]
+      real(wp), intent(in) :: size_of_block
+      !> Whether it cannot go its way
+      logical, intent(out) :: contradicts
+      !> Whether it tells something: those that follow need not be compared with others
+      logical, intent(out) :: telling
+      integer, allocatable :: same_axis(:)
+      real(wp), allocatable :: row(:, :), share(:)
+      integer :: axis, i
+
+      contradicts = .false.
+      telling = .false.
+      do axis = 1, 2
+         if (.not. more%along(axis)) cycle
+         same_axis = pack(other, held(other)%along(axis))
+         telling = telling .or. size(same_axis) < enough
+         if (size(same_axis) == 0) cycle
+         row = reshape([(1.0_wp, (held(same_axis(i))%point - more%point)/size_of_block, &
+            & i=1, size(same_axis))], [3, size(same_axis)])
+         share = least_squares(row, [1.0_wp, 0.0_wp, 0.0_wp], same)
+         if (norm2(matmul(row, share) - [1.0_wp, 0.0_wp, 0.0_wp]) > same) then
+            telling = .true.
+            cycle
+         end if
+         same_axis = pack(same_axis, abs(share) > 0.0_wp)
+         share = pack(share, abs(share) > 0.0_wp)
+         contradicts = contradicts .or. &
+            & far_from(held, same_axis, share, more, axis, same*size_of_block)
+      end do
+   end subroutine compare_paths
+
+   !> Whether a way is ever off the mixture of others; all are linear between their times
+   pure logical function far_from(held, other, share, more, axis, tolerance)
+      type(held_point_t), intent(in) :: held(:)
+      !> Numbers of the others: (m)
+      integer, intent(in) :: other(:)
+      !> Their shares: (m)
+      real(wp), intent(in) :: share(:)
+      type(held_point_t), intent(in) :: more
+      !> Direction, 1 or 2 for x or y
+      integer, intent(in) :: axis
+      !> How far off it may be [m]
+      real(wp), intent(in) :: tolerance
+      real(wp), allocatable :: time(:)
+      real(wp) :: way(2), off
+      integer :: i, k
+
+      allocate (time, source=times_of(more%path))
+      do i = 1, size(other)
+         time = [time, times_of(held(other(i))%path)]
+      end do
+      far_from = .false.
+      do k = 1, size(time)
+         way = value_at(more%path, time(k))
+         off = way(axis)
+         do i = 1, size(other)
+            way = value_at(held(other(i))%path, time(k))
+            off = off - share(i)*way(axis)
+         end do
+         far_from = abs(off) > tolerance
+         if (far_from) return
+      end do
+   end function far_from
+
+   !> Times of a history; none if nothing is given
+   pure function times_of(history) result(time)
+      type(history_t), intent(in) :: history
+      !> The times: (n) [s]
+      real(wp), allocatable :: time(:)
+
+      allocate (time(0))
+      if (allocated(history%time)) time = history%time
+   end function times_of
 
    !> Know where the blocks are
    pure subroutine survey(plan, site)
@@ -227,4 +317,5 @@ contains
       end do
       call move_alloc(other, list)
    end subroutine close_held
+
 end module dda_block_sites

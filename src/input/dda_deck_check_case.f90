@@ -6,8 +6,7 @@ module dda_deck_check_case
    use dda_deck_keys, only : deck_key, key_index, group_index
    use dda_deck, only : deck_t, deck_place_t, deck_error, geometry_of, keeps_velocities, &
       scene_kind, place_of
-   use dda_deck_check_ground, only : check_ground
-   use dda_deck_check_live, only : check_live, check_strength
+   use dda_deck_check_loads, only : check_ground, check_live, check_strength
    use dda_deck_parameter, only : parameter_name
    use dda_deck_set, only : put_number, number_problem
    use dda_deck_words, only : full_name

@@ -3,16 +3,16 @@ module dda_read_blocks
    use dda_block_input, only : block_plan_t, law_plan_t, material_plan_t, most_materials, new_plan
    use dda_block_lines, only : entry_t, keep_entry, largest_number, line_t, split_line, &
       & take_words, waiting_entry_t
+   use dda_block_plan_check, only : add_law_plan, add_plan_block, check_overlaps, check_plan, &
+      & close_plan, growing_plan_t
    use dda_block_points, only : add_points
    use dda_block_sites, only : site_t, survey
-   use dda_check_plan, only : check_overlaps, check_plan
    use dda_deck_key, only : key_kind, key_t
    use dda_deck_keys, only : joint_keys, material_keys
    use dda_deck_token, only : shown
    use dda_error, only : error_t, fatal_error
    use dda_growth, only : make_room
    use dda_kinds, only : wp
-   use dda_plan_growth, only : add_law_plan, add_plan_block, close_plan, growing_plan_t
    use dda_text, only : read_integer, read_number, to_text
    use dda_warnings, only : warnings_t
    use dda_watch, only : watch_t

@@ -14,9 +14,8 @@ module dda_read_deck
    use dda_deck_set, only : put_text
    use dda_deck_entry, only : read_values
    use dda_deck_sweep, only : add_sweep, n_cases
-   use dda_deck_check, only : check_deck
-   use dda_deck_check_ground, only : check_block_file
-   use dda_deck_files, only : name_key, read_ground_records, read_lines
+   use dda_deck_check, only : check_deck, name_key, read_ground_records, read_lines
+   use dda_deck_check_loads, only : check_block_file
    use dda_file_mark, only : file_mark, text_mark
    use dda_read_blocks, only : parse_blocks
    use dda_watch, only : watch_t

@@ -1,20 +1,22 @@
-!> The equations of a step: pattern, blocks, contacts (Shi: df08, df10 to df18)
+!> The equations of a step: pattern, blocks, contacts, bolts (Shi: df08, df10 to df18)
+!>
+!> Bolts follow the original's rule (Shi: df17): linear springs that pull and push, whatever their
+!> strength, along the line between their ends at the beginning of each step.
 module dda_limerick_assembly
    use dda_block_factor, only : block_factor_t, plan_factor
    use dda_block_matrix, only : block_matrix_t, set_pattern
    use dda_block_system, only : n_unknown
-   use dda_elasticity, only : elastic_matrix, stress_load
-   use dda_inertia, only : mass_matrix
    use dda_kinds, only : wp
-   use dda_limerick_bolts, only : bolt_rows, n_bolts
    use dda_limerick_contact, only : contact_list_t, contact_spring_t, generalised, &
       & limerick_contact_t
    use dda_limerick_model, only : contact_law, force_at, limerick_model_t
-   use dda_limerick_state, only : limerick_state, limerick_blocks_t, limerick_march_t
+   use dda_limerick_state, only : limerick_blocks_t, limerick_march_t, limerick_state
+   use dda_submatrices, only : elastic_matrix, mass_matrix, stress_load
    implicit none
    private
 
-   public :: limerick_equations_t, couple_blocks, assemble_limerick, add_contacts
+   public :: bolt_elongation, bolt_rows, n_bolts, limerick_equations_t, couple_blocks
+   public :: assemble_limerick, add_contacts
 
    !> Matrix, loads and unknowns of a step
    type :: limerick_equations_t
@@ -38,6 +40,56 @@ module dda_limerick_assembly
    end type limerick_equations_t
 
 contains
+
+   !> Number of bolts
+   pure integer function n_bolts(model)
+      type(limerick_model_t), intent(in) :: model
+
+      n_bolts = 0
+      if (allocated(model%boundary%bar)) n_bolts = size(model%boundary%bar)
+   end function n_bolts
+
+   !> Elongation of a bolt per unknown of its two blocks; nothing for the ground
+   pure function bolt_rows(model, blocks, i) result(row)
+      type(limerick_model_t), intent(in) :: model
+      type(limerick_blocks_t), intent(in) :: blocks
+      !> Number of the bolt
+      integer, intent(in) :: i
+      !> (6, 2)
+      real(wp) :: row(6, 2)
+      real(wp) :: along(2)
+      integer :: side
+
+      row = 0.0_wp
+      along = blocks%bolt_point(:, 1, i) - blocks%bolt_point(:, 2, i)
+      along = along/norm2(along)
+      do side = 1, 2
+         associate (b => model%boundary%bar(i)%block(side))
+            if (b > 0) row(:, side) = generalised(merge(along, -along, side == 1), &
+               & blocks%bolt_point(:, side, i), blocks%centroid(:, b))
+         end associate
+      end do
+   end function bolt_rows
+
+   !> Elongation of a bolt in a step
+   pure real(wp) function bolt_elongation(model, blocks, i, motion)
+      type(limerick_model_t), intent(in) :: model
+      !> The blocks at the beginning of the step
+      type(limerick_blocks_t), intent(in) :: blocks
+      integer, intent(in) :: i
+      !> Motion of the blocks: (6, n_block)
+      real(wp), intent(in) :: motion(:, :)
+      real(wp) :: row(6, 2)
+      integer :: side
+
+      row = bolt_rows(model, blocks, i)
+      bolt_elongation = 0.0_wp
+      do side = 1, 2
+         associate (b => model%boundary%bar(i)%block(side))
+            if (b > 0) bolt_elongation = bolt_elongation + dot_product(row(:, side), motion(:, b))
+         end associate
+      end do
+   end function bolt_elongation
 
    !> Make the pattern, if other blocks are coupled than before, and tell each contact its entry
    pure subroutine couple_blocks(model, contacts, n_block, equations, spring)
@@ -287,4 +339,5 @@ contains
       load(:, contact%block(1)) = load(:, contact%block(1)) - friction*spring%along(:, 1)
       load(:, contact%block(2)) = load(:, contact%block(2)) + friction*spring%drag
    end subroutine add_friction
+
 end module dda_limerick_assembly

@@ -3,7 +3,7 @@ module dda_limerick_state
    use dda_block_system, only : n_unknown
    use dda_kinds, only : wp
    use dda_limerick_model, only : half_size, limerick_model_t
-   use dda_simplex, only : area_moments, area_moments_t
+   use dda_vector, only : area_moments, area_moments_t
    implicit none
    private
 

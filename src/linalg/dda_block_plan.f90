@@ -5,9 +5,9 @@
 !> panel where its zeros cost less than panels apart. All is counted in triples of unknowns: a block
 !> has one or two.
 module dda_block_plan
-   use dda_block_dissection, only : dissected_order, smallest_part
-   use dda_block_matrix, only : block_matrix_t
-   use dda_elimination_tree, only : by_branches, elimination_t, new_elimination, products
+   use dda_block_matrix, only : block_matrix_t, by_branches, elimination_t, new_elimination, &
+      & products
+   use dda_block_order, only : dissected_order, smallest_part
    use dda_kinds, only : wp
    implicit none
    private

@@ -1,14 +1,17 @@
 !> Blocks that were cut from lines: polygons, what they are made of, what acts on them, and which
 !> edges lie together
+!>
+!> Edges that lie together in part get corners there, so that they lie together as wholes.
 module dda_cut_model
    use dda_cut_report, only : cut_remarks_t
    use dda_cut_scale, only : cut_scale_t
    use dda_kinds, only : wp
+   use dda_sort, only : sorted_order
    implicit none
    private
 
-   public :: cut_bolt_t, cut_model_t, block_point_t, edge_pair_t, point_kind, point_kind_enum
-   public :: block_vertices
+   public :: cut_bolt_t, cut_model_t, block_point_t, edge_pair_t, point_kind, block_vertices
+   public :: split_edges
 
    !> What a point of a block is for
    type :: point_kind_enum
@@ -87,6 +90,18 @@ module dda_cut_model
       integer :: n_removed = 0
    end type cut_model_t
 
+   !> Corners to be
+   type :: corners_t
+      !> How many there are
+      integer :: n = 0
+      !> Their places: (2, n or more) [m]
+      real(wp), allocatable :: point(:, :)
+      !> The vertex that begins the edge on which each lies: (n or more)
+      integer, allocatable :: edge(:)
+      !> How far along that edge: (n or more) [m]
+      real(wp), allocatable :: along(:)
+   end type corners_t
+
 contains
 
    !> Corners of one block
@@ -100,4 +115,131 @@ contains
       allocate (vertex, source=cut%vertex(:, cut%first_vertex(block): &
          & cut%first_vertex(block + 1) - 1))
    end function block_vertices
+
+   !> The same blocks with corners wherever a joint begins or ends
+   pure subroutine split_edges(cut, split)
+      type(cut_model_t), intent(in) :: cut
+      !> The blocks with more corners; edges of a pair have the same ends
+      type(cut_model_t), intent(out) :: split
+      type(corners_t) :: corners
+      integer, allocatable :: start(:)
+      integer :: k
+
+      split = cut
+      call collect_corners(cut, corners)
+      call sort_corners(corners, cut%scale%reach)
+      split%vertex = corners%point(:, :corners%n)
+      split%edge_joint = cut%edge_joint(corners%edge(:corners%n))
+      ! the first of the new edges that each old one has become
+      allocate (start(size(cut%vertex, 2) + 1))
+      start(size(start)) = corners%n + 1
+      do k = corners%n, 1, -1
+         start(corners%edge(k)) = k
+      end do
+      split%first_vertex = start(cut%first_vertex)
+      do k = 1, size(cut%pair)
+         associate (old => cut%pair(k), new => split%pair(k))
+            new%side(2) = edge_at(split, start, cut%first_vertex(old%side(1)) + old%side(2) - 1, &
+               & old%place(1:2), old%side(1))
+            new%side(4) = edge_at(split, start, cut%first_vertex(old%side(3)) + old%side(4) - 1, &
+               & old%place(3:4), old%side(3))
+         end associate
+      end do
+   end subroutine split_edges
+
+   !> The corners that are there, and those where joints begin and end
+   pure subroutine collect_corners(cut, corners)
+      type(cut_model_t), intent(in) :: cut
+      type(corners_t), intent(out) :: corners
+      integer :: room, i, k
+
+      corners%n = size(cut%vertex, 2)
+      room = corners%n + 4*size(cut%pair)
+      allocate (corners%point(2, room), corners%edge(room), corners%along(room))
+      corners%along = 0.0_wp
+      do i = 1, corners%n
+         corners%point(:, i) = cut%vertex(:, i)
+         corners%edge(i) = i
+      end do
+      do k = 1, size(cut%pair)
+         associate (pair => cut%pair(k))
+            do i = 1, 3, 2
+               call add_corner(cut, pair%side(1:2), pair%place(i:i + 1), corners)
+               call add_corner(cut, pair%side(3:4), pair%place(i:i + 1), corners)
+            end do
+         end associate
+      end do
+   end subroutine collect_corners
+
+   !> A corner on an edge, unless it is at one of its ends
+   pure subroutine add_corner(cut, side, point, corners)
+      type(cut_model_t), intent(in) :: cut
+      !> Block and edge: (2)
+      integer, intent(in) :: side(2)
+      !> The place: (2) [m]
+      real(wp), intent(in) :: point(2)
+      type(corners_t), intent(inout) :: corners
+      integer :: first, n, at
+      real(wp) :: finish(2)
+
+      first = cut%first_vertex(side(1))
+      n = cut%first_vertex(side(1) + 1) - first
+      at = first + side(2) - 1
+      finish = cut%vertex(:, first + mod(side(2), n))
+      if (norm2(point - cut%vertex(:, at)) <= cut%scale%reach) return
+      if (norm2(point - finish) <= cut%scale%reach) return
+      corners%n = corners%n + 1
+      corners%point(:, corners%n) = point
+      corners%edge(corners%n) = at
+      corners%along(corners%n) = norm2(point - cut%vertex(:, at))
+   end subroutine add_corner
+
+   !> Bring the corners into their order around the blocks, each once
+   pure subroutine sort_corners(corners, reach)
+      type(corners_t), intent(inout) :: corners
+      !> Distance within which things touch [m]
+      real(wp), intent(in) :: reach
+      integer, allocatable :: order(:)
+      integer :: k, n
+
+      allocate (order, source=sorted_order(corners%edge(:corners%n), corners%along(:corners%n)))
+      corners%point = corners%point(:, order)
+      corners%edge = corners%edge(order)
+      corners%along = corners%along(order)
+      n = 1
+      do k = 2, corners%n
+         if (corners%edge(k) == corners%edge(n) &
+            & .and. corners%along(k) - corners%along(n) <= reach) cycle
+         n = n + 1
+         corners%point(:, n) = corners%point(:, k)
+         corners%edge(n) = corners%edge(k)
+         corners%along(n) = corners%along(k)
+      end do
+      corners%n = n
+   end subroutine sort_corners
+
+   !> Number, within its block, of the new edge that begins at a place of an old one
+   pure integer function edge_at(split, start, old, place, block)
+      type(cut_model_t), intent(in) :: split
+      !> First new edge of each old one, and one beyond the last: (n_old + 1)
+      integer, intent(in) :: start(:)
+      !> The old edge
+      integer, intent(in) :: old
+      !> The place: (2) [m]
+      real(wp), intent(in) :: place(2)
+      !> Number of the block
+      integer, intent(in) :: block
+      real(wp) :: nearest, here
+      integer :: k
+
+      edge_at = 0
+      nearest = huge(nearest)
+      do k = start(old), start(old + 1) - 1
+         here = norm2(split%vertex(:, k) - place)
+         if (.not. here < nearest) cycle
+         nearest = here
+         edge_at = k - split%first_vertex(block) + 1
+      end do
+   end function edge_at
+
 end module dda_cut_model

@@ -6,9 +6,8 @@ module dda_cut_points
    use dda_line_model, only : entities_t, line_model_t
    use dda_polygon, only : contains_point, polygon_distance
    use dda_segment, only : crossing_parameters
-   use dda_simplex, only : area_moments, area_moments_t
    use dda_text, only : to_text
-   use dda_vector, only : along, right_normal
+   use dda_vector, only : along, area_moments, area_moments_t, right_normal
    implicit none
    private
 

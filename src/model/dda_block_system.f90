@@ -3,7 +3,7 @@ module dda_block_system
    use dda_bar, only : bar_state_t
    use dda_kinds, only : wp
    use dda_material, only : material_t
-   use dda_simplex, only : area_moments, area_moments_t
+   use dda_vector, only : area_moments, area_moments_t
    implicit none
    private
 

@@ -1,7 +1,6 @@
 !> Materials of blocks and laws of joints
 module dda_material
-   use dda_constants, only : degree
-   use dda_kinds, only : wp
+   use dda_kinds, only : degree, wp
    implicit none
    private
 

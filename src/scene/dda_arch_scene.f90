@@ -3,10 +3,9 @@ module dda_arch_scene
    use couplet_heyman_discrete, only : discrete_critical, discrete_solution_t, discrete_status
    use dda_arch, only : arch_blocks, arch_shape_t, equal_joints, facet_count
    use dda_arch_chain, only : arch_numbers_t
-   use dda_constants, only : degree, pi
    use dda_contact_detection, only : find_contacts
    use dda_deck, only : deck_t
-   use dda_kinds, only : wp
+   use dda_kinds, only : degree, pi, wp
    use dda_material, only : friction_coefficient, joint_law_t, material_t
    use dda_scene, only : scene_t
    use dda_scene_plan, only : scene_plan_t

@@ -9,7 +9,6 @@ module dda_deck_scene
    use dda_block_scene, only : base_t, block_scene
    use dda_boundary, only : history_t
    use dda_chain, only : chain_t
-   use dda_constants, only : degree, pi
    use dda_deck, only : deck_t, parameter_t, scene_kind
    use dda_deck_keys, only : key_index
    use dda_deck_set, only : number_fits, put_number
@@ -17,7 +16,7 @@ module dda_deck_scene
    use dda_fill_loads, only : add_fill_weight, fill_of, fill_t, press_fill
    use dda_ground_motion, only : acceleration_of_displacement, acceleration_of_record, &
       & acceleration_of_velocity
-   use dda_kinds, only : wp
+   use dda_kinds, only : degree, pi, wp
    use dda_line_scene, only : held_blocks, line_scene
    use dda_live_loads, only : add_live_loads, check_live_points
    use dda_scene, only : family_t, scene_t, searched_load

@@ -3,9 +3,8 @@
 module dda_fill_loads
    use dda_arch_assembly, only : arch_assembly_t, top_chord_t
    use dda_boundary, only : bounded_force_t, constant_history, loaded_point_t
-   use dda_constants, only : degree
    use dda_deck, only : deck_t
-   use dda_kinds, only : wp
+   use dda_kinds, only : degree, wp
    use dda_scene, only : scene_t
    use dda_shape_scene, only : add_loads
    implicit none

@@ -4,15 +4,13 @@ module dda_line_scene
    use dda_bar, only : bar_t
    use dda_block_system, only : block_system_t, new_block_system
    use dda_boundary, only : boundary_t, constant_history, history_t
-   use dda_constants, only : pi
    use dda_contact_detection, only : find_contacts
-   use dda_cut_model, only : cut_model_t, point_kind
+   use dda_cut_model, only : cut_model_t, point_kind, split_edges
    use dda_cutting, only : cut_blocks
    use dda_deck, only : deck_error, deck_t
    use dda_deck_keys, only : key_index
-   use dda_edge_split, only : split_edges
    use dda_error, only : error_t
-   use dda_kinds, only : wp
+   use dda_kinds, only : pi, wp
    use dda_limerick_analysis, only : limerick_joint_t, analysis_material_t
    use dda_material, only : friction_coefficient, joint_law_t, material_t
    use dda_scene, only : scene_t

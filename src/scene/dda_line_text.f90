@@ -1,12 +1,11 @@
 !> Blocks that were cut from lines as a file of blocks, with what acts on points of them
 module dda_line_text
    use dda_block_system, only : block_system_t
-   use dda_constants, only : degree
    use dda_cut_model, only : cut_model_t, point_kind
    use dda_deck, only : deck_t
    use dda_deck_scene, only : deck_scene
    use dda_growing_text, only : add_line, fields, growing_text_t, lines_of
-   use dda_kinds, only : wp
+   use dda_kinds, only : degree, wp
    use dda_limerick_analysis, only : load_history_t
    use dda_line_scene, only : held_blocks, law_of_joint, line_system
    use dda_material, only : joint_law_t

@@ -4,11 +4,10 @@ module dda_shape_scene
    use dda_arch_form, only : arch_form_t, form_problem_t
    use dda_block_system, only : block_system_t
    use dda_boundary, only : constant_history, loaded_point_t
-   use dda_constants, only : degree
    use dda_deck, only : deck_t
-   use dda_kinds, only : wp
+   use dda_kinds, only : degree, wp
    use dda_scene, only : scene_t
-   use dda_simplex, only : area_moments, area_moments_t
+   use dda_vector, only : area_moments, area_moments_t
    implicit none
    private
 

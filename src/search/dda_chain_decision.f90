@@ -3,8 +3,8 @@
 module dda_chain_decision
    use dda_chain, only : chain_t
    use dda_chain_balance, only : carry_forces, cone_of, holds, influence, rounding_of_forces
+   use dda_chain_lack, only : chain_mechanism_t, chain_power, freeze_mechanism
    use dda_chain_path, only : stick_all_along
-   use dda_chain_power, only : chain_mechanism_t, chain_power, freeze_mechanism
    use dda_chain_thrust, only : approach_cones, find_thrust, thrust_t
    use dda_decision, only : decision_t
    use dda_friction_cone, only : joint_face_t, project

@@ -2,7 +2,7 @@
 module dda_collapse_trace
    use dda_chain, only : chain_t
    use dda_chain_unfold, only : fold
-   use dda_chain_power, only : chain_mechanism_t, chain_power, freeze_mechanism
+   use dda_chain_lack, only : chain_mechanism_t, chain_power, freeze_mechanism
    use dda_error, only : error_t
    use dda_frozen_mechanism, only : frozen_mechanism_t, mechanism_power
    use dda_friction_cone, only : joint_face_t

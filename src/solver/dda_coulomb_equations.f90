@@ -14,9 +14,9 @@ module dda_coulomb_equations
    use dda_coulomb_joints, only : coulomb_joints_t
    use dda_coulomb_law, only : imbalance, joint_stiffness, spring_forces
    use dda_coulomb_matrix, only : coulomb_matrix_t, factor_stiffness, new_matrix
-   use dda_full_matrix, only : eliminate_full, substitute_full
    use dda_joint_graph, only : joint_motion
    use dda_kinds, only : wp
+   use dda_small_systems, only : eliminate_full, substitute_full
    implicit none
    private
 

@@ -9,9 +9,9 @@ module dda_load_stations
    use dda_boundary, only : history_t, value_at
    use dda_joint_graph, only : joint_graph_t, joint_kind
    use dda_kinds, only : wp
-   use dda_loads, only : body_load, point_load
    use dda_settings, only : factor_of, full_push, gravity_direction, settings_t
    use dda_sort, only : sorted_order
+   use dda_submatrices, only : body_load, point_load
    implicit none
    private
 

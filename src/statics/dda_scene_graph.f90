@@ -6,11 +6,11 @@ module dda_scene_graph
    use dda_contact_detection, only : contacts_t
    use dda_contact_types, only : joint_t
    use dda_deformation, only : displacement_matrix
-   use dda_inertia, only : mass_matrix
    use dda_joint_graph, only : joint_graph_t, joint_kind
    use dda_kinds, only : wp
    use dda_material, only : loses_strength
    use dda_settings, only : settings_t
+   use dda_submatrices, only : mass_matrix
    implicit none
    private
 

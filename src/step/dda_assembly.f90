@@ -7,16 +7,13 @@ module dda_assembly
    use dda_block_matrix, only : block_matrix_t, set_pattern
    use dda_block_system, only : block_system_t
    use dda_boundary, only : held_point_t
-   use dda_dashpots, only : dashpot_matrices
-   use dda_elasticity, only : elastic_matrix
    use dda_fixed_points, only : fixed_points_t, new_fixed_points
    use dda_friction_cone, only : cone_t, is_stuck, joint_face_t
-   use dda_inertia, only : mass_matrix
    use dda_joint_springs, only : joint_springs_t
    use dda_kinds, only : wp
-   use dda_loads, only : body_load
    use dda_settings, only : load_direction, settings_t
    use dda_spring_products, only : projected, add_product, add_load
+   use dda_submatrices, only : body_load, dashpot_matrices, elastic_matrix, mass_matrix
    implicit none
    private
 

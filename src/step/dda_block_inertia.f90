@@ -5,9 +5,8 @@ module dda_block_inertia
    use dda_bar_springs, only : add_bars, couple_bars, follow_bars
    use dda_block_system, only : block_system_t
    use dda_deformation, only : turned_tensor
-   use dda_elasticity, only : stress_load
+   use dda_submatrices, only : mass_matrix, stress_load
    use dda_fixed_points, only : add_fixed_springs, follow_fixed_points
-   use dda_inertia, only : mass_matrix
    use dda_kinds, only : wp
    use dda_outer_loads, only : outer_loads
    use dda_material, only : elasticity_matrix

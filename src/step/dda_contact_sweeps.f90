@@ -22,7 +22,7 @@ module dda_contact_sweeps
    use dda_joint_springs, only : joint_springs_t
    use dda_kinds, only : wp
    use dda_spring_products, only : relative_displacement
-   use dda_small_cholesky, only : solved
+   use dda_small_systems, only : solved
    use dda_step_state, only : step_state_t
    implicit none
    private

@@ -3,7 +3,7 @@ module dda_contact_view
    use dda_assembly, only : equations_t
    use dda_joint_springs, only : joint_springs_t
    use dda_kinds, only : wp
-   use dda_small_cholesky, only : cholesky, solved
+   use dda_small_systems, only : cholesky, solved
    use dda_step_state, only : step_state_t
    implicit none
    private

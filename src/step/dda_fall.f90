@@ -5,10 +5,9 @@
 module dda_fall
    use dda_block_system, only : block_system_t
    use dda_boundary, only : held_point_t
-   use dda_constants, only : pi
    use dda_contact_types, only : joint_t
    use dda_deformation, only : moved_point
-   use dda_kinds, only : wp
+   use dda_kinds, only : pi, wp
    implicit none
    private
 

@@ -2,9 +2,9 @@
 module dda_forward
    use dda_assembly, only : equations_t, new_equations
    use dda_balance, only : is_drowned
+   use dda_block_factor, only : factored_condition
    use dda_block_system, only : block_system_t
    use dda_collapse_test, only : has_collapsed, still_moves_away
-   use dda_condition, only : factored_condition
    use dda_contact_detection, only : contacts_t
    use dda_energy, only : audit_step, keep_energy
    use dda_error, only : error_t

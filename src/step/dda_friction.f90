@@ -7,8 +7,8 @@ module dda_friction
    use dda_friction_cone, only : cone_t
    use dda_joint_springs, only : joint_springs_t
    use dda_kinds, only : wp
-   use dda_least_squares, only : least_squares
    use dda_open_close, only : iterate_open_close
+   use dda_small_systems, only : least_squares
    use dda_step_state, only : force_noise, step_state_t
    implicit none
    private

@@ -7,8 +7,8 @@ module dda_fixed_points
    use dda_boundary, only : held_point_t, led_displacement, rate_at
    use dda_deformation, only : displacement_matrix, moved_point, tangent_matrix
    use dda_kinds, only : wp
-   use dda_least_squares, only : least_squares
    use dda_settings, only : settings_t
+   use dda_small_systems, only : least_squares
    implicit none
    private
 

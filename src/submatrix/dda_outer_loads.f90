@@ -5,8 +5,8 @@ module dda_outer_loads
    use dda_boundary, only : history_t, loaded_point_t, mean_over, value_at
    use dda_deformation, only : moved_point
    use dda_kinds, only : wp
-   use dda_loads, only : body_load, point_load
    use dda_settings, only : factor_of, settings_t
+   use dda_submatrices, only : body_load, point_load
    implicit none
    private
 

@@ -4,8 +4,8 @@
 !> forces over w r. docs/theory.md holds the equations with their numbers in the paper, their
 !> corrections, and the accuracy.
 module couplet_heyman
-   use couplet_heyman_asymptotics, only : near_limit_solution, small_angle_solution
-   use couplet_heyman_critical, only : critical_solution, is_embraced
+   use couplet_heyman_critical, only : critical_solution, is_embraced, near_limit_solution, &
+      & small_angle_solution
    use couplet_heyman_curves, only : curve_slope, equilibrium_thickness, initial_thickness, &
       thrust_line
    use couplet_heyman_equations, only : chunk_centre, chunk_weight, eccentricity, heyman_embrace, &

@@ -12,13 +12,12 @@ module dda_benchmark
    use dda_chain, only : chain_t
    use dda_chain_decision, only : decide_chain
    use dda_chain_unfold, only : unfold
-   use dda_constants, only : pi
+   use dda_kinds, only : pi, wp
    use dda_contact_detection, only : contacts_t, find_contacts
    use dda_search, only : critical_t, search_t
    use dda_critical, only : find_critical
    use dda_decision, only : decide, decision_t
    use dda_error, only : error_t
-   use dda_kinds, only : wp
    use dda_material, only : joint_law_t, material_t
    use dda_scene, only : family_t, scene_t
    use dda_settings, only : settings_t

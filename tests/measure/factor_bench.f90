@@ -6,9 +6,8 @@
 program factor_bench
    use, intrinsic :: iso_fortran_env, only : output_unit
    use dda_block_factor, only : block_factor_t, factorise, plan_factor, substitute
-   use dda_block_matrix, only : block_matrix_t, set_pattern
+   use dda_block_matrix, only : block_matrix_t, elimination_t, products, set_pattern
    use dda_block_plan, only : choose_order
-   use dda_elimination_tree, only : elimination_t, products
    use dda_joint_graph, only : joint_graph_t
    use dda_kinds, only : wp
    use graph_wall, only : new_wall

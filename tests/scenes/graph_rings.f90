@@ -1,8 +1,7 @@
 !> Brick arches of several rings as joint graphs
 module graph_rings
-   use dda_constants, only : degree
    use dda_joint_graph, only : joint_graph_t
-   use dda_kinds, only : wp
+   use dda_kinds, only : degree, wp
    use graph_shapes, only : new_graph
    use graph_wall, only : add_joint
    implicit none

@@ -1,10 +1,9 @@
 !> A circular arch of equal voussoirs under its own weight, whose thickness or push is varied
 module scene_arch
    use dda_arch, only : arch_blocks, arch_shape_t, equal_joints, facet_count
-   use dda_constants, only : degree, pi
    use dda_contact_detection, only : find_contacts
    use dda_error, only : error_t
-   use dda_kinds, only : wp
+   use dda_kinds, only : degree, pi, wp
    use dda_material, only : joint_law_t, material_t
    use dda_scene, only : family_t, scene_t
    use dda_settings, only : settings_t

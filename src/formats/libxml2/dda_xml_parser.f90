@@ -7,9 +7,9 @@ module dda_xml_parser
       & ieee_set_status, ieee_status_type
    use dda_error, only : error_t, fatal_error
    use dda_word_list, only : quoted
-   use dda_xml_builder, only : add_text, close_element, new_xml_builder, open_element, xml_builder_t
    use dda_xml_tags, only : count_of
-   use dda_xml_tree, only : xml_attribute_t, xml_tree_t
+   use dda_xml_tree, only : add_text, close_element, new_xml_builder, open_element, &
+      & xml_attribute_t, xml_builder_t, xml_tree_t
    implicit none
    private
 

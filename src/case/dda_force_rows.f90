@@ -1,28 +1,93 @@
-!> Reactions of a case: of a static one at its end, of a dynamic one in every step
-module dda_reaction_rows
+!> Bars and reactions of a case as rows: of a static one at its end, of a dynamic one in every step
+module dda_force_rows
+   use dda_bar, only : bar_name, bar_state_t
    use dda_block_system, only : block_system_t
    use dda_case, only : case_t
    use dda_contact_detection, only : contacts_t
    use dda_deformation, only : moved_point
+   use dda_growing_text, only : add_line, growing_text_t, lines_of
    use dda_kinds, only : wp
-   use dda_least_squares, only : least_squares
    use dda_load_stations, only : last_history_time
-   use dda_loads, only : body_load
    use dda_outer_loads, only : outer_loads
    use dda_reactions, only : force_on, forces_of_blocks, supports_of
    use dda_settings, only : load_direction, settings_t
+   use dda_small_systems, only : least_squares
+   use dda_submatrices, only : body_load
+   use dda_text, only : to_text
    use dda_vector, only : cross
    use dda_verdict, only : verdict
    use dda_write_tables, only : reaction_lines
    implicit none
    private
 
-   public :: reaction_text
+   public :: bar_lines, bars_header, reaction_text
+
+   !> Names of the columns
+   character(len=*), parameter :: bars_header = "case,time,bar,force,state"
 
    !> Columns of which less than this share of the largest is left say nothing new
    real(wp), parameter :: negligible = 1.0e-10_wp
 
 contains
+
+   !> Bars in the pictures of a case, and at its end
+   pure function bar_lines(number, this) result(lines)
+      !> Number of the case
+      integer, intent(in) :: number
+      type(case_t), intent(in) :: this
+      !> Rows, parted by line ends; empty without bars
+      character(len=:), allocatable :: lines
+      type(growing_text_t) :: rows
+      real(wp) :: time
+      integer :: i
+
+      lines = ""
+      if (allocated(this%error)) return
+      time = 0.0_wp
+      if (allocated(this%album%frame)) then
+         do i = 1, this%album%n
+            if (.not. allocated(this%album%frame(i)%bar)) cycle
+            call add_rows(number, this%album%frame(i)%time, this%album%frame(i)%bar, rows)
+            time = this%album%frame(i)%time
+         end do
+      end if
+      if (this%searches) then
+         if (allocated(this%critical%standing)) then
+            if (allocated(this%critical%standing%system%bar)) &
+               & call add_rows(number, time, this%critical%standing%system%bar, rows)
+         end if
+      else if (allocated(this%decision%system%bar)) then
+         call add_rows(number, end_time(this, time), this%decision%system%bar, rows)
+      end if
+      lines = lines_of(rows)
+   end function bar_lines
+
+   !> Time at the end of a case
+   pure real(wp) function end_time(this, last)
+      type(case_t), intent(in) :: this
+      !> Time of its last picture [s]
+      real(wp), intent(in) :: last
+
+      end_time = last
+      if (this%scene%settings%dynamic) end_time = max(last, this%onward%time)
+      if (this%decision%outcome%has_path) end_time = this%decision%outcome%path_time
+   end function end_time
+
+   !> Add a row a bar
+   pure subroutine add_rows(number, time, bar, rows)
+      integer, intent(in) :: number
+      !> The time [s]
+      real(wp), intent(in) :: time
+      !> The bars
+      type(bar_state_t), intent(in) :: bar(:)
+      type(growing_text_t), intent(inout) :: rows
+      integer :: i
+
+      do i = 1, size(bar)
+         call add_line(rows, to_text(number)//","//to_text(time)//","//to_text(i)//"," &
+            & //to_text(bar(i)%force)//","//trim(bar_name(bar(i)%condition)))
+      end do
+   end subroutine add_rows
 
    !> Rows of a case in reactions.csv; nothing of a search, and of what does not stand at rest
    pure function reaction_text(number, this) result(lines)
@@ -195,4 +260,5 @@ contains
       if (settings%current) place = place + system%motion(1:2, block)
       wrench(3) = wrench(3) + cross(place, wrench(1:2))
    end function outer_force
-end module dda_reaction_rows
+
+end module dda_force_rows

@@ -1,0 +1,272 @@
+!> Blocks and joints of a case as rows: corners, how they are held and how they move; forces,
+!> openings and what joints do in the collapse; the joints of a picture
+module dda_block_rows
+   use dda_block_system, only : block_system_t
+   use dda_contact_detection, only : contacts_t
+   use dda_contact_types, only : joint_t, place_joint, same_joint
+   use dda_deformation, only : displacement_matrix
+   use dda_frames, only : frame_t
+   use dda_friction_cone, only : contact_state
+   use dda_kinds, only : wp
+   use dda_mechanism, only : largest_of, role_of_joint, slides
+   use dda_scene, only : scene_t
+   use dda_write_frames, only : frame_joint_row_t
+   use dda_write_results, only : joint_row_t, some_number
+   use dda_write_tables, only : told_blocks_t
+   implicit none
+   private
+
+   public :: scale_to_one, tell_blocks, tell_mechanism_motion, tell_total_motion, joint_rows
+   public :: tell_roles, frame_joint_rows, contact_states
+
+   !> Words for the roles of a joint, by their number: those of the columns state and mechanism
+   character(len=14), parameter :: role_word(0:4) = [character(len=14) :: "none", "open", &
+      & "sliding", "hinge_intrados", "hinge_extrados"]
+
+   !> Words for the states of a contact, by their number
+   character(len=8), parameter :: state_word(0:2) = ["open    ", "sliding ", "locked  "]
+
+contains
+
+   !> Tell the blocks as they are at the beginning
+   pure subroutine tell_blocks(scene, blocks)
+      type(scene_t), intent(in) :: scene
+      !> The blocks, without displacements
+      type(told_blocks_t), intent(out) :: blocks
+      integer :: i
+
+      associate (system => scene%system)
+         allocate (blocks%first_vertex, source=system%first_vertex)
+         allocate (blocks%corner, source=system%vertex)
+         blocks%corner(1, :) = blocks%corner(1, :) + scene%origin(1)
+         blocks%corner(2, :) = blocks%corner(2, :) + scene%origin(2)
+         allocate (blocks%state(size(system%equation)))
+         blocks%state = "free"
+         if (allocated(scene%settings%boundary%held)) then
+            do i = 1, size(scene%settings%boundary%held)
+               blocks%state(scene%settings%boundary%held(i)%block) = "held"
+            end do
+         end if
+         where (system%equation == 0) blocks%state = "fixed"
+         if (allocated(system%absent)) then
+            where (system%absent) blocks%state = ""
+         end if
+      end associate
+   end subroutine tell_blocks
+
+   !> A collapse mechanism: the motion of the last step, which has a shape but no size
+   pure subroutine tell_mechanism_motion(system, motion, blocks)
+      !> The blocks at the beginning
+      type(block_system_t), intent(in) :: system
+      !> Motion of the step: (n_dof, n_equation)
+      real(wp), intent(in) :: motion(:, :)
+      !> The blocks; displacements are set
+      type(told_blocks_t), intent(inout) :: blocks
+      real(wp) :: of_block(6, size(system%equation))
+      integer :: b
+
+      of_block = 0.0_wp
+      do b = 1, size(system%equation)
+         if (system%equation(b) > 0) of_block(:size(motion, 1), b) = motion(:, system%equation(b))
+      end do
+      blocks%displacement = small_displacements(system, of_block)
+      call scale_to_one(blocks%displacement)
+   end subroutine tell_mechanism_motion
+
+   !> Scale a mechanism so that the largest displacement is 1
+   pure subroutine scale_to_one(displacement)
+      !> Displacements of all corners: (2, n_vertex)
+      real(wp), intent(inout) :: displacement(:, :)
+      real(wp) :: largest
+
+      largest = maxval(norm2(displacement, dim=1))
+      if (largest > 0.0_wp) displacement = displacement/largest
+   end subroutine scale_to_one
+
+   !> Displacements at the end of a run
+   pure subroutine tell_total_motion(system, moves, blocks)
+      type(block_system_t), intent(in) :: system
+      !> Whether corners follow the motion; otherwise displacements are small
+      logical, intent(in) :: moves
+      type(told_blocks_t), intent(inout) :: blocks
+
+      if (moves) then
+         blocks%displacement = system%moved - system%vertex
+      else
+         blocks%displacement = small_displacements(system, system%motion)
+      end if
+   end subroutine tell_total_motion
+
+   !> Displacements of all corners in a motion without second-order terms
+   pure function small_displacements(system, motion) result(displacement)
+      type(block_system_t), intent(in) :: system
+      !> Motion of all blocks: (6, n_block)
+      real(wp), intent(in) :: motion(:, :)
+      !> The displacements: (2, n_vertex) [m]
+      real(wp) :: displacement(2, size(system%vertex, 2))
+      integer :: b, v
+
+      do b = 1, size(system%equation)
+         do v = system%first_vertex(b), system%first_vertex(b + 1) - 1
+            displacement(:, v) = matmul( &
+               & displacement_matrix(system%vertex(:, v), system%centroid(:, b)), motion(:, b))
+         end do
+      end do
+   end function small_displacements
+
+   !> Rows of all joints
+   pure function joint_rows(contacts, joint_angle_deg, origin) result(row)
+      type(contacts_t), intent(in) :: contacts
+      !> Angle of each joint from the crown, or none: (n_joint) or (0) [deg]
+      real(wp), intent(in) :: joint_angle_deg(:)
+      !> Where the origin of the blocks' coordinates is: (2) [m]
+      real(wp), intent(in) :: origin(2)
+      !> The rows, without the number of the case: (n_joint)
+      type(joint_row_t) :: row(size(contacts%joint))
+      integer :: j
+
+      do j = 1, size(row)
+         row(j)%joint = j
+         if (size(joint_angle_deg) > 0) row(j)%angle_deg = some_number(joint_angle_deg(j))
+         call tell_forces(contacts%joint(j), contacts%force(:, j), origin, row(j))
+         row(j)%opening_intrados = contacts%gap(1, j)
+         if (contacts%joint(j)%n_contact > 1) &
+            & row(j)%opening_extrados = some_number(contacts%gap(2, j))
+         row(j)%slip = contacts%gap(3, j)
+         row(j)%state = "locked"
+         if (contacts%face(j)%open(2)) row(j)%state = "hinge_intrados"
+         if (contacts%face(j)%open(1)) row(j)%state = "hinge_extrados"
+         if (contacts%face(j)%slip /= 0) row(j)%state = "sliding"
+         if (all(contacts%face(j)%open)) row(j)%state = "open"
+         if (row(j)%state == "sliding") row(j)%slides = &
+            & some_number(way_against(contacts%force(3, j), contacts%gap(3, j)) &
+            & *contacts%joint(j)%tangent)
+      end do
+   end function joint_rows
+
+   !> Where a joint is, and the force that its first block puts on its second
+   pure subroutine tell_forces(joint, force, origin, row)
+      type(joint_t), intent(in) :: joint
+      !> Its force N1, N2, T: (3) [N/m]
+      real(wp), intent(in) :: force(3)
+      real(wp), intent(in) :: origin(2)
+      type(joint_row_t), intent(inout) :: row
+
+      row%block = joint%block
+      row%intrados = joint%contact(1)%point + origin
+      row%extrados = joint%contact(joint%n_contact)%point + origin
+      row%normal_force = force(1) + force(2)
+      row%shear_force = force(3)
+      row%force = row%normal_force*joint%normal + row%shear_force*joint%tangent
+      row%point = (row%intrados + row%extrados)/2.0_wp
+      if (.not. row%normal_force > 0.0_wp) return
+      if (joint%n_contact > 1) &
+         & row%eccentricity_ratio = some_number((force(1) - force(2))/row%normal_force)
+      row%point = (force(1)*row%intrados + force(2)*row%extrados)/row%normal_force
+   end subroutine tell_forces
+
+   !> Friction acts against the way in which the second block slides; without friction the slip
+   !> itself tells the way
+   pure real(wp) function way_against(shear_force, slip)
+      !> Shear force on the second block [N/m]
+      real(wp), intent(in) :: shear_force
+      !> Its slip since the beginning [m]
+      real(wp), intent(in) :: slip
+
+      way_against = sign(1.0_wp, slip)
+      if (abs(shear_force) > 0.0_wp) way_against = -sign(1.0_wp, shear_force)
+   end function way_against
+
+   !> Tell what each joint does in a collapse; its motion is that of the last step
+   pure subroutine tell_roles(fallen, joint, row, motion)
+      !> Contacts at the end of the collapse
+      type(contacts_t), intent(in) :: fallen
+      !> The joints of the rows: of the same run, or of one that stands beside it: (n_joint)
+      type(joint_t), intent(in) :: joint(:)
+      !> The rows: (n_joint)
+      type(joint_row_t), intent(inout) :: row(:)
+      !> Motion of the blocks in the last step, where it is known: (n_dof, n_equation)
+      real(wp), intent(in), optional :: motion(:, :)
+      integer :: role(size(fallen%joint)), j, k
+      logical :: slip(size(fallen%joint))
+      real(wp) :: largest
+
+      largest = largest_of(fallen)
+      if (present(motion)) largest = largest_of(fallen, motion)
+      role = role_of_joint(fallen, largest)
+      slip = slides(fallen%face, fallen%increment(3, :), largest)
+      do j = 1, size(row)
+         row(j)%slides%known = .false.
+         k = place_in(fallen%joint, joint(j), j)
+         if (k == 0) cycle
+         row(j)%mechanism = role_word(role(k))
+         if (slip(k)) row(j)%slides = &
+            & some_number(sign(1.0_wp, fallen%increment(3, k))*fallen%joint(k)%tangent)
+      end do
+   end subroutine tell_roles
+
+   !> Number of a joint among those of another run: of the same corners and edges, else between the
+   !> same blocks; 0 if there is none
+   pure integer function place_in(joints, joint, guess)
+      !> The joints of the other run
+      type(joint_t), intent(in) :: joints(:)
+      type(joint_t), intent(in) :: joint
+      !> Where it may be
+      integer, intent(in) :: guess
+      integer :: k
+
+      place_in = 0
+      if (guess <= size(joints)) then
+         if (same_joint(joints(guess), joint)) place_in = guess
+      end if
+      if (place_in > 0) return
+      do k = 1, size(joints)
+         if (any(joints(k)%block /= joint%block)) cycle
+         if (place_in == 0) place_in = k
+         if (.not. same_joint(joints(k), joint)) cycle
+         place_in = k
+         return
+      end do
+   end function place_in
+
+   !> Rows of all joints of a picture
+   pure function frame_joint_rows(system, frame) result(row)
+      type(block_system_t), intent(in) :: system
+      type(frame_t), intent(in) :: frame
+      !> The rows: (n_joint)
+      type(frame_joint_row_t) :: row(size(frame%joint))
+      type(joint_t) :: joint
+      real(wp) :: gap(3), normal_force
+      integer :: j, states(2)
+
+      do j = 1, size(row)
+         joint = frame%joint(j)
+         call place_joint(system, frame%moved, joint, gap)
+         row(j)%joint = j
+         row(j)%contact(:, 1) = joint%contact(1)%point
+         row(j)%contact(:, 2) = joint%contact(joint%n_contact)%point
+         normal_force = sum(frame%force(1:2, j))
+         row(j)%force = normal_force*joint%normal + frame%force(3, j)*joint%tangent
+         row(j)%point = (row(j)%contact(:, 1) + row(j)%contact(:, 2))/2.0_wp
+         if (normal_force > 0.0_wp) row(j)%point = (frame%force(1, j)*row(j)%contact(:, 1) &
+            & + frame%force(2, j)*row(j)%contact(:, 2))/normal_force
+         states = contact_states(frame, j)
+         row(j)%state = state_word(states)
+      end do
+   end function frame_joint_rows
+
+   !> States of the two contacts of a joint: whether it slides is seen in the last step
+   pure function contact_states(frame, joint) result(states)
+      type(frame_t), intent(in) :: frame
+      !> Number of the joint
+      integer, intent(in) :: joint
+      !> One of contact_state each: (2)
+      integer :: states(2)
+
+      states = contact_state%locked
+      if (slides(frame%face(joint), frame%slip(joint), frame%farthest)) &
+         & states = contact_state%sliding
+      where (frame%face(joint)%open) states = contact_state%open
+   end function contact_states
+
+end module dda_block_rows
