@@ -7,12 +7,12 @@ module dda_interior_direction
    use dda_interior_state, only : interior_point_t, load_path_t
    use dda_joint_rays, only : add_ray_forces, joint_rays_t
    use dda_kinds, only : wp
-   use dda_ray_matrix, only : ray_matrix_t, set_wide_springs, solve_springs
+   use dda_ray_matrix, only : add_digits, digits_of, ray_matrix_t, solve_springs
    implicit none
    private
 
    public :: turn_t
-   public :: direct, direct_wide, refine_direction, balance_direction, respond_to_live_load
+   public :: direct, direct_again, refine_direction, balance_direction, respond_to_live_load
 
    !> What one turn works on
    type :: turn_t
@@ -57,8 +57,7 @@ contains
       if (path%moves) turn%flexibility = huge(turn%flexibility)
    end subroutine respond_to_live_load
 
-   !> Direction to balance, compatibility and the aim; where that leaves too much, by a factor with
-   !> more digits
+   !> Direction to balance, compatibility and the aim
    pure subroutine direct(rays, path, point, springs, turn)
       type(joint_rays_t), intent(in) :: rays
       type(load_path_t), intent(in) :: path
@@ -69,22 +68,26 @@ contains
 
       turn%left = huge(turn%left)
       if (springs%usable) call find_direction(rays, path, point, turn%accepted, springs, turn)
-      if (turn%left > turn%accepted) call direct_wide(rays, path, point, springs, turn)
+      call direct_again(rays, path, point, springs, turn)
    end subroutine direct
 
-   !> The same by a factor with more digits
-   pure subroutine direct_wide(rays, path, point, springs, turn)
+   !> The same by factors with more digits while it leaves too much
+   pure subroutine direct_again(rays, path, point, springs, turn)
       type(joint_rays_t), intent(in) :: rays
       type(load_path_t), intent(in) :: path
       type(interior_point_t), intent(in) :: point
       type(ray_matrix_t), intent(inout) :: springs
       type(turn_t), intent(inout) :: turn
+      integer :: digits
 
-      call set_wide_springs(rays, path%mass, springs)
-      if (.not. springs%usable) return
-      call respond_to_live_load(rays, path, springs, turn)
-      call find_direction(rays, path, point, turn%accepted, springs, turn)
-   end subroutine direct_wide
+      do digits = springs%digits + 1, digits_of%wide
+         if (.not. turn%left > turn%accepted) exit
+         call add_digits(rays, path%mass, digits, springs)
+         if (springs%digits /= digits) cycle
+         call respond_to_live_load(rays, path, springs, turn)
+         call find_direction(rays, path, point, turn%accepted, springs, turn)
+      end do
+   end subroutine direct_again
 
    !> Direction to balance, compatibility and the aim
    pure subroutine find_direction(rays, path, point, enough, springs, turn)

@@ -2,7 +2,7 @@
 !>
 !> Equation (M6) of docs/method.md
 module dda_interior_turn
-   use dda_interior_direction, only : balance_direction, direct, direct_wide, refine_direction, &
+   use dda_interior_direction, only : balance_direction, direct, direct_again, refine_direction, &
       & respond_to_live_load, turn_t
    use dda_interior_state, only : interior_goal_t, interior_point_t, load_path_t, no_limit
    use dda_joint_rays, only : add_ray_forces, joint_rays_t, n_side, ray_rates
@@ -174,8 +174,7 @@ contains
       if (minval(reach) < short) call add_correction(rays, path, half*turn%barrier/point%s &
          & - point%x - turn%aim, springs, point, turn, reach)
       call refine_direction(rays, path, point, 1.0e-14_wp*path%largest_dead, springs, turn)
-      if (turn%left > turn%accepted .and. .not. springs%is_wide) call direct_wide(rays, path, &
-         & point, springs, turn)
+      call direct_again(rays, path, point, springs, turn)
    end subroutine correct
 
    !> The product x*s that a turn aims at

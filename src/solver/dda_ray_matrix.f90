@@ -3,19 +3,34 @@
 !>    matrix = sum over rays of stiffness * arm * arm'
 !>
 !> is the matrix of a DDA step whose joints have these springs. Stiffness may spread over more
-!> decades than working precision has: then there is a factor with more digits.
+!> decades than working precision has: then there are factors with more digits.
 !>
 !> Equation (M6) of docs/method.md
 module dda_ray_matrix
    use dda_block_factor, only : block_factor_t, factorise, plan_factor, substitute
    use dda_block_matrix, only : block_matrix_t, set_pattern
+   use dda_extended_factor, only : extended_factor_t, factorise_extended, substitute_extended
    use dda_joint_rays, only : joint_rays_t, n_side, ray_rates
    use dda_kinds, only : wp
    use dda_wide_factor, only : factorise_wide, substitute_wide, wide_factor_t
    implicit none
    private
 
-   public :: ray_matrix_t, plan_matrix, set_springs, set_wide_springs, solve_springs
+   public :: digits_of, digits_enum, ray_matrix_t
+   public :: add_digits, plan_matrix, set_springs, solve_springs
+
+   !> The numbers of a factor
+   type :: digits_enum
+      !> In working precision
+      integer :: working = 0
+      !> With some more digits
+      integer :: extended = 1
+      !> With twice the digits
+      integer :: wide = 2
+   end type digits_enum
+
+   !> Names of these numbers
+   type(digits_enum), parameter :: digits_of = digits_enum()
 
    !> The matrix, its factor, and what work on them needs
    type :: ray_matrix_t
@@ -23,10 +38,12 @@ module dda_ray_matrix
       type(block_matrix_t) :: matrix
       !> Its factor
       type(block_factor_t) :: factor
-      !> A factor with more digits, and whether it is used
+      !> Factors with more digits
+      type(extended_factor_t) :: extended
       type(wide_factor_t) :: wide
-      logical :: is_wide = .false.
-      !> Whether either factor can be used
+      !> The one that is used, one of digits_of
+      integer :: digits = digits_of%working
+      !> Whether one can be used
       logical :: usable = .false.
       !> Entry of the matrix that each joint couples, 0 for none: (n_joint)
       integer, allocatable :: entry(:)
@@ -92,24 +109,37 @@ contains
             end associate
          end do
       end do
-      springs%is_wide = .false.
+      springs%digits = digits_of%working
       call factorise(springs%matrix, springs%factor)
       springs%usable = springs%factor%usable
       springs%n_factorisation = springs%n_factorisation + 1
    end subroutine set_springs
 
-   !> Assemble and factor the same springs and masses with more digits
-   pure subroutine set_wide_springs(rays, mass, springs)
+   !> Assemble and factor the same springs and masses with more digits; the factor before stays in
+   !> use where this one cannot be
+   pure subroutine add_digits(rays, mass, digits, springs)
       type(joint_rays_t), intent(in) :: rays
       real(wp), intent(in) :: mass(:, 0:)
+      !> One of digits_of
+      integer, intent(in) :: digits
       type(ray_matrix_t), intent(inout) :: springs
+      logical :: usable
 
-      call factorise_wide(rays, springs%stiffness, mass, springs%matrix, springs%entry, &
-         & springs%factor%plan, springs%wide)
-      springs%is_wide = springs%wide%usable
-      springs%usable = springs%usable .or. springs%is_wide
+      associate (plan => springs%factor%plan)
+         if (digits == digits_of%extended) then
+            call factorise_extended(rays, springs%stiffness, mass, springs%matrix, springs%entry, &
+               & plan, springs%extended%panels)
+            usable = springs%extended%panels%usable
+         else
+            call factorise_wide(rays, springs%stiffness, mass, springs%matrix, springs%entry, &
+               & plan, springs%wide%panels)
+            usable = springs%wide%panels%usable
+         end if
+      end associate
+      if (usable) springs%digits = digits
+      springs%usable = springs%usable .or. usable
       springs%n_factorisation = springs%n_factorisation + 1
-   end subroutine set_wide_springs
+   end subroutine add_digits
 
    !> Sum of all springs
    pure subroutine assemble(rays, springs)
@@ -173,11 +203,15 @@ contains
       motion = load
       motion(:, 0) = 0.0_wp
       springs%n_substitution = springs%n_substitution + 1
-      if (springs%is_wide) then
-         call substitute_wide(rays, springs%factor%plan, springs%wide, motion(:, 1:), rate)
-      else
+      select case (springs%digits)
+      case (digits_of%working)
          call substitute(springs%factor, motion(:, 1:))
          call ray_rates(rays, motion, rate)
-      end if
+      case (digits_of%extended)
+         call substitute_extended(rays, springs%factor%plan, springs%extended%panels, &
+            & motion(:, 1:), rate)
+      case default
+         call substitute_wide(rays, springs%factor%plan, springs%wide%panels, motion(:, 1:), rate)
+      end select
    end subroutine solve_springs
 end module dda_ray_matrix
