@@ -60,6 +60,9 @@ module dda_coulomb_equations
       real(wp), allocatable :: capacity(:, :)
       !> Its exchanges of rows: (n_active)
       integer, allocatable :: exchange(:)
+      !> The load that was solved for last with this factor, and the motion by the factor alone:
+      !> (n_dof, n_block); without entries if there is none
+      real(wp), allocatable :: last_load(:, :), last_motion(:, :)
    end type coulomb_equations_t
 
    !> Answers that are kept: more cost as much as a new factor
@@ -131,6 +134,7 @@ contains
       equations%n_change = 0
       equations%n_answer = 0
       equations%active = [integer ::]
+      if (allocated(equations%last_load)) deallocate (equations%last_load)
    end subroutine factor_faces
 
    !> List what differs from the factor, and find the answers that this takes
@@ -267,18 +271,21 @@ contains
       real(wp) :: force(3, size(opening, 2)), rest(size(load, 1), size(load, 2)), bound
       integer :: turn
 
-      motion = load
-      call substitute_changes(equations, joints, motion)
+      call substitute_again(equations, load)
+      motion = equations%last_motion
+      call add_changes(equations, joints, motion)
       do turn = 1, 3
          call joint_motion(joints%graph, motion, opening)
          if (size(equations%active) == 0) exit
          call spring_forces(joints, equations%face, opening, force)
-         force = force - equations%viscosity*opening/joints%graph%compliance
+         if (equations%viscosity > 0.0_wp) force = force &
+            & - equations%viscosity*opening/joints%graph%compliance
          call imbalance(joints, load - equations%damping*joints%graph%mass*motion, force, rest)
          bound = exact*maxval(abs(load)) + rounding*maxval(abs(motion))
          if (maxval(abs(rest)) <= bound) exit
          if (turn == 1) then
-            call substitute_changes(equations, joints, rest)
+            call substitute(equations%base%factor, rest)
+            call add_changes(equations, joints, rest)
             motion = motion + rest
          else
             call factor_faces(equations, joints)
@@ -289,16 +296,29 @@ contains
       end do
    end subroutine solve_equations
 
-   !> Substitute with the factor and its changes
-   pure subroutine substitute_changes(equations, joints, x)
+   !> Substitute with the factor; while the factor stays one load after the other is often the same
+   pure subroutine substitute_again(equations, load)
+      !> Equations; their last motion becomes that of the load
+      type(coulomb_equations_t), intent(inout) :: equations
+      real(wp), intent(in), contiguous :: load(:, :)
+
+      if (allocated(equations%last_load)) then
+         if (.not. any(abs(load - equations%last_load) > 0.0_wp)) return
+      end if
+      equations%last_load = load
+      equations%last_motion = load
+      call substitute(equations%base%factor, equations%last_motion)
+   end subroutine substitute_again
+
+   !> Add the changes of the factor to a motion that was found with it alone
+   pure subroutine add_changes(equations, joints, x)
       type(coulomb_equations_t), intent(in) :: equations
       type(coulomb_joints_t), intent(in) :: joints
-      !> Load in, motion out: (n_dof, n_block)
+      !> The motion: (n_dof, n_block)
       real(wp), intent(inout), contiguous :: x(:, :)
       real(wp) :: y(size(equations%active))
       integer :: i
 
-      call substitute(equations%base%factor, x)
       if (size(y) == 0) return
       do i = 1, size(y)
          associate (place => equations%origin(1, equations%active(i)), &
@@ -309,7 +329,7 @@ contains
       end do
       call substitute_full(equations%capacity, equations%exchange, y)
       call subtract_answers(size(x), equations%response, equations%active, y, x)
-   end subroutine substitute_changes
+   end subroutine add_changes
 
    !> Take answers from a motion; flat, so that the compiler makes one loop of it
    pure subroutine subtract_answers(n, response, active, y, x)

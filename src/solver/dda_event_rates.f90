@@ -134,13 +134,28 @@ contains
 
       call use_faces(equations, joints, rates%face, path_damping, viscosity)
       if (.not. equations%usable) return
-      call spring_forces(joints, rates%face, opening_rate, rates%force)
-      call imbalance(joints, load_rate, rates%force, load)
+      call add_drive(joints, rates%face, opening_rate, load_rate, load)
       rates%drive = max(maxval(abs(load)), maxval(abs(load_rate)))
       call solve_equations(equations, joints, load, rates%motion, rates%opening)
       if (.not. equations%usable) return
       rates%opening = rates%opening + opening_rate
    end subroutine solve_rates
+
+   !> A load with the forces that prescribed openings make
+   pure subroutine add_drive(joints, faces, opening, load, driven)
+      type(coulomb_joints_t), intent(in) :: joints
+      integer, intent(in), contiguous :: faces(:, :)
+      real(wp), intent(in), contiguous :: opening(:, :)
+      real(wp), intent(in) :: load(:, :)
+      !> Both: (n_dof, n_block)
+      real(wp), intent(out), contiguous :: driven(:, :)
+      real(wp) :: force(3, size(opening, 2))
+
+      driven = load
+      if (.not. any(abs(opening) > 0.0_wp)) return
+      call spring_forces(joints, faces, opening, force)
+      call imbalance(joints, load, force, driven)
+   end subroutine add_drive
 
    !> Lead a motion over to a load: the last word where an open-close loop goes round in circles.
    !> Any motion has faces that agree with it and a load that it takes, so it solves a neighbouring
@@ -155,18 +170,18 @@ contains
       !> The load that is asked for: (n_dof, n_block)
       real(wp), intent(in) :: load(:, :)
       !> Rates of opening that are prescribed: (3, n_joint)
-      real(wp), intent(in) :: drive(:, :)
+      real(wp), intent(in), contiguous :: drive(:, :)
       !> Any motion in, the rates out: (n_dof, n_block)
       real(wp), intent(inout) :: motion(:, :)
       !> How the joints open with it and with the drive: (3, n_joint)
       real(wp), intent(inout) :: opening(:, :)
       !> What they do: (3, n_joint)
-      integer, intent(inout) :: faces(:, :)
+      integer, intent(inout), contiguous :: faces(:, :)
       !> Whether the load was reached
       logical, intent(out) :: found
       type(break_t) :: break
       real(wp) :: ahead(size(load, 1), size(load, 2)), wide(3, size(opening, 2))
-      real(wp) :: rest(size(load, 1), size(load, 2)), force(3, size(opening, 2)), sense
+      real(wp) :: rest(size(load, 1), size(load, 2)), sense
       integer :: pivot
 
       found = .false.
@@ -176,8 +191,7 @@ contains
          call use_faces(equations, joints, faces, equations%damping, equations%viscosity)
          if (.not. equations%usable) return
          ! the way to the load while the faces stay
-         call spring_forces(joints, faces, drive, force)
-         call imbalance(joints, load, force, rest)
+         call add_drive(joints, faces, drive, load, rest)
          call solve_equations(equations, joints, rest, ahead, wide)
          if (.not. equations%usable) return
          ahead = ahead - motion
