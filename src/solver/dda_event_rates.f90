@@ -144,8 +144,11 @@ contains
    !> A load with the forces that prescribed openings make
    pure subroutine add_drive(joints, faces, opening, load, driven)
       type(coulomb_joints_t), intent(in) :: joints
+      !> What corners and joints do: (3, n_joint)
       integer, intent(in), contiguous :: faces(:, :)
+      !> The openings: (3, n_joint)
       real(wp), intent(in), contiguous :: opening(:, :)
+      !> The load: (n_dof, n_block)
       real(wp), intent(in) :: load(:, :)
       !> Both: (n_dof, n_block)
       real(wp), intent(out), contiguous :: driven(:, :)
