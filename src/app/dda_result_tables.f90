@@ -5,6 +5,7 @@ module dda_result_tables
    use dda_deck, only : deck_t
    use dda_deck_sweep, only : n_cases, swept_names, swept_texts
    use dda_disk_record, only : write_disk_record
+   use dda_fill_loads, only : fill_yields
    use dda_error, only : error_t
    use dda_kinds, only : wp
    use dda_table_file, only : add_sums, append_line, close_table, length_of, open_table, &
@@ -143,7 +144,8 @@ contains
       call name_table(tables%at(table%proof_motion), "/proof_motion.csv", proof_motion_header)
       tables%at([table%proof_forces, table%proof_motion])%wanted = deck%output%proof%flag
       call name_table(tables%at(table%bars), "/bars.csv", bars_header)
-      tables%at(table%bars)%wanted = allocated(deck%plan%boundary%bar) .or. deck%tie%given
+      tables%at(table%bars)%wanted = allocated(deck%plan%boundary%bar) .or. deck%tie%given &
+         & .or. fill_yields(deck)
       if (allocated(deck%cut)) tables%at(table%bars)%wanted = size(deck%cut%bolt) > 0
       tables%at([table%frames, table%frame_joints])%wanted = deck%output%frames%whole > 0
 

@@ -104,6 +104,9 @@ module dda_arch_keys
       key_t(group="fill", name="passive_share", without="passive_coefficient", &
             at_least=0.0_wp, at_most=1.0_wp, &
             meaning="The same as a share of Rankine's Kp of friction_deg."), &
+      key_t(group="fill", name="passive_stiffness", unit="N/m3", without="blocks do not move", &
+            above=0.0_wp, at_most=1.0e30_wp, &
+            meaning="Pressure over displacement where blocks move, up to the largest."), &
       key_t(group="fill", name="backing_height", unit="m", without="no backing", &
             at_least=0.0_wp, at_most=1.0e9_wp, &
             meaning="Height of rigid masonry behind the arch above its left springing."), &

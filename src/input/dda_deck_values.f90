@@ -96,8 +96,8 @@ contains
       associate (g => deck%fill)
          g%given = deck%group(8)%line > 0
          call take(deck%value, k, g%height, g%unit_weight, g%friction_deg, g%spread, &
-            & g%passive_coefficient, g%passive_share, g%backing_height)
-         call take(deck%value, k, g%backing_unit_weight)
+            & g%passive_coefficient, g%passive_share, g%passive_stiffness)
+         call take(deck%value, k, g%backing_height, g%backing_unit_weight)
       end associate
       associate (g => deck%tie)
          g%given = deck%group(9)%line > 0

@@ -78,7 +78,7 @@ module dda_input
    !> &fill: what lies on an arch
    type, extends(group_input_t) :: fill_input_t
       type(input_value_t) :: height, unit_weight, friction_deg, spread, passive_coefficient, &
-         & passive_share, backing_height, backing_unit_weight
+         & passive_share, passive_stiffness, backing_height, backing_unit_weight
    end type fill_input_t
 
    !> &tie: bars between blocks of an arch

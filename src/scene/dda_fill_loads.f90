@@ -2,6 +2,7 @@
 !> how far it spreads axles
 module dda_fill_loads
    use dda_arch_assembly, only : arch_assembly_t, top_chord_t
+   use dda_bar, only : bar_state_t, bar_t
    use dda_boundary, only : bounded_force_t, constant_history, loaded_point_t
    use dda_deck, only : deck_t
    use dda_kinds, only : degree, wp
@@ -10,7 +11,8 @@ module dda_fill_loads
    implicit none
    private
 
-   public :: fill_t, add_fill_weight, fill_of, live_side, press_fill, press_side
+   public :: fill_t, add_fill_weight, fill_leans, fill_of, fill_yields, live_side, press_fill
+   public :: press_side
 
    !> The fill of a case
    type :: fill_t
@@ -28,12 +30,35 @@ module dda_fill_loads
       real(wp) :: spread = 0.0_wp
       !> Largest horizontal pressure over the weight above
       real(wp) :: passive = 0.0_wp
+      !> Whether it yields where blocks move, and its pressure over displacement then [N/m3]
+      logical :: yields = .false.
+      real(wp) :: stiffness = 0.0_wp
    end type fill_t
 
    !> A chord that rises less than this share of its length is not pressed
    real(wp), parameter :: level = 1.0e-9_wp
+   !> Bars that push as fill does begin so many lengths of the arch away: they stay level
+   real(wp), parameter :: far = 1.0e3_wp
 
 contains
+
+   !> Whether the arch of a deck can lean against its fill
+   pure logical function fill_leans(deck)
+      type(deck_t), intent(in) :: deck
+
+      fill_leans = deck%fill%passive_coefficient%number > 0.0_wp &
+         & .or. deck%fill%passive_share%number > 0.0_wp .or. deck%fill%backing_height%given
+   end function fill_leans
+
+   !> Whether it does so where blocks move, or joints have strength: else limit analysis decides
+   pure logical function fill_yields(deck)
+      type(deck_t), intent(in) :: deck
+
+      fill_yields = fill_leans(deck) .and. (deck%analysis%mode%word /= "static" &
+         & .or. deck%analysis%geometry%word /= "reference" &
+         & .or. deck%analysis%collapse_displacement%given &
+         & .or. deck%joint%cohesion%number > 0.0_wp .or. deck%joint%tension%number > 0.0_wp)
+   end function fill_yields
 
    !> The fill of a deck
    pure type(fill_t) function fill_of(deck, assembly) result(fill)
@@ -57,6 +82,8 @@ contains
       if (deck%fill%backing_height%given) fill%backing = assembly%springing_y &
          & + deck%fill%backing_height%number
       fill%spread = deck%fill%spread%number
+      fill%yields = fill_yields(deck)
+      fill%stiffness = deck%fill%passive_stiffness%number
       fill%passive = deck%fill%passive_coefficient%number
       if (deck%fill%passive_share%given) fill%passive = deck%fill%passive_share%number &
          & *tan(degree*(45.0_wp + 0.5_wp*deck%fill%friction_deg%number))**2
@@ -162,7 +189,7 @@ contains
       integer, intent(in) :: side
       type(scene_t), intent(inout) :: scene
       type(bounded_force_t) :: force(size(fill%chord))
-      real(wp) :: middle(2), rise
+      real(wp) :: height(size(fill%chord)), middle(2), rise
       integer :: i, n
 
       n = 0
@@ -184,11 +211,52 @@ contains
             force(n)%block = chord%block
             force(n)%point = middle - scene%origin
             force(n)%direction = [sign(1.0_wp, rise), 0.0_wp]
+            height(n) = abs(rise)
          end associate
       end do
       if (allocated(scene%settings%boundary%bounded)) deallocate (scene%settings%boundary%bounded)
-      if (n > 0) allocate (scene%settings%boundary%bounded, source=force(:n))
+      if (n == 0) return
+      if (fill%yields) then
+         call add_yielding(fill, force(:n), height(:n), scene)
+      else
+         allocate (scene%settings%boundary%bounded, source=force(:n))
+      end if
    end subroutine press_side
+
+   !> Fill that yields, as bars from far away that hang slack rather than push: a block that leans
+   !> against it stretches its bar
+   pure subroutine add_yielding(fill, force, height, scene)
+      type(fill_t), intent(in) :: fill
+      !> Largest forces of the fill: (n)
+      type(bounded_force_t), intent(in) :: force(:)
+      !> Heights of their chords: (n) [m]
+      real(wp), intent(in) :: height(:)
+      !> The scene; receives the bars behind those that it has
+      type(scene_t), intent(inout) :: scene
+      type(bar_t), allocatable :: bar(:)
+      type(bar_state_t), allocatable :: state(:)
+      real(wp) :: away
+      integer :: i, n
+
+      n = 0
+      if (allocated(scene%settings%boundary%bar)) n = size(scene%settings%boundary%bar)
+      allocate (bar(n + size(force)), state(n + size(force)))
+      if (n > 0) then
+         bar(:n) = scene%settings%boundary%bar
+         state(:n) = scene%system%bar
+      end if
+      away = far*(maxval(fill%chord%right(1)) - minval(fill%chord%left(1)))
+      do i = 1, size(force)
+         bar(n + i)%block = [force(i)%block, 0]
+         bar(n + i)%point(:, 1) = force(i)%point
+         bar(n + i)%point(:, 2) = force(i)%point + away*force(i)%direction
+         bar(n + i)%pushes = .false.
+         bar(n + i)%strength = force(i)%most
+         bar(n + i)%stiffness = fill%stiffness*height(i)
+      end do
+      call move_alloc(bar, scene%settings%boundary%bar)
+      call move_alloc(state, scene%system%bar)
+   end subroutine add_yielding
 
    !> Number of the span whose crown is nearest to the resultant of the live loads on points, with a
    !> minus where that is to its left; 0 where it is on no side

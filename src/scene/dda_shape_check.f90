@@ -8,6 +8,7 @@ module dda_shape_check
    use dda_deck_set, only : put_number
    use dda_deck_sweep, only : n_cases, turn_to_case
    use dda_error, only : error_t
+   use dda_fill_loads, only : fill_yields
    use dda_kinds, only : wp
    use dda_shape_scene, only : shape_assembly
    use dda_text, only : to_text
@@ -99,14 +100,12 @@ contains
       type(deck_t), intent(in) :: deck
       type(error_t), allocatable, intent(out) :: error
       character(len=:), allocatable :: group, key, problem
-      logical :: at_rest, leans
+      logical :: at_rest
 
       at_rest = deck%analysis%mode%word == "static" .and. deck%analysis%geometry%word &
          & == "reference" .and. .not. deck%analysis%collapse_displacement%given &
          & .and. .not. deck%joint%cohesion%number > 0.0_wp .and. .not. deck%joint%tension%number &
          & > 0.0_wp
-      leans = deck%fill%passive_coefficient%number > 0.0_wp .or. deck%fill%passive_share%number &
-         & > 0.0_wp .or. deck%fill%backing_height%given
       group = "fill"
       key = "height"
       problem = ""
@@ -122,13 +121,12 @@ contains
       else if (deck%fill%backing_unit_weight%given .and. .not. deck%fill%backing_height%given) then
          key = "backing_unit_weight"
          problem = "expected backing_height beside it, got none; give it"
-      else if (leans .and. .not. at_rest) then
+      else if (fill_yields(deck) .and. .not. deck%fill%passive_stiffness%given) then
          key = "passive_coefficient"
          if (deck%fill%passive_share%given) key = "passive_share"
          if (deck%fill%backing_height%given) key = "backing_height"
-         problem = "expected a static run in reference geometry, without cohesion, tension and "// &
-            & "collapse_displacement, for what an arch leans against is a bounded force of "// &
-            & "limit analysis; change the run, or remove it"
+         problem = "expected passive_stiffness beside it where blocks move or joints have "// &
+            & "strength, got none; give it"
       else if (deck%arch%lune_deg%given) then
          group = "arch"
          key = "lune_deg"

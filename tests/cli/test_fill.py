@@ -69,6 +69,65 @@ def test_the_worst_position_is_no_better_than_any(tmp_path: Path) -> None:
     assert float(worst["critical"]) == pytest.approx(min(other), rel=0.05)
 
 
+#: Rungs of the ladder by what the arch leans against
+LEANING = [(1.0, 43.61840212216162), (1.3409333333333333, 46.489156198504915), (4.0228, 62.994869861242684)]
+
+
+@pytest.mark.parametrize(("coefficient", "factor"), LEANING)
+def test_fill_that_yields_gives_the_ladder_step_by_step(tmp_path: Path, coefficient: float, factor: float) -> None:
+    """Where a displacement is collapse, steps decide, and the fill is springs that yield."""
+    fill = FILL.format(f", passive_coefficient = {coefficient}, passive_stiffness = 1e10")
+    deck = BRIDGE.format(-1.6375).replace(SEARCH, "&search parameter = 'load_factor', low = 25, high = 70 /\n") + fill
+    (row,) = rows(tmp_path, deck + "&analysis collapse_displacement = 0.1 /\n", head="")
+    assert float(row["critical"]) == pytest.approx(factor, rel=1e-6)
+
+
+@pytest.mark.parametrize(("coefficient", "factor"), LEANING[1:])
+def test_fill_yields_where_blocks_move_in_time(tmp_path: Path, coefficient: float, factor: float) -> None:
+    """Below its rung an arch comes to rest; above it the fill on one side yields, and it moves on."""
+    fill = FILL.format(f", passive_coefficient = {coefficient}, passive_stiffness = 1e9")
+    farthest = {}
+    for share in (0.99, 1.01):
+        for duration in (1.0, 2.0):
+            rows(
+                tmp_path,
+                BRIDGE.format(-1.6375).replace(SEARCH, f"&load load_factor = {share * factor!r} /\n") + fill
+                + f"&analysis mode = 'dynamic', time_step = 2e-3, damping = 20, duration = {duration} /\n",
+                head="",
+            )
+            with (tmp_path / "x/blocks.csv").open() as table:
+                moved = [max(abs(float(row["u"])), abs(float(row["v"]))) for row in csv.DictReader(table)]
+            farthest[share, duration] = max(moved)
+    assert farthest[0.99, 2.0] == pytest.approx(farthest[0.99, 1.0], rel=0.02)
+    assert farthest[1.01, 2.0] > 1.5 * farthest[1.01, 1.0]
+    with (tmp_path / "x/bars.csv").open() as table:
+        forces = [float(row["force"]) for row in csv.DictReader(table) if row["state"] == "yielding"]
+    bounds = pressures(tmp_path / "x/blocks.csv", coefficient)
+    assert forces == pytest.approx(bounds[: len(forces)], rel=1e-9)
+    assert len(forces) >= 15
+
+
+def pressures(path: Path, coefficient: float) -> list[float]:
+    """Largest forces of the fill right of the crown, from the crown downwards: by the told corners alone."""
+    with path.open() as table:
+        corners = [
+            (int(row["block"]), float(row["x"]), float(row["y"]))
+            for row in csv.DictReader(table)
+            if row["state"] == "free"
+        ]
+    radius = (0.25 * 6.55**2 + 1.428**2) / (2.0 * 1.428)
+    found = []
+    tops = {
+        block: sorted((x, y) for b, x, y in corners if b == block and math.hypot(x, y - 1.428 + radius) > radius + 0.11)
+        for block in {b for b, _, _ in corners}
+    }
+    surface = 1.428 + 0.22 + 0.165
+    for (left, low), (right, high) in (top for top in tops.values() if len(top) == 2):
+        if left + right > 1e-9:
+            found.append(coefficient * 20e3 * (surface - 0.5 * (low + high)) * abs(high - low))
+    return sorted(found)
+
+
 def test_weight_of_fill_is_on_the_springings(tmp_path: Path) -> None:
     """What the springings carry is the weight of the arch and of the fill above its extrados."""
     deck = (
@@ -101,8 +160,9 @@ def test_weight_of_fill_is_on_the_springings(tmp_path: Path) -> None:
         ("&fill unit_weight = 20e3 /", "expected height and unit_weight"),
         ("&fill height = 0.1, unit_weight = 1, passive_share = 0.5 /", "expected friction_deg"),
         ("&fill height = 0.1, unit_weight = 1, passive_coefficient = 1 /\n&analysis geometry = 'current' /",
-         "bounded force"),
-        ("&fill height = 0.1, unit_weight = 1, passive_coefficient = 1 /\n&joint cohesion = 1 /", "bounded force"),
+         "expected passive_stiffness"),
+        ("&fill height = 0.1, unit_weight = 1, backing_height = 1 /\n&joint cohesion = 1 /",
+         "expected passive_stiffness"),
         ("&fill height = 0.1, unit_weight = 1 /\n&vehicle axles = 1, position = 20 /", "none at position 20"),
         ("&scene kind = 'blocks', geometry = 'x.blocks' /\n&fill height = 0.1, unit_weight = 1 /", "&fill"),
     ],
