@@ -21,7 +21,8 @@ module dda_face_passes
    real(wp), parameter :: free = 1.0e20_wp
    !> Forces across gaps, and by openings, that are left, over the size of a force
    real(wp), parameter :: tolerance = 1.0e-6_wp
-   !> Change of a force by its spring at the end, over the same
+   !> Change of a force by its spring at the end, over the same; where it falls no more, gaps
+   !> contradict one another, and forces would grow without end: then the above counts
    real(wp), parameter :: remains = 1.0e-7_wp
    !> Most passes; fewer where not half as many faces change as in the pass before
    integer, parameter :: max_passes = 5
@@ -57,16 +58,15 @@ contains
       !> Whether the faces agree
       logical, intent(out) :: agreed
       type(joint_face_t) :: face(size(p%joint))
-      integer :: changes, i, last, pass, turn
+      real(wp) :: last_rest, rest
+      integer :: changes, last, pass, turn
       logical :: held
 
       agreed = .false.
-      call see_lack(equations, springs, view, x, p)
-      do i = 1, size(face)
-         call read_face(springs, p, x, i, face(i))
-      end do
+      call read_faces(equations, springs, view, p, x, face)
       held = .false.
       last = size(face)/2
+      last_rest = huge(last_rest)
       pass = 0
       do turn = 1, max_turns
          if (.not. held) then
@@ -81,9 +81,10 @@ contains
          call change_faces(springs, p, x, face, changes)
          held = changes == 0
          if (held) then
-            agreed = maxval(p%soft/p%unit*abs(x%force - p%before), .not. p%follows) &
-               & <= remains*p%size
+            rest = maxval(p%soft/p%unit*abs(x%force - p%before), .not. p%follows)/p%size
+            agreed = rest <= merge(tolerance, remains, rest > falling*last_rest)
             if (agreed) return
+            last_rest = rest
             where (.not. p%follows) p%before = x%force
             changes = huge(changes)
          else if (2*changes > last) then
@@ -113,7 +114,7 @@ contains
       type(interior_t) :: firmer
       real(wp) :: soft(3, size(p%joint))
       logical :: ended
-      integer :: changes, i, k
+      integer :: changes, k
 
       soft = p%soft
       agreed = .false.
@@ -122,12 +123,7 @@ contains
       do k = 1, size(softness)
          where (.not. p%follows) p%soft = softness(k)*soft
          if (k == 2) firmer = x
-         if (k <= 2) then
-            call see_lack(equations, springs, view, firmer, p)
-            do i = 1, size(face)
-               call read_face(springs, p, firmer, i, face(i))
-            end do
-         end if
+         if (k <= 2) call read_faces(equations, springs, view, p, firmer, face)
          call pass_faces(equations, springs, view, p, hasty, firmer, face, passes, changes)
          ended = changes == 0
          agreed = agreed .or. ended
@@ -192,24 +188,29 @@ contains
       call see_lack(equations, springs, view, x, p)
    end subroutine move_on
 
-   !> The face that force and opening of a joint speak for
-   pure subroutine read_face(springs, p, x, i, face)
+   !> The faces that forces and openings of the joints speak for
+   pure subroutine read_faces(equations, springs, view, p, x, face)
+      type(equations_t), intent(in) :: equations
       type(joint_springs_t), intent(in) :: springs
-      type(problem_t), intent(in) :: p
+      type(contact_view_t), intent(in) :: view
+      !> The problem; what is lacking is set
+      type(problem_t), intent(inout) :: p
       type(interior_t), intent(in) :: x
-      !> Place of the joint
-      integer, intent(in) :: i
-      type(joint_face_t), intent(out) :: face
-      real(wp) :: trial(3)
+      !> The faces: (n_joint)
+      type(joint_face_t), intent(out) :: face(:)
+      real(wp) :: force(3), trial(3)
+      integer :: i
 
-      associate (j => p%joint(i), cone => springs%cone(p%joint(i)))
-         trial = x%force(:, i) + springs%shift(:, j) + p%opening(:, i)/p%unit(:, i)
-         face%open = .not. (p%given(1:2, i) .and. trial(1:2) >= 0.0_wp)
-         if (abs(trial(3)) > shear_bound(cone, max(0.0_wp, x%force(:, i) + springs%shift(:, j))) &
-            & .or. all(face%open)) face%slip = merge(1, -1, trial(3) > 0.0_wp)
-         if (.not. p%given(3, i)) face%slip = 0
-      end associate
-   end subroutine read_face
+      call see_lack(equations, springs, view, x, p)
+      do i = 1, size(face)
+         force = x%force(:, i) + springs%shift(:, p%joint(i))
+         trial = force + p%opening(:, i)/p%unit(:, i)
+         face(i)%open = .not. (p%given(1:2, i) .and. trial(1:2) >= 0.0_wp)
+         if (abs(trial(3)) > shear_bound(springs%cone(p%joint(i)), max(0.0_wp, force)) &
+            & .or. all(face(i)%open)) face(i)%slip = merge(1, -1, trial(3) > 0.0_wp)
+         if (.not. p%given(3, i)) face(i)%slip = 0
+      end do
+   end subroutine read_faces
 
    !> Put the forces onto their faces, and let the springs keep them there
    pure subroutine hold_faces(springs, face, p, x)

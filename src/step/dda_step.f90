@@ -16,6 +16,7 @@ module dda_step
    use dda_load_clock, only : has_path
    use dda_multipliers, only : settle_joints
    use dda_settings, only : settings_t
+   use dda_standstill, only : is_slow, stand_still, stands_still
    use dda_step_check, only : check_motion, check_end_velocities, retry
    use dda_step_context, only : march_t, step_context_t, step_outcome_t
    use dda_step_interval, only : largest_motion
@@ -36,6 +37,13 @@ module dda_step
    real(wp), parameter :: unseen = 1.0e-3_wp
    !> Shortest step in time: stiffness that grows with its inverse square overflows [s]
    real(wp), parameter :: shortest_step = 1.0e-40_wp
+   !> Steps from one try to bring slow blocks to rest to the next, and most steps of such a try
+   integer, parameter :: between_tries = 16, steps_of_try = 40
+   !> Distance that blocks may go in the first of these steps, over the size of the smallest one, and
+   !> how much of it in the next
+   real(wp), parameter :: no_distance = 1.0e-8_wp, falling = 0.8_wp
+   !> How much smaller than usual the gaps are that a try leaves
+   real(wp), parameter :: of_try = 1.0e-6_wp
 
 contains
 
@@ -52,8 +60,13 @@ contains
       type(error_t), allocatable, intent(inout) :: error
       type(contacts_t), allocatable :: kept
       type(step_outcome_t) :: outcome
+      logical :: still
       integer :: attempt
 
+      if (settings%dynamic .and. settings%current) then
+         call rest(settings, system, contacts, equations, march, step, still)
+         if (still) return
+      end if
       call predict(settings, system, contacts, equations, march, step)
       if (contacts%searched .and. contacts%remember .and. settings%current) kept = contacts
       do attempt = 0, max_retries
@@ -77,6 +90,84 @@ contains
          call fatal_error(error, "open-close iteration does not converge for any time step")
       end if
    end subroutine advance
+
+   !> A step of blocks that stand still, or are found to: nothing moves in it
+   pure subroutine rest(settings, system, contacts, equations, march, step, still)
+      type(settings_t), intent(in) :: settings
+      type(block_system_t), intent(inout) :: system
+      type(contacts_t), intent(inout) :: contacts
+      type(equations_t), intent(inout) :: equations
+      type(march_t), intent(inout) :: march
+      type(step_context_t), intent(inout) :: step
+      !> Whether they stand still; otherwise nothing has changed
+      logical, intent(out) :: still
+
+      call stands_still(settings, system, contacts, march, equations, still)
+      if (.not. still .and. march%steps > 0 .and. modulo(march%steps, between_tries) == 0) then
+         if (is_slow(system, equations, march)) &
+            & call come_to_rest(settings, system, contacts, equations, march, step, still)
+      end if
+      if (.not. still) return
+      call begin_step(contacts, size(equations%weight, 1), size(equations%weight, 2), step%state)
+      call stand_still(contacts, equations, march, step)
+      step%accepted = .true.
+      step%was_cut = .false.
+      march%steps = march%steps + 1
+      march%time = march%time + step%dt
+      call audit_step(settings, system, equations, contacts, step, march%time, march%energy)
+   end subroutine rest
+
+   !> Bring blocks to rest whose speeds may be what contact forces leave: without these speeds, the
+   !> gaps that are left close and forces balance. Where they do not, or blocks move, nothing changes
+   pure subroutine come_to_rest(settings, system, contacts, equations, march, step, still)
+      type(settings_t), intent(in) :: settings
+      type(block_system_t), intent(inout) :: system
+      type(contacts_t), intent(inout) :: contacts
+      type(equations_t), intent(inout) :: equations
+      !> The march; passes are counted
+      type(march_t), intent(inout) :: march
+      type(step_context_t), intent(inout) :: step
+      !> Whether they stand still
+      logical, intent(out) :: still
+      type(block_system_t) :: moving
+      type(contacts_t) :: before
+      type(contacts_t), allocatable :: none
+      type(march_t) :: trial
+      real(wp) :: held(size(equations%fixed%force))
+      real(wp) :: distance
+      logical :: breaks
+      integer :: i
+
+      moving = system
+      before = contacts
+      held = equations%fixed%force
+      trial = march
+      still = .false.
+      distance = no_distance*sqrt(minval(system%area, mask=system%equation > 0))
+      do i = 1, steps_of_try
+         system%velocity = 0.0_wp
+         call predict(settings, system, contacts, equations, trial, step)
+         call place_contacts(settings, system, step%travel, none, trial, contacts, equations)
+         step%state%fineness = of_try
+         step%state%patient = .true.
+         call find_motion(settings, system, contacts, equations, trial, step)
+         step%state%fineness = 1.0_wp
+         if (.not. step%state%settled .or. step%farthest > distance) exit
+         distance = max(falling*step%farthest, trial%resolution)
+         call update_contacts(step, settings, contacts, breaks)
+         step%velocity = 0.0_wp*step%state%motion
+         call update_blocks(step, settings, system)
+         call keep_bars(equations%bars, settings, step%state%motion, system)
+         call stands_still(settings, system, contacts, march, equations, still)
+         if (still) exit
+      end do
+      march%passes = trial%passes
+      if (still) return
+      call renew_springs(contacts%springs%equation, before%springs, equations)
+      system = moving
+      contacts = before
+      equations%fixed%force = held
+   end subroutine come_to_rest
 
    !> What a step begins with: masses as the blocks have turned, and how corners are about to move
    pure subroutine predict(settings, system, contacts, equations, march, step)
@@ -149,7 +240,7 @@ contains
       if (in_time) call stiffen_contacts(system, step%dt, contacts)
       if (in_time) call take_springs(equations)
       call begin_step(contacts, size(equations%weight, 1), size(equations%weight, 2), step%state)
-      step%state%unseen = unseen*march%free_acceleration*step%dt**2
+      step%state%unseen = step%state%fineness*unseen*march%free_acceleration*step%dt**2
       call assemble_blocks(system, settings, step%dt, equations, &
          & merge(march%time, march%clock%now, settings%dynamic))
       if (in_time) call foresee_curves(settings, system, contacts, step)

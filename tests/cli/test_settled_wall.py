@@ -1,42 +1,82 @@
-"""A wall at rest whose blocks move in time: once its forces are found, steps only look at them."""
+"""What stands still in time takes no new work, and what only seems to goes on."""
 
 from __future__ import annotations
 
 import csv
+import math
 from pathlib import Path
 
+import pytest
 from block_scene import block
 from dda_command import run_dda
 
-COURSES, COLUMNS, LENGTH, HEIGHT = 10, 13, 0.25, 0.125
+COURSES, LENGTH, HEIGHT, G = 10, 0.25, 0.125, 9.81
 
 
-def wall() -> str:
-    """Bricks in running bond on a fixed floor: more than 300 joints, all of one group."""
-    text = block([(0.0, -HEIGHT), (COLUMNS * LENGTH, -HEIGHT), (COLUMNS * LENGTH, 0.0), (0.0, 0.0)], "fixed")
+def wall(columns: int) -> str:
+    """Bricks in running bond on a fixed floor, their joints all of one group."""
+    end = columns * LENGTH
+    text = block([(0.0, -HEIGHT), (end, -HEIGHT), (end, 0.0), (0.0, 0.0)], "fixed")
     for course in range(COURSES):
-        heads = [column * LENGTH for column in range(COLUMNS + 1)]
+        heads = [column * LENGTH for column in range(columns + 1)]
         if course % 2:
-            heads = [0.0, *(head + LENGTH / 2.0 for head in heads[:-1]), COLUMNS * LENGTH]
+            heads = [0.0, *(head + LENGTH / 2.0 for head in heads[:-1]), end]
         low, high = course * HEIGHT, (course + 1) * HEIGHT
         for left, right in zip(heads, heads[1:]):
             text += block([(left, low), (right, low), (right, high), (left, high)])
     return text
 
 
-def test_a_wall_at_rest_is_only_looked_at(tmp_path: Path) -> None:
-    """After 40 steps nothing is left to be found: two passes a step, of motion and of speeds, and nothing moves."""
-    (tmp_path / "x.blocks").write_text(wall() + f"measure {LENGTH!r} {0.9 * COURSES * HEIGHT!r}\n")
-    passes = []
-    for steps in (40, 80):
-        (tmp_path / "x.nml").write_text(
-            "&scene kind = 'blocks', geometry = 'x.blocks' /\n&joint friction_deg = 35 /\n"
-            f"&analysis mode = 'dynamic', geometry = 'current', time_step = 1e-3, duration = 1e3, steps = {steps} /\n")
-        done = run_dda("run", "x.nml", "--quiet", cwd=tmp_path)
-        assert done.returncode in (0, 3), done.stderr
-        with (tmp_path / "x" / "results.csv").open() as table:
-            passes.append(int(next(csv.DictReader(table))["open_close_iterations"]))
-    assert passes[1] - passes[0] <= 2 * 40
-    with (tmp_path / "x" / "points.csv").open() as table:
-        rows = list(csv.DictReader(table))
-    assert abs(float(rows[-1]["v"]) - float(rows[len(rows) // 2]["v"])) < 1e-7 * COURSES * HEIGHT
+def run(folder: Path, blocks: str, friction_deg: float, duration: float) -> tuple[list[dict[str, str]], int]:
+    """Rows of the measured point and passes of a run in steps of 1 ms."""
+    (folder / "x.blocks").write_text(blocks)
+    (folder / "x.nml").write_text(
+        f"&scene kind = 'blocks', geometry = 'x.blocks' /\n&joint friction_deg = {friction_deg!r} /\n"
+        f"&analysis mode = 'dynamic', geometry = 'current', time_step = 1e-3, duration = {duration!r}, steps = 9999 /\n")
+    done = run_dda("run", "x.nml", "--quiet", cwd=folder)
+    assert done.returncode == 0, done.stderr
+    with (folder / "x" / "results.csv").open() as table:
+        passes = int(next(csv.DictReader(table))["open_close_iterations"])
+    with (folder / "x" / "points.csv").open() as table:
+        return list(csv.DictReader(table)), passes
+
+
+@pytest.mark.parametrize("columns", [5, 13])  # fewer and more than 300 joints
+def test_a_wall_that_has_settled_stands_still(tmp_path: Path, columns: int) -> None:
+    """After 40 steps nothing is left to be found: no passes, and not a bit of any place changes."""
+    measured = wall(columns) + f"measure {LENGTH!r} {0.9 * COURSES * HEIGHT!r}\n"
+    settled, passes = run(tmp_path, measured, 35.0, 0.05)
+    rows, in_all = run(tmp_path, measured, 35.0, 0.2)
+    assert in_all == passes
+    assert {(row["u"], row["v"]) for row in rows[50:]} == {(settled[-1]["u"], settled[-1]["v"])}
+    assert float(rows[-1]["v"]) < 0.0
+
+
+def slope_with_block(rise: float) -> str:
+    """A block on a plane that rises by so much in one."""
+    across = (-rise, 1.0)
+    foot, far = (1.0, rise), (2.0, 2.0 * rise)
+    return (block([(0.0, 0.0), (0.0, -1.0), (9.0, -1.0), (9.0, 9.0 * rise)][::-1], "fixed")
+            + block([foot, far, (far[0] + across[0], far[1] + across[1]), (foot[0] + across[0], foot[1] + across[1])])
+            + f"measure 1.4 {1.5 * rise + 0.4!r}\n")
+
+
+@pytest.mark.parametrize("share", [1e-6, 1e-5, 1e-3])
+def test_what_slides_ever_so_slowly_slides_on(tmp_path: Path, share: float) -> None:
+    """Friction that lacks a share of the weight lets a block go at that share of gravity: s = a t**2/2."""
+    rise, time = 0.5, 0.2
+    friction = rise - share * math.hypot(1.0, rise)
+    rows, _ = run(tmp_path, slope_with_block(rise), math.degrees(math.atan(friction)), time)
+    way = math.hypot(float(rows[-1]["u"]) - float(rows[20]["u"]), float(rows[-1]["v"]) - float(rows[20]["v"]))
+    start = float(rows[20]["time"])
+    assert way == pytest.approx(share * G * (time**2 - start**2) / 2.0, rel=0.05)
+
+
+def test_what_stands_still_feels_a_push_that_begins(tmp_path: Path) -> None:
+    """At rest for 0.1 s, then the ground goes off at 0.6 g below a block with friction 0.5: it lags by 0.1 g."""
+    blocks = (block([(-3.0, -1.0), (4.0, -1.0), (4.0, 0.0), (-3.0, 0.0)], "fixed")
+              + block([(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0)])
+              + f"measure 0.5 0.5\nbase_acceleration\n0 0 0\n0.1 0 0\n0.1001 {0.6 * G!r} 0\n9 {0.6 * G!r} 0\n")
+    rows, _ = run(tmp_path, blocks, math.degrees(math.atan(0.5)), 0.3)
+    assert len({row["u"] for row in rows[40:99]}) == 1
+    assert float(rows[-1]["u"]) == pytest.approx(-0.1 * G * 0.2**2 / 2.0, rel=0.01)

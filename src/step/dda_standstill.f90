@@ -1,0 +1,101 @@
+!> Blocks that stand still in time: what balances and does not move needs no new step
+!>
+!> With every velocity zero and loads that the contact forces at hand balance, no motion is what the
+!> equations of a step ask for, and its end is its beginning.
+module dda_standstill
+   use dda_assembly, only : equations_t
+   use dda_block_inertia, only : assemble_blocks, packed_velocity
+   use dda_block_system, only : block_system_t
+   use dda_contact_detection, only : contacts_t
+   use dda_friction_cone, only : joint_face_t
+   use dda_kinds, only : wp
+   use dda_settings, only : settings_t
+   use dda_spring_products, only : add_load
+   use dda_step_context, only : march_t, step_context_t
+   implicit none
+   private
+
+   public :: is_slow, stand_still, stands_still
+
+   !> Speed that may be noise of contact forces, over what free fall makes in a step
+   real(wp), parameter :: slow = 1.0e-4_wp
+   !> Acceleration that a block in balance has left, over that of free fall
+   real(wp), parameter :: balanced = 1.0e-9_wp
+
+contains
+
+   !> Whether all blocks move so slowly that this may be what contact forces leave
+   pure logical function is_slow(system, equations, march)
+      type(block_system_t), intent(in) :: system
+      !> The equations, for the masses
+      type(equations_t), intent(in) :: equations
+      !> The march, for the length of the step and free fall
+      type(march_t), intent(in) :: march
+      real(wp) :: velocity(size(equations%mass, 1), size(equations%mass, 3))
+      integer :: e
+
+      velocity = packed_velocity(system, size(velocity, 1))
+      is_slow = .false.
+      do e = 1, size(velocity, 2)
+         if (dot_product(velocity(:, e), matmul(equations%mass(:, :, e), velocity(:, e))) &
+            & > (slow*march%free_acceleration*march%dt)**2*equations%mass(1, 1, e)) return
+      end do
+      is_slow = .true.
+   end function is_slow
+
+   !> Whether no block moves and the contact forces at hand balance the loads of the coming step
+   pure subroutine stands_still(settings, system, contacts, march, equations, still)
+      type(settings_t), intent(in) :: settings
+      type(block_system_t), intent(in) :: system
+      type(contacts_t), intent(in) :: contacts
+      type(march_t), intent(in) :: march
+      !> The equations; blocks are assembled
+      type(equations_t), intent(inout) :: equations
+      !> The answer
+      logical, intent(out) :: still
+      real(wp) :: left(size(equations%load, 1), size(equations%load, 2))
+      integer :: b, e, i, j
+
+      still = .false.
+      do b = 1, size(system%equation)
+         if (system%equation(b) > 0 .and. any(abs(system%velocity(:, b)) > 0.0_wp)) return
+      end do
+      call assemble_blocks(system, settings, march%dt, equations, march%time)
+      left = equations%load
+      do j = 1, size(contacts%joint)
+         call add_load(contacts%springs, contacts%springs%cone(j), joint_face_t(), &
+            & contacts%force(:, j), j, left)
+      end do
+      do e = 1, size(left, 2)
+         do i = 1, size(left, 1)
+            if (abs(left(i, e)) > balanced*march%free_acceleration &
+               & *sqrt(equations%mass(1, 1, e)*equations%mass(i, i, e))) return
+         end do
+      end do
+      still = .true.
+   end subroutine stands_still
+
+   !> A step in which nothing moves: its forces are those before
+   pure subroutine stand_still(contacts, equations, march, step)
+      !> The contacts; what the last step added to gaps is none
+      type(contacts_t), intent(inout) :: contacts
+      type(equations_t), intent(in) :: equations
+      type(march_t), intent(in) :: march
+      !> The step, begun; its motion and forces are set
+      type(step_context_t), intent(inout) :: step
+
+      contacts%increment = 0.0_wp
+      step%dt = march%dt
+      step%state%increment = contacts%increment
+      step%state%force = contacts%force
+      step%state%settled = .true.
+      step%velocity = step%state%motion
+      step%has_velocity = .true.
+      step%impulse = contacts%force
+      step%held_impulse = equations%fixed%force
+      step%impact = 0.0_wp
+      step%farthest = 0.0_wp
+      step%acceleration = 0.0_wp
+      step%whole = .true.
+   end subroutine stand_still
+end module dda_standstill
