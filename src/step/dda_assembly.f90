@@ -171,20 +171,13 @@ contains
       type(joint_springs_t), intent(in) :: springs
       integer, intent(in) :: n_dof, n_equation
       type(equations_t), intent(inout) :: equations
-      integer :: e, j, side, next(n_equation)
+      integer :: e, j
       integer :: pair(2, size(springs%equation, 2) + size(equations%bars%entry))
 
-      if (allocated(equations%entry)) &
-         & deallocate (equations%entry, equations%first_joint, equations%joint)
+      if (allocated(equations%entry)) deallocate (equations%entry)
       allocate (equations%entry(size(springs%equation, 2)), source=0)
-      allocate (equations%first_joint(n_equation + 1), source=0)
       e = 0
       do j = 1, size(springs%equation, 2)
-         do side = 1, 2
-            associate (count => equations%first_joint(springs%equation(side, j) + 1))
-               if (springs%equation(side, j) > 0) count = count + 1
-            end associate
-         end do
          if (any(springs%equation(:, j) == 0)) cycle
          e = e + 1
          equations%entry(j) = e
@@ -199,6 +192,25 @@ contains
          end associate
       end do
       call set_pattern(equations%matrix, n_dof, n_equation, pair(:, :e))
+      call list_by_block(springs, n_equation, equations)
+   end subroutine list_joints
+
+   !> The joints of each block
+   pure subroutine list_by_block(springs, n_equation, equations)
+      type(joint_springs_t), intent(in) :: springs
+      integer, intent(in) :: n_equation
+      type(equations_t), intent(inout) :: equations
+      integer :: e, j, side, next(n_equation)
+
+      if (allocated(equations%joint)) deallocate (equations%first_joint, equations%joint)
+      allocate (equations%first_joint(n_equation + 1), source=0)
+      do j = 1, size(springs%equation, 2)
+         do side = 1, 2
+            associate (count => equations%first_joint(springs%equation(side, j) + 1))
+               if (springs%equation(side, j) > 0) count = count + 1
+            end associate
+         end do
+      end do
       equations%first_joint(1) = 1
       do e = 1, n_equation
          equations%first_joint(e + 1) = equations%first_joint(e) + equations%first_joint(e + 1)
@@ -213,7 +225,7 @@ contains
             next(e) = next(e) + 1
          end do
       end do
-   end subroutine list_joints
+   end subroutine list_by_block
 
    !> Stiffness of the springs if all joints are stuck
    pure subroutine add_stuck_springs(springs, equations)

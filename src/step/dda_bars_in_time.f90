@@ -29,16 +29,7 @@ contains
 
       n = size(contacts%stiffness)
       more = n + size(bars%trial)
-      allocate (springs%equation(2, more), source=0)
-      allocate (springs%row(size(contacts%row, 1), 3, 2, more), source=0.0_wp)
-      allocate (springs%shift(3, more), springs%soft(3, more), springs%rest(3, more), source=0.0_wp)
-      allocate (springs%stiffness(more), source=1.0_wp)
-      allocate (springs%cone(more))
-      springs%equation(:, :n) = contacts%equation
-      springs%row(:, :, :, :n) = contacts%row
-      springs%shift(:, :n) = contacts%shift
-      springs%stiffness(:n) = contacts%stiffness
-      springs%cone(:n) = contacts%cone
+      call append_springs(contacts, more, springs)
       state%fineness = step%fineness
       state%unseen = step%unseen
       state%rates = step%rates
@@ -60,13 +51,32 @@ contains
       end do
    end subroutine append_bars
 
+   !> The springs of the joints of a step and behind them some of nothing
+   pure subroutine append_springs(contacts, more, springs)
+      type(joint_springs_t), intent(in) :: contacts
+      !> Springs of all together
+      integer, intent(in) :: more
+      type(joint_springs_t), intent(out) :: springs
+      integer :: n
+
+      n = size(contacts%stiffness)
+      allocate (springs%equation(2, more), source=0)
+      allocate (springs%row(size(contacts%row, 1), 3, 2, more), source=0.0_wp)
+      allocate (springs%shift(3, more), springs%soft(3, more), springs%rest(3, more), source=0.0_wp)
+      allocate (springs%stiffness(more), source=1.0_wp)
+      allocate (springs%cone(more))
+      springs%equation(:, :n) = contacts%equation
+      springs%row(:, :, :, :n) = contacts%row
+      springs%shift(:, :n) = contacts%shift
+      springs%stiffness(:n) = contacts%stiffness
+      springs%cone(:n) = contacts%cone
+   end subroutine append_springs
+
    !> One bar as a joint
    pure subroutine make_joint(bars, i, j, springs, load)
       type(bar_springs_t), intent(in) :: bars
-      !> Number of the bar
-      integer, intent(in) :: i
-      !> Number of the joint
-      integer, intent(in) :: j
+      !> Numbers of the bar and of its joint
+      integer, intent(in) :: i, j
       type(joint_springs_t), intent(inout) :: springs
       !> Receives what the bar carries in the middle of its bounds: (n_dof, n_equation) [N/m]
       real(wp), intent(inout) :: load(:, :)

@@ -35,10 +35,9 @@ contains
       !> left out [s]
       real(wp), intent(in), optional :: time
       real(wp) :: before(size(equations%base, 1), size(equations%base, 2), size(equations%base, 3))
-      real(wp) :: stress(6), impetus(6), finish, start, damping
-      integer :: b, e, nd
+      real(wp) :: finish, start, damping
+      integer :: e
 
-      nd = settings%n_dof
       before = equations%base
       start = 0.0_wp
       if (present(time)) start = time
@@ -50,16 +49,7 @@ contains
          & equations%felt)
       equations%force_scale = sum(equations%felt(1:2, :))
       equations%gap_noise = 16.0_wp*epsilon(1.0_wp)*maxval(abs(system%moved))
-      do b = 1, size(system%equation)
-         e = system%equation(b)
-         if (e == 0) cycle
-         stress = stress_load(system%stress(:, b), system%area(b))
-         equations%load(:, e) = equations%outer(:, e) + stress(:nd)
-         if (.not. settings%dynamic) cycle
-         impetus(:nd) = (2.0_wp/dt)*matmul(equations%mass(:, :, e), system%velocity(:nd, b))
-         equations%load(:, e) = equations%load(:, e) + impetus(:nd)
-         equations%force_scale = equations%force_scale + sum(abs(impetus(1:2)))
-      end do
+      call load_blocks(system, settings, dt, equations)
       finish = start
       if (settings%dynamic) finish = start + dt
       call follow_fixed_points(system, settings, finish, dt, equations%fixed)
@@ -74,6 +64,28 @@ contains
             & .or. .not. all(abs(equations%base(:, :, e) - before(:, :, e)) <= 0.0_wp)
       end do
    end subroutine assemble_blocks
+
+   !> Load of the blocks: outer forces, stress, and in a dynamic step the impetus of their velocities
+   pure subroutine load_blocks(system, settings, dt, equations)
+      type(block_system_t), intent(in) :: system
+      type(settings_t), intent(in) :: settings
+      real(wp), intent(in) :: dt
+      type(equations_t), intent(inout) :: equations
+      real(wp) :: stress(6), impetus(6)
+      integer :: b, e, nd
+
+      nd = settings%n_dof
+      do b = 1, size(system%equation)
+         e = system%equation(b)
+         if (e == 0) cycle
+         stress = stress_load(system%stress(:, b), system%area(b))
+         equations%load(:, e) = equations%outer(:, e) + stress(:nd)
+         if (.not. settings%dynamic) cycle
+         impetus(:nd) = (2.0_wp/dt)*matmul(equations%mass(:, :, e), system%velocity(:nd, b))
+         equations%load(:, e) = equations%load(:, e) + impetus(:nd)
+         equations%force_scale = equations%force_scale + sum(abs(impetus(1:2)))
+      end do
+   end subroutine load_blocks
 
    !> Rate of mass damping in a dynamic step: never more than what would stop a block within it
    pure real(wp) function damping_rate(settings, dt)

@@ -25,26 +25,11 @@ contains
       integer, intent(out) :: first(:)
       !> The joints, group by group, rising in each: (n_joint)
       integer, intent(out) :: joint(:)
-      integer :: root(n_equation), number(n_equation), group(size(joint)), pair(2), i, j
+      integer :: group(size(joint)), i, j
 
-      root = [(i, i=1, n_equation)]
-      do j = 1, size(joint)
-         pair = springs%equation(:, j)
-         if (any(pair == 0)) cycle
-         pair = [root_of(pair(1)), root_of(pair(2))]
-         root(maxval(pair)) = minval(pair)
-         root(springs%equation(:, j)) = minval(pair)
-      end do
-      n = 0
-      number = 0
+      call number_groups(springs, n_equation, n, group)
       first = 0
       do j = 1, size(joint)
-         i = root_of(maxval(springs%equation(:, j)))
-         if (number(i) == 0) then
-            n = n + 1
-            number(i) = n
-         end if
-         group(j) = number(i)
          first(group(j)) = first(group(j)) + 1
       end do
       ! the place behind each group's last joint, from which it is filled backwards
@@ -56,6 +41,35 @@ contains
       do j = size(joint), 1, -1
          first(group(j)) = first(group(j)) - 1
          joint(first(group(j))) = j
+      end do
+   end subroutine group_joints
+
+   !> Which group each joint is of
+   pure subroutine number_groups(springs, n_equation, n, group)
+      type(joint_springs_t), intent(in) :: springs
+      integer, intent(in) :: n_equation
+      integer, intent(out) :: n
+      !> Number of each joint's group: (n_joint)
+      integer, intent(out) :: group(:)
+      integer :: root(n_equation), number(n_equation), pair(2), i, j
+
+      root = [(i, i=1, n_equation)]
+      do j = 1, size(group)
+         pair = springs%equation(:, j)
+         if (any(pair == 0)) cycle
+         pair = [root_of(pair(1)), root_of(pair(2))]
+         root(maxval(pair)) = minval(pair)
+         root(springs%equation(:, j)) = minval(pair)
+      end do
+      n = 0
+      number = 0
+      do j = 1, size(group)
+         i = root_of(maxval(springs%equation(:, j)))
+         if (number(i) == 0) then
+            n = n + 1
+            number(i) = n
+         end if
+         group(j) = number(i)
       end do
 
    contains
@@ -70,5 +84,5 @@ contains
             root_of = root(root_of)
          end do
       end function root_of
-   end subroutine group_joints
+   end subroutine number_groups
 end module dda_contact_groups

@@ -120,20 +120,17 @@ contains
       near = .true.
       do i = 1, max_iterations
          call find_rest(equations, springs, view, p, x, mean, merit)
-         waited = waited + 1
-         if (merit < 0.9_wp*least) waited = 0
+         waited = merge(0, waited + 1, merit < 0.9_wp*least)
          if (merit < least) then
             least = merit
             best = x
          end if
          if (merit < tolerance .or. waited == patience .or. .not. merit <= huge(merit)) exit
          if (length < stuck .and. near) then
-            ! too near to a corner of the bounds: begin farther away
             near = .false.
             waited = 0
             least = huge(least)
-            call begin_afar(p, x)
-            call find_rest(equations, springs, view, p, x, mean, merit)
+            call begin_afar(equations, springs, view, p, x, mean, merit)
          end if
          p%yield = x%flow/x%slack
          call factor_springs(equations, springs, p)
@@ -144,14 +141,19 @@ contains
       x = best
    end subroutine iterate
 
-   !> Slack and flow in the middle, whatever the forces are
-   pure subroutine begin_afar(p, x)
-      type(problem_t), intent(in) :: p
+   !> Slack and flow in the middle, whatever the forces are: farther away from a corner of the bounds
+   pure subroutine begin_afar(equations, springs, view, p, x, mean, merit)
+      type(equations_t), intent(in) :: equations
+      type(joint_springs_t), intent(in) :: springs
+      type(contact_view_t), intent(in) :: view
+      type(problem_t), intent(inout) :: p
       type(interior_t), intent(inout) :: x
+      real(wp), intent(out) :: mean, merit
 
       x%slack = merge(p%size, 1.0_wp, p%bounded)
       x%flow(:3, :) = merge(p%size*p%unit, 0.0_wp, p%bounded(:3, :))
       x%flow(4, :) = merge(p%size*p%unit(3, :), 0.0_wp, p%bounded(4, :))
+      call find_rest(equations, springs, view, p, x, mean, merit)
    end subroutine begin_afar
 
    !> One step from an iterate: a predictor, and a corrector towards equal products

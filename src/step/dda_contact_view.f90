@@ -36,14 +36,13 @@ contains
       type(step_state_t), intent(in) :: state
       type(contact_view_t), intent(out) :: view
       real(wp) :: inverse(size(state%motion, 1), size(state%motion, 1), size(state%motion, 2))
-      real(wp) :: sum_of(3), unit(size(inverse, 1))
-      integer :: c, e, j, k, n, side
+      real(wp) :: unit(size(inverse, 1))
+      integer :: e, j, k
 
-      n = size(inverse, 1)
       allocate (view%lower, mold=inverse)
       do e = 1, size(inverse, 3)
          view%lower(:, :, e) = cholesky(equations%base(:, :, e))
-         do k = 1, n
+         do k = 1, size(unit)
             unit = 0.0_wp
             unit(k) = 1.0_wp
             inverse(:, k, e) = solved(view%lower(:, :, e), unit)
@@ -61,25 +60,39 @@ contains
             view%give(k, k, j) = view%soft(k, j)
          end do
          view%gap(:, j) = (state%multiplier(:, j) - state%start(:, j))/springs%stiffness(j)
-         do side = 1, 2
-            e = springs%equation(side, j)
-            view%answer(:, :, side, j) = 0.0_wp
-            if (e == 0) cycle
-            associate (row => springs%row(:, :, side, j), answer => view%answer(:, :, side, j))
-               do k = 1, 3
-                  do c = 1, n
-                     answer(:, k) = answer(:, k) + inverse(:, c, e)*row(c, k)
-                  end do
-                  sum_of = 0.0_wp
-                  do c = 1, n
-                     sum_of = sum_of + row(c, :)*answer(c, k)
-                  end do
-                  view%give(:, k, j) = view%give(:, k, j) + sum_of
-               end do
-            end associate
-         end do
+         call see_joint(springs, inverse, j, view)
       end do
    end subroutine see_joints
+
+   !> How the blocks of one joint answer its forces
+   pure subroutine see_joint(springs, inverse, j, view)
+      type(joint_springs_t), intent(in) :: springs
+      !> Inverse of each block's equations: (n_dof, n_dof, n_equation)
+      real(wp), intent(in) :: inverse(:, :, :)
+      !> Number of the joint
+      integer, intent(in) :: j
+      type(contact_view_t), intent(inout) :: view
+      real(wp) :: sum_of(3)
+      integer :: c, e, k, side
+
+      do side = 1, 2
+         e = springs%equation(side, j)
+         view%answer(:, :, side, j) = 0.0_wp
+         if (e == 0) cycle
+         associate (row => springs%row(:, :, side, j), answer => view%answer(:, :, side, j))
+            do k = 1, 3
+               do c = 1, size(inverse, 1)
+                  answer(:, k) = answer(:, k) + inverse(:, c, e)*row(c, k)
+               end do
+               sum_of = 0.0_wp
+               do c = 1, size(inverse, 1)
+                  sum_of = sum_of + row(c, :)*answer(c, k)
+               end do
+               view%give(:, k, j) = view%give(:, k, j) + sum_of
+            end do
+         end associate
+      end do
+   end subroutine see_joint
 
    !> Motion of the blocks under given joint forces
    pure subroutine move_blocks(equations, springs, view, force, motion)

@@ -97,15 +97,7 @@ contains
       call new_equations(system, contacts%springs, settings, equations)
       call begin_step(contacts, size(equations%weight, 1), size(equations%weight, 2), step%state)
       if (present(onward)) call go_on(settings, system, onward, march, equations)
-      if (march%steps == 0) then
-         call first_interval(system, contacts%springs, settings, equations, step%state, march, &
-            & error)
-         contacts%face = step%state%face
-         if (settings%current .and. .not. settings%dynamic .and. contacts%springs%give) &
-            & march%drowned = is_drowned(system, contacts%joint, contacts%springs, equations)
-      end if
-      if (settings%dynamic .and. march%steps == 0) call audit_step(settings, system, equations, &
-         & contacts, step, 0.0_wp, march%energy)
+      if (march%steps == 0) call begin_run(settings, system, contacts, equations, march, step, error)
       if (present(album)) call keep_pictures(settings, system, contacts, march, 0.0_wp, .false., &
          & album)
       do while (.not. allocated(error))
@@ -127,6 +119,27 @@ contains
       outcome%factorisations = equations%factorisations
       call conclude(settings, march, step%acceleration, error, outcome)
    end subroutine run_to_verdict
+
+   !> Scales and first step of a run that begins, and its energy
+   pure subroutine begin_run(settings, system, contacts, equations, march, step, error)
+      type(settings_t), intent(in) :: settings
+      type(block_system_t), intent(in) :: system
+      !> The contacts; faces to begin with are set
+      type(contacts_t), intent(inout) :: contacts
+      type(equations_t), intent(inout) :: equations
+      type(march_t), intent(inout) :: march
+      type(step_context_t), intent(inout) :: step
+      !> Allocated if the system cannot be solved
+      type(error_t), allocatable, intent(out) :: error
+
+      call first_interval(system, contacts%springs, settings, equations, step%state, march, error)
+      contacts%face = step%state%face
+      if (settings%dynamic) then
+         call audit_step(settings, system, equations, contacts, step, 0.0_wp, march%energy)
+      else if (settings%current .and. contacts%springs%give) then
+         march%drowned = is_drowned(system, contacts%joint, contacts%springs, equations)
+      end if
+   end subroutine begin_run
 
    !> What the end of a run says
    pure subroutine conclude(settings, march, acceleration, error, outcome)
@@ -152,16 +165,8 @@ contains
       if (allocated(error)) then
          outcome%verdict = verdict%undecided
          outcome%reason = error%message
-      else if (settings%dynamic .and. outcome%verdict == verdict%collapsed) then
-         continue
-      else if (settings%dynamic .and. still_moves_away(settings, march)) then
-         outcome%verdict = verdict%undecided
-         outcome%reason = "the blocks still move away at the end of the run; give a longer duration"
-      else if (settings%dynamic .and. march%time >= settings%duration) then
-         outcome%verdict = verdict%completed
       else if (settings%dynamic) then
-         outcome%verdict = verdict%undecided
-         outcome%reason = "step limit reached before the end of the run"
+         call conclude_in_time(settings, march, outcome)
       else if (outcome%verdict /= verdict%stable .and. march%drowned) then
          ! rounding may throw a block, but it does not balance one
          outcome%verdict = verdict%undecided
@@ -171,6 +176,24 @@ contains
          outcome%reason = "step limit reached; neither equilibrium nor collapse established"
       end if
    end subroutine conclude
+
+   !> What the end of a dynamic run says
+   pure subroutine conclude_in_time(settings, march, outcome)
+      type(settings_t), intent(in) :: settings
+      type(march_t), intent(in) :: march
+      type(outcome_t), intent(inout) :: outcome
+
+      if (outcome%verdict == verdict%collapsed) return
+      if (still_moves_away(settings, march)) then
+         outcome%verdict = verdict%undecided
+         outcome%reason = "the blocks still move away at the end of the run; give a longer duration"
+      else if (march%time >= settings%duration) then
+         outcome%verdict = verdict%completed
+      else
+         outcome%verdict = verdict%undecided
+         outcome%reason = "step limit reached before the end of the run"
+      end if
+   end subroutine conclude_in_time
 
    !> One step and what it says of the blocks
    pure subroutine take_step(settings, system, contacts, equations, march, step, rest, neighbours, &

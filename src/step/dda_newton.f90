@@ -106,16 +106,7 @@ contains
       start = relative_displacement(springs, from)
       rate = relative_displacement(springs, direction)
       call block_slope(equations, from, direction, slope_at_zero, curvature)
-      low = 0.0_wp
-      slope_low = slope_of(low)
-      high = 1.0_wp
-      slope_high = slope_of(high)
-      do while (slope_high < 0.0_wp .and. high < 1.0e6_wp)
-         low = high
-         slope_low = slope_high
-         high = 2.0_wp*high
-         slope_high = slope_of(high)
-      end do
+      call find_bracket(low, high, slope_low, slope_high)
       factor = high
       do pass = 1, 60
          if (.not. slope_high > slope_low) exit
@@ -134,6 +125,23 @@ contains
       end do
 
    contains
+
+      !> A part of the way at whose end the slope has risen above zero
+      pure subroutine find_bracket(low, high, slope_low, slope_high)
+         !> Both ends, and the slopes there
+         real(wp), intent(out) :: low, high, slope_low, slope_high
+
+         low = 0.0_wp
+         slope_low = slope_of(low)
+         high = 1.0_wp
+         slope_high = slope_of(high)
+         do while (slope_high < 0.0_wp .and. high < 1.0e6_wp)
+            low = high
+            slope_low = slope_high
+            high = 2.0_wp*high
+            slope_high = slope_of(high)
+         end do
+      end subroutine find_bracket
 
       !> Slope of the energy along the direction
       pure function slope_of(way) result(slope)
