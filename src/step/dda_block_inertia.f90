@@ -65,7 +65,7 @@ contains
       end do
    end subroutine assemble_blocks
 
-   !> Load of the blocks: outer forces, stress, and in a dynamic step the impetus of their velocities
+   !> Load of the blocks: outer forces, stress, and in a dynamic step the impetus of velocities
    pure subroutine load_blocks(system, settings, dt, equations)
       type(block_system_t), intent(in) :: system
       type(settings_t), intent(in) :: settings

@@ -141,13 +141,14 @@ contains
       x = best
    end subroutine iterate
 
-   !> Slack and flow in the middle, whatever the forces are: farther away from a corner of the bounds
+   !> Slack and flow in the middle, farther away from a corner of the bounds
    pure subroutine begin_afar(equations, springs, view, p, x, mean, merit)
       type(equations_t), intent(in) :: equations
       type(joint_springs_t), intent(in) :: springs
       type(contact_view_t), intent(in) :: view
       type(problem_t), intent(inout) :: p
       type(interior_t), intent(inout) :: x
+      !> Measures of what is left
       real(wp), intent(out) :: mean, merit
 
       x%slack = merge(p%size, 1.0_wp, p%bounded)

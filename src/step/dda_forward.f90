@@ -97,7 +97,8 @@ contains
       call new_equations(system, contacts%springs, settings, equations)
       call begin_step(contacts, size(equations%weight, 1), size(equations%weight, 2), step%state)
       if (present(onward)) call go_on(settings, system, onward, march, equations)
-      if (march%steps == 0) call begin_run(settings, system, contacts, equations, march, step, error)
+      if (march%steps == 0) &
+         & call begin_run(settings, system, contacts, equations, march, step, error)
       if (present(album)) call keep_pictures(settings, system, contacts, march, 0.0_wp, .false., &
          & album)
       do while (.not. allocated(error))

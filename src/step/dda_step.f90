@@ -39,8 +39,8 @@ module dda_step
    real(wp), parameter :: shortest_step = 1.0e-40_wp
    !> Steps from one try to bring slow blocks to rest to the next, and most steps of such a try
    integer, parameter :: between_tries = 16, steps_of_try = 40
-   !> Distance that blocks may go in the first of these steps, over the size of the smallest one, and
-   !> how much of it in the next
+   !> Distance that blocks may go in the first of these steps, over the size of the smallest block,
+   !> and how much of it in the next
    real(wp), parameter :: no_distance = 1.0e-8_wp, falling = 0.8_wp
    !> How much smaller than usual the gaps are that a try leaves
    real(wp), parameter :: of_try = 1.0e-6_wp
@@ -118,7 +118,7 @@ contains
    end subroutine rest
 
    !> Bring blocks to rest whose speeds may be what contact forces leave: without these speeds, the
-   !> gaps that are left close and forces balance. Where they do not, or blocks move, nothing changes
+   !> gaps that are left close and forces balance. Where they do not, nothing changes
    pure subroutine come_to_rest(settings, system, contacts, equations, march, step, still)
       type(settings_t), intent(in) :: settings
       type(block_system_t), intent(inout) :: system

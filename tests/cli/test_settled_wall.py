@@ -32,7 +32,8 @@ def run(folder: Path, blocks: str, friction_deg: float, duration: float) -> tupl
     (folder / "x.blocks").write_text(blocks)
     (folder / "x.nml").write_text(
         f"&scene kind = 'blocks', geometry = 'x.blocks' /\n&joint friction_deg = {friction_deg!r} /\n"
-        f"&analysis mode = 'dynamic', geometry = 'current', time_step = 1e-3, duration = {duration!r}, steps = 9999 /\n")
+        "&analysis mode = 'dynamic', geometry = 'current', time_step = 1e-3, "
+        f"duration = {duration!r}, steps = 9999 /\n")
     done = run_dda("run", "x.nml", "--quiet", cwd=folder)
     assert done.returncode == 0, done.stderr
     with (folder / "x" / "results.csv").open() as table:
