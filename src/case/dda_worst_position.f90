@@ -75,7 +75,7 @@ contains
       call take_bridge(deck, scene, bridge)
       call part_road(bridge, stretch)
       first = 1
-      do while (first <= size(stretch))
+      do while (first <= size(stretch) .and. least%factor > 0.0_wp)
          last = first
          do while (last < size(stretch))
             if (stretch(last + 1)%side /= stretch(first)%side) exit
@@ -84,9 +84,22 @@ contains
          call seek_on_side(bridge, stretch(first:last), least)
          first = last + 1
       end do
-      found = least%factor < no_limit
+      ! what falls wherever the axles stand, and leans against nothing, has no worst position
+      found = least%factor < no_limit .and. (least%factor > 0.0_wp .or. leans(bridge))
       if (found) position = least%place
    end subroutine find_worst_position
+
+   !> Whether there is fill that the bridge can lean against
+   pure logical function leans(bridge)
+      type(bridge_t), intent(in) :: bridge
+      type(scene_t) :: scene
+
+      leans = allocated(bridge%fill)
+      if (.not. leans) return
+      scene = bridge%scene
+      call press_side(bridge%fill, 0, scene)
+      leans = allocated(scene%settings%boundary%bounded)
+   end function leans
 
    !> What a deck has of a bridge
    pure subroutine take_bridge(deck, scene, bridge)

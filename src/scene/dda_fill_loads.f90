@@ -18,7 +18,7 @@ module dda_fill_loads
    type :: fill_t
       !> Chords that it lies on: (n)
       type(top_chord_t), allocatable :: chord(:)
-      !> Where the crown of each span is along x: (n_span) [m]
+      !> Where the extrados of each span turns from rising to falling, along x: (n_span) [m]
       real(wp), allocatable :: crown_x(:)
       !> Height of its surface [m]
       real(wp) :: surface = 0.0_wp
@@ -37,6 +37,8 @@ module dda_fill_loads
 
    !> A chord that rises less than this share of its length is not pressed
    real(wp), parameter :: level = 1.0e-9_wp
+   !> A load so near to the crown, as a share of the width of the fill, is on no side
+   real(wp), parameter :: at_crown = 1.0e-12_wp
    !> Bars that push as fill does begin so many lengths of the arch away: they stay level
    real(wp), parameter :: far = 1.0e3_wp
 
@@ -68,7 +70,8 @@ contains
       integer :: i
 
       allocate (fill%chord, source=assembly%top)
-      allocate (fill%crown_x, source=assembly%crown_x)
+      allocate (fill%crown_x, source=[(crown_of(pack(assembly%top, assembly%top%span == i)), &
+         & i=1, size(assembly%crown_x))])
       fill%surface = -huge(fill%surface)
       do i = 1, size(fill%chord)
          fill%surface = max(fill%surface, fill%chord(i)%left(2), fill%chord(i)%right(2))
@@ -88,6 +91,31 @@ contains
       if (deck%fill%passive_share%given) fill%passive = deck%fill%passive_share%number &
          & *tan(degree*(45.0_wp + 0.5_wp*deck%fill%friction_deg%number))**2
    end function fill_of
+
+   !> Where the extrados of a span turns from rising to falling, between the middles of two chords
+   !> in proportion to their slopes; where it does not turn, its highest point [m]
+   pure real(wp) function crown_of(chord) result(x)
+      !> Its chords from left to right: (n)
+      type(top_chord_t), intent(in) :: chord(:)
+      real(wp) :: middle(size(chord)), slope(size(chord)), highest
+      integer :: i
+
+      x = 0.0_wp
+      highest = -huge(x)
+      do i = 1, size(chord)
+         middle(i) = 0.5_wp*(chord(i)%left(1) + chord(i)%right(1))
+         slope(i) = (chord(i)%right(2) - chord(i)%left(2)) &
+            & /(chord(i)%right(1) - chord(i)%left(1))
+         if (chord(i)%left(2) > highest) x = chord(i)%left(1)
+         if (max(highest, chord(i)%left(2)) < chord(i)%right(2)) x = chord(i)%right(1)
+         highest = max(highest, chord(i)%left(2), chord(i)%right(2))
+      end do
+      do i = 1, size(chord) - 1
+         if (slope(i) < 0.0_wp .or. slope(i + 1) > 0.0_wp .or. slope(i + 1) >= slope(i)) cycle
+         x = middle(i) + (middle(i + 1) - middle(i))*slope(i)/(slope(i) - slope(i + 1))
+         return
+      end do
+   end function crown_of
 
    !> Put the weight of the fill on the blocks below it: of what stands above each chord
    pure subroutine add_fill_weight(fill, scene)
@@ -245,7 +273,7 @@ contains
          bar(:n) = scene%settings%boundary%bar
          state(:n) = scene%system%bar
       end if
-      away = far*(maxval(fill%chord%right(1)) - minval(fill%chord%left(1)))
+      away = far*width_of(fill)
       do i = 1, size(force)
          bar(n + i)%block = [force(i)%block, 0]
          bar(n + i)%point(:, 1) = force(i)%point
@@ -278,8 +306,15 @@ contains
       x = total(2)/total(1) + origin(1)
       side = minloc(abs(fill%crown_x - x), dim=1)
       side = merge(0, merge(-side, side, x < fill%crown_x(side)), &
-         & abs(x - fill%crown_x(side)) <= 0.0_wp)
+         & abs(x - fill%crown_x(side)) <= at_crown*width_of(fill))
    end function live_side
+
+   !> How wide the fill is [m]
+   pure real(wp) function width_of(fill)
+      type(fill_t), intent(in) :: fill
+
+      width_of = maxval(fill%chord%right(1)) - minval(fill%chord%left(1))
+   end function width_of
 
    !> Add the sizes of live loads, and their moments along x
    pure subroutine add_live(loaded, total)

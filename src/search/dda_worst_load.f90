@@ -58,7 +58,7 @@ module dda_worst_load
 
 contains
 
-   !> Seek the least factor of the loads of all arcs
+   !> Seek the least factor of the loads of all arcs: none where the dead load falls by itself
    pure subroutine seek_least_factor(graph, dead, arc, stands, near, least)
       type(joint_graph_t), intent(in) :: graph
       !> Loads at a factor of zero: (3, n_block) [N/m, N/m, N]
@@ -80,8 +80,10 @@ contains
       chase%stands = stands
       if (.not. stands) then
          call decide_load(graph, dead, decision)
-         ! what falls without live loads has no factor
-         if (decision%state == load_state%falls) return
+         if (decision%state == load_state%falls) then
+            least = least_factor_t(0.0_wp, 0.5_wp*(arc(1)%from + arc(size(arc))%to))
+            return
+         end if
          chase%stands = decision%state == load_state%stands
       end if
       chase%near = near

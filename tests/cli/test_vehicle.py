@@ -136,3 +136,21 @@ def test_what_cannot_be_is_refused_with_its_line(tmp_path: Path, deck: str, word
     assert done.returncode == 2
     assert done.stderr.startswith("x.nml:") and ": error: " in done.stderr and word in done.stderr
     assert len(done.stderr.splitlines()) == 1
+
+
+def test_an_arch_that_falls_unless_both_sides_lean_carries_nothing_where_the_axle_stands_worst(tmp_path: Path) -> None:
+    """Only the side away from an axle leans against the fill: with an axle of no weight left of the crown it falls."""
+    deck = (
+        "&arch shape = 'catenary', span = 2.389, voussoirs = 12, rise = 0.7639, thickness = 0.1074, "
+        "buttress_width = 0.301, buttress_height = 1.5684 /\n&joint friction_deg = 51.32 /\n"
+        "&material unit_weight = 20e3 /\n&fill height = 0.021, unit_weight = 18e3, passive_coefficient = 2.778 /\n"
+        "&vehicle axles = 2e4, {} /\n"
+    )
+    verdicts = {}
+    for place in ("position = 0", "position = -0.3", "position = 0.3"):
+        (row,) = rows(tmp_path, deck.format(place) + "&load load_factor = 1e-6 /\n", head="")
+        verdicts[place] = row["verdict"]
+    assert verdicts == {"position = 0": "stable", "position = -0.3": "collapsed", "position = 0.3": "collapsed"}
+    (worst,) = rows(tmp_path, deck.format("worst = .true.") + SEARCH, head="")
+    assert worst["verdict"] == "collapsed"
+    assert abs(float(worst["worst_position"])) > 0.1

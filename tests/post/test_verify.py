@@ -81,6 +81,17 @@ DECKS = {
     "rings and a rise on one side": "&arch shape = 'elliptic', span = 5, rise = 2, right_rise = 1.4, thickness = 0.5, "
         "rings = 2, voussoirs = 13 /\n&fill height = 0.2, unit_weight = 18e3, passive_coefficient = 0.6 /\n"
         "&vehicle axles = 3e4, 2e4, spacings = 1.1, worst = .true. /\n" + SEARCH,
+    "an axle on a joint of a level arch in fill": "&arch shape = 'flat', span = 10, voussoirs = 22, "
+        "half_angle_deg = 30, thickness = 1.1 /\n&fill height = 0.1, unit_weight = 18e3, passive_coefficient = 2 /\n"
+        "&vehicle axles = 2e4, 3e4, spacings = 1.2, position = 0 /\n" + SEARCH,
+    "extrados and intrados that are highest at two places": "&arch shape = 'elliptic', span = 4, rise = 1.07, "
+        "right_rise = 1.2, crown_thickness = 0.44, springing_thickness = 0.75, voussoirs = 30 /\n"
+        "&fill height = 0.03, unit_weight = 18e3, passive_coefficient = 1.4 /\n"
+        "&vehicle axles = 2e4, 3e4, spacings = 1.2, position = 1.1 /\n" + SEARCH,
+    "a springing in a notch of its pier": "&arch shape = 'parabolic', span = 9.2, rise = 4.2, right_rise = 3.4, "
+        "thickness = 0.88, joint_direction = 'radial', voussoirs = 24, spans = 2, pier_width = 2.1, "
+        "pier_height = 0.85 /\n&material unit_weight = 20e3 /\n&joint friction_deg = 50 /\n"
+        "&vehicle axles = 2e4, position = -2.1 /\n" + SEARCH,
     "a flat arch that no push fells": FLAT.format("", 2),
     "a flat arch under the associated rule": FLAT.format("&analysis flow = 'associated' /\n", 0.2),
     "a segment that no push fells": FLAT.format("&analysis flow = 'associated' /\n", 0.3).replace(

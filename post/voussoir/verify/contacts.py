@@ -13,6 +13,12 @@ TOUCH = 1e-4
 #: Edges that overlap by less than this share of the shorter one meet at corners only
 OVERLAP = 1e-6
 
+#: A corner that bends inwards by a larger sine is a notch
+FLAT = 1e-9
+
+#: Sides of a corner may dip by this sine below an edge that it points to
+DIP = 0.05
+
 
 @dataclass
 class Block:
@@ -83,15 +89,19 @@ def _joints_of(first: Block, second: Block) -> list[Joint]:
     """Joints between two blocks."""
     reach = TOUCH * min(first.size, second.size)
     joints = []
+    taken: list[tuple[int, int, np.ndarray]] = []
     for a, b in _near_edges(first, second, reach):
         joint = _edges_together(first, a, second, b, reach)
         if joint is not None:
             joints.append(joint)
-    touched = [end for joint in joints for end in joint.ends]
-    for owner, other in ((first, second), (second, first)):
-        for a, k in _near_corners(owner, other, reach):
+            taken += [(side, edge, end) for side, edge in ((0, int(a)), (1, int(b))) for end in joint.ends]
+    for side, (owner, other) in enumerate(((first, second), (second, first))):
+        for a, k, in_notch in _near_corners(owner, other, reach):
             corner = other.corners[k]
-            if any(np.linalg.norm(corner - end) <= reach for end in touched):
+            if any(
+                np.linalg.norm(corner - end) <= reach and (not in_notch or (side, a) == (of, edge))
+                for of, edge, end in taken
+            ):
                 continue
             _, direction, _ = _edge(owner, a)
             normal = np.array([direction[1], -direction[0]])
@@ -111,16 +121,37 @@ def _near_edges(first: Block, second: Block, reach: float) -> np.ndarray:
     return np.argwhere(meets.all(axis=2))
 
 
-def _near_corners(owner: Block, other: Block, reach: float) -> np.ndarray:
-    """Edges of one block with corners of another that lie on them, off their ends."""
+def _near_corners(owner: Block, other: Block, reach: float) -> list[tuple[int, int, bool]]:
+    """Edges of one block with corners of another that lie on them, off their ends, or in notches that both meet."""
     start = owner.corners
     along = np.roll(start, -1, axis=0) - start
-    length = np.linalg.norm(along, axis=1)
-    unit = along / length[:, None]
+    length = np.linalg.norm(along, axis=1)[:, None]
+    unit = along / length
     away = other.corners[None] - start[:, None]
     place = (away * unit[:, None]).sum(axis=2)
     off = away[:, :, 0] * unit[:, None, 1] - away[:, :, 1] * unit[:, None, 0]
-    return np.argwhere((place > reach) & (place < length[:, None] - reach) & (np.abs(off) <= reach))
+    near = np.abs(off) <= reach
+    inside = near & (place > reach) & (place < length - reach)
+    notch = (_bend(owner) < -FLAT)[:, None]
+    in_notch = near & (notch & (np.abs(place) <= reach) | np.roll(notch, -1) & (np.abs(place - length) <= reach))
+    in_notch &= (_bend(other) > -FLAT)[None] & _faces(other, unit)
+    return [(int(a), int(k), bool(in_notch[a, k])) for a, k in np.argwhere(inside | in_notch)]
+
+
+def _bend(block: Block) -> np.ndarray:
+    """Sine of the angle by which the outline turns at each corner, negative in notches."""
+    after = np.roll(block.corners, -1, axis=0) - block.corners
+    after = after / np.linalg.norm(after, axis=1)[:, None]
+    before = np.roll(after, 1, axis=0)
+    return before[:, 0] * after[:, 1] - before[:, 1] * after[:, 0]
+
+
+def _faces(block: Block, unit: np.ndarray) -> np.ndarray:
+    """Whether both sides of each corner of a block lead away from edges along unit vectors."""
+    after = np.roll(block.corners, -1, axis=0) - block.corners
+    after = after / np.linalg.norm(after, axis=1)[:, None]
+    normal = np.array([unit[:, 1], -unit[:, 0]])
+    return (after @ normal > -DIP).T & (-np.roll(after, 1, axis=0) @ normal > -DIP).T
 
 
 def _edge(block: Block, number: int) -> tuple[np.ndarray, np.ndarray, float]:

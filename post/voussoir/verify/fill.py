@@ -7,12 +7,14 @@ from dataclasses import dataclass
 import numpy as np
 
 from voussoir.verify.contacts import Block, depth
-from voussoir.verify.deck import Deck, VerifyError
+from voussoir.verify.deck import Deck
 
 #: A point so far outside an edge, over its length, tells what lies on it
 OUTSIDE = 1e-6
 #: A chord that rises less than this share of its length is not pressed
 LEVEL = 1e-9
+#: A load so near to the crown, as a share of the width of the fill, is on no side
+AT_CROWN = 1e-12
 
 
 @dataclass
@@ -166,6 +168,7 @@ def pressures(deck: Deck, blocks: list[Block], live: list[tuple[np.ndarray, np.n
         load_x = sum(size * float(place[0]) for size, (place, _) in zip(sizes, live)) / sum(sizes)
         loaded = min(crowns, key=lambda span: abs(crowns[span] - load_x))
     found = []
+    width = float(max(c.right[0] for c in chords) - min(c.left[0] for c in chords))
     for chord in chords:
         if chord.span == 0 or abs(chord.rise) <= LEVEL * (chord.right[0] - chord.left[0]):
             continue
@@ -174,7 +177,7 @@ def pressures(deck: Deck, blocks: list[Block], live: list[tuple[np.ndarray, np.n
             most = None
         elif chord.span == loaded:
             crown = crowns[chord.span]
-            if (float(chord.middle[0]) - crown) * (load_x - crown) > 0.0:
+            if abs(load_x - crown) > AT_CROWN * width and (float(chord.middle[0]) - crown) * (load_x - crown) > 0.0:
                 continue
         if most is None or most > 0:
             inward = np.array([1 if chord.rise > 0 else -1, 0])
@@ -183,12 +186,13 @@ def pressures(deck: Deck, blocks: list[Block], live: list[tuple[np.ndarray, np.n
 
 
 def _crown(chords: list[Chord]) -> float:
-    """Where chords turn from rising to falling."""
+    """Where chords turn from rising to falling; where they do not, their highest point."""
     slopes = sorted((float(c.middle[0]), float(c.rise / (c.right[0] - c.left[0]))) for c in chords)
     for (x, rising), (next_x, falling) in zip(slopes, slopes[1:]):
         if rising >= 0.0 >= falling and rising > falling:
             return x + (next_x - x) * rising / (rising - falling)
-    raise VerifyError("expected arches that rise and fall, got one without a crown")
+    ends = [end for chord in sorted(chords, key=lambda c: float(c.left[0])) for end in (chord.left, chord.right)]
+    return float(max(ends, key=lambda end: float(end[1]))[0])
 
 
 def lowest_below(blocks: list[Block], x: float) -> float:
@@ -204,11 +208,10 @@ def lowest_below(blocks: list[Block], x: float) -> float:
     best: tuple[float, float] | None = None
     for block in blocks:
         for start, end in zip(block.corners, np.roll(block.corners, -1, axis=0)):
-            if (start[0] - x) * (end[0] - x) > 0:
+            # upper edges alone: a joint may stand upright below the axle
+            if (start[0] - x) * (end[0] - x) > 0 or start[0] - end[0] <= LEVEL * abs(end[1] - start[1]):
                 continue
-            y = max(start[1], end[1])
-            if start[0] != end[0]:
-                y = start[1] + (x - start[0]) / (end[0] - start[0]) * (end[1] - start[1])
+            y = start[1] + (x - start[0]) / (end[0] - start[0]) * (end[1] - start[1])
             if best is None or y > best[0]:
                 best = (y, min(start[1], end[1]))
     assert best is not None
