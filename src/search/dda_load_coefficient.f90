@@ -9,14 +9,14 @@ module dda_load_coefficient
    use dda_kinds, only : wp
    use dda_limit_decision, only : decide_load, load_decision_t, load_state
    use dda_load_stations, only : bears_live_load, last_history_time, load_stations, &
-      & load_stations_t, loads_at
+      & load_stations_t, loads_at, only_weight
    use dda_path_verdict, only : graph_verdict_t
    use dda_scene, only : scene_t, searched_load
    use dda_settings, only : flow_rule, full_push, settings_t
    implicit none
    private
 
-   public :: added_loads, can_follow, carry_load, coefficient, full_loads, only_weight
+   public :: added_loads, can_follow, carry_load, coefficient, full_loads
    public :: is_push, knows_no_order, restore_weight, seek_rest, value_at_end, with_coefficient
 
    !> A coefficient beside which rounding of the constant loads is not felt
@@ -70,15 +70,6 @@ contains
       with_dead_push%push = full_push(settings)
       with_dead_push%live_push = .false.
    end function with_dead_push
-
-   !> Whether nothing but weight acts, so that gravity that tilts is a push of fixed weight
-   pure logical function only_weight(settings)
-      type(settings_t), intent(in) :: settings
-
-      only_weight = .not. allocated(settings%boundary%loaded)
-      if (.not. only_weight) only_weight = size(settings%boundary%loaded) == 0
-      only_weight = only_weight .and. .not. allocated(settings%boundary%base_acceleration%time)
-   end function only_weight
 
    !> What is searched, from where it does nothing
    pure real(wp) function coefficient(load, settings)

@@ -11,9 +11,9 @@ module dda_load_search
    use dda_kinds, only : wp
    use dda_limit_load, only : find_limit, limit_load_t, limit_state
    use dda_load_coefficient, only : added_loads, can_follow, carry_load, coefficient, full_loads, &
-      & is_push, knows_no_order, only_weight, restore_weight, seek_rest, value_at_end, &
+      & is_push, knows_no_order, restore_weight, seek_rest, value_at_end, &
       & with_coefficient
-   use dda_load_stations, only : load_stations, load_stations_t
+   use dda_load_stations, only : load_stations, load_stations_t, only_weight
    use dda_loading_path, only : path_end
    use dda_path_verdict, only : graph_verdict_t
    use dda_scene, only : family_t, scene_t, searched_load

@@ -16,7 +16,7 @@ module dda_load_stations
    private
 
    public :: load_stations_t, bears_live_load, load_stations, loads_at, last_history_time
-   public :: history_times, leads_at_once
+   public :: history_times, leads_at_once, only_weight
 
    !> Stations of the path; station 0 has the dead loads alone
    type :: load_stations_t
@@ -32,12 +32,22 @@ module dda_load_stations
       real(wp), allocatable :: time(:)
    end type load_stations_t
 
-   !> Longest leg of gravity that tilts: its chord is off by the square of it [rad]
-   real(wp), parameter :: longest_tilt = 4.4e-3_wp
+   !> Longest leg of gravity that tilts: its chord is off by the square of it. Where nothing but
+   !> weight acts what the chord lacks of it is given back, beside other loads it is not [rad]
+   real(wp), parameter :: longest_tilt = 4.4e-3_wp, longest_beside = 8.0e-4_wp
    !> Loads below this share of those that they are left of are rounding
    real(wp), parameter :: rounding = 16.0_wp*epsilon(1.0_wp)
 
 contains
+
+   !> Whether nothing but weight acts, so that gravity that tilts is a push of fixed weight
+   pure logical function only_weight(settings)
+      type(settings_t), intent(in) :: settings
+
+      only_weight = .not. allocated(settings%boundary%loaded)
+      if (.not. only_weight) only_weight = size(settings%boundary%loaded) == 0
+      only_weight = only_weight .and. .not. allocated(settings%boundary%base_acceleration%time)
+   end function only_weight
 
    !> Stations of a scene, or of a later stage of it: histories alone go on there
    pure type(load_stations_t) function load_stations(settings, upright) result(stations)
@@ -51,7 +61,8 @@ contains
       later = settings%from > 0.0_wp
       allocate (time, source=history_times(settings))
       n_led = merge(1, 0, leads_at_once(settings))
-      n_tilt = merge(ceiling(abs(settings%tilt)/longest_tilt), 0, upright)
+      n_tilt = merge(ceiling(abs(settings%tilt) &
+         & /merge(longest_tilt, longest_beside, only_weight(settings))), 0, upright)
       n_push = merge(1, 0, abs(settings%push) > 0.0_wp .and. .not. settings%live_push)
       n_live = merge(1, 0, bears_live_load(settings))
       if (later) then

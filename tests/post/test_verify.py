@@ -62,6 +62,9 @@ DECKS = {
     "thickness": "&search /\n&arch voussoirs = 12 /\n",
     "listed joints": "&arch joints_deg = 0, 30, 54.5, 90, facet_deg = 5, thickness_ratio = 0.2 /\n",
     "tilt": "&search parameter = 'gravity_direction_deg', low = -90, high = -45 /\n&arch half_angle_deg = 75 /\n",
+    "tilt of an arch in fill": "&arch shape = 'segmental', span = 8.4, voussoirs = 7, rise = 3, right_rise = 3.3, "
+        "thickness = 0.46 /\n&joint friction_deg = 21 /\n&fill height = 0.2, unit_weight = 18e3 /\n"
+        "&search parameter = 'gravity_direction_deg', low = -90, high = -50 /\n",
     "sweeps": "&sweep parameter = 'friction_deg', values = 20, 40 /\n&search parameter = 'horizontal_coefficient' /\n"
               "&sweep parameter = 'half_angle_deg', values = 60, 70 /\n"
               "&sweep parameter = 'voussoirs', values = 11, 12, linked = .true. /\n",
