@@ -3,7 +3,7 @@ module dda_case_table
    use dda_case, only : searched_name
    use dda_case_fields, only : column_t, field_of, fit_columns, padded, source, wrapped
    use dda_deck, only : deck_sweep_t, deck_t, keeps_velocities, scene_kind
-   use dda_deck_sweep, only : n_cases, swept_names, swept_texts
+   use dda_deck_sweep, only : n_cases, swept_texts
    use dda_screen, only : print_line, screen_t, screen_width
    use dda_text, only : to_text
    use dda_write_results, only : result_row_t
@@ -79,7 +79,7 @@ contains
 
       searched = searched_name(deck)
       arch = scene_kind(deck) == "arch"
-      associate (swept => swept_names(deck))
+      associate (swept => deck%sweeps%name)
          ! a run in time ends when it is over, not with a collapse
          falls = .not. keeps_velocities(deck) .or. any(swept == "mode" .or. swept == "dynamic")
          column = [column_t("case", source%case, len(to_text(n_cases(deck))))]

@@ -5,7 +5,7 @@ module dda_check
    use dda_command_line, only : command_t, name_of
    use dda_deck, only : deck_t, geometry_of, keeps_velocities, scene_kind
    use dda_deck_scene, only : deck_scene
-   use dda_deck_sweep, only : case_deck, n_cases, swept_names
+   use dda_deck_sweep, only : case_deck, n_cases
    use dda_cut, only : print_warnings
    use dda_error, only : error_line, error_t
    use dda_limerick_model, only : half_size, limerick_model_t
@@ -102,11 +102,9 @@ contains
       if (deck%scene%kind%word /= "blocks") call deck_scene(first, plan, scene)
       blocks = maxval(scene%system%equation)
       swept = ""
-      associate (names => swept_names(deck))
-         do s = 1, size(names)
-            swept = swept//" "//trim(names(s))
-         end do
-      end associate
+      do s = 1, size(deck%sweeps)
+         swept = swept//" "//trim(deck%sweeps(s)%name)
+      end do
       call print_line(screen, name//": "//deck%scene%title%text)
       call tell(screen, "cases", to_text(n_cases(deck)))
       if (swept /= "") call tell(screen, "swept", swept(2:))

@@ -3,7 +3,7 @@ module dda_result_tables
    use, intrinsic :: iso_fortran_env, only : int64
    use dda_force_rows, only : bars_header
    use dda_deck, only : deck_t
-   use dda_deck_sweep, only : n_cases, swept_names, swept_texts
+   use dda_deck_sweep, only : n_cases, swept_text
    use dda_disk_record, only : write_disk_record
    use dda_fill_loads, only : fill_yields
    use dda_error, only : error_t
@@ -112,11 +112,9 @@ contains
       integer :: s
 
       names = ""
-      associate (swept => swept_names(deck))
-         do s = 1, size(swept)
-            if (all(own_column /= swept(s))) names = names//trim(swept(s))//","
-         end do
-      end associate
+      do s = 1, size(deck%sweeps)
+         if (all(own_column /= deck%sweeps(s)%name)) names = names//trim(deck%sweeps(s)%name)//","
+      end do
       tables%folder = folder
       tables%record_file = folder//"/deck.record"
       tables%disk_file = folder//"/disk.record"
@@ -289,11 +287,10 @@ contains
       integer :: s
 
       fields = ""
-      associate (swept => swept_names(deck), texts => swept_texts(deck, number))
-         do s = 1, size(swept)
-            if (all(own_column /= swept(s))) fields = fields//trim(texts(s))//","
-         end do
-      end associate
+      do s = 1, size(deck%sweeps)
+         if (all(own_column /= deck%sweeps(s)%name)) &
+            & fields = fields//swept_text(deck, number, s)//","
+      end do
    end function swept_fields
 
    !> Bytes of all tables but results.csv and the sizes

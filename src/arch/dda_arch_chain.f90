@@ -160,51 +160,54 @@ contains
       real(wp), intent(in) :: thickness_ratio
       !> Any chain in, whose arrays are used again where they fit
       type(chain_t), intent(inout) :: chain
-      real(wp) :: area, centre(2), give, radius, thickness, way(2)
+      real(wp) :: area, centre(2), give, most, radius, spring, square, thickness, way(2)
       integer :: b, first, last, n
 
       n = size(rays%joint) - 1
       call new_chain(n, chain)
       radius = numbers%shape%radius
       thickness = thickness_ratio*radius
+      square = thickness**2
       give = 1.0_wp/(numbers%young*thickness)
-      chain%stiffness(1) = huge(1.0_wp)
+      spring = numbers%penalty_ratio*numbers%young*thickness
+      most = stiffest*(spring/maxval(rays%length))
+      do b = 1, n + 1
+         associate (joint => chain%joint(b))
+            joint%tangent = rays%direction(:, rays%joint(b))
+            joint%middle = radius*rays%point(:, rays%joint(b))
+            joint%half = thickness/2.0_wp
+            joint%stiffness = min(most, &
+               & spring/max(rays%length(max(1, b - 1)), rays%length(min(b, n))))
+            joint%compliance = 0.0_wp
+            joint%friction = numbers%law%friction
+            joint%limit = merge(huge(1.0_wp), 0.0_wp, numbers%law%no_slip)
+            joint%arm = 0.0_wp
+         end associate
+      end do
       do b = 1, n
          first = rays%joint(b)
          last = rays%joint(b + 1)
          area = rays%area(b)*thickness
-         centre = rays%centre(:, 1, b) + rays%centre(:, 2, b)*thickness**2
-         chain%centroid(:, b) = radius*rays%point(:, first) + centre
-         chain%mass(b) = numbers%density*area
-         chain%inertia(b) = chain%mass(b)*(rays%gyration(1, b) &
-            & + rays%gyration(2, b)*thickness**2 - centre(1)**2 - centre(2)**2)
-         chain%weight(:, b) = area*numbers%body_force
-         chain%tangent(:, b) = rays%direction(:, first)
-         chain%middle(:, b) = radius*rays%point(:, first)
-         way = radius*(rays%point(:, last) - rays%point(:, first)) - centre
-         call find_arms(-centre, rays%direction(:, first), chain%arm(:, 2, b))
-         call find_arms(way, rays%direction(:, last), chain%arm(:, 1, b + 1))
-         chain%stiffness(b + 1) = numbers%penalty_ratio*numbers%young*thickness/rays%length(b)
-         chain%stiffness(b) = min(chain%stiffness(b), chain%stiffness(b + 1))
-         if (rays%keystone .and. b == n) cycle
-         call add_compliance(give, area, chain%arm(2, 2, b), thickness, &
-            & chain%compliance(b))
-         call add_compliance(give, area, chain%arm(2, 1, b + 1), thickness, &
-            & chain%compliance(b + 1))
+         centre = rays%centre(:, 1, b) + rays%centre(:, 2, b)*square
+         associate (block => chain%block(b), before => chain%joint(b), behind => chain%joint(b + 1))
+            block%centroid = before%middle + centre
+            block%mass = numbers%density*area
+            block%inertia = block%mass*(rays%gyration(1, b) + rays%gyration(2, b)*square &
+               & - centre(1)**2 - centre(2)**2)
+            block%weight = area*numbers%body_force
+            way = radius*(rays%point(:, last) - rays%point(:, first)) - centre
+            call find_arms(-centre, before%tangent, before%arm(:, 2))
+            call find_arms(way, behind%tangent, behind%arm(:, 1))
+            if (rays%keystone .and. b == n) cycle
+            call add_compliance(give, area, before%arm(2, 2), thickness, before%compliance)
+            call add_compliance(give, area, behind%arm(2, 1), thickness, behind%compliance)
+         end associate
       end do
       if (rays%keystone) call add_compliance(give, 2.0_wp*area, radius &
          & *(rays%direction(2, first)*rays%point(1, first)) - rays%direction(1, first) &
-         & *(radius*rays%point(2, first) - chain%centroid(2, n)), thickness, chain%compliance(n))
-      last = rays%joint(n + 1)
-      chain%tangent(:, n + 1) = rays%direction(:, last)
-      chain%middle(:, n + 1) = radius*rays%point(:, last)
-      chain%arm(:, 1, 1) = 0.0_wp
-      chain%arm(:, 2, n + 1) = 0.0_wp
-      chain%stiffness = min(chain%stiffness, stiffest*minval(chain%stiffness))
-      chain%half = thickness/2.0_wp
-      chain%friction = numbers%law%friction
-      chain%limit = merge(huge(1.0_wp), 0.0_wp, numbers%law%no_slip)
-      if (numbers%no_slip_springing) chain%limit([1, n + 1]) = huge(1.0_wp)
+         & *(radius*rays%point(2, first) - chain%block(n)%centroid(2)), thickness, &
+         & chain%joint(n)%compliance)
+      if (numbers%no_slip_springing) chain%joint([1, n + 1])%limit = huge(1.0_wp)
       if (numbers%halved) call add_plane(rays, chain)
       call weigh(chain)
    end subroutine arch_chain
@@ -237,12 +240,12 @@ contains
       type(chain_t), intent(inout) :: chain
       integer :: last
 
-      last = size(chain%half)
+      last = size(chain%joint)
       chain%halved = .true.
       chain%keystone = rays%keystone
-      chain%stiffness(last) = 2.0_wp*chain%stiffness(last)
-      chain%friction(last) = 0.0_wp
-      chain%limit(last) = 0.0_wp
+      chain%joint(last)%stiffness = 2.0_wp*chain%joint(last)%stiffness
+      chain%joint(last)%friction = 0.0_wp
+      chain%joint(last)%limit = 0.0_wp
    end subroutine add_plane
 
    !> Moments of unit forces along the normal and along the tangent of a joint

@@ -60,6 +60,8 @@ module dda_deck
    type :: deck_sweep_t
       !> What it varies
       type(parameter_t) :: parameter
+      !> Its name, such as friction_deg or joints_deg(2)
+      character(len=word_length) :: name = ""
       !> Where the values were written
       type(deck_place_t) :: place
       !> Whether it advances together with the sweep before it

@@ -29,8 +29,10 @@ contains
       type(error_t), allocatable, intent(out) :: error
       character(len=:), allocatable :: problem
       integer :: n
+      logical :: stays
 
       associate (held => deck%value(parameter%key))
+         stays = held%given .and. parameter%item == 0 .and. .not. abs(held%number - value) > 0.0_wp
          n = 0
          if (allocated(held%numbers)) n = size(held%numbers)
          if (parameter%item > n) then
@@ -55,7 +57,7 @@ contains
       if (parameter%item > 0) then
          call follow_joints(deck)
          call name_values(deck)
-      else
+      else if (.not. stays) then
          call name_values(deck, only=parameter%key)
       end if
    end subroutine put_number

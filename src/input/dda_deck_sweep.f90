@@ -13,7 +13,7 @@ module dda_deck_sweep
    implicit none
    private
 
-   public :: add_sweep, n_cases, case_deck, turn_to_case, swept_names, swept_texts
+   public :: add_sweep, n_cases, case_deck, turn_to_case, swept_text, swept_texts
    public :: max_sweeps
 
    !> Most &sweep groups of a deck
@@ -52,6 +52,7 @@ contains
             place_of(deck, key_index("sweep", "parameter")))
          return
       end if
+      sweep%name = parameter_name(sweep%parameter)
       sweep%linked = deck%sweep%linked%flag
       call take_values(deck, sweep, error)
       if (.not. allocated(error)) call check_values(deck, sweep, error)
@@ -280,35 +281,37 @@ contains
       call put_case(deck, number, result, error)
    end subroutine turn_to_case
 
-   !> Names of the swept parameters
-   pure function swept_names(deck) result(names)
-      type(deck_t), intent(in) :: deck
-      !> One name a sweep, such as friction_deg or joints_deg(2): (n)
-      character(len=word_length) :: names(size(deck%sweeps))
-      integer :: s
-
-      do s = 1, size(deck%sweeps)
-         names(s) = parameter_name(deck%sweeps(s)%parameter)
-      end do
-   end function swept_names
-
    !> Values of the swept parameters in a case, as text
    pure function swept_texts(deck, number) result(texts)
       type(deck_t), intent(in) :: deck
+      !> Number of the case
       integer, intent(in) :: number
       !> One text a sweep; numbers read back as the same doubles: (n)
       character(len=word_length) :: texts(size(deck%sweeps))
-      integer :: position(size(deck%sweeps)), s
+      integer :: s
 
-      position = positions(deck, number)
       do s = 1, size(deck%sweeps)
-         associate (sweep => deck%sweeps(s))
-            if (size(sweep%numbers) > 0) then
-               texts(s) = to_text(sweep%numbers(position(s)))
-            else
-               texts(s) = sweep%texts(position(s))
-            end if
-         end associate
+         texts(s) = swept_text(deck, number, s)
       end do
    end function swept_texts
+
+   !> Value of one swept parameter in a case, as text
+   pure function swept_text(deck, number, s) result(text)
+      type(deck_t), intent(in) :: deck
+      !> Number of the case
+      integer, intent(in) :: number
+      !> Number of the sweep
+      integer, intent(in) :: s
+      character(len=:), allocatable :: text
+      integer :: position(size(deck%sweeps))
+
+      position = positions(deck, number)
+      associate (sweep => deck%sweeps(s))
+         if (size(sweep%numbers) > 0) then
+            text = to_text(sweep%numbers(position(s)))
+         else
+            text = trim(sweep%texts(position(s)))
+         end if
+      end associate
+   end function swept_text
 end module dda_deck_sweep

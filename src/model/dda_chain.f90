@@ -1,5 +1,5 @@
-!> Rigid blocks in a row between two fixed ones, each touching its two neighbours alone, as flat
-!> arrays: the form in which a scene that needs no more is decided
+!> Rigid blocks in a row between two fixed ones, each touching its two neighbours alone: the form in
+!> which a scene that needs no more is decided
 module dda_chain
    use dda_kinds, only : wp
    implicit none
@@ -7,8 +7,42 @@ module dda_chain
 
    public :: chain_t, new_chain, weigh
 
+   !> A block of a chain
+   type :: chain_block_t
+      !> Centre of gravity: (2) [m]
+      real(wp) :: centroid(2) = 0.0_wp
+      !> Mass [kg/m]
+      real(wp) :: mass = 0.0_wp
+      !> Moment of inertia about the centre [kg m]
+      real(wp) :: inertia = 0.0_wp
+      !> Load at the centre: (2) [N/m]
+      real(wp) :: weight(2) = 0.0_wp
+   end type chain_block_t
+
+   !> A joint of a chain; its force is N1 at its first corner, N2 at its second, and T along it
+   type :: chain_joint_t
+      !> Its middle: (2) [m]
+      real(wp) :: middle(2) = 0.0_wp
+      !> Unit vector from its first corner to its second one: (2)
+      real(wp) :: tangent(2) = 0.0_wp
+      !> Half its length [m]
+      real(wp) :: half = 0.0_wp
+      !> Stiffness of each of its three springs [N/m per metre depth]
+      real(wp) :: stiffness = 0.0_wp
+      !> Compliance l/(E t) of the halves of the blocks on either side of it, l across it and t
+      !> along it, or of one half on a plane of symmetry [m2/N]
+      real(wp) :: compliance = 0.0_wp
+      !> Coefficient of friction
+      real(wp) :: friction = 0.0_wp
+      !> Shear force that it carries without normal force; huge if it cannot slide [N/m]
+      real(wp) :: limit = 0.0_wp
+      !> Moments of unit forces along normal and tangent at its middle about the centre of the block
+      !> before it and of the block behind it: (2, 2) [m]
+      real(wp) :: arm(2, 2) = 0.0_wp
+   end type chain_joint_t
+
    !> Blocks from left to right; joint j is the one before block j, the last joint is behind the
-   !> last block. A joint's force is N1 at its first corner, N2 at its second, and T along it
+   !> last block
    type :: chain_t
       !> Whether these are the left blocks of a row that is its own mirror image. The last joint is
       !> then the plane of symmetry: smooth, and twice as stiff, as it opens half as wide
@@ -16,33 +50,10 @@ module dda_chain
       !> Whether this plane runs through a block, whose left half is the last one and does not
       !> leave it
       logical :: keystone = .false.
-      !> Centres of gravity: (2, n) [m]
-      real(wp), allocatable :: centroid(:, :)
-      !> Masses: (n) [kg/m]
-      real(wp), allocatable :: mass(:)
-      !> Moments of inertia about the centre: (n) [kg m]
-      real(wp), allocatable :: inertia(:)
-      !> Loads at the centre: (2, n) [N/m]
-      real(wp), allocatable :: weight(:, :)
-      !> Middles of the joints: (2, n + 1) [m]
-      real(wp), allocatable :: middle(:, :)
-      !> Unit vectors from their first corners to their second ones: (2, n + 1)
-      real(wp), allocatable :: tangent(:, :)
-      !> Half their lengths: (n + 1) [m]
-      real(wp), allocatable :: half(:)
-      !> Stiffness of each of the three springs of a joint: (n + 1) [N/m per metre depth]
-      real(wp), allocatable :: stiffness(:)
-      !> Compliance l/(E t) of the halves of the blocks on either side of a joint, l across it and t
-      !> along it, or of one half on a plane of symmetry: (n + 1) [m2/N]
-      real(wp), allocatable :: compliance(:)
-      !> Coefficients of friction: (n + 1)
-      real(wp), allocatable :: friction(:)
-      !> Shear force that a joint carries without normal force; huge if it cannot slide:
-      !> (n + 1) [N/m]
-      real(wp), allocatable :: limit(:)
-      !> Moments of unit forces along normal and tangent at a joint's middle about the centre of the
-      !> block before it and of the block behind it: (2, 2, n + 1) [m]
-      real(wp), allocatable :: arm(:, :, :)
+      !> Its blocks: (n)
+      type(chain_block_t), allocatable :: block(:)
+      !> Its joints: (n + 1)
+      type(chain_joint_t), allocatable :: joint(:)
       !> Mean mass of its blocks [kg/m]
       real(wp) :: mean_mass = 0.0_wp
       !> Sum of the sizes of the loads' components [N/m]
@@ -64,17 +75,10 @@ contains
 
       chain%halved = .false.
       chain%keystone = .false.
-      if (allocated(chain%mass)) then
-         chain%stiffness = 0.0_wp
-         chain%compliance = 0.0_wp
-         if (size(chain%mass) == n) return
-         chain = chain_t()
+      if (allocated(chain%block)) then
+         if (size(chain%block) /= n) deallocate (chain%block, chain%joint)
       end if
-      allocate (chain%centroid(2, n), chain%mass(n), chain%inertia(n), chain%weight(2, n))
-      allocate (chain%middle(2, n + 1), chain%tangent(2, n + 1), chain%half(n + 1))
-      allocate (chain%stiffness(n + 1), chain%compliance(n + 1), source=0.0_wp)
-      allocate (chain%friction(n + 1), chain%limit(n + 1))
-      allocate (chain%arm(2, 2, n + 1))
+      if (.not. allocated(chain%block)) allocate (chain%block(n), chain%joint(n + 1))
    end subroutine new_chain
 
    !> Set the sums and bounds that depend on all blocks and joints, from these
@@ -83,16 +87,18 @@ contains
       real(wp) :: mass, load, fastest, stiffest
       integer :: b, n
 
-      n = size(chain%mass)
+      n = size(chain%block)
       mass = 0.0_wp
       load = 0.0_wp
       fastest = 0.0_wp
-      stiffest = chain%stiffness(n + 1)
+      stiffest = chain%joint(n + 1)%stiffness
       do b = 1, n
-         mass = mass + chain%mass(b)
-         load = load + abs(chain%weight(1, b)) + abs(chain%weight(2, b))
-         fastest = max(fastest, (chain%weight(1, b)**2 + chain%weight(2, b)**2)/chain%mass(b)**2)
-         stiffest = max(stiffest, chain%stiffness(b))
+         associate (block => chain%block(b))
+            mass = mass + block%mass
+            load = load + abs(block%weight(1)) + abs(block%weight(2))
+            fastest = max(fastest, (block%weight(1)**2 + block%weight(2)**2)/block%mass**2)
+         end associate
+         stiffest = max(stiffest, chain%joint(b)%stiffness)
       end do
       chain%mean_mass = mass/real(n, wp)
       chain%whole_load = load

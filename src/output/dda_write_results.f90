@@ -2,7 +2,7 @@
 module dda_write_results
    use dda_growing_text, only : fields
    use dda_kinds, only : wp
-   use dda_text, only : to_text
+   use dda_text, only : print_number, to_text
    implicit none
    private
 
@@ -173,23 +173,19 @@ contains
       type(result_row_t), intent(in) :: row
       character(len=:), allocatable :: line
 
-      line = quoted(row%deck)//","//to_text(row%number)//","//row%swept &
-         & //to_text(row%blocks)//","//number_text(row%half_angle_deg)//"," &
-         & //number_text(row%thickness_ratio)//","//number_text(row%friction_deg)//"," &
+      line = quoted(row%deck)//","//to_text(row%number)//","//row%swept//to_text(row%blocks) &
+         & //","//number_fields([row%half_angle_deg, row%thickness_ratio, row%friction_deg])//"," &
          & //trim(row%mode)//","//trim(row%geometry)//","//trim(row%verdict)//"," &
-         & //number_text(row%critical)//","//number_text(row%critical_low)//"," &
-         & //number_text(row%critical_high)//","//trim(row%collapses_at)//"," &
-         & //number_text(row%exact)//","//number_text(row%relative_error)//"," &
+         & //number_fields([row%critical, row%critical_low, row%critical_high])//"," &
+         & //trim(row%collapses_at)//","//number_fields([row%exact, row%relative_error])//"," &
          & //trim(row%collapse_mode)//","//number_text(row%sliding_share)//"," &
          & //joined(row%intrados_hinge_deg)//","//joined(row%extrados_hinge_deg)//"," &
          & //trim(row%springing_hinge)//","//to_text(row%steps)//"," &
          & //to_text(row%open_close_iterations)//","//to_text(row%factorisations)//"," &
          & //to_text(row%seconds)//","//to_text(row%unknowns)//"," &
-         & //number_text(row%exact_low)//","//number_text(row%exact_high)//"," &
-         & //number_text(row%imbalance)//","//number_text(row%law_violation)//"," &
-         & //number_text(row%mechanism_power)//","//number_text(row%safety_thickness)//"," &
-         & //number_text(row%thrust_min)//","//number_text(row%thrust_max)//"," &
-         & //number_text(row%path_time)//","//number_text(row%worst_position)
+         & //number_fields([row%exact_low, row%exact_high, row%imbalance, row%law_violation, &
+         & row%mechanism_power, row%safety_thickness, row%thrust_min, row%thrust_max, &
+         & row%path_time, row%worst_position])
       if (row%tells_condition) line = line//","//number_text(row%condition)
    end function results_line
 
@@ -207,6 +203,26 @@ contains
          & //trim(row%mechanism)//","//number_text(row%slides(1))//"," &
          & //number_text(row%slides(2))
    end function joint_line
+
+   !> Numbers as texts with commas between them, nothing for what is unknown
+   pure function number_fields(number) result(text)
+      !> The numbers: (n)
+      type(number_t), intent(in) :: number(:)
+      character(len=:), allocatable :: text
+      character(len=33*size(number)) :: buffer
+      integer :: i, k, n
+
+      n = 0
+      do i = 1, size(number)
+         if (number(i)%known) then
+            call print_number(number(i)%value, buffer(n + 1:n + 32), k)
+            n = n + k
+         end if
+         n = n + 1
+         buffer(n:n) = ","
+      end do
+      text = buffer(:n - 1)
+   end function number_fields
 
    !> A number as text, nothing if it is unknown
    pure function number_text(number) result(text)

@@ -24,7 +24,7 @@ module dda_chain_decision
 contains
 
    !> Decide a chain
-   pure subroutine decide_chain(settings, chain, decision, decided)
+   pure subroutine decide_chain(settings, chain, decision, decided, reaction)
       type(settings_t), intent(in) :: settings
       type(chain_t), intent(in) :: chain
       !> The decision, without blocks and springs; of the left half alone if the chain is halved
@@ -32,23 +32,28 @@ contains
       !> Whether it counts: not where joints of what stands may have slid on the way to its loads,
       !> nor where the forces have come neither into the cones nor to a mechanism
       logical, intent(out) :: decided
+      !> What its left springing bears, or the plane of symmetry of a half: that of a chain much
+      !> like it in, or 0, its own out: (3) [N/m, N/m, N]
+      real(wp), intent(inout), optional :: reaction(3)
       type(thrust_t) :: thrust
-      real(wp) :: beyond(3, size(chain%half)), force(3, size(chain%half)), noise, worst
-      real(wp) :: load(3, size(chain%half))
+      real(wp) :: beyond(3, size(chain%joint)), force(3, size(chain%joint)), noise, worst
+      real(wp) :: load(3, size(chain%joint))
       integer :: j, n, passes
 
+      if (present(reaction)) thrust%reaction = reaction
       call find_thrust(chain, thrust, load)
+      if (present(reaction)) reaction = thrust%reaction
       call carry_forces(chain, load, thrust%reaction, force)
       noise = rounding_of_forces(chain, force)
       call approach_cones(chain, thrust, noise, force, beyond, passes)
       worst = maxval(abs(beyond))
       decided = .true.
       associate (outcome => decision%outcome, contacts => decision%contacts)
-         allocate (contacts%face(size(chain%half)), contacts%gap(3, size(chain%half)))
-         allocate (contacts%force(3, size(chain%half)))
-         do j = 1, size(chain%half)
+         allocate (contacts%face(size(chain%joint)), contacts%gap(3, size(chain%joint)))
+         allocate (contacts%force(3, size(chain%joint)))
+         do j = 1, size(chain%joint)
             contacts%force(:, j) = force(:, j) - beyond(:, j)
-            contacts%gap(:, j) = -force(:, j)*(1.0_wp/chain%stiffness(j))
+            contacts%gap(:, j) = -force(:, j)*(1.0_wp/chain%joint(j)%stiffness)
          end do
          if (worst > noise .and. .not. closes_row(chain, beyond)) then
             decided = .false.
@@ -63,9 +68,9 @@ contains
          else
             outcome%verdict = verdict%stable
             ! the plane of symmetry is smooth
-            n = size(chain%half) - merge(1, 0, chain%halved)
+            n = size(chain%joint) - merge(1, 0, chain%halved)
             if (settings%verdict_flow == flow_rule%coulomb &
-               & .and. any(chain%limit(:n) <= 0.0_wp)) &
+               & .and. any(chain%joint(:n)%limit <= 0.0_wp)) &
                & call stick_all_along(chain, settings%tilt, contacts%face, decided)
          end if
          if (chain%free_acceleration > 0.0_wp) outcome%elastic_time &
@@ -90,7 +95,7 @@ contains
       whole = 0.0_wp
       do j = 1, size(beyond, 2)
          if (.not. any(abs(beyond(:, j)) > 0.0_wp)) cycle
-         g = influence(chain, j)/chain%stiffness(j)
+         g = influence(chain, j)/chain%joint(j)%stiffness
          left = left + matmul(beyond(:, j), g)
          whole = whole + matmul(abs(beyond(:, j)), abs(g))
       end do
@@ -109,12 +114,12 @@ contains
       real(wp) :: admissible(3), fastest, inertia, power, spinning, speed
       integer :: b, j, n
 
-      n = size(chain%mass)
+      n = size(chain%block)
       allocate (decision%contacts%increment(3, n + 1))
       do j = 1, n + 1
          if (.not. holds(chain, force(:, j), j)) &
             & call project(cone_of(chain, j), force(:, j), admissible, decision%contacts%face(j))
-         decision%contacts%increment(:, j) = -beyond(:, j)/chain%stiffness(j)
+         decision%contacts%increment(:, j) = -beyond(:, j)/chain%joint(j)%stiffness
       end do
       power = -sum(force*decision%contacts%increment)
       call concentrate(chain, beyond, decision%contacts%face, decision%contacts%increment, power)
@@ -124,8 +129,8 @@ contains
       associate (d => decision%outcome%motion)
          do b = 1, n
             speed = norm2(d(1:2, b))
-            spinning = sqrt(chain%inertia(b)/chain%mass(b))*abs(d(3, b))
-            inertia = inertia + chain%mass(b)*(speed**2 + spinning**2)
+            spinning = sqrt(chain%block(b)%inertia/chain%block(b)%mass)*abs(d(3, b))
+            inertia = inertia + chain%block(b)%mass*(speed**2 + spinning**2)
             fastest = max(fastest, speed + spinning)
          end do
       end associate
@@ -168,7 +173,7 @@ contains
       face = few
       opening = 0.0_wp
       opening(:, mechanism%joint) = mechanism%opening
-      power = all_power*chain%mean_mass*real(size(chain%mass), wp)
+      power = all_power*chain%mean_mass*real(size(chain%block), wp)
    end subroutine concentrate
 
    !> Motion of the blocks from the left springing on, one joint after the other; the last joint
@@ -182,24 +187,24 @@ contains
       real(wp) :: before(3), change(2), t(2), turn
       integer :: b, n
 
-      n = size(chain%mass)
+      n = size(chain%block)
       allocate (motion(3, n))
       before = 0.0_wp
       do b = 1, n
-         t = chain%tangent(:, b)
-         turn = before(3) + (opening(1, b) - opening(2, b))/(2.0_wp*chain%half(b))
+         t = chain%joint(b)%tangent
+         turn = before(3) + (opening(1, b) - opening(2, b))/(2.0_wp*chain%joint(b)%half)
          ! along the normal (t2, -t1) and along the tangent
          change = [(opening(1, b) + opening(2, b))/2.0_wp, opening(3, b)] &
-            & - chain%arm(:, 2, b)*turn + chain%arm(:, 1, b)*before(3)
+            & - chain%joint(b)%arm(:, 2)*turn + chain%joint(b)%arm(:, 1)*before(3)
          motion(1, b) = before(1) + t(2)*change(1) + t(1)*change(2)
          motion(2, b) = before(2) - t(1)*change(1) + t(2)*change(2)
          motion(3, b) = turn
          before = motion(:, b)
       end do
-      t = chain%tangent(:, n + 1)
-      change(1) = t(1)*before(2) - t(2)*before(1) - chain%arm(1, 1, n + 1)*before(3)
-      change(2) = -dot_product(t, before(1:2)) - chain%arm(2, 1, n + 1)*before(3)
-      turn = -chain%half(n + 1)*before(3)
+      t = chain%joint(n + 1)%tangent
+      change(1) = t(1)*before(2) - t(2)*before(1) - chain%joint(n + 1)%arm(1, 1)*before(3)
+      change(2) = -dot_product(t, before(1:2)) - chain%joint(n + 1)%arm(2, 1)*before(3)
+      turn = -chain%joint(n + 1)%half*before(3)
       opening(:, n + 1) = [change(1) + turn, change(1) - turn, change(2)]
    end subroutine move_blocks
 end module dda_chain_decision

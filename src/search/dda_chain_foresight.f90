@@ -9,11 +9,12 @@ module dda_chain_foresight
    use dda_chain_decision, only : doubtful
    use dda_chain_lack, only : faces_of, find_lack, lack_t
    use dda_collapse_trace, only : proposal_t, trace
+   use dda_decision, only : decision_t
    use dda_friction_cone, only : joint_face_t
    use dda_kinds, only : wp
-   use dda_scene, only : family_t
+   use dda_scene, only : family_t, link_once
    use dda_search, only : critical_t, search_t
-   use dda_settings, only : flow_rule, settings_t
+   use dda_settings, only : flow_rule
    implicit none
    private
 
@@ -27,33 +28,31 @@ module dda_chain_foresight
    real(wp), parameter :: near = 0.01_wp
    !> Largest ratio of two values in a row
    real(wp), parameter :: largest_ratio = 3.0_wp
-   !> How fast what falls is taken to fall; only its share that rounding hides counts
-   real(wp), parameter :: some_acceleration = 1.0e-3_wp
+   !> Least acceleration that what falls is taken to have, over that of free fall
+   real(wp), parameter :: least_acceleration = 1.0e-3_wp
 
 contains
 
    !> Foresee where the collapse of a chain stops, by the secant method on what its forces lack
-   pure subroutine foresee(family, search, proposal, face)
+   pure subroutine foresee(family, search, critical, proposal, face)
       class(family_t), intent(in) :: family
       type(search_t), intent(in) :: search
+      !> New in; its chain and their forces out
+      type(critical_t), intent(inout) :: critical
       !> Where it stops, usable if that is known
       type(proposal_t), intent(out) :: proposal
       !> Faces of the joints of that collapse, where it is known: (n + 1)
       type(joint_face_t), allocatable, intent(out) :: face(:)
-      type(critical_t) :: foreseen
-      type(settings_t) :: settings
-      type(chain_t) :: chain
       type(lack_t) :: lack
       real(wp) :: before, last, next, value
       integer :: i
-      logical :: linked
 
       value = search%start
       next = value*(1.0_wp + first_step)
       do i = 1, max_values
-         call family%link(value, settings, chain, linked)
-         if (linked) call find_lack(chain, lack)
-         if (.not. (linked .and. lack%known)) return
+         call link_once(family, value, critical%link)
+         if (critical%link%known) call find_lack(critical%link%chain, lack)
+         if (.not. (critical%link%known .and. lack%known)) return
          if (i > 1) then
             if (.not. abs(lack%least - last) > 0.0_wp) return
             next = value - lack%least*(value - before)/(lack%least - last)
@@ -65,31 +64,38 @@ contains
          value = next
       end do
       if (i > max_values) return
-      foreseen%falls = value
-      call freeze(chain, lack, foreseen)
+      critical%falls = value
+      ! the trace begins with a step to where the mechanism seems to stop
+      call freeze(critical%link%chain, lack, 0.8_wp*abs(next/value - 1.0_wp), critical%fallen)
       ! where joints slide many mechanisms stop within some tolerances of one another
-      if (any(foreseen%fallen%contacts%face%slip /= 0)) return
-      call trace(family, search, search%high, foreseen, proposal)
-      call move_alloc(foreseen%fallen%contacts%face, face)
+      if (.not. any(critical%fallen%contacts%face%slip /= 0)) then
+         call trace(family, search, merge(search%high, search%low, next > value), critical, &
+            & proposal)
+         call move_alloc(critical%fallen%contacts%face, face)
+      end if
+      deallocate (critical%fallen)
    end subroutine foresee
 
    !> What would be a collapse if it were proven
-   pure subroutine freeze(chain, lack, foreseen)
+   pure subroutine freeze(chain, lack, acceleration, fallen)
       type(chain_t), intent(in) :: chain
       type(lack_t), intent(in) :: lack
-      type(critical_t), intent(inout) :: foreseen
-      real(wp) :: force(3, size(chain%half)), load(3, size(chain%half))
+      !> How fast it is taken to fall, over free fall; that tells how far the trace steps, and but
+      !> for its share that rounding hides no more
+      real(wp), intent(in) :: acceleration
+      type(decision_t), allocatable, intent(out) :: fallen
+      real(wp) :: force(3, size(chain%joint)), load(3, size(chain%joint))
 
       call sum_loads(chain, load)
       call carry_forces(chain, load, lack%reaction, force)
-      allocate (foreseen%fallen)
-      foreseen%fallen%flow = flow_rule%associated
-      foreseen%fallen%halved = chain%halved
-      foreseen%fallen%keystone = chain%keystone
-      allocate (foreseen%fallen%contacts%face(size(chain%half)))
-      foreseen%fallen%contacts%face(:) = faces_of(chain, lack)
-      foreseen%fallen%outcome%acceleration_ratio = some_acceleration
-      foreseen%fallen%outcome%rest_tolerance = some_acceleration*doubtful &
+      allocate (fallen)
+      fallen%flow = flow_rule%associated
+      fallen%halved = chain%halved
+      fallen%keystone = chain%keystone
+      allocate (fallen%contacts%face(size(chain%joint)))
+      fallen%contacts%face(:) = faces_of(chain, lack)
+      fallen%outcome%acceleration_ratio = max(acceleration, least_acceleration)
+      fallen%outcome%rest_tolerance = fallen%outcome%acceleration_ratio*doubtful &
          & *rounding_of_forces(chain, force)/max(abs(lack%least), tiny(1.0_wp))
    end subroutine freeze
 end module dda_chain_foresight

@@ -58,7 +58,7 @@ contains
       type(joint_face_t), allocatable, intent(out) :: face(:)
       integer :: m
 
-      m = size(chain%half)
+      m = size(chain%joint)
       allocate (face(m), source=decision%contacts%face(:m))
       if (chain%keystone) face(m) = joint_face_t()
    end subroutine fold

@@ -1,15 +1,14 @@
 !> Where a collapse stops: its joints, frozen, are traced to the value at which they cease to move
 module dda_collapse_trace
-   use dda_chain, only : chain_t
    use dda_chain_unfold, only : fold
    use dda_chain_lack, only : chain_mechanism_t, chain_power, freeze_mechanism
    use dda_error, only : error_t
    use dda_frozen_mechanism, only : frozen_mechanism_t, mechanism_power
    use dda_friction_cone, only : joint_face_t
    use dda_kinds, only : wp
-   use dda_scene, only : family_t, scene_t
+   use dda_scene, only : family_t, link_once, scene_t
    use dda_search, only : critical_t, search_t
-   use dda_settings, only : flow_rule, settings_t
+   use dda_settings, only : flow_rule
    implicit none
    private
 
@@ -35,9 +34,6 @@ module dda_collapse_trace
       logical :: linked = .false.
       !> The mechanism of a chain
       type(chain_mechanism_t) :: chain
-      !> The chain that was made last, and its value
-      type(chain_t) :: link
-      real(wp) :: linked_at = 0.0_wp
       !> The mechanism of any blocks
       type(frozen_mechanism_t) :: blocks
    end type frozen_t
@@ -126,7 +122,7 @@ contains
    pure subroutine propose(family, search, mechanism, next, coarse_slope, noise, critical, proposal)
       class(family_t), intent(in) :: family
       type(search_t), intent(in) :: search
-      type(frozen_t), intent(inout) :: mechanism
+      type(frozen_t), intent(in) :: mechanism
       !> Where it stops
       real(wp), intent(in) :: next
       !> Change of its power with the value
@@ -155,16 +151,15 @@ contains
    !> Freeze the last collapse
    pure subroutine freeze(family, critical, mechanism)
       class(family_t), intent(in) :: family
-      !> What was found so far, a collapse among it
-      type(critical_t), intent(in) :: critical
+      !> What was found so far, a collapse among it; keeps its chain
+      type(critical_t), intent(inout) :: critical
       type(frozen_t), intent(out) :: mechanism
-      type(settings_t) :: settings
       type(joint_face_t), allocatable :: face(:)
 
+      call link_once(family, critical%falls, critical%link)
+      mechanism%linked = critical%link%known
       associate (contacts => critical%fallen%contacts, outcome => critical%fallen%outcome, &
-         & chain => mechanism%link)
-         call family%link(critical%falls, settings, chain, mechanism%linked)
-         mechanism%linked_at = critical%falls
+         & chain => critical%link%chain)
          if (mechanism%linked .and. chain%halved .and. .not. critical%fallen%halved) then
             call fold(chain, critical%fallen, face)
             call freeze_mechanism(chain, face, mechanism%chain)
@@ -196,7 +191,7 @@ contains
    !> parameter rounds the coordinates otherwise
    pure subroutine average_root(family, mechanism, slope, critical, proposal)
       class(family_t), intent(in) :: family
-      type(frozen_t), intent(inout) :: mechanism
+      type(frozen_t), intent(in) :: mechanism
       !> Change of the power with the value
       real(wp), intent(in) :: slope
       type(critical_t), intent(inout) :: critical
@@ -254,8 +249,7 @@ contains
    !> Power of the loads on a frozen mechanism at one value
    pure subroutine power_at(family, mechanism, value, critical, power, noise, usable)
       class(family_t), intent(in) :: family
-      !> The mechanism; keeps its chain
-      type(frozen_t), intent(inout) :: mechanism
+      type(frozen_t), intent(in) :: mechanism
       real(wp), intent(in) :: value
       type(critical_t), intent(inout) :: critical
       !> The power
@@ -266,17 +260,13 @@ contains
       logical, intent(out) :: usable
       type(error_t), allocatable :: error
       type(scene_t) :: scene
-      type(settings_t) :: settings
 
       power = 0.0_wp
       noise = 0.0_wp
       if (mechanism%linked) then
-         usable = .not. abs(value - mechanism%linked_at) > 0.0_wp
-         if (.not. usable) then
-            call family%link(value, settings, mechanism%link, usable)
-            if (usable) mechanism%linked_at = value
-         end if
-         if (usable) call chain_power(mechanism%chain, mechanism%link, power, noise, usable)
+         call link_once(family, value, critical%link)
+         usable = critical%link%known
+         if (usable) call chain_power(mechanism%chain, critical%link%chain, power, noise, usable)
          return
       end if
       call family%build(value, scene, error)

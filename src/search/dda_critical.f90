@@ -5,7 +5,6 @@
 module dda_critical
    use dda_bar, only : bar_state_t
    use dda_block_system, only : block_system_t
-   use dda_chain, only : chain_t
    use dda_chain_decision, only : decide_chain
    use dda_chain_foresight, only : foresee
    use dda_chain_unfold, only : unfold
@@ -17,9 +16,8 @@ module dda_critical
    use dda_joint_springs, only : joint_springs_t
    use dda_kinds, only : wp
    use dda_load_search, only : find_critical_load
-   use dda_scene, only : family_t, scene_t, searched_load
+   use dda_scene, only : family_t, link_once, scene_t, searched_load
    use dda_search, only : critical_t, search_t
-   use dda_settings, only : settings_t
    use dda_time_search, only : find_critical_in_time
    use dda_verdict, only : verdict
    implicit none
@@ -54,7 +52,8 @@ contains
          & call find_critical_load(family, search, critical, done)
       if (done) return
       call close_bracket(family, search, critical)
-      if (allocated(critical%standing)) call share_forces(family, critical)
+      if (allocated(critical%standing) .and. .not. family%decides_chains) &
+         & call share_forces(family, critical)
       if (allocated(critical%fallen)) call unfold(critical%fallen)
       if (allocated(critical%standing)) call unfold(critical%standing)
    end subroutine find_critical
@@ -71,7 +70,7 @@ contains
       integer :: answer, in_vain, undecided
       logical :: may_turn
 
-      if (family%decides_chains) call foresee(family, search, proposal, foreseen)
+      if (family%decides_chains) call foresee(family, search, critical, proposal, foreseen)
       start = search%start
       if (proposal%usable) start = max(search%low, proposal%value - proposal%reach)
       call find_collapse(family, search, start, limit, critical)
@@ -179,16 +178,16 @@ contains
       type(decision_t), allocatable :: decision
       type(error_t), allocatable :: error
       type(scene_t) :: scene
-      type(chain_t) :: chain
-      type(settings_t) :: settings
       logical :: decided
 
       answer = verdict%undecided
       critical%decisions = critical%decisions + 1
       allocate (decision)
       decided = family%decides_chains
-      if (decided) call family%link(value, settings, chain, decided)
-      if (decided) call decide_chain(settings, chain, decision, decided)
+      if (decided) call link_once(family, value, critical%link)
+      if (decided) decided = critical%link%known
+      if (decided) call decide_chain(critical%link%settings, critical%link%chain, decision, &
+         & decided, critical%reaction)
       if (.not. decided) then
          call family%build(value, scene, error)
          if (allocated(error)) then
@@ -225,7 +224,6 @@ contains
       type(error_t), allocatable :: error
       type(scene_t) :: scene
 
-      if (family%decides_chains) return
       call family%build(critical%stands, scene, error)
       if (allocated(error)) return
       if (.not. decides_as_graph(scene%settings, scene%contacts)) return

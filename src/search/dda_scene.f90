@@ -9,7 +9,7 @@ module dda_scene
    implicit none
    private
 
-   public :: scene_t, family_t, searched_load, searched_load_enum, build_once
+   public :: scene_t, family_t, link_t, searched_load, searched_load_enum, build_once, link_once
 
    !> Load coefficients that come last on the loading path
    type :: searched_load_enum
@@ -41,6 +41,18 @@ module dda_scene
       !> Number of the joint at the crown of an arch of any shape; 0 for what is none
       integer :: crown_joint = 0
    end type scene_t
+
+   !> The chain of a family that was made last
+   type :: link_t
+      !> Whether there is one
+      logical :: known = .false.
+      !> Its value of the parameter
+      real(wp) :: value = 0.0_wp
+      !> Settings of its run
+      type(settings_t) :: settings
+      !> The chain
+      type(chain_t) :: chain
+   end type link_t
 
    !> Scenes that differ by the value of one parameter
    type, abstract :: family_t
@@ -81,6 +93,18 @@ contains
       call family%build(value, scene, error)
       if (allocated(error) .and. allocated(scene%contacts%joint)) deallocate (scene%contacts%joint)
    end subroutine build_once
+
+   !> Make the chain of one value where it is not there yet
+   pure subroutine link_once(family, value, link)
+      class(family_t), intent(in) :: family
+      real(wp), intent(in) :: value
+      !> The last chain, whose arrays are used again
+      type(link_t), intent(inout) :: link
+
+      if (link%known .and. .not. abs(value - link%value) > 0.0_wp) return
+      call family%link(value, link%settings, link%chain, link%known)
+      link%value = value
+   end subroutine link_once
 
    !> Scenes that are no chains
    pure subroutine link_nothing(family, value, settings, chain, linked)

@@ -2,6 +2,7 @@
 module dda_search
    use dda_decision, only : decision_t
    use dda_kinds, only : wp
+   use dda_scene, only : link_t
    implicit none
    private
 
@@ -51,6 +52,10 @@ module dda_search
       type(decision_t), allocatable :: fallen
       !> Decision at stands, if there is one; likewise, and without its motion
       type(decision_t), allocatable :: standing
+      !> The chain that was looked at last
+      type(link_t) :: link
+      !> Unknowns of its forces, where the next decision begins: (3) [N/m, N/m, N]
+      real(wp) :: reaction(3) = 0.0_wp
       !> Value at which it falls in the other direction
       real(wp) :: other = 0.0_wp
       !> Whether it does so within the range

@@ -7,7 +7,7 @@ module dda_chain_balance
    private
 
    public :: cone_of, sum_loads, joint_force, influence, holds, carry_forces, rounding_of_forces
-   public :: find_failing, see_failing, add_reaction
+   public :: add_reaction
 
    !> Relative error of a force that is carried from joint to joint
    real(wp), parameter :: rounding = 4.0_wp*epsilon(1.0_wp)
@@ -20,8 +20,8 @@ contains
       !> Number of the joint
       integer, intent(in) :: j
 
-      cone_of = cone_t(friction=chain%friction(j), limit=chain%limit(j), &
-         & mirror=chain%keystone .and. j == size(chain%half))
+      cone_of = cone_t(friction=chain%joint(j)%friction, limit=chain%joint(j)%limit, &
+         & mirror=chain%keystone .and. j == size(chain%joint))
    end function cone_of
 
    !> Sums of the loads before each joint, or of half a chain, less the sums of those behind it
@@ -31,40 +31,25 @@ contains
       real(wp), intent(out) :: load(:, :)
       !> Matrix that the weights are turned by; none leaves them as they are: (2, 2)
       real(wp), intent(in), optional :: turned(2, 2)
-      real(wp) :: weight(2, size(chain%mass)), total(3)
-      integer :: b
+      real(wp) :: total(3), weight(2)
+      integer :: ahead, b, n, way
 
+      n = size(chain%block)
       total = 0.0_wp
-      weight = chain%weight
-      if (present(turned)) weight = matmul(turned, weight)
-      if (chain%halved) then
-         load(:, size(chain%half)) = 0.0_wp
-         do b = size(chain%mass), 1, -1
-            total(1) = total(1) - weight(1, b)
-            total(2) = total(2) - weight(2, b)
-            total(3) = total(3) - moment_of(chain%centroid(:, b), weight(:, b))
-            load(:, b) = total
-         end do
-      else
-         load(:, 1) = 0.0_wp
-         do b = 1, size(chain%mass)
-            total(1) = total(1) + weight(1, b)
-            total(2) = total(2) + weight(2, b)
-            total(3) = total(3) + moment_of(chain%centroid(:, b), weight(:, b))
-            load(:, b + 1) = total
-         end do
-      end if
+      way = merge(-1, 1, chain%halved)
+      ahead = merge(0, 1, chain%halved)
+      load(:, merge(n + 1, 1, chain%halved)) = 0.0_wp
+      do b = merge(n, 1, chain%halved), merge(1, n, chain%halved), way
+         weight = chain%block(b)%weight
+         if (present(turned)) weight = matmul(turned, weight)
+         weight = real(way, wp)*weight
+         associate (place => chain%block(b)%centroid)
+            total(1:2) = total(1:2) + weight
+            total(3) = total(3) + (place(1)*weight(2) - place(2)*weight(1))
+         end associate
+         load(:, b + ahead) = total
+      end do
    end subroutine sum_loads
-
-   !> Moment of a force about the origin [N]
-   pure real(wp) function moment_of(place, force)
-      !> Where it acts: (2) [m]
-      real(wp), intent(in) :: place(2)
-      !> The force: (2) [N/m]
-      real(wp), intent(in) :: force(2)
-
-      moment_of = place(1)*force(2) - place(2)*force(1)
-   end function moment_of
 
    !> Force N1, N2, T of one joint
    pure function joint_force(chain, load, reaction, j) result(force)
@@ -79,11 +64,13 @@ contains
       real(wp) :: s(3), normal, moment
 
       s = reaction + load(:, j)
-      normal = chain%tangent(2, j)*s(1) - chain%tangent(1, j)*s(2)
-      force(3) = chain%tangent(1, j)*s(1) + chain%tangent(2, j)*s(2)
-      moment = s(3) - chain%middle(1, j)*s(2) + chain%middle(2, j)*s(1)
-      force(1) = (normal + moment/chain%half(j))/2.0_wp
-      force(2) = (normal - moment/chain%half(j))/2.0_wp
+      associate (joint => chain%joint(j))
+         normal = joint%tangent(2)*s(1) - joint%tangent(1)*s(2)
+         force(3) = joint%tangent(1)*s(1) + joint%tangent(2)*s(2)
+         moment = s(3) - joint%middle(1)*s(2) + joint%middle(2)*s(1)
+         force(1) = (normal + moment/joint%half)/2.0_wp
+         force(2) = (normal - moment/joint%half)/2.0_wp
+      end associate
    end function joint_force
 
    !> What each unknown makes of the force of one joint
@@ -94,11 +81,11 @@ contains
       real(wp) :: g(3, 3)
       real(wp) :: normal(3), moment(3)
 
-      normal = [chain%tangent(2, j), -chain%tangent(1, j), 0.0_wp]
-      moment = [chain%middle(2, j), -chain%middle(1, j), 1.0_wp]/chain%half(j)
+      normal = [chain%joint(j)%tangent(2), -chain%joint(j)%tangent(1), 0.0_wp]
+      moment = [chain%joint(j)%middle(2), -chain%joint(j)%middle(1), 1.0_wp]/chain%joint(j)%half
       g(1, :) = (normal + moment)/2.0_wp
       g(2, :) = (normal - moment)/2.0_wp
-      g(3, :) = [chain%tangent(:, j), 0.0_wp]
+      g(3, :) = [chain%joint(j)%tangent, 0.0_wp]
    end function influence
 
    !> Whether a force lies inside the cone of a joint
@@ -108,56 +95,9 @@ contains
       real(wp), intent(in) :: force(3)
       integer, intent(in) :: j
 
-      holds = force(1) >= 0.0_wp .and. force(2) >= 0.0_wp &
-         & .and. abs(force(3)) <= chain%limit(j) + chain%friction(j)*(force(1) + force(2))
+      holds = force(1) >= 0.0_wp .and. force(2) >= 0.0_wp .and. abs(force(3)) &
+         & <= chain%joint(j)%limit + chain%joint(j)%friction*(force(1) + force(2))
    end function holds
-
-   !> Those of some joints whose forces lie outside their cones, with these forces
-   pure subroutine find_failing(chain, load, reaction, watched, n, failing, force)
-      type(chain_t), intent(in) :: chain
-      real(wp), intent(in) :: load(:, :), reaction(3)
-      !> The joints
-      integer, intent(in) :: watched(:)
-      !> How many fail
-      integer, intent(out) :: n
-      !> Their numbers: (n), with room for all that are watched
-      integer, intent(out) :: failing(:)
-      !> Forces N1, N2, T of them: (3, n), likewise [N/m]
-      real(wp), intent(out) :: force(:, :)
-      real(wp) :: normal, along, moment, s(3)
-      integer :: i, j
-
-      n = 0
-      do i = 1, size(watched)
-         j = watched(i)
-         ! as in `joint_force` and `holds`, whose calls would take most of the time
-         s = reaction + load(:, j)
-         normal = chain%tangent(2, j)*s(1) - chain%tangent(1, j)*s(2)
-         along = chain%tangent(1, j)*s(1) + chain%tangent(2, j)*s(2)
-         moment = (s(3) - chain%middle(1, j)*s(2) + chain%middle(2, j)*s(1))/chain%half(j)
-         if (normal >= abs(moment) &
-            & .and. abs(along) <= chain%limit(j) + chain%friction(j)*normal) cycle
-         n = n + 1
-         failing(n) = j
-         force(:, n) = [(normal + moment)/2.0_wp, (normal - moment)/2.0_wp, along]
-      end do
-   end subroutine find_failing
-
-   !> Which joints have forces outside their cones
-   pure subroutine see_failing(chain, force, n, failing)
-      type(chain_t), intent(in) :: chain
-      !> Forces of all joints: (3, n + 1) [N/m]
-      real(wp), intent(in) :: force(:, :)
-      integer, intent(out) :: n, failing(:)
-      integer :: j
-
-      n = 0
-      do j = 1, size(force, 2)
-         if (holds(chain, force(:, j), j)) cycle
-         n = n + 1
-         failing(n) = j
-      end do
-   end subroutine see_failing
 
    !> Forces of all joints after a change of the unknowns
    pure subroutine add_reaction(chain, change, before, after)
@@ -172,12 +112,13 @@ contains
       integer :: j
 
       do j = 1, size(before, 2)
-         normal = chain%tangent(2, j)*change(1) - chain%tangent(1, j)*change(2)
-         moment = (chain%middle(2, j)*change(1) - chain%middle(1, j)*change(2) + change(3)) &
-            & /chain%half(j)
-         after(1, j) = before(1, j) + (normal + moment)/2.0_wp
-         after(2, j) = before(2, j) + (normal - moment)/2.0_wp
-         after(3, j) = before(3, j) + chain%tangent(1, j)*change(1) + chain%tangent(2, j)*change(2)
+         associate (joint => chain%joint(j))
+            normal = joint%tangent(2)*change(1) - joint%tangent(1)*change(2)
+            moment = (joint%middle(2)*change(1) - joint%middle(1)*change(2) + change(3))/joint%half
+            after(1, j) = before(1, j) + (normal + moment)/2.0_wp
+            after(2, j) = before(2, j) + (normal - moment)/2.0_wp
+            after(3, j) = before(3, j) + joint%tangent(1)*change(1) + joint%tangent(2)*change(2)
+         end associate
       end do
    end subroutine add_reaction
 
@@ -191,26 +132,27 @@ contains
       real(wp) :: s(2), normal, along, moment
       integer :: b, from, ahead, n, side
 
-      n = size(chain%mass)
+      n = size(chain%block)
       from = merge(n + 1, 1, chain%halved)
       ahead = merge(-1, 1, chain%halved)
       side = merge(1, 2, chain%halved)
       force(:, from) = joint_force(chain, load, reaction, from)
-      moment = (force(1, from) - force(2, from))*chain%half(from)
+      moment = (force(1, from) - force(2, from))*chain%joint(from)%half
       s = reaction(1:2) + load(1:2, from)
       normal = force(1, from) + force(2, from)
       along = force(3, from)
       do b = merge(n, 1, chain%halved), merge(1, n, chain%halved), ahead
          from = from + ahead
-         moment = moment + chain%arm(1, side, from - ahead)*normal &
-            & + chain%arm(2, side, from - ahead)*along
-         s = s + real(ahead, wp)*chain%weight(:, b)
-         normal = chain%tangent(2, from)*s(1) - chain%tangent(1, from)*s(2)
-         along = chain%tangent(1, from)*s(1) + chain%tangent(2, from)*s(2)
-         moment = moment - chain%arm(1, 3 - side, from)*normal - chain%arm(2, 3 - side, from)*along
-         force(1, from) = (normal + moment/chain%half(from))/2.0_wp
-         force(2, from) = (normal - moment/chain%half(from))/2.0_wp
-         force(3, from) = along
+         moment = moment + chain%joint(from - ahead)%arm(1, side)*normal &
+            & + chain%joint(from - ahead)%arm(2, side)*along
+         s = s + real(ahead, wp)*chain%block(b)%weight
+         associate (joint => chain%joint(from))
+            normal = joint%tangent(2)*s(1) - joint%tangent(1)*s(2)
+            along = joint%tangent(1)*s(1) + joint%tangent(2)*s(2)
+            moment = moment - joint%arm(1, 3 - side)*normal - joint%arm(2, 3 - side)*along
+            force(:, from) = [(normal + moment/joint%half)/2.0_wp, &
+               & (normal - moment/joint%half)/2.0_wp, along]
+         end associate
       end do
    end subroutine carry_forces
 
@@ -222,10 +164,10 @@ contains
 
       noise = 0.0_wp
       do j = 1, size(force, 2)
-         noise = noise + max(abs(chain%arm(2, 1, j)), abs(chain%arm(2, 2, j))) &
+         noise = noise + max(abs(chain%joint(j)%arm(2, 1)), abs(chain%joint(j)%arm(2, 2))) &
             & *(abs(force(1, j)) + abs(force(2, j)) + abs(force(3, j)))
       end do
-      noise = rounding*noise/minval(chain%half)
+      noise = rounding*noise/minval(chain%joint%half)
    end function rounding_of_forces
 
 end module dda_chain_balance

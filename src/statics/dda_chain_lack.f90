@@ -68,7 +68,7 @@ contains
       type(chain_t), intent(in) :: chain
       !> Bounds to begin with, of a chain much like this one, or none; those of this one out
       type(lack_t), intent(inout) :: lack
-      real(wp) :: load(3, size(chain%half)), inverse(4, 4), value(4), row(5), change(4), place(4)
+      real(wp) :: load(3, size(chain%joint)), inverse(4, 4), value(4), row(5), change(4), place(4)
       integer :: joint, bound, leaving
 
       call sum_loads(chain, load)
@@ -99,7 +99,7 @@ contains
       type(chain_t), intent(in) :: chain
       type(lack_t), intent(in) :: lack
       !> The faces: (n + 1)
-      type(joint_face_t) :: face(size(chain%half))
+      type(joint_face_t) :: face(size(chain%joint))
       integer :: r
 
       do r = 1, 4
@@ -159,7 +159,7 @@ contains
          inverse(i, i) = 1.0_wp
       end do
       value = -far*chain%whole_load
-      value(3) = value(3)*maxval(abs(chain%middle))
+      value(3) = value(3)*maxval(max(abs(chain%joint%middle(1)), abs(chain%joint%middle(2))))
       if (chain%halved) value(2) = 0.0_wp
    end subroutine keep_finite
 
@@ -181,11 +181,13 @@ contains
       bound = 0
       do j = 1, last_joint(chain)
          s = place(:3) + load(:, j)
-         normal = chain%tangent(2, j)*s(1) - chain%tangent(1, j)*s(2)
-         along = abs(chain%tangent(1, j)*s(1) + chain%tangent(2, j)*s(2))
-         moment = abs(s(3) - chain%middle(1, j)*s(2) + chain%middle(2, j)*s(1))
-         room = (normal - moment/chain%half(j))/2.0_wp
-         if (is_rough(chain, j)) room = min(room, chain%limit(j) + chain%friction(j)*normal - along)
+         associate (this => chain%joint(j))
+            normal = this%tangent(2)*s(1) - this%tangent(1)*s(2)
+            along = abs(this%tangent(1)*s(1) + this%tangent(2)*s(2))
+            moment = abs(s(3) - this%middle(1)*s(2) + this%middle(2)*s(1))
+            room = (normal - moment/this%half)/2.0_wp
+            if (is_rough(chain, j)) room = min(room, this%limit + this%friction*normal - along)
+         end associate
          if (.not. room < least) cycle
          least = room
          joint = j
@@ -201,7 +203,7 @@ contains
    pure integer function last_joint(chain)
       type(chain_t), intent(in) :: chain
 
-      last_joint = size(chain%half) - merge(1, 0, chain%keystone)
+      last_joint = size(chain%joint) - merge(1, 0, chain%keystone)
    end function last_joint
 
    !> Whether the shear force of a joint is bounded, and not zero as on a plane of symmetry
@@ -210,8 +212,8 @@ contains
       !> Number of the joint
       integer, intent(in) :: j
 
-      is_rough = chain%limit(j) < huge(1.0_wp) &
-         & .and. .not. (chain%halved .and. j == size(chain%half))
+      is_rough = chain%joint(j)%limit < huge(1.0_wp) &
+         & .and. .not. (chain%halved .and. j == size(chain%joint))
    end function is_rough
 
    !> A bound as a row over the unknowns and s, and its value: (5)
@@ -232,8 +234,9 @@ contains
          row(:3) = g(bound, :)
          row(5) = -force(bound)
       else
-         row(:3) = chain%friction(joint)*(g(1, :) + g(2, :)) + merge(-1, 1, bound == 3)*g(3, :)
-         row(5) = -chain%limit(joint) - chain%friction(joint)*(force(1) + force(2)) &
+         row(:3) = chain%joint(joint)%friction*(g(1, :) + g(2, :)) &
+            & + merge(-1, 1, bound == 3)*g(3, :)
+         row(5) = -chain%joint(joint)%limit - chain%joint(joint)%friction*(force(1) + force(2)) &
             & - merge(-1, 1, bound == 3)*force(3)
       end if
       if (chain%halved) row(2) = 0.0_wp
@@ -294,7 +297,7 @@ contains
          if (is_stuck(held(j))) cycle
          i = i + 1
          mechanism%joint(i) = j
-         call apply_face(cone_t(friction=chain%friction(j)), held(j), tangent, constant)
+         call apply_face(cone_t(friction=chain%joint(j)%friction), held(j), tangent, constant)
          mechanism%free(:, :, i) = -tangent
          do k = 1, 3
             mechanism%free(k, k, i) = 1.0_wp - tangent(k, k)
@@ -321,7 +324,7 @@ contains
       real(wp), intent(out) :: noise
       !> Whether there is a mechanism
       logical, intent(out) :: usable
-      real(wp) :: carried, force(3, size(chain%half)), mass
+      real(wp) :: carried, force(3, size(chain%joint)), mass
       integer :: i, j
 
       power = 0.0_wp
@@ -334,7 +337,7 @@ contains
          power = power - dot_product(mechanism%opening(:, i), force(:, j))
          noise = noise + sum(abs(mechanism%opening(:, i)))*carried
       end do
-      mass = chain%mean_mass*real(size(chain%mass), wp)
+      mass = chain%mean_mass*real(size(chain%block), wp)
       power = power/mass
       noise = noise/mass
    end subroutine chain_power
@@ -344,7 +347,7 @@ contains
       type(chain_mechanism_t), intent(in) :: mechanism
       type(chain_t), intent(in) :: chain
       !> Forces of its joints; of the others not to the last digit: (3, n + 1) [N/m]
-      real(wp), intent(out) :: force(:, :)
+      real(wp), intent(out) :: force(3, size(chain%joint))
       !> What rounding makes of one [N/m]
       real(wp), intent(out) :: noise
       real(wp) :: load(3, size(force, 2)), reaction(3), change(3)

@@ -82,7 +82,7 @@ contains
       real(wp) :: slope, turned, whole(2)
       integer :: i
 
-      whole = sum(chain%weight, dim=2)
+      whole = [sum(chain%block%weight(1)), sum(chain%block%weight(2))]
       sticks = all(abs(whole) <= 0.0_wp)
       if (sticks .or. -whole(2) <= flattest*abs(whole(1))) return
       call stand_upright(chain, upright, push, sticks)
@@ -110,7 +110,7 @@ contains
       !> Whether forces hold it and no joint slides
       logical, intent(out) :: stands
       type(chain_leg_t) :: crack
-      real(wp) :: load(3, size(chain%half)), reaction(3)
+      real(wp) :: load(3, size(chain%joint)), reaction(3)
       real(wp), parameter :: to_the_side(2, 2) = reshape([0, 0, -1, 0], [2, 2])
       real(wp), parameter :: upright(2, 2) = reshape([0, 0, 0, 1], [2, 2])
 
@@ -134,20 +134,20 @@ contains
    pure subroutine new_state(chain, state)
       type(chain_t), intent(in) :: chain
       type(chain_state_t), intent(out) :: state
-      real(wp) :: flexibility(3, 3), slope(3), unit(3)
+      real(wp) :: flexibility(3, 3), g(3, 3), slope(3), unit(3)
       integer :: i, j, n
 
-      n = size(chain%mass)
+      n = size(chain%block)
       allocate (state%influence(3, 3, n + 1), state%force(3, n + 1))
       ! the last joint of half a chain with a keystone is inside a block
       state%n_bearing = merge(n, n + 1, chain%keystone)
       if (chain%halved) state%n_unknown = 2
       flexibility = 0.0_wp
       do j = 1, n + 1
-         state%influence(:, :, j) = influence(chain, j)
-         if (chain%halved) state%influence(:, 2, j) = 0.0_wp
-         flexibility = flexibility + chain%compliance(j) &
-            & *matmul(transpose(state%influence(:, :, j)), state%influence(:, :, j))
+         g = influence(chain, j)
+         if (chain%halved) g(:, 2) = 0.0_wp
+         flexibility = flexibility + chain%joint(j)%compliance*matmul(transpose(g), g)
+         state%influence(:, :, j) = g
       end do
       slope = 0.0_wp
       if (chain%halved) call hold_upright(slope, flexibility)
@@ -169,20 +169,20 @@ contains
 
       allocate (leg%force(3, size(load, 2)))
       do j = 1, size(load, 2)
-         normal = chain%tangent(2, j)*load(1, j) - chain%tangent(1, j)*load(2, j)
-         along = chain%tangent(1, j)*load(1, j) + chain%tangent(2, j)*load(2, j)
-         moment = (load(3, j) - chain%middle(1, j)*load(2, j) + chain%middle(2, j)*load(1, j)) &
-            & /chain%half(j)
-         leg%force(:, j) = [(normal + moment)/2.0_wp, (normal - moment)/2.0_wp, along]
-         ! the force times what each unknown makes of it: N1**2 + N2**2 = (N**2 + (M/half)**2)/2
-         normal = chain%compliance(j)*normal/2.0_wp
-         along = chain%compliance(j)*along
-         moment = chain%compliance(j)*moment/(2.0_wp*chain%half(j))
-         leg%closing(1) = leg%closing(1) + chain%tangent(2, j)*normal &
-            & + chain%tangent(1, j)*along + chain%middle(2, j)*moment
-         leg%closing(2) = leg%closing(2) - chain%tangent(1, j)*normal &
-            & + chain%tangent(2, j)*along - chain%middle(1, j)*moment
-         leg%closing(3) = leg%closing(3) + moment
+         associate (joint => chain%joint(j))
+            normal = joint%tangent(2)*load(1, j) - joint%tangent(1)*load(2, j)
+            along = joint%tangent(1)*load(1, j) + joint%tangent(2)*load(2, j)
+            moment = (load(3, j) - joint%middle(1)*load(2, j) + joint%middle(2)*load(1, j)) &
+               & /joint%half
+            leg%force(:, j) = [(normal + moment)/2.0_wp, (normal - moment)/2.0_wp, along]
+            ! the force times what each unknown makes of it: N1**2 + N2**2 = (N**2 + (M/half)**2)/2
+            normal = joint%compliance*normal/2.0_wp
+            along = joint%compliance*along
+            moment = joint%compliance*moment/(2.0_wp*joint%half)
+            leg%closing = leg%closing + [joint%tangent(2)*normal + joint%tangent(1)*along &
+               & + joint%middle(2)*moment, joint%tangent(2)*along - joint%tangent(1)*normal &
+               & - joint%middle(1)*moment, moment]
+         end associate
       end do
       if (chain%halved) leg%closing(2) = 0.0_wp
    end subroutine new_leg
@@ -212,7 +212,7 @@ contains
       logical, intent(in) :: may_slide
       type(chain_state_t), intent(inout) :: state
       logical, intent(out) :: sticks
-      real(wp) :: rate(3, size(chain%half)), change(3), left, step
+      real(wp) :: rate(3, size(chain%joint)), change(3), left, step
       type(open_corner_t) :: opening
       integer :: closing, event, i
       logical :: opens
@@ -374,9 +374,9 @@ contains
 
       slides = .false.
       ! the plane of symmetry is smooth
-      do j = 1, size(chain%half) - merge(1, 0, chain%halved)
-         slides = slides .or. abs(state%force(3, j)) > chain%limit(j) &
-            & + chain%friction(j)*(state%force(1, j) + state%force(2, j))
+      do j = 1, size(chain%joint) - merge(1, 0, chain%halved)
+         slides = slides .or. abs(state%force(3, j)) > chain%joint(j)%limit &
+            & + chain%joint(j)%friction*(state%force(1, j) + state%force(2, j))
       end do
    end function slides
 

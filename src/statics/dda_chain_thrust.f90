@@ -9,8 +9,8 @@
 !> last passes do without the share, and tell the one from the other to the last digits.
 module dda_chain_thrust
    use dda_chain, only : chain_t
-   use dda_chain_balance, only : add_reaction, cone_of, find_failing, influence, joint_force, &
-      & see_failing, sum_loads
+   use dda_chain_balance, only : add_reaction, cone_of, holds, influence, joint_force, &
+      & sum_loads
    use dda_friction_cone, only : apply_face, cone_t, joint_face_t, project
    use dda_kinds, only : wp
    use dda_three_unknowns, only : chain_energy_t, hold_upright, is_better, solve_3, try_between
@@ -52,27 +52,30 @@ contains
    !> Find the forces
    pure subroutine find_thrust(chain, thrust, load)
       type(chain_t), intent(in) :: chain
-      type(thrust_t), intent(out) :: thrust
+      !> New but for the reaction: that of a chain much like this one, or 0
+      type(thrust_t), intent(inout) :: thrust
       !> Sums of the loads, force and moment: (3, n + 1)
       real(wp), intent(out) :: load(:, :)
       type(chain_energy_t) :: glued
       integer, allocatable :: watched(:)
+      real(wp) :: stuck(3)
       integer :: j, m, stride
 
-      m = size(chain%half)
+      m = size(chain%joint)
       stride = 1 + m/coarse
       allocate (watched, source=[(j, j=1, m - 1, stride), m])
       call sum_loads(chain, load)
       glued = glued_energy(chain, load, watched)
       thrust%curvature = glued%curvature
-      call solve_3(glued%curvature, -glued%slope, thrust%reaction)
+      call solve_3(glued%curvature, -glued%slope, stuck)
       do j = 1, size(watched)
-         thrust%elastic_motion = thrust%elastic_motion + sum(joint_force(chain, load, &
-            & thrust%reaction, watched(j))**2)/chain%stiffness(watched(j))
+         thrust%elastic_motion = thrust%elastic_motion + sum(joint_force(chain, load, stuck, &
+            & watched(j))**2)/chain%joint(watched(j))%stiffness
       end do
       if (chain%whole_load > 0.0_wp) thrust%elastic_motion = thrust%elastic_motion &
          & *real(m, wp)/real(size(watched), wp)/chain%whole_load
       glued = chain_energy_t(share*glued%value, share*glued%slope, share*glued%curvature)
+      if (.not. any(abs(thrust%reaction) > 0.0_wp)) thrust%reaction = stuck
       call descend(chain, load, glued, watched, thrust)
       if (stride == 1) return
       watched = around_weak(chain, load, thrust%reaction, stride, watched)
@@ -91,15 +94,15 @@ contains
       integer, intent(in) :: coarse(:)
       !> The joints, rising
       integer, allocatable :: around(:)
-      logical :: is_near(size(chain%half))
+      logical :: is_near(size(chain%joint))
       real(wp) :: force(3), safety(0:size(coarse) + 1)
       integer :: i, j
 
       safety = huge(1.0_wp)
       do i = 1, size(coarse)
          force = joint_force(chain, load, reaction, coarse(i))
-         safety(i) = min(force(1), force(2), chain%limit(coarse(i)) - abs(force(3)) &
-            & + chain%friction(coarse(i))*(force(1) + force(2)))
+         safety(i) = min(force(1), force(2), chain%joint(coarse(i))%limit - abs(force(3)) &
+            & + chain%joint(coarse(i))%friction*(force(1) + force(2)))
       end do
       is_near = .false.
       do i = 1, size(coarse)
@@ -150,12 +153,22 @@ contains
       integer, intent(in) :: watched(:)
       real(wp), intent(in) :: reaction(3)
       type(chain_energy_t), intent(out) :: energy
-      real(wp) :: beyond(3), force(3, size(watched) + 1), slope(3)
-      integer :: failing(size(watched)), i, n
+      real(wp) :: along, beyond(3), moment, normal, s(3), slope(3)
+      integer :: i, j
 
-      call find_failing(chain, load, reaction, watched, n, failing, force)
-      do i = 1, n
-         call add_failing(chain, force(:, i), failing(i), energy, beyond)
+      do i = 1, size(watched)
+         j = watched(i)
+         ! as in `joint_force` and `holds`, whose calls would take most of the time
+         s = reaction + load(:, j)
+         associate (joint => chain%joint(j))
+            normal = joint%tangent(2)*s(1) - joint%tangent(1)*s(2)
+            along = joint%tangent(1)*s(1) + joint%tangent(2)*s(2)
+            moment = (s(3) - joint%middle(1)*s(2) + joint%middle(2)*s(1))/joint%half
+            if (normal >= abs(moment) &
+               & .and. abs(along) <= joint%limit + joint%friction*normal) cycle
+         end associate
+         call add_failing(chain, [(normal + moment)/2.0_wp, (normal - moment)/2.0_wp, along], j, &
+            & energy, beyond)
       end do
       slope = matmul(glued%curvature, reaction)
       energy%value = energy%value + glued%value + dot_product(reaction, glued%slope + slope/2.0_wp)
@@ -176,13 +189,13 @@ contains
       t = 0.0_wp
       do i = 1, size(watched)
          j = watched(i)
-         give = 1.0_wp/chain%stiffness(j)
-         t(1:2) = chain%tangent(:, j)
+         give = 1.0_wp/chain%joint(j)%stiffness
+         t(1:2) = chain%joint(j)%tangent
          n(1) = t(2)
          n(2) = -t(1)
-         m(3) = 1.0_wp/chain%half(j)
-         m(1) = chain%middle(2, j)*m(3)
-         m(2) = -chain%middle(1, j)*m(3)
+         m(3) = 1.0_wp/chain%joint(j)%half
+         m(1) = chain%joint(j)%middle(2)*m(3)
+         m(2) = -chain%joint(j)%middle(1)*m(3)
          ! N1**2 + N2**2 = (N**2 + (M/half)**2)/2
          force(1) = (n(1)*load(1, j) + n(2)*load(2, j))*(give/2.0_wp)
          force(2) = (m(1)*load(1, j) + m(2)*load(2, j) + m(3)*load(3, j))*(give/2.0_wp)
@@ -215,7 +228,7 @@ contains
       cone = cone_of(chain, j)
       call project(cone, force, admissible, face)
       g = influence(chain, j)
-      give = 1.0_wp/chain%stiffness(j)
+      give = 1.0_wp/chain%joint(j)%stiffness
       beyond = force - admissible
       energy%value = energy%value + dot_product(beyond, beyond)*(give/2.0_wp)
       energy%slope = energy%slope + matmul(beyond, g)*give
@@ -285,13 +298,12 @@ contains
       !> The part that the cones do not let pass: (3, n + 1) [N/m]
       real(wp), intent(out) :: beyond(:, :)
       type(chain_energy_t), intent(out) :: energy
-      integer :: failing(size(force, 2)), i, j, n
+      integer :: j
 
-      call see_failing(chain, force, n, failing)
       beyond = 0.0_wp
-      do i = 1, n
-         j = failing(i)
-         call add_failing(chain, force(:, j), j, energy, beyond(:, j))
+      do j = 1, size(force, 2)
+         if (.not. holds(chain, force(:, j), j)) &
+            & call add_failing(chain, force(:, j), j, energy, beyond(:, j))
       end do
       if (chain%halved) call hold_upright(energy%slope, energy%curvature)
    end subroutine find_beyond

@@ -20,14 +20,14 @@ contains
       integer :: end, j
 
       least_opening = huge(1.0_wp)
-      do j = 1, size(chain%half)
-         normal = [chain%tangent(2, j), -chain%tangent(1, j)]
+      do j = 1, size(chain%joint)
+         normal = [chain%joint(j)%tangent(2), -chain%joint(j)%tangent(1)]
          do end = -1, 1, 2
-            corner = chain%middle(:, j) + real(end, wp)*chain%half(j)*chain%tangent(:, j)
+            corner = chain%joint(j)%middle + real(end, wp)*chain%joint(j)%half*chain%joint(j)%tangent
             gap = moved(chain, motion, j, corner) - moved(chain, motion, j - 1, corner)
             slip = 0.0_wp
-            if (chain%limit(j) < huge(1.0_wp)) &
-               & slip = chain%friction(j)*abs(dot_product(gap, chain%tangent(:, j)))
+            if (chain%joint(j)%limit < huge(1.0_wp)) &
+               & slip = chain%joint(j)%friction*abs(dot_product(gap, chain%joint(j)%tangent))
             least_opening = min(least_opening, dot_product(gap, normal) - slip)
          end do
       end do
@@ -48,7 +48,7 @@ contains
 
       way = 0.0_wp
       if (b == 0 .or. b > size(motion, 2)) return
-      arm = corner - chain%centroid(:, b)
+      arm = corner - chain%block(b)%centroid
       way = motion(1:2, b) + motion(3, b)*[-arm(2), arm(1)]
    end function moved
 
@@ -59,6 +59,6 @@ contains
       !> Motion of its blocks: (3, n) [m, m, 1]
       real(wp), intent(in) :: motion(:, :)
 
-      power_of_loads = sum(chain%weight*motion(1:2, :))
+      power_of_loads = sum(chain%block%weight(1)*motion(1, :) + chain%block%weight(2)*motion(2, :))
    end function power_of_loads
 end module scene_chain
