@@ -4,7 +4,7 @@
 !> equations of a step ask for, and its end is its beginning.
 module dda_standstill
    use dda_assembly, only : equations_t
-   use dda_block_inertia, only : assemble_blocks, packed_velocity
+   use dda_block_inertia, only : assemble_blocks
    use dda_block_system, only : block_system_t
    use dda_contact_detection, only : contacts_t
    use dda_friction_cone, only : joint_face_t
@@ -15,33 +15,50 @@ module dda_standstill
    implicit none
    private
 
-   public :: is_slow, stand_still, stands_still
+   public :: balancing_time, is_slow, stand_still, stands_still
 
    !> Speed that may be noise of contact forces, over what free fall makes in a step
-   real(wp), parameter :: slow = 1.0e-4_wp
+   real(wp), parameter :: slow = 1.0e-3_wp
+   !> Speed that finer contact forces leave of it, over the same
+   real(wp), parameter :: no_speed = 1.0e-7_wp
    !> Acceleration that a block in balance has left, over that of free fall
    real(wp), parameter :: balanced = 1.0e-9_wp
 
 contains
 
-   !> Whether all blocks move so slowly that this may be what contact forces leave
-   pure logical function is_slow(system, equations, march)
-      type(block_system_t), intent(in) :: system
+   !> Whether all blocks move so slowly that this may be what contact forces leave, or with finer
+   !> forces that it was
+   pure logical function is_slow(equations, march, velocity, finer)
       !> The equations, for the masses
       type(equations_t), intent(in) :: equations
       !> The march, for the length of the step and free fall
       type(march_t), intent(in) :: march
-      real(wp) :: velocity(size(equations%mass, 1), size(equations%mass, 3))
+      !> Velocities: (n_dof, n_equation)
+      real(wp), intent(in) :: velocity(:, :)
+      !> Whether forces were finer
+      logical, intent(in) :: finer
       integer :: e
 
-      velocity = packed_velocity(system, size(velocity, 1))
       is_slow = .false.
       do e = 1, size(velocity, 2)
          if (dot_product(velocity(:, e), matmul(equations%mass(:, :, e), velocity(:, e))) &
-            & > (slow*march%free_acceleration*march%dt)**2*equations%mass(1, 1, e)) return
+            & > (merge(no_speed, slow, finer)*march%free_acceleration*march%dt)**2 &
+            & *equations%mass(1, 1, e)) return
       end do
       is_slow = .true.
    end function is_slow
+
+   !> Length of a step in which rounding of gaps moves blocks less than forces that are not balanced
+   pure real(wp) function balancing_time(equations, march) result(time)
+      !> The equations, for the rounding
+      type(equations_t), intent(in) :: equations
+      !> The march, for free fall
+      type(march_t), intent(in) :: march
+
+      time = 0.0_wp
+      if (march%free_acceleration > 0.0_wp) &
+         & time = sqrt(8.0_wp*equations%gap_noise/(balanced*march%free_acceleration))
+   end function balancing_time
 
    !> Whether no block moves and the contact forces at hand balance the loads of the coming step
    pure subroutine stands_still(settings, system, contacts, march, equations, still)

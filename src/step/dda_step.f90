@@ -4,7 +4,7 @@
 module dda_step
    use dda_assembly, only : equations_t, renew_springs, take_springs
    use dda_bar_springs, only : keep_bars
-   use dda_block_inertia, only : assemble_blocks, turn_masses
+   use dda_block_inertia, only : assemble_blocks, packed_velocity, turn_masses
    use dda_block_system, only : block_system_t
    use dda_block_update, only : update_blocks, update_contacts
    use dda_contact_detection, only : contacts_t, follow_contacts
@@ -16,7 +16,7 @@ module dda_step
    use dda_load_clock, only : has_path
    use dda_multipliers, only : settle_joints
    use dda_settings, only : settings_t
-   use dda_standstill, only : is_slow, stand_still, stands_still
+   use dda_standstill, only : balancing_time, is_slow, stand_still, stands_still
    use dda_step_check, only : check_motion, check_end_velocities, retry
    use dda_step_context, only : march_t, step_context_t, step_outcome_t
    use dda_step_interval, only : largest_motion
@@ -39,9 +39,11 @@ module dda_step
    real(wp), parameter :: shortest_step = 1.0e-40_wp
    !> Steps from one try to bring slow blocks to rest to the next, and most steps of such a try
    integer, parameter :: between_tries = 16, steps_of_try = 40
+   !> Steps by which such a try must have taken all speed
+   integer, parameter :: lively_steps = 4
    !> Distance that blocks may go in the first of these steps, over the size of the smallest block,
    !> and how much of it in the next
-   real(wp), parameter :: no_distance = 1.0e-8_wp, falling = 0.8_wp
+   real(wp), parameter :: no_distance = 1.0e-7_wp, falling = 0.8_wp
    !> How much smaller than usual the gaps are that a try leaves
    real(wp), parameter :: of_try = 1.0e-6_wp
 
@@ -104,7 +106,7 @@ contains
 
       call stands_still(settings, system, contacts, march, equations, still)
       if (.not. still .and. march%steps > 0 .and. modulo(march%steps, between_tries) == 0) then
-         if (is_slow(system, equations, march)) &
+         if (is_slow(equations, march, packed_velocity(system, settings%n_dof), .false.)) &
             & call come_to_rest(settings, system, contacts, equations, march, step, still)
       end if
       if (.not. still) return
@@ -117,8 +119,9 @@ contains
       call audit_step(settings, system, equations, contacts, step, march%time, march%energy)
    end subroutine rest
 
-   !> Bring blocks to rest whose speeds may be what contact forces leave: without these speeds, the
-   !> gaps that are left close and forces balance. Where they do not, nothing changes
+   !> Bring blocks to rest whose speeds may be what contact forces leave: finer forces take all
+   !> speed in one step, but not of what slides without resistance; after it the gaps that are left
+   !> close and forces balance. Where they do not, nothing changes
    pure subroutine come_to_rest(settings, system, contacts, equations, march, step, still)
       type(settings_t), intent(in) :: settings
       type(block_system_t), intent(inout) :: system
@@ -135,7 +138,7 @@ contains
       type(march_t) :: trial
       real(wp) :: held(size(equations%fixed%force))
       real(wp) :: distance
-      logical :: breaks
+      logical :: breaks, lively
       integer :: i
 
       moving = system
@@ -143,24 +146,33 @@ contains
       held = equations%fixed%force
       trial = march
       still = .false.
+      lively = .true.
       distance = no_distance*sqrt(minval(system%area, mask=system%equation > 0))
       do i = 1, steps_of_try
-         system%velocity = 0.0_wp
          call predict(settings, system, contacts, equations, trial, step)
          call place_contacts(settings, system, step%travel, none, trial, contacts, equations)
          step%state%fineness = of_try
          step%state%patient = .true.
          call find_motion(settings, system, contacts, equations, trial, step)
-         step%state%fineness = 1.0_wp
          if (.not. step%state%settled .or. step%farthest > distance) exit
-         distance = max(falling*step%farthest, trial%resolution)
+         if (lively) then
+            call settle_velocities(settings, system, contacts, equations, step)
+            lively = .not. is_slow(equations, march, step%velocity, .true.)
+            if (.not. step%has_velocity .or. lively .and. i == lively_steps) exit
+         else
+            distance = max(falling*step%farthest, equations%gap_noise)
+         end if
+         if (.not. lively) then
+            step%velocity = 0.0_wp*step%state%motion
+            trial%dt = max(march%dt, balancing_time(equations, march))
+         end if
          call update_contacts(step, settings, contacts, breaks)
-         step%velocity = 0.0_wp*step%state%motion
          call update_blocks(step, settings, system)
          call keep_bars(equations%bars, settings, step%state%motion, system)
          call stands_still(settings, system, contacts, march, equations, still)
          if (still) exit
       end do
+      step%state%fineness = 1.0_wp
       march%passes = trial%passes
       if (still) return
       call renew_springs(contacts%springs%equation, before%springs, equations)

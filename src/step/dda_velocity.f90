@@ -127,7 +127,7 @@ contains
          & step, equations)
       state = step%state
       ! what a speed leaves of a gap counts as in the longest step
-      state%fineness = finer*step%dt/step%longest
+      state%fineness = step%state%fineness*finer*step%dt/step%longest
       state%unseen = 10.0_wp*step%state%unseen
       state%rates = .true.
       state%multiplier = state%force - borne

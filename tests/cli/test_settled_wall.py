@@ -81,3 +81,13 @@ def test_what_stands_still_feels_a_push_that_begins(tmp_path: Path) -> None:
     rows, _ = run(tmp_path, blocks, math.degrees(math.atan(0.5)), 0.3)
     assert len({row["u"] for row in rows[40:99]}) == 1
     assert float(rows[-1]["u"]) == pytest.approx(-0.1 * G * 0.2**2 / 2.0, rel=0.01)
+
+
+@pytest.mark.parametrize("speed", [1e-8, 1e-6, 1e-4])
+def test_what_nothing_resists_keeps_its_speed(tmp_path: Path, speed: float) -> None:
+    """A block goes on over a smooth floor however slow it is."""
+    blocks = (block([(-3.0, -1.0), (4.0, -1.0), (4.0, 0.0), (-3.0, 0.0)], "fixed")
+              + block([(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0)], f"velocity {speed!r} 0 0")
+              + "measure 0.5 0.5\n")
+    rows, _ = run(tmp_path, blocks, 0.0, 0.2)
+    assert float(rows[-1]["u"]) == pytest.approx(0.2 * speed, rel=1e-6)
