@@ -53,6 +53,7 @@ contains
       real(wp) :: force(3, size(springs%stiffness)), enough(2), noise
       real(wp) :: motion(size(state%motion, 1), 0:size(state%motion, 2))
       integer :: g, n, joint(size(springs%stiffness)), first(size(springs%stiffness) + 1)
+      integer :: begun, most
       real(wp) :: moved(size(state%motion, 1), size(state%motion, 2))
       logical :: settled(size(springs%stiffness))
 
@@ -65,14 +66,19 @@ contains
       noise = min(1.0_wp, state%fineness)*equations%gap_noise
       enough = [tolerance*equations%force_scale, no_matter*state%fineness*smallest(equations)]
       settled = .false.
+      begun = state%passes
+      most = 0
       state%many = any(first(2:n + 1) - first(:n) > many) .and. .not. state%patient
       do g = 1, n
          associate (of_group => joint(first(g):first(g + 1) - 1))
             call settle_group(equations, springs, view, of_group, noise, enough, moved, state, &
                & force, motion, settled(g))
          end associate
+         ! groups know nothing of one another: their passes go on side by side
+         most = max(most, state%passes - begun)
+         state%passes = begun
       end do
-      state%passes = state%passes + 1
+      state%passes = begun + most + 1
       state%settled = all(settled(:n))
       call keep_forces(equations, springs, view, force, state)
    end subroutine sweep_contacts
