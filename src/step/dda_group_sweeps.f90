@@ -102,18 +102,36 @@ contains
             if (ended) exit
          end if
          if (modulo(sweep, patience) == 0 .and. sweep > 0) then
-            if (.not. change(2) < falling*last) then
-               settled = change(2) <= merge(coarse, coarsest, hasty)*enough(2)
-               if (settled .or. sweep >= plain_sweeps) exit
-               hasty = .false.
-            end if
-            last = change(2)
+            call see_progress(sweep, change(2)/enough(2), last, hasty, settled, ended)
+            if (ended) exit
          end if
          ! not before an end: the forces that it goes on to need not be admissible
          if (hasty) call go_on(joint, springs, view, force(:, joint) - before, square, way, force, &
             & motion)
       end do
    end subroutine sweep_group
+
+   !> Whether sweeps go on where gaps no longer change less: without haste, or no more
+   pure subroutine see_progress(sweep, change, last, hasty, settled, ended)
+      !> Sweeps so far
+      integer, intent(in) :: sweep
+      !> Change of the gaps over what counts as none
+      real(wp), intent(in) :: change
+      !> The same when this was seen last; now out
+      real(wp), intent(inout) :: last
+      !> Whether the direction of the sweeps is followed
+      logical, intent(inout) :: hasty
+      !> Whether the group is settled, and whether it is swept no more
+      logical, intent(out) :: settled, ended
+
+      settled = .false.
+      if (.not. change < falling*last) then
+         settled = change <= merge(coarse, coarsest, hasty)
+         hasty = .false.
+      end if
+      ended = settled .or. .not. hasty .and. sweep >= plain_sweeps .and. .not. change < falling*last
+      last = change
+   end subroutine see_progress
 
    !> Whether a group is settled after some sweeps, or what is left is no more to be swept
    pure subroutine judge(purpose, n, sweep, largest, enough, change, lately, settled, ended)
@@ -236,22 +254,9 @@ contains
       !> Largest change so far: of a force, and of an opening or slip by it: (2) [N/m, m]
       real(wp), intent(inout) :: change(2)
       real(wp) :: before(3), gap(3), wanted
-      integer :: a, b, i, k
+      integer :: k
 
-      a = springs%equation(1, j)
-      b = springs%equation(2, j)
-      gap = view%gap(:, j) + view%soft(:, j)*(force - view%rest(:, j))
-      ! three unknowns at a time, so that the compiler knows the length
-      do i = 1, n_dof, 3
-         do k = 1, 3
-            gap(k) = gap(k) + springs%row(i, k, 1, j)*motion(i, a) &
-               & + springs%row(i + 1, k, 1, j)*motion(i + 1, a) &
-               & + springs%row(i + 2, k, 1, j)*motion(i + 2, a) &
-               & + springs%row(i, k, 2, j)*motion(i, b) &
-               & + springs%row(i + 1, k, 2, j)*motion(i + 1, b) &
-               & + springs%row(i + 2, k, 2, j)*motion(i + 2, b)
-         end do
-      end do
+      call see_gap(n_dof, springs, view, j, force, motion, gap)
       before = force
       do k = 1, 3
          if (.not. view%give(k, k, j) > 0.0_wp) cycle
@@ -273,6 +278,33 @@ contains
       end do
       call push(n_dof, springs, view, j, force - before, motion)
    end subroutine relax
+
+   !> Openings and slip of a joint, with what follows its forces
+   pure subroutine see_gap(n_dof, springs, view, j, force, motion, gap)
+      integer, intent(in) :: n_dof
+      type(joint_springs_t), intent(in) :: springs
+      type(contact_view_t), intent(in) :: view
+      integer, intent(in) :: j
+      real(wp), intent(in) :: force(3), motion(n_dof, 0:*)
+      !> Openings and slip: (3) [m]
+      real(wp), intent(out) :: gap(3)
+      integer :: a, b, i, k
+
+      a = springs%equation(1, j)
+      b = springs%equation(2, j)
+      gap = view%gap(:, j) + view%soft(:, j)*(force - view%rest(:, j))
+      ! three unknowns at a time, so that the compiler knows the length
+      do i = 1, n_dof, 3
+         do k = 1, 3
+            gap(k) = gap(k) + springs%row(i, k, 1, j)*motion(i, a) &
+               & + springs%row(i + 1, k, 1, j)*motion(i + 1, a) &
+               & + springs%row(i + 2, k, 1, j)*motion(i + 2, a) &
+               & + springs%row(i, k, 2, j)*motion(i, b) &
+               & + springs%row(i + 1, k, 2, j)*motion(i + 1, b) &
+               & + springs%row(i + 2, k, 2, j)*motion(i + 2, b)
+         end do
+      end do
+   end subroutine see_gap
 
    !> Let the two blocks of a joint answer a change of its forces
    pure subroutine push(n_dof, springs, view, j, change, motion)

@@ -83,8 +83,7 @@ contains
       !> Motion of all blocks: (n_dof, n_equation) [m]
       real(wp), intent(in) :: motion(:, :)
       type(problem_t), intent(out) :: p
-      integer :: e, i, k, n, n_dof, side, number(0:size(equations%load, 2))
-      integer :: pair(2, size(joint)), equation(2*size(joint))
+      integer :: i, k, n, n_dof, pair(2, size(joint))
 
       n = size(joint)
       n_dof = size(motion, 1)
@@ -93,12 +92,35 @@ contains
       allocate (p%joint, source=joint)
       allocate (p%block(2, n), p%entry(n), p%bounded(4, n), p%unit(3, n), p%before(3, n))
       allocate (p%opening(3, n), p%product(4, n), p%given(3, n), p%yield(4, n), p%held(7, n))
-      number = 0
-      e = 0
+      call number_blocks(springs, size(equations%load, 2), p)
+      p%entry = 0
       k = 0
       do i = 1, n
+         if (any(p%block(:, i) == 0)) cycle
+         k = k + 1
+         p%entry(i) = k
+         pair(:, k) = p%block(:, i)
+      end do
+      call set_pattern(p%matrix, n_dof, size(p%equation), pair(:, :k), symmetric=.false.)
+      call plan_factor(p%matrix, p%factor)
+      allocate (p%balance(n_dof, size(p%equation)))
+      call pose_springs(springs, view, force, p)
+   end subroutine pose
+
+   !> Number the blocks of the joints as these come
+   pure subroutine number_blocks(springs, n_equation, p)
+      type(joint_springs_t), intent(in) :: springs
+      !> Movable blocks in all
+      integer, intent(in) :: n_equation
+      !> The problem; equations and blocks are set
+      type(problem_t), intent(inout) :: p
+      integer :: e, i, side, number(0:n_equation), equation(2*size(p%joint))
+
+      number = 0
+      e = 0
+      do i = 1, size(p%joint)
          do side = 1, 2
-            associate (global => springs%equation(side, joint(i)))
+            associate (global => springs%equation(side, p%joint(i)))
                if (global > 0 .and. number(global) == 0) then
                   e = e + 1
                   number(global) = e
@@ -107,18 +129,9 @@ contains
                p%block(side, i) = number(global)
             end associate
          end do
-         p%entry(i) = 0
-         if (any(p%block(:, i) == 0)) cycle
-         k = k + 1
-         p%entry(i) = k
-         pair(:, k) = p%block(:, i)
       end do
       p%equation = equation(:e)
-      call set_pattern(p%matrix, n_dof, e, pair(:, :k), symmetric=.false.)
-      call plan_factor(p%matrix, p%factor)
-      allocate (p%balance(n_dof, e))
-      call pose_springs(springs, view, force, p)
-   end subroutine pose
+   end subroutine number_blocks
 
    !> What the forces of the joints may be, and how they are measured
    pure subroutine pose_springs(springs, view, force, p)
@@ -282,10 +295,9 @@ contains
       type(joint_springs_t), intent(in) :: springs
       !> The problem; matrix and factor are made anew
       type(problem_t), intent(inout) :: p
-      real(wp), dimension(size(p%balance, 1), 3, 2) :: steep
-      real(wp) :: unit(3), wanted(7)
+      real(wp) :: wanted(7)
       logical :: changed(0:size(p%equation))
-      integer :: b, c, d, first, i, k, n, one
+      integer :: i, n
 
       n = size(p%balance, 1)
       changed = .not. p%factor%usable
@@ -300,40 +312,61 @@ contains
       p%matrix%coupling = 0.0_wp
       p%matrix%upper = 0.0_wp
       do i = 1, size(p%joint)
-         associate (row => springs%row(:n, :, :, p%joint(i)), m => p%matrix)
-            ! R S, of columns opening 1, opening 2, slip
-            do k = 1, 3
-               unit = 0.0_wp
-               unit(k) = 1.0_wp
-               unit = answer(springs, p, i, unit)
-               do one = 1, 2
-                  steep(:, k, one) = row(:, 1, one)*unit(1) + row(:, 2, one)*unit(2) &
-                     & + row(:, 3, one)*unit(3)
-               end do
-            end do
-            do one = 1, 2
-               b = p%block(one, i)
-               if (b == 0) cycle
-               do c = 1, n
-                  do d = 1, 3
-                     m%diagonal(:, c, b) = m%diagonal(:, c, b) + steep(:, d, one)*row(c, d, one)
-                  end do
-               end do
-            end do
-            if (p%entry(i) == 0) cycle
-            first = merge(1, 2, m%pair(1, p%entry(i)) == p%block(1, i))
-            do c = 1, n
-               do d = 1, 3
-                  m%coupling(:, c, p%entry(i)) = m%coupling(:, c, p%entry(i)) &
-                     & + steep(:, d, first)*row(c, d, 3 - first)
-                  m%upper(:, c, p%entry(i)) = m%upper(:, c, p%entry(i)) &
-                     & + steep(:, d, 3 - first)*row(c, d, first)
-               end do
-            end do
-         end associate
+         call add_springs(springs, i, p)
       end do
       call factorise(p%matrix, p%factor, changed(1:))
    end subroutine factor_springs
+
+   !> Add the springs of one joint to the matrix
+   pure subroutine add_springs(springs, i, p)
+      type(joint_springs_t), intent(in) :: springs
+      !> Place of the joint in the problem
+      integer, intent(in) :: i
+      !> The problem; the matrix receives the stiffness
+      type(problem_t), intent(inout) :: p
+      real(wp), dimension(size(p%balance, 1), 3, 2) :: steep
+      real(wp) :: unit(3)
+      integer :: b, d, first, k, one
+
+      associate (row => springs%row(:size(steep, 1), :, :, p%joint(i)), m => p%matrix)
+         ! R S, of columns opening 1, opening 2, slip
+         do k = 1, 3
+            unit = 0.0_wp
+            unit(k) = 1.0_wp
+            unit = answer(springs, p, i, unit)
+            do one = 1, 2
+               steep(:, k, one) = row(:, 1, one)*unit(1) + row(:, 2, one)*unit(2) &
+                  & + row(:, 3, one)*unit(3)
+            end do
+         end do
+         do one = 1, 2
+            b = p%block(one, i)
+            if (b == 0) cycle
+            do d = 1, 3
+               call add_outer(steep(:, d, one), row(:, d, one), m%diagonal(:, :, b))
+            end do
+         end do
+         if (p%entry(i) == 0) return
+         first = merge(1, 2, m%pair(1, p%entry(i)) == p%block(1, i))
+         do d = 1, 3
+            call add_outer(steep(:, d, first), row(:, d, 3 - first), m%coupling(:, :, p%entry(i)))
+            call add_outer(steep(:, d, 3 - first), row(:, d, first), m%upper(:, :, p%entry(i)))
+         end do
+      end associate
+   end subroutine add_springs
+
+   !> Add the product of a column and a row
+   pure subroutine add_outer(column, row, matrix)
+      !> The column, and the row: (n_dof)
+      real(wp), intent(in) :: column(:), row(:)
+      !> Receives it: (n_dof, n_dof)
+      real(wp), intent(inout) :: matrix(:, :)
+      integer :: c
+
+      do c = 1, size(row)
+         matrix(:, c) = matrix(:, c) + column*row(c)
+      end do
+   end subroutine add_outer
 
    !> Forces of a joint's springs that are pressed together
    pure function answer(springs, p, i, drive) result(force)

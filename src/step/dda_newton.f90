@@ -100,12 +100,12 @@ contains
       !> 1 is the whole way
       real(wp) :: factor
       real(wp) :: start(3, size(state%face)), rate(3, size(state%face))
-      real(wp) :: slope_at_zero, curvature, low, high, slope_low, slope_high, slope
+      real(wp) :: slope_zero, curvature, low, high, slope_low, slope_high, slope
       integer :: pass
 
       start = relative_displacement(springs, from)
       rate = relative_displacement(springs, direction)
-      call block_slope(equations, from, direction, slope_at_zero, curvature)
+      call block_slope(equations, from, direction, slope_zero, curvature)
       call find_bracket(low, high, slope_low, slope_high)
       factor = high
       do pass = 1, 60
@@ -120,8 +120,7 @@ contains
             high = factor
             slope_high = slope
          end if
-         if (high - low <= 1.0e-14_wp*high) exit
-         if (abs(slope) <= 1.0e-15_wp*abs(slope_at_zero)) exit
+         if (high - low <= 1.0e-14_wp*high .or. abs(slope) <= 1.0e-15_wp*abs(slope_zero)) exit
       end do
 
    contains
@@ -152,7 +151,7 @@ contains
          type(joint_face_t) :: face
          integer :: j
 
-         slope = slope_at_zero + way*curvature
+         slope = slope_zero + way*curvature
          do j = 1, size(rate, 2)
             shift = springs%shift(:, j)
             call project(state%cone(j), shift + state%start(:, j) &

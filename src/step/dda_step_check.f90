@@ -177,26 +177,19 @@ contains
       type(step_context_t), intent(in) :: step
       !> What the check says
       type(step_outcome_t) :: outcome
-      real(wp) :: free(size(step%state%motion, 1), size(step%state%motion, 2))
       real(wp) :: speed(3, size(contacts%joint)), acceleration(3, size(contacts%joint))
       real(wp) :: near, earliest, least, meeting, time
-      integer :: e, i, j, k
+      integer :: j, k
 
-      outcome%accepted = .true.
-      outcome%dt = step%dt
-      free = 0.0_wp
-      do e = 1, size(free, 2)
-         do i = 1, 3
-            free(i, e) = equations%outer(i, e)/equations%mass(i, i, e)
-         end do
-      end do
-      associate (velocity => packed_velocity(system, size(free, 1)))
+      outcome = step_outcome_t(accepted=.true., dt=step%dt)
+      associate (velocity => packed_velocity(system, &
+         & size(step%state%motion, 1)))
          speed = relative_displacement(contacts%springs, velocity)
          least = merge(0.0_wp, notable, settings%restitution > 0.0_wp) &
             & *(kinetic_energy(equations, velocity) &
             & + sum(equations%mass(1, 1, :))*step%slowest_impact**2/8.0_wp)
       end associate
-      acceleration = relative_displacement(contacts%springs, free)
+      acceleration = relative_displacement(contacts%springs, free_accelerations(equations))
       earliest = huge(earliest)
       do j = 1, size(contacts%joint)
          near = near_gap(system, contacts%joint(j)%block)
@@ -213,6 +206,21 @@ contains
       outcome%accepted = .false.
       outcome%dt = merge(earliest, step%dt/2.0_wp, earliest < 0.999_wp*step%dt)
    end function check_impact
+
+   !> Accelerations of the blocks if nothing touched them
+   pure function free_accelerations(equations) result(free)
+      type(equations_t), intent(in) :: equations
+      !> The accelerations; those of strains are none: (n_dof, n_equation)
+      real(wp) :: free(size(equations%outer, 1), size(equations%outer, 2))
+      integer :: e, i
+
+      free = 0.0_wp
+      do e = 1, size(free, 2)
+         do i = 1, 3
+            free(i, e) = equations%outer(i, e)/equations%mass(i, i, e)
+         end do
+      end do
+   end function free_accelerations
 
    !> How easily an impact at a contact moves its two blocks
    pure real(wp) function ease_of(springs, equations, k, j) result(ease)
