@@ -43,6 +43,22 @@ def test_an_arch_that_falls_is_said_to(tmp_path: Path) -> None:
     assert 'class="verdict falls"' in page
 
 
+@pytest.mark.parametrize("where", ["position = -1.4", "worst = .true."])
+def test_level_arches_that_any_axle_leaves_standing_have_a_page(tmp_path: Path, where: str) -> None:
+    """No position has a factor then, and none is worst."""
+    deck = tmp_path / "level.nml"
+    deck.write_text(
+        "&arch shape = 'flat', span = 10, voussoirs = 22, half_angle_deg = 30, thickness = 1.07, spans = 2, "
+        "pier_width = 2.9, pier_height = 9, pier_courses = 4 /\n&joint friction_deg = 44 /\n"
+        "&material unit_weight = 20e3 /\n&fill height = 0.1, unit_weight = 18e3 /\n"
+        f"&vehicle axles = 2e4, {where} /\n&analysis flow = 'associated' /\n"
+    )
+    assert main(["assess", str(deck)]) == 0
+    page = (tmp_path / "level.html").read_text()
+    assert "No multiple of the live loads brings it down." in page
+    assert "Position of the vehicle" not in page
+
+
 @pytest.mark.parametrize(
     ("text", "words"),
     [

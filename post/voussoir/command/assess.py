@@ -143,7 +143,7 @@ def assess(text: str, deck: Path) -> str:
     bare = without(text, "search")
     found, factor = load_search(bare)
     place = math.nan if factor is None else factor.get("worst_position", math.nan)
-    fixed = _at_position(bare, place, deck)
+    fixed = _at_position(bare, place)
     own_run = run_deck(fixed)
     own = own_run.case(1)
     steps = [float(word) for word in own_run.settings("vehicle%spacings")]
@@ -164,7 +164,7 @@ def assess(text: str, deck: Path) -> str:
         ]
         flow = {"analysis%flow": "associated"} if _slides(own_run) else {}
         cases = _positions(fixed, free[:, 0], steps, place, flow) if placed else None
-        if cases is not None:
+        if cases is not None and "found" in cases["verdict"]:
             chart = draw_positions(own_run, cases, None if math.isnan(place) else place)
             parts.append(("Position of the vehicle", figure_of(chart, _POSITIONS[_slides(own_run)])))
         parts.append(("Thrust under the loads given", figure_of(draw_case(own_run, 1))))
@@ -176,13 +176,11 @@ def assess(text: str, deck: Path) -> str:
     return page(own_run.setting("scene%title") or deck.stem, sentence, falls, parts)
 
 
-def _at_position(text: str, place: float, deck: Path) -> str:
-    """The deck with its vehicle at the worst position, where it asks for that."""
+def _at_position(text: str, place: float) -> str:
+    """The deck with its vehicle at the worst position, where it asks for that; where none is worst, half way."""
     if not _TRUE.search(re.sub(r"!.*", "", text)):
         return text
-    if math.isnan(place):
-        raise ValueError(f"{deck}:1: error: expected a worst position, got none; give vehicle%position")
-    return _TRUE.sub(f"position = {float(place)!r}", text)
+    return _TRUE.sub(f"position = {0.0 if math.isnan(place) else float(place)!r}", text)
 
 
 def _slides(run: Results) -> bool:
