@@ -11,11 +11,10 @@ module dda_check
    use dda_limerick_model, only : half_size, limerick_model_t
    use dda_limerick_scene, only : limerick_scene
    use dda_model_table, only : models_of, searches_of
-   use dda_process, only : error_is_terminal, exit_status
+   use dda_process, only : deck_stem, error_is_terminal, exit_status
    use dda_progress, only : end_watch, terminal_watch_t
    use dda_read_deck, only : read_deck
    use dda_result_tables, only : left_out, name_tables, result_tables_t
-   use dda_run_cases, only : deck_stem
    use dda_run_record, only : run_record
    use dda_scene, only : scene_t
    use dda_scene_check, only : check_lines, check_scene

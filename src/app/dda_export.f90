@@ -12,9 +12,8 @@ module dda_export
    use dda_line_model, only : line_model_t
    use dda_line_scene, only : cut_lines
    use dda_line_text, only : has_one_law, line_losses, line_text
-   use dda_process, only : exit_status, make_folder, worst_status
+   use dda_process, only : deck_stem, exit_status, make_folder, worst_status
    use dda_read_deck, only : read_deck
-   use dda_run_cases, only : deck_stem
    use dda_screen, only : print_line, screen_t
    use dda_shape_check, only : check_form
    use dda_shape_text, only : shape_losses, shape_text

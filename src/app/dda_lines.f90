@@ -7,9 +7,8 @@ module dda_lines
    use dda_kinds, only : wp
    use dda_line_model, only : entities_t, line_model_t
    use dda_map_lines, only : map_lines
-   use dda_process, only : exit_status, worst_status
+   use dda_process, only : deck_stem, exit_status, worst_status
    use dda_read_joint_map, only : read_joint_map
-   use dda_run_cases, only : deck_stem
    use dda_screen, only : print_line
    use dda_table_file, only : append_line, close_table, open_table, table_file_t
    use dda_text, only : to_text

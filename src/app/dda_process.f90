@@ -7,7 +7,7 @@ module dda_process
    private
 
    public :: exit_status, exit_status_enum, leave, worst_status, make_folder, error_is_terminal
-   public :: survive_file_limit, terminal_width
+   public :: survive_file_limit, terminal_width, deck_stem
 
    !> Exit statuses of the program
    type :: exit_status_enum
@@ -158,4 +158,22 @@ contains
    logical function error_is_terminal()
       error_is_terminal = c_isatty(2_c_int) == 1
    end function error_is_terminal
+
+   !> Name of a deck without its folder and its ending; one that would stay the same, or be a folder
+   !> that exists already, gets an ending
+   pure function deck_stem(name) result(stem)
+      !> Name of the file
+      character(len=*), intent(in) :: name
+      character(len=:), allocatable :: stem
+      integer :: dot
+
+      stem = name(index(name, "/", back=.true.) + 1:)
+      dot = index(stem, ".", back=.true.)
+      if (dot > 1) then
+         stem = stem(:dot - 1)
+      else
+         stem = stem//".results"
+      end if
+      if (verify(stem, ".") == 0) stem = stem//"results"
+   end function deck_stem
 end module dda_process

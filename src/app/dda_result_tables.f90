@@ -1,9 +1,9 @@
 !> The tables of one deck's results: begun, added to case by case, closed
 module dda_result_tables
    use, intrinsic :: iso_fortran_env, only : int64
+   use dda_deck_sweep, only : few_cases, n_cases, swept_text
    use dda_force_rows, only : bars_header
    use dda_deck, only : deck_t
-   use dda_deck_sweep, only : n_cases, swept_text
    use dda_disk_record, only : write_disk_record
    use dda_fill_loads, only : fill_yields
    use dda_error, only : error_t
@@ -11,7 +11,6 @@ module dda_result_tables
    use dda_table_file, only : add_sums, append_line, close_table, length_of, open_table, &
       & remove_file, sum_of, sync_table, table_file_t
    use dda_proof_rows, only : proof_forces_header, proof_motion_header
-   use dda_read_deck, only : few_cases
    use dda_text, only : to_text
    use dda_growing_text, only : add_line, growing_text_t, lines_of
    use dda_write_tables, only : block_lines, blocks_header, told_blocks_t, energy_header, &

@@ -10,12 +10,12 @@ module dda_run
    use dda_deck, only : deck_t
    use dda_deck_sweep, only : n_cases
    use dda_error, only : error_line, error_t, fatal_error
-   use dda_process, only : error_is_terminal, exit_status, make_folder, worst_status
+   use dda_process, only : deck_stem, error_is_terminal, exit_status, make_folder, worst_status
    use dda_progress, only : clear_progress, end_watch, progress_t, terminal_watch_t
    use dda_read_deck, only : read_deck
    use dda_result_tables, only : close_tables, left_out, name_tables, open_tables, result_tables_t
    use dda_resume, only : find_finished, finished_t, reopen_tables
-   use dda_run_cases, only : deck_stem, run_cases
+   use dda_run_cases, only : run_cases
    use dda_run_record, only : run_record
    use dda_scene, only : scene_t
    use dda_scene_check, only : check_lines, check_scene

@@ -1,28 +1,29 @@
 !> The cases of a deck, one after another: prepared, computed, written down
 module dda_run_cases
    use dda_case, only : case_t, prepare_case
-   use dda_compute_case, only : compute_case
    use dda_case_rows, only : tell_case
    use dda_case_table, only : add_case, case_table_t, may_print
    use dda_command_line, only : command_t
+   use dda_compute_case, only : compute_case
    use dda_deck, only : deck_t
    use dda_deck_sweep, only : turn_to_case
    use dda_error, only : error_t
+   use dda_force_rows, only : bar_lines, reaction_text
    use dda_kinds, only : wp
    use dda_picture_files, only : write_album, write_energies, write_track
+   use dda_process, only : deck_stem
    use dda_progress, only : clear_progress, progress_t, report_progress
-   use dda_force_rows, only : bar_lines, reaction_text
    use dda_proof_rows, only : proof_forces_lines, proof_motion_lines
    use dda_restart, only : save_restart
    use dda_result_tables, only : result_tables_t, swept_fields, sync_when_due, table, write_case
    use dda_table_file, only : append_line
    use dda_text, only : to_text
-   use dda_write_tables, only : told_blocks_t
    use dda_write_results, only : joint_row_t, result_row_t
+   use dda_write_tables, only : told_blocks_t
    implicit none
    private
 
-   public :: deck_stem, run_cases
+   public :: run_cases
 
    !> Most cases that a thread takes at a time
    integer, parameter :: max_batch = 32
@@ -143,24 +144,6 @@ contains
       end do
       next_chosen = 0
    end function next_chosen
-
-   !> Name of a deck without its folder and its ending; one that would stay the same, or be a folder
-   !> that exists already, gets an ending
-   pure function deck_stem(name) result(stem)
-      !> Name of the file
-      character(len=*), intent(in) :: name
-      character(len=:), allocatable :: stem
-      integer :: dot
-
-      stem = name(index(name, "/", back=.true.) + 1:)
-      dot = index(stem, ".", back=.true.)
-      if (dot > 1) then
-         stem = stem(:dot - 1)
-      else
-         stem = stem//".results"
-      end if
-      if (verify(stem, ".") == 0) stem = stem//"results"
-   end function deck_stem
 
    !> Write a computed case down
    subroutine write_down(command, name, deck, number, this, tables, progress, shown, count, error)

@@ -1,9 +1,6 @@
 !> One case of a deck, ready to be computed
 module dda_case
    use dda_arch_scene, only : arch_resolution, chain_resolution, search_start
-   use dda_case_proof, only : proof_t
-   use dda_search, only : critical_t, search_t
-   use dda_decision, only : decision_t
    use dda_deck, only : deck_t, file_beside, parameter_t, scene_kind
    use dda_deck_check_case, only : search_bracket
    use dda_deck_parameter, only : parameter_name
@@ -11,6 +8,7 @@ module dda_case
    use dda_deck_scene, only : deck_family_t, new_family
    use dda_error, only : error_t
    use dda_frames, only : album_t
+   use dda_search, only : critical_t, decision_t, proof_t, search_t
    use dda_step_context, only : march_t
    use dda_kinds, only : wp
    use dda_scene, only : scene_t

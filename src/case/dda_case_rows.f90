@@ -2,12 +2,9 @@
 module dda_case_rows
    use dda_block_scene, only : lacks_friction
    use dda_case, only : case_t, searched_name
-   use dda_case_proof, only : proof_t
    use dda_case_remarks, only : change_remark, fall_remark, jump_remark, path_remark
    use dda_contact_detection, only : contacts_t
    use dda_contact_types, only : joint_t
-   use dda_search, only : critical_t
-   use dda_decision, only : decision_t
    use dda_deck, only : deck_t, scene_kind
    use dda_deck_scene, only : movable_blocks
    use dda_error, only : error_line
@@ -17,6 +14,7 @@ module dda_case_rows
    use dda_kinds, only : wp
    use dda_mechanism, only : mechanism_of, mechanism_t
    use dda_scene, only : build_once, scene_t, searched_load
+   use dda_search, only : critical_t, decision_t, proof_t
    use dda_text, only : to_text
    use dda_verdict, only : verdict
    use dda_write_tables, only : told_blocks_t

@@ -11,7 +11,6 @@ module dda_compute_case
    use dda_chain_unfold, only : unfold
    use dda_contact_detection, only : contacts_t
    use dda_critical, only : find_critical
-   use dda_decision, only : decision_t
    use dda_deck, only : parameter_t, scene_kind
    use dda_deck_keys, only : key_index
    use dda_deck_set, only : put_number
@@ -26,8 +25,9 @@ module dda_compute_case
    use dda_limerick_search, only : find_limerick_critical, repeat_with_pictures
    use dda_mechanism, only : follow_collapse
    use dda_scene, only : build_once, scene_t
+   use dda_search, only : decision_t
    use dda_settings, only : settings_t
-   use dda_stages, only : decide_in_stages
+   use dda_decision, only : decide_in_stages
    use dda_verdict, only : verdict
    use dda_worst_position, only : find_worst_position
    implicit none

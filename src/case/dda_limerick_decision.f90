@@ -3,7 +3,6 @@ module dda_limerick_decision
    use dda_block_system, only : block_system_t
    use dda_contact_detection, only : contacts_t
    use dda_contact_types, only : place_joint
-   use dda_decision, only : decision_t
    use dda_deck, only : deck_t
    use dda_frames, only : album_t, frame_is_due, keep_frame
    use dda_kinds, only : wp
@@ -17,6 +16,7 @@ module dda_limerick_decision
    use dda_limerick_step, only : limerick_run_t
    use dda_material, only : joint_law_t
    use dda_scene, only : scene_t
+   use dda_search, only : decision_t
    use dda_verdict, only : verdict
    implicit none
    private

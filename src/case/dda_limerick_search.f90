@@ -1,6 +1,5 @@
 !> Critical value under the original's scheme: a bracket of two runs, halved
 module dda_limerick_search
-   use dda_decision, only : decision_t
    use dda_deck, only : deck_t
    use dda_deck_scene, only : deck_family_t, deck_scene
    use dda_deck_set, only : number_fits, put_number
@@ -10,7 +9,7 @@ module dda_limerick_search
    use dda_limerick_decision, only : decide_limerick
    use dda_scene, only : scene_t
    use dda_scene_plan, only : plan_scene
-   use dda_search, only : critical_t, search_t
+   use dda_search, only : critical_t, decision_t, search_t
    use dda_verdict, only : verdict
    implicit none
    private

@@ -1,9 +1,9 @@
 !> Proofs of a case as rows of proof_forces.csv and proof_motion.csv
 module dda_proof_rows
    use dda_bar_joints, only : bar_joint
-   use dda_case_proof, only : proof_t
    use dda_growing_text, only : add_line, fields, growing_text_t, lines_of
    use dda_kinds, only : wp
+   use dda_search, only : proof_t
    use dda_text, only : to_text
    implicit none
    private

@@ -10,14 +10,13 @@ module dda_worst_position
    use dda_boundary, only : loaded_point_t, value_at
    use dda_deck, only : deck_t
    use dda_fill_loads, only : fill_of, fill_t, live_side, press_side
-   use dda_graph_decision, only : decides_as_graph
    use dda_joint_graph, only : joint_graph_t
    use dda_kinds, only : wp
    use dda_limit_decision, only : decide_load, load_decision_t, load_state
    use dda_load_coefficient, only : added_loads, full_loads, with_coefficient
+   use dda_scene_graph, only : decides_as_graph, scene_graph
    use dda_submatrices, only : point_load
    use dda_scene, only : scene_t, searched_load
-   use dda_scene_graph, only : scene_graph
    use dda_settings, only : factor_of
    use dda_shape_scene, only : shape_assembly
    use dda_vehicle, only : axle_loads, passages, road_of, road_t, vehicle_of, vehicle_t

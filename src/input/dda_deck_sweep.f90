@@ -1,23 +1,26 @@
 !> Sweeps into cases: the last &sweep runs fastest, a linked one goes with the one before it
 module dda_deck_sweep
-   use dda_kinds, only : wp
-   use dda_error, only : error_t
-   use dda_text, only : to_text, lower_case
+   use dda_deck, only : deck_error, deck_place_t, deck_sweep_t, deck_t, deck_value_t, place_of
    use dda_deck_key, only : key_kind, word_length
    use dda_deck_keys, only : deck_key, key_index
-   use dda_deck_words, only : wanted, full_name
-   use dda_deck, only : deck_t, deck_value_t, deck_sweep_t, deck_place_t, deck_error, place_of
-   use dda_deck_values, only : name_values
    use dda_deck_parameter, only : find_parameter, parameter_name
-   use dda_deck_set, only : put_number, put_text, number_problem, text_problem, is_numeric
+   use dda_deck_set, only : is_numeric, number_problem, put_number, put_text, text_problem
+   use dda_deck_values, only : name_values
+   use dda_deck_words, only : full_name, wanted
+   use dda_error, only : error_t
+   use dda_kinds, only : wp
+   use dda_text, only : lower_case, to_text
    implicit none
    private
 
-   public :: add_sweep, n_cases, case_deck, turn_to_case, swept_text, swept_texts
-   public :: max_sweeps
+   public :: add_sweep, n_cases, case_deck, turn_to_case, swept_text, swept_texts, max_sweeps
+   public :: few_cases
 
    !> Most &sweep groups of a deck
    integer, parameter :: max_sweeps = 8
+
+   !> Tables that are written for at most so many cases where the deck does not say
+   integer, parameter :: few_cases = 100
 
 contains
 

@@ -1,31 +1,29 @@
 !> Read a deck: file, --set values, sweeps, and every check before anything is computed
 module dda_read_deck
-   use dda_error, only : error_t
-   use dda_text, only : to_text
-   use dda_text_file, only : read_text_file
-   use dda_deck_key, only : key_kind
-   use dda_deck_keys, only : deck_key, key_index, group_index
-   use dda_deck_words, only : full_name, near_group, near_key
-   use dda_deck_token, only : deck_scan_t, token_kind, token_text, shown
-   use dda_deck_scan, only : scan_deck, scan_values
-   use dda_deck, only : add_file_mark, deck_t, deck_place_t, parameter_t, deck_error, file_beside
-   use dda_deck_values, only : name_values, new_deck
-   use dda_deck_parameter, only : find_parameter, split_name
-   use dda_deck_set, only : put_text
-   use dda_deck_entry, only : read_values
-   use dda_deck_sweep, only : add_sweep, n_cases
+   use dda_deck, only : add_file_mark, deck_error, deck_place_t, deck_t, file_beside, parameter_t
    use dda_deck_check, only : check_deck, name_key, read_ground_records, read_lines
    use dda_deck_check_loads, only : check_block_file
+   use dda_deck_entry, only : read_values
+   use dda_deck_key, only : key_kind
+   use dda_deck_keys, only : deck_key, group_index, key_index
+   use dda_deck_parameter, only : find_parameter, split_name
+   use dda_deck_scan, only : scan_deck, scan_values
+   use dda_deck_set, only : put_text
+   use dda_deck_sweep, only : add_sweep, few_cases, n_cases
+   use dda_deck_token, only : deck_scan_t, shown, token_kind, token_text
+   use dda_deck_values, only : name_values, new_deck
+   use dda_deck_words, only : full_name, near_group, near_key
+   use dda_error, only : error_t
    use dda_file_mark, only : file_mark, text_mark
    use dda_read_blocks, only : parse_blocks
+   use dda_text, only : to_text
+   use dda_text_file, only : read_text_file
    use dda_watch, only : watch_t
    implicit none
    private
 
-   public :: read_deck, parse_deck, geometry_file, few_cases
+   public :: read_deck, parse_deck, geometry_file
 
-   !> Tables that are written for at most so many cases where the deck does not say
-   integer, parameter :: few_cases = 100
    !> Their keys in &output
    character(len=*), parameter :: many_case_tables(*) = ["joints", "blocks"]
    !> What --tight sets in a search

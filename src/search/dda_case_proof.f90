@@ -5,10 +5,7 @@
 !> proof of this kind, and none is told.
 module dda_case_proof
    use dda_bar_joints, only : bar_joint
-   use dda_search, only : critical_t
-   use dda_decision, only : decision_t
    use dda_error, only : error_t
-   use dda_graph_decision, only : decides_as_graph
    use dda_joint_graph, only : joint_graph_t, keep_joints
    use dda_kinds, only : wp
    use dda_limit_certificate, only : check_forces, check_velocities
@@ -17,45 +14,15 @@ module dda_case_proof
    use dda_load_coefficient, only : added_loads, full_loads, with_coefficient
    use dda_load_stations, only : bears_live_load
    use dda_scene, only : build_once, family_t, scene_t, searched_load
-   use dda_scene_graph, only : scene_graph
+   use dda_scene_graph, only : decides_as_graph, scene_graph
+   use dda_search, only : critical_t, decision_t, proof_t
    use dda_settings, only : settings_t
    use dda_thrust_range, only : find_thrust_range
    use dda_verdict, only : verdict
    implicit none
    private
 
-   public :: proof_t, prove_decision, prove_search
-
-   !> Proofs of a case and their figures
-   type :: proof_t
-      !> N1, N2, T of each joint, then the forces of held points; unallocated without: (3, n) [N/m]
-      real(wp), allocatable :: force(:, :)
-      !> Value of what is searched at which they carry the load
-      real(wp) :: force_at = 0.0_wp
-      !> Velocities of the blocks' centres and spins; unallocated without: (3, n_block)
-      real(wp), allocatable :: velocity(:, :)
-      !> Value of what is searched at which the loads begin to drive them
-      real(wp) :: motion_at = 0.0_wp
-      !> Whether the blocks have the same shape there
-      logical :: same_shape = .true.
-      !> Scene of the forces, and of the velocities where only loads are searched
-      type(scene_t) :: scene
-      !> Largest force or moment left on a block, over the largest load
-      real(wp) :: imbalance = 0.0_wp
-      !> Largest violation of the law of a joint by forces or velocities, relative
-      real(wp) :: law_violation = 0.0_wp
-      !> Power of the loads on the mechanism, or of the live load where that is searched, over what
-      !> they could do at most
-      real(wp) :: power = 0.0_wp
-      !> Associated limit of the load factor of a single decision, from below and from above
-      real(wp) :: limit(2) = 0.0_wp
-      !> Whether there is one
-      logical :: has_limit = .false.
-      !> Least and greatest thrust of a joint: (2) [N/m]
-      real(wp) :: thrust(2) = 0.0_wp
-      !> Which of them there are
-      logical :: has_thrust(2) = .false.
-   end type proof_t
+   public :: prove_decision, prove_search
 
    !> Relative gap of the limit of a load factor beside a decision
    real(wp), parameter :: limit_gap = 1.0e-13_wp

@@ -6,9 +6,9 @@ module dda_chain_decision
    use dda_chain_lack, only : chain_mechanism_t, chain_power, freeze_mechanism
    use dda_chain_path, only : stick_all_along
    use dda_chain_thrust, only : approach_cones, find_thrust, thrust_t
-   use dda_decision, only : decision_t
    use dda_friction_cone, only : joint_face_t, project
    use dda_kinds, only : wp
+   use dda_search, only : decision_t
    use dda_settings, only : flow_rule, settings_t
    use dda_verdict, only : verdict
    implicit none

@@ -1,9 +1,9 @@
 !> Expand the result of a half model by symmetry
 module dda_chain_unfold
    use dda_chain, only : chain_t
-   use dda_decision, only : decision_t
    use dda_friction_cone, only : joint_face_t
    use dda_kinds, only : wp
+   use dda_search, only : decision_t
    implicit none
    private
 

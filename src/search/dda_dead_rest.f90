@@ -5,40 +5,26 @@
 !> high the way to rest turns back. Elastic blocks that move in steps under the associated rule come
 !> to rest: if nothing slides in that rest it is one under Coulomb friction, too; if joints slide
 !> they hold only because sliding opens them, and the fall of the path counts.
-module dda_dead_rest
-   use dda_block_system, only : block_system_t
-   use dda_contact_detection, only : contacts_t
+submodule (dda_decision) dda_dead_rest
    use dda_coulomb_joints, only : coulomb_joints_t, end_role, new_coulomb_joints
-   use dda_coulomb_law, only : coulomb_state_t, face, shear_face, unloaded_state
+   use dda_coulomb_law, only : face, shear_face, unloaded_state
    use dda_forward, only : outcome_t, run_to_verdict
    use dda_graph_decision, only : no_start
-   use dda_path_verdict, only : follow_stations, graph_verdict_t
-   use dda_joint_graph, only : add_joint_forces, joint_graph_t
+   use dda_joint_graph, only : add_joint_forces
    use dda_kinds, only : wp
-   use dda_load_stations, only : history_times, leads_at_once, load_stations_t
-   use dda_loading_path, only : path_end
+   use dda_load_stations, only : history_times, leads_at_once
+   use dda_path_event, only : path_end
+   use dda_path_verdict, only : follow_stations
    use dda_scene_graph, only : scene_graph
-   use dda_settings, only : flow_rule, settings_t
+   use dda_settings, only : flow_rule
    use dda_verdict, only : verdict
    implicit none
-   private
-
-   public :: fall_at_once, follow_from_rest, rest_under_dead_loads
 
 contains
 
    !> Follow the path from its dead loads; where it finds no state under them though forces
    !> balance them, from the rest that blocks come to
-   pure subroutine follow_from_rest(settings, system, contacts, graph, stations, is_balanced, proof)
-      type(settings_t), intent(in) :: settings
-      type(block_system_t), intent(in) :: system
-      type(contacts_t), intent(in) :: contacts
-      type(joint_graph_t), intent(in) :: graph
-      type(load_stations_t), intent(in) :: stations
-      !> Whether forces balance the dead loads
-      logical, intent(in) :: is_balanced
-      !> How the path went
-      type(graph_verdict_t), intent(inout) :: proof
+   module procedure follow_from_rest
       type(coulomb_state_t), allocatable :: start
       integer :: n
       logical :: slides
@@ -54,19 +40,10 @@ contains
          if (slides) call fall_at_once(proof)
       end if
       proof%n_factorisation = proof%n_factorisation + n
-   end subroutine follow_from_rest
+   end procedure follow_from_rest
 
    !> Run the blocks under their dead loads alone
-   pure subroutine rest_under_dead_loads(settings, system, contacts, start, slides, n)
-      type(settings_t), intent(in) :: settings
-      type(block_system_t), intent(in) :: system
-      type(contacts_t), intent(in) :: contacts
-      !> Where nothing slides, with the load that its forces balance
-      type(coulomb_state_t), allocatable, intent(out) :: start
-      !> Whether there is a rest and joints slide in it
-      logical, intent(out) :: slides
-      !> Factorisations
-      integer, intent(out) :: n
+   module procedure rest_under_dead_loads
       ! a rest takes about four steps
       integer, parameter :: most_steps = 20
       type(block_system_t) :: moved
@@ -94,17 +71,15 @@ contains
       call scene_graph(dead, system, contacts, graph)
       ! the springs of bars and fill have forces that contacts do not tell
       if (size(graph%kind) == size(contacts%joint)) call take_state(graph, settled, start)
-   end subroutine rest_under_dead_loads
+   end procedure rest_under_dead_loads
 
    !> A path whose fall, before it has begun, counts
-   pure subroutine fall_at_once(proof)
-      !> The path, with the mechanism of its fall
-      type(graph_verdict_t), intent(inout) :: proof
+   module procedure fall_at_once
 
       if (.not. allocated(proof%mechanism)) return
       proof%end = path_end%collapsed
       if (allocated(proof%reason)) deallocate (proof%reason)
-   end subroutine fall_at_once
+   end procedure fall_at_once
 
    !> The state of joints at rest
    pure subroutine take_state(graph, contacts, state)
@@ -133,4 +108,5 @@ contains
       call add_joint_forces(graph, state%force, state%load)
       state%load = -state%load
    end subroutine take_state
-end module dda_dead_rest
+
+end submodule dda_dead_rest

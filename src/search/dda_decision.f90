@@ -1,354 +1,157 @@
 !> Whether a structure is stable under Coulomb friction: the decision that searches are made of
 !>
-!> The convex problem, in which sliding opens the joint, comes first: what falls there falls under
-!> every flow rule. What stands there without sliding stands. What slides before it comes to rest is
-!> run again under Coulomb friction. Where blocks keep their places and friction alone holds them,
-!> the verdict is that of the joint graph, with a proof, and the run only tells how the forces are
-!> shared out.
+!> How it is decided stands in submodules: who asks needs no more than what is asked and answered.
 module dda_decision
    use dda_block_system, only : block_system_t
-   use dda_boundary, only : held_at_start
    use dda_contact_detection, only : contacts_t
-   use dda_coulomb_law, only : coulomb_state_t, face
-   use dda_dead_rest, only : fall_at_once, rest_under_dead_loads
-   use dda_forward, only : outcome_t, run_to_verdict
-   use dda_frames, only : album_t, blank_album, keep_pictures
-   use dda_graph_decision, only : decide_graph, decides_as_graph
-   use dda_graph_report, only : show_mechanism, show_state
-   use dda_kinds, only : wp
-   use dda_loading_path, only : path_end
-   use dda_path_verdict, only : graph_verdict_t
-   use dda_settings, only : flow_rule, settings_t
+   use dda_coulomb_law, only : coulomb_state_t
+   use dda_frames, only : album_t
+   use dda_joint_graph, only : joint_graph_t
+   use dda_load_stations, only : load_stations_t
+   use dda_scene, only : scene_t
+   use dda_scene_graph, only : graph_verdict_t
+   use dda_search, only : decision_t
+   use dda_settings, only : settings_t
    use dda_step_context, only : march_t
-   use dda_verdict, only : verdict
    implicit none
    private
 
-   public :: decision_t, decide, decide_by_steps, follow_coulomb, record_collapse, record_rest
-   public :: run_in_time, share_elastically
+   public :: decide, record_rest, record_collapse, decide_by_steps, follow_coulomb
+   public :: follow_from_rest, rest_under_dead_loads, fall_at_once, decide_in_stages
 
-   !> Steps that the static beginning of a dynamic run may take, at the least
-   integer, parameter :: least_static_steps = 400
-   !> A joint slides against friction if its force is more than this share of the largest
-   real(wp), parameter :: felt = 1.0e-9_wp
+   interface
 
-   !> A decided structure
-   type :: decision_t
-      !> How the run ended; its counts are those of all runs
-      type(outcome_t) :: outcome
-      !> Blocks at the end
-      type(block_system_t) :: system
-      !> Contacts at the end
-      type(contacts_t) :: contacts
-      !> Flow rule of the run that gave them, one of flow_rule
-      integer :: flow = 1
-      !> Whether the joint graph has told how it falls
-      logical :: by_graph = .false.
-      !> Whether outcome and contacts are those of the left half of a row, up to its plane of
-      !> symmetry
-      logical :: halved = .false.
-      !> Whether this plane runs through the last block
-      logical :: keystone = .false.
-   end type decision_t
+      !> Decide a static structure, or run a dynamic one
+      pure module subroutine decide(settings, system, contacts, decision, album, onward, verdict_only)
+         type(settings_t), intent(in) :: settings
+         !> The blocks at the beginning
+         type(block_system_t), intent(in) :: system
+         !> The contacts at the beginning
+         type(contacts_t), intent(in) :: contacts
+         type(decision_t), intent(out) :: decision
+         !> Receives pictures of the run that decides
+         type(album_t), intent(inout), optional :: album
+         !> Where a dynamic run goes on and where it ended
+         type(march_t), intent(inout), optional :: onward
+         !> Whether forces and motions of what stands are not asked for
+         logical, intent(in), optional :: verdict_only
+      end subroutine decide
 
-contains
+      !> Share out the forces of what stands as elastic blocks do
+      pure module subroutine share_elastically(settings, system, contacts, decision, shared, album)
+         type(settings_t), intent(in) :: settings
+         type(block_system_t), intent(in) :: system
+         !> The contacts, with the faces to begin with
+         type(contacts_t), intent(in) :: contacts
+         type(decision_t), intent(inout) :: decision
+         !> Whether that is how they are shared out: not where joints slide under Coulomb friction
+         logical, intent(out) :: shared
+         type(album_t), intent(inout), optional :: album
+      end subroutine share_elastically
 
-   !> Decide a static structure, or run a dynamic one
-   pure subroutine decide(settings, system, contacts, decision, album, onward, verdict_only)
-      type(settings_t), intent(in) :: settings
-      !> The blocks at the beginning
-      type(block_system_t), intent(in) :: system
-      !> The contacts at the beginning
-      type(contacts_t), intent(in) :: contacts
-      type(decision_t), intent(out) :: decision
-      !> Receives pictures of the run that decides
-      type(album_t), intent(inout), optional :: album
-      !> Where a dynamic run goes on and where it ended
-      type(march_t), intent(inout), optional :: onward
-      !> Whether forces and motions of what stands are not asked for
-      logical, intent(in), optional :: verdict_only
-      logical :: bare
+      !> Blocks and contacts of what stands, as its proof has them
+      pure module subroutine record_rest(settings, system, contacts, proof, decision)
+         type(settings_t), intent(in) :: settings
+         type(block_system_t), intent(in) :: system
+         type(contacts_t), intent(in) :: contacts
+         type(graph_verdict_t), intent(in) :: proof
+         !> Receives them; what its outcome counts is kept
+         type(decision_t), intent(inout) :: decision
+      end subroutine record_rest
 
-      bare = .false.
-      if (present(verdict_only)) bare = verdict_only
-      if (settings%dynamic) then
-         call run_in_time(settings, system, contacts, decision, album, onward)
-      else if (decides_as_graph(settings, contacts)) then
-         call decide_by_graph(settings, system, contacts, bare, decision, album)
-      else
-         call decide_by_steps(settings, system, contacts, decision, album)
-      end if
-   end subroutine decide
+      !> Blocks and contacts of what falls. Limit analysis proves that it does by any mechanism that
+      !> will do; where it does not know the first one a run tells it
+      pure module subroutine record_collapse(settings, system, contacts, proof, decision, album)
+         type(settings_t), intent(in) :: settings
+         type(block_system_t), intent(in) :: system
+         type(contacts_t), intent(in) :: contacts
+         !> That it falls
+         type(graph_verdict_t), intent(in) :: proof
+         type(decision_t), intent(inout) :: decision
+         type(album_t), intent(inout), optional :: album
+      end subroutine record_collapse
 
-   !> Decide by the joint graph
-   pure subroutine decide_by_graph(settings, system, contacts, bare, decision, album)
-      type(settings_t), intent(in) :: settings
-      type(block_system_t), intent(in) :: system
-      type(contacts_t), intent(in) :: contacts
-      !> Whether forces and motions of what stands are not asked for
-      logical, intent(in) :: bare
-      type(decision_t), intent(out) :: decision
-      type(album_t), intent(inout), optional :: album
-      type(graph_verdict_t) :: proof
-      type(coulomb_state_t), allocatable :: start
-      integer :: n
-      logical :: slides
+      !> Decide by steps to rest or collapse
+      pure module subroutine decide_by_steps(settings, system, contacts, decision, album)
+         type(settings_t), intent(in) :: settings
+         type(block_system_t), intent(in) :: system
+         type(contacts_t), intent(in) :: contacts
+         type(decision_t), intent(out) :: decision
+         type(album_t), intent(inout), optional :: album
+      end subroutine decide_by_steps
 
-      call decide_graph(settings, system, contacts, bare, proof)
-      if (proof%no_start) then
-         call rest_under_dead_loads(settings, system, contacts, start, slides, n)
-         if (allocated(start) .and. .not. proof%unproven) &
-            & call decide_graph(settings, system, contacts, bare, proof, start)
-         if (slides) call fall_at_once(proof)
-         proof%n_factorisation = proof%n_factorisation + n
-      end if
-      if (proof%end == path_end%collapsed) then
-         call record_collapse(settings, system, contacts, proof, decision, album)
-      else if (proof%end == path_end%reached .and. (bare .or. proof%on_path &
-         & .or. has_slid(proof) .or. .not. may_run(settings, contacts))) then
-         call record_rest(settings, system, contacts, proof, decision)
-      else if (proof%end == path_end%reached) then
-         call share_forces(settings, system, contacts, proof, decision, album)
-      else if (proof%unproven .and. may_run(settings, contacts)) then
-         call decide_by_steps(settings, system, contacts, decision, album)
-      else
-         decision%system = system
-         decision%contacts = contacts
-         decision%outcome%reason = proof%reason
-      end if
-      associate (outcome => decision%outcome)
-         outcome%steps = outcome%steps + proof%n_event + 1
-         outcome%jumps = outcome%jumps + proof%n_jump
-         outcome%largest_jump = max(outcome%largest_jump, proof%largest_jump)
-         outcome%factorisations = outcome%factorisations + proof%n_factorisation
-         if (.not. allocated(outcome%motion)) &
-            & allocate (outcome%motion(settings%n_dof, maxval(system%equation)), source=0.0_wp)
-      end associate
-   end subroutine decide_by_graph
+      !> Run in time from the beginning, or from where a run has ended. Where it is to begin in balance
+      !> a static run leads there, under what acts at time 0 on a ground at rest; velocities are those
+      !> that the blocks were given
+      pure module subroutine run_in_time(settings, system, contacts, decision, album, onward)
+         type(settings_t), intent(in) :: settings
+         type(block_system_t), intent(in) :: system
+         type(contacts_t), intent(in) :: contacts
+         !> The decision; the counts of the run are added to those that it has
+         type(decision_t), intent(inout) :: decision
+         type(album_t), intent(inout), optional :: album
+         type(march_t), intent(inout), optional :: onward
+      end subroutine run_in_time
 
-   !> Whether joints slide in the state that Coulomb's law has led to: no elastic sharing without
-   !> slip is looked for then
-   pure logical function has_slid(proof)
-      type(graph_verdict_t), intent(in) :: proof
+      !> Run a structure under Coulomb friction from its beginning
+      pure module subroutine follow_coulomb(settings, system, contacts, decision, album, onward)
+         type(settings_t), intent(in) :: settings
+         type(block_system_t), intent(in) :: system
+         type(contacts_t), intent(in) :: contacts
+         type(decision_t), intent(inout) :: decision
+         type(album_t), intent(inout), optional :: album
+         type(march_t), intent(inout), optional :: onward
+      end subroutine follow_coulomb
 
-      has_slid = .false.
-      if (.not. allocated(proof%state)) return
-      associate (force => proof%state%force)
-         ! where two corners touch without force nothing resists
-         has_slid = any(abs(proof%state%face(3, :)) == face%slides &
-            & .and. sum(force(1:2, :), dim=1) > felt*maxval(abs(force)))
-      end associate
-   end function has_slid
+      !> Follow the path from its dead loads; where it finds no state under them though forces
+      !> balance them, from the rest that blocks come to
+      pure module subroutine follow_from_rest(settings, system, contacts, graph, stations, is_balanced, proof)
+         type(settings_t), intent(in) :: settings
+         type(block_system_t), intent(in) :: system
+         type(contacts_t), intent(in) :: contacts
+         type(joint_graph_t), intent(in) :: graph
+         type(load_stations_t), intent(in) :: stations
+         !> Whether forces balance the dead loads
+         logical, intent(in) :: is_balanced
+         !> How the path went
+         type(graph_verdict_t), intent(inout) :: proof
+      end subroutine follow_from_rest
 
-   !> Whether a run of steps can tell what the graph does not: steps know neither bounded forces nor
-   !> strength
-   pure logical function may_run(settings, contacts)
-      type(settings_t), intent(in) :: settings
-      type(contacts_t), intent(in) :: contacts
+      !> Run the blocks under their dead loads alone
+      pure module subroutine rest_under_dead_loads(settings, system, contacts, start, slides, n)
+         type(settings_t), intent(in) :: settings
+         type(block_system_t), intent(in) :: system
+         type(contacts_t), intent(in) :: contacts
+         !> Where nothing slides, with the load that its forces balance
+         type(coulomb_state_t), allocatable, intent(out) :: start
+         !> Whether there is a rest and joints slide in it
+         logical, intent(out) :: slides
+         !> Factorisations
+         integer, intent(out) :: n
+      end subroutine rest_under_dead_loads
 
-      may_run = .not. (allocated(settings%boundary%bounded) &
-         & .or. any(contacts%joint%law%strength < huge(1.0_wp)))
-   end function may_run
+      !> A path whose fall, before it has begun, counts
+      pure module subroutine fall_at_once(proof)
+         !> The path, with the mechanism of its fall
+         type(graph_verdict_t), intent(inout) :: proof
+      end subroutine fall_at_once
 
-   !> How the blocks of what stands share out the forces: as elastic blocks do, or where joints
-   !> slide, as the loading path leaves them
-   pure subroutine share_forces(settings, system, contacts, proof, decision, album)
-      type(settings_t), intent(in) :: settings
-      type(block_system_t), intent(in) :: system
-      type(contacts_t), intent(in) :: contacts
-      type(graph_verdict_t), intent(in) :: proof
-      type(decision_t), intent(inout) :: decision
-      type(album_t), intent(inout), optional :: album
-      logical :: shared
+      !> Decide a scene stage by stage, or at once where nothing is built or taken away: the first
+      !> stage that falls is the last
+      pure module subroutine decide_in_stages(scene, decision, album, onward, system, contacts)
+         !> The scene; blocks and contacts become those of the last stage, where they were at the
+         !> beginning
+         type(scene_t), intent(inout) :: scene
+         !> The decision of the last stage; its counts are those of all
+         type(decision_t), intent(out) :: decision
+         type(album_t), intent(inout) :: album
+         !> Where a dynamic run goes on and where it ended
+         type(march_t), intent(inout) :: onward
+         !> Blocks and contacts where an earlier run has left them; without them they are the scene's
+         type(block_system_t), intent(in), optional :: system
+         type(contacts_t), intent(in), optional :: contacts
+      end subroutine decide_in_stages
 
-      call share_elastically(settings, system, contacts, decision, shared, album)
-      decision%outcome%verdict = verdict%stable
-      if (allocated(decision%outcome%reason)) deallocate (decision%outcome%reason)
-      if (shared) return
-      call record_rest(settings, system, contacts, proof, decision)
-      if (present(album)) call show_end(settings, decision, album)
-   end subroutine share_forces
+   end interface
 
-   !> Share out the forces of what stands as elastic blocks do
-   pure subroutine share_elastically(settings, system, contacts, decision, shared, album)
-      type(settings_t), intent(in) :: settings
-      type(block_system_t), intent(in) :: system
-      !> The contacts, with the faces to begin with
-      type(contacts_t), intent(in) :: contacts
-      type(decision_t), intent(inout) :: decision
-      !> Whether that is how they are shared out: not where joints slide under Coulomb friction
-      logical, intent(out) :: shared
-      type(album_t), intent(inout), optional :: album
-      type(settings_t) :: convex
-
-      convex = settings
-      convex%flow = flow_rule%associated
-      decision%flow = convex%flow
-      decision%system = system
-      decision%contacts = contacts
-      call run_to_verdict(convex, decision%system, decision%contacts, decision%outcome, album)
-      shared = decision%outcome%verdict == verdict%stable
-      if (settings%verdict_flow == flow_rule%coulomb) &
-         & shared = shared .and. .not. any(decision%contacts%face%slip /= 0)
-   end subroutine share_elastically
-
-   !> Blocks and contacts of what stands, as its proof has them
-   pure subroutine record_rest(settings, system, contacts, proof, decision)
-      type(settings_t), intent(in) :: settings
-      type(block_system_t), intent(in) :: system
-      type(contacts_t), intent(in) :: contacts
-      type(graph_verdict_t), intent(in) :: proof
-      !> Receives them; what its outcome counts is kept
-      type(decision_t), intent(inout) :: decision
-
-      decision%outcome%verdict = verdict%stable
-      decision%flow = proof%flow
-      decision%system = system
-      decision%contacts = contacts
-      call show_state(settings, proof, decision%system, decision%contacts)
-   end subroutine record_rest
-
-   !> Blocks and contacts of what falls. Limit analysis proves that it does by any mechanism that
-   !> will do; where it does not know the first one a run tells it
-   pure subroutine record_collapse(settings, system, contacts, proof, decision, album)
-      type(settings_t), intent(in) :: settings
-      type(block_system_t), intent(in) :: system
-      type(contacts_t), intent(in) :: contacts
-      !> That it falls
-      type(graph_verdict_t), intent(in) :: proof
-      type(decision_t), intent(inout) :: decision
-      type(album_t), intent(inout), optional :: album
-      type(settings_t) :: convex
-
-      decision%flow = proof%flow
-      decision%system = system
-      decision%contacts = contacts
-      if (proof%flow == flow_rule%associated .and. .not. proof%is_told &
-         & .and. may_run(settings, contacts)) then
-         convex = settings
-         convex%flow = flow_rule%associated
-         call run_to_verdict(convex, decision%system, decision%contacts, decision%outcome, album)
-         if (decision%outcome%verdict == verdict%collapsed) return
-         decision%system = system
-         decision%contacts = contacts
-         if (allocated(decision%outcome%reason)) deallocate (decision%outcome%reason)
-      end if
-      decision%by_graph = .true.
-      decision%outcome%verdict = verdict%collapsed
-      if (allocated(decision%outcome%motion)) deallocate (decision%outcome%motion)
-      allocate (decision%outcome%motion(settings%n_dof, maxval(system%equation)), source=0.0_wp)
-      decision%outcome%motion(:3, :) = proof%mechanism(:, :maxval(system%equation))
-      call show_mechanism(settings, system, proof, decision%contacts)
-      if (present(album)) call show_end(settings, decision, album)
-   end subroutine record_collapse
-
-   !> Where the measured points are in a state that no run has led to
-   pure subroutine show_end(settings, decision, album)
-      type(settings_t), intent(in) :: settings
-      type(decision_t), intent(in) :: decision
-      type(album_t), intent(inout) :: album
-      type(march_t) :: march
-
-      album = blank_album(album)
-      call keep_pictures(settings, decision%system, decision%contacts, march, 0.0_wp, .false., &
-         & album)
-   end subroutine show_end
-
-   !> Decide by steps to rest or collapse
-   pure subroutine decide_by_steps(settings, system, contacts, decision, album)
-      type(settings_t), intent(in) :: settings
-      type(block_system_t), intent(in) :: system
-      type(contacts_t), intent(in) :: contacts
-      type(decision_t), intent(out) :: decision
-      type(album_t), intent(inout), optional :: album
-      type(settings_t) :: convex
-
-      if (any(contacts%joint%law%residual < contacts%joint%law%friction)) then
-         ! what slides as it opens wears another way, so that its fall proves nothing
-         call follow_coulomb(settings, system, contacts, decision, album)
-         return
-      end if
-      convex = settings
-      convex%flow = flow_rule%associated
-      decision%flow = convex%flow
-      decision%system = system
-      decision%contacts = contacts
-      call run_to_verdict(convex, decision%system, decision%contacts, decision%outcome, album)
-      if (decision%outcome%verdict /= verdict%stable) return
-      if (settings%verdict_flow == flow_rule%associated) return
-      if (.not. any(decision%contacts%face%slip /= 0)) return
-      if (present(album)) album = blank_album(album)
-      call follow_coulomb(settings, system, contacts, decision, album)
-   end subroutine decide_by_steps
-
-   !> Run in time from the beginning, or from where a run has ended. Where it is to begin in balance
-   !> a static run leads there, under what acts at time 0 on a ground at rest; velocities are those
-   !> that the blocks were given
-   pure subroutine run_in_time(settings, system, contacts, decision, album, onward)
-      type(settings_t), intent(in) :: settings
-      type(block_system_t), intent(in) :: system
-      type(contacts_t), intent(in) :: contacts
-      !> The decision; the counts of the run are added to those that it has
-      type(decision_t), intent(inout) :: decision
-      type(album_t), intent(inout), optional :: album
-      type(march_t), intent(inout), optional :: onward
-      type(settings_t) :: static
-      type(decision_t) :: settled
-      type(march_t) :: rest, march
-      logical :: begins
-
-      begins = settings%settles
-      if (present(onward)) begins = begins .and. onward%steps == 0
-      if (.not. begins) then
-         call follow_coulomb(settings, system, contacts, decision, album, onward)
-         return
-      end if
-      static = settings
-      static%dynamic = .false.
-      static%time_step = 0.0_wp
-      static%duration = 0.0_wp
-      static%collapse_displacement = 0.0_wp
-      static%max_steps = max(least_static_steps, settings%max_steps)
-      static%boundary = held_at_start(settings%boundary)
-      call follow_coulomb(static, system, contacts, settled, onward=rest)
-      if (settled%outcome%verdict /= verdict%stable) then
-         decision = settled
-         if (.not. allocated(decision%outcome%reason)) decision%outcome%reason = &
-            & "the blocks collapse under their loads at time 0"
-         decision%outcome%reason = "start = 'static' found no rest: "//decision%outcome%reason
-         decision%outcome%verdict = verdict%undecided
-         return
-      end if
-      settled%system%velocity = system%velocity
-      decision%outcome = settled%outcome
-      march%held_force = rest%held_force
-      call follow_coulomb(settings, settled%system, settled%contacts, decision, album, march)
-      if (present(onward)) onward = march
-   end subroutine run_in_time
-
-   !> Run a structure under Coulomb friction from its beginning
-   pure subroutine follow_coulomb(settings, system, contacts, decision, album, onward)
-      type(settings_t), intent(in) :: settings
-      type(block_system_t), intent(in) :: system
-      type(contacts_t), intent(in) :: contacts
-      type(decision_t), intent(inout) :: decision
-      type(album_t), intent(inout), optional :: album
-      type(march_t), intent(inout), optional :: onward
-      type(settings_t) :: coulomb
-      type(outcome_t) :: before
-
-      before = decision%outcome
-      coulomb = settings
-      coulomb%flow = flow_rule%coulomb
-      decision%flow = coulomb%flow
-      decision%system = system
-      decision%contacts = contacts
-      call run_to_verdict(coulomb, decision%system, decision%contacts, decision%outcome, album, &
-         & onward)
-      associate (outcome => decision%outcome)
-         outcome%steps = outcome%steps + before%steps
-         outcome%passes = outcome%passes + before%passes
-         outcome%factorisations = outcome%factorisations + before%factorisations
-      end associate
-   end subroutine follow_coulomb
 end module dda_decision

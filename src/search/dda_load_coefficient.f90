@@ -4,14 +4,13 @@
 !> It is measured from where it does nothing: the horizontal coefficient or the load factor itself,
 !> or the angle of gravity from upright.
 module dda_load_coefficient
-   use dda_graph_decision, only : decides_as_graph, has_friction
    use dda_joint_graph, only : joint_graph_t
    use dda_kinds, only : wp
    use dda_limit_decision, only : decide_load, load_decision_t, load_state
    use dda_load_stations, only : bears_live_load, last_history_time, load_stations, &
       & load_stations_t, loads_at, only_weight
-   use dda_path_verdict, only : graph_verdict_t
    use dda_scene, only : scene_t, searched_load
+   use dda_scene_graph, only : decides_as_graph, graph_verdict_t, has_friction
    use dda_settings, only : flow_rule, full_push, settings_t
    implicit none
    private

@@ -2,11 +2,10 @@
 !> limit beside it
 !>
 !> The coefficient comes last on the path, so one path finds its critical value.
-module dda_load_search
-   use dda_dead_rest, only : follow_from_rest
-   use dda_decision, only : record_collapse, record_rest
+submodule (dda_critical) dda_load_search
+   use dda_decision, only : follow_from_rest, record_collapse, record_rest
    use dda_error, only : error_t
-   use dda_graph_decision, only : has_friction, see_fall, slide_along
+   use dda_graph_decision, only : see_fall, slide_along
    use dda_joint_graph, only : joint_graph_t
    use dda_kinds, only : wp
    use dda_limit_load, only : find_limit, limit_load_t, limit_state
@@ -14,17 +13,12 @@ module dda_load_search
       & is_push, knows_no_order, restore_weight, seek_rest, value_at_end, &
       & with_coefficient
    use dda_load_stations, only : load_stations, load_stations_t, only_weight
-   use dda_loading_path, only : path_end
-   use dda_path_verdict, only : graph_verdict_t
-   use dda_scene, only : family_t, scene_t, searched_load
-   use dda_scene_graph, only : scene_graph
-   use dda_search, only : critical_t, search_t
+   use dda_path_event, only : path_end
+   use dda_scene, only : scene_t, searched_load
+   use dda_scene_graph, only : graph_verdict_t, has_friction, scene_graph
    use dda_settings, only : flow_rule, settings_t
    use dda_verdict, only : verdict
    implicit none
-   private
-
-   public :: find_critical_load
 
    !> Where a structure falls on one side of the unloaded state
    type :: side_t
@@ -64,12 +58,7 @@ module dda_load_search
 contains
 
    !> Search a family whose parameter is a load coefficient
-   pure subroutine find_critical_load(family, search, critical, done)
-      class(family_t), intent(in) :: family
-      type(search_t), intent(in) :: search
-      type(critical_t), intent(inout) :: critical
-      !> Whether the search could be done so
-      logical, intent(out) :: done
+   module procedure find_critical_load
       type(error_t), allocatable :: error
       type(joint_graph_t) :: graph
       type(scene_t) :: scene
@@ -115,7 +104,7 @@ contains
       ! what does not stand upright may do so under gravity that acts another way from the beginning
       done = family%load /= searched_load%tilt .or. right%stands_upright .and. left%stands_upright
       if (done) call conclude(search, low, high, scene, right, left, critical)
-   end subroutine find_critical_load
+   end procedure find_critical_load
 
    !> How a side falls that limit analysis brings down
    pure subroutine tell_fall(settings, graph, side)
@@ -393,4 +382,5 @@ contains
       call record_collapse(scene%settings, scene%system, scene%contacts, side%proof, &
          & critical%fallen)
    end subroutine keep_collapse
-end module dda_load_search
+
+end submodule dda_load_search

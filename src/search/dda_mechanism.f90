@@ -1,12 +1,13 @@
 !> Collapse mechanism: hinges, sliding share and mode of the last step
 module dda_mechanism
    use dda_contact_detection, only : contacts_t
-   use dda_decision, only : decision_t, follow_coulomb
+   use dda_decision, only : follow_coulomb
    use dda_frames, only : album_t, blank_album
    use dda_friction_cone, only : joint_face_t
-   use dda_graph_decision, only : decides_as_graph
    use dda_kinds, only : wp
    use dda_scene, only : scene_t
+   use dda_scene_graph, only : decides_as_graph
+   use dda_search, only : decision_t
    use dda_settings, only : flow_rule
    use dda_verdict, only : verdict
    implicit none

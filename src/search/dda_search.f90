@@ -1,12 +1,14 @@
 !> What a search looks for, and what it has found
 module dda_search
-   use dda_decision, only : decision_t
+   use dda_block_system, only : block_system_t
+   use dda_contact_detection, only : contacts_t
+   use dda_forward, only : outcome_t
    use dda_kinds, only : wp
-   use dda_scene, only : link_t
+   use dda_scene, only : link_t, scene_t
    implicit none
    private
 
-   public :: search_t, critical_t
+   public :: search_t, critical_t, decision_t, proof_t
 
    !> What is searched
    type :: search_t
@@ -89,4 +91,55 @@ module dda_search
       !> Factorisations of all decisions and proposals
       integer :: factorisations = 0
    end type critical_t
+
+   !> A decided structure
+   type :: decision_t
+      !> How the run ended; its counts are those of all runs
+      type(outcome_t) :: outcome
+      !> Blocks at the end
+      type(block_system_t) :: system
+      !> Contacts at the end
+      type(contacts_t) :: contacts
+      !> Flow rule of the run that gave them, one of flow_rule
+      integer :: flow = 1
+      !> Whether the joint graph has told how it falls
+      logical :: by_graph = .false.
+      !> Whether outcome and contacts are those of the left half of a row, up to its plane of
+      !> symmetry
+      logical :: halved = .false.
+      !> Whether this plane runs through the last block
+      logical :: keystone = .false.
+   end type decision_t
+
+   !> Proofs of a case and their figures
+   type :: proof_t
+      !> N1, N2, T of each joint, then the forces of held points; unallocated without: (3, n) [N/m]
+      real(wp), allocatable :: force(:, :)
+      !> Value of what is searched at which they carry the load
+      real(wp) :: force_at = 0.0_wp
+      !> Velocities of the blocks' centres and spins; unallocated without: (3, n_block)
+      real(wp), allocatable :: velocity(:, :)
+      !> Value of what is searched at which the loads begin to drive them
+      real(wp) :: motion_at = 0.0_wp
+      !> Whether the blocks have the same shape there
+      logical :: same_shape = .true.
+      !> Scene of the forces, and of the velocities where only loads are searched
+      type(scene_t) :: scene
+      !> Largest force or moment left on a block, over the largest load
+      real(wp) :: imbalance = 0.0_wp
+      !> Largest violation of the law of a joint by forces or velocities, relative
+      real(wp) :: law_violation = 0.0_wp
+      !> Power of the loads on the mechanism, or of the live load where that is searched, over what
+      !> they could do at most
+      real(wp) :: power = 0.0_wp
+      !> Associated limit of the load factor of a single decision, from below and from above
+      real(wp) :: limit(2) = 0.0_wp
+      !> Whether there is one
+      logical :: has_limit = .false.
+      !> Least and greatest thrust of a joint: (2) [N/m]
+      real(wp) :: thrust(2) = 0.0_wp
+      !> Which of them there are
+      logical :: has_thrust(2) = .false.
+   end type proof_t
+
 end module dda_search

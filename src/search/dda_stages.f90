@@ -4,30 +4,20 @@
 !> carried is a load on its neighbours at first, which then goes to nothing; a block that is built
 !> fits where it stands, without force, and then gets its weight. A dynamic run goes on with the
 !> velocities of the blocks that stay.
-module dda_stages
-   use dda_block_system, only : block_system_t
+submodule (dda_decision) dda_stages
    use dda_boundary, only : present_at, stage_times
-   use dda_contact_detection, only : contacts_t, keep_contacts
+   use dda_contact_detection, only : keep_contacts
    use dda_contact_search, only : forget_pairs
    use dda_coulomb_joints, only : coulomb_joints_t, new_coulomb_joints
-   use dda_coulomb_law, only : coulomb_state_t, unloaded_state
-   use dda_decision, only : decide, decision_t, record_collapse, record_rest, run_in_time
+   use dda_coulomb_law, only : unloaded_state
    use dda_forward, only : outcome_t
-   use dda_frames, only : album_t
-   use dda_graph_decision, only : decide_graph, decides_as_graph
-   use dda_joint_graph, only : add_joint_forces, joint_graph_t
+   use dda_graph_decision, only : decide_graph
+   use dda_joint_graph, only : add_joint_forces
    use dda_kinds, only : wp
-   use dda_loading_path, only : path_end
-   use dda_path_verdict, only : graph_verdict_t
-   use dda_scene, only : scene_t
-   use dda_scene_graph, only : scene_graph
-   use dda_settings, only : settings_t
-   use dda_step_context, only : march_t
+   use dda_path_event, only : path_end
+   use dda_scene_graph, only : decides_as_graph, scene_graph
    use dda_verdict, only : verdict
    implicit none
-   private
-
-   public :: decide_in_stages
 
    !> A joint has slid in a stage if its slip is more than this share of the largest motion, and it
    !> presses with more than this share of the largest force
@@ -37,18 +27,7 @@ contains
 
    !> Decide a scene stage by stage, or at once where nothing is built or taken away: the first
    !> stage that falls is the last
-   pure subroutine decide_in_stages(scene, decision, album, onward, system, contacts)
-      !> The scene; blocks and contacts become those of the last stage, where they were at the
-      !> beginning
-      type(scene_t), intent(inout) :: scene
-      !> The decision of the last stage; its counts are those of all
-      type(decision_t), intent(out) :: decision
-      type(album_t), intent(inout) :: album
-      !> Where a dynamic run goes on and where it ended
-      type(march_t), intent(inout) :: onward
-      !> Blocks and contacts where an earlier run has left them; without them they are the scene's
-      type(block_system_t), intent(in), optional :: system
-      type(contacts_t), intent(in), optional :: contacts
+   module procedure decide_in_stages
       real(wp), allocatable :: time(:)
       real(wp) :: last
 
@@ -77,7 +56,7 @@ contains
          end if
          call enter_stage(settings, last, scene%system, scene%contacts)
       end associate
-   end subroutine decide_in_stages
+   end procedure decide_in_stages
 
    !> Move from stage to stage
    pure subroutine move_through(settings, time, decision, album, onward, last)
@@ -345,4 +324,5 @@ contains
       end if
       label = [label, [(n + i, i=1, size(graph%kind) - size(label))]]
    end function labels
-end module dda_stages
+
+end submodule dda_stages

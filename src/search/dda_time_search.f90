@@ -3,17 +3,14 @@
 !> What falls in time need not fall for all that is more, so values on both sides are run too. The
 !> critical value is the first change from the end that stands, or from the low end where both ends
 !> agree; what changes beyond it is kept for the log.
-module dda_time_search
-   use dda_decision, only : decide, decision_t
+submodule (dda_critical) dda_time_search
+   use dda_decision, only : decide
    use dda_error, only : error_t
    use dda_kinds, only : wp
-   use dda_scene, only : family_t, scene_t
-   use dda_search, only : critical_t, search_t
+   use dda_scene, only : scene_t
+   use dda_search, only : decision_t
    use dda_verdict, only : verdict
    implicit none
-   private
-
-   public :: find_critical_in_time
 
    !> Most runs of a search
    integer, parameter :: max_runs = 200
@@ -41,10 +38,7 @@ module dda_time_search
 contains
 
    !> Search the critical value
-   pure subroutine find_critical_in_time(family, search, critical)
-      class(family_t), intent(in) :: family
-      type(search_t), intent(in) :: search
-      type(critical_t), intent(out) :: critical
+   module procedure find_critical_in_time
       type(runs_t) :: runs
       real(wp) :: value
       integer :: answer, i, side
@@ -77,7 +71,7 @@ contains
       call close_bracket(family, search, runs, critical)
       call keep_decisions(family, runs, critical)
       call keep_changes(runs, critical)
-   end subroutine find_critical_in_time
+   end procedure find_critical_in_time
 
    !> The first two neighbours of which one falls, from the end that stands, or from the low end
    !> where both agree
@@ -209,4 +203,5 @@ contains
       runs%falls(i + 1) = answer == verdict%collapsed
       runs%n = runs%n + 1
    end subroutine run_value
-end module dda_time_search
+
+end submodule dda_time_search

@@ -14,8 +14,7 @@
 module dda_loading_path
    use dda_coulomb_equations, only : coulomb_equations_t, new_coulomb_equations
    use dda_coulomb_joints, only : coulomb_joints_t, in_metres, in_motion_units, in_newtons, &
-      & in_units, &
-      & new_coulomb_joints, set_force_unit
+      & in_units, new_coulomb_joints, set_force_unit
    use dda_coulomb_law, only : coulomb_state_t, imbalance
    use dda_coulomb_start, only : load_at_once
    use dda_event_rates, only : find_rates, new_rates, rates_t, undamp_rates
@@ -23,23 +22,12 @@ module dda_loading_path
    use dda_kinds, only : wp
    use dda_load_jump, only : far_factor, jump_t, motion_end, moves_unbalanced, nudge, &
       & nudge_to_balance
-   use dda_path_event, only : event_kind, event_t, move_on, next_event
+   use dda_path_event, only : event_kind, event_t, move_on, next_event, path_end
    implicit none
    private
 
-   public :: loading_path_t, path_rate_t, path_result_t
-   public :: path_end, path_end_enum, path_reason, path_reason_enum
+   public :: loading_path_t, path_rate_t, path_result_t, path_reason, path_reason_enum
    public :: begin_path, follow_path, new_path, new_rate
-
-   !> How a path ends
-   type :: path_end_enum
-      !> It is not known whether the assembly stands
-      integer :: undecided = 0
-      !> The end was reached, forces balance
-      integer :: reached = 1
-      !> The assembly falls
-      integer :: collapsed = 2
-   end type path_end_enum
 
    !> What proves a collapse, or prevents a decision
    type :: path_reason_enum
@@ -55,8 +43,6 @@ module dda_loading_path
       integer :: too_many = 4
    end type path_reason_enum
 
-   !> Names of the ends of a path
-   type(path_end_enum), parameter :: path_end = path_end_enum()
    !> Names of the reasons
    type(path_reason_enum), parameter :: path_reason = path_reason_enum()
 

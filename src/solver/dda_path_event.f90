@@ -8,8 +8,7 @@ module dda_path_event
    implicit none
    private
 
-   public :: event_t, event_kind, event_kind_enum
-   public :: next_event, move_on, hold_forces
+   public :: event_t, event_kind, event_kind_enum, next_event, move_on, hold_forces, path_end
 
    !> What can happen to a joint
    type :: event_kind_enum
@@ -39,6 +38,19 @@ module dda_path_event
       !> At which corner, where one opens or closes
       integer :: corner = 0
    end type event_t
+
+   !> How a path ends
+   type :: path_end_enum
+      !> It is not known whether the assembly stands
+      integer :: undecided = 0
+      !> The end was reached, forces balance
+      integer :: reached = 1
+      !> The assembly falls
+      integer :: collapsed = 2
+   end type path_end_enum
+
+   !> Names of the ends of a path
+   type(path_end_enum), parameter :: path_end = path_end_enum()
 
 contains
 

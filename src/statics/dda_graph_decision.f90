@@ -9,20 +9,20 @@ module dda_graph_decision
    use dda_boundary, only : value_at
    use dda_contact_detection, only : contacts_t
    use dda_coulomb_fall, only : find_coulomb_fall
+   use dda_coulomb_law, only : coulomb_state_t
    use dda_first_motion, only : find_first_motion
-   use dda_joint_graph, only : crushes, joint_graph_t, rubs
+   use dda_joint_graph, only : crushes, joint_graph_t
    use dda_kinds, only : wp
    use dda_limit_decision, only : decide_load, decide_on_way, load_decision_t, load_state
    use dda_load_stations, only : last_history_time, load_stations, load_stations_t, loads_at
-   use dda_coulomb_law, only : coulomb_state_t
-   use dda_loading_path, only : path_end
-   use dda_path_verdict, only : follow_stations, graph_verdict_t
-   use dda_scene_graph, only : has_pure_friction, scene_graph
+   use dda_path_event, only : path_end
+   use dda_path_verdict, only : follow_stations
+   use dda_scene_graph, only : graph_verdict_t, has_friction, scene_graph
    use dda_settings, only : factor_of, flow_rule, settings_t
    implicit none
    private
 
-   public :: decide_graph, decides_as_graph, has_friction, no_start, see_fall, slide_along
+   public :: decide_graph, no_start, see_fall, slide_along
 
    !> Why a path is undecided that limit analysis lets stand at its end
    character(len=*), parameter :: no_start = "no state under Coulomb friction is found under the " &
@@ -33,16 +33,6 @@ module dda_graph_decision
    integer, parameter :: few = 5, most = 30
 
 contains
-
-   !> Whether a scene is decided so: at rest, where the blocks are, by friction alone
-   pure logical function decides_as_graph(settings, contacts)
-      type(settings_t), intent(in) :: settings
-      type(contacts_t), intent(in) :: contacts
-
-      decides_as_graph = .not. (settings%dynamic .or. settings%current &
-         & .or. settings%collapse_displacement > 0.0_wp)
-      if (decides_as_graph) decides_as_graph = has_pure_friction(contacts)
-   end function decides_as_graph
 
    !> Decide a scene
    pure subroutine decide_graph(settings, system, contacts, bare, verdict, start)
@@ -275,11 +265,4 @@ contains
       verdict%flow = flow_rule%coulomb
       verdict%fall_force = falling
    end subroutine slide_along
-
-   !> Whether friction has a say: where joints cannot slide, or slide freely, both rules are one
-   pure logical function has_friction(graph)
-      type(joint_graph_t), intent(in) :: graph
-
-      has_friction = any(rubs(graph%kind, graph%friction))
-   end function has_friction
 end module dda_graph_decision

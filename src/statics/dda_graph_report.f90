@@ -10,8 +10,7 @@ module dda_graph_report
    use dda_kinds, only : wp
    use dda_load_stations, only : last_history_time
    use dda_material, only : elasticity_matrix
-   use dda_path_verdict, only : graph_verdict_t
-   use dda_scene_graph, only : scene_graph
+   use dda_scene_graph, only : graph_verdict_t, scene_graph
    use dda_settings, only : factor_of, flow_rule, settings_t
    use dda_submatrices, only : point_load
    implicit none

@@ -11,50 +11,14 @@ module dda_path_verdict
    use dda_kinds, only : wp
    use dda_load_stations, only : load_stations_t, loads_at
    use dda_loading_path, only : begin_path, follow_path, loading_path_t, new_path, new_rate, &
-      & path_end, path_rate_t, path_reason, path_result_t
+      & path_rate_t, path_reason, path_result_t
+   use dda_path_event, only : path_end
+   use dda_scene_graph, only : graph_verdict_t
    use dda_settings, only : flow_rule, settings_t
    implicit none
    private
 
-   public :: graph_verdict_t, follow_stations
-
-   !> A verdict and its proof
-   type :: graph_verdict_t
-      !> One of path_end
-      integer :: end = 0
-      !> Why it is undecided; unallocated otherwise
-      character(len=:), allocatable :: reason
-      !> Flow rule that it was found under, one of flow_rule
-      integer :: flow = flow_rule%associated
-      !> Velocities of the collapse: (3, n_block)
-      real(wp), allocatable :: mechanism(:, :)
-      !> Last state in balance under Coulomb friction
-      type(coulomb_state_t), allocatable :: state
-      !> Forces of what stands under the associated rule: (3, n_joint) [N/m]
-      real(wp), allocatable :: force(:, :)
-      !> Forces with which it goes on falling, where they are others: (3, n_joint) [N/m]
-      real(wp), allocatable :: fall_force(:, :)
-      !> Whether the mechanism is the one in which the blocks fall; otherwise a run tells it
-      logical :: is_told = .false.
-      !> Whether something live was followed to the state
-      logical :: on_path = .false.
-      !> Whether steps may prove what limit analysis did not, as no path leads to the load
-      logical :: unproven = .false.
-      !> Whether forces balance the dead loads, and the path has found no state under them
-      logical :: no_start = .false.
-      !> Last station of the path that was reached, and the share of the leg after it
-      integer :: station = 0
-      !> Likewise
-      real(wp) :: share = 0.0_wp
-      !> Jumps on the path
-      integer :: n_jump = 0
-      !> The largest of them [m]
-      real(wp) :: largest_jump = 0.0_wp
-      !> Events on the path
-      integer :: n_event = 0
-      !> Factorisations
-      integer :: n_factorisation = 0
-   end type graph_verdict_t
+   public :: follow_stations
 
    !> How far forces on the path may lie beyond the parabola of a joint that crushes, over the
    !> largest force
@@ -218,5 +182,4 @@ contains
       verdict%largest_jump = max(verdict%largest_jump, result%largest_jump)
       verdict%n_factorisation = verdict%n_factorisation + result%n_factorisation
    end subroutine count_up
-
 end module dda_path_verdict

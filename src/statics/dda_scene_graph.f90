@@ -5,16 +5,17 @@ module dda_scene_graph
    use dda_boundary, only : held_point_t
    use dda_contact_detection, only : contacts_t
    use dda_contact_types, only : joint_t
+   use dda_coulomb_law, only : coulomb_state_t
    use dda_deformation, only : displacement_matrix
-   use dda_joint_graph, only : joint_graph_t, joint_kind
+   use dda_joint_graph, only : joint_graph_t, joint_kind, rubs
    use dda_kinds, only : wp
    use dda_material, only : loses_strength
-   use dda_settings, only : settings_t
+   use dda_settings, only : flow_rule, settings_t
    use dda_submatrices, only : mass_matrix
    implicit none
    private
 
-   public :: scene_graph, has_pure_friction
+   public :: scene_graph, has_pure_friction, decides_as_graph, has_friction, graph_verdict_t
 
    !> Mass of such a node over that of a block
    real(wp), parameter :: node_mass = 1.0e-6_wp
@@ -26,6 +27,44 @@ module dda_scene_graph
    real(wp), parameter :: pin_stiffness = 10.0_wp
    !> A bounded force is softer than a held point by this factor
    real(wp), parameter :: softness = 1.0e4_wp
+
+   !> A verdict and its proof
+   type :: graph_verdict_t
+      !> One of path_end
+      integer :: end = 0
+      !> Why it is undecided; unallocated otherwise
+      character(len=:), allocatable :: reason
+      !> Flow rule that it was found under, one of flow_rule
+      integer :: flow = flow_rule%associated
+      !> Velocities of the collapse: (3, n_block)
+      real(wp), allocatable :: mechanism(:, :)
+      !> Last state in balance under Coulomb friction
+      type(coulomb_state_t), allocatable :: state
+      !> Forces of what stands under the associated rule: (3, n_joint) [N/m]
+      real(wp), allocatable :: force(:, :)
+      !> Forces with which it goes on falling, where they are others: (3, n_joint) [N/m]
+      real(wp), allocatable :: fall_force(:, :)
+      !> Whether the mechanism is the one in which the blocks fall; otherwise a run tells it
+      logical :: is_told = .false.
+      !> Whether something live was followed to the state
+      logical :: on_path = .false.
+      !> Whether steps may prove what limit analysis did not, as no path leads to the load
+      logical :: unproven = .false.
+      !> Whether forces balance the dead loads, and the path has found no state under them
+      logical :: no_start = .false.
+      !> Last station of the path that was reached, and the share of the leg after it
+      integer :: station = 0
+      !> Likewise
+      real(wp) :: share = 0.0_wp
+      !> Jumps on the path
+      integer :: n_jump = 0
+      !> The largest of them [m]
+      real(wp) :: largest_jump = 0.0_wp
+      !> Events on the path
+      integer :: n_event = 0
+      !> Factorisations
+      integer :: n_factorisation = 0
+   end type graph_verdict_t
 
 contains
 
@@ -224,4 +263,21 @@ contains
       allocate (graph%compliance(3, n), source=1.0_wp)
       allocate (graph%gap(2, n), source=0.0_wp)
    end subroutine allocate_joints
+
+   !> Whether a scene is decided so: at rest, where the blocks are, by friction alone
+   pure logical function decides_as_graph(settings, contacts)
+      type(settings_t), intent(in) :: settings
+      type(contacts_t), intent(in) :: contacts
+
+      decides_as_graph = .not. (settings%dynamic .or. settings%current &
+         & .or. settings%collapse_displacement > 0.0_wp)
+      if (decides_as_graph) decides_as_graph = has_pure_friction(contacts)
+   end function decides_as_graph
+
+   !> Whether friction has a say: where joints cannot slide, or slide freely, both rules are one
+   pure logical function has_friction(graph)
+      type(joint_graph_t), intent(in) :: graph
+
+      has_friction = any(rubs(graph%kind, graph%friction))
+   end function has_friction
 end module dda_scene_graph

@@ -14,12 +14,12 @@ module dda_benchmark
    use dda_chain_unfold, only : unfold
    use dda_kinds, only : pi, wp
    use dda_contact_detection, only : contacts_t, find_contacts
-   use dda_search, only : critical_t, search_t
    use dda_critical, only : find_critical
-   use dda_decision, only : decide, decision_t
+   use dda_decision, only : decide
    use dda_error, only : error_t
    use dda_material, only : joint_law_t, material_t
    use dda_scene, only : family_t, scene_t
+   use dda_search, only : critical_t, decision_t, search_t
    use dda_settings, only : settings_t
    use dda_stopwatch, only : job_t, median_of, take_samples, timed_job_t
    use dda_verdict, only : verdict

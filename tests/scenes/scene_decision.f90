@@ -1,9 +1,10 @@
 !> Decisions of scenes, in one word
 module scene_decision
-   use dda_decision, only : decide, decide_by_steps, decision_t
+   use dda_decision, only : decide, decide_by_steps
    use dda_error, only : error_t
    use dda_kinds, only : wp
    use dda_scene, only : family_t, scene_t
+   use dda_search, only : decision_t
    use scene_model, only : model_t, scene_of
    implicit none
    private

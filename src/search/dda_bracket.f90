@@ -1,0 +1,357 @@
+!> Critical value of a parameter: a bracket of two decisions, one collapsed and one stable
+!>
+!> The joints of a collapse, frozen, tell where it would stop; two decisions close around that value
+!> prove it. Where the joints tell nothing, the bracket is halved.
+submodule (dda_critical) dda_bracket
+   use dda_bar, only : bar_state_t
+   use dda_block_system, only : block_system_t
+   use dda_chain_decision, only : decide_chain
+   use dda_chain_foresight, only : foresee
+   use dda_chain_unfold, only : unfold
+   use dda_collapse_trace, only : proposal_t, trace
+   use dda_decision, only : decide
+   use dda_error, only : error_t
+   use dda_friction_cone, only : joint_face_t
+   use dda_joint_springs, only : joint_springs_t
+   use dda_kinds, only : wp
+   use dda_scene, only : link_once, scene_t, searched_load
+   use dda_scene_graph, only : decides_as_graph
+   use dda_search, only : decision_t
+   use dda_verdict, only : verdict
+   implicit none
+
+   !> Most decisions of a search
+   integer, parameter :: max_decisions = 100
+   !> Most values tried on the way from the start to the first collapse
+   integer, parameter :: max_descent = 8
+   !> Most undecided values in a row on the way to a decided one
+   integer, parameter :: max_undecided = 6
+
+   !> Decisions that a proposal gets to lead to another collapse before the bracket is halved
+   integer, parameter :: patience = 3
+   !> A bracket wider than this share of its value is no answer, unless a wider one was asked for
+   real(wp), parameter :: widest = 1.0e-4_wp
+
+contains
+
+   !> Search the critical value of a family of scenes
+   module procedure find_critical
+      logical :: done
+
+      done = search%in_time
+      if (done) call find_critical_in_time(family, search, critical)
+      if (.not. done .and. family%load /= searched_load%none) &
+         & call find_critical_load(family, search, critical, done)
+      if (done) return
+      call close_bracket(family, search, critical)
+      if (allocated(critical%standing) .and. .not. family%decides_chains) &
+         & call share_forces(family, critical)
+      if (allocated(critical%fallen)) call unfold(critical%fallen)
+      if (allocated(critical%standing)) call unfold(critical%standing)
+   end procedure find_critical
+
+   !> Close the bracket around the value
+   pure subroutine close_bracket(family, search, critical)
+      class(family_t), intent(in) :: family
+      type(search_t), intent(in) :: search
+      !> What was found; chains may be halves
+      type(critical_t), intent(out) :: critical
+      type(proposal_t) :: proposal
+      type(joint_face_t), allocatable :: foreseen(:)
+      real(wp) :: limit, start, value
+      integer :: answer, in_vain, undecided
+      logical :: may_turn
+
+      if (family%decides_chains) call foresee(family, search, critical, proposal, foreseen)
+      start = search%start
+      if (proposal%usable) start = max(search%low, proposal%value - proposal%reach)
+      call find_collapse(family, search, start, limit, critical)
+      if (critical%verdict /= verdict%undecided) return
+      if (.not. allocated(critical%fallen)) return
+      if (search%check_far_end .and. .not. allocated(critical%standing)) &
+         & call decide_at(family, limit, critical, answer)
+      answer = verdict%collapsed
+      may_turn = allocated(critical%reason) .and. .not. search%start > search%low
+      in_vain = 0
+      undecided = 0
+      do while (critical%decisions < max_decisions .and. undecided < max_undecided)
+         if (.not. abs(critical%falls - limit) > 0.0_wp) then
+            if (.not. may_turn) then
+               critical%verdict = verdict%collapsed
+               return
+            end if
+            ! the low end is undecided: what stands may lie between it and the first collapse
+            limit = critical%undecided_at
+            may_turn = .false.
+         end if
+         if (answer == verdict%collapsed) then
+            if (.not. (proved(search, limit, critical, proposal) &
+               & .and. is_foreseen(critical%fallen, foreseen))) &
+               & call trace(family, search, limit, critical, proposal)
+            if (allocated(foreseen)) deallocate (foreseen)
+         end if
+         in_vain = merge(0, in_vain + 1, answer == verdict%collapsed)
+         if (closed(search, critical, proposal)) then
+            critical%verdict = verdict%found
+            critical%half = proposal%half
+            critical%stop = proposal%value
+            critical%stops = proposal%usable .and. .not. critical%current
+            return
+         end if
+         value = candidate(critical, proposal, limit, in_vain)
+         if (undecided > 0) value = not_again(value, critical, undecided)
+         call decide_at(family, value, critical, answer)
+         if (answer == verdict%undecided) then
+            undecided = undecided + 1
+            proposal%half = 4.0_wp*proposal%half
+            proposal%reach = 4.0_wp*proposal%reach
+         else
+            undecided = 0
+         end if
+      end do
+   end subroutine close_bracket
+
+   !> Go to the first collapse: from the start towards the low end, or else at the high end
+   pure subroutine find_collapse(family, search, start, limit, critical)
+      class(family_t), intent(in) :: family
+      type(search_t), intent(in) :: search
+      !> Where to begin
+      real(wp), intent(in) :: start
+      !> The end of the range on the side that stands [unit of the parameter]
+      real(wp), intent(out) :: limit
+      !> Receives the first collapse, or a verdict where both ends agree
+      type(critical_t), intent(inout) :: critical
+      integer :: answer, attempt
+      real(wp) :: value
+
+      limit = search%high
+      value = start
+      do attempt = 1, max_descent
+         if (attempt == max_descent) value = search%low
+         call decide_at(family, value, critical, answer)
+         if (answer == verdict%collapsed) return
+         if (.not. value > search%low) exit
+         if (answer == verdict%undecided) exit
+         value = max(search%low, value/5.0_wp)
+      end do
+      if (answer == verdict%undecided) then
+         call ascend(family, search, value, critical, answer)
+         return
+      end if
+      limit = search%low
+      call decide_at(family, search%high, critical, answer)
+      if (answer == verdict%stable) critical%verdict = verdict%stable
+   end subroutine find_collapse
+
+   !> Go up from an undecided value to the first decided one
+   pure subroutine ascend(family, search, value, critical, answer)
+      class(family_t), intent(in) :: family
+      type(search_t), intent(in) :: search
+      !> The undecided value
+      real(wp), intent(in) :: value
+      type(critical_t), intent(inout) :: critical
+      !> One of verdict
+      integer, intent(out) :: answer
+      integer :: attempt
+
+      do attempt = 1, max_descent
+         call decide_at(family, value + (search%high - value)*2.0_wp**(attempt - max_descent), &
+            & critical, answer)
+         if (answer /= verdict%undecided) return
+      end do
+   end subroutine ascend
+
+   !> Decide one value and keep the decision on its side of the bracket
+   pure subroutine decide_at(family, value, critical, answer)
+      class(family_t), intent(in) :: family
+      real(wp), intent(in) :: value
+      type(critical_t), intent(inout) :: critical
+      integer, intent(out) :: answer
+      type(decision_t), allocatable :: decision
+      type(error_t), allocatable :: error
+      type(scene_t) :: scene
+      logical :: decided
+
+      answer = verdict%undecided
+      critical%decisions = critical%decisions + 1
+      allocate (decision)
+      decided = family%decides_chains
+      if (decided) call link_once(family, value, critical%link)
+      if (decided) decided = critical%link%known
+      if (decided) call decide_chain(critical%link%settings, critical%link%chain, decision, &
+         & decided, critical%reaction)
+      if (.not. decided) then
+         call family%build(value, scene, error)
+         if (allocated(error)) then
+            critical%reason = error%message
+            critical%undecided_at = value
+            return
+         end if
+         critical%current = scene%settings%current
+         call decide(scene%settings, scene%system, scene%contacts, decision, verdict_only=.true.)
+      end if
+      critical%steps = critical%steps + decision%outcome%steps
+      critical%passes = critical%passes + decision%outcome%passes
+      critical%factorisations = critical%factorisations + decision%outcome%factorisations
+      answer = decision%outcome%verdict
+      call shed(decision)
+      if (answer == verdict%collapsed) then
+         critical%falls = value
+         call move_alloc(decision, critical%fallen)
+      else if (answer == verdict%stable) then
+         critical%stands = value
+         call move_alloc(decision, critical%standing)
+      else
+         critical%reason = decision%outcome%reason
+         critical%undecided_at = value
+      end if
+   end subroutine decide_at
+
+   !> Share out the forces of what stands nearest to critical, which its proof alone does not tell
+   pure subroutine share_forces(family, critical)
+      class(family_t), intent(in) :: family
+      !> What was found, its decision that stands among it
+      type(critical_t), intent(inout) :: critical
+      type(decision_t) :: decision
+      type(error_t), allocatable :: error
+      type(scene_t) :: scene
+
+      call family%build(critical%stands, scene, error)
+      if (allocated(error)) return
+      if (.not. decides_as_graph(scene%settings, scene%contacts)) return
+      call decide(scene%settings, scene%system, scene%contacts, decision)
+      critical%steps = critical%steps + decision%outcome%steps
+      critical%factorisations = critical%factorisations + decision%outcome%factorisations
+      if (decision%outcome%verdict /= verdict%stable) return
+      call shed(decision)
+      critical%standing = decision
+   end subroutine share_forces
+
+   !> Give back what a search does not ask a kept decision for: its springs, and its blocks but for
+   !> their bars, which the family makes anew at any value
+   pure subroutine shed(decision)
+      type(decision_t), intent(inout) :: decision
+      type(bar_state_t), allocatable :: bar(:)
+
+      if (allocated(decision%system%bar)) allocate (bar, source=decision%system%bar)
+      decision%system = block_system_t()
+      if (allocated(bar)) call move_alloc(bar, decision%system%bar)
+      decision%contacts%springs = joint_springs_t()
+      if (decision%outcome%verdict == verdict%stable .and. allocated(decision%outcome%motion)) &
+         & deallocate (decision%outcome%motion)
+   end subroutine shed
+
+   !> Where to decide next: just beyond the proposal, then just before it, then inside the bracket
+   pure function candidate(critical, proposal, limit, in_vain) result(value)
+      type(critical_t), intent(in) :: critical
+      !> Where the last collapse stops
+      type(proposal_t), intent(in) :: proposal
+      real(wp), intent(in) :: limit
+      !> Decisions since the last collapse
+      integer, intent(in) :: in_vain
+      real(wp) :: value
+      real(wp) :: beyond, before, far, toward
+
+      far = limit
+      if (allocated(critical%standing)) far = critical%stands
+      toward = sign(1.0_wp, far - critical%falls)
+      beyond = proposal%value + toward*proposal%reach
+      before = proposal%value - toward*proposal%reach
+      if (.not. proposal%usable) then
+         value = far
+         if (allocated(critical%standing)) value = middle(critical%falls, far)
+      else if (inside(beyond)) then
+         value = beyond
+      else if (.not. allocated(critical%standing)) then
+         value = critical%falls + toward*2.0_wp*abs(critical%falls - proposal%value)
+         if (.not. critical%current .or. .not. inside(value)) value = far
+      else if (inside(before)) then
+         value = before
+      else if (critical%current .or. abs(far - critical%falls) > 0.3_wp*abs(far)) then
+         value = middle(critical%falls, far)
+      else
+         value = far - merge(0.1_wp, 0.5_wp, in_vain <= patience)*(far - critical%falls)
+      end if
+
+   contains
+
+      !> Whether a value lies strictly between the ends of the bracket
+      pure logical function inside(x)
+         !> The value
+         real(wp), intent(in) :: x
+
+         inside = toward*(x - critical%falls) > 0.0_wp .and. toward*(far - x) > 0.0_wp
+      end function inside
+   end function candidate
+
+   !> A value beside the one that has just been undecided: the middle of a bracket may be critical
+   !> to the last digit, where nothing rests and nothing moves
+   pure real(wp) function not_again(value, critical, undecided)
+      !> The value to decide next
+      real(wp), intent(in) :: value
+      type(critical_t), intent(in) :: critical
+      !> How many values in a row were undecided
+      integer, intent(in) :: undecided
+      real(wp) :: share
+
+      not_again = value
+      if (abs(value - critical%undecided_at) > 0.0_wp) return
+      if (.not. allocated(critical%standing)) return
+      share = 0.5_wp + 0.1_wp*real(merge(1, -1, mod(undecided, 2) == 0)*((undecided + 1)/2), wp)
+      not_again = critical%falls + share*(critical%stands - critical%falls)
+   end function not_again
+
+   !> Middle of a bracket; the geometric one where the ends are of different magnitude
+   pure real(wp) function middle(a, b)
+      !> One end
+      real(wp), intent(in) :: a
+      !> The other end
+      real(wp), intent(in) :: b
+
+      middle = (a + b)/2.0_wp
+      if (min(a, b) > 0.0_wp .and. max(a, b) > 4.0_wp*min(a, b)) middle = sqrt(a*b)
+   end function middle
+
+   !> Whether the last collapse is the one that the proposal asked for, at the tolerance, so that
+   !> another trace would tell nothing new
+   pure logical function proved(search, limit, critical, proposal)
+      type(search_t), intent(in) :: search
+      real(wp), intent(in) :: limit
+      type(critical_t), intent(in) :: critical
+      !> Where the collapse before the last stops
+      type(proposal_t), intent(in) :: proposal
+
+      proved = proposal%usable
+      if (proved) proved = proposal%half <= 0.5001_wp*search%tolerance*abs(proposal%value) &
+         & .and. abs((proposal%value - critical%falls)*sign(1.0_wp, limit - critical%falls) &
+         & - proposal%half) < 1.0e-3_wp*proposal%half
+   end function proved
+
+   !> Whether a collapse is the one that was foreseen, if one was
+   pure logical function is_foreseen(fallen, foreseen)
+      type(decision_t), intent(in) :: fallen
+      !> Faces of its joints: (n), if it was
+      type(joint_face_t), allocatable, intent(in) :: foreseen(:)
+
+      is_foreseen = .not. allocated(foreseen)
+      if (is_foreseen) return
+      if (size(fallen%contacts%face) /= size(foreseen)) return
+      associate (face => fallen%contacts%face)
+         is_foreseen = all(face%slip == foreseen%slip) &
+            & .and. all(face%open(1) .eqv. foreseen%open(1)) &
+            & .and. all(face%open(2) .eqv. foreseen%open(2))
+      end associate
+   end function is_foreseen
+
+   !> Whether the bracket is as narrow as the proposal asks for
+   pure logical function closed(search, critical, proposal)
+      type(search_t), intent(in) :: search
+      type(critical_t), intent(in) :: critical
+      type(proposal_t), intent(in) :: proposal
+
+      closed = allocated(critical%standing) &
+         & .and. abs(critical%stands - critical%falls) <= 2.0001_wp*proposal%half &
+         & .and. 2.0_wp*proposal%half <= max(widest, 2.0_wp*search%tolerance)*abs(critical%stands)
+   end function closed
+
+end submodule dda_bracket
