@@ -1,50 +1,9 @@
 !> Columns of the table on the screen: which fit into its width, and what a case has in each
-module dda_case_fields
+submodule (dda_case_table) dda_case_fields
    use dda_kinds, only : wp
-   use dda_text, only : read_number, to_text
-   use dda_write_results, only : number_t, result_row_t
+   use dda_text, only : read_number
+   use dda_write_results, only : number_t
    implicit none
-   private
-
-   public :: column_t, field_of, fit_columns, padded, source, source_enum, wrapped
-
-   !> What a column shows; of two that do not fit beside one another the one with the smaller number
-   !> stays
-   type :: source_enum
-      !> Number of the case
-      integer :: case = 1
-      !> Its verdict
-      integer :: verdict = 2
-      !> What the search has found
-      integer :: searched = 3
-      !> Value of a swept parameter
-      integer :: swept = 4
-      !> Error of what was found
-      integer :: error = 5
-      !> How the blocks collapse
-      integer :: mode = 6
-      !> The exact critical value
-      integer :: exact = 7
-      !> Hinges at the intrados of an arch
-      integer :: hinges = 8
-   end type source_enum
-
-   !> The sources by name
-   type(source_enum), parameter :: source = source_enum()
-
-   !> One column
-   type :: column_t
-      !> Its head
-      character(len=64) :: title = ""
-      !> One of source
-      integer :: source = 0
-      !> Widest value, then width of the column
-      integer :: width = 0
-      !> Number of the swept parameter
-      integer :: sweep = 0
-      !> Whether its values are words
-      logical :: left = .false.
-   end type column_t
 
    !> Blanks before a column
    integer, parameter :: gap = 2
@@ -58,11 +17,7 @@ module dda_case_fields
 contains
 
    !> Let columns fit into a width: names of swept parameters are cut, then columns left out
-   pure subroutine fit_columns(width, column)
-      !> Width of the screen
-      integer, intent(in) :: width
-      !> The columns; their widths are set
-      type(column_t), allocatable, intent(inout) :: column(:)
+   module procedure fit_columns
       integer :: values(size(column)), c, least, last
 
       values = column%width
@@ -82,16 +37,10 @@ contains
       c = size(column)
       if (column(c)%source == source%hinges) &
          & column(c)%width = width - sum(column(:c - 1)%width + gap)
-   end subroutine fit_columns
+   end procedure fit_columns
 
    !> What a case has in a column
-   pure function field_of(column, row, swept) result(text)
-      type(column_t), intent(in) :: column
-      type(result_row_t), intent(in) :: row
-      !> Values of the swept parameters: (n)
-      character(len=*), intent(in) :: swept(:)
-      !> The text; empty where the case has nothing
-      character(len=:), allocatable :: text
+   module procedure field_of
       character(len=8) :: small
 
       text = ""
@@ -117,7 +66,7 @@ contains
          if (allocated(row%intrados_hinge_deg)) &
             & text = shown_angles(row%intrados_hinge_deg, column%width)
       end select
-   end function field_of
+   end procedure field_of
 
    !> A number, if it is known
    pure function shown_number(number, width) result(text)
@@ -194,11 +143,7 @@ contains
    end function shown_angles
 
    !> A field in its column, with the gap behind it
-   pure function padded(column, text) result(field)
-      type(column_t), intent(in) :: column
-      !> The text
-      character(len=*), intent(in) :: text
-      character(len=:), allocatable :: field
+   module procedure padded
       integer :: rest
 
       rest = max(0, column%width - len(text))
@@ -207,14 +152,10 @@ contains
       else
          field = repeat(" ", rest)//text//repeat(" ", gap)
       end if
-   end function padded
+   end procedure padded
 
    !> A remark in lines that are not wider than the screen, parted by line ends
-   pure function wrapped(text, width) result(lines)
-      !> The remark
-      character(len=*), intent(in) :: text
-      integer, intent(in) :: width
-      character(len=:), allocatable :: lines
+   module procedure wrapped
       integer :: blank, finish, margin, start
 
       lines = ""
@@ -231,5 +172,6 @@ contains
          start = finish + 1
          if (start <= len(text)) start = start + max(0, verify(text(start:)//"x", " ") - 1)
       end do
-   end function wrapped
-end module dda_case_fields
+   end procedure wrapped
+
+end submodule dda_case_fields

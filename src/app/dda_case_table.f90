@@ -1,7 +1,6 @@
 !> The table that a run shows: a line a case, in their order, and no wider than the screen
 module dda_case_table
    use dda_case, only : searched_name
-   use dda_case_fields, only : column_t, field_of, fit_columns, padded, source, wrapped
    use dda_deck, only : deck_sweep_t, deck_t, keeps_velocities, scene_kind
    use dda_deck_sweep, only : n_cases, swept_texts
    use dda_screen, only : print_line, screen_t, screen_width
@@ -19,6 +18,44 @@ module dda_case_table
       !> Its lines, parted by line ends
       character(len=:), allocatable :: lines
    end type waiting_t
+
+   !> What a column shows; of two that do not fit beside one another the one with the smaller number
+   !> stays
+   type :: source_enum
+      !> Number of the case
+      integer :: case = 1
+      !> Its verdict
+      integer :: verdict = 2
+      !> What the search has found
+      integer :: searched = 3
+      !> Value of a swept parameter
+      integer :: swept = 4
+      !> Error of what was found
+      integer :: error = 5
+      !> How the blocks collapse
+      integer :: mode = 6
+      !> The exact critical value
+      integer :: exact = 7
+      !> Hinges at the intrados of an arch
+      integer :: hinges = 8
+   end type source_enum
+
+   !> The sources by name
+   type(source_enum), parameter :: source = source_enum()
+
+   !> One column
+   type :: column_t
+      !> Its head
+      character(len=64) :: title = ""
+      !> One of source
+      integer :: source = 0
+      !> Widest value, then width of the column
+      integer :: width = 0
+      !> Number of the swept parameter
+      integer :: sweep = 0
+      !> Whether its values are words
+      logical :: left = .false.
+   end type column_t
 
    !> The table of a deck
    type :: case_table_t
@@ -47,6 +84,44 @@ module dda_case_table
    integer, parameter :: max_rows = 100
    !> Widest number and word of a swept parameter
    integer, parameter :: number_width = 12, word_width = 20
+
+   interface
+
+      !> Let columns fit into a width: names of swept parameters are cut, then columns left out
+      pure module subroutine fit_columns(width, column)
+         !> Width of the screen
+         integer, intent(in) :: width
+         !> The columns; their widths are set
+         type(column_t), allocatable, intent(inout) :: column(:)
+      end subroutine fit_columns
+
+      !> What a case has in a column
+      pure module function field_of(column, row, swept) result(text)
+         type(column_t), intent(in) :: column
+         type(result_row_t), intent(in) :: row
+         !> Values of the swept parameters: (n)
+         character(len=*), intent(in) :: swept(:)
+         !> The text; empty where the case has nothing
+         character(len=:), allocatable :: text
+      end function field_of
+
+      !> A field in its column, with the gap behind it
+      pure module function padded(column, text) result(field)
+         type(column_t), intent(in) :: column
+         !> The text
+         character(len=*), intent(in) :: text
+         character(len=:), allocatable :: field
+      end function padded
+
+      !> A remark in lines that are not wider than the screen, parted by line ends
+      pure module function wrapped(text, width) result(lines)
+         !> The remark
+         character(len=*), intent(in) :: text
+         integer, intent(in) :: width
+         character(len=:), allocatable :: lines
+      end function wrapped
+
+   end interface
 
 contains
 

@@ -1,44 +1,20 @@
 !> Pictures of a run as files: VTU with an index for ParaView, CSV for everything else
-module dda_picture_files
-   use dda_block_system, only : block_system_t
-   use dda_error, only : error_t
+submodule (dda_run:dda_run_cases) dda_picture_files
    use dda_block_rows, only : contact_states, frame_joint_rows
-   use dda_frames, only : album_t, frame_t
-   use dda_kinds, only : wp
+   use dda_frames, only : frame_t
    use dda_process, only : make_folder
-   use dda_table_file, only : append_line, table_file_t
-   use dda_text, only : to_text
    use dda_vtu_field, only : field_t, scalar_field, state_field, tensor_field, vector_field
-   use dda_write_tables, only : energy_lines
    use dda_write_frames, only : frame_joint_lines, frame_joint_row_t, frame_lines, frame_stamp_t, &
       & point_lines
+   use dda_write_tables, only : energy_lines
    use dda_write_vtu, only : add_to_index, close_index, open_index, pvd_index_t, write_points, &
       & write_polygons
    implicit none
-   private
-
-   public :: write_album, write_track, write_energies
 
 contains
 
    !> Write all pictures of a case
-   subroutine write_album(folder, number, vtu, system, origin, album, frames, joints, error)
-      !> Folder of the deck's results
-      character(len=*), intent(in) :: folder
-      !> Number of the case
-      integer, intent(in) :: number
-      !> Whether VTU files are wanted beside the tables
-      logical, intent(in) :: vtu
-      type(block_system_t), intent(in) :: system
-      !> Where the origin of their coordinates is: (2) [m]
-      real(wp), intent(in) :: origin(2)
-      type(album_t), intent(in) :: album
-      !> frames.csv
-      type(table_file_t), intent(inout) :: frames
-      !> frame_joints.csv
-      type(table_file_t), intent(inout) :: joints
-      !> Allocated if something cannot be written
-      type(error_t), allocatable, intent(out) :: error
+   module procedure write_album
       type(pvd_index_t) :: index
       type(frame_stamp_t) :: stamp
       type(frame_joint_row_t), allocatable :: row(:)
@@ -71,16 +47,10 @@ contains
          end associate
       end do
       if (.not. allocated(error) .and. vtu) call close_index(index, error)
-   end subroutine write_album
+   end procedure write_album
 
    !> Write the ways of the measured points of a case
-   subroutine write_track(number, origin, album, points, error)
-      integer, intent(in) :: number
-      real(wp), intent(in) :: origin(2)
-      type(album_t), intent(in) :: album
-      !> points.csv
-      type(table_file_t), intent(inout) :: points
-      type(error_t), allocatable, intent(out) :: error
+   module procedure write_track
       real(wp) :: place(2, size(album%point))
       integer :: i
 
@@ -90,15 +60,10 @@ contains
       end do
       call append_line(points, point_lines(number, album%when(:, :album%n_track), place, &
          & album%track(:, :, :album%n_track), origin, album%speed), error)
-   end subroutine write_track
+   end procedure write_track
 
    !> Write the energies of a case
-   subroutine write_energies(number, album, table, error)
-      integer, intent(in) :: number
-      type(album_t), intent(in) :: album
-      !> energy.csv
-      type(table_file_t), intent(inout) :: table
-      type(error_t), allocatable, intent(out) :: error
+   module procedure write_energies
       real(wp) :: value(10, album%audit%n)
       integer :: i
 
@@ -111,7 +76,7 @@ contains
          end associate
       end do
       call append_line(table, energy_lines(number, value), error)
-   end subroutine write_energies
+   end procedure write_energies
 
    !> Write the blocks and the joint forces of one picture, and tell the index
    subroutine write_picture(folder, stem, system, origin, frame, row, index, time, error)
@@ -155,4 +120,5 @@ contains
       if (.not. allocated(error)) call add_to_index(index, time, 0, stem//".vtu", error)
       if (.not. allocated(error)) call add_to_index(index, time, 1, stem//"_joints.vtu", error)
    end subroutine write_picture
-end module dda_picture_files
+
+end submodule dda_picture_files

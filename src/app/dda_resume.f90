@@ -3,31 +3,16 @@
 !> A case is finished where its row in results.csv is whole, for that row is written last, and where
 !> its rows in all other tables have the bytes and the check sum that sizes.record tells. Everything
 !> else of that run, rows cut off by a kill among them, is left out of the tables.
-module dda_resume
+submodule (dda_run) dda_resume
    use, intrinsic :: iso_fortran_env, only : int64
    use dda_disk_record, only : trusted_length
-   use dda_error, only : error_t
    use dda_kinds, only : wp
-   use dda_result_tables, only : common_length, common_sum, result_table_t, result_tables_t, &
-      & sync_tables, table
+   use dda_result_tables, only : common_length, common_sum, result_table_t, sync_tables, table
    use dda_table_file, only : add_sums, close_lines, field, keep_line, line_sum, n_fields, &
       & next_line, open_lines, open_part, settle_part, table_lines_t
    use dda_text, only : read_integer, read_number
    use dda_text_file, only : read_text_file
    implicit none
-   private
-
-   public :: finished_t, find_finished, reopen_tables
-
-   !> What an earlier run has left
-   type :: finished_t
-      !> Whether it ran the same deck with the same settings
-      logical :: same_deck = .false.
-      !> Whether a case is finished: (n)
-      logical, allocatable :: case(:)
-      !> How many ended with a verdict, and undecided: (2)
-      integer :: count(2) = 0
-   end type finished_t
 
    !> Where a table has what tells a whole row of a case
    type :: layout_t
@@ -44,13 +29,7 @@ module dda_resume
 contains
 
    !> Find the cases that are finished
-   subroutine find_finished(tables, record, total, finished)
-      type(result_tables_t), intent(in) :: tables
-      !> What is asked for
-      character(len=*), intent(in) :: record
-      !> Number of cases
-      integer, intent(in) :: total
-      type(finished_t), intent(out) :: finished
+   module procedure find_finished
       character(len=:), allocatable :: earlier
       type(error_t), allocatable :: none_left
       logical, allocatable :: whole(:)
@@ -62,7 +41,7 @@ contains
       allocate (whole(total))
       call compare_sizes(tables, whole)
       call read_results(tables%at(table%results), trusted_length(tables%disk_file), whole, finished)
-   end subroutine find_finished
+   end procedure find_finished
 
    !> Whether each case has the bytes and lines that were written down of it in the tables beside
    !> results.csv
@@ -154,10 +133,7 @@ contains
    end subroutine read_results
 
    !> Begin all tables with what they hold of finished cases, in place of what they hold now
-   subroutine reopen_tables(tables, finished, error)
-      type(result_tables_t), intent(inout) :: tables
-      type(finished_t), intent(in) :: finished
-      type(error_t), allocatable, intent(out) :: error
+   module procedure reopen_tables
       integer :: i
 
       do i = 1, size(tables%at)
@@ -168,7 +144,7 @@ contains
       tables%length = common_length(tables)
       tables%sum = common_sum(tables)
       call sync_tables(tables, error)
-   end subroutine reopen_tables
+   end procedure reopen_tables
 
    !> Write a table anew with the rows of finished cases alone
    subroutine keep_rows(this, once, finished, error)
@@ -248,4 +224,5 @@ contains
          if (field(header, column) == name) return
       end do
    end function column
-end module dda_resume
+
+end submodule dda_resume

@@ -14,8 +14,6 @@ module dda_run
    use dda_progress, only : clear_progress, end_watch, progress_t, terminal_watch_t
    use dda_read_deck, only : read_deck
    use dda_result_tables, only : close_tables, left_out, name_tables, open_tables, result_tables_t
-   use dda_resume, only : find_finished, finished_t, reopen_tables
-   use dda_run_cases, only : run_cases
    use dda_run_record, only : run_record
    use dda_scene, only : scene_t
    use dda_scene_check, only : check_lines, check_scene
@@ -50,6 +48,59 @@ module dda_run
          import :: c_int
          integer(c_int) :: number
       end function c_getpid
+   end interface
+
+   !> What an earlier run has left
+   type :: finished_t
+      !> Whether it ran the same deck with the same settings
+      logical :: same_deck = .false.
+      !> Whether a case is finished: (n)
+      logical, allocatable :: case(:)
+      !> How many ended with a verdict, and undecided: (2)
+      integer :: count(2) = 0
+   end type finished_t
+
+   interface
+
+      !> Find the cases that are finished
+      module subroutine find_finished(tables, record, total, finished)
+         type(result_tables_t), intent(in) :: tables
+         !> What is asked for
+         character(len=*), intent(in) :: record
+         !> Number of cases
+         integer, intent(in) :: total
+         type(finished_t), intent(out) :: finished
+      end subroutine find_finished
+
+      !> Begin all tables with what they hold of finished cases, in place of what they hold now
+      module subroutine reopen_tables(tables, finished, error)
+         type(result_tables_t), intent(inout) :: tables
+         type(finished_t), intent(in) :: finished
+         type(error_t), allocatable, intent(out) :: error
+      end subroutine reopen_tables
+
+      !> Compute cases until none is left, or none can be written; each thread runs this. Cases are
+      !> written down in the same turn in which the next ones are prepared: one wait for other
+      !> threads
+      module subroutine run_cases(command, name, deck, chosen, next, tables, progress, shown, &
+         & count, error)
+         type(command_t), intent(in) :: command
+         !> Name of the deck
+         character(len=*), intent(in) :: name
+         type(deck_t), intent(in) :: deck
+         !> Cases to be computed
+         logical, intent(in) :: chosen(:)
+         !> The last case that was begun by any thread
+         integer, intent(inout) :: next
+         type(result_tables_t), intent(inout) :: tables
+         type(progress_t), intent(inout) :: progress
+         type(case_table_t), intent(inout) :: shown
+         !> Cases decided, undecided, written: (3)
+         integer, intent(inout) :: count(3)
+         !> Failure to write
+         type(error_t), allocatable, intent(inout) :: error
+      end subroutine run_cases
+
    end interface
 
 contains

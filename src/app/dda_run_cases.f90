@@ -1,29 +1,22 @@
 !> The cases of a deck, one after another: prepared, computed, written down
-module dda_run_cases
+submodule (dda_run) dda_run_cases
+   use dda_block_system, only : block_system_t
    use dda_case, only : case_t, prepare_case
    use dda_case_rows, only : tell_case
-   use dda_case_table, only : add_case, case_table_t, may_print
-   use dda_command_line, only : command_t
+   use dda_case_table, only : add_case, may_print
    use dda_compute_case, only : compute_case
-   use dda_deck, only : deck_t
    use dda_deck_sweep, only : turn_to_case
-   use dda_error, only : error_t
    use dda_force_rows, only : bar_lines, reaction_text
+   use dda_frames, only : album_t
    use dda_kinds, only : wp
-   use dda_picture_files, only : write_album, write_energies, write_track
-   use dda_process, only : deck_stem
-   use dda_progress, only : clear_progress, progress_t, report_progress
+   use dda_progress, only : report_progress
    use dda_proof_rows, only : proof_forces_lines, proof_motion_lines
    use dda_restart, only : save_restart
-   use dda_result_tables, only : result_tables_t, swept_fields, sync_when_due, table, write_case
-   use dda_table_file, only : append_line
-   use dda_text, only : to_text
+   use dda_result_tables, only : swept_fields, sync_when_due, table, write_case
+   use dda_table_file, only : append_line, table_file_t
    use dda_write_results, only : joint_row_t, result_row_t
    use dda_write_tables, only : told_blocks_t
    implicit none
-   private
-
-   public :: run_cases
 
    !> Most cases that a thread takes at a time
    integer, parameter :: max_batch = 32
@@ -32,26 +25,55 @@ module dda_run_cases
    !> killed
    real(wp), parameter :: short_batch = 2.0e-3_wp
 
+   interface
+
+      !> Write all pictures of a case
+      module subroutine write_album(folder, number, vtu, system, origin, album, frames, joints, &
+         & error)
+         !> Folder of the deck's results
+         character(len=*), intent(in) :: folder
+         !> Number of the case
+         integer, intent(in) :: number
+         !> Whether VTU files are wanted beside the tables
+         logical, intent(in) :: vtu
+         type(block_system_t), intent(in) :: system
+         !> Where the origin of their coordinates is: (2) [m]
+         real(wp), intent(in) :: origin(2)
+         type(album_t), intent(in) :: album
+         !> frames.csv
+         type(table_file_t), intent(inout) :: frames
+         !> frame_joints.csv
+         type(table_file_t), intent(inout) :: joints
+         !> Allocated if something cannot be written
+         type(error_t), allocatable, intent(out) :: error
+      end subroutine write_album
+
+      !> Write the ways of the measured points of a case
+      module subroutine write_track(number, origin, album, points, error)
+         integer, intent(in) :: number
+         real(wp), intent(in) :: origin(2)
+         type(album_t), intent(in) :: album
+         !> points.csv
+         type(table_file_t), intent(inout) :: points
+         type(error_t), allocatable, intent(out) :: error
+      end subroutine write_track
+
+      !> Write the energies of a case
+      module subroutine write_energies(number, album, table, error)
+         integer, intent(in) :: number
+         type(album_t), intent(in) :: album
+         !> energy.csv
+         type(table_file_t), intent(inout) :: table
+         type(error_t), allocatable, intent(out) :: error
+      end subroutine write_energies
+
+   end interface
+
 contains
 
    !> Compute cases until none is left, or none can be written; each thread runs this. Cases are
    !> written down in the same turn in which the next ones are prepared: one wait for other threads
-   subroutine run_cases(command, name, deck, chosen, next, tables, progress, shown, count, error)
-      type(command_t), intent(in) :: command
-      !> Name of the deck
-      character(len=*), intent(in) :: name
-      type(deck_t), intent(in) :: deck
-      !> Cases to be computed
-      logical, intent(in) :: chosen(:)
-      !> The last case that was begun by any thread
-      integer, intent(inout) :: next
-      type(result_tables_t), intent(inout) :: tables
-      type(progress_t), intent(inout) :: progress
-      type(case_table_t), intent(inout) :: shown
-      !> Cases decided, undecided, written: (3)
-      integer, intent(inout) :: count(3)
-      !> Failure to write
-      type(error_t), allocatable, intent(inout) :: error
+   module procedure run_cases
       type(case_t), allocatable :: batch(:)
       integer :: number(max_batch), i, most, n
 
@@ -79,7 +101,7 @@ contains
          end do
          if (command%jobs > 1) most = next_batch(n, sum(batch(:n)%seconds))
       end do
-   end subroutine run_cases
+   end procedure run_cases
 
    !> How many cases to take after so many that took so long
    pure integer function next_batch(n, seconds)
@@ -235,4 +257,5 @@ contains
       call save_restart(folder//"/case_"//to_text(number)//".restart", this%scene%settings, &
          & this%decision%system, this%decision%contacts, this%onward, error)
    end subroutine write_end
-end module dda_run_cases
+
+end submodule dda_run_cases

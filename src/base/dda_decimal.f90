@@ -1,11 +1,6 @@
 !> Decimal numbers of few digits to the nearest double, without the run-time library
-module dda_decimal
-   use, intrinsic :: iso_fortran_env, only : int64
-   use dda_kinds, only : wp
+submodule (dda_text) dda_decimal
    implicit none
-   private
-
-   public :: exact_product, read_short_decimal
 
    !> Most digits whose number fits into a whole number of 64 bits
    integer, parameter :: most_digits = 18
@@ -20,22 +15,14 @@ module dda_decimal
 contains
 
    !> Product of two doubles as the sum of two (Dekker 1971)
-   pure subroutine exact_product(a, b, product, rest)
-      !> One factor
-      real(wp), intent(in) :: a
-      !> The other
-      real(wp), intent(in) :: b
-      !> The product, rounded
-      real(wp), intent(out) :: product
-      !> What rounding has taken from it
-      real(wp), intent(out) :: rest
+   module procedure exact_product
       real(wp) :: x(2), y(2)
 
       product = a*b
       x = halves(a)
       y = halves(b)
       rest = ((x(1)*y(1) - product) + x(1)*y(2) + x(2)*y(1)) + x(2)*y(2)
-   end subroutine exact_product
+   end procedure exact_product
 
    !> Two numbers of half the digits that add up to one
    pure function halves(value)
@@ -50,14 +37,7 @@ contains
    end function halves
 
    !> Read a decimal number of usual size, rounded to the nearest double
-   pure subroutine read_short_decimal(text, value, known)
-      !> Text such as -1.5e-3 or 1d3
-      character(len=*), intent(in) :: text
-      !> The number; 0 if it is not known
-      real(wp), intent(out) :: value
-      !> Whether it is known: the text is one number of at most 18 digits, its last one within 22
-      !> places of the point, and not so near to the middle of two doubles that more is needed
-      logical, intent(out) :: known
+   module procedure read_short_decimal
       integer(int64) :: digits
       integer :: power
       real(wp) :: high, low, rest, product, error
@@ -86,7 +66,7 @@ contains
          value = merge(value + low, 0.0_wp, known)
       end if
       if (text(1:1) == "-") value = -value
-   end subroutine read_short_decimal
+   end procedure read_short_decimal
 
    !> Digits of a decimal number as a whole number, and its power of ten
    pure subroutine split_decimal(text, digits, power, ok)
@@ -146,4 +126,5 @@ contains
       end do
       power = power + merge(-exponent, exponent, text(2:2) == "-")
    end subroutine add_exponent
-end module dda_decimal
+
+end submodule dda_decimal

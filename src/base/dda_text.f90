@@ -2,12 +2,12 @@
 module dda_text
    use, intrinsic :: ieee_arithmetic, only : ieee_is_finite
    use, intrinsic :: iso_fortran_env, only : int64
-   use dda_decimal, only : exact_product, read_short_decimal
    use dda_kinds, only : wp
    implicit none
    private
 
-   public :: to_text, print_number, lower_case, read_number, read_integer
+   public :: to_text, print_number, lower_case, read_number, read_integer, exact_product
+   public :: read_short_decimal
 
    !> Shortest text that reads back as the same number
    interface to_text
@@ -25,6 +25,52 @@ module dda_text
    !> Rounding of what is left of a product of a number and a power of ten, as a share of the 17th
    !> digit
    real(wp), parameter :: rounding = 1.0e-6_wp
+
+   interface
+
+      !> Product of two doubles as the sum of two (Dekker 1971)
+      pure module subroutine exact_product(a, b, product, rest)
+         !> One factor
+         real(wp), intent(in) :: a
+         !> The other
+         real(wp), intent(in) :: b
+         !> The product, rounded
+         real(wp), intent(out) :: product
+         !> What rounding has taken from it
+         real(wp), intent(out) :: rest
+      end subroutine exact_product
+
+      !> Read a decimal number of usual size, rounded to the nearest double
+      pure module subroutine read_short_decimal(text, value, known)
+         !> Text such as -1.5e-3 or 1d3
+         character(len=*), intent(in) :: text
+         !> The number; 0 if it is not known
+         real(wp), intent(out) :: value
+         !> Whether it is known: the text is one number of at most 18 digits, its last one within 22
+         !> places of the point, and not so near to the middle of two doubles that more is needed
+         logical, intent(out) :: known
+      end subroutine read_short_decimal
+
+      !> Read one decimal number below 1e308, and nothing else, from a text
+      pure module subroutine read_number(text, value, ok)
+         !> Text such as -1.5e-3 or 1d3
+         character(len=*), intent(in) :: text
+         !> The number; 0 if the text is none
+         real(wp), intent(out) :: value
+         !> Whether the whole text is one such number
+         logical, intent(out) :: ok
+      end subroutine read_number
+
+      !> Read one integer, and nothing else, from a text
+      pure module subroutine read_integer(text, value, ok)
+         character(len=*), intent(in) :: text
+         !> The number; 0 if the text is none
+         integer, intent(out) :: value
+         !> Whether the whole text is one integer that fits
+         logical, intent(out) :: ok
+      end subroutine read_integer
+
+   end interface
 
 contains
 
@@ -297,89 +343,4 @@ contains
          if (code >= iachar("A") .and. code <= iachar("Z")) lower(i:i) = achar(code + 32)
       end do
    end function lower_case
-
-   !> Read one decimal number below 1e308, and nothing else, from a text
-   pure subroutine read_number(text, value, ok)
-      !> Text such as -1.5e-3 or 1d3
-      character(len=*), intent(in) :: text
-      !> The number; 0 if the text is none
-      real(wp), intent(out) :: value
-      !> Whether the whole text is one such number
-      logical, intent(out) :: ok
-      character(len=:), allocatable :: mantissa
-      character(len=12) :: form
-      integer :: mark, stat, point, exponent
-
-      value = 0.0_wp
-      ok = .false.
-      if (len(text) == 0 .or. len(text) > 400) return
-      call read_short_decimal(text, value, ok)
-      if (ok) return
-      mark = scan(text, "eEdD")
-      mantissa = text
-      if (mark > 0) mantissa = text(:mark - 1)
-      point = index(mantissa, ".")
-      if (point > 0) mantissa = mantissa(:point - 1)//mantissa(point + 1:)
-      if (.not. is_digits(mantissa, signed=.true.)) return
-      exponent = 0
-      if (mark > 0) then
-         call read_integer(text(mark + 1:), exponent, ok)
-         if (.not. ok) return
-      end if
-      ok = power_of_ten(mantissa, point) + min(max(exponent, -1000), 1000) < 308
-      if (.not. ok) return
-      write (form, "('(f', i0, '.0)')") len(text)
-      read (text, form, iostat=stat) value
-      ok = stat == 0 .and. ieee_is_finite(value)
-      if (.not. ok) value = 0.0_wp
-   end subroutine read_number
-
-   !> Power of ten of the first digit of a decimal number that is not zero: far below 0 if all
-   !> digits are zero
-   pure integer function power_of_ten(digits, point)
-      !> Digits with or without a sign, the decimal point taken out
-      character(len=*), intent(in) :: digits
-      !> Place where the point stood, counted from 1; 0 if there was none
-      integer, intent(in) :: point
-      integer :: first
-
-      first = scan(digits, "123456789")
-      power_of_ten = -1000
-      if (first > 0) power_of_ten = merge(point - 1, len(digits), point > 0) - first
-   end function power_of_ten
-
-   !> Read one integer, and nothing else, from a text
-   pure subroutine read_integer(text, value, ok)
-      character(len=*), intent(in) :: text
-      !> The number; 0 if the text is none
-      integer, intent(out) :: value
-      !> Whether the whole text is one integer that fits
-      logical, intent(out) :: ok
-      character(len=12) :: form
-      integer :: stat
-
-      value = 0
-      ok = len(text) <= 40 .and. is_digits(text, signed=.true.)
-      if (.not. ok) return
-      write (form, "('(i', i0, ')')") len(text)
-      read (text, form, iostat=stat) value
-      ok = stat == 0
-      if (.not. ok) value = 0
-   end subroutine read_integer
-
-   !> Whether a text is one digit or more, after a sign where signs are allowed
-   pure logical function is_digits(text, signed)
-      !> Text to look at
-      character(len=*), intent(in) :: text
-      !> Whether a leading sign may stand
-      logical, intent(in) :: signed
-      integer :: first
-
-      first = 1
-      if (signed .and. len(text) > 0) then
-         if (scan(text(1:1), "+-") == 1) first = 2
-      end if
-      is_digits = len(text) >= first
-      if (is_digits) is_digits = verify(text(first:), "0123456789") == 0
-   end function is_digits
 end module dda_text

@@ -1,15 +1,6 @@
 !> What the user should know of a case beside its row
-module dda_case_remarks
-   use dda_block_system, only : block_system_t
-   use dda_search, only : critical_t
-   use dda_forward, only : outcome_t
-   use dda_kinds, only : wp
-   use dda_text, only : to_text
-   use dda_verdict, only : verdict
+submodule (dda_case_rows) dda_case_remarks
    implicit none
-   private
-
-   public :: change_remark, fall_remark, jump_remark, path_remark
 
    !> A block moves in a collapse if it goes this share of the way of the one that goes farthest
    real(wp), parameter :: moves = 1.0e-3_wp
@@ -19,15 +10,7 @@ module dda_case_remarks
 contains
 
    !> Which blocks fall, where most of them stay: a chip that no bolt holds is a collapse, too
-   pure function fall_remark(system, motion, before) result(remark)
-      !> The blocks at the beginning
-      type(block_system_t), intent(in) :: system
-      !> Their motion in the collapse: (n_dof, n_equation)
-      real(wp), intent(in) :: motion(:, :)
-      !> What else there is to know
-      character(len=*), intent(in) :: before
-      !> All of it
-      character(len=:), allocatable :: remark
+   module procedure fall_remark
       real(wp) :: way(size(system%equation))
       integer :: b, e, i, n
 
@@ -49,13 +32,10 @@ contains
          remark = remark//" "//to_text(b)
       end do
       if (n > most_named) remark = remark//" and others"
-   end function fall_remark
+   end procedure fall_remark
 
    !> What the user should know of the path of a static run
-   pure function path_remark(outcome, before) result(remark)
-      type(outcome_t), intent(in) :: outcome
-      character(len=*), intent(in) :: before
-      character(len=:), allocatable :: remark
+   module procedure path_remark
 
       remark = before
       if (outcome%verdict /= verdict%stable) then
@@ -70,7 +50,7 @@ contains
          end if
       end if
       remark = order_remark(outcome, remark)
-   end function path_remark
+   end procedure path_remark
 
    !> Why forces after stages are not those of the last shape built at once
    pure function order_remark(outcome, before) result(remark)
@@ -106,10 +86,7 @@ contains
    end function numbered
 
    !> What a search in time has found on both sides of its bracket
-   pure function change_remark(critical, before) result(remark)
-      type(critical_t), intent(in) :: critical
-      character(len=*), intent(in) :: before
-      character(len=:), allocatable :: remark
+   module procedure change_remark
       integer :: i
 
       remark = before
@@ -126,21 +103,16 @@ contains
                & //to_text(critical%other_change(2, i))
          end do
       end if
-   end function change_remark
+   end procedure change_remark
 
    !> What the user should know of jumps on the loading path
-   pure function jump_remark(jumps, largest, before) result(remark)
-      !> How many there were
-      integer, intent(in) :: jumps
-      !> The largest displacement of one [m]
-      real(wp), intent(in) :: largest
-      character(len=*), intent(in) :: before
-      character(len=:), allocatable :: remark
+   module procedure jump_remark
 
       remark = before
       if (jumps == 0) return
       if (len(remark) > 0) remark = remark//"; "
       remark = remark//"jumps on the loading path: "//to_text(jumps)//", the largest " &
          & //to_text(largest)//" m"
-   end function jump_remark
-end module dda_case_remarks
+   end procedure jump_remark
+
+end submodule dda_case_remarks

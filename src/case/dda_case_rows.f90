@@ -1,31 +1,71 @@
 !> A computed case as rows of the result tables
 module dda_case_rows
+   use dda_block_rows, only : joint_rows, scale_to_one, tell_blocks, tell_mechanism_motion, &
+      & tell_roles, tell_total_motion
    use dda_block_scene, only : lacks_friction
+   use dda_block_system, only : block_system_t
    use dda_case, only : case_t, searched_name
-   use dda_case_remarks, only : change_remark, fall_remark, jump_remark, path_remark
    use dda_contact_detection, only : contacts_t
    use dda_contact_types, only : joint_t
    use dda_deck, only : deck_t, scene_kind
    use dda_deck_scene, only : movable_blocks
    use dda_error, only : error_line
    use dda_forward, only : outcome_t
-   use dda_block_rows, only : joint_rows, scale_to_one, tell_blocks, tell_mechanism_motion, &
-      & tell_roles, tell_total_motion
    use dda_kinds, only : wp
    use dda_mechanism, only : mechanism_of, mechanism_t
    use dda_scene, only : build_once, scene_t, searched_load
    use dda_search, only : critical_t, decision_t, proof_t
    use dda_text, only : to_text
    use dda_verdict, only : verdict
-   use dda_write_tables, only : told_blocks_t
    use dda_write_results, only : joint_row_t, result_row_t, some_number
+   use dda_write_tables, only : told_blocks_t
    implicit none
    private
 
-   public :: tell_case
+   public :: tell_case, change_remark, fall_remark, jump_remark, path_remark
 
    !> A bracket whose middle is off by more than this share of its half is lopsided
    real(wp), parameter :: lopsided = 0.05_wp
+
+   interface
+
+      !> Which blocks fall, where most of them stay: a chip that no bolt holds is a collapse, too
+      pure module function fall_remark(system, motion, before) result(remark)
+         !> The blocks at the beginning
+         type(block_system_t), intent(in) :: system
+         !> Their motion in the collapse: (n_dof, n_equation)
+         real(wp), intent(in) :: motion(:, :)
+         !> What else there is to know
+         character(len=*), intent(in) :: before
+         !> All of it
+         character(len=:), allocatable :: remark
+      end function fall_remark
+
+      !> What the user should know of the path of a static run
+      pure module function path_remark(outcome, before) result(remark)
+         type(outcome_t), intent(in) :: outcome
+         character(len=*), intent(in) :: before
+         character(len=:), allocatable :: remark
+      end function path_remark
+
+      !> What a search in time has found on both sides of its bracket
+      pure module function change_remark(critical, before) result(remark)
+         type(critical_t), intent(in) :: critical
+         character(len=*), intent(in) :: before
+         character(len=:), allocatable :: remark
+      end function change_remark
+
+      !> What the user should know of jumps on the loading path
+      pure module function jump_remark(jumps, largest, before) result(remark)
+         !> How many there were
+         integer, intent(in) :: jumps
+         !> The largest displacement of one [m]
+         real(wp), intent(in) :: largest
+         character(len=*), intent(in) :: before
+         character(len=:), allocatable :: remark
+      end function jump_remark
+
+   end interface
 
 contains
 

@@ -11,25 +11,24 @@ module dda_compute_case
    use dda_chain_unfold, only : unfold
    use dda_contact_detection, only : contacts_t
    use dda_critical, only : find_critical
-   use dda_deck, only : parameter_t, scene_kind
+   use dda_decision, only : decide_in_stages
+   use dda_deck, only : deck_t, parameter_t, scene_kind
    use dda_deck_keys, only : key_index
+   use dda_deck_scene, only : deck_family_t, deck_scene
    use dda_deck_set, only : put_number
-   use dda_deck_scene, only : deck_scene
    use dda_error, only : error_t
    use dda_forward, only : outcome_t, run_to_verdict
+   use dda_frames, only : album_t
+   use dda_kinds, only : wp
+   use dda_limerick_decision, only : decide_limerick
+   use dda_load_clock, only : has_path, load_clock_t, new_load_clock
+   use dda_mechanism, only : follow_collapse
    use dda_reactions, only : supports_of
    use dda_restart, only : load_restart
-   use dda_kinds, only : wp
-   use dda_load_clock, only : has_path, load_clock_t, new_load_clock
-   use dda_limerick_decision, only : decide_limerick
-   use dda_limerick_search, only : find_limerick_critical, repeat_with_pictures
-   use dda_mechanism, only : follow_collapse
    use dda_scene, only : build_once, scene_t
-   use dda_search, only : decision_t
+   use dda_search, only : critical_t, decision_t, search_t
    use dda_settings, only : settings_t
-   use dda_decision, only : decide_in_stages
    use dda_verdict, only : verdict
-   use dda_worst_position, only : find_worst_position
    implicit none
    private
 
@@ -37,6 +36,36 @@ module dda_compute_case
 
    !> The thrust of an arch of more joints than this is reported only where it is asked for
    integer, parameter :: most_thrust_joints = 2001
+
+   interface
+
+      !> Search the critical value
+      pure module subroutine find_limerick_critical(family, search, critical)
+         type(deck_family_t), intent(in) :: family
+         !> What is searched; where the far end needs no check, the search strides out from the
+         !> start
+         type(search_t), intent(in) :: search
+         type(critical_t), intent(out) :: critical
+      end subroutine find_limerick_critical
+
+      !> Pictures of the run nearest to critical that was found to fall, else to stand
+      pure module subroutine repeat_with_pictures(family, critical, album)
+         type(deck_family_t), intent(in) :: family
+         type(critical_t), intent(in) :: critical
+         type(album_t), intent(inout) :: album
+      end subroutine repeat_with_pictures
+
+      !> Find the worst position
+      pure module subroutine find_worst_position(deck, scene, position, found)
+         type(deck_t), intent(in) :: deck
+         type(scene_t), intent(in) :: scene
+         !> The position of the first axle [m]
+         real(wp), intent(out) :: position
+         !> Whether any position is bounded
+         logical, intent(out) :: found
+      end subroutine find_worst_position
+
+   end interface
 
 contains
 

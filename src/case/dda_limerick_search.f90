@@ -1,20 +1,9 @@
 !> Critical value under the original's scheme: a bracket of two runs, halved
-module dda_limerick_search
+submodule (dda_compute_case) dda_limerick_search
    use dda_deck, only : deck_t
-   use dda_deck_scene, only : deck_family_t, deck_scene
-   use dda_deck_set, only : number_fits, put_number
-   use dda_error, only : error_t
-   use dda_frames, only : album_t
-   use dda_kinds, only : wp
-   use dda_limerick_decision, only : decide_limerick
-   use dda_scene, only : scene_t
+   use dda_deck_set, only : number_fits
    use dda_scene_plan, only : plan_scene
-   use dda_search, only : critical_t, decision_t, search_t
-   use dda_verdict, only : verdict
    implicit none
-   private
-
-   public :: find_limerick_critical, repeat_with_pictures
 
    !> First step away from the start, over the start; the steps double
    real(wp), parameter :: first_stride = 0.02_wp
@@ -24,11 +13,7 @@ module dda_limerick_search
 contains
 
    !> Search the critical value
-   pure subroutine find_limerick_critical(family, search, critical)
-      type(deck_family_t), intent(in) :: family
-      !> What is searched; where the far end needs no check, the search strides out from the start
-      type(search_t), intent(in) :: search
-      type(critical_t), intent(out) :: critical
+   module procedure find_limerick_critical
       integer :: answer
 
       critical%current = .true.
@@ -49,13 +34,10 @@ contains
       end do
       if (answer == verdict%undecided .or. both_sides(critical)) return
       critical%verdict = merge(verdict%collapsed, verdict%stable, allocated(critical%fallen))
-   end subroutine find_limerick_critical
+   end procedure find_limerick_critical
 
    !> Pictures of the run nearest to critical that was found to fall, else to stand
-   pure subroutine repeat_with_pictures(family, critical, album)
-      type(deck_family_t), intent(in) :: family
-      type(critical_t), intent(in) :: critical
-      type(album_t), intent(inout) :: album
+   module procedure repeat_with_pictures
       type(decision_t) :: decision
       type(scene_t) :: scene
       type(error_t), allocatable :: error
@@ -74,7 +56,7 @@ contains
       if (allocated(error)) return
       call deck_scene(deck, plan_scene(deck), scene)
       call decide_limerick(deck, scene, decision, album)
-   end subroutine repeat_with_pictures
+   end procedure repeat_with_pictures
 
    !> Whether a value stands and another falls
    pure logical function both_sides(critical)
@@ -148,4 +130,5 @@ contains
          call move_alloc(decision, critical%standing)
       end if
    end subroutine decide_at
-end module dda_limerick_search
+
+end submodule dda_limerick_search

@@ -1,34 +1,14 @@
 !> The joints of a restart file: corners, edges and states as whole numbers, the rest as numbers
-module dda_restart_joints
-   use, intrinsic :: iso_fortran_env, only : int32
-   use dda_block_system, only : block_system_t
-   use dda_contact_detection, only : contacts_t, set_joints, set_strength
+submodule (dda_restart) dda_restart_joints
+   use dda_contact_detection, only : set_joints, set_strength
    use dda_contact_types, only : joint_t, place_joint, vertex_number
-   use dda_kinds, only : wp
    use dda_outline, only : outline_of, outline_t
-   use dda_settings, only : settings_t
    implicit none
-   private
-
-   public :: n_joint_whole, n_joint_number, pack_joints, unpack_joints
-
-   !> Whole numbers of a joint: contacts; of both contacts which block owns the edge, corner, edge,
-   !> whether it is open; direction of sliding
-   integer, parameter :: n_joint_whole = 10
-   !> Numbers of a joint: length; of both contacts length, share, lock and height at which it is
-   !> closed; past slip; trial force, force, gap and increment; share of strength of both contacts
-   integer, parameter :: n_joint_number = 24
 
 contains
 
    !> Joints as numbers
-   pure subroutine pack_joints(system, contacts, whole, number)
-      type(block_system_t), intent(in) :: system
-      type(contacts_t), intent(in) :: contacts
-      !> Their whole numbers: (n_joint_whole, n_joint)
-      integer(int32), allocatable, intent(out) :: whole(:, :)
-      !> Their numbers: (n_joint_number, n_joint)
-      real(wp), allocatable, intent(out) :: number(:, :)
+   module procedure pack_joints
       integer :: j, k
 
       allocate (whole(n_joint_whole, size(contacts%joint)))
@@ -45,19 +25,11 @@ contains
                & contacts%increment(:, j), contacts%intact(:, j)]
          end associate
       end do
-   end subroutine pack_joints
+   end procedure pack_joints
 
    !> Joints from numbers that are finite: found ones made anew where blocks move, given ones with
    !> the state that they had
-   pure subroutine unpack_joints(settings, system, whole, number, contacts, sound)
-      type(settings_t), intent(in) :: settings
-      type(block_system_t), intent(in) :: system
-      integer(int32), intent(in) :: whole(:, :)
-      real(wp), intent(in) :: number(:, :)
-      !> The contacts at their beginning in, with these joints out
-      type(contacts_t), intent(inout) :: contacts
-      !> Whether the numbers are those of joints between the blocks
-      logical, intent(out) :: sound
+   module procedure unpack_joints
       type(joint_t), allocatable :: joint(:)
       integer(int32), allocatable :: given(:, :)
       real(wp), allocatable :: ignored(:, :)
@@ -88,7 +60,7 @@ contains
          contacts%intact(:, j) = number(23:24, j)
       end do
       call set_strength(contacts)
-   end subroutine unpack_joints
+   end procedure unpack_joints
 
    !> Joints that a search had found, where the blocks are
    pure subroutine make_joints(system, contacts, whole, number, joint, sound)
@@ -176,4 +148,5 @@ contains
       block(whole(1 + k)) = outline%block(whole(5 + k))
       block(3 - whole(1 + k)) = outline%block(whole(3 + k))
    end function blocks_of
-end module dda_restart_joints
+
+end submodule dda_restart_joints

@@ -4,28 +4,23 @@
 !> Which of all these is carried at the least factor, under the associated rule, is a question of
 !> the joint graph; the pressure of fill, which the arch leans against on the side away from the
 !> vehicle, makes as many graphs as there are sides.
-module dda_worst_position
+submodule (dda_compute_case) dda_worst_position
    use dda_arch_assembly, only : arch_assembly_t
    use dda_arch_form, only : form_problem_t
    use dda_boundary, only : loaded_point_t, value_at
-   use dda_deck, only : deck_t
    use dda_fill_loads, only : fill_of, fill_t, live_side, press_side
+   use dda_interior_state, only : no_limit
    use dda_joint_graph, only : joint_graph_t
-   use dda_kinds, only : wp
    use dda_limit_decision, only : decide_load, load_decision_t, load_state
    use dda_load_coefficient, only : added_loads, full_loads, with_coefficient
+   use dda_scene, only : searched_load
    use dda_scene_graph, only : decides_as_graph, scene_graph
-   use dda_submatrices, only : point_load
-   use dda_scene, only : scene_t, searched_load
    use dda_settings, only : factor_of
    use dda_shape_scene, only : shape_assembly
+   use dda_submatrices, only : point_load
    use dda_vehicle, only : axle_loads, passages, road_of, road_t, vehicle_of, vehicle_t
    use dda_worst_load, only : least_factor_t, load_arc_t, seek_least_factor
-   use dda_interior_state, only : no_limit
    implicit none
-   private
-
-   public :: find_worst_position
 
    !> How far beside a passage an axle is on the next block, and how near the least is closed in,
    !> over the size of all
@@ -56,13 +51,7 @@ module dda_worst_position
 contains
 
    !> Find the worst position
-   pure subroutine find_worst_position(deck, scene, position, found)
-      type(deck_t), intent(in) :: deck
-      type(scene_t), intent(in) :: scene
-      !> The position of the first axle [m]
-      real(wp), intent(out) :: position
-      !> Whether any position is bounded
-      logical, intent(out) :: found
+   module procedure find_worst_position
       type(bridge_t) :: bridge
       type(least_factor_t) :: least
       type(stretch_t), allocatable :: stretch(:)
@@ -86,7 +75,7 @@ contains
       ! what falls wherever the axles stand, and leans against nothing, has no worst position
       found = least%factor < no_limit .and. (least%factor > 0.0_wp .or. leans(bridge))
       if (found) position = least%place
-   end subroutine find_worst_position
+   end procedure find_worst_position
 
    !> Whether there is fill that the bridge can lean against
    pure logical function leans(bridge)
@@ -274,4 +263,5 @@ contains
       arc%block = pack([(i, i=1, size(is_loaded))], is_loaded)
       arc%load = live(:, arc%block, :)
    end function arc_of
-end module dda_worst_position
+
+end submodule dda_worst_position

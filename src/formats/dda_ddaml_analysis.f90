@@ -1,21 +1,14 @@
 !> Analysis files in DDAML, the XML form
-module dda_ddaml_analysis
+submodule (dda_read_limerick) dda_ddaml_analysis
    use dda_ddaml_form, only : analysis_form, check_elements, find_part
    use dda_ddaml_material, only : choose, number_attribute, read_history, read_joint, &
       & read_material, whole_attribute
-   use dda_error, only : error_t, fatal_error
    use dda_kinds, only : wp
-   use dda_limerick_analysis, only : limerick_analysis_t
    use dda_plain_files, only : check_steps
-   use dda_text, only : to_text
-   use dda_warnings, only : add_warning, warnings_t
    use dda_word_list, only : quoted, split_words, take_property, word_list_t
    use dda_xml_tree, only : attribute_of, attribute_place, count_children, find_child, &
-      & first_child, next_sibling, xml_tree_t
+      & first_child, next_sibling
    implicit none
-   private
-
-   public :: read_ddaml_analysis
 
    !> Most steps of that phase where the file does not say it
    integer, parameter :: usual_gravity_steps = 5000
@@ -23,13 +16,7 @@ module dda_ddaml_analysis
 contains
 
    !> Read the analysis of a tree
-   pure subroutine read_ddaml_analysis(tree, analysis, warnings, error)
-      !> The file's elements; those that are not read are marked
-      type(xml_tree_t), intent(inout) :: tree
-      type(limerick_analysis_t), intent(out) :: analysis
-      type(warnings_t), intent(inout) :: warnings
-      !> What is wrong, with its line
-      type(error_t), allocatable, intent(out) :: error
+   module procedure read_ddaml_analysis
       integer :: part, at
 
       analysis%file = tree%file
@@ -50,7 +37,7 @@ contains
          at = next_sibling(tree, at)
       end do
       if (.not. allocated(error)) call check_complete(tree, part, analysis, warnings, error)
-   end subroutine read_ddaml_analysis
+   end procedure read_ddaml_analysis
 
    !> Read one child of Analysis
    pure subroutine read_element(tree, at, analysis, warnings, error)
@@ -297,4 +284,5 @@ contains
          & tree%file, tree%element(part)%row)
       call check_steps(analysis, tree%file, tree%element(part)%row, error)
    end subroutine check_complete
-end module dda_ddaml_analysis
+
+end submodule dda_ddaml_analysis

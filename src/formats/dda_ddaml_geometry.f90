@@ -1,20 +1,13 @@
 !> Geometry files in DDAML, the XML form
-module dda_ddaml_geometry
+submodule (dda_read_limerick) dda_ddaml_geometry
    use dda_ddaml_form, only : check_elements, find_part, geometry_form
    use dda_ddaml_material, only : attribute_words
-   use dda_error, only : error_t, fatal_error
    use dda_kinds, only : wp
-   use dda_line_model, only : add_bolt, add_entity, entities_t, line_model_t, new_entities, &
-      & new_line_model
-   use dda_text, only : to_text
-   use dda_warnings, only : add_warning, warnings_t
-   use dda_word_list, only : quoted, largest_coordinate, split_words, take_material, take_number, &
-      & take_word_numbers, take_property, this_row, this_word, word_list_t, words_left
-   use dda_xml_tree, only : attribute_place, first_child, next_sibling, xml_tree_t
+   use dda_line_model, only : add_bolt, add_entity, new_entities, new_line_model
+   use dda_word_list, only : largest_coordinate, quoted, split_words, take_material, take_number, &
+      & take_property, take_word_numbers, this_row, this_word, word_list_t, words_left
+   use dda_xml_tree, only : attribute_place, first_child, next_sibling
    implicit none
-   private
-
-   public :: read_ddaml_geometry
 
    !> What the type of an entity of a list says
    type :: type_enum
@@ -32,13 +25,7 @@ module dda_ddaml_geometry
 contains
 
    !> Read the geometry of a tree
-   pure subroutine read_ddaml_geometry(tree, model, warnings, error)
-      !> The file's elements; those that are not read are marked
-      type(xml_tree_t), intent(inout) :: tree
-      type(line_model_t), intent(out) :: model
-      type(warnings_t), intent(inout) :: warnings
-      !> What is wrong, with its line
-      type(error_t), allocatable, intent(out) :: error
+   module procedure read_ddaml_geometry
       type(entities_t) :: boundary
       integer :: part, at, i
 
@@ -61,7 +48,7 @@ contains
             & model%line%row(i))
       end do
       model%line = boundary
-   end subroutine read_ddaml_geometry
+   end procedure read_ddaml_geometry
 
    !> Read one child of Geometry
    pure subroutine read_list(tree, at, model, boundary, warnings, error)
@@ -204,4 +191,5 @@ contains
          call add_entity(entities, place, material, element%row)
       end associate
    end subroutine read_entity
-end module dda_ddaml_geometry
+
+end submodule dda_ddaml_geometry

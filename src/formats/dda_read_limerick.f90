@@ -1,7 +1,5 @@
 !> Geometry and analysis files of the Limerick line, plain or DDAML, known by their first word
 module dda_read_limerick
-   use dda_ddaml_analysis, only : read_ddaml_analysis
-   use dda_ddaml_geometry, only : read_ddaml_geometry
    use dda_error, only : error_t, fatal_error
    use dda_limerick_analysis, only : limerick_analysis_t
    use dda_line_model, only : entities_t, line_model_t
@@ -14,7 +12,8 @@ module dda_read_limerick
    implicit none
    private
 
-   public :: read_geometry, read_analysis, check_materials
+   public :: read_geometry, read_analysis, check_materials, read_ddaml_analysis
+   public :: read_ddaml_geometry
 
    !> Forms that a file can have
    type :: form_enum
@@ -30,6 +29,30 @@ module dda_read_limerick
 
    !> Names of the forms
    type(form_enum), parameter :: form = form_enum()
+
+   interface
+
+      !> Read the analysis of a tree
+      pure module subroutine read_ddaml_analysis(tree, analysis, warnings, error)
+         !> The file's elements; those that are not read are marked
+         type(xml_tree_t), intent(inout) :: tree
+         type(limerick_analysis_t), intent(out) :: analysis
+         type(warnings_t), intent(inout) :: warnings
+         !> What is wrong, with its line
+         type(error_t), allocatable, intent(out) :: error
+      end subroutine read_ddaml_analysis
+
+      !> Read the geometry of a tree
+      pure module subroutine read_ddaml_geometry(tree, model, warnings, error)
+         !> The file's elements; those that are not read are marked
+         type(xml_tree_t), intent(inout) :: tree
+         type(line_model_t), intent(out) :: model
+         type(warnings_t), intent(inout) :: warnings
+         !> What is wrong, with its line
+         type(error_t), allocatable, intent(out) :: error
+      end subroutine read_ddaml_geometry
+
+   end interface
 
 contains
 

@@ -1,24 +1,15 @@
 !> Bars, water, absorbing faces and stages of a file of blocks
-module dda_block_entries
+submodule (dda_read_blocks:dda_block_points) dda_block_entries
    use dda_bar, only : bar_t
-   use dda_block_input, only : block_plan_t
-   use dda_block_lines, only : entry_t, line_t, take_numbers, take_words
-   use dda_block_sites, only : block_at, blocks_along, site_t
+   use dda_block_lines, only : line_t, take_words
    use dda_boundary, only : absorbing_point_t, stage_change_t
    use dda_deck_key, only : key_kind, key_t
-   use dda_deck_token, only : shown
-   use dda_error, only : error_t, fatal_error
-   use dda_kinds, only : wp
-   use dda_polygon, only : contains_point, parts_inside
+   use dda_polygon, only : contains_point
    use dda_sort, only : sorted_order
-   use dda_text, only : read_integer, read_number, to_text
+   use dda_text, only : read_number
    use dda_vector, only : area_moments, area_moments_t
-   use dda_warnings, only : add_warning, warnings_t
    use dda_water, only : water_t
    implicit none
-   private
-
-   public :: take_absorbing, take_bar, take_water, take_change, close_changes
 
    !> Points nearer than this share of the block's size are one
    real(wp), parameter :: touching = 1.0e-8_wp
@@ -27,14 +18,7 @@ contains
 
    !> Take in a bar:
    !> bar x1 y1 x2 y2 (stiffness S | ea V) [strength T] [prestress P] [slack] [breaks]
-   pure subroutine take_bar(entry, plan, site, file, warnings, error)
-      type(entry_t), intent(in) :: entry
-      type(block_plan_t), intent(inout) :: plan
-      type(site_t), intent(in) :: site
-      !> Name of the file, for warnings
-      character(len=*), intent(in) :: file
-      type(warnings_t), intent(inout) :: warnings
-      type(error_t), allocatable, intent(out) :: error
+   module procedure take_bar
       type(bar_t) :: bar
       real(wp) :: ends(4)
       integer :: i, side
@@ -66,7 +50,7 @@ contains
       end if
       if (.not. allocated(plan%boundary%bar)) allocate (plan%boundary%bar(0))
       plan%boundary%bar = [plan%boundary%bar, bar]
-   end subroutine take_bar
+   end procedure take_bar
 
    !> What a bar is like
    pure subroutine take_properties(line, first, length, bar, error)
@@ -103,10 +87,7 @@ contains
    end subroutine take_properties
 
    !> Take in water: water x y x y ... [unit_weight W] [factor F], and rows of time and rise below
-   pure subroutine take_water(entry, plan, error)
-      type(entry_t), intent(in) :: entry
-      type(block_plan_t), intent(inout) :: plan
-      type(error_t), allocatable, intent(out) :: error
+   module procedure take_water
       type(key_t), parameter :: key(2) = [key_t(name="unit_weight", at_least=0.0_wp), &
          & key_t(name="factor", at_least=0.0_wp, at_most=1.0_wp)]
       type(water_t) :: water
@@ -157,15 +138,11 @@ contains
       end do
       longer(size(longer)) = water
       call move_alloc(longer, plan%water)
-   end subroutine take_water
+   end procedure take_water
 
    !> Take in absorb x1 y1 x2 y2 [x or y] [p_speed V] [s_speed V]: two points of its part along each
    !> block, those of Gauss, at which forces that are linear along it have their exact work
-   pure subroutine take_absorbing(entry, plan, site, error)
-      type(entry_t), intent(in) :: entry
-      type(block_plan_t), intent(inout) :: plan
-      type(site_t), intent(in) :: site
-      type(error_t), allocatable, intent(out) :: error
+   module procedure take_absorbing
       type(key_t), parameter :: key(4) = [key_t(name="x", kind=key_kind%flag), &
          & key_t(name="y", kind=key_kind%flag), key_t(name="p_speed", unit="m/s", above=0.0_wp), &
          & key_t(name="s_speed", unit="m/s", above=0.0_wp)]
@@ -212,15 +189,11 @@ contains
       end do
       if (size(plan%boundary%absorbing) == n_before) call fatal_error(error, &
          & "expected a line along faces of blocks, got one along none", line=point%line)
-   end subroutine take_absorbing
+   end procedure take_absorbing
 
    !> Take in remove|add block N ... at T, or remove|add polygon at T with its corners below: the
    !> blocks whose centre of gravity lies inside
-   pure subroutine take_change(entry, plan, error)
-      type(entry_t), intent(in) :: entry
-      !> Receives a change for each of its blocks
-      type(block_plan_t), intent(inout) :: plan
-      type(error_t), allocatable, intent(out) :: error
+   module procedure take_change
       type(stage_change_t), allocatable :: more(:)
       integer, allocatable :: block(:)
       real(wp) :: time(1)
@@ -254,7 +227,7 @@ contains
       more%line = entry%head%number
       if (.not. allocated(plan%boundary%change)) allocate (plan%boundary%change(0))
       plan%boundary%change = [plan%boundary%change, more]
-   end subroutine take_change
+   end procedure take_change
 
    !> The blocks that an entry numbers
    pure subroutine blocks_of(entry, n_block, block, error)
@@ -310,10 +283,7 @@ contains
    end subroutine blocks_inside
 
    !> Put the changes in the order of their times, and check that each is one
-   pure subroutine close_changes(plan, error)
-      type(block_plan_t), intent(inout) :: plan
-      !> A block built or taken away twice, or a bar that would lose its end
-      type(error_t), allocatable, intent(out) :: error
+   module procedure close_changes
       integer :: b, i, last(size(plan%fixed))
 
       if (.not. allocated(plan%boundary%change)) return
@@ -346,6 +316,6 @@ contains
       if (.not. allocated(error) .and. size(plan%water) > 0) call fatal_error(error, &
          & "expected a file with either stages or water: pressure on faces that an excavation " &
          & //"lays bare is not known", line=plan%boundary%change(1)%line)
-   end subroutine close_changes
+   end procedure close_changes
 
-end module dda_block_entries
+end submodule dda_block_entries

@@ -1,37 +1,14 @@
 !> Blocks of a file put together one after the other, and checked: what makes no block is refused by
 !> its number
-module dda_block_plan_check
+submodule (dda_read_blocks) dda_block_plan_check
    use, intrinsic :: iso_fortran_env, only : int64
-   use dda_block_input, only : block_plan_t, law_plan_t, most_materials
-   use dda_block_sites, only : site_t
    use dda_box_tree, only : find_boxes
-   use dda_error, only : error_t, fatal_error
-   use dda_growth, only : make_room
-   use dda_kinds, only : wp
    use dda_overlap, only : find_overlap
    use dda_polygon, only : find_crossing
    use dda_sort, only : rising_order
-   use dda_text, only : to_text
    use dda_vector, only : area_moments, area_moments_t
-   use dda_warnings, only : add_warning, warnings_t
-   use dda_watch, only : watch_t
+   use dda_warnings, only : add_warning
    implicit none
-   private
-
-   public :: growing_plan_t, add_law_plan, add_plan_block, close_plan, check_overlaps
-   public :: check_plan
-
-   !> A plan whose arrays have room for more
-   type :: growing_plan_t
-      !> The plan; its arrays are longer than what they hold
-      type(block_plan_t) :: plan
-      !> Number of blocks
-      integer :: n_block = 0
-      !> Number of corners
-      integer :: n_vertex = 0
-      !> Number of laws
-      integer :: n_law = 0
-   end type growing_plan_t
 
    !> Corners nearer than this share of a block's extent are one
    real(wp), parameter :: same_corner = 1.0e-8_wp
@@ -48,21 +25,7 @@ module dda_block_plan_check
 contains
 
    !> Add a block; corners given twice are merged, clockwise ones are turned
-   pure subroutine add_plan_block(growing, corner, fixed, material, line, file, warnings, error)
-      type(growing_plan_t), intent(inout) :: growing
-      !> Corners in order: (2, n) [m]
-      real(wp), intent(in) :: corner(:, :)
-      !> Whether it cannot move
-      logical, intent(in) :: fixed
-      !> Number of its material
-      integer, intent(in) :: material
-      !> Line of the file, 0 if there is none
-      integer, intent(in) :: line
-      !> Name of the file, for warnings
-      character(len=*), intent(in) :: file
-      type(warnings_t), intent(inout) :: warnings
-      !> Allocated if the corners make no block
-      type(error_t), allocatable, intent(out) :: error
+   module procedure add_plan_block
       type(area_moments_t) :: moments
       real(wp), allocatable :: vertex(:, :)
       real(wp) :: extent, point(2), perimeter
@@ -95,7 +58,7 @@ contains
          return
       end if
       call put_block(growing, vertex, fixed, material, line)
-   end subroutine add_plan_block
+   end procedure add_plan_block
 
    !> Put a block behind the others, at rest and free of stress
    pure subroutine put_block(growing, vertex, fixed, material, line)
@@ -126,9 +89,7 @@ contains
    end subroutine put_block
 
    !> Add a law
-   pure subroutine add_law_plan(growing, law)
-      type(growing_plan_t), intent(inout) :: growing
-      type(law_plan_t), intent(in) :: law
+   module procedure add_law_plan
       type(law_plan_t), allocatable :: longer(:)
 
       associate (n => growing%n_law)
@@ -140,12 +101,10 @@ contains
          n = n + 1
          growing%plan%laws(n) = law
       end associate
-   end subroutine add_law_plan
+   end procedure add_law_plan
 
    !> Hand over the plan, its arrays as long as what they hold
-   pure subroutine close_plan(growing, plan)
-      type(growing_plan_t), intent(in) :: growing
-      type(block_plan_t), intent(out) :: plan
+   module procedure close_plan
 
       associate (from => growing%plan, n => growing%n_block)
          plan%first_vertex = from%first_vertex(:n + 1)
@@ -159,7 +118,7 @@ contains
          plan%laws = from%laws(:growing%n_law)
          plan%water = from%water
       end associate
-   end subroutine close_plan
+   end procedure close_plan
 
    !> Leave out corners that follow one another at the same place
    pure subroutine merge_corners(corner, near, vertex)
@@ -191,13 +150,7 @@ contains
    end function next_name
 
    !> Check a plan as a whole and move its origin to where coordinates keep their digits
-   pure subroutine check_plan(plan, file, warnings, error)
-      type(block_plan_t), intent(inout) :: plan
-      !> Name of the file, for warnings
-      character(len=*), intent(in) :: file
-      type(warnings_t), intent(inout) :: warnings
-      !> Allocated if there is no block, or one material or law too few or too many
-      type(error_t), allocatable, intent(out) :: error
+   module procedure check_plan
       real(wp) :: extent(2), point(2)
 
       if (size(plan%fixed) == 0) then
@@ -216,7 +169,7 @@ contains
       end if
       if (all(plan%fixed)) &
          & call add_warning(warnings, "all blocks are fixed: nothing can move", file, 1)
-   end subroutine check_plan
+   end procedure check_plan
 
    !> Whether all materials of blocks are given; a law of others is of no use
    pure subroutine check_materials(plan, file, warnings, error)
@@ -267,12 +220,7 @@ contains
    end subroutine check_laws
 
    !> Whether no two blocks overlap; two fixed ones may
-   subroutine check_overlaps(plan, site, error, watch)
-      type(block_plan_t), intent(in) :: plan
-      type(site_t), intent(in) :: site
-      !> Blocks that do
-      type(error_t), allocatable, intent(out) :: error
-      class(watch_t), intent(inout), optional :: watch
+   module procedure check_overlaps
       real(wp) :: size_of(size(plan%fixed)), point(2)
       integer, allocatable :: near(:)
       logical :: overlaps
@@ -301,7 +249,7 @@ contains
             end do
          end associate
       end do
-   end subroutine check_overlaps
+   end procedure check_overlaps
 
    !> Warn of coordinates so large that their spacing shows in a block
    pure subroutine check_digits(plan, file, warnings)
@@ -356,4 +304,4 @@ contains
       end if
    end subroutine refuse_overlap
 
-end module dda_block_plan_check
+end submodule dda_block_plan_check

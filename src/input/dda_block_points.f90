@@ -1,42 +1,70 @@
 !> Points of a file of blocks, and what acts on them in time
-module dda_block_points
-   use dda_block_entries, only : close_changes, take_absorbing, take_bar, take_change, take_water
-   use dda_block_input, only : block_plan_t
-   use dda_block_lines, only : entry_t, take_entry, take_numbers, take_record, waiting_entry_t
-   use dda_block_sites, only : add_held, block_at, blocks_along, close_held, holds_point, &
-      & rivals_at, site_t
+submodule (dda_read_blocks) dda_block_points
+   use dda_block_lines, only : take_entry, take_numbers, take_record
+   use dda_block_sites, only : add_held, block_at, blocks_along, close_held, holds_point, rivals_at
    use dda_boundary, only : boundary_t, held_point_t, history_t, measured_point_t
-   use dda_deck_token, only : shown
-   use dda_error, only : error_t, fatal_error
    use dda_ground_motion, only : acceleration_of_displacement, acceleration_of_record, &
       & acceleration_of_velocity
-   use dda_kinds, only : wp
    use dda_polygon, only : parts_inside
-   use dda_text, only : read_integer, to_text
-   use dda_warnings, only : add_warning, warnings_t
-   use dda_watch, only : watch_t
+   use dda_warnings, only : add_warning
    implicit none
-   private
-
-   public :: add_points
 
    !> Points nearer than this share of the block's size are one
    real(wp), parameter :: touching = 1.0e-8_wp
 
+   interface
+
+      !> Take in a bar:
+      !> bar x1 y1 x2 y2 (stiffness S | ea V) [strength T] [prestress P] [slack] [breaks]
+      pure module subroutine take_bar(entry, plan, site, file, warnings, error)
+         type(entry_t), intent(in) :: entry
+         type(block_plan_t), intent(inout) :: plan
+         type(site_t), intent(in) :: site
+         !> Name of the file, for warnings
+         character(len=*), intent(in) :: file
+         type(warnings_t), intent(inout) :: warnings
+         type(error_t), allocatable, intent(out) :: error
+      end subroutine take_bar
+
+      !> Take in water: water x y x y ... [unit_weight W] [factor F], and rows of time and rise
+      !> below
+      pure module subroutine take_water(entry, plan, error)
+         type(entry_t), intent(in) :: entry
+         type(block_plan_t), intent(inout) :: plan
+         type(error_t), allocatable, intent(out) :: error
+      end subroutine take_water
+
+      !> Take in absorb x1 y1 x2 y2 [x or y] [p_speed V] [s_speed V]: two points of its part along
+      !> each block, those of Gauss, at which forces that are linear along it have their exact work
+      pure module subroutine take_absorbing(entry, plan, site, error)
+         type(entry_t), intent(in) :: entry
+         type(block_plan_t), intent(inout) :: plan
+         type(site_t), intent(in) :: site
+         type(error_t), allocatable, intent(out) :: error
+      end subroutine take_absorbing
+
+      !> Take in remove|add block N ... at T, or remove|add polygon at T with its corners below: the
+      !> blocks whose centre of gravity lies inside
+      pure module subroutine take_change(entry, plan, error)
+         type(entry_t), intent(in) :: entry
+         !> Receives a change for each of its blocks
+         type(block_plan_t), intent(inout) :: plan
+         type(error_t), allocatable, intent(out) :: error
+      end subroutine take_change
+
+      !> Put the changes in the order of their times, and check that each is one
+      pure module subroutine close_changes(plan, error)
+         type(block_plan_t), intent(inout) :: plan
+         !> A block built or taken away twice, or a bar that would lose its end
+         type(error_t), allocatable, intent(out) :: error
+      end subroutine close_changes
+
+   end interface
+
 contains
 
    !> Take in points, lines that are held, and the motion of the ground, once all blocks are known
-   subroutine add_points(later, plan, site, file, warnings, error, watch)
-      !> Their entries in the order of the file; rows of numbers go
-      type(waiting_entry_t), intent(inout) :: later(:)
-      type(block_plan_t), intent(inout) :: plan
-      !> Where the blocks are; receives the points too
-      type(site_t), intent(inout) :: site
-      !> Name of the file, for warnings and records beside it
-      character(len=*), intent(in) :: file
-      type(warnings_t), intent(inout) :: warnings
-      type(error_t), allocatable, intent(out) :: error
-      class(watch_t), intent(inout), optional :: watch
+   module procedure add_points
       type(entry_t) :: entry
       integer :: i
 
@@ -68,7 +96,7 @@ contains
       end do
       call close_held(site%n_held, plan%boundary%held)
       call close_changes(plan, error)
-   end subroutine add_points
+   end procedure add_points
 
    !> Lists as long as the file says; lines may hold more points than these
    pure subroutine make_lists(later, boundary)
@@ -340,4 +368,5 @@ contains
          allocate (history%value, source=entry%row(2:3, :n))
       end if
    end subroutine read_history
-end module dda_block_points
+
+end submodule dda_block_points

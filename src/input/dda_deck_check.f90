@@ -1,34 +1,21 @@
 !> Read the files that a deck names (lines, analysis, records of the ground in &ground or in a
 !> sweep), and check what it searches and sweeps, then every case, before anything is computed
-module dda_deck_check
+submodule (dda_read_deck) dda_deck_check
    use dda_case_choice, only : choose_cases
-   use dda_deck, only : add_file_mark, deck_error, deck_place_t, deck_t, file_beside, &
-      & ground_record_t, parameter_t, place_of
+   use dda_deck, only : ground_record_t, place_of
    use dda_deck_check_case, only : check_case
-   use dda_deck_key, only : key_kind, key_t
-   use dda_deck_keys, only : deck_key, group_index, key_index
-   use dda_deck_parameter, only : find_parameter, parameter_name
-   use dda_deck_sweep, only : n_cases, turn_to_case
-   use dda_deck_token, only : shown
-   use dda_deck_words, only : full_name
-   use dda_error, only : error_t
-   use dda_file_mark, only : file_mark
+   use dda_deck_key, only : key_t
+   use dda_deck_parameter, only : parameter_name
+   use dda_deck_sweep, only : turn_to_case
    use dda_kinds, only : wp
    use dda_read_limerick, only : check_materials, read_analysis, read_geometry
    use dda_read_record, only : column_size, read_record
-   use dda_text, only : to_text
    implicit none
-   private
-
-   public :: name_key, read_ground_records, read_lines, check_deck
 
 contains
 
    !> Read all of them
-   subroutine read_ground_records(deck, error)
-      !> The deck, checked; receives the records
-      type(deck_t), intent(inout) :: deck
-      type(error_t), allocatable, intent(out) :: error
+   module procedure read_ground_records
       integer :: i, key, s
 
       key = key_index("ground", "record")
@@ -41,7 +28,7 @@ contains
             call add_record(trim(deck%sweeps(s)%texts(i)), deck%sweeps(s)%place, deck, error)
          end do
       end do
-   end subroutine read_ground_records
+   end procedure read_ground_records
 
    !> Read one of them, unless it is there already
    subroutine add_record(name, place, deck, error)
@@ -105,11 +92,7 @@ contains
    end subroutine split_columns
 
    !> Read the files of a deck whose kind is 'lines'; any other deck is left as it is
-   subroutine read_lines(deck, error)
-      !> The deck, checked; receives lines, analysis and warnings
-      type(deck_t), intent(inout) :: deck
-      !> What is wrong with the files, or with the two together
-      type(error_t), allocatable, intent(out) :: error
+   module procedure read_lines
       character(len=:), allocatable :: file
 
       if (deck%scene%kind%word /= "lines") return
@@ -131,29 +114,20 @@ contains
       end if
       call add_file_mark(file_mark(file), deck)
       call check_materials(deck%lines, deck%file_analysis, deck%warnings, error)
-   end subroutine read_lines
+   end procedure read_lines
 
    !> An error without a line speaks of a file that cannot be read: the line of the deck helps more
-   pure subroutine name_key(deck, key, error)
-      type(deck_t), intent(in) :: deck
-      !> The key of &scene that names the file
-      character(len=*), intent(in) :: key
-      type(error_t), allocatable, intent(inout) :: error
+   module procedure name_key
       character(len=:), allocatable :: message
 
       if (error%line > 0) return
       message = "scene%"//key//" = '"//deck%value(key_index("scene", key))%text &
          //"': "//error%message
       call deck_error(error, message, deck, deck%value(key_index("scene", key))%place)
-   end subroutine name_key
+   end procedure name_key
 
    !> Check a deck and the cases of its sweeps, before anything is computed
-   pure subroutine check_deck(deck, cases, error)
-      type(deck_t), intent(in) :: deck
-      !> Cases that will be computed, as choose_cases reads them; empty for all
-      character(len=*), intent(in) :: cases
-      !> The first thing that is wrong
-      type(error_t), allocatable, intent(out) :: error
+   module procedure check_deck
       integer :: s
 
       call check_kind(deck, error)
@@ -162,7 +136,7 @@ contains
          if (.not. allocated(error)) call check_sweep(deck, s, error)
       end do
       if (.not. allocated(error)) call check_cases(deck, cases, error)
-   end subroutine check_deck
+   end procedure check_deck
 
    !> Check that the deck says where its blocks come from, once
    pure subroutine check_kind(deck, error)
@@ -387,4 +361,4 @@ contains
       end do
    end subroutine check_cases
 
-end module dda_deck_check
+end submodule dda_deck_check

@@ -1,35 +1,16 @@
 !> The values of one key: tokens of the right kind and number into a deck
-module dda_deck_entry
+submodule (dda_read_deck) dda_deck_entry
+   use dda_deck_key, only : max_items, word_length
+   use dda_deck_set, only : number_problem, put_number, put_numbers
+   use dda_deck_words, only : or_leave_out, wanted
    use dda_kinds, only : wp
-   use dda_error, only : error_t
-   use dda_text, only : to_text, lower_case, read_number, read_integer
-   use dda_deck_key, only : key_kind, max_items, word_length
-   use dda_deck_keys, only : deck_key, key_index
-   use dda_deck_words, only : wanted, full_name, or_leave_out
-   use dda_deck_token, only : deck_scan_t, token_kind, token_text, shown
-   use dda_deck, only : deck_t, deck_place_t, parameter_t, deck_error
-   use dda_deck_set, only : put_number, put_numbers, put_text, number_problem
+   use dda_text, only : lower_case, read_integer, read_number
    implicit none
-   private
-
-   public :: read_values
 
 contains
 
    !> Read the values of one key
-   pure subroutine read_values(scan, first, last, parameter, place, deck, error)
-      type(deck_scan_t), intent(in) :: scan
-      !> First token of the values
-      integer, intent(in) :: first
-      !> Last token; one before the first if there are none
-      integer, intent(in) :: last
-      !> The key, with the item if only that one is set
-      type(parameter_t), intent(in) :: parameter
-      !> Where the key stands
-      type(deck_place_t), intent(in) :: place
-      type(deck_t), intent(inout) :: deck
-      !> Wrong type, wrong number of values, or a value out of range
-      type(error_t), allocatable, intent(out) :: error
+   module procedure read_values
 
       call check_values(scan, first, last, parameter, place, deck, error)
       if (allocated(error)) return
@@ -51,7 +32,7 @@ contains
          call put_text(deck, parameter, token_text(scan, first), place_at(scan, first, place), &
             error)
       end select
-   end subroutine read_values
+   end procedure read_values
 
    !> Whether the values of a key are of its kind and not too many
    pure subroutine check_values(scan, first, last, parameter, place, deck, error)
@@ -200,4 +181,5 @@ contains
          n = n + scan%token(i)%count
       end do
    end function all_texts
-end module dda_deck_entry
+
+end submodule dda_deck_entry

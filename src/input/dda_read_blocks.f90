@@ -3,9 +3,6 @@ module dda_read_blocks
    use dda_block_input, only : block_plan_t, law_plan_t, material_plan_t, most_materials, new_plan
    use dda_block_lines, only : entry_t, keep_entry, largest_number, line_t, split_line, &
       & take_words, waiting_entry_t
-   use dda_block_plan_check, only : add_law_plan, add_plan_block, check_overlaps, check_plan, &
-      & close_plan, growing_plan_t
-   use dda_block_points, only : add_points
    use dda_block_sites, only : site_t, survey
    use dda_deck_key, only : key_kind, key_t
    use dda_deck_keys, only : joint_keys, material_keys
@@ -30,6 +27,18 @@ module dda_read_blocks
    !> Lines between two that are reported to the watch
    integer, parameter :: told_lines = 10000
 
+   !> A plan whose arrays have room for more
+   type :: growing_plan_t
+      !> The plan; its arrays are longer than what they hold
+      type(block_plan_t) :: plan
+      !> Number of blocks
+      integer :: n_block = 0
+      !> Number of corners
+      integer :: n_vertex = 0
+      !> Number of laws
+      integer :: n_law = 0
+   end type growing_plan_t
+
    !> What has been read of a file
    type :: reading_t
       !> Name of the file
@@ -43,6 +52,75 @@ module dda_read_blocks
       !> Number of these
       integer :: n_later = 0
    end type reading_t
+
+   interface
+
+      !> Take in points, lines that are held, and the motion of the ground, once all blocks are
+      !> known
+      module subroutine add_points(later, plan, site, file, warnings, error, watch)
+         !> Their entries in the order of the file; rows of numbers go
+         type(waiting_entry_t), intent(inout) :: later(:)
+         type(block_plan_t), intent(inout) :: plan
+         !> Where the blocks are; receives the points too
+         type(site_t), intent(inout) :: site
+         !> Name of the file, for warnings and records beside it
+         character(len=*), intent(in) :: file
+         type(warnings_t), intent(inout) :: warnings
+         type(error_t), allocatable, intent(out) :: error
+         class(watch_t), intent(inout), optional :: watch
+      end subroutine add_points
+
+      !> Add a block; corners given twice are merged, clockwise ones are turned
+      pure module subroutine add_plan_block(growing, corner, fixed, material, line, file, &
+         & warnings, error)
+         type(growing_plan_t), intent(inout) :: growing
+         !> Corners in order: (2, n) [m]
+         real(wp), intent(in) :: corner(:, :)
+         !> Whether it cannot move
+         logical, intent(in) :: fixed
+         !> Number of its material
+         integer, intent(in) :: material
+         !> Line of the file, 0 if there is none
+         integer, intent(in) :: line
+         !> Name of the file, for warnings
+         character(len=*), intent(in) :: file
+         type(warnings_t), intent(inout) :: warnings
+         !> Allocated if the corners make no block
+         type(error_t), allocatable, intent(out) :: error
+      end subroutine add_plan_block
+
+      !> Add a law
+      pure module subroutine add_law_plan(growing, law)
+         type(growing_plan_t), intent(inout) :: growing
+         type(law_plan_t), intent(in) :: law
+      end subroutine add_law_plan
+
+      !> Hand over the plan, its arrays as long as what they hold
+      pure module subroutine close_plan(growing, plan)
+         type(growing_plan_t), intent(in) :: growing
+         type(block_plan_t), intent(out) :: plan
+      end subroutine close_plan
+
+      !> Check a plan as a whole and move its origin to where coordinates keep their digits
+      pure module subroutine check_plan(plan, file, warnings, error)
+         type(block_plan_t), intent(inout) :: plan
+         !> Name of the file, for warnings
+         character(len=*), intent(in) :: file
+         type(warnings_t), intent(inout) :: warnings
+         !> Allocated if there is no block, or one material or law too few or too many
+         type(error_t), allocatable, intent(out) :: error
+      end subroutine check_plan
+
+      !> Whether no two blocks overlap; two fixed ones may
+      module subroutine check_overlaps(plan, site, error, watch)
+         type(block_plan_t), intent(in) :: plan
+         type(site_t), intent(in) :: site
+         !> Blocks that do
+         type(error_t), allocatable, intent(out) :: error
+         class(watch_t), intent(inout), optional :: watch
+      end subroutine check_overlaps
+
+   end interface
 
 contains
 

@@ -1,9 +1,7 @@
 !> Read a deck: file, --set values, sweeps, and every check before anything is computed
 module dda_read_deck
    use dda_deck, only : add_file_mark, deck_error, deck_place_t, deck_t, file_beside, parameter_t
-   use dda_deck_check, only : check_deck, name_key, read_ground_records, read_lines
    use dda_deck_check_loads, only : check_block_file
-   use dda_deck_entry, only : read_values
    use dda_deck_key, only : key_kind
    use dda_deck_keys, only : deck_key, group_index, key_index
    use dda_deck_parameter, only : find_parameter, split_name
@@ -22,12 +20,65 @@ module dda_read_deck
    implicit none
    private
 
-   public :: read_deck, parse_deck, geometry_file
+   public :: read_deck, parse_deck, geometry_file, check_deck
 
    !> Their keys in &output
    character(len=*), parameter :: many_case_tables(*) = ["joints", "blocks"]
    !> What --tight sets in a search
    character(len=*), parameter :: tightest = "search%tolerance=1e-11"
+
+   interface
+
+      !> Read the values of one key
+      pure module subroutine read_values(scan, first, last, parameter, place, deck, error)
+         type(deck_scan_t), intent(in) :: scan
+         !> First token of the values
+         integer, intent(in) :: first
+         !> Last token; one before the first if there are none
+         integer, intent(in) :: last
+         !> The key, with the item if only that one is set
+         type(parameter_t), intent(in) :: parameter
+         !> Where the key stands
+         type(deck_place_t), intent(in) :: place
+         type(deck_t), intent(inout) :: deck
+         !> Wrong type, wrong number of values, or a value out of range
+         type(error_t), allocatable, intent(out) :: error
+      end subroutine read_values
+
+      !> Read all of them
+      module subroutine read_ground_records(deck, error)
+         !> The deck, checked; receives the records
+         type(deck_t), intent(inout) :: deck
+         type(error_t), allocatable, intent(out) :: error
+      end subroutine read_ground_records
+
+      !> Read the files of a deck whose kind is 'lines'; any other deck is left as it is
+      module subroutine read_lines(deck, error)
+         !> The deck, checked; receives lines, analysis and warnings
+         type(deck_t), intent(inout) :: deck
+         !> What is wrong with the files, or with the two together
+         type(error_t), allocatable, intent(out) :: error
+      end subroutine read_lines
+
+      !> An error without a line speaks of a file that cannot be read: the line of the deck helps
+      !> more
+      pure module subroutine name_key(deck, key, error)
+         type(deck_t), intent(in) :: deck
+         !> The key of &scene that names the file
+         character(len=*), intent(in) :: key
+         type(error_t), allocatable, intent(inout) :: error
+      end subroutine name_key
+
+      !> Check a deck and the cases of its sweeps, before anything is computed
+      pure module subroutine check_deck(deck, cases, error)
+         type(deck_t), intent(in) :: deck
+         !> Cases that will be computed, as choose_cases reads them; empty for all
+         character(len=*), intent(in) :: cases
+         !> The first thing that is wrong
+         type(error_t), allocatable, intent(out) :: error
+      end subroutine check_deck
+
+   end interface
 
 contains
 

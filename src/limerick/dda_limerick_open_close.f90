@@ -1,19 +1,13 @@
 !> The open-close loop of the original (Shi: df18 to df22)
-module dda_limerick_open_close
+submodule (dda_limerick_step) dda_limerick_open_close
    use dda_block_factor, only : factorise, substitute
-   use dda_kinds, only : wp
-   use dda_limerick_assembly, only : add_contacts, limerick_equations_t
-   use dda_limerick_contact, only : contact_list_t, contact_spring_t, limerick_contact_t, &
-      & place_shear_spring, projection
-   use dda_limerick_analysis, only : limerick_constants_t
-   use dda_limerick_model, only : contact_law, limerick_model_t
-   use dda_limerick_state, only : limerick_state, limerick_blocks_t, limerick_march_t
    use dda_deformation, only : displacement_matrix
+   use dda_limerick_analysis, only : limerick_constants_t
+   use dda_limerick_assembly, only : add_contacts
+   use dda_limerick_contact, only : limerick_contact_t, place_shear_spring, projection
+   use dda_limerick_model, only : contact_law
    use dda_material, only : joint_law_t
    implicit none
-   private
-
-   public :: open_and_close
 
    !> Most passes of one attempt
    integer, parameter :: max_passes = 8
@@ -25,21 +19,7 @@ module dda_limerick_open_close
 contains
 
    !> Solve and judge until no contact opens or closes
-   pure subroutine open_and_close(model, blocks, contacts, spring, march, first_pass, &
-      & equations, settled)
-      type(limerick_model_t), intent(in) :: model
-      type(limerick_blocks_t), intent(in) :: blocks
-      !> The contacts; their states are changed
-      type(contact_list_t), intent(inout) :: contacts
-      !> Their springs; a shear spring is set anew where a contact closes: (at least contacts%n)
-      type(contact_spring_t), intent(inout) :: spring(:)
-      type(limerick_march_t), intent(inout) :: march
-      !> Whether nothing was solved in this step yet; then it was
-      logical, intent(inout) :: first_pass
-      !> The equations; the motion is set
-      type(limerick_equations_t), intent(inout) :: equations
-      !> Whether no contact opened or closed in the last pass
-      logical, intent(out) :: settled
+   module procedure open_and_close
       integer :: pass, c
 
       settled = .false.
@@ -62,7 +42,7 @@ contains
          march%used_penalty = march%penalty
          if (settled) return
       end do
-   end subroutine open_and_close
+   end procedure open_and_close
 
    !> The state of one contact after a solution
    pure subroutine judge_contact(model, blocks, motion, march, contact, spring)
@@ -185,4 +165,5 @@ contains
 
       dot = a(1)*b(1) + a(2)*b(2) + a(3)*b(3) + a(4)*b(4) + a(5)*b(5) + a(6)*b(6)
    end function dot
-end module dda_limerick_open_close
+
+end submodule dda_limerick_open_close

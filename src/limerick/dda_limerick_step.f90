@@ -3,34 +3,17 @@
 module dda_limerick_step
    use dda_error, only : error_t, fatal_error
    use dda_kinds, only : wp
-   use dda_limerick_assembly, only : assemble_limerick, bolt_elongation, couple_blocks, &
-      & limerick_equations_t, n_bolts
+   use dda_limerick_assembly, only : assemble_limerick, couple_blocks, limerick_equations_t
    use dda_limerick_contact, only : begin_contacts, contact_list_t, contact_spring_t, &
       & place_springs, transfer_contacts
-   use dda_limerick_detection, only : find_limerick_contacts
-   use dda_limerick_model, only : force_at, limerick_model_t, next_record
-   use dda_limerick_open_close, only : open_and_close
-   use dda_limerick_state, only : limerick_blocks_t, limerick_march_t, limerick_state, &
-      & measure_blocks
-   use dda_material, only : elasticity_matrix
+   use dda_limerick_model, only : limerick_model_t
+   use dda_limerick_state, only : limerick_blocks_t, limerick_march_t, limerick_state
    implicit none
    private
 
    public :: choose_interval, judge_limerick_step, move_vertices, update, limerick_run_t
-   public :: advance_limerick
-
-   !> What is left of the time step when contacts did not settle
-   real(wp), parameter :: cut = 0.3_wp
-   !> Growth of the time step from one step to the next, at most
-   real(wp), parameter :: growth = 1.3_wp
-   !> A motion beyond this multiple of what is allowed is tried again
-   real(wp), parameter :: too_far = 3.0_wp
-   !> A penetration beyond this multiple of its aim is tried again with a penalty ten times as large
-   real(wp), parameter :: too_deep = 2.5_wp
-   !> A record of a load that is nearer than this share of the step has been reached
-   real(wp), parameter :: short = 1.0e-6_wp
-   !> Least penalty over that of the step before
-   real(wp), parameter :: relaxation = 1.0_wp/3.0_wp
+   public :: advance_limerick, corners_t, measure_corners, turn, overlap, entrance_lines
+   public :: find_limerick_contacts
 
    !> Everything that a run carries from step to step
    type :: limerick_run_t
@@ -55,252 +38,136 @@ module dda_limerick_step
    !> Most attempts at one step: the original has no such bound and may loop forever
    integer, parameter :: max_attempts = 200
 
+   !> Shape of all corners of a step
+   type :: corners_t
+      !> Direction of the edge that starts at each vertex: (n_vertex) [deg, 0 to 360]
+      real(wp), allocatable :: direction(:)
+      !> Inner angle: (n_vertex) [deg]
+      real(wp), allocatable :: angle(:)
+      !> Length of the edge that starts there: (n_vertex) [m]
+      real(wp), allocatable :: length(:)
+   end type corners_t
+
+   interface
+
+      !> Solve and judge until no contact opens or closes
+      pure module subroutine open_and_close(model, blocks, contacts, spring, march, first_pass, &
+         & equations, settled)
+         type(limerick_model_t), intent(in) :: model
+         type(limerick_blocks_t), intent(in) :: blocks
+         !> The contacts; their states are changed
+         type(contact_list_t), intent(inout) :: contacts
+         !> Their springs; a shear spring is set anew where a contact closes: (at least contacts%n)
+         type(contact_spring_t), intent(inout) :: spring(:)
+         type(limerick_march_t), intent(inout) :: march
+         !> Whether nothing was solved in this step yet; then it was
+         logical, intent(inout) :: first_pass
+         !> The equations; the motion is set
+         type(limerick_equations_t), intent(inout) :: equations
+         !> Whether no contact opened or closed in the last pass
+         logical, intent(out) :: settled
+      end subroutine open_and_close
+
+      !> Directions, inner angles and lengths of all corners
+      pure module subroutine measure_corners(blocks, corners)
+         type(limerick_blocks_t), intent(in) :: blocks
+         type(corners_t), intent(out) :: corners
+      end subroutine measure_corners
+
+      !> Anticlockwise angle from one direction to another
+      pure real(wp) module function turn(from, to)
+         !> First direction [deg]
+         real(wp), intent(in) :: from
+         !> Second direction [deg]
+         real(wp), intent(in) :: to
+      end function turn
+
+      !> Whether two sectors overlap by more than is overlooked
+      pure logical module function overlap(start_a, angle_a, start_b, angle_b, least)
+         !> Where the first sector starts [deg]
+         real(wp), intent(in) :: start_a
+         !> Its angle [deg]
+         real(wp), intent(in) :: angle_a
+         !> Where the second sector starts [deg]
+         real(wp), intent(in) :: start_b
+         !> Its angle [deg]
+         real(wp), intent(in) :: angle_b
+         !> What is overlooked [deg]
+         real(wp), intent(in) :: least
+      end function overlap
+
+      !> The two lines that a pair of corners may cross, the steeper first: mirrored meshes stay so
+      pure module function entrance_lines(blocks, corners, i, j, overlap_deg) result(line)
+         type(limerick_blocks_t), intent(in) :: blocks
+         type(corners_t), intent(in) :: corners
+         !> Vertex of the first block
+         integer, intent(in) :: i
+         !> Vertex of the second block
+         integer, intent(in) :: j
+         !> Overlap that is overlooked [deg]
+         real(wp), intent(in) :: overlap_deg
+         !> Vertex and ends of the edge: (3, 2)
+         integer :: line(3, 2)
+      end function entrance_lines
+
+      !> All contacts of the blocks where they are now, open, pair of blocks by pair of blocks
+      pure module subroutine find_limerick_contacts(blocks, reach, overlap_deg, order, list)
+         type(limerick_blocks_t), intent(in) :: blocks
+         !> Distance within which contacts are sought [m]
+         real(wp), intent(in) :: reach
+         !> Overlap of two corners that is overlooked [deg]
+         real(wp), intent(in) :: overlap_deg
+         !> Blocks from left to right, as near as the step before left them: (n_block)
+         integer, intent(inout) :: order(:)
+         type(contact_list_t), intent(inout) :: list
+      end subroutine find_limerick_contacts
+
+      !> Length of the next step from the largest acceleration (Shi: step); no step passes over a
+      !> record of a load
+      pure module subroutine choose_interval(model, march)
+         type(limerick_model_t), intent(in) :: model
+         !> The march; its time step is set
+         type(limerick_march_t), intent(inout) :: march
+      end subroutine choose_interval
+
+      !> Whether a step is accepted; if not, its length or the penalty is changed
+      pure module subroutine judge_limerick_step(model, contacts, settled, march, accepted)
+         type(limerick_model_t), intent(in) :: model
+         type(contact_list_t), intent(in) :: contacts
+         !> Whether they settled
+         logical, intent(in) :: settled
+         !> The march; time step, penalty and penetration are set
+         type(limerick_march_t), intent(inout) :: march
+         !> Whether the step stands
+         logical, intent(out) :: accepted
+      end subroutine judge_limerick_step
+
+      !> Corners at the end of the step, and how far the one that moves most goes (Shi: df24)
+      pure module subroutine move_vertices(model, blocks, motion, march, moved)
+         type(limerick_model_t), intent(in) :: model
+         type(limerick_blocks_t), intent(in) :: blocks
+         !> Motion of the blocks: (6, n_block)
+         real(wp), intent(in) :: motion(:, :)
+         !> The march; the displacement ratio is set
+         type(limerick_march_t), intent(inout) :: march
+         !> The corners: (2, n_vertex) [m]
+         real(wp), intent(inout) :: moved(:, :)
+      end subroutine move_vertices
+
+      !> What an accepted step leaves behind (Shi: df25)
+      pure module subroutine update(model, motion, blocks, march, moved)
+         type(limerick_model_t), intent(in) :: model
+         real(wp), intent(in) :: motion(:, :)
+         type(limerick_blocks_t), intent(inout) :: blocks
+         !> The march; time and steps are set
+         type(limerick_march_t), intent(inout) :: march
+         !> Corners at the end of the step; not set afterwards: (2, n_vertex) [m]
+         real(wp), allocatable, intent(inout) :: moved(:, :)
+      end subroutine update
+
+   end interface
+
 contains
-
-   !> Length of the next step from the largest acceleration (Shi: step); no step passes over a
-   !> record of a load
-   pure subroutine choose_interval(model, march)
-      type(limerick_model_t), intent(in) :: model
-      !> The march; its time step is set
-      type(limerick_march_t), intent(inout) :: march
-      real(wp) :: acceleration, velocity, allowed, mass, longest, record
-
-      if (.not. model%constants%auto_time_step) return
-      allowed = model%constants%max_displacement_ratio*march%half_size
-      mass = march%mean_area*model%material(1)%density
-      velocity = 0.0_wp
-      if (march%steps == 0) then
-         longest = march%time_step
-         acceleration = max(model%material(1)%unit_weight/model%material(1)%density, &
-            & 4.0_wp*largest_stress(model)*sqrt(march%mean_area)/mass, &
-            & largest_load(model, 0.0_wp, .true.)/mass)
-         velocity = largest_velocity(model)
-         if (acceleration > 0.0_wp .or. velocity > 0.0_wp) longest = huge(longest)
-      else
-         longest = growth*march%time_step
-         acceleration = max(march%penetration*march%half_size*march%used_penalty, &
-            & largest_load(model, march%time, .false.))/mass
-         if (model%constants%dynamic) velocity = march%displacement_ratio*allowed/march%time_step
-      end if
-      ! the root of velocity*t + acceleration*t**2/2 = allowed in the form that loses no digits
-      velocity = velocity + sqrt(velocity**2 + 2.0_wp*acceleration*allowed)
-      march%time_step = longest
-      if (velocity > 0.0_wp) march%time_step = min(longest, 2.0_wp*allowed/velocity)
-      record = next_record(model, march%time + short*march%time_step)
-      march%time_step = min(march%time_step, record - march%time)
-   end subroutine choose_interval
-
-   !> Largest initial stress of a material [Pa]
-   pure real(wp) function largest_stress(model)
-      type(limerick_model_t), intent(in) :: model
-      integer :: m
-
-      largest_stress = 0.0_wp
-      do m = 1, size(model%material)
-         largest_stress = max(largest_stress, maxval(abs(model%material(m)%stress)))
-      end do
-   end function largest_stress
-
-   !> Largest initial velocity of a material [m/s]
-   pure real(wp) function largest_velocity(model)
-      type(limerick_model_t), intent(in) :: model
-      integer :: m
-
-      largest_velocity = 0.0_wp
-      do m = 1, size(model%material)
-         largest_velocity = max(largest_velocity, maxval(abs(model%material(m)%velocity)))
-      end do
-   end function largest_velocity
-
-   !> Largest component of the loads at a time or of all that are tabulated [N/m]
-   pure real(wp) function largest_load(model, time, ever)
-      type(limerick_model_t), intent(in) :: model
-      !> The time [s]
-      real(wp), intent(in) :: time
-      !> Whether all tabulated forces count instead
-      logical, intent(in) :: ever
-      integer :: i
-
-      largest_load = 0.0_wp
-      do i = 1, size(model%boundary%loaded)
-         if (ever) then
-            largest_load = max(largest_load, maxval(abs(model%boundary%loaded(i)%force%value)))
-         else
-            largest_load = max(largest_load, maxval(abs(force_at(model, i, time))))
-         end if
-      end do
-   end function largest_load
-
-   !> Whether a step is accepted; if not, its length or the penalty is changed
-   pure subroutine judge_limerick_step(model, contacts, settled, march, accepted)
-      type(limerick_model_t), intent(in) :: model
-      type(contact_list_t), intent(in) :: contacts
-      !> Whether they settled
-      logical, intent(in) :: settled
-      !> The march; time step, penalty and penetration are set
-      type(limerick_march_t), intent(inout) :: march
-      !> Whether the step stands
-      logical, intent(out) :: accepted
-      real(wp) :: shortest
-      logical :: moved_too_far
-
-      shortest = model%constants%time_step/100.0_wp
-      moved_too_far = march%displacement_ratio > too_far
-      accepted = settled .and. .not. moved_too_far
-      if (.not. settled) then
-         if (model%constants%auto_time_step) march%time_step = max(cut*march%time_step, shortest)
-      else if (moved_too_far) then
-         march%time_step = max(march%time_step/sqrt(march%displacement_ratio), shortest)
-      else if (model%constants%auto_penalty) then
-         call adapt_penalty(model, contacts, march)
-         accepted = march%penetration <= too_deep*model%constants%penetration_ratio
-         if (.not. accepted) march%penalty = 10.0_wp*march%penalty
-      end if
-   end subroutine judge_limerick_step
-
-   !> The penalty goes, down to a third at the most, to where the penetration is what is aimed at
-   !> (Shi: spri)
-   pure subroutine adapt_penalty(model, contacts, march)
-      type(limerick_model_t), intent(in) :: model
-      type(contact_list_t), intent(in) :: contacts
-      type(limerick_march_t), intent(inout) :: march
-      real(wp) :: opening
-      integer :: c
-
-      march%penetration = 0.0_wp
-      opening = 0.0_wp
-      do c = 1, contacts%n
-         if (contacts%item(c)%state == limerick_state%open) cycle
-         march%penetration = max(march%penetration, -contacts%item(c)%gap/march%half_size)
-         opening = max(opening, contacts%item(c)%gap/march%half_size)
-      end do
-      associate (constants => model%constants)
-         march%penalty = march%penalty*max(march%penetration/constants%penetration_ratio, &
-            & opening/(2.0_wp*constants%max_displacement_ratio), relaxation)
-      end associate
-   end subroutine adapt_penalty
-
-   !> Corners at the end of the step, and how far the one that moves most goes (Shi: df24)
-   pure subroutine move_vertices(model, blocks, motion, march, moved)
-      type(limerick_model_t), intent(in) :: model
-      type(limerick_blocks_t), intent(in) :: blocks
-      !> Motion of the blocks: (6, n_block)
-      real(wp), intent(in) :: motion(:, :)
-      !> The march; the displacement ratio is set
-      type(limerick_march_t), intent(inout) :: march
-      !> The corners: (2, n_vertex) [m]
-      real(wp), intent(inout) :: moved(:, :)
-      real(wp) :: farthest, step(2), turn(2)
-      integer :: b, v
-
-      farthest = 0.0_wp
-      do b = 1, size(blocks%area)
-         turn = turning(model, motion(3, b))
-         do v = blocks%first_vertex(b), blocks%first_vertex(b + 1) - 1
-            step = displacement(motion(:, b), turn, &
-               & blocks%vertex(1, v) - blocks%centroid(1, b), &
-               & blocks%vertex(2, v) - blocks%centroid(2, b))
-            moved(:, v) = blocks%vertex(:, v) + step
-            farthest = max(farthest, step(1)**2 + step(2)**2)
-         end do
-      end do
-      march%displacement_ratio = sqrt(farthest) &
-         & /(march%half_size*model%constants%max_displacement_ratio)
-   end subroutine move_vertices
-
-   !> What a rotation does to an arm: along it and across it
-   pure function turning(model, angle) result(turn)
-      type(limerick_model_t), intent(in) :: model
-      !> The rotation [rad]
-      real(wp), intent(in) :: angle
-      !> Parts of the arm's change along it and across it: (2)
-      real(wp) :: turn(2)
-
-      turn = [0.0_wp, angle]
-      if (model%constants%exact_rotation) turn = [cos(angle) - 1.0_wp, sin(angle)]
-   end function turning
-
-   !> Displacement of a point of a block
-   pure function displacement(motion, turn, x, y) result(step)
-      !> Unknowns of the block: (6)
-      real(wp), intent(in) :: motion(6)
-      !> What its rotation does to an arm along it and across it: (2)
-      real(wp), intent(in) :: turn(2)
-      !> Arm of the point along x [m]
-      real(wp), intent(in) :: x
-      !> Arm of the point along y [m]
-      real(wp), intent(in) :: y
-      !> The displacement: (2) [m]
-      real(wp) :: step(2)
-
-      step(1) = motion(1) + turn(1)*x - turn(2)*y + motion(4)*x + motion(6)*y/2.0_wp
-      step(2) = motion(2) + turn(2)*x + turn(1)*y + motion(5)*y + motion(6)*x/2.0_wp
-   end function displacement
-
-   !> What an accepted step leaves behind (Shi: df25)
-   pure subroutine update(model, motion, blocks, march, moved)
-      type(limerick_model_t), intent(in) :: model
-      real(wp), intent(in) :: motion(:, :)
-      type(limerick_blocks_t), intent(inout) :: blocks
-      !> The march; time and steps are set
-      type(limerick_march_t), intent(inout) :: march
-      !> Corners at the end of the step; not set afterwards: (2, n_vertex) [m]
-      real(wp), allocatable, intent(inout) :: moved(:, :)
-      real(wp), allocatable :: before(:, :)
-      real(wp) :: step(2)
-      integer :: b, i
-
-      do i = 1, size(model%boundary%held)
-         step = point_step(blocks%fixed_point(:, i), model%boundary%held(i)%block)
-         blocks%fixed_point(:, i) = blocks%fixed_point(:, i) + step
-         blocks%fixed_drift(:, i) = blocks%fixed_drift(:, i) + step
-      end do
-      do i = 1, size(model%boundary%loaded)
-         blocks%load_point(:, i) = blocks%load_point(:, i) &
-            & + point_step(blocks%load_point(:, i), model%boundary%loaded(i)%block)
-      end do
-      do i = 1, size(model%boundary%measured)
-         blocks%measured_point(:, i) = blocks%measured_point(:, i) &
-            & + point_step(blocks%measured_point(:, i), model%boundary%measured(i)%block)
-      end do
-      do i = 1, n_bolts(model)
-         associate (bolt => model%boundary%bar(i))
-            blocks%bolt_force(i) = blocks%bolt_force(i) &
-               & + bolt%stiffness*bolt_elongation(model, blocks, i, motion)
-            do b = 1, 2
-               if (bolt%block(b) > 0) blocks%bolt_point(:, b, i) = blocks%bolt_point(:, b, i) &
-                  & + point_step(blocks%bolt_point(:, b, i), bolt%block(b))
-            end do
-         end associate
-      end do
-      do b = 1, size(blocks%area)
-         blocks%stress(:, b) = blocks%stress(:, b) + matmul(elasticity_matrix( &
-            & model%material(model%block_material(b))%material_t), motion(4:6, b))
-         blocks%velocity(:, b) = 2.0_wp/march%time_step*motion(:, b) - blocks%velocity(:, b)
-      end do
-      blocks%rotation = blocks%rotation + motion(3, :)
-      call move_alloc(blocks%vertex, before)
-      call move_alloc(moved, blocks%vertex)
-      call move_alloc(before, moved)
-      call measure_blocks(blocks)
-      march%time = march%time + march%time_step
-      march%steps = march%steps + 1
-
-   contains
-
-      !> Displacement of a point in the step
-      pure function point_step(point, block) result(step)
-         !> The point at the beginning of the step: (2) [m]
-         real(wp), intent(in) :: point(2)
-         !> Its block
-         integer, intent(in) :: block
-         real(wp) :: step(2)
-
-         step = displacement(motion(:, block), &
-            & turning(model, motion(3, block)), &
-            & point(1) - blocks%centroid(1, block), point(2) - blocks%centroid(2, block))
-      end function point_step
-   end subroutine update
 
    !> One step: blocks and contacts change only when it is accepted; the penalty changes at each
    !> attempt
@@ -373,5 +240,4 @@ contains
       end do
       call couple_blocks(model, run%contacts, size(run%order), run%equations, run%spring)
    end subroutine meet
-
 end module dda_limerick_step

@@ -4,11 +4,8 @@
 !> of as pairs (a quotient graph), and how many neighbours a block has is bounded from above by the
 !> sizes of its groups (P. R. Amestoy, T. A. Davis and I. S. Duff, SIAM Journal on Matrix Analysis
 !> and Applications 17, 1996, 886). Blocks with the same neighbours stay together.
-module dda_minimum_degree
+submodule (dda_block_order) dda_minimum_degree
    implicit none
-   private
-
-   public :: minimum_degree_order
 
    !> The blocks of one group
    type :: group_t
@@ -53,15 +50,7 @@ module dda_minimum_degree
 contains
 
    !> Blocks in the order of elimination, those that wait at the end as they are numbered
-   pure function minimum_degree_order(start, neighbour, late) result(order)
-      !> First entry of each block's list, and one beyond the last: (n_block + 1)
-      integer, intent(in) :: start(:)
-      !> Lists of neighbours, which may tell one twice
-      integer, intent(in) :: neighbour(:)
-      !> Blocks that wait until all others are gone: (n_block)
-      logical, intent(in) :: late(:)
-      !> The order: (n_block)
-      integer :: order(size(late))
+   module procedure minimum_degree_order
       type(quotient_t) :: q
       integer :: b, n, n_early, least
 
@@ -83,7 +72,7 @@ contains
          end do
       end do
       order(n + 1:) = pack([(b, b=1, size(late))], late)
-   end function minimum_degree_order
+   end procedure minimum_degree_order
 
    !> The whole graph
    pure subroutine new_quotient(start, neighbour, late, q)
@@ -331,4 +320,5 @@ contains
       end if
       if (q%next(b) > 0) q%previous(q%next(b)) = q%previous(b)
    end subroutine take_out
-end module dda_minimum_degree
+
+end submodule dda_minimum_degree

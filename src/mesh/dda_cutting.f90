@@ -3,236 +3,119 @@
 !> Edges that bound nothing or stand in the way are taken out of the network first (Shi: dc05,
 !> dc06).
 module dda_cutting
-   use dda_cell_grid, only : cell_grid_t, cell_of, new_cell_grid
    use dda_cut_model, only : cut_model_t
-   use dda_cut_points, only : block_around, block_boxes, boxes_t, give_materials, place_bolts, &
-      & place_points, remove_holes
-   use dda_cut_report, only : cut_reason, cut_remarks_t
+   use dda_cut_report, only : cut_remarks_t
    use dda_cut_scale, only : cut_scale, cut_scale_t
    use dda_error, only : error_t, fatal_error
    use dda_kinds, only : wp
    use dda_line_model, only : line_model_t
-   use dda_line_network, only : crossings_t, drop_edge, edge_place, find_crossings, &
-      & join_crossings, network_t
-   use dda_loop_blocks, only : blocks_of_loops
+   use dda_line_network, only : crossings_t, find_crossings, join_crossings, network_t
    use dda_network_loops, only : half_edge_start, loops_t, trace_loops
    use dda_polygon, only : contains_point
-   use dda_segment, only : crossing_parameters, segment_distance
-   use dda_sort, only : sorted_order
    use dda_text, only : to_text
    implicit none
    private
 
    public :: cut_trees, drop_crossing_edges, drop_close_edges, check_areas, cut_blocks
 
+   !> Boxes around blocks
+   type :: boxes_t
+      !> Lower left corners: (2, n) [m]
+      real(wp), allocatable :: low(:, :)
+      !> Upper right corners: (2, n) [m]
+      real(wp), allocatable :: high(:, :)
+   end type boxes_t
+
+   interface
+
+      !> Drop edges that end in nothing, until none is left: trees hang on no block (Shi: dc05)
+      pure module subroutine cut_trees(network, remarks)
+         type(network_t), intent(inout) :: network
+         type(cut_remarks_t), intent(inout) :: remarks
+      end subroutine cut_trees
+
+      !> Drop one of two edges that cross between their nodes, as happens when nodes were merged:
+      !> the one that is no boundary, else that of the later line (Shi: dc06)
+      pure module subroutine drop_crossing_edges(network, scale, remarks, crossing)
+         type(network_t), intent(inout) :: network
+         !> Scales of the cut
+         type(cut_scale_t), intent(in) :: scale
+         type(cut_remarks_t), intent(inout) :: remarks
+         !> Two boundary lines that still cross; 0 if none do: (2)
+         integer, intent(out) :: crossing(2)
+      end subroutine drop_crossing_edges
+
+      !> Drop joints that pass a node of other lines closer than e00 w0 (Shi: dc06)
+      pure module subroutine drop_close_edges(network, scale, remarks)
+         type(network_t), intent(inout) :: network
+         type(cut_scale_t), intent(in) :: scale
+         type(cut_remarks_t), intent(inout) :: remarks
+      end subroutine drop_close_edges
+
+   end interface
+
+   interface
+
+      !> Boxes around all blocks
+      pure type(boxes_t) module function block_boxes(cut)
+         type(cut_model_t), intent(in) :: cut
+      end function block_boxes
+
+      !> The block that holds a point; if none does, the nearest one within the distance in which
+      !> nodes may have been moved. 0 if there is none
+      pure integer module function block_around(cut, boxes, point)
+         type(cut_model_t), intent(in) :: cut
+         type(boxes_t), intent(in) :: boxes
+         !> The point, from the origin of the cut: (2) [m]
+         real(wp), intent(in) :: point(2)
+      end function block_around
+
+      !> Take out the blocks that hold hole points (Shi: dc11)
+      pure module subroutine remove_holes(model, cut, error)
+         type(line_model_t), intent(in) :: model
+         !> The blocks; those with a hole point go
+         type(cut_model_t), intent(inout) :: cut
+         !> A hole point that lies in no block
+         type(error_t), allocatable, intent(out) :: error
+      end subroutine remove_holes
+
+      !> Points and fixed lines to blocks; a fixed line holds the block on each edge that it
+      !> crosses, or else the block of its first end (Shi: dc10, dc11)
+      pure module subroutine place_points(model, cut, error)
+         type(line_model_t), intent(in) :: model
+         type(cut_model_t), intent(inout) :: cut
+         type(error_t), allocatable, intent(out) :: error
+      end subroutine place_points
+
+      !> Find the blocks of the bolts (Shi: dc14); an end in no block is held by the ground
+      pure module subroutine place_bolts(model, cut)
+         type(line_model_t), intent(in) :: model
+         type(cut_model_t), intent(inout) :: cut
+      end subroutine place_bolts
+
+      !> Blocks get the material of the last material line that crosses one of their edges, or that
+      !> starts in them and crosses none; the first material otherwise (Shi: dc13)
+      pure module subroutine give_materials(model, cut, error)
+         type(line_model_t), intent(in) :: model
+         type(cut_model_t), intent(inout) :: cut
+         !> A material line that meets no block
+         type(error_t), allocatable, intent(out) :: error
+      end subroutine give_materials
+
+      !> Blocks of the loops that run around an area; scales, points and materials are left to
+      !> others
+      pure module subroutine blocks_of_loops(network, loops, joint, cut)
+         type(network_t), intent(in) :: network
+         type(loops_t), intent(in) :: loops
+         !> Joint material of each line: (n_line)
+         integer, intent(in) :: joint(:)
+         !> Receives corners, edges and pairs of edges; its scales are set
+         type(cut_model_t), intent(inout) :: cut
+      end subroutine blocks_of_loops
+
+   end interface
+
 contains
-
-   !> Drop edges that end in nothing, until none is left: trees hang on no block (Shi: dc05)
-   pure subroutine cut_trees(network, remarks)
-      type(network_t), intent(inout) :: network
-      type(cut_remarks_t), intent(inout) :: remarks
-      integer, allocatable :: first(:), item(:), degree(:), loose(:)
-      integer :: n, node, k, e
-
-      call edges_of_nodes(network, first, item)
-      allocate (degree, source=first(2:) - first(:size(first) - 1))
-      loose = pack([(node, node=1, size(degree))], degree == 1)
-      n = size(loose)
-      do while (n > 0)
-         node = loose(n)
-         n = n - 1
-         do k = first(node), first(node + 1) - 1
-            e = item(k)
-            if (.not. network%alive(e)) cycle
-            call drop_edge(network, e, cut_reason%loose_edge, 0, remarks)
-            degree(network%edge(:, e)) = degree(network%edge(:, e)) - 1
-            ! one loose node gives way to one other at most, so the list never grows
-            node = sum(network%edge(:, e)) - node
-            if (degree(node) == 1) then
-               n = n + 1
-               loose(n) = node
-            end if
-            exit
-         end do
-      end do
-   end subroutine cut_trees
-
-   !> The living edges of each node
-   pure subroutine edges_of_nodes(network, first, item)
-      type(network_t), intent(in) :: network
-      !> First item of each node, and one beyond the last: (n_node + 1)
-      integer, allocatable, intent(out) :: first(:)
-      !> Numbers of edges
-      integer, allocatable, intent(out) :: item(:)
-      integer, allocatable :: next(:)
-      integer :: e, k, node
-
-      allocate (first(size(network%node, 2) + 1), source=0)
-      do e = 1, size(network%line)
-         if (network%alive(e)) first(network%edge(:, e) + 1) = first(network%edge(:, e) + 1) + 1
-      end do
-      first(1) = 1
-      do node = 2, size(first)
-         first(node) = first(node) + first(node - 1)
-      end do
-      allocate (item(first(size(first)) - 1))
-      allocate (next, source=first)
-      do e = 1, size(network%line)
-         if (.not. network%alive(e)) cycle
-         do k = 1, 2
-            node = network%edge(k, e)
-            item(next(node)) = e
-            next(node) = next(node) + 1
-         end do
-      end do
-   end subroutine edges_of_nodes
-
-   !> Drop one of two edges that cross between their nodes, as happens when nodes were merged: the
-   !> one that is no boundary, else that of the later line (Shi: dc06)
-   pure subroutine drop_crossing_edges(network, scale, remarks, crossing)
-      type(network_t), intent(inout) :: network
-      !> Scales of the cut
-      type(cut_scale_t), intent(in) :: scale
-      type(cut_remarks_t), intent(inout) :: remarks
-      !> Two boundary lines that still cross; 0 if none do: (2)
-      integer, intent(out) :: crossing(2)
-      type(cell_grid_t) :: grid
-      real(wp), allocatable :: place(:, :)
-      integer, allocatable :: number(:), pair(:, :), order(:)
-      integer :: k, e, f
-
-      crossing = 0
-      call living_edges(network, number, place)
-      call new_cell_grid(place, 2.0_wp*scale%reach, grid)
-      call crossing_pairs(network, scale%reach, number, place, grid, pair)
-      allocate (order, source=sorted_order(pair(1, :), real(pair(2, :), wp)))
-      do k = 1, size(order)
-         e = pair(1, order(k))
-         f = pair(2, order(k))
-         if (.not. all(network%alive([e, f]))) cycle
-         if (network%line(f) < network%line(e)) then
-            e = pair(2, order(k))
-            f = pair(1, order(k))
-         end if
-         if (network%line(f) <= network%n_boundary) then
-            crossing = network%line([e, f])
-         else
-            call drop_edge(network, f, cut_reason%crossing, network%line(e), remarks)
-         end if
-      end do
-   end subroutine drop_crossing_edges
-
-   !> Pairs of edges that cross between their nodes; a pair may come several times
-   pure subroutine crossing_pairs(network, reach, number, place, grid, pair)
-      type(network_t), intent(in) :: network
-      !> Distance within which things touch [m]
-      real(wp), intent(in) :: reach
-      !> Numbers of the living edges: (n)
-      integer, intent(in) :: number(:)
-      !> Their ends: (4, n) [m]
-      real(wp), intent(in) :: place(:, :)
-      type(cell_grid_t), intent(in) :: grid
-      !> Edges, the smaller number first: (2, n_pair)
-      integer, allocatable, intent(out) :: pair(:, :)
-      integer, allocatable :: longer(:, :)
-      integer :: cell, a, b, n
-
-      allocate (pair(2, 16))
-      n = 0
-      do cell = 1, grid%n(1)*grid%n(2)
-         do a = grid%first(cell), grid%first(cell + 1) - 2
-            do b = a + 1, grid%first(cell + 1) - 1
-               if (.not. edges_cross(network, reach, number(grid%item([a, b])), &
-                  & place(:, grid%item(a)), place(:, grid%item(b)))) cycle
-               if (n == size(pair, 2)) then
-                  allocate (longer(2, 2*n))
-                  longer(:, :n) = pair
-                  call move_alloc(longer, pair)
-               end if
-               n = n + 1
-               pair(:, n) = number(grid%item([a, b]))
-            end do
-         end do
-      end do
-      pair = pair(:, :n)
-   end subroutine crossing_pairs
-
-   !> Whether two edges cross between their nodes
-   pure logical function edges_cross(network, reach, edge, first, second)
-      type(network_t), intent(in) :: network
-      real(wp), intent(in) :: reach
-      !> Numbers of the edges: (2)
-      integer, intent(in) :: edge(2)
-      !> Ends of the first: (4) [m]
-      real(wp), intent(in) :: first(4)
-      !> Ends of the second: (4) [m]
-      real(wp), intent(in) :: second(4)
-      real(wp) :: share(2), rim(2)
-
-      edges_cross = .false.
-      if (max(first(1), first(3)) < min(second(1), second(3))) return
-      if (min(first(1), first(3)) > max(second(1), second(3))) return
-      if (max(first(2), first(4)) < min(second(2), second(4))) return
-      if (min(first(2), first(4)) > max(second(2), second(4))) return
-      if (any(network%edge(:, edge(1)) == network%edge(1, edge(2)))) return
-      if (any(network%edge(:, edge(1)) == network%edge(2, edge(2)))) return
-      call crossing_parameters(first, second, share, edges_cross)
-      rim = reach/[norm2(first(3:4) - first(1:2)), norm2(second(3:4) - second(1:2))]
-      edges_cross = edges_cross .and. all(share > rim .and. share < 1.0_wp - rim)
-   end function edges_cross
-
-   !> Drop joints that pass a node of other lines closer than e00 w0 (Shi: dc06)
-   pure subroutine drop_close_edges(network, scale, remarks)
-      type(network_t), intent(inout) :: network
-      type(cut_scale_t), intent(in) :: scale
-      type(cut_remarks_t), intent(inout) :: remarks
-      type(cell_grid_t) :: grid
-      real(wp), allocatable :: place(:, :)
-      integer, allocatable :: number(:), blocker(:), line_of(:)
-      integer :: k, a, cell, node
-
-      call living_edges(network, number, place)
-      call new_cell_grid(place, scale%clearance, grid)
-      allocate (line_of(size(network%node, 2)), blocker(size(number)), source=0)
-      do k = size(number), 1, -1
-         line_of(network%edge(:, number(k))) = network%line(number(k))
-      end do
-      do node = 1, size(line_of)
-         if (line_of(node) == 0) cycle
-         cell = cell_of(grid, network%node(:, node))
-         do a = grid%first(cell), grid%first(cell + 1) - 1
-            k = grid%item(a)
-            if (network%line(number(k)) <= network%n_boundary .or. blocker(k) > 0) cycle
-            if (any(network%edge(:, number(k)) == node)) cycle
-            if (segment_distance(network%node(:, node), place(:, k)) < scale%clearance) &
-               & blocker(k) = line_of(node)
-         end do
-      end do
-      do k = 1, size(number)
-         if (blocker(k) > 0) &
-            & call drop_edge(network, number(k), cut_reason%too_close, blocker(k), remarks)
-      end do
-   end subroutine drop_close_edges
-
-   !> Edges that were not dropped
-   pure subroutine living_edges(network, number, place)
-      type(network_t), intent(in) :: network
-      integer, allocatable, intent(out) :: number(:)
-      real(wp), allocatable, intent(out) :: place(:, :)
-      integer :: e, n
-
-      allocate (number(count(network%alive)))
-      n = 0
-      do e = 1, size(network%line)
-         if (.not. network%alive(e)) cycle
-         n = n + 1
-         number(n) = e
-      end do
-      allocate (place(4, n))
-      do e = 1, n
-         place(:, e) = edge_place(network, number(e))
-      end do
-   end subroutine living_edges
 
    !> Cut lines into blocks, and give each block its material and its points
    pure subroutine cut_blocks(model, cut, error)
@@ -375,5 +258,4 @@ contains
          & //"); join the two by a line or put a hole point into the outer block", &
          & model%file, model%line%row(line))
    end subroutine tell_nested
-
 end module dda_cutting

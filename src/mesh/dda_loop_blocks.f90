@@ -1,28 +1,17 @@
 !> From loops to blocks: corners on a straight edge go, coincident edges are found
 !> (Shi: dc08, dc09)
-module dda_loop_blocks
-   use dda_cut_model, only : cut_model_t, edge_pair_t
+submodule (dda_cutting) dda_loop_blocks
+   use dda_cut_model, only : edge_pair_t
    use dda_cut_report, only : add_remark, cut_reason
-   use dda_kinds, only : wp
-   use dda_line_network, only : edge_place, network_t
-   use dda_network_loops, only : half_edge_start, loops_t
+   use dda_line_network, only : edge_place
    use dda_sort, only : sorted_order
    use dda_vector, only : cross
    implicit none
-   private
-
-   public :: blocks_of_loops
 
 contains
 
    !> Blocks of the loops that run around an area; scales, points and materials are left to others
-   pure subroutine blocks_of_loops(network, loops, joint, cut)
-      type(network_t), intent(in) :: network
-      type(loops_t), intent(in) :: loops
-      !> Joint material of each line: (n_line)
-      integer, intent(in) :: joint(:)
-      !> Receives corners, edges and pairs of edges; its scales are set
-      type(cut_model_t), intent(inout) :: cut
+   module procedure blocks_of_loops
       ! block and edge that each half-edge is a part of
       integer, allocatable :: owner(:, :), corner(:)
       real(wp) :: place(4)
@@ -55,7 +44,7 @@ contains
       cut%vertex = cut%vertex(:, :n_vertex)
       cut%edge_joint = cut%edge_joint(:n_vertex)
       call find_pairs(network, owner, joint, cut)
-   end subroutine blocks_of_loops
+   end procedure blocks_of_loops
 
    !> Places in a loop where it turns: a node is no corner if it lies on the straight way from the
    !> corner before it to the next node (Shi: dc09)
@@ -210,4 +199,5 @@ contains
       if (dot_product(way, place(1:2) - pair%place(1:2)) < 0.0_wp) pair%place(1:2) = place(1:2)
       if (dot_product(way, place(3:4) - pair%place(3:4)) > 0.0_wp) pair%place(3:4) = place(3:4)
    end subroutine join_parts
-end module dda_loop_blocks
+
+end submodule dda_loop_blocks

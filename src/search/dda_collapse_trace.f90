@@ -1,9 +1,9 @@
 !> Where a collapse stops: its joints, frozen, are traced to the value at which they cease to move
 module dda_collapse_trace
-   use dda_chain_unfold, only : fold
    use dda_chain_lack, only : chain_mechanism_t, chain_power, freeze_mechanism
+   use dda_chain_unfold, only : fold
+   use dda_contact_types, only : joint_t
    use dda_error, only : error_t
-   use dda_frozen_mechanism, only : frozen_mechanism_t, mechanism_power
    use dda_friction_cone, only : joint_face_t
    use dda_kinds, only : wp
    use dda_scene, only : family_t, link_once, scene_t
@@ -12,7 +12,20 @@ module dda_collapse_trace
    implicit none
    private
 
-   public :: proposal_t, trace
+   public :: proposal_t, trace, frozen_mechanism_t, mechanism_power
+
+   !> A collapse to be traced from one value of the parameter to another
+   type :: frozen_mechanism_t
+      !> The joints: (n_joint)
+      type(joint_t), allocatable :: joint(:)
+      !> Faces of the joints in its last step: (n_joint)
+      type(joint_face_t), allocatable :: face(:)
+      !> Motion of its last step without strains: (3, n_equation)
+      real(wp), allocatable :: motion(:, :)
+      !> Length of a step long enough that elastic motion hides nothing, and short enough that
+      !> rounding leaves the power smooth [s]
+      real(wp) :: dt = 0.0_wp
+   end type frozen_mechanism_t
 
    !> Where a frozen collapse stops
    type :: proposal_t
@@ -55,6 +68,25 @@ module dda_collapse_trace
    integer, parameter :: max_passes = 20
    !> Free fall over elastic motion in the step that traces a mechanism
    real(wp), parameter :: free_fall = 1.0e6_wp
+
+   interface
+
+      !> Power of the loads on the mechanism. The structure with faces held moves under its loads;
+      !> two more solutions with its own inertia as the load leave of that motion the mechanism
+      !> alone, which is then measured by the mechanism's motion at the value where it was found
+      pure module subroutine mechanism_power(mechanism, scene, power, noise, usable)
+         type(frozen_mechanism_t), intent(in) :: mechanism
+         !> Scene of the value wanted
+         type(scene_t), intent(in) :: scene
+         !> Power: positive where the mechanism moves by itself
+         real(wp), intent(out) :: power
+         !> What the rounding of the corners' coordinates alone makes of it
+         real(wp), intent(out) :: noise
+         !> Whether the power could be found
+         logical, intent(out) :: usable
+      end subroutine mechanism_power
+
+   end interface
 
 contains
 

@@ -22,7 +22,8 @@ module dda_decision
    interface
 
       !> Decide a static structure, or run a dynamic one
-      pure module subroutine decide(settings, system, contacts, decision, album, onward, verdict_only)
+      pure module subroutine decide(settings, system, contacts, decision, album, onward, &
+         & verdict_only)
          type(settings_t), intent(in) :: settings
          !> The blocks at the beginning
          type(block_system_t), intent(in) :: system
@@ -80,9 +81,9 @@ module dda_decision
          type(album_t), intent(inout), optional :: album
       end subroutine decide_by_steps
 
-      !> Run in time from the beginning, or from where a run has ended. Where it is to begin in balance
-      !> a static run leads there, under what acts at time 0 on a ground at rest; velocities are those
-      !> that the blocks were given
+      !> Run in time from the beginning, or from where a run has ended. Where it is to begin in
+      !> balance a static run leads there, under what acts at time 0 on a ground at rest; velocities
+      !> are those that the blocks were given
       pure module subroutine run_in_time(settings, system, contacts, decision, album, onward)
          type(settings_t), intent(in) :: settings
          type(block_system_t), intent(in) :: system
@@ -105,7 +106,8 @@ module dda_decision
 
       !> Follow the path from its dead loads; where it finds no state under them though forces
       !> balance them, from the rest that blocks come to
-      pure module subroutine follow_from_rest(settings, system, contacts, graph, stations, is_balanced, proof)
+      pure module subroutine follow_from_rest(settings, system, contacts, graph, stations, &
+         & is_balanced, proof)
          type(settings_t), intent(in) :: settings
          type(block_system_t), intent(in) :: system
          type(contacts_t), intent(in) :: contacts
@@ -147,7 +149,8 @@ module dda_decision
          type(album_t), intent(inout) :: album
          !> Where a dynamic run goes on and where it ended
          type(march_t), intent(inout) :: onward
-         !> Blocks and contacts where an earlier run has left them; without them they are the scene's
+         !> Blocks and contacts where an earlier run has left them; without them they are the
+         !> scene's
          type(block_system_t), intent(in), optional :: system
          type(contacts_t), intent(in), optional :: contacts
       end subroutine decide_in_stages

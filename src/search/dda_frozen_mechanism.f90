@@ -1,49 +1,20 @@
 !> The power of the loads on a mechanism whose joints keep to their faces, as a smooth function of
 !> the parameter of a search: its zero is where the mechanism stops
-module dda_frozen_mechanism
+submodule (dda_collapse_trace) dda_frozen_mechanism
    use dda_assembly, only : equations_t, new_equations, solve_faces
-   use dda_block_inertia, only : assemble_blocks
    use dda_block_factor, only : substitute
+   use dda_block_inertia, only : assemble_blocks
    use dda_block_system, only : block_system_t
-   use dda_contact_types, only : joint_t, same_joint
-   use dda_friction_cone, only : joint_face_t
+   use dda_contact_types, only : same_joint
    use dda_joint_springs, only : joint_springs_t, new_joint_springs
-   use dda_kinds, only : wp
-   use dda_scene, only : scene_t
-   use dda_settings, only : settings_t
    implicit none
-   private
-
-   public :: frozen_mechanism_t, mechanism_power
-
-   !> A collapse to be traced from one value of the parameter to another
-   type :: frozen_mechanism_t
-      !> The joints: (n_joint)
-      type(joint_t), allocatable :: joint(:)
-      !> Faces of the joints in its last step: (n_joint)
-      type(joint_face_t), allocatable :: face(:)
-      !> Motion of its last step without strains: (3, n_equation)
-      real(wp), allocatable :: motion(:, :)
-      !> Length of a step long enough that elastic motion hides nothing, and short enough that
-      !> rounding leaves the power smooth [s]
-      real(wp) :: dt = 0.0_wp
-   end type frozen_mechanism_t
 
 contains
 
    !> Power of the loads on the mechanism. The structure with faces held moves under its loads; two
    !> more solutions with its own inertia as the load leave of that motion the mechanism alone,
    !> which is then measured by the mechanism's motion at the value where it was found
-   pure subroutine mechanism_power(mechanism, scene, power, noise, usable)
-      type(frozen_mechanism_t), intent(in) :: mechanism
-      !> Scene of the value wanted
-      type(scene_t), intent(in) :: scene
-      !> Power: positive where the mechanism moves by itself
-      real(wp), intent(out) :: power
-      !> What the rounding of the corners' coordinates alone makes of it
-      real(wp), intent(out) :: noise
-      !> Whether the power could be found
-      logical, intent(out) :: usable
+   module procedure mechanism_power
       type(equations_t) :: equations
       type(joint_springs_t) :: springs
       type(settings_t) :: settings
@@ -86,7 +57,7 @@ contains
             & *abs(dot_product(equations%weight(:, e), mechanism%motion(:, e)))
       end do
       noise = noise/scale
-   end subroutine mechanism_power
+   end procedure mechanism_power
 
    !> Whether a scene has the blocks and joints of a mechanism, in the same order
    pure logical function is_of(mechanism, scene)
@@ -124,4 +95,5 @@ contains
             & *sum(norm2(vertex - cshift(vertex, 1, dim=2), dim=1))/system%area(block)
       end associate
    end function area_rounding
-end module dda_frozen_mechanism
+
+end submodule dda_frozen_mechanism

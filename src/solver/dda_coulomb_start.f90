@@ -4,19 +4,14 @@
 !> force and every motion grow in proportion, so that all at once is a loading path, too. Interior
 !> springs with strong damping find which joints stick and slide, an open-close loop with ever less
 !> damping has the last word.
-module dda_coulomb_start
-   use dda_coulomb_equations, only : coulomb_equations_t, solve_equations, use_faces
-   use dda_coulomb_interior, only : enough, interior_motion, coulomb_interior_t, sharp
-   use dda_coulomb_joints, only : coulomb_joints_t
-   use dda_coulomb_law, only : apply_law, force_faces, coulomb_state_t, imbalance, unloaded_state
+submodule (dda_loading_path) dda_coulomb_start
+   use dda_coulomb_equations, only : solve_equations, use_faces
+   use dda_coulomb_interior, only : coulomb_interior_t, enough, interior_motion, sharp
+   use dda_coulomb_law, only : apply_law, force_faces, unloaded_state
    use dda_event_rates, only : path_damping
    use dda_joint_graph, only : joint_motion
-   use dda_kinds, only : wp
-   use dda_load_jump, only : far_factor, jump_t, jump_to_balance, motion_end
+   use dda_load_jump, only : jump_to_balance
    implicit none
-   private
-
-   public :: load_at_once
 
    !> What may be left of a load, by the weight of a block
    real(wp), parameter :: balance = 1.0e-10_wp
@@ -24,16 +19,7 @@ module dda_coulomb_start
 contains
 
    !> State under a load that is applied at once
-   pure subroutine load_at_once(joints, equations, load, state, jump, end)
-      type(coulomb_joints_t), intent(in) :: joints
-      type(coulomb_equations_t), intent(inout) :: equations
-      !> The load: (n_dof, n_block)
-      real(wp), intent(in) :: load(:, :)
-      type(coulomb_state_t), intent(out) :: state
-      !> What a motion tells, where one was needed
-      type(jump_t), intent(inout) :: jump
-      !> How it ends, one of motion_end
-      integer, intent(out) :: end
+   module procedure load_at_once
       real(wp), parameter :: damping(3) = [1.0e-5_wp, 1.0e-4_wp, 1.0e-3_wp]
       real(wp) :: largest
       integer :: i
@@ -51,7 +37,7 @@ contains
       call find_elastic_motion(joints, equations, load, state, largest)
       jump%far = far_factor*max(1.0_wp, largest)
       call jump_to_balance(joints, equations, load, state, jump, end)
-   end subroutine load_at_once
+   end procedure load_at_once
 
    !> Largest displacement where no joint opens or slides
    pure subroutine find_elastic_motion(joints, equations, load, state, largest)
@@ -183,4 +169,5 @@ contains
       call joint_motion(joints%graph, state%motion, opening)
       call apply_law(joints, unloaded, opening, state)
    end subroutine take_interior
-end module dda_coulomb_start
+
+end submodule dda_coulomb_start

@@ -16,7 +16,6 @@ module dda_loading_path
    use dda_coulomb_joints, only : coulomb_joints_t, in_metres, in_motion_units, in_newtons, &
       & in_units, new_coulomb_joints, set_force_unit
    use dda_coulomb_law, only : coulomb_state_t, imbalance
-   use dda_coulomb_start, only : load_at_once
    use dda_event_rates, only : find_rates, new_rates, rates_t, undamp_rates
    use dda_joint_graph, only : joint_graph_t
    use dda_kinds, only : wp
@@ -27,7 +26,7 @@ module dda_loading_path
    private
 
    public :: loading_path_t, path_rate_t, path_result_t, path_reason, path_reason_enum
-   public :: begin_path, follow_path, new_path, new_rate
+   public :: begin_path, follow_path, new_path, new_rate, load_at_once
 
    !> What proves a collapse, or prevents a decision
    type :: path_reason_enum
@@ -106,6 +105,23 @@ module dda_loading_path
    integer, parameter :: least_patience = 2000, patience = 100
    !> Jumps at most
    integer, parameter :: max_jump = 1000
+
+   interface
+
+      !> State under a load that is applied at once
+      pure module subroutine load_at_once(joints, equations, load, state, jump, end)
+         type(coulomb_joints_t), intent(in) :: joints
+         type(coulomb_equations_t), intent(inout) :: equations
+         !> The load: (n_dof, n_block)
+         real(wp), intent(in) :: load(:, :)
+         type(coulomb_state_t), intent(out) :: state
+         !> What a motion tells, where one was needed
+         type(jump_t), intent(inout) :: jump
+         !> How it ends, one of motion_end
+         integer, intent(out) :: end
+      end subroutine load_at_once
+
+   end interface
 
 contains
 

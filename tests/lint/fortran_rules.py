@@ -11,10 +11,10 @@ from pathlib import Path
 FILE_LINES, PROCEDURE_LINES, LINE_LENGTH = 400, 60, 100
 
 _STRING = re.compile(r"'[^']*'|\"[^\"]*\"")
-_PROCEDURE = re.compile(r"(?!end\b)(?:[\w()=*:, ]+ )?(?:subroutine|function) (\w+) *(?:\(|$)")
+_PROCEDURE = re.compile(r"(?!end\b)(?:[\w()=*:, ]+ )?(?:subroutine|function|module procedure) (\w+) *(?:\(|$)")
 #: An argument of a derived type that is no array: the type says what it is
 _IS_NAMED_TYPE = re.compile(r"(?:type|class)\(\w+\)[^:(]*(?:intent\(\w+\))[^:(]*:: *\w+(?: *, *\w+)*$")
-_END_PROCEDURE = re.compile(r"end (?:subroutine|function)\b")
+_END_PROCEDURE = re.compile(r"end (?:subroutine|function|procedure)\b")
 _TYPED = re.compile(r"(?:type|class) *\((\w+)\)")
 _BLOCK = re.compile(r"(type\b(?! *\()|interface\b|abstract interface\b)")
 
@@ -68,7 +68,13 @@ def offences(path: Path) -> list[str]:
         FILE:LINE: rule.
     """
     lines = path.read_text(encoding="utf-8").splitlines()
-    found = list(_of_lines(lines)) + list(_of_statements(list(statements(lines))))
+    of_this = list(statements(lines))
+    explained: set[tuple[str, str]] = set()
+    for above in re.findall(r"\w+", of_this[0].text.split(")")[0])[1:] if of_this and of_this[
+            0].text.startswith("submodule") else []:
+        text = (path.parent / f"{above}.f90").read_text(encoding="utf-8").splitlines()
+        explained |= _explained(list(statements(text)))
+    found = list(_of_lines(lines)) + list(_of_statements(of_this, explained))
     return [f"{path}:{number}: {rule}" for number, rule in sorted(found)]
 
 
@@ -83,12 +89,19 @@ def _of_lines(lines: list[str]) -> Iterator[tuple[int, str]]:
             yield number, "no tabs, no blanks at the end of a line"
 
 
-def _of_statements(all_of_them: list[Statement]) -> Iterator[tuple[int, str]]:
+def _explained(all_of_them: list[Statement]) -> set[tuple[str, str]]:
+    """Arguments, by type and name, that a module explains: its submodules need not."""
+    return {argument for this in all_of_them if this.documented and "intent(" in this.text.replace(
+        " ", "") for argument in _arguments(this.text)}
+
+
+def _of_statements(
+    all_of_them: list[Statement], explained: set[tuple[str, str]]
+) -> Iterator[tuple[int, str]]:
     """Rules of statements, procedures and modules."""
     open_procedures: list[Statement] = []
     inner = 0  # lines of internal procedures, which are judged on their own
     block, contains = 0, False
-    explained: set[tuple[str, str]] = set()  # arguments by type and name: a module explains a name once
     for this in all_of_them:
         text = this.text
         yield from ((this.first, rule) for rule in _of_one(text))
@@ -104,7 +117,7 @@ def _of_statements(all_of_them: list[Statement]) -> Iterator[tuple[int, str]]:
                 if this.last - (0 if open_procedures else inner) - begin.first >= PROCEDURE_LINES:
                     yield begin.first, f"a procedure has at most {PROCEDURE_LINES} lines"
                 inner = inner + this.last - begin.first + 1 if open_procedures else 0
-        elif _PROCEDURE.match(text) and not text.startswith("module procedure"):
+        elif _PROCEDURE.match(text) and not (block and text.startswith("module procedure")):
             if not this.documented:
                 yield this.first, "a procedure has its !> line"
             open_procedures.append(this)
@@ -119,7 +132,7 @@ def _of_statements(all_of_them: list[Statement]) -> Iterator[tuple[int, str]]:
             if all_of_them[0].text.startswith("module"):
                 yield this.first, "no module variables"
     texts = [this.text for this in all_of_them]
-    if texts and texts[0].startswith(("module", "program")) and "implicit none" not in texts:
+    if texts and texts[0].startswith(("module", "submodule", "program")) and "implicit none" not in texts:
         yield 1, "implicit none"
     if texts and texts[0].startswith("module") and "private" not in texts:
         yield 1, "a module is private, and names what is public"

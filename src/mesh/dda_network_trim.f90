@@ -1,0 +1,208 @@
+!> Edges that bound nothing or stand in the way are taken out of a network (Shi: dc05, dc06)
+submodule (dda_cutting) dda_network_trim
+   use dda_cell_grid, only : cell_grid_t, cell_of, new_cell_grid
+   use dda_cut_report, only : cut_reason
+   use dda_line_network, only : drop_edge, edge_place
+   use dda_segment, only : crossing_parameters, segment_distance
+   use dda_sort, only : sorted_order
+   implicit none
+
+contains
+
+   !> Drop edges that end in nothing, until none is left: trees hang on no block (Shi: dc05)
+   module procedure cut_trees
+      integer, allocatable :: first(:), item(:), degree(:), loose(:)
+      integer :: n, node, k, e
+
+      call edges_of_nodes(network, first, item)
+      allocate (degree, source=first(2:) - first(:size(first) - 1))
+      loose = pack([(node, node=1, size(degree))], degree == 1)
+      n = size(loose)
+      do while (n > 0)
+         node = loose(n)
+         n = n - 1
+         do k = first(node), first(node + 1) - 1
+            e = item(k)
+            if (.not. network%alive(e)) cycle
+            call drop_edge(network, e, cut_reason%loose_edge, 0, remarks)
+            degree(network%edge(:, e)) = degree(network%edge(:, e)) - 1
+            ! one loose node gives way to one other at most, so the list never grows
+            node = sum(network%edge(:, e)) - node
+            if (degree(node) == 1) then
+               n = n + 1
+               loose(n) = node
+            end if
+            exit
+         end do
+      end do
+   end procedure cut_trees
+
+   !> The living edges of each node
+   pure subroutine edges_of_nodes(network, first, item)
+      type(network_t), intent(in) :: network
+      !> First item of each node, and one beyond the last: (n_node + 1)
+      integer, allocatable, intent(out) :: first(:)
+      !> Numbers of edges
+      integer, allocatable, intent(out) :: item(:)
+      integer, allocatable :: next(:)
+      integer :: e, k, node
+
+      allocate (first(size(network%node, 2) + 1), source=0)
+      do e = 1, size(network%line)
+         if (network%alive(e)) first(network%edge(:, e) + 1) = first(network%edge(:, e) + 1) + 1
+      end do
+      first(1) = 1
+      do node = 2, size(first)
+         first(node) = first(node) + first(node - 1)
+      end do
+      allocate (item(first(size(first)) - 1))
+      allocate (next, source=first)
+      do e = 1, size(network%line)
+         if (.not. network%alive(e)) cycle
+         do k = 1, 2
+            node = network%edge(k, e)
+            item(next(node)) = e
+            next(node) = next(node) + 1
+         end do
+      end do
+   end subroutine edges_of_nodes
+
+   !> Drop one of two edges that cross between their nodes, as happens when nodes were merged: the
+   !> one that is no boundary, else that of the later line (Shi: dc06)
+   module procedure drop_crossing_edges
+      type(cell_grid_t) :: grid
+      real(wp), allocatable :: place(:, :)
+      integer, allocatable :: number(:), pair(:, :), order(:)
+      integer :: k, e, f
+
+      crossing = 0
+      call living_edges(network, number, place)
+      call new_cell_grid(place, 2.0_wp*scale%reach, grid)
+      call crossing_pairs(network, scale%reach, number, place, grid, pair)
+      allocate (order, source=sorted_order(pair(1, :), real(pair(2, :), wp)))
+      do k = 1, size(order)
+         e = pair(1, order(k))
+         f = pair(2, order(k))
+         if (.not. all(network%alive([e, f]))) cycle
+         if (network%line(f) < network%line(e)) then
+            e = pair(2, order(k))
+            f = pair(1, order(k))
+         end if
+         if (network%line(f) <= network%n_boundary) then
+            crossing = network%line([e, f])
+         else
+            call drop_edge(network, f, cut_reason%crossing, network%line(e), remarks)
+         end if
+      end do
+   end procedure drop_crossing_edges
+
+   !> Pairs of edges that cross between their nodes; a pair may come several times
+   pure subroutine crossing_pairs(network, reach, number, place, grid, pair)
+      type(network_t), intent(in) :: network
+      !> Distance within which things touch [m]
+      real(wp), intent(in) :: reach
+      !> Numbers of the living edges: (n)
+      integer, intent(in) :: number(:)
+      !> Their ends: (4, n) [m]
+      real(wp), intent(in) :: place(:, :)
+      type(cell_grid_t), intent(in) :: grid
+      !> Edges, the smaller number first: (2, n_pair)
+      integer, allocatable, intent(out) :: pair(:, :)
+      integer, allocatable :: longer(:, :)
+      integer :: cell, a, b, n
+
+      allocate (pair(2, 16))
+      n = 0
+      do cell = 1, grid%n(1)*grid%n(2)
+         do a = grid%first(cell), grid%first(cell + 1) - 2
+            do b = a + 1, grid%first(cell + 1) - 1
+               if (.not. edges_cross(network, reach, number(grid%item([a, b])), &
+                  & place(:, grid%item(a)), place(:, grid%item(b)))) cycle
+               if (n == size(pair, 2)) then
+                  allocate (longer(2, 2*n))
+                  longer(:, :n) = pair
+                  call move_alloc(longer, pair)
+               end if
+               n = n + 1
+               pair(:, n) = number(grid%item([a, b]))
+            end do
+         end do
+      end do
+      pair = pair(:, :n)
+   end subroutine crossing_pairs
+
+   !> Whether two edges cross between their nodes
+   pure logical function edges_cross(network, reach, edge, first, second)
+      type(network_t), intent(in) :: network
+      real(wp), intent(in) :: reach
+      !> Numbers of the edges: (2)
+      integer, intent(in) :: edge(2)
+      !> Ends of the first: (4) [m]
+      real(wp), intent(in) :: first(4)
+      !> Ends of the second: (4) [m]
+      real(wp), intent(in) :: second(4)
+      real(wp) :: share(2), rim(2)
+
+      edges_cross = .false.
+      if (max(first(1), first(3)) < min(second(1), second(3))) return
+      if (min(first(1), first(3)) > max(second(1), second(3))) return
+      if (max(first(2), first(4)) < min(second(2), second(4))) return
+      if (min(first(2), first(4)) > max(second(2), second(4))) return
+      if (any(network%edge(:, edge(1)) == network%edge(1, edge(2)))) return
+      if (any(network%edge(:, edge(1)) == network%edge(2, edge(2)))) return
+      call crossing_parameters(first, second, share, edges_cross)
+      rim = reach/[norm2(first(3:4) - first(1:2)), norm2(second(3:4) - second(1:2))]
+      edges_cross = edges_cross .and. all(share > rim .and. share < 1.0_wp - rim)
+   end function edges_cross
+
+   !> Drop joints that pass a node of other lines closer than e00 w0 (Shi: dc06)
+   module procedure drop_close_edges
+      type(cell_grid_t) :: grid
+      real(wp), allocatable :: place(:, :)
+      integer, allocatable :: number(:), blocker(:), line_of(:)
+      integer :: k, a, cell, node
+
+      call living_edges(network, number, place)
+      call new_cell_grid(place, scale%clearance, grid)
+      allocate (line_of(size(network%node, 2)), blocker(size(number)), source=0)
+      do k = size(number), 1, -1
+         line_of(network%edge(:, number(k))) = network%line(number(k))
+      end do
+      do node = 1, size(line_of)
+         if (line_of(node) == 0) cycle
+         cell = cell_of(grid, network%node(:, node))
+         do a = grid%first(cell), grid%first(cell + 1) - 1
+            k = grid%item(a)
+            if (network%line(number(k)) <= network%n_boundary .or. blocker(k) > 0) cycle
+            if (any(network%edge(:, number(k)) == node)) cycle
+            if (segment_distance(network%node(:, node), place(:, k)) < scale%clearance) &
+               & blocker(k) = line_of(node)
+         end do
+      end do
+      do k = 1, size(number)
+         if (blocker(k) > 0) &
+            & call drop_edge(network, number(k), cut_reason%too_close, blocker(k), remarks)
+      end do
+   end procedure drop_close_edges
+
+   !> Edges that were not dropped
+   pure subroutine living_edges(network, number, place)
+      type(network_t), intent(in) :: network
+      integer, allocatable, intent(out) :: number(:)
+      real(wp), allocatable, intent(out) :: place(:, :)
+      integer :: e, n
+
+      allocate (number(count(network%alive)))
+      n = 0
+      do e = 1, size(network%line)
+         if (.not. network%alive(e)) cycle
+         n = n + 1
+         number(n) = e
+      end do
+      allocate (place(4, n))
+      do e = 1, n
+         place(:, e) = edge_place(network, number(e))
+      end do
+   end subroutine living_edges
+
+end submodule dda_network_trim
