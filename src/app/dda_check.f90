@@ -1,30 +1,36 @@
 !> dda check: read and check decks, say what would be computed
 module dda_check
    use, intrinsic :: iso_fortran_env, only : error_unit
-   use dda_boundary, only : boundary_t
    use dda_command_line, only : command_t, name_of
-   use dda_deck, only : deck_t, geometry_of, keeps_velocities, scene_kind
-   use dda_deck_scene, only : deck_scene
-   use dda_deck_sweep, only : case_deck, n_cases
    use dda_cut, only : print_warnings
+   use dda_deck, only : deck_t
    use dda_error, only : error_line, error_t
-   use dda_limerick_model, only : half_size, limerick_model_t
-   use dda_limerick_scene, only : limerick_scene
-   use dda_model_table, only : models_of, searches_of
    use dda_process, only : deck_stem, error_is_terminal, exit_status
    use dda_progress, only : end_watch, terminal_watch_t
    use dda_read_deck, only : read_deck
-   use dda_result_tables, only : left_out, name_tables, result_tables_t
+   use dda_result_tables, only : name_tables, result_tables_t
    use dda_run_record, only : run_record
    use dda_scene, only : scene_t
-   use dda_scene_check, only : check_lines, check_scene
-   use dda_scene_plan, only : plan_scene, scene_plan_t, strain_reason
+   use dda_scene_check, only : check_scene
    use dda_screen, only : print_line, screen_t
-   use dda_text, only : to_text
    implicit none
    private
 
    public :: check_decks
+
+   interface
+
+      !> Print what a deck's cases are made of
+      module subroutine print_plan(screen, name, deck, scene)
+         type(screen_t), intent(in) :: screen
+         !> Name of the deck
+         character(len=*), intent(in) :: name
+         type(deck_t), intent(inout) :: deck
+         !> The scene of its first case, if its blocks are from a file
+         type(scene_t), intent(inout) :: scene
+      end subroutine print_plan
+
+   end interface
 
 contains
 
@@ -79,233 +85,4 @@ contains
       end do
       text = text//"deck.record:"//new_line("a")//run_record(deck, stem)
    end function record_text
-
-   !> Print what a deck's cases are made of
-   subroutine print_plan(screen, name, deck, scene)
-      type(screen_t), intent(in) :: screen
-      !> Name of the deck
-      character(len=*), intent(in) :: name
-      type(deck_t), intent(inout) :: deck
-      !> The scene of its first case, if its blocks are from a file
-      type(scene_t), intent(inout) :: scene
-      type(deck_t) :: first
-      type(scene_plan_t) :: plan
-      type(error_t), allocatable :: error
-      character(len=:), allocatable :: swept
-      integer :: s, blocks
-      logical :: arch
-
-      arch = scene_kind(deck) == "arch"
-      call case_deck(deck, 1, first, error)
-      plan = plan_scene(first)
-      if (deck%scene%kind%word /= "blocks") call deck_scene(first, plan, scene)
-      blocks = maxval(scene%system%equation)
-      swept = ""
-      do s = 1, size(deck%sweeps)
-         swept = swept//" "//trim(deck%sweeps(s)%name)
-      end do
-      call print_line(screen, name//": "//deck%scene%title%text)
-      call tell(screen, "cases", to_text(n_cases(deck)))
-      if (swept /= "") call tell(screen, "swept", swept(2:))
-      if (deck%search%given) then
-         call tell(screen, "search", deck%search%parameter%text)
-      else
-         call tell(screen, "search", "none")
-      end if
-      if (left_out(deck) /= "") call tell(screen, "tables", left_out(deck))
-      call check_lines(deck, error)
-      if (allocated(error)) call tell(screen, "not to run", error_line(error))
-      call print_line(screen, "   the first case:")
-      call print_model(screen, first)
-      if (first%analysis%mode%word == "limerick") then
-         call print_limerick_plan(screen, first, scene)
-         return
-      end if
-      call tell(screen, "blocks", &
-         & to_text(blocks)//" free, "//to_text(size(scene%system%equation) &
-         & - blocks)//trim(merge(" fixed springings", " fixed           ", arch)))
-      call tell(screen, "joints", joints_text(scene))
-      call tell(screen, "strength", merge("cohesion or tension, until a joint breaks", &
-         & "none: friction only                      ", any(scene%contacts%springs%shift > 0.0) &
-         & .or. any(scene%contacts%joint%law%cohesion > 0.0)))
-      call tell(screen, "points", points_text(scene%settings%boundary))
-      call print_parts(screen, first, plan, blocks)
-      call tell(screen, "other output", tables_text(first))
-      if (.not. arch) call print_blocks(screen, scene)
-   end subroutine print_plan
-
-   !> Print number, area and centre of each block
-   subroutine print_blocks(screen, scene)
-      type(screen_t), intent(in) :: screen
-      type(scene_t), intent(in) :: scene
-      integer, parameter :: most_rows = 50
-      integer :: b
-
-      call print_line(screen, "   block  area  centre")
-      associate (system => scene%system, n => size(scene%system%area))
-         do b = 1, min(n, most_rows)
-            call print_line(screen, "   "//to_text(b)//"  "//to_text(system%area(b))//"  (" &
-               & //to_text(system%centroid(1, b) + scene%origin(1))//", " &
-               & //to_text(system%centroid(2, b) + scene%origin(2))//")" &
-               & //trim(merge("  held", "      ", system%equation(b) == 0)))
-         end do
-         if (n > most_rows) call print_line(screen, "   and "//to_text(n - most_rows)//" more")
-      end associate
-   end subroutine print_blocks
-
-   !> Print which model it is, which others there are, and what can be searched in it
-   subroutine print_model(screen, deck)
-      type(screen_t), intent(in) :: screen
-      type(deck_t), intent(in) :: deck
-      character(len=:), allocatable :: kind, mode
-
-      kind = trim(scene_kind(deck))
-      mode = trim(deck%analysis%mode%word)
-      call tell(screen, "model", kind//", "//mode//" "//trim(geometry_of(deck)) &
-         & //"; available for "//kind//": "//models_of(kind))
-      if (keeps_velocities(deck)) mode = "dynamic"
-      call tell(screen, "searchable", searches_of(kind, mode))
-   end subroutine print_model
-
-   !> The points that are held, loaded and measured
-   pure function points_text(boundary) result(text)
-      type(boundary_t), intent(in) :: boundary
-      character(len=:), allocatable :: text
-      integer :: n(3)
-
-      n = 0
-      if (allocated(boundary%held)) n(1) = size(boundary%held)
-      if (allocated(boundary%loaded)) n(2) = size(boundary%loaded)
-      if (allocated(boundary%measured)) n(3) = size(boundary%measured)
-      text = "none"
-      if (any(n > 0)) text = to_text(n(1))//" fixed or prescribed, "//to_text(n(2)) &
-         & //" loaded, "//to_text(n(3))//" measured"
-   end function points_text
-
-   !> What is written besides results.csv and joints.csv
-   pure function tables_text(deck) result(text)
-      type(deck_t), intent(in) :: deck
-      character(len=:), allocatable :: text
-
-      text = ""
-      if (deck%output%vtu%flag) text = text//", vtu"
-      if (deck%output%energy%flag) text = text//", energy"
-      if (deck%output%condition%flag) text = text//", condition"
-      if (deck%output%restart%flag) text = text//", restart"
-      if (text == "") then
-         text = "none"
-      else
-         text = text(3:)
-      end if
-   end function tables_text
-
-   !> Print what a case of the original's scheme is made of
-   subroutine print_limerick_plan(screen, deck, scene)
-      type(screen_t), intent(in) :: screen
-      type(deck_t), intent(in) :: deck
-      type(scene_t), intent(in) :: scene
-      type(limerick_model_t) :: model
-      integer :: n
-
-      call limerick_scene(deck, scene, model)
-      n = size(model%block_material)
-      if (deck%scene%kind%word == "arch") then
-         call tell(screen, "blocks", to_text(n - 2)//" and 2 abutments, each fixed at 4 points")
-      else
-         call tell(screen, "blocks", to_text(n)//", fixed at " &
-            & //to_text(size(model%boundary%held))//" points")
-      end if
-      call tell(screen, "half size", &
-         & to_text(half_size(model))//" m: the scale of penetration, opening and motion")
-      call tell(screen, "contacts", "vertex to edge or vertex to vertex; detected in each step")
-      call tell(screen, "unknowns", "6 per block, "//to_text(6*n)//" in all")
-      call tell(screen, "penalty", merge("follows the penetration, up or down", &
-         & "fixed                              ", model%constants%auto_penalty))
-      call tell(screen, "velocities", merge("kept                            ", &
-         & "none: every step starts at rest ", model%constants%dynamic))
-   end subroutine print_limerick_plan
-
-   !> The joints and how long they last
-   pure function joints_text(scene) result(text)
-      type(scene_t), intent(in) :: scene
-      character(len=:), allocatable :: text
-      integer :: singles
-
-      singles = count(scene%contacts%joint%n_contact == 1)
-      text = to_text(size(scene%contacts%joint) - singles)//" of two normal springs and one "// &
-         & "shear spring"
-      if (singles > 0) text = text//", "//to_text(singles)//" of one corner against an edge"
-      if (.not. scene%settings%current) then
-         text = text//"; fixed contact pairs (small displacements)"
-      else if (scene%contacts%searched) then
-         text = text//"; contacts detected in every step"
-      else
-         text = text//"; fixed contact pairs that follow the blocks"
-      end if
-   end function joints_text
-
-   !> Print which parts of the method a case needs, and why
-   subroutine print_parts(screen, deck, plan, blocks)
-      type(screen_t), intent(in) :: screen
-      type(deck_t), intent(in) :: deck
-      type(scene_plan_t), intent(in) :: plan
-      !> Blocks that move
-      integer, intent(in) :: blocks
-
-      call tell(screen, "unknowns", &
-         & to_text(plan%unknowns)//" per block, "//to_text(plan%unknowns*blocks) &
-         & //" in all: "//trim(why(plan%reason)))
-      if (plan%chain) then
-         call tell(screen, "equations", "chain: each block touches only its two neighbours")
-            if (plan%halved) call tell(screen, "", "half model (vertical loads)")
-      else
-         call tell(screen, "equations", "general sparse system")
-      end if
-      call tell(screen, "velocities", &
-         & trim(merge("kept: mode is dynamic                          ", &
-         & "none: every step starts at rest, mode is static", plan%velocities)))
-      if (deck%output%joints%flag) then
-         call tell(screen, "joints.csv", "joint forces of the run itself")
-      else
-         call tell(screen, "joints.csv", "none: output%joints is "//trim(merge( &
-            & ".false.  ", "not given", deck%output%joints%given)))
-      end if
-      if (deck%output%frames%whole > 0) then
-         call tell(screen, "frames", "the case is run once more for its frames")
-      else
-         call tell(screen, "frames", "none: output%frames is 0")
-      end if
-   end subroutine print_parts
-
-   !> Why a block has as many unknowns
-   pure function why(reason) result(words)
-      !> One of strain_reason
-      integer, intent(in) :: reason
-      character(len=100) :: words
-
-      words = "set by analysis%unknowns"
-      if (reason == strain_reason%none) words = "rigid: only equilibrium matters here"
-      if (reason == strain_reason%moving) words = "deformable: strain moves the corners"
-      if (reason == strain_reason%dynamic) words = "deformable: moving blocks vibrate"
-      if (reason == strain_reason%strength) words = "deformable: strain decides which joint "// &
-         & "breaks first"
-      if (reason == strain_reason%forces) words = "deformable: strain distributes joint forces"
-      if (reason == strain_reason%files) words = "deformable: blocks of a file have materials "// &
-         & "and stress of their own"
-      if (reason == strain_reason%displacement) words = "deformable: strain is part of the "// &
-         & "displacement that means collapse"
-   end function why
-
-   !> Print one line of the plan
-   subroutine tell(screen, what, how)
-      type(screen_t), intent(in) :: screen
-      !> Part of the scene
-      character(len=*), intent(in) :: what
-      !> What it is, and why
-      character(len=*), intent(in) :: how
-      character(len=14) :: label
-
-      label = what
-      call print_line(screen, "   "//label//trim(how))
-   end subroutine tell
 end module dda_check

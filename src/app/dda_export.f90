@@ -11,12 +11,9 @@ module dda_export
    use dda_limerick_analysis, only : limerick_analysis_t
    use dda_line_model, only : line_model_t
    use dda_line_scene, only : cut_lines
-   use dda_line_text, only : has_one_law, line_losses, line_text
    use dda_process, only : deck_stem, exit_status, make_folder, worst_status
    use dda_read_deck, only : read_deck
    use dda_screen, only : print_line, screen_t
-   use dda_shape_check, only : check_form
-   use dda_shape_text, only : shape_losses, shape_text
    use dda_text, only : to_text
    use dda_write_limerick, only : ddaml_analysis, ddaml_geometry, plain_analysis, plain_geometry, &
       & write_text
@@ -24,6 +21,20 @@ module dda_export
    private
 
    public :: export_decks
+
+   interface
+
+      !> Export an arch of any shape, or blocks that were cut from lines, as a file of blocks
+      module subroutine export_blocks(command, stem, deck, status)
+         type(command_t), intent(in) :: command
+         !> Name of the file without its ending
+         character(len=*), intent(in) :: stem
+         type(deck_t), intent(in) :: deck
+         !> Exit status of the program
+         integer, intent(out) :: status
+      end subroutine export_blocks
+
+   end interface
 
 contains
 
@@ -94,44 +105,6 @@ contains
          if (.not. command%quiet) call tell(command%screen, stem, case_of_deck)
       end do
    end subroutine export_deck
-
-   !> Export an arch of any shape, or blocks that were cut from lines, as a file of blocks
-   subroutine export_blocks(command, stem, deck, status)
-      type(command_t), intent(in) :: command
-      !> Name of the file without its ending
-      character(len=*), intent(in) :: stem
-      type(deck_t), intent(in) :: deck
-      integer, intent(out) :: status
-      type(error_t), allocatable :: error
-      character(len=:), allocatable :: text, losses
-
-      status = exit_status%success
-      if (scene_kind(deck) == "shape") then
-         call check_form(deck, error)
-         if (.not. allocated(error)) text = shape_text(deck)
-         losses = shape_losses(deck)
-      else
-         if (.not. has_one_law(deck)) call deck_error(error, "expected joints of one law, got " &
-            & //"several: a file of blocks has laws of pairs of block materials; give the law by " &
-            & //"the keys of &joint", deck, place_of(deck, key_index("scene", "geometry")))
-         if (.not. allocated(error)) text = line_text(deck)
-         losses = line_losses(deck)
-      end if
-      if (allocated(error)) status = exit_status%bad_input
-      if (.not. allocated(error)) then
-         call write_text(stem//".blocks", text, error)
-         if (allocated(error)) status = exit_status%not_written
-      end if
-      if (allocated(error)) then
-         write (error_unit, "(a)") error_line(error)
-      else if (.not. command%quiet) then
-         call print_line(command%screen, stem//".blocks, for scene%kind = 'blocks'")
-         if (losses /= "") call print_line(command%screen, &
-            & "   a file of blocks has no place for "//losses)
-         if (deck%search%given) call print_line(command%screen, &
-            & "   the search is not written: the file holds the deck's own value of its parameter")
-      end if
-   end subroutine export_blocks
 
    !> Write geometry and analysis in both forms
    subroutine write_pair(stem, model, analysis, error)

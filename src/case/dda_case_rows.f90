@@ -1,19 +1,16 @@
 !> A computed case as rows of the result tables
 module dda_case_rows
-   use dda_block_rows, only : joint_rows, scale_to_one, tell_blocks, tell_mechanism_motion, &
-      & tell_roles, tell_total_motion
+   use dda_block_rows, only : joint_rows, tell_blocks, tell_mechanism_motion, tell_roles, &
+      & tell_total_motion
    use dda_block_scene, only : lacks_friction
    use dda_block_system, only : block_system_t
    use dda_case, only : case_t, searched_name
    use dda_contact_detection, only : contacts_t
-   use dda_contact_types, only : joint_t
    use dda_deck, only : deck_t, scene_kind
    use dda_deck_scene, only : movable_blocks
    use dda_error, only : error_line
    use dda_forward, only : outcome_t
    use dda_kinds, only : wp
-   use dda_mechanism, only : mechanism_of, mechanism_t
-   use dda_scene, only : build_once, scene_t, searched_load
    use dda_search, only : critical_t, decision_t, proof_t
    use dda_text, only : to_text
    use dda_verdict, only : verdict
@@ -64,6 +61,22 @@ module dda_case_rows
          character(len=*), intent(in) :: before
          character(len=:), allocatable :: remark
       end function jump_remark
+
+      !> Joints and blocks of the decision nearest to critical that stands, else of that which falls
+      pure module subroutine tell_nearest(this, joint_row, blocks)
+         type(case_t), intent(in) :: this
+         !> Rows of the joints: (n_joint), or (0) if there is nothing to tell
+         type(joint_row_t), allocatable, intent(inout) :: joint_row(:)
+         type(told_blocks_t), intent(inout) :: blocks
+      end subroutine tell_nearest
+
+      !> Fill the columns of a collapse
+      pure module subroutine tell_mechanism(fallen, joint_angle_deg, row)
+         type(decision_t), intent(in) :: fallen
+         !> Angle of each joint from the crown: (n_joint) [deg]
+         real(wp), intent(in) :: joint_angle_deg(:)
+         type(result_row_t), intent(inout) :: row
+      end subroutine tell_mechanism
 
    end interface
 
@@ -259,57 +272,6 @@ contains
       end associate
    end subroutine tell_search
 
-   !> Joints and blocks of the decision nearest to critical that stands, else of that which falls
-   pure subroutine tell_nearest(this, joint_row, blocks)
-      type(case_t), intent(in) :: this
-      type(joint_row_t), allocatable, intent(inout) :: joint_row(:)
-      type(told_blocks_t), intent(inout) :: blocks
-      type(scene_t) :: scene
-      type(joint_t), allocatable :: joint(:)
-
-      associate (critical => this%critical)
-         scene = this%scene
-         allocate (joint(0))
-         if (allocated(critical%standing)) then
-            ! a load coefficient changes no blocks
-            if (this%family%load == searched_load%none) then
-               scene = this%standing
-               call build_once(this%family, critical%stands, scene)
-            end if
-            if (allocated(critical%standing%contacts%joint)) then
-               joint = critical%standing%contacts%joint
-               joint_row = joint_rows(critical%standing%contacts, scene%joint_angle_deg, &
-                  & scene%origin)
-            end if
-         else if (allocated(critical%fallen)) then
-            joint = critical%fallen%contacts%joint
-            joint_row = joint_rows(critical%fallen%contacts, scene%joint_angle_deg, scene%origin)
-         end if
-         if (allocated(scene%system%equation)) call tell_blocks(scene, blocks)
-         if (.not. allocated(critical%fallen)) return
-         if (size(joint) > 0) call tell_roles(critical%fallen%contacts, joint, joint_row, &
-            & critical%fallen%outcome%motion)
-         call tell_fall(critical%fallen, scene, blocks)
-      end associate
-   end subroutine tell_nearest
-
-   !> Displacements of the blocks in the collapse nearest to critical
-   pure subroutine tell_fall(fallen, scene, blocks)
-      type(decision_t), intent(in) :: fallen
-      !> The scene that is told, at the value that stands if one does
-      type(scene_t), intent(in) :: scene
-      !> Its blocks; displacements are set where they are known
-      type(told_blocks_t), intent(inout) :: blocks
-
-      if (allocated(fallen%outcome%motion)) then
-         call tell_mechanism_motion(scene%system, fallen%outcome%motion, blocks)
-      else if (allocated(fallen%system%moved)) then
-         if (size(fallen%system%moved) /= size(blocks%corner)) return
-         call tell_total_motion(fallen%system, .true., blocks)
-         call scale_to_one(blocks%displacement)
-      end if
-   end subroutine tell_fall
-
    !> Fill the column of the condition number, if it was estimated
    pure subroutine tell_condition(outcome, row)
       type(outcome_t), intent(in) :: outcome
@@ -351,28 +313,6 @@ contains
          contacts = fallen%contacts
       end if
    end function fallen_contacts
-
-   !> Fill the columns of a collapse
-   pure subroutine tell_mechanism(fallen, joint_angle_deg, row)
-      type(decision_t), intent(in) :: fallen
-      !> Angle of each joint from the crown: (n_joint) [deg]
-      real(wp), intent(in) :: joint_angle_deg(:)
-      type(result_row_t), intent(inout) :: row
-      type(mechanism_t) :: mechanism
-
-      associate (outcome => fallen%outcome)
-         if (allocated(outcome%fallen)) then
-            call mechanism_of(outcome%fallen, joint_angle_deg, mechanism, outcome%motion)
-         else
-            call mechanism_of(fallen%contacts, joint_angle_deg, mechanism, outcome%motion)
-         end if
-      end associate
-      row%collapse_mode = mechanism%mode
-      row%sliding_share = some_number(mechanism%sliding_share)
-      row%intrados_hinge_deg = mechanism%intrados_deg
-      row%extrados_hinge_deg = mechanism%extrados_deg
-      row%springing_hinge = mechanism%springing
-   end subroutine tell_mechanism
 
    !> A verdict in a word
    pure function verdict_name(answer) result(name)

@@ -4,17 +4,12 @@ module dda_force_rows
    use dda_block_system, only : block_system_t
    use dda_case, only : case_t
    use dda_contact_detection, only : contacts_t
-   use dda_deformation, only : moved_point
    use dda_growing_text, only : add_line, growing_text_t, lines_of
    use dda_kinds, only : wp
    use dda_load_stations, only : last_history_time
-   use dda_outer_loads, only : outer_loads
-   use dda_reactions, only : force_on, forces_of_blocks, supports_of
-   use dda_settings, only : load_direction, settings_t
-   use dda_small_systems, only : least_squares
-   use dda_submatrices, only : body_load
+   use dda_reactions, only : forces_of_blocks, supports_of
+   use dda_settings, only : settings_t
    use dda_text, only : to_text
-   use dda_vector, only : cross
    use dda_verdict, only : verdict
    use dda_write_tables, only : reaction_lines
    implicit none
@@ -25,8 +20,26 @@ module dda_force_rows
    !> Names of the columns
    character(len=*), parameter :: bars_header = "case,time,bar,force,state"
 
-   !> Columns of which less than this share of the largest is left say nothing new
-   real(wp), parameter :: negligible = 1.0e-10_wp
+   interface
+
+      !> Reactions of the points of a block: what its joints and loads leave to them, shared by the
+      !> least forces
+      pure module subroutine share_among_points(settings, system, contacts, time, support, block, &
+         & reaction)
+         type(settings_t), intent(in) :: settings
+         type(block_system_t), intent(in) :: system
+         type(contacts_t), intent(in) :: contacts
+         !> The time [s]
+         real(wp), intent(in) :: time
+         !> The supports: (2, n)
+         integer, intent(in) :: support(:, :)
+         !> The block
+         integer, intent(in) :: block
+         !> Receives the reactions: (3, n)
+         real(wp), intent(inout) :: reaction(:, :)
+      end subroutine share_among_points
+
+   end interface
 
 contains
 
@@ -141,124 +154,4 @@ contains
          end do
       end associate
    end subroutine find_reactions
-
-   !> Reactions of the points of a block: what its joints and loads leave to them, shared by the
-   !> least forces
-   pure subroutine share_among_points(settings, system, contacts, time, support, block, reaction)
-      type(settings_t), intent(in) :: settings
-      type(block_system_t), intent(in) :: system
-      type(contacts_t), intent(in) :: contacts
-      real(wp), intent(in) :: time
-      integer, intent(in) :: support(:, :)
-      !> The block
-      integer, intent(in) :: block
-      !> Receives the reactions: (3, n)
-      real(wp), intent(inout) :: reaction(:, :)
-      real(wp) :: wanted(3), place(2), size_of
-      real(wp), allocatable :: column(:, :), force(:)
-      integer, allocatable :: owner(:)
-      integer :: axis, i, n
-
-      wanted = -outer_force(settings, system, time, block)
-      do i = 1, size(contacts%joint)
-         associate (joint => contacts%joint(i))
-            if (joint%block(1) == block) wanted = wanted - force_on(joint, contacts%force(:, i), 1)
-            if (joint%block(2) == block) wanted = wanted - force_on(joint, contacts%force(:, i), 2)
-         end associate
-      end do
-      allocate (column(3, 2*size(support, 2)), owner(2*size(support, 2)))
-      n = 0
-      do i = 1, size(support, 2)
-         if (support(1, i) /= block .or. support(2, i) == 0) cycle
-         associate (held => settings%boundary%held(support(2, i)))
-            place = held%point
-            if (settings%current) place = moved_point(held%point, system%centroid(:, block), &
-               & system%motion(:, block))
-            do axis = 1, 2
-               if (.not. held%along(axis)) cycle
-               n = n + 1
-               owner(n) = i
-               column(:, n) = merge([1.0_wp, 0.0_wp, -place(2)], [0.0_wp, 1.0_wp, place(1)], &
-                  & axis == 1)
-            end do
-         end associate
-      end do
-      ! moments are seen from the block, in its own size: the least forces do not depend on the
-      ! origin
-      place = system%centroid(:, block)
-      size_of = sqrt(system%area(block))
-      call move_moments(place, size_of, column(:, :n))
-      force = least_forces(column(:, :n), moved(wanted, place, size_of))
-      do i = 1, n
-         column(3, i) = size_of*column(3, i) + place(1)*column(2, i) - place(2)*column(1, i)
-         reaction(:, owner(i)) = reaction(:, owner(i)) + force(i)*column(:, i)
-      end do
-   end subroutine share_among_points
-
-   !> See the moments of some forces from another point, in a length
-   pure subroutine move_moments(place, length, column)
-      !> The point: (2) [m]
-      real(wp), intent(in) :: place(2)
-      !> The length [m]
-      real(wp), intent(in) :: length
-      !> The forces with their moments: (3, n)
-      real(wp), intent(inout) :: column(:, :)
-      integer :: i
-
-      do i = 1, size(column, 2)
-         column(:, i) = moved(column(:, i), place, length)
-      end do
-   end subroutine move_moments
-
-   !> A force with its moment seen from another point, in a length
-   pure function moved(wrench, place, length) result(seen)
-      !> Force, and moment about the origin: (3)
-      real(wp), intent(in) :: wrench(3)
-      real(wp), intent(in) :: place(2), length
-      !> The same with the other moment: (3)
-      real(wp) :: seen(3)
-
-      seen = [wrench(1:2), (wrench(3) - cross(place, wrench(1:2)))/length]
-   end function moved
-
-   !> The least of the forces that add up to what is wanted: x = A' y with A A' y = b
-   pure function least_forces(a, b) result(x)
-      !> What each force is to the block: (3, n)
-      real(wp), intent(in) :: a(:, :)
-      !> What is wanted: (3)
-      real(wp), intent(in) :: b(3)
-      !> The forces: (n)
-      real(wp) :: x(size(a, 2))
-
-      x = matmul(least_squares(matmul(a, transpose(a)), b, negligible), a)
-      ! once more, for what rounding has left
-      x = x + matmul(least_squares(matmul(a, transpose(a)), b - matmul(a, x), negligible), a)
-   end function least_forces
-
-   !> Sum of all loads on a block, and their moment about the origin of coordinates
-   pure function outer_force(settings, system, time, block) result(wrench)
-      type(settings_t), intent(in) :: settings
-      type(block_system_t), intent(in) :: system
-      real(wp), intent(in) :: time
-      !> The block, which can move
-      integer, intent(in) :: block
-      !> Force and moment: (3) [N/m, N/m, N]
-      real(wp) :: wrench(3)
-      real(wp) :: weight(3, maxval(system%equation)), of_block(6)
-      real(wp), dimension(3, maxval(system%equation)) :: load, felt
-      real(wp) :: place(2)
-      integer :: b
-
-      do b = 1, size(system%equation)
-         if (system%equation(b) == 0) cycle
-         of_block = body_load(system%unit_weight(b)*load_direction(settings), system%area(b))
-         weight(:, system%equation(b)) = of_block(:3)
-      end do
-      call outer_loads(system, settings, time, 1.0_wp, weight, load, felt)
-      wrench = load(:, system%equation(block))
-      place = system%centroid(:, block)
-      if (settings%current) place = place + system%motion(1:2, block)
-      wrench(3) = wrench(3) + cross(place, wrench(1:2))
-   end function outer_force
-
 end module dda_force_rows

@@ -1,8 +1,9 @@
 !> Critical value under the original's scheme: a bracket of two runs, halved
 submodule (dda_compute_case) dda_limerick_search
    use dda_deck, only : deck_t
-   use dda_deck_set, only : number_fits
+   use dda_deck_set, only : number_fits, put_number
    use dda_scene_plan, only : plan_scene
+   use dda_verdict, only : verdict
    implicit none
 
    !> First step away from the start, over the start; the steps double

@@ -1,23 +1,18 @@
 !> Checks of a deck that need its scene: whether its modes can run the blocks
 module dda_scene_check
-   use dda_block_scene, only : floating_block
-   use dda_deck, only : deck_error, deck_place_t, deck_t, file_beside, keeps_velocities, place_of
+   use dda_deck, only : deck_t, keeps_velocities
    use dda_deck_check_case, only : check_model
-   use dda_deck_keys, only : deck_key, key_index
+   use dda_deck_keys, only : key_index
    use dda_deck_scene, only : deck_scene
    use dda_deck_sweep, only : n_cases, turn_to_case
    use dda_error, only : error_t, fatal_error
    use dda_kinds, only : wp
    use dda_limerick_blocks, only : check_limerick_blocks
    use dda_line_scene, only : check_line_scene, cut_lines
-   use dda_live_loads, only : bears_live, check_live_points
    use dda_read_deck, only : geometry_file
-   use dda_restart, only : check_restart, load_restart
    use dda_scene, only : scene_t
    use dda_scene_plan, only : plan_scene
    use dda_shape_check, only : check_shapes
-   use dda_step_context, only : march_t
-   use dda_text, only : to_text
    use dda_warnings, only : add_warning, warnings_t
    use dda_watch, only : watch_t
    implicit none
@@ -25,8 +20,53 @@ module dda_scene_check
 
    public :: check_lines, check_scene
 
-   !> A block whose weight strains it more than this is doubtful
-   real(wp), parameter :: doubtful_strain = 1.0e-3_wp
+   interface
+
+      !> Check that live loads act on blocks that move, and that the load factor has loads
+      pure module subroutine check_live_cases(deck, error)
+         type(deck_t), intent(in) :: deck
+         type(error_t), allocatable, intent(out) :: error
+      end subroutine check_live_cases
+
+      !> Check the file that a run goes on from: a single case must be able to, of many each finds
+      !> out
+      module subroutine check_start(deck, error)
+         type(deck_t), intent(in) :: deck
+         type(error_t), allocatable, intent(out) :: error
+      end subroutine check_start
+
+   end interface
+
+   interface
+
+      !> Check that a static scene can come to rest at all
+      pure module subroutine check_support(deck, scene, error)
+         type(deck_t), intent(in) :: deck
+         type(scene_t), intent(in) :: scene
+         type(error_t), allocatable, intent(out) :: error
+      end subroutine check_support
+
+      !> Check that a deck can be run in stages
+      pure module subroutine check_stages(deck, error)
+         type(deck_t), intent(in) :: deck
+         type(error_t), allocatable, intent(out) :: error
+      end subroutine check_stages
+
+      !> Check that what may be crushed does not stand on corners, which bear nothing then
+      pure module subroutine check_widths(deck, scene, error)
+         type(deck_t), intent(in) :: deck
+         type(scene_t), intent(in) :: scene
+         type(error_t), allocatable, intent(out) :: error
+      end subroutine check_widths
+
+      !> Warn of blocks that will fall, and of units that are no metres
+      pure module subroutine doubt_scene(deck, scene, warnings)
+         type(deck_t), intent(in) :: deck
+         type(scene_t), intent(in) :: scene
+         type(warnings_t), intent(inout) :: warnings
+      end subroutine doubt_scene
+
+   end interface
 
 contains
 
@@ -49,71 +89,6 @@ contains
       if (allocated(error) .or. deck%scene%kind%word /= "blocks") return
       call check_modes(deck, scene, error)
    end subroutine check_scene
-
-   !> Check that live loads act on blocks that move, and that the load factor has loads
-   pure subroutine check_live_cases(deck, error)
-      type(deck_t), intent(in) :: deck
-      type(error_t), allocatable, intent(out) :: error
-      type(deck_place_t) :: place
-      type(deck_t) :: work
-      type(scene_t) :: scene
-      logical :: points, reshaped
-      integer :: number
-
-      place = factor_place(deck, "displacement_factor")
-      if (place%line > 0 .and. .not. leads_points(deck)) then
-         call deck_error(error, "load%displacement_factor needs a prescribed displacement, got "// &
-            & "none; add a displacement line to a file of blocks", deck, place)
-         return
-      end if
-      place = factor_place(deck, "load_factor")
-      points = deck%live%given .or. deck%vehicle%given
-      if (place%line == 0 .and. .not. points) return
-      reshaped = any(deck_key(deck%sweeps%parameter%key)%group == "arch" &
-         & .or. deck_key(deck%sweeps%parameter%key)%group == "fill")
-      do number = 1, n_cases(deck)
-         call turn_to_case(deck, number, work, error)
-         if (allocated(error)) return
-         if (place%line > 0 .and. .not. bears_live(work)) then
-            call deck_error(error, "load%load_factor needs a live load, got none; add "// &
-               & "&live, a live line of a file of blocks, or load%live_horizontal", deck, place)
-         else if (points) then
-            if (number == 1 .or. reshaped) call deck_scene(work, plan_scene(work), scene)
-            call check_live_points(work, scene, error)
-         end if
-         if (allocated(error)) return
-      end do
-   end subroutine check_live_cases
-
-   !> Whether a file of blocks leads a point
-   pure logical function leads_points(deck)
-      type(deck_t), intent(in) :: deck
-      integer :: i
-
-      leads_points = .false.
-      if (.not. allocated(deck%plan%boundary%held)) return
-      do i = 1, size(deck%plan%boundary%held)
-         associate (path => deck%plan%boundary%held(i)%path)
-            if (allocated(path%value)) leads_points = leads_points &
-               & .or. any(abs(path%value) > 0.0_wp)
-         end associate
-      end do
-   end function leads_points
-
-   !> Where a factor is given, swept or searched
-   pure type(deck_place_t) function factor_place(deck, name) result(place)
-      type(deck_t), intent(in) :: deck
-      !> Its key in &load
-      character(len=*), intent(in) :: name
-      integer :: key, s
-
-      key = key_index("load", name)
-      if (deck%value(key)%given) place = deck%value(key)%place
-      do s = 1, size(deck%sweeps)
-         if (deck%sweeps(s)%parameter%key == key) place = deck%sweeps(s)%place
-      end do
-      if (deck%searched%key == key) place = place_of(deck, key_index("search", "parameter"))
-   end function factor_place
 
    !> Check that the modes of a deck can run the blocks that were cut from its lines
    pure subroutine check_lines(deck, error)
@@ -184,29 +159,6 @@ contains
       end select
    end subroutine check_mode
 
-   !> Check the file that a run goes on from: a single case must be able to, of many each finds out
-   subroutine check_start(deck, error)
-      type(deck_t), intent(in) :: deck
-      type(error_t), allocatable, intent(out) :: error
-      character(len=:), allocatable :: name
-      type(scene_t) :: scene
-      type(march_t) :: march
-      logical :: exists
-
-      name = deck%analysis%restart%text
-      inquire (file=file_beside(deck, name), exist=exists)
-      if (.not. exists) then
-         call deck_error(error, "there is no restart file '"//name//"'; check the name", deck, &
-            & place_of(deck, key_index("analysis", "restart")))
-      else if (n_cases(deck) == 1) then
-         call deck_scene(deck, plan_scene(deck), scene)
-         call load_restart(file_beside(deck, name), scene%settings, scene%system, &
-            & scene%contacts, march, error)
-      else
-         call check_restart(file_beside(deck, name), error)
-      end if
-   end subroutine check_start
-
    !> Whether anything bears on the blocks of a static scene
    pure subroutine check_loads(deck, scene, error)
       type(deck_t), intent(in) :: deck
@@ -232,112 +184,4 @@ contains
          & "unit_weight, and no point has a load or a prescribed displacement; add one", &
          & geometry_file(deck), 1)
    end subroutine check_loads
-
-   !> Check that a static scene can come to rest at all
-   pure subroutine check_support(deck, scene, error)
-      type(deck_t), intent(in) :: deck
-      type(scene_t), intent(in) :: scene
-      type(error_t), allocatable, intent(out) :: error
-      integer :: b
-
-      b = floating_block(scene)
-      if (b > 0) call fatal_error(error, "block "//to_text(b)//" has no support: no chain of "// &
-         & "joints ties it to a fixed block, as mode = 'static' needs; add a joint or remove it", &
-         & geometry_file(deck), deck%plan%line(b))
-   end subroutine check_support
-
-   !> Check that a deck can be run in stages
-   pure subroutine check_stages(deck, error)
-      type(deck_t), intent(in) :: deck
-      type(error_t), allocatable, intent(out) :: error
-      character(len=:), allocatable :: problem
-
-      problem = ""
-      if (deck%search%given) then
-         problem = "a search needs blocks that stay"
-      else if (deck%analysis%mode%word == "limerick") then
-         problem = "mode = 'limerick' knows no blocks that come or go"
-      else if (deck%output%energy%flag) then
-         problem = "output%energy needs blocks that stay"
-      else if (deck%output%reactions%given .and. deck%output%reactions%flag &
-         & .and. deck%analysis%mode%word == "dynamic") then
-         problem = "output%reactions of a dynamic run needs blocks that stay"
-      else if ((deck%material%compressive_strength%given .or. any(deck%plan%materials%given(5))) &
-         & .and. deck%analysis%flow%word /= "associated") then
-         problem = "blocks with a compressive_strength need flow = 'associated' where some "// &
-            & "come or go"
-      else if ((deck%analysis%mode%word == "dynamic") &
-         & .neqv. deck%analysis%geometry%word == "current") then
-         problem = "stages need mode = 'static' with geometry = 'reference', or mode = 'dynamic' " &
-            & //"with geometry = 'current'"
-      end if
-      if (len(problem) > 0) call fatal_error(error, problem//"; change it or remove this line", &
-         & geometry_file(deck), deck%plan%boundary%change(1)%line)
-   end subroutine check_stages
-
-   !> Check that what may be crushed does not stand on corners, which bear nothing then
-   pure subroutine check_widths(deck, scene, error)
-      type(deck_t), intent(in) :: deck
-      type(scene_t), intent(in) :: scene
-      type(error_t), allocatable, intent(out) :: error
-      integer :: j
-
-      do j = 1, size(scene%contacts%joint)
-         associate (joint => scene%contacts%joint(j))
-            if (.not. (joint%law%strength < huge(1.0_wp) .and. joint%n_contact == 1)) cycle
-            call fatal_error(error, "compressive_strength needs joints with a width, got a "// &
-               & "corner of blocks "//to_text(joint%block(1))//" and "//to_text(joint%block(2)) &
-               & //" on an edge, which any force crushes; cut the corner off, or remove "// &
-               & "compressive_strength", geometry_file(deck), deck%plan%line(joint%block(1)))
-            return
-         end associate
-      end do
-   end subroutine check_widths
-
-   !> Warn of blocks that will fall, and of units that are no metres
-   pure subroutine doubt_scene(deck, scene, warnings)
-      type(deck_t), intent(in) :: deck
-      type(scene_t), intent(in) :: scene
-      type(warnings_t), intent(inout) :: warnings
-      integer :: b
-
-      call doubt_units(deck, scene, warnings)
-      b = floating_block(scene)
-      if (b > 0 .and. any(deck%plan%fixed)) call add_warning(warnings, "block " &
-         & //to_text(b)//" has no support and falls freely", geometry_file(deck), &
-         & deck%plan%line(b))
-      if (any(deck%plan%fixed)) return
-      b = 0
-      if (allocated(deck%plan%boundary%held)) b = size(deck%plan%boundary%held)
-      if (b == 0) call add_warning(warnings, "nothing is fixed", geometry_file(deck), 1)
-   end subroutine doubt_scene
-
-   !> Warn where the weight of the blocks would strain them as no masonry is strained: lengths are
-   !> then often millimetres
-   pure subroutine doubt_units(deck, scene, warnings)
-      type(deck_t), intent(in) :: deck
-      type(scene_t), intent(in) :: scene
-      type(warnings_t), intent(inout) :: warnings
-      character(len=10) :: figure
-      real(wp) :: height, strain
-      integer :: b
-
-      strain = 0.0_wp
-      associate (system => scene%system)
-         do b = 1, size(system%area)
-            if (system%equation(b) == 0) cycle
-            associate (vertex => system%vertex(:, &
-               & system%first_vertex(b):system%first_vertex(b + 1) - 1))
-               height = maxval(maxval(vertex, dim=2) - minval(vertex, dim=2))
-            end associate
-            strain = max(strain, system%unit_weight(b)*height &
-               & /system%materials(system%material(b))%young)
-         end do
-      end associate
-      if (.not. strain > doubtful_strain) return
-      write (figure, "(es10.1)") strain
-      call add_warning(warnings, "the weight of a block strains it by "// &
-         & trim(adjustl(figure))//": lengths, weights or young in other units than m, N, Pa?", &
-         & geometry_file(deck), 1)
-   end subroutine doubt_units
 end module dda_scene_check

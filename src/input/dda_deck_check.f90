@@ -2,14 +2,18 @@
 !> sweep), and check what it searches and sweeps, then every case, before anything is computed
 submodule (dda_read_deck) dda_deck_check
    use dda_case_choice, only : choose_cases
-   use dda_deck, only : ground_record_t, place_of
+   use dda_deck, only : deck_error, ground_record_t, place_of
    use dda_deck_check_case, only : check_case
-   use dda_deck_key, only : key_t
+   use dda_deck_key, only : key_kind, key_t
+   use dda_deck_keys, only : deck_key
    use dda_deck_parameter, only : parameter_name
    use dda_deck_sweep, only : turn_to_case
+   use dda_deck_token, only : shown
+   use dda_deck_words, only : full_name
    use dda_kinds, only : wp
    use dda_read_limerick, only : check_materials, read_analysis, read_geometry
    use dda_read_record, only : column_size, read_record
+   use dda_text, only : to_text
    implicit none
 
 contains

@@ -1,10 +1,13 @@
 !> The values of one key: tokens of the right kind and number into a deck
 submodule (dda_read_deck) dda_deck_entry
-   use dda_deck_key, only : max_items, word_length
-   use dda_deck_set, only : number_problem, put_number, put_numbers
-   use dda_deck_words, only : or_leave_out, wanted
+   use dda_deck, only : deck_error
+   use dda_deck_key, only : key_kind, max_items, word_length
+   use dda_deck_keys, only : deck_key
+   use dda_deck_set, only : number_problem, put_number, put_numbers, put_text
+   use dda_deck_token, only : shown, token_kind, token_text
+   use dda_deck_words, only : full_name, or_leave_out, wanted
    use dda_kinds, only : wp
-   use dda_text, only : lower_case, read_integer, read_number
+   use dda_text, only : lower_case, read_integer, read_number, to_text
    implicit none
 
 contains

@@ -1,20 +1,16 @@
 !> Read a deck: file, --set values, sweeps, and every check before anything is computed
 module dda_read_deck
-   use dda_deck, only : add_file_mark, deck_error, deck_place_t, deck_t, file_beside, parameter_t
+   use dda_deck, only : add_file_mark, deck_place_t, deck_t, file_beside, parameter_t
    use dda_deck_check_loads, only : check_block_file
-   use dda_deck_key, only : key_kind
-   use dda_deck_keys, only : deck_key, group_index, key_index
-   use dda_deck_parameter, only : find_parameter, split_name
-   use dda_deck_scan, only : scan_deck, scan_values
-   use dda_deck_set, only : put_text
-   use dda_deck_sweep, only : add_sweep, few_cases, n_cases
-   use dda_deck_token, only : deck_scan_t, shown, token_kind, token_text
+   use dda_deck_keys, only : group_index, key_index
+   use dda_deck_parameter, only : find_parameter
+   use dda_deck_scan, only : scan_deck
+   use dda_deck_sweep, only : few_cases, n_cases
+   use dda_deck_token, only : deck_scan_t
    use dda_deck_values, only : name_values, new_deck
-   use dda_deck_words, only : full_name, near_group, near_key
    use dda_error, only : error_t
    use dda_file_mark, only : file_mark, text_mark
    use dda_read_blocks, only : parse_blocks
-   use dda_text, only : to_text
    use dda_text_file, only : read_text_file
    use dda_watch, only : watch_t
    implicit none
@@ -77,6 +73,24 @@ module dda_read_deck
          !> The first thing that is wrong
          type(error_t), allocatable, intent(out) :: error
       end subroutine check_deck
+
+      !> Read one group
+      pure module subroutine read_group(scan, i, deck, error)
+         type(deck_scan_t), intent(in) :: scan
+         !> Token of the group; then the token after the group
+         integer, intent(inout) :: i
+         type(deck_t), intent(inout) :: deck
+         type(error_t), allocatable, intent(out) :: error
+      end subroutine read_group
+
+      !> Put the value of a --set into the deck
+      pure module subroutine apply_setting(setting, place, deck, error)
+         !> Such as arch%radius=5.0
+         character(len=*), intent(in) :: setting
+         type(deck_place_t), intent(in) :: place
+         type(deck_t), intent(inout) :: deck
+         type(error_t), allocatable, intent(out) :: error
+      end subroutine apply_setting
 
    end interface
 
@@ -181,176 +195,4 @@ contains
       end associate
       call name_values(deck)
    end subroutine parse_deck
-
-   !> Read one group
-   pure subroutine read_group(scan, i, deck, error)
-      type(deck_scan_t), intent(in) :: scan
-      !> Token of the group; then the token after the group
-      integer, intent(inout) :: i
-      type(deck_t), intent(inout) :: deck
-      type(error_t), allocatable, intent(out) :: error
-      character(len=:), allocatable :: name
-      type(deck_place_t) :: place
-      integer :: g
-
-      name = token_text(scan, i)
-      place%line = scan%token(i)%line
-      g = group_index(name)
-      if (g == 0) then
-         call deck_error(error, "unknown group &"//shown(name)//": "//near_group(name), deck, place)
-         return
-      else if (deck%group(g)%line > 0 .and. name /= "sweep") then
-         call deck_error(error, "group &"//name//" is repeated: the first is in line "// &
-            to_text(deck%group(g)%line)//"; join the two", deck, place)
-         return
-      end if
-      deck%group(g) = place
-      i = i + 1
-      do while (scan%token(i)%kind /= token_kind%close)
-         call read_entry(scan, i, name, deck, error)
-         if (allocated(error)) return
-      end do
-      i = i + 1
-      if (name == "sweep") call add_sweep(deck, place, error)
-   end subroutine read_group
-
-   !> Read one key and its values
-   pure subroutine read_entry(scan, i, group, deck, error)
-      type(deck_scan_t), intent(in) :: scan
-      !> Token of the key; then the token after its values
-      integer, intent(inout) :: i
-      !> Name of the group
-      character(len=*), intent(in) :: group
-      type(deck_t), intent(inout) :: deck
-      type(error_t), allocatable, intent(out) :: error
-      type(deck_place_t) :: place
-      integer :: key, first
-
-      place%line = scan%token(i)%line
-      if (scan%token(i)%kind /= token_kind%key) then
-         call deck_error(error, "expected key = value in &"//group//", got '"// &
-            shown(token_text(scan, i))//"'; write a key, '=' and its value", deck, place)
-         return
-      end if
-      call find_key(group, token_text(scan, i), deck, place, key, error)
-      if (allocated(error)) return
-      if (deck%value(key)%given) then
-         call deck_error(error, full_name(deck_key(key))//" is repeated: the first is in line "// &
-            to_text(deck%value(key)%place%line)//"; remove one of them", deck, place)
-         return
-      end if
-      first = i + 1
-      i = first
-      do while (is_value(scan, i))
-         i = i + 1
-      end do
-      call read_values(scan, first, i - 1, parameter_t(key, 0), place, deck, error)
-   end subroutine read_entry
-
-   !> Whether a token stands for a value, be it an empty one
-   pure logical function is_value(scan, i)
-      type(deck_scan_t), intent(in) :: scan
-      !> Place of the token
-      integer, intent(in) :: i
-
-      is_value = any(scan%token(i)%kind == [token_kind%word, token_kind%quoted, token_kind%nothing])
-   end function is_value
-
-   !> Find a key of a known group
-   pure subroutine find_key(group, name, deck, place, key, error)
-      character(len=*), intent(in) :: group
-      !> Name of the key
-      character(len=*), intent(in) :: name
-      type(deck_t), intent(in) :: deck
-      type(deck_place_t), intent(in) :: place
-      !> Place in the registry
-      integer, intent(out) :: key
-      type(error_t), allocatable, intent(out) :: error
-      integer :: open
-
-      key = key_index(group, name)
-      open = index(name//"(", "(")
-      if (key == 0 .and. key_index(group, name(:open - 1)) > 0) then
-         call deck_error(error, "expected the whole list, "//name(:open - 1)//" = ..., got "// &
-            shown(name)//"; write all of its items", deck, place)
-      else if (key == 0) then
-         call deck_error(error, "unknown key '"//shown(name)//"' in &"//group//": "// &
-            near_key(name, group), deck, place)
-      else if (deck_key(key)%kind == key_kind%later) then
-         call deck_error(error, full_name(deck_key(key))//" is not yet there. It will be: "// &
-            trim(deck_key(key)%meaning)//" Remove it", deck, place)
-      end if
-   end subroutine find_key
-
-   !> Put the value of a --set into the deck
-   pure subroutine apply_setting(setting, place, deck, error)
-      !> Such as arch%radius=5.0
-      character(len=*), intent(in) :: setting
-      type(deck_place_t), intent(in) :: place
-      type(deck_t), intent(inout) :: deck
-      type(error_t), allocatable, intent(out) :: error
-      character(len=:), allocatable :: group, name
-      type(parameter_t) :: parameter
-      integer :: equals
-      logical :: ok
-
-      equals = index(setting, "=")
-      call split_name(setting(:max(equals - 1, 0)), group, name, parameter%item, ok)
-      if (.not. ok .or. equals == 0 .or. len(group) == 0 .or. has_control(setting)) then
-         call deck_error(error, "expected group%key=value, got '"//shown(setting)// &
-            "'; write it like arch%radius=5.0", deck, place)
-      else if (group == "sweep") then
-         call deck_error(error, "&sweep cannot be set; change the deck", deck, place)
-      else if (group_index(group) == 0) then
-         call deck_error(error, "unknown group &"//shown(group)//": "//near_group(group), &
-            deck, place)
-      else
-         call find_key(group, name, deck, place, parameter%key, error)
-         if (.not. allocated(error)) call set_value(setting(equals + 1:), parameter, place, &
-            deck, error)
-      end if
-   end subroutine apply_setting
-
-   !> Whether a text holds control characters
-   pure logical function has_control(text)
-      !> Any text
-      character(len=*), intent(in) :: text
-      integer :: i
-
-      has_control = any([(ichar(text(i:i)) < 32 .or. ichar(text(i:i)) == 127, i=1, len(text))])
-   end function has_control
-
-   !> Put the text after the equals sign of a --set into its key
-   pure subroutine set_value(text, parameter, place, deck, error)
-      !> The value as a namelist would have it; a word or a text may lack its quotes
-      character(len=*), intent(in) :: text
-      !> The key, with its item if one is set
-      type(parameter_t), intent(in) :: parameter
-      type(deck_place_t), intent(in) :: place
-      type(deck_t), intent(inout) :: deck
-      type(error_t), allocatable, intent(out) :: error
-      type(deck_scan_t) :: scan
-      logical :: is_text, has_quotes
-      integer :: g
-
-      is_text = any(deck_key(parameter%key)%kind == [key_kind%text, key_kind%word])
-      has_quotes = index(adjustl(text), "'") == 1 .or. index(adjustl(text), """") == 1
-      if (is_text .and. .not. has_quotes) then
-         call put_text(deck, parameter, trim(adjustl(text)), place, error)
-      else if (parameter%item > 0 .and. deck_key(parameter%key)%kind /= key_kind%numbers) then
-         call deck_error(error, full_name(deck_key(parameter%key))//" has no items; remove "// &
-            "the parentheses", deck, place)
-      else
-         call scan_values(text, scan, error)
-         if (allocated(error)) then
-            error%file = "--set"
-            error%line = place%line
-            return
-         end if
-         call read_values(scan, 1, scan%n, parameter, place, deck, error)
-      end if
-      if (allocated(error)) return
-      g = group_index(deck_key(parameter%key)%group)
-      if (deck%group(g)%line == 0) deck%group(g) = place
-   end subroutine set_value
 end module dda_read_deck

@@ -1,29 +1,21 @@
 !> From a deck of any kind to its scene
 module dda_deck_scene
-   use dda_arch_assembly, only : arch_assembly_t, n_movable
-   use dda_arch_chain, only : arch_chain, arch_numbers_t, arch_rays_t
+   use dda_arch_assembly, only : n_movable
+   use dda_arch_chain, only : arch_numbers_t, arch_rays_t
    use dda_arch_form, only : arch_form_t, form_problem_t
-   use dda_arch_scene, only : arch_numbers, arch_scene, half_joints_deg, joint_angles_deg, &
-      & material_of, settings_of, unit_weight
+   use dda_arch_scene, only : arch_scene, joint_angles_deg
    use dda_block_input, only : block_plan_t
-   use dda_block_scene, only : base_t, block_scene
    use dda_boundary, only : history_t
    use dda_chain, only : chain_t
    use dda_deck, only : deck_t, parameter_t, scene_kind
-   use dda_deck_keys, only : key_index
-   use dda_deck_set, only : number_fits, put_number
-   use dda_error, only : error_t, fatal_error
-   use dda_fill_loads, only : add_fill_weight, fill_of, fill_t, press_fill
-   use dda_ground_motion, only : acceleration_of_displacement, acceleration_of_record, &
-      & acceleration_of_velocity
-   use dda_kinds, only : degree, pi, wp
+   use dda_error, only : error_t
+   use dda_kinds, only : wp
    use dda_line_scene, only : held_blocks, line_scene
-   use dda_live_loads, only : add_live_loads, check_live_points
-   use dda_scene, only : family_t, scene_t, searched_load
-   use dda_scene_plan, only : plan_scene, scene_plan_t
-   use dda_settings, only : load_direction, settings_t
-   use dda_shape_scene, only : add_lune_weights, find_crown_joint, shape_assembly, shape_form
-   use dda_tie_bars, only : add_ties
+   use dda_live_loads, only : add_live_loads
+   use dda_scene, only : family_t, scene_t
+   use dda_scene_plan, only : scene_plan_t
+   use dda_settings, only : settings_t
+   use dda_shape_scene, only : shape_form
    implicit none
    private
 
@@ -52,83 +44,63 @@ module dda_deck_scene
       procedure :: build => build_deck_scene
    end type deck_family_t
 
-   !> Points of a period of a sine
-   integer, parameter :: points = 360
-   !> Length of the jump at the end of a pulse, over its duration
-   real(wp), parameter :: jump = 1.0e-9_wp
+   interface
+
+      !> Give the ground of a scene the motion that &ground asks for
+      pure module subroutine move_ground(deck, acceleration)
+         type(deck_t), intent(in) :: deck
+         !> Acceleration of the ground: that of the file of blocks in, that of the case out
+         type(history_t), intent(inout) :: acceleration
+      end subroutine move_ground
+
+      !> Make a deck a family, its numbers read
+      pure module subroutine new_family(plan, parameter, family)
+         type(scene_plan_t), intent(in) :: plan
+         type(parameter_t), intent(in) :: parameter
+         !> New but for the deck
+         type(deck_family_t), intent(inout) :: family
+      end subroutine new_family
+
+      !> Make the chain of one thickness ratio
+      pure module subroutine link_arch(family, value, settings, chain, linked)
+         class(deck_family_t), intent(in) :: family
+         !> The thickness ratio
+         real(wp), intent(in) :: value
+         type(settings_t), intent(out) :: settings
+         !> Any chain in, whose arrays are used again where they fit
+         type(chain_t), intent(inout) :: chain
+         !> Whether the scenes are chains, and one has this value
+         logical, intent(out) :: linked
+      end subroutine link_arch
+
+      !> Make the scene of one value of the parameter
+      pure module subroutine build_deck_scene(family, value, scene, error)
+         class(deck_family_t), intent(in) :: family
+         !> Value of its parameter
+         real(wp), intent(in) :: value
+         type(scene_t), intent(out) :: scene
+         type(error_t), allocatable, intent(out) :: error
+      end subroutine build_deck_scene
+
+      !> The scene of an arch of any shape
+      pure module subroutine shape_scene(deck, plan, scene)
+         type(deck_t), intent(in) :: deck
+         type(scene_plan_t), intent(in) :: plan
+         !> The scene; of an arch that cannot be, without blocks
+         type(scene_t), intent(out) :: scene
+      end subroutine shape_scene
+
+      !> The scene of blocks as a file or an arch gives them
+      pure module subroutine file_scene(deck, plan, blocks, scene)
+         type(deck_t), intent(in) :: deck
+         type(scene_plan_t), intent(in) :: plan
+         type(block_plan_t), intent(in) :: blocks
+         type(scene_t), intent(out) :: scene
+      end subroutine file_scene
+
+   end interface
 
 contains
-
-   !> Make a deck a family, its numbers read
-   pure subroutine new_family(plan, parameter, family)
-      type(scene_plan_t), intent(in) :: plan
-      type(parameter_t), intent(in) :: parameter
-      !> New but for the deck
-      type(deck_family_t), intent(inout) :: family
-
-      family%parameter = parameter
-      if (parameter%key == key_index("load", "horizontal_coefficient")) &
-         & family%load = searched_load%push
-      if (parameter%key == key_index("load", "gravity_direction_deg")) &
-         & family%load = searched_load%tilt
-      if (parameter%key == key_index("load", "load_factor")) family%load = searched_load%factor
-      family%chains = plan%row .and. parameter%key == key_index("arch", "thickness_ratio")
-      family%decides_chains = family%chains .and. plan%chain
-      if (.not. family%chains) return
-      associate (deck => family%deck)
-         family%settings = settings_of(deck, plan, degree*deck%arch%half_angle_deg%number, &
-            & size(half_joints_deg(deck)))
-         family%numbers = arch_numbers(deck)
-         family%numbers%body_force = unit_weight(deck)*load_direction(family%settings)
-         family%numbers%halved = family%decides_chains .and. plan%halved
-         allocate (family%joint_angle_deg, source=joint_angles_deg(deck))
-      end associate
-   end subroutine new_family
-
-   !> Make the chain of one thickness ratio
-   pure subroutine link_arch(family, value, settings, chain, linked)
-      class(deck_family_t), intent(in) :: family
-      !> The thickness ratio
-      real(wp), intent(in) :: value
-      type(settings_t), intent(out) :: settings
-      !> Any chain in, whose arrays are used again where they fit
-      type(chain_t), intent(inout) :: chain
-      !> Whether the scenes are chains, and one has this value
-      logical, intent(out) :: linked
-
-      linked = family%chains
-      if (linked) linked = number_fits(family%parameter%key, value)
-      if (.not. linked) return
-      settings = family%settings
-      call arch_chain(family%numbers, family%rays, value, chain)
-   end subroutine link_arch
-
-   !> Make the scene of one value of the parameter
-   pure subroutine build_deck_scene(family, value, scene, error)
-      class(deck_family_t), intent(in) :: family
-      !> Value of its parameter
-      real(wp), intent(in) :: value
-      type(scene_t), intent(out) :: scene
-      type(error_t), allocatable, intent(out) :: error
-      type(deck_t) :: deck
-      type(arch_assembly_t) :: assembly
-      type(form_problem_t) :: problem
-
-      if (.not. number_fits(family%parameter%key, value)) then
-         call fatal_error(error, "the searched parameter cannot have this value")
-         return
-      end if
-      deck = family%deck
-      call put_number(deck, family%parameter, value, deck%value(family%parameter%key)%place, error)
-      if (allocated(error)) return
-      if (scene_kind(deck) == "shape") call shape_assembly(deck, assembly, problem)
-      if (len_trim(problem%text) > 0) then
-         call fatal_error(error, "the searched parameter makes no arch of this value")
-         return
-      end if
-      call deck_scene(deck, plan_scene(deck), scene)
-      call check_live_points(deck, scene, error)
-   end subroutine build_deck_scene
 
    !> The scene that the deck of one case describes
    pure subroutine deck_scene(deck, plan, scene)
@@ -150,32 +122,6 @@ contains
       if (scene_kind(deck) /= "shape") call add_live_loads(deck, scene)
    end subroutine deck_scene
 
-   !> The scene of an arch of any shape
-   pure subroutine shape_scene(deck, plan, scene)
-      type(deck_t), intent(in) :: deck
-      type(scene_plan_t), intent(in) :: plan
-      !> The scene; of an arch that cannot be, without blocks
-      type(scene_t), intent(out) :: scene
-      type(arch_assembly_t) :: assembly
-      type(form_problem_t) :: problem
-      type(fill_t) :: fill
-
-      call shape_assembly(deck, assembly, problem)
-      if (len_trim(problem%text) > 0) return
-      if (deck%tie%given) call add_ties(deck, assembly%plan)
-      call file_scene(deck, plan, assembly%plan, scene)
-      call find_crown_joint(assembly, scene)
-      if (deck%arch%lune_deg%given) call add_lune_weights(deck%arch%lune_deg%number, scene)
-      if (deck%fill%given) then
-         fill = fill_of(deck, assembly)
-         call add_fill_weight(fill, scene)
-         call add_live_loads(deck, scene, fill)
-         call press_fill(fill, scene)
-      else
-         call add_live_loads(deck, scene)
-      end if
-   end subroutine shape_scene
-
    !> Number of blocks that can move in the scene of a case
    pure integer function movable_blocks(deck)
       type(deck_t), intent(in) :: deck
@@ -193,123 +139,4 @@ contains
          movable_blocks = size(joint_angles_deg(deck)) - 1
       end if
    end function movable_blocks
-
-   !> The scene of blocks as a file or an arch gives them
-   pure subroutine file_scene(deck, plan, blocks, scene)
-      type(deck_t), intent(in) :: deck
-      type(scene_plan_t), intent(in) :: plan
-      type(block_plan_t), intent(in) :: blocks
-      type(scene_t), intent(out) :: scene
-      type(base_t) :: base
-      integer :: i
-
-      base%material = material_of(deck)
-      base%unit_weight = unit_weight(deck)
-      base%gravity = deck%load%gravity%number
-      base%law = [deck%joint%friction_deg%number, deck%joint%cohesion%number, &
-         & deck%joint%tension%number, 90.0_wp, deck%joint%slip_length%number]
-      if (deck%joint%residual_deg%given) base%law(4) = deck%joint%residual_deg%number
-      base%water_rise = deck%load%water_rise%number
-      scene%settings = settings_of(deck, plan, pi/2.0_wp, size(blocks%fixed))
-      call block_scene(blocks, base, scene)
-      if (.not. deck%load%displacement_factor%given) return
-      if (.not. allocated(scene%settings%boundary%held)) return
-      do i = 1, size(scene%settings%boundary%held)
-         associate (path => scene%settings%boundary%held(i)%path)
-            if (allocated(path%value)) path%value = deck%load%displacement_factor%number*path%value
-         end associate
-      end do
-   end subroutine file_scene
-
-   !> Give the ground of a scene the motion that &ground asks for
-   pure subroutine move_ground(deck, acceleration)
-      type(deck_t), intent(in) :: deck
-      !> Acceleration of the ground: that of the file of blocks in, that of the case out
-      type(history_t), intent(inout) :: acceleration
-
-      if (deck%ground%pulse%given) then
-         acceleration = pulse_of(deck)
-      else if (deck%ground%record%given) then
-         acceleration = record_of(deck)
-      end if
-      if (allocated(acceleration%value)) &
-         & acceleration%value = deck%ground%scale%number*acceleration%value
-   end subroutine move_ground
-
-   !> A pulse. What is constant before its beginning and after its end is no time of the run, and
-   !> nothing
-   pure type(history_t) function pulse_of(deck) result(pulse)
-      type(deck_t), intent(in) :: deck
-      real(wp) :: duration, frequency, along(2)
-      integer :: i, n
-
-      along = deck%ground%amplitude%number*direction_of(deck)
-      duration = deck%ground%duration%number
-      frequency = deck%ground%frequency%number
-      if (deck%ground%pulse%word == "sine") then
-         if (.not. deck%ground%duration%given) duration = 1.0_wp/frequency
-         n = max(points, ceiling(min(1.0e5_wp, real(points, wp)*frequency*duration)))
-         allocate (pulse%time(n + 2), pulse%value(2, n + 2))
-         do i = 0, n
-            pulse%time(i + 1) = duration*real(i, wp)/real(n, wp)
-            pulse%value(:, i + 1) = along*swell(pi*frequency*duration/real(n, wp)) &
-               & *sin(2.0_wp*pi*frequency*pulse%time(i + 1))
-         end do
-      else
-         n = 1
-         allocate (pulse%time(3), pulse%value(2, 3))
-         pulse%time(:2) = [0.0_wp, duration]
-         pulse%value(:, :2) = spread(along, 2, 2)
-      end if
-      pulse%time(n + 2) = (1.0_wp + jump)*duration
-      pulse%value(:, n + 2) = 0.0_wp
-   end function pulse_of
-
-   !> By how much the corners of a broken line lie outside its sine, that it have the same impulse
-   pure real(wp) function swell(half_step)
-      !> Half the angle from corner to corner [rad]
-      real(wp), intent(in) :: half_step
-
-      swell = tan(half_step)/half_step
-   end function swell
-
-   !> Unit vector of the direction of a pulse; the four main ones are free of rounding
-   pure function direction_of(deck) result(direction)
-      type(deck_t), intent(in) :: deck
-      !> Components along x and y: (2)
-      real(wp) :: direction(2)
-
-      direction = degree*deck%ground%direction_deg%number
-      direction = [cos(direction(1)), sin(direction(1))]
-      where (abs(direction) < epsilon(1.0_wp)) direction = 0.0_wp
-   end function direction_of
-
-   !> The record of the case as an acceleration, turned, and brought to its amplitude if one is
-   !> given; none before its first time and after its last
-   pure type(history_t) function record_of(deck) result(acceleration)
-      type(deck_t), intent(in) :: deck
-      type(history_t) :: motion
-      real(wp) :: turn(2, 2), largest
-      integer :: i
-
-      do i = 1, size(deck%ground_record)
-         if (deck%ground_record(i)%name == deck%ground%record%text) &
-            & motion = deck%ground_record(i)%motion
-      end do
-      turn(:, 1) = direction_of(deck)
-      turn(:, 2) = [-turn(2, 1), turn(1, 1)]
-      motion%value = deck%ground%unit%number*matmul(turn, motion%value)
-      select case (deck%ground%quantity%word)
-      case ("velocity")
-         acceleration = acceleration_of_velocity(motion)
-      case ("displacement")
-         acceleration = acceleration_of_displacement(motion)
-      case default
-         acceleration = acceleration_of_record(motion)
-      end select
-      if (.not. deck%ground%amplitude%given) return
-      largest = maxval(norm2(acceleration%value, dim=1))
-      if (largest > 0.0_wp) acceleration%value = deck%ground%amplitude%number/largest &
-         & *acceleration%value
-   end function record_of
 end module dda_deck_scene

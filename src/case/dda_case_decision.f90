@@ -1,0 +1,97 @@
+!> The decision of a case: as a chain, stage by stage, or from where an earlier run has ended; and
+!> the scene that its tables and pictures need
+submodule (dda_compute_case) dda_case_decision
+   use dda_chain, only : chain_t
+   use dda_chain_decision, only : decide_chain
+   use dda_chain_unfold, only : unfold
+   use dda_contact_detection, only : contacts_t
+   use dda_decision, only : decide_in_stages
+   use dda_deck, only : parameter_t
+   use dda_deck_keys, only : key_index
+   use dda_deck_set, only : put_number
+   use dda_mechanism, only : follow_collapse
+   use dda_restart, only : load_restart
+   use dda_settings, only : settings_t
+   use dda_verdict, only : verdict
+   implicit none
+
+contains
+
+   !> Put the vehicle where the least load factor is carried
+   module procedure place_vehicle
+      type(scene_t) :: scene
+      type(error_t), allocatable :: error
+      type(parameter_t) :: position
+      real(wp) :: value
+
+      position%key = key_index("vehicle", "position")
+      call deck_scene(this%family%deck, this%plan, scene)
+      call find_worst_position(this%family%deck, scene, value, this%has_worst)
+      if (.not. this%has_worst) return
+      associate (deck => this%family%deck)
+         call put_number(deck, position, value, deck%value(position%key)%place, error)
+      end associate
+   end procedure place_vehicle
+
+   !> Decide the scene: as a chain if it needs no more, else from its beginning or from where an
+   !> earlier run has ended
+   module procedure compute_decision
+      type(block_system_t) :: system
+      type(contacts_t) :: contacts
+      type(settings_t) :: settings
+      type(chain_t) :: chain
+      logical :: decided
+
+      ! tables tell displacements, which a chain does not keep
+      decided = this%family%decides_chains .and. .not. this%tells_tables
+      if (decided) call this%family%link(this%family%deck%arch%thickness_ratio%number, &
+         & settings, chain, decided)
+      if (decided) call decide_chain(settings, chain, this%decision, decided)
+      ! a chain proves that it falls; how it does is told by all of its blocks
+      if (decided) decided = this%decision%outcome%verdict /= verdict%collapsed
+      if (decided) return
+      call deck_scene(this%family%deck, this%plan, this%scene)
+      call plan_fall(this)
+      if (this%family%deck%analysis%restart%given) then
+         system = this%scene%system
+         contacts = this%scene%contacts
+         call load_restart(this%restart_file, this%scene%settings, system, contacts, this%onward, &
+            & this%error)
+         if (allocated(this%error)) return
+         call keep_supports(this, system)
+         call decide_in_stages(this%scene, this%decision, this%album, this%onward, system, contacts)
+      else
+         call keep_supports(this, this%scene%system)
+         call decide_in_stages(this%scene, this%decision, this%album, this%onward)
+      end if
+   end procedure compute_decision
+
+   !> Make the scene of a decision where a chain has done without it and it is wanted now: for
+   !> tables of joints, for pictures, or to follow a sliding collapse
+   module procedure see_collapse
+      logical :: collapsed, wanted
+
+      if (this%family%decides_chains) this%scene%joint_angle_deg = this%family%joint_angle_deg
+      collapsed = decision%outcome%verdict == verdict%collapsed
+      wanted = merge(this%tells_tables .or. this%family%deck%output%frames%whole > 0, &
+         & this%searches, this%family%decides_chains)
+      if (wanted .or. collapsed) call unfold(decision)
+      if (collapsed) wanted = wanted .or. any(decision%contacts%face%slip /= 0)
+      if (wanted) call build_once(this%family, value, this%scene)
+      if (collapsed) call follow_collapse(this%scene, decision, this%album)
+      if (allocated(this%scene%contacts%joint) .and. .not. allocated(decision%contacts%joint)) &
+         & decision%contacts%joint = this%scene%contacts%joint
+   end procedure see_collapse
+
+   !> Give the assembly nearest to critical that was found to stand its joints: a chain has none
+   module procedure place_joints
+
+      if (.not. allocated(this%critical%standing)) return
+      associate (contacts => this%critical%standing%contacts)
+         if (allocated(contacts%joint)) return
+         call build_once(this%family, this%critical%stands, this%standing)
+         contacts%joint = this%standing%contacts%joint
+      end associate
+   end procedure place_joints
+
+end submodule dda_case_decision

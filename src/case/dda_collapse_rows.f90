@@ -1,0 +1,77 @@
+!> How a case falls, or would fall next, in its rows
+submodule (dda_case_rows) dda_collapse_rows
+   use dda_block_rows, only : scale_to_one
+   use dda_contact_types, only : joint_t
+   use dda_mechanism, only : mechanism_of, mechanism_t
+   use dda_scene, only : build_once, scene_t, searched_load
+   implicit none
+
+contains
+
+   !> Joints and blocks of the decision nearest to critical that stands, else of that which falls
+   module procedure tell_nearest
+      type(scene_t) :: scene
+      type(joint_t), allocatable :: joint(:)
+
+      associate (critical => this%critical)
+         scene = this%scene
+         allocate (joint(0))
+         if (allocated(critical%standing)) then
+            ! a load coefficient changes no blocks
+            if (this%family%load == searched_load%none) then
+               scene = this%standing
+               call build_once(this%family, critical%stands, scene)
+            end if
+            if (allocated(critical%standing%contacts%joint)) then
+               joint = critical%standing%contacts%joint
+               joint_row = joint_rows(critical%standing%contacts, scene%joint_angle_deg, &
+                  & scene%origin)
+            end if
+         else if (allocated(critical%fallen)) then
+            joint = critical%fallen%contacts%joint
+            joint_row = joint_rows(critical%fallen%contacts, scene%joint_angle_deg, scene%origin)
+         end if
+         if (allocated(scene%system%equation)) call tell_blocks(scene, blocks)
+         if (.not. allocated(critical%fallen)) return
+         if (size(joint) > 0) call tell_roles(critical%fallen%contacts, joint, joint_row, &
+            & critical%fallen%outcome%motion)
+         call tell_fall(critical%fallen, scene, blocks)
+      end associate
+   end procedure tell_nearest
+
+   !> Displacements of the blocks in the collapse nearest to critical
+   pure subroutine tell_fall(fallen, scene, blocks)
+      type(decision_t), intent(in) :: fallen
+      !> The scene that is told, at the value that stands if one does
+      type(scene_t), intent(in) :: scene
+      !> Its blocks; displacements are set where they are known
+      type(told_blocks_t), intent(inout) :: blocks
+
+      if (allocated(fallen%outcome%motion)) then
+         call tell_mechanism_motion(scene%system, fallen%outcome%motion, blocks)
+      else if (allocated(fallen%system%moved)) then
+         if (size(fallen%system%moved) /= size(blocks%corner)) return
+         call tell_total_motion(fallen%system, .true., blocks)
+         call scale_to_one(blocks%displacement)
+      end if
+   end subroutine tell_fall
+
+   !> Fill the columns of a collapse
+   module procedure tell_mechanism
+      type(mechanism_t) :: mechanism
+
+      associate (outcome => fallen%outcome)
+         if (allocated(outcome%fallen)) then
+            call mechanism_of(outcome%fallen, joint_angle_deg, mechanism, outcome%motion)
+         else
+            call mechanism_of(fallen%contacts, joint_angle_deg, mechanism, outcome%motion)
+         end if
+      end associate
+      row%collapse_mode = mechanism%mode
+      row%sliding_share = some_number(mechanism%sliding_share)
+      row%intrados_hinge_deg = mechanism%intrados_deg
+      row%extrados_hinge_deg = mechanism%extrados_deg
+      row%springing_hinge = mechanism%springing
+   end procedure tell_mechanism
+
+end submodule dda_collapse_rows

@@ -1,0 +1,59 @@
+!> Scenes of arches of any shape, of files of blocks and of lines that were cut
+submodule (dda_deck_scene) dda_blocks_of_deck
+   use dda_arch_assembly, only : arch_assembly_t
+   use dda_arch_scene, only : material_of, settings_of, unit_weight
+   use dda_block_scene, only : base_t, block_scene
+   use dda_fill_loads, only : add_fill_weight, fill_of, fill_t, press_fill
+   use dda_kinds, only : pi
+   use dda_shape_scene, only : add_lune_weights, find_crown_joint, shape_assembly
+   use dda_tie_bars, only : add_ties
+   implicit none
+
+contains
+
+   !> The scene of an arch of any shape
+   module procedure shape_scene
+      type(arch_assembly_t) :: assembly
+      type(form_problem_t) :: problem
+      type(fill_t) :: fill
+
+      call shape_assembly(deck, assembly, problem)
+      if (len_trim(problem%text) > 0) return
+      if (deck%tie%given) call add_ties(deck, assembly%plan)
+      call file_scene(deck, plan, assembly%plan, scene)
+      call find_crown_joint(assembly, scene)
+      if (deck%arch%lune_deg%given) call add_lune_weights(deck%arch%lune_deg%number, scene)
+      if (deck%fill%given) then
+         fill = fill_of(deck, assembly)
+         call add_fill_weight(fill, scene)
+         call add_live_loads(deck, scene, fill)
+         call press_fill(fill, scene)
+      else
+         call add_live_loads(deck, scene)
+      end if
+   end procedure shape_scene
+
+   !> The scene of blocks as a file or an arch gives them
+   module procedure file_scene
+      type(base_t) :: base
+      integer :: i
+
+      base%material = material_of(deck)
+      base%unit_weight = unit_weight(deck)
+      base%gravity = deck%load%gravity%number
+      base%law = [deck%joint%friction_deg%number, deck%joint%cohesion%number, &
+         & deck%joint%tension%number, 90.0_wp, deck%joint%slip_length%number]
+      if (deck%joint%residual_deg%given) base%law(4) = deck%joint%residual_deg%number
+      base%water_rise = deck%load%water_rise%number
+      scene%settings = settings_of(deck, plan, pi/2.0_wp, size(blocks%fixed))
+      call block_scene(blocks, base, scene)
+      if (.not. deck%load%displacement_factor%given) return
+      if (.not. allocated(scene%settings%boundary%held)) return
+      do i = 1, size(scene%settings%boundary%held)
+         associate (path => scene%settings%boundary%held(i)%path)
+            if (allocated(path%value)) path%value = deck%load%displacement_factor%number*path%value
+         end associate
+      end do
+   end procedure file_scene
+
+end submodule dda_blocks_of_deck

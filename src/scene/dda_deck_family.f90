@@ -1,0 +1,73 @@
+!> The scenes of a deck that differ by one number
+submodule (dda_deck_scene) dda_deck_family
+   use dda_arch_assembly, only : arch_assembly_t
+   use dda_arch_chain, only : arch_chain
+   use dda_arch_scene, only : arch_numbers, half_joints_deg, settings_of, unit_weight
+   use dda_deck_keys, only : key_index
+   use dda_deck_set, only : number_fits, put_number
+   use dda_error, only : fatal_error
+   use dda_kinds, only : degree
+   use dda_live_loads, only : check_live_points
+   use dda_scene, only : searched_load
+   use dda_scene_plan, only : plan_scene
+   use dda_settings, only : load_direction
+   use dda_shape_scene, only : shape_assembly
+   implicit none
+
+contains
+
+   !> Make a deck a family, its numbers read
+   module procedure new_family
+
+      family%parameter = parameter
+      if (parameter%key == key_index("load", "horizontal_coefficient")) &
+         & family%load = searched_load%push
+      if (parameter%key == key_index("load", "gravity_direction_deg")) &
+         & family%load = searched_load%tilt
+      if (parameter%key == key_index("load", "load_factor")) family%load = searched_load%factor
+      family%chains = plan%row .and. parameter%key == key_index("arch", "thickness_ratio")
+      family%decides_chains = family%chains .and. plan%chain
+      if (.not. family%chains) return
+      associate (deck => family%deck)
+         family%settings = settings_of(deck, plan, degree*deck%arch%half_angle_deg%number, &
+            & size(half_joints_deg(deck)))
+         family%numbers = arch_numbers(deck)
+         family%numbers%body_force = unit_weight(deck)*load_direction(family%settings)
+         family%numbers%halved = family%decides_chains .and. plan%halved
+         allocate (family%joint_angle_deg, source=joint_angles_deg(deck))
+      end associate
+   end procedure new_family
+
+   !> Make the chain of one thickness ratio
+   module procedure link_arch
+
+      linked = family%chains
+      if (linked) linked = number_fits(family%parameter%key, value)
+      if (.not. linked) return
+      settings = family%settings
+      call arch_chain(family%numbers, family%rays, value, chain)
+   end procedure link_arch
+
+   !> Make the scene of one value of the parameter
+   module procedure build_deck_scene
+      type(deck_t) :: deck
+      type(arch_assembly_t) :: assembly
+      type(form_problem_t) :: problem
+
+      if (.not. number_fits(family%parameter%key, value)) then
+         call fatal_error(error, "the searched parameter cannot have this value")
+         return
+      end if
+      deck = family%deck
+      call put_number(deck, family%parameter, value, deck%value(family%parameter%key)%place, error)
+      if (allocated(error)) return
+      if (scene_kind(deck) == "shape") call shape_assembly(deck, assembly, problem)
+      if (len_trim(problem%text) > 0) then
+         call fatal_error(error, "the searched parameter makes no arch of this value")
+         return
+      end if
+      call deck_scene(deck, plan_scene(deck), scene)
+      call check_live_points(deck, scene, error)
+   end procedure build_deck_scene
+
+end submodule dda_deck_family
