@@ -35,10 +35,6 @@ module dda_scene_check
          type(error_t), allocatable, intent(out) :: error
       end subroutine check_start
 
-   end interface
-
-   interface
-
       !> Check that a static scene can come to rest at all
       pure module subroutine check_support(deck, scene, error)
          type(deck_t), intent(in) :: deck

@@ -52,10 +52,6 @@ module dda_cutting
          type(cut_remarks_t), intent(inout) :: remarks
       end subroutine drop_close_edges
 
-   end interface
-
-   interface
-
       !> Boxes around all blocks
       pure type(boxes_t) module function block_boxes(cut)
          type(cut_model_t), intent(in) :: cut

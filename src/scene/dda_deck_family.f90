@@ -25,6 +25,7 @@ contains
       if (parameter%key == key_index("load", "gravity_direction_deg")) &
          & family%load = searched_load%tilt
       if (parameter%key == key_index("load", "load_factor")) family%load = searched_load%factor
+      family%plan = plan
       family%chains = plan%row .and. parameter%key == key_index("arch", "thickness_ratio")
       family%decides_chains = family%chains .and. plan%chain
       if (.not. family%chains) return
@@ -53,6 +54,7 @@ contains
       type(deck_t) :: deck
       type(arch_assembly_t) :: assembly
       type(form_problem_t) :: problem
+      type(scene_plan_t) :: plan
 
       if (.not. number_fits(family%parameter%key, value)) then
          call fatal_error(error, "the searched parameter cannot have this value")
@@ -66,7 +68,9 @@ contains
          call fatal_error(error, "the searched parameter makes no arch of this value")
          return
       end if
-      call deck_scene(deck, plan_scene(deck), scene)
+      plan = family%plan
+      if (.not. family%chains) plan = plan_scene(deck)
+      call deck_scene(deck, plan, scene)
       call check_live_points(deck, scene, error)
    end procedure build_deck_scene
 

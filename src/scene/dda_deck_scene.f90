@@ -29,6 +29,8 @@ module dda_deck_scene
       type(parameter_t) :: parameter
       !> Whether its scenes are chains but for strain, and differ by their thickness ratio alone
       logical :: chains = .false.
+      !> Then: what all of them need
+      type(scene_plan_t) :: plan
       !> Then: what the arches are made from
       type(arch_numbers_t) :: numbers
       !> Settings of their runs
