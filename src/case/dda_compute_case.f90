@@ -5,16 +5,14 @@ module dda_compute_case
    use dda_arch_scene, only : exact_thickness
    use dda_block_system, only : block_system_t
    use dda_case, only : case_t
-   use dda_case_proof, only : prove_decision, prove_search
    use dda_critical, only : find_critical
    use dda_deck, only : deck_t
    use dda_deck_scene, only : deck_family_t, deck_scene
    use dda_error, only : error_t
    use dda_frames, only : album_t
    use dda_kinds, only : wp
-   use dda_limerick_decision, only : decide_limerick
-   use dda_scene, only : build_once, scene_t
-   use dda_search, only : critical_t, decision_t, search_t
+   use dda_scene, only : build_once, family_t, scene_t
+   use dda_search, only : critical_t, decision_t, proof_t, search_t
    implicit none
    private
 
@@ -98,6 +96,37 @@ module dda_compute_case
       pure module subroutine place_joints(this)
          type(case_t), intent(inout) :: this
       end subroutine place_joints
+
+      !> Prove a decision
+      pure module subroutine prove_decision(scene, decision, thrust_joint, thrust_bar, proof)
+         !> Its scene at the beginning
+         type(scene_t), intent(in) :: scene
+         type(decision_t), intent(in) :: decision
+         !> Joint whose range of thrust is wanted, 0 for none
+         integer, intent(in) :: thrust_joint
+         !> Bar whose range of force is wanted, 0 for none
+         integer, intent(in) :: thrust_bar
+         type(proof_t), intent(out) :: proof
+      end subroutine prove_decision
+
+      !> Prove both sides of what a search has found
+      pure module subroutine prove_search(family, critical, stands, falls, proof)
+         class(family_t), intent(in) :: family
+         type(critical_t), intent(in) :: critical
+         !> The scenes of its two sides; made here if they are not there yet
+         type(scene_t), intent(inout) :: stands
+         type(scene_t), intent(inout) :: falls
+         type(proof_t), intent(out) :: proof
+      end subroutine prove_search
+
+      !> Run what a deck describes under the original's scheme
+      pure module subroutine decide_limerick(deck, scene, decision, album)
+         type(deck_t), intent(in) :: deck
+         type(scene_t), intent(in) :: scene
+         type(decision_t), intent(out) :: decision
+         !> Receives the ways of its points, if it has some
+         type(album_t), intent(inout), optional :: album
+      end subroutine decide_limerick
 
    end interface
 

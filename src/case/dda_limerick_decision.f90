@@ -1,23 +1,15 @@
 !> A run of the original's scheme as a decision of ours: its verdict and the joints at its end
-module dda_limerick_decision
-   use dda_block_system, only : block_system_t
+submodule (dda_compute_case) dda_limerick_decision
    use dda_contact_detection, only : contacts_t
-   use dda_deck, only : deck_t
-   use dda_frames, only : album_t, frame_is_due, keep_frame
-   use dda_kinds, only : wp
+   use dda_frames, only : frame_is_due, keep_frame
    use dda_limerick_analysis, only : limerick_constants_t
    use dda_limerick_model, only : limerick_model_t
    use dda_limerick_run, only : begin_outcome, begin_run, limerick_outcome_t, limerick_verdict, &
       & next_step, run_limerick
    use dda_limerick_scene, only : limerick_scene
    use dda_limerick_step, only : limerick_run_t
-   use dda_scene, only : scene_t
-   use dda_search, only : decision_t
    use dda_verdict, only : verdict
    implicit none
-   private
-
-   public :: decide_limerick
 
    interface
 
@@ -39,12 +31,7 @@ module dda_limerick_decision
 contains
 
    !> Run what a deck describes under the original's scheme
-   pure subroutine decide_limerick(deck, scene, decision, album)
-      type(deck_t), intent(in) :: deck
-      type(scene_t), intent(in) :: scene
-      type(decision_t), intent(out) :: decision
-      !> Receives the ways of its points, if it has some
-      type(album_t), intent(inout), optional :: album
+   module procedure decide_limerick
       type(limerick_model_t) :: model
       type(limerick_run_t) :: run
       type(limerick_outcome_t) :: outcome
@@ -68,7 +55,7 @@ contains
          if (allocated(outcome%reason)) told%reason = outcome%reason
          if (outcome%still_moving) told%reason = "step limit reached while still moving"
       end associate
-   end subroutine decide_limerick
+   end procedure decide_limerick
 
    !> When pictures are due: evenly in the steps of a dynamic run, in displacement in a static one
    pure subroutine plan_pictures(frames, constants, album)
@@ -177,4 +164,5 @@ contains
          system%moved = run%blocks%vertex
       end select
    end subroutine place_corners
-end module dda_limerick_decision
+
+end submodule dda_limerick_decision

@@ -1,6 +1,7 @@
 !> The contacts of the original's scheme as joints of ours
-submodule (dda_limerick_decision) dda_limerick_joints
+submodule (dda_compute_case:dda_limerick_decision) dda_limerick_joints
    use dda_contact_types, only : place_joint
+   use dda_kinds, only : wp
    use dda_limerick_contact, only : limerick_contact_t
    use dda_limerick_model, only : contact_law, finite_law
    use dda_limerick_state, only : limerick_state

@@ -10,13 +10,23 @@ module dda_cutting
    use dda_kinds, only : wp
    use dda_line_model, only : line_model_t
    use dda_line_network, only : crossings_t, find_crossings, join_crossings, network_t
-   use dda_network_loops, only : half_edge_start, loops_t, trace_loops
    use dda_polygon, only : contains_point
    use dda_text, only : to_text
    implicit none
    private
 
-   public :: cut_trees, drop_crossing_edges, drop_close_edges, check_areas, cut_blocks
+   public :: cut_trees, drop_crossing_edges, drop_close_edges, check_areas, cut_blocks, loops_t
+
+   !> Loops of half-edges. Edge e has the half-edges 2e - 1, from its first node to its second, and
+   !> 2e, back; each has its loop on its left
+   type :: loops_t
+      !> First item of each loop, and one beyond the last: (n_loop + 1)
+      integer, allocatable :: first(:)
+      !> Half-edges, loop by loop
+      integer, allocatable :: half_edge(:)
+      !> Area of each loop, negative where it runs around the outside: (n_loop) [m2]
+      real(wp), allocatable :: area(:)
+   end type loops_t
 
    !> Boxes around blocks
    type :: boxes_t
@@ -108,6 +118,19 @@ module dda_cutting
          !> Receives corners, edges and pairs of edges; its scales are set
          type(cut_model_t), intent(inout) :: cut
       end subroutine blocks_of_loops
+
+      !> Walk along all edges on both sides, at each node turning as far left as possible
+      pure module subroutine trace_loops(network, loops)
+         type(network_t), intent(in) :: network
+         type(loops_t), intent(out) :: loops
+      end subroutine trace_loops
+
+      !> Node where a half-edge starts
+      pure integer module function half_edge_start(network, half_edge)
+         type(network_t), intent(in) :: network
+         !> Number of the half-edge
+         integer, intent(in) :: half_edge
+      end function half_edge_start
 
    end interface
 

@@ -1,32 +1,14 @@
 !> The loops of a network: one around each block, anticlockwise, and one around each group of blocks
 !> that hang together (Shi: dc07, dc08)
-module dda_network_loops
-   use dda_kinds, only : wp
-   use dda_line_network, only : network_t
+submodule (dda_cutting) dda_network_loops
    use dda_sort, only : sorted_order
    use dda_vector, only : cross
    implicit none
-   private
-
-   public :: loops_t, trace_loops, half_edge_start
-
-   !> Loops of half-edges. Edge e has the half-edges 2e - 1, from its first node to its second, and
-   !> 2e, back; each has its loop on its left
-   type :: loops_t
-      !> First item of each loop, and one beyond the last: (n_loop + 1)
-      integer, allocatable :: first(:)
-      !> Half-edges, loop by loop
-      integer, allocatable :: half_edge(:)
-      !> Area of each loop, negative where it runs around the outside: (n_loop) [m2]
-      real(wp), allocatable :: area(:)
-   end type loops_t
 
 contains
 
    !> Walk along all edges on both sides, at each node turning as far left as possible
-   pure subroutine trace_loops(network, loops)
-      type(network_t), intent(in) :: network
-      type(loops_t), intent(out) :: loops
+   module procedure trace_loops
       integer, allocatable :: next(:)
       logical, allocatable :: seen(:)
       integer :: h, at, n_loop, n_item
@@ -53,16 +35,13 @@ contains
       do h = 1, n_loop
          loops%area(h) = loop_area(network, loops%half_edge(loops%first(h):loops%first(h + 1) - 1))
       end do
-   end subroutine trace_loops
+   end procedure trace_loops
 
    !> Node where a half-edge starts
-   pure integer function half_edge_start(network, half_edge)
-      type(network_t), intent(in) :: network
-      !> Number of the half-edge
-      integer, intent(in) :: half_edge
+   module procedure half_edge_start
 
       half_edge_start = network%edge(2 - mod(half_edge, 2), (half_edge + 1)/2)
-   end function half_edge_start
+   end procedure half_edge_start
 
    !> The half-edge on the other side of the same edge
    elemental integer function opposite(half_edge)
@@ -127,4 +106,5 @@ contains
          loop_area = loop_area + cross(a, b)/2.0_wp
       end do
    end function loop_area
-end module dda_network_loops
+
+end submodule dda_network_loops

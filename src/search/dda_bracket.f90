@@ -6,9 +6,8 @@ submodule (dda_critical) dda_bracket
    use dda_bar, only : bar_state_t
    use dda_block_system, only : block_system_t
    use dda_chain_decision, only : decide_chain
-   use dda_chain_foresight, only : foresee
    use dda_chain_unfold, only : unfold
-   use dda_collapse_trace, only : proposal_t, trace
+   use dda_collapse_trace, only : foresee, proposal_t, trace
    use dda_decision, only : decide
    use dda_error, only : error_t
    use dda_friction_cone, only : joint_face_t

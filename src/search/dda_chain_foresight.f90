@@ -3,22 +3,13 @@
 !> What the forces of a chain lack, over the parameter, is zero where it ceases to fall; the joints
 !> that break their bounds near there are its last mechanism. No proof rests on what is foreseen:
 !> two decisions beside it tell whether it is so.
-module dda_chain_foresight
+submodule (dda_collapse_trace) dda_chain_foresight
    use dda_chain, only : chain_t
    use dda_chain_balance, only : carry_forces, rounding_of_forces, sum_loads
    use dda_chain_decision, only : doubtful
    use dda_chain_lack, only : faces_of, find_lack, lack_t
-   use dda_collapse_trace, only : proposal_t, trace
-   use dda_decision, only : decision_t
-   use dda_friction_cone, only : joint_face_t
-   use dda_kinds, only : wp
-   use dda_scene, only : family_t, link_once
-   use dda_search, only : critical_t, search_t
-   use dda_settings, only : flow_rule
+   use dda_search, only : decision_t
    implicit none
-   private
-
-   public :: foresee
 
    !> Most values that are looked at
    integer, parameter :: max_values = 12
@@ -34,15 +25,7 @@ module dda_chain_foresight
 contains
 
    !> Foresee where the collapse of a chain stops, by the secant method on what its forces lack
-   pure subroutine foresee(family, search, critical, proposal, face)
-      class(family_t), intent(in) :: family
-      type(search_t), intent(in) :: search
-      !> New in; its chain and their forces out
-      type(critical_t), intent(inout) :: critical
-      !> Where it stops, usable if that is known
-      type(proposal_t), intent(out) :: proposal
-      !> Faces of the joints of that collapse, where it is known: (n + 1)
-      type(joint_face_t), allocatable, intent(out) :: face(:)
+   module procedure foresee
       type(lack_t) :: lack
       real(wp) :: before, last, next, value
       integer :: i
@@ -66,7 +49,7 @@ contains
       if (i > max_values) return
       critical%falls = value
       ! the trace begins with a step to where the mechanism seems to stop
-      call freeze(critical%link%chain, lack, 0.8_wp*abs(next/value - 1.0_wp), critical%fallen)
+      call bind_faces(critical%link%chain, lack, 0.8_wp*abs(next/value - 1.0_wp), critical%fallen)
       ! where joints slide many mechanisms stop within some tolerances of one another
       if (.not. any(critical%fallen%contacts%face%slip /= 0)) then
          call trace(family, search, merge(search%high, search%low, next > value), critical, &
@@ -74,10 +57,10 @@ contains
          call move_alloc(critical%fallen%contacts%face, face)
       end if
       deallocate (critical%fallen)
-   end subroutine foresee
+   end procedure foresee
 
    !> What would be a collapse if it were proven
-   pure subroutine freeze(chain, lack, acceleration, fallen)
+   pure subroutine bind_faces(chain, lack, acceleration, fallen)
       type(chain_t), intent(in) :: chain
       type(lack_t), intent(in) :: lack
       !> How fast it is taken to fall, over free fall; that tells how far the trace steps, and but
@@ -97,5 +80,6 @@ contains
       fallen%outcome%acceleration_ratio = max(acceleration, least_acceleration)
       fallen%outcome%rest_tolerance = fallen%outcome%acceleration_ratio*doubtful &
          & *rounding_of_forces(chain, force)/max(abs(lack%least), tiny(1.0_wp))
-   end subroutine freeze
-end module dda_chain_foresight
+   end subroutine bind_faces
+
+end submodule dda_chain_foresight

@@ -12,7 +12,7 @@ module dda_collapse_trace
    implicit none
    private
 
-   public :: proposal_t, trace, frozen_mechanism_t, mechanism_power
+   public :: proposal_t, trace, frozen_mechanism_t, mechanism_power, foresee
 
    !> A collapse to be traced from one value of the parameter to another
    type :: frozen_mechanism_t
@@ -85,6 +85,18 @@ module dda_collapse_trace
          !> Whether the power could be found
          logical, intent(out) :: usable
       end subroutine mechanism_power
+
+      !> Foresee where the collapse of a chain stops, by the secant method on what its forces lack
+      pure module subroutine foresee(family, search, critical, proposal, face)
+         class(family_t), intent(in) :: family
+         type(search_t), intent(in) :: search
+         !> New in; its chain and their forces out
+         type(critical_t), intent(inout) :: critical
+         !> Where it stops, usable if that is known
+         type(proposal_t), intent(out) :: proposal
+         !> Faces of the joints of that collapse, where it is known: (n + 1)
+         type(joint_face_t), allocatable, intent(out) :: face(:)
+      end subroutine foresee
 
    end interface
 

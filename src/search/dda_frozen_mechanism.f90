@@ -7,6 +7,7 @@ submodule (dda_collapse_trace) dda_frozen_mechanism
    use dda_block_system, only : block_system_t
    use dda_contact_types, only : same_joint
    use dda_joint_springs, only : joint_springs_t, new_joint_springs
+   use dda_settings, only : settings_t
    implicit none
 
 contains

@@ -8,9 +8,8 @@ module dda_graph_decision
    use dda_block_system, only : block_system_t
    use dda_boundary, only : value_at
    use dda_contact_detection, only : contacts_t
-   use dda_coulomb_fall, only : find_coulomb_fall
    use dda_coulomb_law, only : coulomb_state_t
-   use dda_first_motion, only : find_first_motion
+   use dda_first_fall, only : find_coulomb_fall, find_first_motion
    use dda_joint_graph, only : crushes, joint_graph_t
    use dda_kinds, only : wp
    use dda_limit_decision, only : decide_load, decide_on_way, load_decision_t, load_state

@@ -3,26 +3,20 @@
 !> Both are of limit analysis: forces prove that a load can be carried, a mechanism that it cannot
 !> be under any law of friction. A collapse on the loading path below the associated limit has no
 !> proof of this kind, and none is told.
-module dda_case_proof
+submodule (dda_compute_case) dda_case_proof
    use dda_bar_joints, only : bar_joint
-   use dda_error, only : error_t
    use dda_joint_graph, only : joint_graph_t, keep_joints
-   use dda_kinds, only : wp
    use dda_limit_certificate, only : check_forces, check_velocities
    use dda_limit_decision, only : decide_load, load_decision_t, load_state
    use dda_limit_load, only : find_limit, limit_load_t, limit_state
    use dda_load_coefficient, only : added_loads, full_loads, with_coefficient
    use dda_load_stations, only : bears_live_load
-   use dda_scene, only : build_once, family_t, scene_t, searched_load
+   use dda_scene, only : searched_load
    use dda_scene_graph, only : decides_as_graph, scene_graph
-   use dda_search, only : critical_t, decision_t, proof_t
    use dda_settings, only : settings_t
    use dda_thrust_range, only : find_thrust_range
    use dda_verdict, only : verdict
    implicit none
-   private
-
-   public :: prove_decision, prove_search
 
    !> Relative gap of the limit of a load factor beside a decision
    real(wp), parameter :: limit_gap = 1.0e-13_wp
@@ -30,15 +24,7 @@ module dda_case_proof
 contains
 
    !> Prove a decision
-   pure subroutine prove_decision(scene, decision, thrust_joint, thrust_bar, proof)
-      !> Its scene at the beginning
-      type(scene_t), intent(in) :: scene
-      type(decision_t), intent(in) :: decision
-      !> Joint whose range of thrust is wanted, 0 for none
-      integer, intent(in) :: thrust_joint
-      !> Bar whose range of force is wanted, 0 for none
-      integer, intent(in) :: thrust_bar
-      type(proof_t), intent(out) :: proof
+   module procedure prove_decision
       type(joint_graph_t) :: graph
       type(limit_load_t) :: limit
       real(wp), allocatable :: dead(:, :)
@@ -63,16 +49,10 @@ contains
          & graph), limit_gap, limit)
       proof%has_limit = limit%state == limit_state%found
       proof%limit = [limit%lower, limit%upper]
-   end subroutine prove_decision
+   end procedure prove_decision
 
    !> Prove both sides of what a search has found
-   pure subroutine prove_search(family, critical, stands, falls, proof)
-      class(family_t), intent(in) :: family
-      type(critical_t), intent(in) :: critical
-      !> The scenes of its two sides; made here if they are not there yet
-      type(scene_t), intent(inout) :: stands
-      type(scene_t), intent(inout) :: falls
-      type(proof_t), intent(out) :: proof
+   module procedure prove_search
       type(joint_graph_t) :: graph
       type(proof_t) :: other
 
@@ -101,7 +81,7 @@ contains
       call move_alloc(other%velocity, proof%velocity)
       if (.not. allocated(proof%force)) proof%scene = falls
       proof%same_shape = .not. any(abs(proof%scene%system%vertex - falls%system%vertex) > 0.0_wp)
-   end subroutine prove_search
+   end procedure prove_search
 
    !> Least and greatest force of a bar with which the blocks stand: a pair of forces in its place
    pure subroutine find_bar_range(scene, bar, proof)
@@ -211,4 +191,5 @@ contains
          & + abs(load(3, :)*velocity(3, :)))
       most_power = max(most_power, tiny(most_power))
    end function most_power
-end module dda_case_proof
+
+end submodule dda_case_proof
