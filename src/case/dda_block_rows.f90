@@ -2,8 +2,8 @@
 !> openings and what joints do in the collapse; the joints of a picture
 module dda_block_rows
    use dda_block_system, only : block_system_t
-   use dda_contact_detection, only : contacts_t
    use dda_contact_types, only : joint_t, place_joint, same_joint
+   use dda_contacts, only : contacts_t
    use dda_deformation, only : displacement_matrix
    use dda_frames, only : frame_t
    use dda_friction_cone, only : contact_state

@@ -4,7 +4,7 @@ submodule (dda_compute_case) dda_case_decision
    use dda_chain, only : chain_t
    use dda_chain_decision, only : decide_chain
    use dda_chain_unfold, only : unfold
-   use dda_contact_detection, only : contacts_t
+   use dda_contacts, only : contacts_t
    use dda_decision, only : decide_in_stages
    use dda_deck, only : parameter_t
    use dda_deck_keys, only : key_index

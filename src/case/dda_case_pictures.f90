@@ -1,11 +1,12 @@
 !> What the pictures of a case show, and the runs that are repeated for them
 submodule (dda_compute_case) dda_case_pictures
-   use dda_contact_detection, only : contacts_t
+   use dda_contacts, only : contacts_t
    use dda_deck, only : scene_kind
-   use dda_forward, only : outcome_t, run_to_verdict
+   use dda_forward, only : run_to_verdict
    use dda_load_clock, only : has_path, load_clock_t, new_load_clock
    use dda_reactions, only : supports_of
    use dda_settings, only : settings_t
+   use dda_verdict, only : outcome_t
    implicit none
 
 contains

@@ -5,15 +5,14 @@ module dda_case_rows
    use dda_block_scene, only : lacks_friction
    use dda_block_system, only : block_system_t
    use dda_case, only : case_t, searched_name
-   use dda_contact_detection, only : contacts_t
+   use dda_contacts, only : contacts_t
    use dda_deck, only : deck_t, scene_kind
    use dda_deck_scene, only : movable_blocks
    use dda_error, only : error_line
-   use dda_forward, only : outcome_t
    use dda_kinds, only : wp
    use dda_search, only : critical_t, decision_t, proof_t
    use dda_text, only : to_text
-   use dda_verdict, only : verdict
+   use dda_verdict, only : outcome_t, verdict
    use dda_write_results, only : joint_row_t, result_row_t, some_number
    use dda_write_tables, only : told_blocks_t
    implicit none

@@ -3,7 +3,7 @@ module dda_force_rows
    use dda_bar, only : bar_name, bar_state_t
    use dda_block_system, only : block_system_t
    use dda_case, only : case_t
-   use dda_contact_detection, only : contacts_t
+   use dda_contacts, only : contacts_t
    use dda_growing_text, only : add_line, growing_text_t, lines_of
    use dda_kinds, only : wp
    use dda_load_stations, only : last_history_time

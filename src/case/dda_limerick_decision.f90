@@ -1,6 +1,6 @@
 !> A run of the original's scheme as a decision of ours: its verdict and the joints at its end
 submodule (dda_compute_case) dda_limerick_decision
-   use dda_contact_detection, only : contacts_t
+   use dda_contacts, only : contacts_t
    use dda_frames, only : frame_is_due, keep_frame
    use dda_limerick_analysis, only : limerick_constants_t
    use dda_limerick_model, only : limerick_model_t

@@ -6,7 +6,7 @@
 module dda_restart
    use, intrinsic :: iso_fortran_env, only : int32, int64
    use dda_block_system, only : block_system_t
-   use dda_contact_detection, only : contacts_t
+   use dda_contacts, only : contacts_t
    use dda_error, only : error_t, fatal_error
    use dda_kinds, only : wp
    use dda_number_file, only : read_numbers, write_numbers

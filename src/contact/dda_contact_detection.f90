@@ -1,45 +1,15 @@
 !> The contacts of a system and what they carry from step to step (Shi: df04 to df07)
 module dda_contact_detection
    use dda_block_system, only : block_system_t
-   use dda_contact_search, only : joint_search_t
-   use dda_contact_types, only : edge_to_edge_joint, joint_t, place_joint
-   use dda_friction_cone, only : joint_face_t
-   use dda_joint_springs, only : joint_springs_t, mohr_coulomb, new_joint_springs
+   use dda_contact_types, only : edge_to_edge_joint, joint_springs_t, joint_t, mohr_coulomb, &
+      & new_joint_springs, place_joint
+   use dda_contacts, only : contacts_t
    use dda_kinds, only : wp
    use dda_material, only : joint_law_t
    implicit none
    private
 
-   public :: contacts_t, find_contacts, follow_contacts, keep_contacts, set_joints, set_strength
-
-   !> Joints with their springs, states and forces
-   type :: contacts_t
-      !> The joints: (n_joint)
-      type(joint_t), allocatable :: joint(:)
-      !> Their springs
-      type(joint_springs_t) :: springs
-      !> Face of the friction cone that each joint's force lies on: (n_joint)
-      type(joint_face_t), allocatable :: face(:)
-      !> Trial force N1, N2, T of the springs: (3, n_joint) [N/m]
-      real(wp), allocatable :: trial(:, :)
-      !> Force N1, N2, T: (3, n_joint) [N/m]
-      real(wp), allocatable :: force(:, :)
-      !> Opening at the two contacts and slip since the beginning: (3, n_joint) [m]
-      real(wp), allocatable :: gap(:, :)
-      !> Opening at the two contacts and slip in the last step: (3, n_joint) [m]
-      real(wp), allocatable :: increment(:, :)
-      !> Slip that is past and done, where blocks move: (n_joint) [m]
-      real(wp), allocatable :: past_slip(:)
-      !> Share that is left of each contact's strength: 1 is whole, 0 has slid or parted:
-      !> (2, n_joint)
-      real(wp), allocatable :: intact(:, :)
-      !> Whether blocks that move are searched for new contacts; otherwise the joints stay as given
-      logical :: searched = .false.
-      !> Whether found contacts remember their slip; in time what sticks has no speed to slip with
-      logical :: remember = .true.
-      !> The search
-      type(joint_search_t) :: search
-   end type contacts_t
+   public :: find_contacts, follow_contacts, keep_contacts, set_joints, set_strength
 
 contains
 

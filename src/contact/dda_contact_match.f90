@@ -1,43 +1,13 @@
 !> Which contact of the last step one of the next continues (Shi: df06)
-module dda_contact_match
-   use, intrinsic :: iso_fortran_env, only : int64
-   use dda_block_system, only : block_system_t
-   use dda_contact_types, only : contact_t, joint_t, vertex_number
+submodule (dda_contact_transfer) dda_contact_match
    use dda_entrance, only : contact_key
-   use dda_kinds, only : wp
-   use dda_sort, only : place_in, rising_order
+   use dda_sort, only : place_in
    implicit none
-   private
-
-   public :: past_contact_t, contact_keys, match_contacts
-
-   !> One contact of the step before
-   type :: past_contact_t
-      !> The contact
-      type(contact_t) :: contact
-      !> The joint that it belonged to
-      integer :: joint = 0
-      !> Which of the joint's contacts it was
-      integer :: place = 0
-      !> Normal force, and its part of the joint's shear force: (2) [N/m]
-      real(wp) :: force(2) = 0.0_wp
-      !> Slip that the springs still feel [m]
-      real(wp) :: slip = 0.0_wp
-      !> Stiffness of the springs [N/m per metre depth]
-      real(wp) :: stiffness = 0.0_wp
-      !> Whether a contact of the next step has taken it over
-      logical :: passed_on = .false.
-   end type past_contact_t
 
 contains
 
    !> Keys of contacts
-   pure function contact_keys(system, contact) result(key)
-      type(block_system_t), intent(in) :: system
-      !> The contacts: (n)
-      type(contact_t), intent(in) :: contact(:)
-      !> Their keys: (n)
-      integer(int64) :: key(size(contact))
+   module procedure contact_keys
       integer :: i
 
       do i = 1, size(contact)
@@ -45,20 +15,11 @@ contains
             & vertex_number(system, contact(i)%edge_block, contact(i)%edge), &
             & size(system%vertex, 2))
       end do
-   end function contact_keys
+   end procedure contact_keys
 
    !> Find for each contact the one of the step before that it goes on: the same corner and edge, or
    !> else the nearest of the same two blocks
-   pure subroutine match_contacts(system, joint, reach, past, source)
-      type(block_system_t), intent(in) :: system
-      !> The joints
-      type(joint_t), intent(in) :: joint(:)
-      !> Contacts farther from one another than their blocks reach are different ones: (n_block) [m]
-      real(wp), intent(in) :: reach(:)
-      !> The contacts of the step before in the order of their keys; those taken over are marked
-      type(past_contact_t), intent(inout) :: past(:)
-      !> Places in past, 0 for none: (2, n_joint)
-      integer, intent(out) :: source(:, :)
+   module procedure match_contacts
       integer(int64) :: past_key(size(past)), key(2)
       integer :: order(size(past)), j, k
 
@@ -83,7 +44,7 @@ contains
             if (source(k, j) > 0) past(source(k, j))%passed_on = .true.
          end do
       end do
-   end subroutine match_contacts
+   end procedure match_contacts
 
    !> The contact of the step before of the same corner and edge that none has taken over, or 0
    pure integer function same_contact(past, past_key, key)
@@ -146,4 +107,5 @@ contains
       key = int(min(contact%vertex_block, contact%edge_block), int64)*int(n_block + 1, int64) &
          & + int(max(contact%vertex_block, contact%edge_block), int64)
    end function pair_keys
-end module dda_contact_match
+
+end submodule dda_contact_match

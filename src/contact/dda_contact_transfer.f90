@@ -3,19 +3,65 @@
 module dda_contact_transfer
    use, intrinsic :: iso_fortran_env, only : int64
    use dda_block_system, only : block_system_t
-   use dda_contact_detection, only : contacts_t, set_joints, set_strength
-   use dda_contact_match, only : past_contact_t, contact_keys, match_contacts
+   use dda_contact_detection, only : set_joints, set_strength
    use dda_contact_search, only : look_around, near_joints, touching_joints
    use dda_contact_types, only : contact_t, joint_t, place_joint, slip_at, vertex_number
+   use dda_contacts, only : contacts_t
    use dda_kinds, only : wp
    use dda_sort, only : rising_order
    implicit none
    private
 
-   public :: search_contacts, renew_contacts
+   public :: search_contacts, renew_contacts, past_contact_t, contact_keys, match_contacts
+
+   !> One contact of the step before
+   type :: past_contact_t
+      !> The contact
+      type(contact_t) :: contact
+      !> The joint that it belonged to
+      integer :: joint = 0
+      !> Which of the joint's contacts it was
+      integer :: place = 0
+      !> Normal force, and its part of the joint's shear force: (2) [N/m]
+      real(wp) :: force(2) = 0.0_wp
+      !> Slip that the springs still feel [m]
+      real(wp) :: slip = 0.0_wp
+      !> Stiffness of the springs [N/m per metre depth]
+      real(wp) :: stiffness = 0.0_wp
+      !> Whether a contact of the next step has taken it over
+      logical :: passed_on = .false.
+   end type past_contact_t
 
    !> An open end takes part in the slip of a joint as far as this share of its length allows
    real(wp), parameter :: closeness = 1.0e-4_wp
+
+   interface
+
+      !> Keys of contacts
+      pure module function contact_keys(system, contact) result(key)
+         type(block_system_t), intent(in) :: system
+         !> The contacts: (n)
+         type(contact_t), intent(in) :: contact(:)
+         !> Their keys: (n)
+         integer(int64) :: key(size(contact))
+      end function contact_keys
+
+      !> Find for each contact the one of the step before that it goes on: the same corner and edge,
+      !> or else the nearest of the same two blocks
+      pure module subroutine match_contacts(system, joint, reach, past, source)
+         type(block_system_t), intent(in) :: system
+         !> The joints
+         type(joint_t), intent(in) :: joint(:)
+         !> Contacts farther from one another than their blocks reach are different ones: (n_block)
+         !> [m]
+         real(wp), intent(in) :: reach(:)
+         !> The contacts of the step before in the order of their keys; those taken over are marked
+         type(past_contact_t), intent(inout) :: past(:)
+         !> Places in past, 0 for none: (2, n_joint)
+         integer, intent(out) :: source(:, :)
+      end subroutine match_contacts
+
+   end interface
 
 contains
 

@@ -8,10 +8,10 @@ submodule (dda_critical) dda_bracket
    use dda_chain_decision, only : decide_chain
    use dda_chain_unfold, only : unfold
    use dda_collapse_trace, only : foresee, proposal_t, trace
+   use dda_contact_types, only : joint_springs_t
    use dda_decision, only : decide
    use dda_error, only : error_t
    use dda_friction_cone, only : joint_face_t
-   use dda_joint_springs, only : joint_springs_t
    use dda_kinds, only : wp
    use dda_scene, only : link_once, scene_t, searched_load
    use dda_scene_graph, only : decides_as_graph

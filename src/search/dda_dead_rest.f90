@@ -8,7 +8,7 @@
 submodule (dda_decision) dda_dead_rest
    use dda_coulomb_joints, only : coulomb_joints_t, end_role, new_coulomb_joints
    use dda_coulomb_law, only : face, shear_face, unloaded_state
-   use dda_forward, only : outcome_t, run_to_verdict
+   use dda_forward, only : run_to_verdict
    use dda_graph_decision, only : no_start
    use dda_joint_graph, only : add_joint_forces
    use dda_kinds, only : wp
@@ -17,7 +17,7 @@ submodule (dda_decision) dda_dead_rest
    use dda_path_verdict, only : follow_stations
    use dda_scene_graph, only : scene_graph
    use dda_settings, only : flow_rule
-   use dda_verdict, only : verdict
+   use dda_verdict, only : outcome_t, verdict
    implicit none
 
 contains

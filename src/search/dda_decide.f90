@@ -8,7 +8,7 @@
 submodule (dda_decision) dda_decide
    use dda_boundary, only : held_at_start
    use dda_coulomb_law, only : face
-   use dda_forward, only : outcome_t, run_to_verdict
+   use dda_forward, only : run_to_verdict
    use dda_frames, only : blank_album, keep_pictures
    use dda_graph_decision, only : decide_graph
    use dda_graph_report, only : show_mechanism, show_state
@@ -16,7 +16,7 @@ submodule (dda_decision) dda_decide
    use dda_path_event, only : path_end
    use dda_scene_graph, only : decides_as_graph
    use dda_settings, only : flow_rule
-   use dda_verdict, only : verdict
+   use dda_verdict, only : outcome_t, verdict
    implicit none
 
    !> Steps that the static beginning of a dynamic run may take, at the least

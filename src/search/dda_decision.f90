@@ -3,7 +3,7 @@
 !> How it is decided stands in submodules: who asks needs no more than what is asked and answered.
 module dda_decision
    use dda_block_system, only : block_system_t
-   use dda_contact_detection, only : contacts_t
+   use dda_contacts, only : contacts_t
    use dda_coulomb_law, only : coulomb_state_t
    use dda_frames, only : album_t
    use dda_joint_graph, only : joint_graph_t

@@ -1,13 +1,13 @@
 !> The power of the loads on a mechanism whose joints keep to their faces, as a smooth function of
 !> the parameter of a search: its zero is where the mechanism stops
 submodule (dda_collapse_trace) dda_frozen_mechanism
-   use dda_assembly, only : equations_t, new_equations, solve_faces
+   use dda_assembly, only : new_equations, solve_faces
    use dda_block_factor, only : substitute
    use dda_block_inertia, only : assemble_blocks
    use dda_block_system, only : block_system_t
-   use dda_contact_types, only : same_joint
-   use dda_joint_springs, only : joint_springs_t, new_joint_springs
+   use dda_contact_types, only : joint_springs_t, new_joint_springs, same_joint
    use dda_settings, only : settings_t
+   use dda_step_state, only : equations_t
    implicit none
 
 contains

@@ -1,6 +1,6 @@
 !> Collapse mechanism: hinges, sliding share and mode of the last step
 module dda_mechanism
-   use dda_contact_detection, only : contacts_t
+   use dda_contacts, only : contacts_t
    use dda_decision, only : follow_coulomb
    use dda_frames, only : album_t, blank_album
    use dda_friction_cone, only : joint_face_t

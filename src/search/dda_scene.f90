@@ -2,7 +2,7 @@
 module dda_scene
    use dda_block_system, only : block_system_t
    use dda_chain, only : chain_t
-   use dda_contact_detection, only : contacts_t
+   use dda_contacts, only : contacts_t
    use dda_error, only : error_t
    use dda_kinds, only : wp
    use dda_settings, only : settings_t

@@ -1,10 +1,10 @@
 !> What a search looks for, and what it has found
 module dda_search
    use dda_block_system, only : block_system_t
-   use dda_contact_detection, only : contacts_t
-   use dda_forward, only : outcome_t
+   use dda_contacts, only : contacts_t
    use dda_kinds, only : wp
    use dda_scene, only : link_t, scene_t
+   use dda_verdict, only : outcome_t
    implicit none
    private
 

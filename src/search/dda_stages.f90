@@ -10,13 +10,12 @@ submodule (dda_decision) dda_stages
    use dda_contact_search, only : forget_pairs
    use dda_coulomb_joints, only : coulomb_joints_t, new_coulomb_joints
    use dda_coulomb_law, only : unloaded_state
-   use dda_forward, only : outcome_t
    use dda_graph_decision, only : decide_graph
    use dda_joint_graph, only : add_joint_forces
    use dda_kinds, only : wp
    use dda_path_event, only : path_end
    use dda_scene_graph, only : decides_as_graph, scene_graph
-   use dda_verdict, only : verdict
+   use dda_verdict, only : outcome_t, verdict
    implicit none
 
    !> A joint has slid in a stage if its slip is more than this share of the largest motion, and it

@@ -7,7 +7,7 @@
 module dda_graph_decision
    use dda_block_system, only : block_system_t
    use dda_boundary, only : value_at
-   use dda_contact_detection, only : contacts_t
+   use dda_contacts, only : contacts_t
    use dda_coulomb_law, only : coulomb_state_t
    use dda_first_fall, only : find_coulomb_fall, find_first_motion
    use dda_joint_graph, only : crushes, joint_graph_t

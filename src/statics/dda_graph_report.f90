@@ -3,7 +3,7 @@ module dda_graph_report
    use dda_bar_joints, only : keep_bar_forces
    use dda_block_system, only : block_system_t
    use dda_boundary, only : value_at
-   use dda_contact_detection, only : contacts_t
+   use dda_contacts, only : contacts_t
    use dda_coulomb_law, only : face
    use dda_deformation, only : displacement_matrix
    use dda_joint_graph, only : joint_graph_t, joint_motion

@@ -3,8 +3,8 @@ module dda_scene_graph
    use dda_bar_joints, only : add_bar_joints, add_nodes, n_bar_joints
    use dda_block_system, only : block_system_t
    use dda_boundary, only : held_point_t
-   use dda_contact_detection, only : contacts_t
    use dda_contact_types, only : joint_t
+   use dda_contacts, only : contacts_t
    use dda_coulomb_law, only : coulomb_state_t
    use dda_deformation, only : displacement_matrix
    use dda_joint_graph, only : joint_graph_t, joint_kind, rubs

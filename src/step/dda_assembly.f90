@@ -2,78 +2,23 @@
 !>
 !> Equation (M3) of docs/method.md
 module dda_assembly
-   use dda_bar_springs, only : bar_springs_t, new_bar_springs
-   use dda_block_factor, only : block_factor_t, factorise, plan_factor, substitute
-   use dda_block_matrix, only : block_matrix_t, set_pattern
+   use dda_bar_springs, only : new_bar_springs
+   use dda_block_factor, only : factorise, plan_factor, substitute
+   use dda_block_matrix, only : set_pattern
    use dda_block_system, only : block_system_t
    use dda_boundary, only : held_point_t
-   use dda_fixed_points, only : fixed_points_t, new_fixed_points
+   use dda_contact_types, only : joint_springs_t
+   use dda_fixed_points, only : new_fixed_points
    use dda_friction_cone, only : cone_t, is_stuck, joint_face_t
-   use dda_joint_springs, only : joint_springs_t
    use dda_kinds, only : wp
    use dda_settings, only : load_direction, settings_t
-   use dda_spring_products, only : projected, add_product, add_load
+   use dda_spring_products, only : add_load, add_product, projected
+   use dda_step_state, only : equations_t
    use dda_submatrices, only : body_load, dashpot_matrices, elastic_matrix, mass_matrix
    implicit none
    private
 
-   public :: equations_t, new_equations, renew_springs, take_springs, refresh, solve_faces
-
-   !> Matrix, loads and factor; the pattern and the mass are made once, the numbers where faces or
-   !> the length of the step change
-   type :: equations_t
-      !> Matrix with the springs of the faces held
-      type(block_matrix_t) :: matrix
-      !> Its factor
-      type(block_factor_t) :: factor
-      !> Entry of the matrix that couples the blocks of a joint, 0 if one is fixed: (n_joint)
-      integer, allocatable :: entry(:)
-      !> First joint in the list of each equation, and one beyond the last: (n_equation + 1)
-      integer, allocatable :: first_joint(:)
-      !> Joints of each equation, negative where it is the second block's: (number of sides)
-      integer, allocatable :: joint(:)
-      !> Stiffness of each block's springs if all its joints are stuck, as most are:
-      !> (n_dof, n_dof, n_equation)
-      real(wp), allocatable :: glued(:, :, :)
-      !> Mass: (n_dof, n_dof, n_equation)
-      real(wp), allocatable :: mass(:, :, :)
-      !> Elastic stiffness of the blocks: (n_dof, n_dof, n_equation)
-      real(wp), allocatable :: elastic(:, :, :)
-      !> Forces of absorbing faces per rate, without entries if there are none:
-      !> (n_dof, n_dof, n_equation or 0)
-      real(wp), allocatable :: dashpot(:, :, :)
-      !> Matrix of the blocks without springs: elastic + 2*mass/dt**2: (n_dof, n_dof, n_equation)
-      real(wp), allocatable :: base(:, :, :)
-      !> Weight of the blocks: (n_dof, n_equation)
-      real(wp), allocatable :: weight(:, :)
-      !> All loads from outside in this step: (n_dof, n_equation)
-      real(wp), allocatable :: outer(:, :)
-      !> Sums of their sizes, which do not cancel: (n_dof, n_equation)
-      real(wp), allocatable :: felt(:, :)
-      !> Loads of this step without springs: (n_dof, n_equation)
-      real(wp), allocatable :: load(:, :)
-      !> Springs of the held points
-      type(fixed_points_t) :: fixed
-      !> Springs of the bars
-      type(bar_springs_t) :: bars
-      !> Sum of the forces that bear on the blocks, which small forces are measured by [N/m]
-      real(wp) :: force_scale = 0.0_wp
-      !> What rounding of the corners' coordinates makes of a gap [m]
-      real(wp) :: gap_noise = 0.0_wp
-      !> Faces that the couplings were made for: (n_joint)
-      type(joint_face_t), allocatable :: held(:)
-      !> Coefficients of friction that they were made for: (n_joint)
-      real(wp), allocatable :: held_friction(:)
-      !> Equations whose numbers have changed since the factor was made: (n_equation)
-      logical, allocatable :: changed(:)
-      !> Whether joints and springs are others than those that pattern and numbers were made for: in
-      !> time few steps need them
-      logical :: new_pattern = .false.
-      !> Whether only the springs are others
-      logical :: new_numbers = .false.
-      !> Factorisations so far, whole or in part
-      integer :: factorisations = 0
-   end type equations_t
+   public :: new_equations, renew_springs, take_springs, refresh, solve_faces
 
 contains
 

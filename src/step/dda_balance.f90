@@ -1,12 +1,11 @@
 !> How far the blocks are from balance in a step: the inertia of its motion, which is what no force
 !> balances, in translation and rotation and in strain, each against the load that it is part of
 module dda_balance
-   use dda_assembly, only : equations_t
    use dda_block_system, only : block_system_t
-   use dda_contact_types, only : joint_t
-   use dda_joint_springs, only : joint_springs_t
+   use dda_contact_types, only : joint_springs_t, joint_t
    use dda_kinds, only : wp
    use dda_step_context, only : step_context_t
+   use dda_step_state, only : equations_t
    implicit none
    private
 

@@ -1,10 +1,10 @@
 !> The part of the equations that blocks have without contacts: inertia, elasticity, loads
 !> (Shi: df11 to df16)
 module dda_block_inertia
-   use dda_assembly, only : equations_t
    use dda_bar_springs, only : add_bars, couple_bars, follow_bars
    use dda_block_system, only : block_system_t
    use dda_deformation, only : turned_tensor
+   use dda_step_state, only : equations_t
    use dda_submatrices, only : mass_matrix, stress_load
    use dda_fixed_points, only : add_fixed_springs, follow_fixed_points
    use dda_kinds, only : wp

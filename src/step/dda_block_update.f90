@@ -1,9 +1,9 @@
 !> Carry an accepted step over to blocks and contacts (Shi: df25)
 module dda_block_update
    use dda_block_system, only : block_system_t
-   use dda_contact_detection, only : contacts_t
+   use dda_contact_types, only : mohr_coulomb
+   use dda_contacts, only : contacts_t
    use dda_deformation, only : moved_point, turned_tensor
-   use dda_joint_springs, only : mohr_coulomb
    use dda_kinds, only : wp
    use dda_material, only : elasticity_matrix, loses_strength
    use dda_settings, only : flow_rule, settings_t

@@ -1,6 +1,6 @@
 !> Groups of joints whose blocks hang together: each is a problem of its own
 module dda_contact_groups
-   use dda_joint_springs, only : joint_springs_t
+   use dda_contact_types, only : joint_springs_t
    implicit none
    private
 

@@ -9,18 +9,10 @@
 !> that shear is remembered. With d = z/s the spring of a joint is the inverse of the triangle
 !> C + F_flow' d F; each iteration is one factorisation, with predictor and corrector (Mehrotra
 !> 1992). It begins with the forces of the step before.
-module dda_contact_interior
-   use dda_assembly, only : equations_t
-   use dda_contact_view, only : contact_view_t
-   use dda_face_passes, only : settle_faces, settle_many_faces
-   use dda_interior_problem, only : factor_springs, interior_t, pose, problem_t, respond
-   use dda_interior_problem, only : see_bounds, see_lack, see_openings
-   use dda_joint_springs, only : joint_springs_t
-   use dda_kinds, only : wp
+submodule (dda_settle_in_time:dda_contact_sweeps) dda_contact_interior
+   use dda_interior_problem, only : factor_springs, interior_t, pose, problem_t, respond, &
+      & see_bounds, see_lack, see_openings
    implicit none
-   private
-
-   public :: keep_to_faces, solve_interior
 
    !> What slack and flow begin with at the least, over the size of a force
    real(wp), parameter :: lift = 1.0e-4_wp, highest = 1.0e-1_wp
@@ -33,31 +25,48 @@ module dda_contact_interior
    !> Iterations without progress that end the search
    integer, parameter :: patience = 12
 
+   interface
+
+      !> Find forces and motion whose faces agree, from those of an iterate
+      pure module subroutine settle_faces(equations, springs, view, p, x, passes, agreed)
+         type(equations_t), intent(in) :: equations
+         type(joint_springs_t), intent(in) :: springs
+         type(contact_view_t), intent(in) :: view
+         !> The problem; the size of a force is given
+         type(problem_t), intent(inout) :: p
+         type(interior_t), intent(inout) :: x
+         !> Factorisations so far
+         integer, intent(inout) :: passes
+         !> Whether the faces agree
+         logical, intent(out) :: agreed
+      end subroutine settle_faces
+
+      !> The same of many joints, which rather end than keep to the way that the loads have led
+      !> them: with ever firmer springs, as far as these agree
+      pure module subroutine settle_many_faces(equations, springs, view, p, hasty, x, passes, &
+         & agreed, near)
+         type(equations_t), intent(in) :: equations
+         type(joint_springs_t), intent(in) :: springs
+         type(contact_view_t), intent(in) :: view
+         !> The problem; the size of a force is given, its springs are as they were in the end
+         type(problem_t), intent(inout) :: p
+         !> Whether joints are so many that sweeps rather go on where faces do not agree at once
+         logical, intent(in) :: hasty
+         type(interior_t), intent(inout) :: x
+         integer, intent(inout) :: passes
+         !> Whether the faces agree with springs as soft as those of few joints at the least
+         logical, intent(out) :: agreed
+         !> Whether they nearly agree at the least
+         logical, intent(out) :: near
+      end subroutine settle_many_faces
+
+   end interface
+
 contains
 
    !> Forces of some joints if these keep nearly to the faces that they had: of all forces that stop
    !> the blocks those nearest to the ones before
-   pure subroutine keep_to_faces(equations, springs, view, joint, many, hasty, before, moved, &
-      & force, passes, agreed)
-      type(equations_t), intent(in) :: equations
-      type(joint_springs_t), intent(in) :: springs
-      type(contact_view_t), intent(in) :: view
-      !> Numbers of the joints: (n)
-      integer, intent(in) :: joint(:)
-      !> Whether they are many, and whether sweeps rather go on where they are so many that faces
-      !> take as long
-      logical, intent(in) :: many, hasty
-      !> Forces of all joints in the step before: (3, n_joint) [N/m]
-      real(wp), intent(in) :: before(:, :)
-      !> Motion of all blocks by these: (n_dof, n_equation) [m]
-      real(wp), intent(in) :: moved(:, :)
-      !> Forces of all joints; those of these joints are set if they agree, or nearly where joints
-      !> are very many: (3, n_joint) [N/m]
-      real(wp), intent(inout) :: force(:, :)
-      !> Factorisations so far
-      integer, intent(inout) :: passes
-      !> Whether forces and faces agree
-      logical, intent(out) :: agreed
+   module procedure keep_to_faces
       type(problem_t) :: p
       type(interior_t) :: x
       logical :: near
@@ -71,22 +80,10 @@ contains
          near = agreed
       end if
       if (near) call take_forces(equations, springs, view, x, p, force)
-   end subroutine keep_to_faces
+   end procedure keep_to_faces
 
    !> Forces of some joints, wherever the search for them begins
-   pure subroutine solve_interior(equations, springs, view, joint, before, force, motion, passes, &
-      & agreed)
-      type(equations_t), intent(in) :: equations
-      type(joint_springs_t), intent(in) :: springs
-      type(contact_view_t), intent(in) :: view
-      integer, intent(in) :: joint(:)
-      real(wp), intent(in) :: before(:, :)
-      !> Forces of all joints to begin with, and those found: (3, n_joint) [N/m]
-      real(wp), intent(inout) :: force(:, :)
-      !> Motion of all blocks by these: (n_dof, n_equation) [m]
-      real(wp), intent(in) :: motion(:, :)
-      integer, intent(inout) :: passes
-      logical, intent(out) :: agreed
+   module procedure solve_interior
       type(problem_t) :: p
       type(interior_t) :: on_faces, x
 
@@ -97,7 +94,7 @@ contains
       call settle_faces(equations, springs, view, p, on_faces, passes, agreed)
       if (agreed) x = on_faces
       call take_forces(equations, springs, view, x, p, force)
-   end subroutine solve_interior
+   end procedure solve_interior
 
    !> Iterate from slack and flow, as near to the law of contact as that comes
    pure subroutine iterate(equations, springs, view, p, x, passes)
@@ -361,4 +358,5 @@ contains
          end associate
       end do
    end subroutine take_forces
-end module dda_contact_interior
+
+end submodule dda_contact_interior

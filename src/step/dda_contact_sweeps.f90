@@ -12,22 +12,40 @@
 !> itself, and those that would take long go on by interior springs (`dda_contact_interior`).
 !>
 !> Equation (M5) of docs/method.md
-module dda_contact_sweeps
-   use dda_assembly, only : equations_t
+submodule (dda_settle_in_time) dda_contact_sweeps
    use dda_contact_groups, only : group_joints, many, vast
-   use dda_contact_interior, only : keep_to_faces, solve_interior
    use dda_contact_view, only : contact_view_t, move_blocks, see_joints
    use dda_friction_cone, only : cone_t, joint_face_t, shear_bound
-   use dda_group_sweeps, only : coarsest, sweep_group, sweeps_for
-   use dda_joint_springs, only : joint_springs_t
-   use dda_kinds, only : wp
-   use dda_spring_products, only : relative_displacement
    use dda_small_systems, only : solved
-   use dda_step_state, only : step_state_t
+   use dda_spring_products, only : relative_displacement
    implicit none
-   private
 
-   public :: sweep_contacts
+   !> The same where they bring no less without haste either, or where many joints move
+   real(wp), parameter :: coarsest = 1.0e4_wp
+
+   !> After this many sweeps the change must have fallen noticeably
+   integer, parameter :: patience = 100
+
+   !> What a group is swept for
+   type :: sweeps_for_enum
+      !> To see whether its forces stay
+      integer :: a_look = 0
+      !> To rounding
+      integer :: rounding = 1
+      !> To see whether it settles soon
+      integer :: haste = 2
+      !> Until no step notices what is left
+      integer :: patience = 3
+      !> To make good what interior springs leave
+      integer :: the_rest = 4
+      !> The same where more may be left
+      integer :: the_last = 5
+      !> The same where a longer step has failed by what was left
+      integer :: the_end = 6
+   end type sweeps_for_enum
+
+   !> Names of what a group is swept for
+   type(sweeps_for_enum), parameter :: sweeps_for = sweeps_for_enum()
 
    !> Change of a force that counts as none, over the sum of all that bear on the blocks
    real(wp), parameter :: tolerance = 1.0e-15_wp
@@ -39,16 +57,78 @@ module dda_contact_sweeps
    !> the next step begins with, a finer one
    real(wp), parameter :: look = 1.0e-3_wp, look_at_speeds = 3.0e-5_wp
 
+   interface
+
+      !> Forces of some joints if these keep nearly to the faces that they had: of all forces that
+      !> stop the blocks those nearest to the ones before
+      pure module subroutine keep_to_faces(equations, springs, view, joint, many, hasty, before, &
+         & moved, &
+         & force, passes, agreed)
+         type(equations_t), intent(in) :: equations
+         type(joint_springs_t), intent(in) :: springs
+         type(contact_view_t), intent(in) :: view
+         !> Numbers of the joints: (n)
+         integer, intent(in) :: joint(:)
+         !> Whether they are many, and whether sweeps rather go on where they are so many that faces
+         !> take as long
+         logical, intent(in) :: many, hasty
+         !> Forces of all joints in the step before: (3, n_joint) [N/m]
+         real(wp), intent(in) :: before(:, :)
+         !> Motion of all blocks by these: (n_dof, n_equation) [m]
+         real(wp), intent(in) :: moved(:, :)
+         !> Forces of all joints; those of these joints are set if they agree, or nearly where
+         !> joints are very many: (3, n_joint) [N/m]
+         real(wp), intent(inout) :: force(:, :)
+         !> Factorisations so far
+         integer, intent(inout) :: passes
+         !> Whether forces and faces agree
+         logical, intent(out) :: agreed
+      end subroutine keep_to_faces
+
+      !> Forces of some joints, wherever the search for them begins
+      pure module subroutine solve_interior(equations, springs, view, joint, before, force, &
+         & motion, passes, &
+         & agreed)
+         type(equations_t), intent(in) :: equations
+         type(joint_springs_t), intent(in) :: springs
+         type(contact_view_t), intent(in) :: view
+         integer, intent(in) :: joint(:)
+         real(wp), intent(in) :: before(:, :)
+         !> Forces of all joints to begin with, and those found: (3, n_joint) [N/m]
+         real(wp), intent(inout) :: force(:, :)
+         !> Motion of all blocks by these: (n_dof, n_equation) [m]
+         real(wp), intent(in) :: motion(:, :)
+         integer, intent(inout) :: passes
+         logical, intent(out) :: agreed
+      end subroutine solve_interior
+
+      !> Sweep one group until nothing changes, or until that is seen to take too long
+      pure module subroutine sweep_group(joint, purpose, springs, view, noise, enough, force, &
+         & motion, settled)
+         !> Joints of the group: (n)
+         integer, intent(in) :: joint(:)
+         !> One of sweeps_for
+         integer, intent(in) :: purpose
+         type(joint_springs_t), intent(in) :: springs
+         type(contact_view_t), intent(in) :: view
+         !> Gap that rounding can make [m]
+         real(wp), intent(in) :: noise
+         !> Changes that count as none, of a force [N/m] and of a gap [m]: (2)
+         real(wp), intent(in) :: enough(2)
+         !> Forces of all joints: (3, n_joint) [N/m]
+         real(wp), intent(inout) :: force(:, :)
+         !> Motion of the blocks, of those that do not move first: (n_dof, 0:n_equation)
+         real(wp), intent(inout) :: motion(:, 0:)
+         !> Whether it is settled
+         logical, intent(out) :: settled
+      end subroutine sweep_group
+
+   end interface
+
 contains
 
    !> Settle contact forces and motion of one step, or begin to
-   pure subroutine sweep_contacts(equations, springs, state)
-      type(equations_t), intent(in) :: equations
-      !> The springs of the joints; their stiffness only measures gaps here
-      type(joint_springs_t), intent(in) :: springs
-      !> Multipliers and trial forces to begin with in; motion, forces and faces out, as far as they
-      !> came
-      type(step_state_t), intent(inout) :: state
+   module procedure sweep_contacts
       type(contact_view_t) :: view
       real(wp) :: force(3, size(springs%stiffness)), enough(2), noise
       real(wp) :: motion(size(state%motion, 1), 0:size(state%motion, 2))
@@ -81,7 +161,7 @@ contains
       state%passes = begun + most + 1
       state%settled = all(settled(:n))
       call keep_forces(equations, springs, view, force, state)
-   end subroutine sweep_contacts
+   end procedure sweep_contacts
 
    !> Settle one group: forces that stay need no more than a look; those nearest to the ones before
    !> are found by the faces that these had, or else by interior springs; many joints that move are
@@ -239,4 +319,5 @@ contains
          & face%slip = merge(1, -1, force(3) > 0.0_wp)
       if (all(face%open) .and. .not. abs(force(3)) > 0.0_wp) face%slip = 0
    end function face_of
-end module dda_contact_sweeps
+
+end submodule dda_contact_sweeps

@@ -1,10 +1,9 @@
 !> What the joints see of blocks without springs between them: how these answer their forces
 module dda_contact_view
-   use dda_assembly, only : equations_t
-   use dda_joint_springs, only : joint_springs_t
+   use dda_contact_types, only : joint_springs_t
    use dda_kinds, only : wp
    use dda_small_systems, only : cholesky, solved
-   use dda_step_state, only : step_state_t
+   use dda_step_state, only : equations_t, step_state_t
    implicit none
    private
 

@@ -4,24 +4,14 @@
 !> 2 tan(t/2) for a turn t, a row tells the gap of rigid blocks at the end to rounding. Forces
 !> that act by such rows work on gaps and slips alone, so that a step brings in no energy (Simo,
 !> Tarnow 1992, ZAMP 43, 757-792).
-module dda_curved_motion
-   use dda_assembly, only : equations_t, take_springs
+submodule (dda_step) dda_curved_motion
+   use dda_assembly, only : take_springs
    use dda_block_inertia, only : packed_velocity
-   use dda_block_system, only : block_system_t
    use dda_block_update, only : displaced_blocks
-   use dda_contact_detection, only : contacts_t
-   use dda_contact_types, only : joint_t, place_joint
-   use dda_joint_springs, only : joint_springs_t, place_rows
-   use dda_kinds, only : wp
-   use dda_settings, only : settings_t
+   use dda_contact_types, only : joint_springs_t, joint_t, place_joint, place_rows
    use dda_settle_in_time, only : settle_in_time
    use dda_spring_products, only : relative_displacement
-   use dda_step_context, only : step_context_t
-   use dda_step_state, only : step_state_t
    implicit none
-   private
-
-   public :: follow_curves, foresee_curves
 
    !> Most passes of the correction
    integer, parameter :: max_passes = 8
@@ -37,14 +27,7 @@ module dda_curved_motion
 contains
 
    !> Begin with the rows of blocks that go on as they are
-   pure subroutine foresee_curves(settings, system, contacts, step)
-      type(settings_t), intent(in) :: settings
-      !> The blocks before the step
-      type(block_system_t), intent(in) :: system
-      !> The contacts before the step; rows of their springs are set
-      type(contacts_t), intent(inout) :: contacts
-      !> The step; its curves and trial forces are set
-      type(step_context_t), intent(inout) :: step
+   module procedure foresee_curves
       real(wp) :: motion(size(step%state%motion, 1), size(step%state%motion, 2)), error
 
       motion = step%dt*packed_velocity(system, size(motion, 1))
@@ -52,18 +35,11 @@ contains
       step%state%increment = 0.0_wp
       call see_curves(settings, system, contacts, motion, step, error)
       call take_turned_rows(system, motion, contacts, step)
-   end subroutine foresee_curves
+   end procedure foresee_curves
 
    !> Settle the contacts again with rows of the motion that was found, until closed contacts have
    !> no gap at the end of the step
-   pure subroutine follow_curves(settings, system, contacts, equations, step)
-      type(settings_t), intent(in) :: settings
-      type(block_system_t), intent(in) :: system
-      type(contacts_t), intent(inout) :: contacts
-      !> Blocks assembled; matrix and factor are made anew
-      type(equations_t), intent(inout) :: equations
-      !> The step; its curves, and blocks and joints at its end, are set
-      type(step_context_t), intent(inout) :: step
+   module procedure follow_curves
       type(step_state_t) :: last
       real(wp) :: curve(3, size(contacts%joint)), size_of, error
       type(joint_springs_t) :: springs
@@ -90,7 +66,7 @@ contains
          contacts%springs = springs
          return
       end do
-   end subroutine follow_curves
+   end procedure follow_curves
 
    !> Blocks and joints after a motion, and how far its rows are from telling the gaps there
    pure subroutine see_curves(settings, system, contacts, motion, step, error)
@@ -182,4 +158,5 @@ contains
       turn_ratio = 1.0_wp + turn**2/12.0_wp
       if (abs(turn) > 1.0e-3_wp) turn_ratio = 2.0_wp*tan(turn/2.0_wp)/turn
    end function turn_ratio
-end module dda_curved_motion
+
+end submodule dda_curved_motion

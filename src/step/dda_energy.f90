@@ -1,13 +1,13 @@
 !> Energy balance of a dynamic run
 module dda_energy
-   use dda_assembly, only : equations_t
    use dda_block_inertia, only : damping_rate, kinetic_energy, packed_velocity
    use dda_block_system, only : block_system_t
-   use dda_contact_detection, only : contacts_t
+   use dda_contacts, only : contacts_t
    use dda_kinds, only : wp
    use dda_material, only : elasticity_matrix
    use dda_settings, only : settings_t
    use dda_step_context, only : energy_t, step_context_t
+   use dda_step_state, only : equations_t
    implicit none
    private
 

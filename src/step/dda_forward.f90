@@ -1,70 +1,120 @@
 !> Forward analysis: a run of steps to a verdict (Shi: df)
 module dda_forward
-   use dda_assembly, only : equations_t, new_equations
+   use dda_assembly, only : new_equations
    use dda_balance, only : is_drowned
    use dda_block_factor, only : factored_condition
    use dda_block_system, only : block_system_t
-   use dda_collapse_test, only : has_collapsed, still_moves_away
-   use dda_contact_detection, only : contacts_t
+   use dda_contacts, only : contacts_t
    use dda_energy, only : audit_step, keep_energy
    use dda_error, only : error_t
-   use dda_fall, only : has_fallen, neighbours_of
    use dda_frames, only : album_t, keep_pictures
    use dda_kinds, only : wp
-   use dda_load_clock, only : goes_on_at, has_path
+   use dda_load_clock, only : has_path
    use dda_reactions, only : keep_reactions
-   use dda_rest, only : leaps, leave_rest, rest_t, return_to_rest
    use dda_settings, only : settings_t
    use dda_step, only : advance, begin_step
    use dda_step_context, only : march_t, step_context_t
    use dda_step_interval, only : first_interval, measure_scales, next_interval
-   use dda_verdict, only : judge_verdict, largest_displacement, verdict
+   use dda_step_state, only : equations_t
+   use dda_verdict, only : has_collapsed, has_fallen, judge_verdict, largest_displacement, &
+      & neighbours_of, outcome_t, still_moves_away, verdict
    implicit none
    private
 
-   public :: outcome_t, run_to_verdict
+   public :: run_to_verdict
 
-   !> How a run ended
-   type :: outcome_t
-      !> One of verdict
-      integer :: verdict = 0
-      !> Why the verdict is undecided; unallocated otherwise
-      character(len=:), allocatable :: reason
-      !> Acceleration of the last step over that of the loads
-      real(wp) :: acceleration_ratio = 0.0_wp
-      !> Acceleration ratio below which the run would have been at rest
-      real(wp) :: rest_tolerance = 0.0_wp
-      !> Length of a step in which free fall is the elastic motion [s]
-      real(wp) :: elastic_time = 0.0_wp
-      !> Estimated condition number of the last equations, if it was wanted
-      real(wp) :: condition = 0.0_wp
-      !> Motion of the step that gave the verdict: (n_dof, n_equation)
-      real(wp), allocatable :: motion(:, :)
-      !> Contacts after that step, if a collapse has been followed from there for its pictures
-      type(contacts_t), allocatable :: fallen
-      !> Whether histories were followed, or points led, in a static run
-      logical :: has_path = .false.
-      !> Time that they were followed to; from -1 to 0 what is led from the beginning comes [s]
-      real(wp) :: path_time = 0.0_wp
-      !> How often blocks leapt on that path to another rest
-      integer :: jumps = 0
-      !> The largest of these jumps [m]
-      real(wp) :: largest_jump = 0.0_wp
-      !> Joints that have slid in stages in which blocks were built or taken away
-      integer :: n_slid = 0
-      !> Those of them that the last stage has, by their numbers there
-      integer, allocatable :: slid(:)
-      !> Whether blocks were built in a stage, so that they carry only what came after them
-      logical :: has_built = .false.
-      !> Whether no joint has slid in stages, and yet the last shape built at once slides or falls
-      logical :: slides_at_once = .false.
-      !> Accepted steps
-      integer :: steps = 0
-      !> Passes of the open-close loop
-      integer :: passes = 0
-      !> Factorisations
-      integer :: factorisations = 0
-   end type outcome_t
+   !> The run at a rest
+   type :: rest_t
+      !> The blocks
+      type(block_system_t) :: system
+      !> The contacts
+      type(contacts_t) :: contacts
+      !> The march
+      type(march_t) :: march
+      !> Forces of the springs at held points: (n_spring) [N/m]
+      real(wp), allocatable :: held_force(:)
+      !> Pictures kept so far
+      integer :: n_frame = 0
+      !> Steps so far of which the measured points are kept
+      integer :: n_track = 0
+      !> Displacement or time at which the next picture is due [m or s]
+      real(wp) :: due = 0.0_wp
+   end type rest_t
+
+   interface
+
+      !> Whether the blocks have moved in a stride by more than the stride before lets expect
+      pure logical module function leaps(settings, march)
+         type(settings_t), intent(in) :: settings
+         type(march_t), intent(in) :: march
+      end function leaps
+
+      !> Go on from a rest: keep it, and let the clock stride as far as the motion of the last
+      !> stride lets expect
+      pure module subroutine leave_rest(settings, system, contacts, equations, march, rest, album)
+         type(settings_t), intent(in) :: settings
+         type(block_system_t), intent(in) :: system
+         type(contacts_t), intent(in) :: contacts
+         type(equations_t), intent(in) :: equations
+         type(march_t), intent(inout) :: march
+         type(rest_t), allocatable, intent(inout) :: rest
+         !> Pictures of the run
+         type(album_t), intent(in), optional :: album
+      end subroutine leave_rest
+
+      !> Go back to the last rest, from where the blocks do not come to rest, or have moved too far,
+      !> for a shorter stride of the clock
+      pure module subroutine return_to_rest(settings, rest, falls, system, contacts, equations, &
+         & march, &
+         & returned, album)
+         type(settings_t), intent(in) :: settings
+         type(rest_t), intent(in) :: rest
+         !> Whether they do not come to rest
+         logical, intent(in) :: falls
+         type(block_system_t), intent(inout) :: system
+         type(contacts_t), intent(inout) :: contacts
+         type(equations_t), intent(inout) :: equations
+         !> The march; its counts are kept
+         type(march_t), intent(inout) :: march
+         !> Whether there is a shorter stride; otherwise nothing is changed
+         logical, intent(out) :: returned
+         type(album_t), intent(inout), optional :: album
+      end subroutine return_to_rest
+
+      !> Let the clock of a static run go on where the blocks are at rest before the end of its
+      !> path, and back where they do not come to rest, or leap
+      pure module subroutine follow_path(settings, system, contacts, equations, march, step, &
+         & rest, answer, &
+         & error, album)
+         type(settings_t), intent(in) :: settings
+         type(block_system_t), intent(inout) :: system
+         type(contacts_t), intent(inout) :: contacts
+         type(equations_t), intent(inout) :: equations
+         type(march_t), intent(inout) :: march
+         type(step_context_t), intent(in) :: step
+         type(rest_t), allocatable, intent(inout) :: rest
+         !> One of verdict; becomes undecided where the run goes on
+         integer, intent(inout) :: answer
+         type(error_t), allocatable, intent(inout) :: error
+         type(album_t), intent(inout), optional :: album
+      end subroutine follow_path
+
+      !> Follow a collapse beyond its verdict as far as the album wants to see it, and keep a
+      !> picture of the end
+      pure module subroutine end_pictures(settings, system, contacts, equations, march, step, &
+         & outcome, album)
+         type(settings_t), intent(in) :: settings
+         type(block_system_t), intent(inout) :: system
+         type(contacts_t), intent(inout) :: contacts
+         type(equations_t), intent(inout) :: equations
+         type(march_t), intent(inout) :: march
+         type(step_context_t), intent(inout) :: step
+         !> How the run ended; receives the contacts of a collapse that is followed
+         type(outcome_t), intent(inout) :: outcome
+         type(album_t), intent(inout) :: album
+      end subroutine end_pictures
+
+   end interface
 
 contains
 
@@ -238,46 +288,6 @@ contains
       if (answer == verdict%undecided) call next_interval(settings, system, step, march)
    end subroutine take_step
 
-   !> Let the clock of a static run go on where the blocks are at rest before the end of its path,
-   !> and back where they do not come to rest, or leap
-   pure subroutine follow_path(settings, system, contacts, equations, march, step, rest, answer, &
-      & error, album)
-      type(settings_t), intent(in) :: settings
-      type(block_system_t), intent(inout) :: system
-      type(contacts_t), intent(inout) :: contacts
-      type(equations_t), intent(inout) :: equations
-      type(march_t), intent(inout) :: march
-      type(step_context_t), intent(in) :: step
-      type(rest_t), allocatable, intent(inout) :: rest
-      !> One of verdict; becomes undecided where the run goes on
-      integer, intent(inout) :: answer
-      type(error_t), allocatable, intent(inout) :: error
-      type(album_t), intent(inout), optional :: album
-      logical :: falls, returned
-
-      if (.not. has_path(march%clock)) return
-      if (allocated(rest)) then
-         falls = allocated(error) .or. answer == verdict%collapsed .or. leaps(settings, march) &
-            & .or. march%steps - march%begun >= settings%max_steps
-         returned = .false.
-         if (falls .or. .not. step%accepted) call return_to_rest(settings, rest, falls, system, &
-            & contacts, equations, march, returned, album)
-         if (returned) then
-            answer = verdict%undecided
-            if (allocated(error)) deallocate (error)
-            return
-         end if
-      end if
-      if (answer /= verdict%stable) return
-      if (allocated(rest) .and. leaps(settings, march)) then
-         march%jumps = march%jumps + 1
-         march%largest_jump = max(march%largest_jump, march%moved)
-      end if
-      if (.not. goes_on_at(march%clock)) return
-      answer = verdict%undecided
-      call leave_rest(settings, system, contacts, equations, march, rest, album)
-   end subroutine follow_path
-
    !> Take over the march of a run that goes on, and the forces at its held points; points that are
    !> held otherwise than before begin without force. Scales are those of the run as it is now
    pure subroutine go_on(settings, system, onward, march, equations)
@@ -294,31 +304,4 @@ contains
       if (size(march%held_force) == size(equations%fixed%force)) &
          & equations%fixed%force = march%held_force
    end subroutine go_on
-
-   !> Follow a collapse beyond its verdict as far as the album wants to see it, and keep a picture
-   !> of the end
-   pure subroutine end_pictures(settings, system, contacts, equations, march, step, outcome, album)
-      type(settings_t), intent(in) :: settings
-      type(block_system_t), intent(inout) :: system
-      type(contacts_t), intent(inout) :: contacts
-      type(equations_t), intent(inout) :: equations
-      type(march_t), intent(inout) :: march
-      type(step_context_t), intent(inout) :: step
-      !> How the run ended; receives the contacts of a collapse that is followed
-      type(outcome_t), intent(inout) :: outcome
-      type(album_t), intent(inout) :: album
-      type(error_t), allocatable :: error
-
-      if (outcome%verdict == verdict%collapsed .and. march%displacement < album%follow) &
-         & outcome%fallen = contacts
-      do while (allocated(outcome%fallen) .and. march%displacement < album%follow)
-         if (march%steps == settings%max_steps) exit
-         call next_interval(settings, system, step, march)
-         call advance(settings, system, contacts, equations, march, step, error)
-         if (allocated(error)) exit
-         march%displacement = largest_displacement(system, settings%current)
-         call keep_pictures(settings, system, contacts, march, step%farthest, .false., album)
-      end do
-      call keep_pictures(settings, system, contacts, march, step%farthest, .true., album)
-   end subroutine end_pictures
 end module dda_forward

@@ -3,8 +3,8 @@ module dda_frames
    use dda_bar, only : bar_state_t
    use dda_block_system, only : block_system_t
    use dda_boundary, only : measured_point_t
-   use dda_contact_detection, only : contacts_t
    use dda_contact_types, only : joint_t
+   use dda_contacts, only : contacts_t
    use dda_deformation, only : displacement_matrix, moved_point
    use dda_friction_cone, only : joint_face_t
    use dda_energy, only : audit_t

@@ -3,13 +3,12 @@
 !>
 !> Equation (M4) of docs/method.md
 module dda_friction
-   use dda_assembly, only : equations_t
+   use dda_contact_types, only : joint_springs_t
    use dda_friction_cone, only : cone_t
-   use dda_joint_springs, only : joint_springs_t
    use dda_kinds, only : wp
    use dda_open_close, only : iterate_open_close
    use dda_small_systems, only : least_squares
-   use dda_step_state, only : force_noise, step_state_t
+   use dda_step_state, only : equations_t, force_noise, step_state_t
    implicit none
    private
 

@@ -2,16 +2,8 @@
 !> forces that close its gaps and stop its slip, as far as the law of contact allows
 !>
 !> Equation (M5) of docs/method.md
-module dda_group_sweeps
-   use dda_contact_groups, only : vast
-   use dda_contact_view, only : contact_view_t
-   use dda_friction_cone, only : shear_bound
-   use dda_joint_springs, only : joint_springs_t
-   use dda_kinds, only : wp
+submodule (dda_settle_in_time:dda_contact_sweeps) dda_group_sweeps
    implicit none
-   private
-
-   public :: sweep_group, sweeps_for, coarsest
 
    !> Few blocks settle to rounding in so many sweeps
    integer, parameter :: strictly = 64
@@ -19,16 +11,14 @@ module dda_group_sweeps
    real(wp), parameter :: no_force = 1.0e-7_wp
    !> Multiple of a change that counts as none that will do where more sweeps bring no less
    real(wp), parameter :: coarse = 1.0e2_wp
-   !> The same where they bring no less without haste either, or where many joints move
-   real(wp), parameter :: coarsest = 1.0e4_wp
+
    !> After this many sweeps a change that falls no more ends them
    integer, parameter :: plain_sweeps = 1000
    !> Most sweeps
    integer, parameter :: max_sweeps = 4000
    !> After this many sweeps the joints without force are looked at again
    integer, parameter :: round = 8
-   !> After this many sweeps the change must have fallen noticeably
-   integer, parameter :: patience = 100
+
    !> What counts as noticeable
    real(wp), parameter :: falling = 0.8_wp
    !> Sweeps that cost as much as interior springs of few joints
@@ -40,47 +30,10 @@ module dda_group_sweeps
    !> Multiple of what no step notices that may be left then
    real(wp), parameter :: last_resort = 3.0e1_wp
 
-   !> What a group is swept for
-   type :: sweeps_for_enum
-      !> To see whether its forces stay
-      integer :: a_look = 0
-      !> To rounding
-      integer :: rounding = 1
-      !> To see whether it settles soon
-      integer :: haste = 2
-      !> Until no step notices what is left
-      integer :: patience = 3
-      !> To make good what interior springs leave
-      integer :: the_rest = 4
-      !> The same where more may be left
-      integer :: the_last = 5
-      !> The same where a longer step has failed by what was left
-      integer :: the_end = 6
-   end type sweeps_for_enum
-
-   !> Names of what a group is swept for
-   type(sweeps_for_enum), parameter :: sweeps_for = sweeps_for_enum()
-
 contains
 
    !> Sweep one group until nothing changes, or until that is seen to take too long
-   pure subroutine sweep_group(joint, purpose, springs, view, noise, enough, force, motion, settled)
-      !> Joints of the group: (n)
-      integer, intent(in) :: joint(:)
-      !> One of sweeps_for
-      integer, intent(in) :: purpose
-      type(joint_springs_t), intent(in) :: springs
-      type(contact_view_t), intent(in) :: view
-      !> Gap that rounding can make [m]
-      real(wp), intent(in) :: noise
-      !> Changes that count as none, of a force [N/m] and of a gap [m]: (2)
-      real(wp), intent(in) :: enough(2)
-      !> Forces of all joints: (3, n_joint) [N/m]
-      real(wp), intent(inout) :: force(:, :)
-      !> Motion of the blocks, of those that do not move first: (n_dof, 0:n_equation)
-      real(wp), intent(inout) :: motion(:, 0:)
-      !> Whether it is settled
-      logical, intent(out) :: settled
+   module procedure sweep_group
       real(wp) :: before(3, size(joint)), change(2), last, lately, square, way(3, size(joint))
       logical :: active(size(joint)), ended, hasty
       integer :: sweep
@@ -109,7 +62,7 @@ contains
          if (hasty) call go_on(joint, springs, view, force(:, joint) - before, square, way, force, &
             & motion)
       end do
-   end subroutine sweep_group
+   end procedure sweep_group
 
    !> Whether sweeps go on where gaps no longer change less: without haste, or no more
    pure subroutine see_progress(sweep, change, last, hasty, settled, ended)
@@ -328,4 +281,5 @@ contains
          end do
       end do
    end subroutine push
-end module dda_group_sweeps
+
+end submodule dda_group_sweeps

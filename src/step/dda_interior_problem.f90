@@ -1,11 +1,11 @@
 !> Joints and blocks whose contact forces interior springs find, and the matrix of these springs
 module dda_interior_problem
-   use dda_assembly, only : equations_t
    use dda_block_factor, only : block_factor_t, factorise, plan_factor, substitute
    use dda_block_matrix, only : block_matrix_t, set_pattern
+   use dda_contact_types, only : joint_springs_t, unbounded
    use dda_contact_view, only : contact_view_t
-   use dda_joint_springs, only : joint_springs_t, unbounded
    use dda_kinds, only : wp
+   use dda_step_state, only : equations_t
    implicit none
    private
 

@@ -1,15 +1,15 @@
 !> What supports put on the blocks: blocks that are fixed, and held points
 module dda_reactions
-   use dda_assembly, only : equations_t
    use dda_block_system, only : block_system_t
    use dda_boundary, only : boundary_t
-   use dda_contact_detection, only : contacts_t
    use dda_contact_types, only : joint_t
+   use dda_contacts, only : contacts_t
    use dda_deformation, only : moved_point
    use dda_frames, only : album_t
    use dda_kinds, only : wp
    use dda_settings, only : settings_t
    use dda_step_context, only : step_context_t
+   use dda_step_state, only : equations_t
    use dda_vector, only : cross
    implicit none
    private

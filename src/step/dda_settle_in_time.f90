@@ -5,17 +5,14 @@
 !> the step before. Whatever the bounds are, friction takes energy and no momentum; so a step in
 !> which they change a little to the end counts.
 module dda_settle_in_time
-   use dda_assembly, only : equations_t
-   use dda_bar_springs, only : add_bars, couple_bars, judge_bars
-   use dda_bars_in_time, only : append_bars, drop_bars
-   use dda_contact_sweeps, only : sweep_contacts
+   use dda_bar_springs, only : add_bars, bar_springs_t, couple_bars, judge_bars
+   use dda_contact_types, only : joint_springs_t
    use dda_fixed_points, only : correct_fixed_forces
    use dda_friction, only : accelerate, anderson_t, coulomb_bound
-   use dda_joint_springs, only : joint_springs_t
    use dda_kinds, only : wp
    use dda_open_close, only : iterate_open_close
    use dda_settings, only : flow_rule, settings_t
-   use dda_step_state, only : step_state_t
+   use dda_step_state, only : equations_t, step_state_t
    implicit none
    private
 
@@ -33,6 +30,38 @@ module dda_settle_in_time
    real(wp), parameter :: coarse = 1.0e-7_wp
    !> Change of a bound that a step may end with
    real(wp), parameter :: coarse_bound = 1.0e-4_wp
+
+   interface
+
+      !> The joints of a step and behind them its bars
+      pure module subroutine append_bars(bars, contacts, step, springs, state, load)
+         type(bar_springs_t), intent(in) :: bars
+         type(joint_springs_t), intent(in) :: contacts
+         type(step_state_t), intent(in) :: step
+         !> Springs of joints and bars
+         type(joint_springs_t), intent(out) :: springs
+         type(step_state_t), intent(out) :: state
+         !> Receives what the bars carry in the middle of their bounds: (n_dof, n_equation) [N/m]
+         real(wp), intent(inout) :: load(:, :)
+      end subroutine append_bars
+
+      !> Give the joints of a step back what was found beside its bars
+      pure module subroutine drop_bars(state, step)
+         type(step_state_t), intent(in) :: state
+         type(step_state_t), intent(inout) :: step
+      end subroutine drop_bars
+
+      !> Settle contact forces and motion of one step, or begin to
+      pure module subroutine sweep_contacts(equations, springs, state)
+         type(equations_t), intent(in) :: equations
+         !> The springs of the joints; their stiffness only measures gaps here
+         type(joint_springs_t), intent(in) :: springs
+         !> Multipliers and trial forces to begin with in; motion, forces and faces out, as far as
+         !> they came
+         type(step_state_t), intent(inout) :: state
+      end subroutine sweep_contacts
+
+   end interface
 
 contains
 

@@ -1,8 +1,8 @@
 !> Products with the rows of the springs: stiffness and load of a joint on its face, openings and
 !> slips by a motion (Shi: df18)
 module dda_spring_products
+   use dda_contact_types, only : joint_springs_t
    use dda_friction_cone, only : apply_face, cone_t, is_stuck, joint_face_t
-   use dda_joint_springs, only : joint_springs_t
    use dda_kinds, only : wp
    implicit none
    private

@@ -3,15 +3,15 @@
 !> With every velocity zero and loads that the contact forces at hand balance, no motion is what the
 !> equations of a step ask for, and its end is its beginning.
 module dda_standstill
-   use dda_assembly, only : equations_t
    use dda_block_inertia, only : assemble_blocks
    use dda_block_system, only : block_system_t
-   use dda_contact_detection, only : contacts_t
+   use dda_contacts, only : contacts_t
    use dda_friction_cone, only : joint_face_t
    use dda_kinds, only : wp
    use dda_settings, only : settings_t
    use dda_spring_products, only : add_load
    use dda_step_context, only : march_t, step_context_t
+   use dda_step_state, only : equations_t
    implicit none
    private
 

@@ -1,24 +1,14 @@
 !> Whether a try of a step counts, and what the next try changes if it does not
-module dda_step_check
-   use dda_assembly, only : equations_t
+submodule (dda_step) dda_step_check
    use dda_block_inertia, only : kinetic_energy, packed_velocity
-   use dda_block_system, only : block_system_t
-   use dda_block_update, only : update_blocks, update_contacts
-   use dda_contact_detection, only : contacts_t
    use dda_contact_transfer, only : renew_contacts
-   use dda_joint_springs, only : joint_springs_t
-   use dda_kinds, only : wp
+   use dda_contact_types, only : joint_springs_t
    use dda_parting_line, only : block_gap
-   use dda_settings, only : settings_t
    use dda_spring_products, only : relative_displacement
-   use dda_step_context, only : march_t, step_context_t, step_outcome_t
+   use dda_step_context, only : near_gap
    use dda_step_interval, only : check_length
    use dda_step_reach, only : check_margins, travel_by, travel_of, widen_margins
-   use dda_velocity, only : near_gap
    implicit none
-   private
-
-   public :: check_axes, check_end_velocities, check_impact, check_motion, retry
 
    !> Gap or depth that is no matter, over the size of the smaller block
    real(wp), parameter :: no_matter = 1.0e-6_wp
@@ -37,17 +27,7 @@ contains
 
    !> Check the motion of a try: settled, short enough, within its margins, without an impact
    !> inside, by the right axes
-   pure function check_motion(settings, system, contacts, equations, march, step) result(outcome)
-      type(settings_t), intent(in) :: settings
-      !> The blocks before the step
-      type(block_system_t), intent(in) :: system
-      !> The contacts before the step
-      type(contacts_t), intent(in) :: contacts
-      type(equations_t), intent(in) :: equations
-      type(march_t), intent(in) :: march
-      type(step_context_t), intent(in) :: step
-      !> What the first check says that it does not pass
-      type(step_outcome_t) :: outcome
+   module procedure check_motion
       logical :: searched
 
       searched = contacts%searched .and. settings%current
@@ -56,31 +36,19 @@ contains
       if (.not. (settings%dynamic .and. settings%current)) return
       if (outcome%accepted) outcome = check_impact(settings, system, contacts, equations, step)
       if (outcome%accepted .and. searched) outcome = check_axes(system, contacts, march, step)
-   end function check_motion
+   end procedure check_motion
 
    !> Check the velocities of a try: settled, and no corner inside a neighbour
-   pure function check_end_velocities(settings, system, contacts, march, step) result(outcome)
-      type(settings_t), intent(in) :: settings
-      type(block_system_t), intent(in) :: system
-      type(contacts_t), intent(in) :: contacts
-      type(march_t), intent(in) :: march
-      type(step_context_t), intent(in) :: step
-      type(step_outcome_t) :: outcome
+   module procedure check_end_velocities
 
       outcome = step_outcome_t(accepted=step%has_velocity, dt=step%dt)
       if (.not. outcome%accepted) outcome = step_outcome_t(dt=step%dt/2.0_wp, was_cut=.true.)
       if (outcome%accepted .and. contacts%searched) &
          & outcome = check_penetration(settings, system, contacts, march, step)
-   end function check_end_velocities
+   end procedure check_end_velocities
 
    !> Change for the next try what the checks ask for: its length, margins, axes
-   pure subroutine retry(system, outcome, march, step)
-      type(block_system_t), intent(in) :: system
-      type(step_outcome_t), intent(in) :: outcome
-      !> The march; length and margins are set
-      type(march_t), intent(inout) :: march
-      !> The try; how corners move is set, and whether contacts are searched again
-      type(step_context_t), intent(inout) :: step
+   module procedure retry
 
       if (outcome%dt < step%dt) step%choices = 0
       march%dt = outcome%dt
@@ -90,18 +58,14 @@ contains
       if (.not. outcome%wrong_axes) return
       step%choices = step%choices + 1
       step%travel = travel_by(system, step%state%motion)
-   end subroutine retry
+   end procedure retry
 
    !> Check the separating axes of a settled step. Where corners pass corners, which edge the one
    !> would go in by depends on the way that both take. A line that has held off a block which turns
    !> out to be apart was the wrong one, and so was one that has let it in: they are chosen anew by
    !> the motion; if blocks still enter one another the step is cut, and if some are still held off
    !> in thin air, they are
-   pure type(step_outcome_t) function check_axes(system, contacts, march, step) result(outcome)
-      type(block_system_t), intent(in) :: system
-      type(contacts_t), intent(in) :: contacts
-      type(march_t), intent(in) :: march
-      type(step_context_t), intent(in) :: step
+   module procedure check_axes
       real(wp) :: gap, matters
       logical :: entered, held_off
       integer :: j
@@ -124,7 +88,7 @@ contains
       outcome%accepted = .not. outcome%wrong_axes
       if (outcome%wrong_axes .or. .not. entered .or. step%dt <= shortest*march%longest) return
       outcome = step_outcome_t(dt=step%dt/2.0_wp, was_cut=.true.)
-   end function check_axes
+   end procedure check_axes
 
    !> Check that a search at the end of a step finds no corners deeper inside than they were at its
    !> beginning, by another edge than that of their contact, where a block with a notch is one of
@@ -169,14 +133,7 @@ contains
    !> Check that no open contact closes fast within the step, for the speed at that very moment
    !> counts, and the time that is left after it; a step in which one does ends when the
    !> two blocks, if nothing else touched them, would be near enough to count as touching
-   pure function check_impact(settings, system, contacts, equations, step) result(outcome)
-      type(settings_t), intent(in) :: settings
-      type(block_system_t), intent(in) :: system
-      type(contacts_t), intent(in) :: contacts
-      type(equations_t), intent(in) :: equations
-      type(step_context_t), intent(in) :: step
-      !> What the check says
-      type(step_outcome_t) :: outcome
+   module procedure check_impact
       real(wp) :: speed(3, size(contacts%joint)), acceleration(3, size(contacts%joint))
       real(wp) :: near, earliest, least, meeting, time
       integer :: j, k
@@ -205,7 +162,7 @@ contains
       if (earliest > 2.0_wp*step%dt) return
       outcome%accepted = .false.
       outcome%dt = merge(earliest, step%dt/2.0_wp, earliest < 0.999_wp*step%dt)
-   end function check_impact
+   end procedure check_impact
 
    !> Accelerations of the blocks if nothing touched them
    pure function free_accelerations(equations) result(free)
@@ -259,4 +216,5 @@ contains
       root = speed + sqrt(square)
       if (root > 0.0_wp) falling_time = 2.0_wp*way/root
    end function falling_time
-end module dda_step_check
+
+end submodule dda_step_check

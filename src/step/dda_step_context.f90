@@ -8,7 +8,7 @@ module dda_step_context
    implicit none
    private
 
-   public :: energy_t, march_t, step_context_t, step_outcome_t
+   public :: energy_t, march_t, step_context_t, step_outcome_t, near_gap
 
    !> Energies of a dynamic run; what is gone or brought in is a sum since the beginning [J/m]
    type :: energy_t
@@ -167,4 +167,18 @@ module dda_step_context
       !> Energies after the last step of a dynamic run
       type(energy_t) :: energy
    end type march_t
+
+   !> A contact is closed if its gap is below this share of the smaller block
+   real(wp), parameter :: near = 1.0e-10_wp
+
+contains
+
+   !> Gap below which two blocks count as touching
+   pure real(wp) function near_gap(system, pair)
+      type(block_system_t), intent(in) :: system
+      !> The two blocks: (2)
+      integer, intent(in) :: pair(2)
+
+      near_gap = near*sqrt(minval(system%area(pair)))
+   end function near_gap
 end module dda_step_context

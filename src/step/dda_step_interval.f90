@@ -1,6 +1,6 @@
 !> The length of a step (Shi: step)
 module dda_step_interval
-   use dda_assembly, only : equations_t, solve_faces
+   use dda_assembly, only : solve_faces
    use dda_bar_springs, only : longest_give
    use dda_balance, only : free_acceleration
    use dda_boundary, only : history_t
@@ -8,13 +8,13 @@ module dda_step_interval
    use dda_block_system, only : block_system_t
    use dda_error, only : error_t, fatal_error
    use dda_friction_cone, only : cone_t, joint_face_t
-   use dda_joint_springs, only : joint_springs_t
+   use dda_contact_types, only : joint_springs_t
    use dda_kinds, only : wp
    use dda_load_clock, only : has_path, new_load_clock
    use dda_open_close, only : change_faces
    use dda_settings, only : settings_t
    use dda_step_context, only : march_t, step_context_t, step_outcome_t
-   use dda_step_state, only : step_state_t
+   use dda_step_state, only : equations_t, step_state_t
    implicit none
    private
 

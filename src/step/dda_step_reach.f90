@@ -1,7 +1,7 @@
 !> How far corners move in a step, so that nothing is met that was not looked for
 module dda_step_reach
    use dda_block_system, only : block_system_t
-   use dda_contact_detection, only : contacts_t
+   use dda_contacts, only : contacts_t
    use dda_deformation, only : displacement_matrix
    use dda_kinds, only : wp
    use dda_settings, only : load_direction, settings_t

@@ -1,14 +1,17 @@
 !> What one step works on: the motion of the blocks, and the joints at its end
 module dda_step_state
-   use dda_assembly, only : equations_t
+   use dda_bar_springs, only : bar_springs_t
+   use dda_block_factor, only : block_factor_t
+   use dda_block_matrix, only : block_matrix_t
+   use dda_contact_types, only : joint_springs_t
+   use dda_fixed_points, only : fixed_points_t
    use dda_friction_cone, only : apply_face, cone_t, is_stuck, joint_face_t, project
-   use dda_joint_springs, only : joint_springs_t
    use dda_kinds, only : wp
    use dda_spring_products, only : relative_displacement
    implicit none
    private
 
-   public :: step_state_t, joint_forces, disagreement, force_noise
+   public :: step_state_t, joint_forces, disagreement, force_noise, equations_t
 
    !> The motion of the step and the joints at its end
    type :: step_state_t
@@ -49,6 +52,62 @@ module dda_step_state
       !> Whether every joint's force agrees with its face
       logical :: settled = .false.
    end type step_state_t
+
+   !> Matrix, loads and factor; the pattern and the mass are made once, the numbers where faces or
+   !> the length of the step change
+   type :: equations_t
+      !> Matrix with the springs of the faces held
+      type(block_matrix_t) :: matrix
+      !> Its factor
+      type(block_factor_t) :: factor
+      !> Entry of the matrix that couples the blocks of a joint, 0 if one is fixed: (n_joint)
+      integer, allocatable :: entry(:)
+      !> First joint in the list of each equation, and one beyond the last: (n_equation + 1)
+      integer, allocatable :: first_joint(:)
+      !> Joints of each equation, negative where it is the second block's: (number of sides)
+      integer, allocatable :: joint(:)
+      !> Stiffness of each block's springs if all its joints are stuck, as most are:
+      !> (n_dof, n_dof, n_equation)
+      real(wp), allocatable :: glued(:, :, :)
+      !> Mass: (n_dof, n_dof, n_equation)
+      real(wp), allocatable :: mass(:, :, :)
+      !> Elastic stiffness of the blocks: (n_dof, n_dof, n_equation)
+      real(wp), allocatable :: elastic(:, :, :)
+      !> Forces of absorbing faces per rate, without entries if there are none:
+      !> (n_dof, n_dof, n_equation or 0)
+      real(wp), allocatable :: dashpot(:, :, :)
+      !> Matrix of the blocks without springs: elastic + 2*mass/dt**2: (n_dof, n_dof, n_equation)
+      real(wp), allocatable :: base(:, :, :)
+      !> Weight of the blocks: (n_dof, n_equation)
+      real(wp), allocatable :: weight(:, :)
+      !> All loads from outside in this step: (n_dof, n_equation)
+      real(wp), allocatable :: outer(:, :)
+      !> Sums of their sizes, which do not cancel: (n_dof, n_equation)
+      real(wp), allocatable :: felt(:, :)
+      !> Loads of this step without springs: (n_dof, n_equation)
+      real(wp), allocatable :: load(:, :)
+      !> Springs of the held points
+      type(fixed_points_t) :: fixed
+      !> Springs of the bars
+      type(bar_springs_t) :: bars
+      !> Sum of the forces that bear on the blocks, which small forces are measured by [N/m]
+      real(wp) :: force_scale = 0.0_wp
+      !> What rounding of the corners' coordinates makes of a gap [m]
+      real(wp) :: gap_noise = 0.0_wp
+      !> Faces that the couplings were made for: (n_joint)
+      type(joint_face_t), allocatable :: held(:)
+      !> Coefficients of friction that they were made for: (n_joint)
+      real(wp), allocatable :: held_friction(:)
+      !> Equations whose numbers have changed since the factor was made: (n_equation)
+      logical, allocatable :: changed(:)
+      !> Whether joints and springs are others than those that pattern and numbers were made for: in
+      !> time few steps need them
+      logical :: new_pattern = .false.
+      !> Whether only the springs are others
+      logical :: new_numbers = .false.
+      !> Factorisations so far, whole or in part
+      integer :: factorisations = 0
+   end type equations_t
 
 contains
 

@@ -11,30 +11,20 @@
 !> that is not taken back, and N is what the impact adds. So a closed contact ends at rest if e = 0,
 !> whatever the step: v would end with any restitution between 0 and 1, and has never less energy.
 !> Without contact the two are the same. All of it is exact to the second order, impacts too.
-module dda_velocity
-   use dda_assembly, only : equations_t, take_springs
+submodule (dda_step) dda_velocity
+   use dda_assembly, only : take_springs
    use dda_bar_springs, only : couple_bars
    use dda_block_inertia, only : damping_rate, hold_energy, kinetic_energy, packed_velocity, &
       & strain_follows
-   use dda_block_system, only : block_system_t
-   use dda_contact_detection, only : contacts_t
+   use dda_contact_types, only : joint_springs_t, place_rows
    use dda_fixed_points, only : add_fixed_springs, hold_rigidly, turn_fixed_row
    use dda_friction_cone, only : joint_face_t
-   use dda_joint_springs, only : joint_springs_t, place_rows
-   use dda_kinds, only : wp
    use dda_settle_in_time, only : settle_in_time
-   use dda_settings, only : settings_t
-   use dda_step_context, only : step_context_t
-   use dda_step_state, only : step_state_t
-   use dda_vector, only : cross
    use dda_spring_products, only : add_load, relative_displacement
+   use dda_step_context, only : near_gap
+   use dda_vector, only : cross
    implicit none
-   private
 
-   public :: settle_velocities, near_gap, stiffen_contacts
-
-   !> A contact is closed if its gap is below this share of the smaller block
-   real(wp), parameter :: near = 1.0e-10_wp
    !> Stiffness of the springs that stand for impulses, over the inertia m/dt**2
    real(wp), parameter :: over_inertia = 1.0e3_wp
    !> Most tries with less restitution; the last one has none
@@ -52,16 +42,7 @@ contains
    !> energy where there is friction, or where blocks are hit in several places; then there is
    !> less of it. What contacts have done to the energy of the motion is no part of what is allowed;
    !> without contacts only held points change it, which turn with their blocks
-   pure subroutine settle_velocities(settings, system, contacts, equations, step)
-      type(settings_t), intent(in) :: settings
-      !> The blocks before the step
-      type(block_system_t), intent(in) :: system
-      !> The contacts before the step
-      type(contacts_t), intent(in) :: contacts
-      !> The equations; matrix and factor are made anew
-      type(equations_t), intent(inout) :: equations
-      !> The step; its velocities are set, if they settle
-      type(step_context_t), intent(inout) :: step
+   module procedure settle_velocities
       logical :: closed(2, size(contacts%joint))
       real(wp) :: part(2, size(contacts%joint)), borne(3, size(contacts%joint)), less
       real(wp) :: steady(size(step%state%motion, 1), size(step%state%motion, 2))
@@ -95,7 +76,7 @@ contains
       step%impulse = (1.0_wp - share)*step%impulse + share*step%state%force
       step%held_impulse = (1.0_wp - share)*step%held_impulse + share*equations%fixed%force
       step%impact = before - kinetic_energy(equations, step%velocity)
-   end subroutine settle_velocities
+   end procedure settle_velocities
 
    !> Velocities for given speeds at which the contacts must part
    pure subroutine settle_impulses(settings, system, contacts, after, closed, part, borne, &
@@ -336,12 +317,7 @@ contains
 
    !> Springs of contacts whose forces are multipliers: stiff beside inertia however short the step,
    !> and without memory of slip, which would bring in work. What sticks has no speed to slip with
-   pure subroutine stiffen_contacts(system, dt, contacts)
-      type(block_system_t), intent(in) :: system
-      !> Length of the step [s]
-      real(wp), intent(in) :: dt
-      !> The contacts; stiffness and trial forces are set
-      type(contacts_t), intent(inout) :: contacts
+   module procedure stiffen_contacts
       integer :: j
 
       do j = 1, size(contacts%joint)
@@ -350,22 +326,15 @@ contains
          contacts%trial(:, j) = contacts%force(:, j) &
             & - contacts%springs%stiffness(j)*[contacts%gap(1:2, j), 0.0_wp]
       end do
-   end subroutine stiffen_contacts
-
-   !> Gap below which two blocks count as touching
-   pure real(wp) function near_gap(system, pair)
-      type(block_system_t), intent(in) :: system
-      !> The two blocks: (2)
-      integer, intent(in) :: pair(2)
-
-      near_gap = near*sqrt(minval(system%area(pair)))
-   end function near_gap
+   end procedure stiffen_contacts
 
    !> Mass of the lighter of the movable blocks of a pair [kg per metre depth]
    pure real(wp) function joint_mass(system, pair)
       type(block_system_t), intent(in) :: system
+      !> The two blocks: (2)
       integer, intent(in) :: pair(2)
 
       joint_mass = minval(system%density(pair)*system%area(pair), mask=system%equation(pair) > 0)
    end function joint_mass
-end module dda_velocity
+
+end submodule dda_velocity

@@ -1,18 +1,37 @@
+!> Whether a block has collapsed: it has turned over, or has left its support by its own size
+!>
+!> What comes to rest after that is another structure than the one in question. A block may go far
+!> and not have fallen: with others that settle under it, or with what is led.
+!>
+!> Whether blocks have collapsed in a dynamic run: one has turned too far, or moved too far
+!>
 !> Termination criteria of a run: stable, collapsed, or not known yet
 module dda_verdict
-   use dda_assembly, only : equations_t
-   use dda_bar_springs, only : bar_energies
    use dda_balance, only : measure_balance
+   use dda_bar_springs, only : bar_energies
    use dda_block_system, only : block_system_t
-   use dda_deformation, only : displacement_matrix
-   use dda_joint_springs, only : joint_springs_t
-   use dda_kinds, only : wp
+   use dda_boundary, only : held_point_t
+   use dda_contact_types, only : joint_springs_t, joint_t
+   use dda_contacts, only : contacts_t
+   use dda_deformation, only : displacement_matrix, moved_point
+   use dda_kinds, only : pi, wp
+   use dda_load_clock, only : has_path
    use dda_settings, only : settings_t
    use dda_step_context, only : march_t, step_context_t
+   use dda_step_state, only : equations_t
    implicit none
    private
 
-   public :: verdict, verdict_enum, measure_step, judge_verdict, largest_displacement
+   public :: has_fallen, neighbours_of, has_collapsed, still_moves_away, tests_collapse, verdict
+   public :: measure_step, judge_verdict, largest_displacement, outcome_t
+
+   !> A block that has turned by this angle has fallen [rad]
+   real(wp), parameter :: turned = pi/4.0_wp
+
+   !> Share of the duration after which a motion that is larger than before still moves away
+   real(wp), parameter :: late = 0.9_wp
+   !> By how much larger, over what means collapse
+   real(wp), parameter :: growth = 0.01_wp
 
    !> Answers of an analysis
    type :: verdict_enum
@@ -49,7 +68,173 @@ module dda_verdict
    !> Or of this share at most, where it is round-off alone
    real(wp), parameter :: barely = 1.0e-6_wp
 
+   !> How a run ended
+   type :: outcome_t
+      !> One of verdict
+      integer :: verdict = 0
+      !> Why the verdict is undecided; unallocated otherwise
+      character(len=:), allocatable :: reason
+      !> Acceleration of the last step over that of the loads
+      real(wp) :: acceleration_ratio = 0.0_wp
+      !> Acceleration ratio below which the run would have been at rest
+      real(wp) :: rest_tolerance = 0.0_wp
+      !> Length of a step in which free fall is the elastic motion [s]
+      real(wp) :: elastic_time = 0.0_wp
+      !> Estimated condition number of the last equations, if it was wanted
+      real(wp) :: condition = 0.0_wp
+      !> Motion of the step that gave the verdict: (n_dof, n_equation)
+      real(wp), allocatable :: motion(:, :)
+      !> Contacts after that step, if a collapse has been followed from there for its pictures
+      type(contacts_t), allocatable :: fallen
+      !> Whether histories were followed, or points led, in a static run
+      logical :: has_path = .false.
+      !> Time that they were followed to; from -1 to 0 what is led from the beginning comes [s]
+      real(wp) :: path_time = 0.0_wp
+      !> How often blocks leapt on that path to another rest
+      integer :: jumps = 0
+      !> The largest of these jumps [m]
+      real(wp) :: largest_jump = 0.0_wp
+      !> Joints that have slid in stages in which blocks were built or taken away
+      integer :: n_slid = 0
+      !> Those of them that the last stage has, by their numbers there
+      integer, allocatable :: slid(:)
+      !> Whether blocks were built in a stage, so that they carry only what came after them
+      logical :: has_built = .false.
+      !> Whether no joint has slid in stages, and yet the last shape built at once slides or falls
+      logical :: slides_at_once = .false.
+      !> Accepted steps
+      integer :: steps = 0
+      !> Passes of the open-close loop
+      integer :: passes = 0
+      !> Factorisations
+      integer :: factorisations = 0
+   end type outcome_t
+
 contains
+
+   !> The pairs of blocks that touch
+   pure function neighbours_of(joint) result(pair)
+      !> Their joints: (n_joint)
+      type(joint_t), intent(in) :: joint(:)
+      !> The two blocks of each joint: (2, n_joint)
+      integer :: pair(2, size(joint))
+
+      pair(1, :) = joint%block(1)
+      pair(2, :) = joint%block(2)
+   end function neighbours_of
+
+   !> Whether a block has turned by 45 degrees against all blocks whose motion is given, fixed ones
+   !> among them, or has moved by its own size and no chain of blocks that touched at the beginning,
+   !> each still within its size of the next, ties it to a fixed block or to one that is held
+   pure logical function has_fallen(system, pair, held)
+      !> The blocks, which have moved
+      type(block_system_t), intent(in) :: system
+      !> The pairs of blocks that touched at the beginning: (2, n_pair)
+      integer, intent(in) :: pair(:, :)
+      !> Held and led points
+      type(held_point_t), intent(in), optional :: held(:)
+      integer :: directions(size(system%area)), i, last
+      logical :: far(size(system%area)), tied(size(system%area)), near
+      real(wp) :: least, most
+
+      directions = merge(3, 0, system%equation == 0)
+      if (present(held)) then
+         do i = 1, size(held)
+            associate (n => directions(held(i)%block))
+               n = n + count(held(i)%along)
+            end associate
+         end do
+      end if
+      associate (turn => system%motion(3, :))
+         least = min(0.0_wp, minval(turn, mask=directions >= 3))
+         most = max(0.0_wp, maxval(turn, mask=directions >= 3))
+         has_fallen = any(turn - most >= turned .or. least - turn >= turned)
+      end associate
+      far = norm2(system%motion(1:2, :), dim=1) >= sqrt(system%area)
+      if (has_fallen .or. .not. any(far)) return
+      tied = directions >= 2 .or. .not. far
+      last = 0
+      do while (count(tied) > last)
+         last = count(tied)
+         do i = 1, size(pair, 2)
+            if (all(tied(pair(:, i))) .or. .not. any(tied(pair(:, i)))) cycle
+            near = parted(system, pair(:, i)) < sqrt(minval(system%area(pair(:, i))))
+            tied(pair(:, i)) = tied(pair(:, i)) .or. near
+         end do
+      end do
+      has_fallen = .not. all(tied)
+   end function has_fallen
+
+   !> How far the smaller of two blocks has left the place to which the larger would carry it
+   pure real(wp) function parted(system, pair)
+      type(block_system_t), intent(in) :: system
+      !> The two blocks: (2)
+      integer, intent(in) :: pair(2)
+      integer :: large, small
+
+      large = pair(maxloc(system%area(pair), dim=1))
+      small = sum(pair) - large
+      associate (centre => system%centroid(:, small), motion => system%motion(:, small))
+         parted = norm2(moved_point(centre, system%centroid(:, large), system%motion(:, large)) &
+            & - centre - motion(1:2))
+      end associate
+   end function parted
+
+   !> Whether anything means collapse in a dynamic run
+   pure logical function tests_collapse(settings)
+      type(settings_t), intent(in) :: settings
+
+      tests_collapse = settings%dynamic .and. settings%current &
+         & .and. (settings%collapse_rotation > 0.0_wp .or. settings%collapse_displacement > 0.0_wp)
+   end function tests_collapse
+
+   !> Whether the blocks have gone as far as means collapse; keeps how far they have
+   pure subroutine has_collapsed(settings, system, march, collapsed)
+      type(settings_t), intent(in) :: settings
+      type(block_system_t), intent(in) :: system
+      !> The march; receives how far the blocks have gone
+      type(march_t), intent(inout) :: march
+      !> Whether they have collapsed
+      logical, intent(out) :: collapsed
+      real(wp) :: displacement
+
+      collapsed = .false.
+      if (.not. tests_collapse(settings)) return
+      march%progress = 0.0_wp
+      if (settings%collapse_rotation > 0.0_wp) &
+         & march%progress = maxval(abs(system%motion(3, :)))/settings%collapse_rotation
+      if (settings%collapse_displacement > 0.0_wp) then
+         displacement = march%displacement
+         if (settings%collapse_point > 0) displacement = displacement_of_point(settings, system)
+         march%progress = max(march%progress, displacement/settings%collapse_displacement)
+      end if
+      collapsed = march%progress >= 1.0_wp
+      if (march%time <= late*settings%duration) &
+         & march%early_progress = max(march%early_progress, march%progress)
+   end subroutine has_collapsed
+
+   !> Displacement of the measured point that is asked for [m]
+   pure real(wp) function displacement_of_point(settings, system)
+      type(settings_t), intent(in) :: settings
+      type(block_system_t), intent(in) :: system
+
+      associate (measured => settings%boundary%measured(settings%collapse_point))
+         displacement_of_point = norm2(moved_point(measured%point, &
+            & system%centroid(:, measured%block), system%motion(:, measured%block)) &
+            & - measured%point)
+      end associate
+   end function displacement_of_point
+
+   !> Whether the blocks are farther at the end of a run than before its last part, so that it does
+   !> not say whether they come back
+   pure logical function still_moves_away(settings, march)
+      type(settings_t), intent(in) :: settings
+      type(march_t), intent(in) :: march
+
+      still_moves_away = .false.
+      if (tests_collapse(settings)) &
+         & still_moves_away = march%progress > march%early_progress + growth
+   end function still_moves_away
 
    !> Energies and acceleration of a settled step
    pure subroutine measure_step(system, springs, equations, force_before, step)
@@ -197,4 +382,5 @@ contains
          end do
       end do
    end function largest_displacement
+
 end module dda_verdict

@@ -4,7 +4,7 @@ module dda_benchmark
    use couplet_heyman_discrete, only : discrete_critical_equal, discrete_solution_t
    use dda_arch, only : arch_blocks, equal_joints
    use dda_arch_chain, only : arch_chain, arch_numbers_t, arch_rays, arch_rays_t
-   use dda_assembly, only : equations_t, new_equations, solve_faces
+   use dda_assembly, only : new_equations, solve_faces
    use dda_block_inertia, only : assemble_blocks
    use dda_band_reference, only : band_job_t, new_band_job
    use dda_block_factor, only : factorise, substitute
@@ -12,8 +12,9 @@ module dda_benchmark
    use dda_chain, only : chain_t
    use dda_chain_decision, only : decide_chain
    use dda_chain_unfold, only : unfold
+   use dda_contacts, only : contacts_t
    use dda_kinds, only : pi, wp
-   use dda_contact_detection, only : contacts_t, find_contacts
+   use dda_contact_detection, only : find_contacts
    use dda_critical, only : find_critical
    use dda_decision, only : decide
    use dda_error, only : error_t
@@ -21,6 +22,7 @@ module dda_benchmark
    use dda_scene, only : family_t, scene_t
    use dda_search, only : critical_t, decision_t, search_t
    use dda_settings, only : settings_t
+   use dda_step_state, only : equations_t
    use dda_stopwatch, only : job_t, median_of, take_samples, timed_job_t
    use dda_verdict, only : verdict
    implicit none

@@ -1,19 +1,21 @@
 !> The cost of a step by its parts, for walls and loose blocks of rising size
 module dda_step_benchmark
    use, intrinsic :: iso_fortran_env, only : int64
-   use dda_assembly, only : equations_t, new_equations, refresh, solve_faces, take_springs
+   use dda_assembly, only : new_equations, refresh, solve_faces, take_springs
    use dda_block_factor, only : factorise, substitute
    use dda_block_inertia, only : assemble_blocks
    use dda_contact_search, only : look_around, near_joints
    use dda_contact_transfer, only : renew_contacts
    use dda_contact_types, only : joint_t
    use dda_cost_scenes, only : loose_blocks, wall
-   use dda_forward, only : outcome_t, run_to_verdict
+   use dda_forward, only : run_to_verdict
    use dda_kinds, only : wp
    use dda_scene, only : scene_t
    use dda_step_context, only : march_t
    use dda_step_reach, only : first_reach, travel_of
+   use dda_step_state, only : equations_t
    use dda_stopwatch, only : job_t, median_of, take_samples, timed_job_t
+   use dda_verdict, only : outcome_t
    implicit none
    private
 

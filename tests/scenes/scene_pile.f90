@@ -1,13 +1,13 @@
 !> Bricks dropped into a box or on a floor, and how deep they lie in one another
 module scene_pile
-   use dda_forward, only : outcome_t, run_to_verdict
+   use dda_forward, only : run_to_verdict
    use dda_frames, only : album_t
    use dda_kinds, only : wp
    use dda_material, only : joint_law_t
    use dda_scene, only : scene_t
    use dda_settings, only : flow_rule
    use dda_step_context, only : march_t
-   use dda_verdict, only : verdict
+   use dda_verdict, only : outcome_t, verdict
    use random_numbers, only : draw, random_t
    use scene_model, only : add_block, model_t, rectangle, searched_scene, turned
    implicit none

@@ -1,13 +1,13 @@
 !> One step of a scene, laid open: equations and state as a run makes them
 module scene_step
-   use dda_assembly, only : equations_t, new_equations
+   use dda_assembly, only : new_equations
    use dda_block_inertia, only : assemble_blocks
+   use dda_contact_types, only : joint_springs_t
    use dda_friction_cone, only : joint_face_t, project
-   use dda_joint_springs, only : joint_springs_t
    use dda_kinds, only : wp
    use dda_material, only : joint_law_t
    use dda_scene, only : scene_t
-   use dda_step_state, only : step_state_t
+   use dda_step_state, only : equations_t, step_state_t
    use scene_model, only : add_block, add_joint, model_t, rectangle, scene_of, turned
    implicit none
    private

@@ -1,0 +1,64 @@
+!> Contacts of a system, what they carry from step to step, and how they are looked for
+module dda_contacts
+   use dda_contact_types, only : joint_springs_t, joint_t
+   use dda_friction_cone, only : joint_face_t
+   use dda_kinds, only : wp
+   use dda_material, only : joint_law_t
+   use dda_outline, only : outline_t
+   implicit none
+   private
+
+   public :: edge_pairs_t, joint_search_t, contacts_t
+
+   !> Pairs of edges that were near, and how far their corners can go before others may be
+   type :: edge_pairs_t
+      !> The pairs in the order of their blocks: (2, n_pair)
+      integer, allocatable :: pair(:, :)
+      !> Corners when they were found: (2, n_vertex) [m]
+      real(wp), allocatable :: vertex(:, :)
+      !> Reach of each block that they were found for, margin included: (n_block) [m]
+      real(wp), allocatable :: reach(:)
+   end type edge_pairs_t
+
+   !> What a search needs of the scene, made once, and what it remembers
+   type :: joint_search_t
+      !> How the corners follow one another
+      type(outline_t) :: outline
+      !> Law of the joints between two materials: (n_material, n_material)
+      type(joint_law_t), allocatable :: law(:, :)
+      !> Where to look; joints do not depend on it
+      type(edge_pairs_t) :: near
+      !> Blocks that are not there, so that nothing meets them; unallocated if all are: (n_block)
+      logical, allocatable :: absent(:)
+   end type joint_search_t
+
+   !> Joints with their springs, states and forces
+   type :: contacts_t
+      !> The joints: (n_joint)
+      type(joint_t), allocatable :: joint(:)
+      !> Their springs
+      type(joint_springs_t) :: springs
+      !> Face of the friction cone that each joint's force lies on: (n_joint)
+      type(joint_face_t), allocatable :: face(:)
+      !> Trial force N1, N2, T of the springs: (3, n_joint) [N/m]
+      real(wp), allocatable :: trial(:, :)
+      !> Force N1, N2, T: (3, n_joint) [N/m]
+      real(wp), allocatable :: force(:, :)
+      !> Opening at the two contacts and slip since the beginning: (3, n_joint) [m]
+      real(wp), allocatable :: gap(:, :)
+      !> Opening at the two contacts and slip in the last step: (3, n_joint) [m]
+      real(wp), allocatable :: increment(:, :)
+      !> Slip that is past and done, where blocks move: (n_joint) [m]
+      real(wp), allocatable :: past_slip(:)
+      !> Share that is left of each contact's strength: 1 is whole, 0 has slid or parted:
+      !> (2, n_joint)
+      real(wp), allocatable :: intact(:, :)
+      !> Whether blocks that move are searched for new contacts; otherwise the joints stay as given
+      logical :: searched = .false.
+      !> Whether found contacts remember their slip; in time what sticks has no speed to slip with
+      logical :: remember = .true.
+      !> The search
+      type(joint_search_t) :: search
+   end type contacts_t
+
+end module dda_contacts
