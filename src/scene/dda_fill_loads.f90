@@ -11,8 +11,7 @@ module dda_fill_loads
    implicit none
    private
 
-   public :: fill_t, add_fill_weight, fill_leans, fill_of, fill_yields, live_side, press_fill
-   public :: press_side
+   public :: fill_t, add_fill_weight, fill_of, fill_yields, live_side, press_fill, press_side
 
    !> The fill of a case
    type :: fill_t
