@@ -153,6 +153,17 @@ def test_blocks_of_a_page_run(page: Path, tmp_path: Path, shell: dict[str, str])
         run_block(block, tmp_path, shell)
 
 
+def test_tables_begin_with_their_head() -> None:
+    """A row after a blank line is no table: pages show its bars."""
+    loose = []
+    for page in PAGES:
+        text = re.sub(r"^```.*?^```", "", page.read_text(encoding="utf-8"), flags=re.M | re.S)
+        for table in re.findall(r"(?:^\|.*\n)+", text, flags=re.M):
+            if not re.match(r"\|.*\n\|[ :|-]+\n", table):
+                loose.append(f"{page.name}: {table[:60]}")
+    assert loose == []
+
+
 def test_links_between_pages_lead_somewhere() -> None:
     broken = []
     for page in PAGES:
