@@ -1,6 +1,6 @@
 !> Numbers to text, text to numbers, small words on strings
 module dda_text
-   use, intrinsic :: ieee_arithmetic, only : ieee_is_finite
+   use, intrinsic :: ieee_arithmetic, only : ieee_is_finite, ieee_is_nan
    use, intrinsic :: iso_fortran_env, only : int64
    use dda_kinds, only : wp
    implicit none
@@ -101,8 +101,8 @@ contains
       logical :: known
 
       if (.not. ieee_is_finite(value)) then
-         write (buffer, scientific_form(17)) value
-         text = adjustl(buffer)
+         text = merge("Infinity ", "-Infinity", sign(1.0_wp, value) > 0.0_wp)
+         if (ieee_is_nan(value)) text = "NaN"
          n = len_trim(text)
          return
       end if

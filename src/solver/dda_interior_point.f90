@@ -100,6 +100,8 @@ contains
       merit = huge(merit)
       farthest = point%factor
       idle = 0
+      ! where the load is no number no point is better than the first
+      best = point
       do
          call see_residuals(rays, path, point, turn)
          idle = idle + 1
