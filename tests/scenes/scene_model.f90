@@ -11,7 +11,7 @@ module scene_model
    implicit none
    private
 
-   public :: model_t, add_block, add_joint, scene_of, searched_scene, rectangle, turned
+   public :: model_t, empty, add_block, add_joint, scene_of, searched_scene, rectangle, turned
 
    !> What a scene is made of
    type :: model_t
@@ -34,6 +34,13 @@ module scene_model
    end type model_t
 
 contains
+
+   !> Take all blocks and joints out, and all settings
+   pure subroutine empty(model)
+      !> Receives what a declared model is
+      type(model_t), intent(out) :: model
+
+   end subroutine empty
 
    !> Add a block
    pure subroutine add_block(model, vertex, fixed)
