@@ -1,29 +1,36 @@
 #!/usr/bin/env python3
 """Put single faults into src/, one after the other, and tell which test finds each.
 
-The tree is copied and built once, with lines counted: a program that never runs the faulty statement cannot find
-it and is left out. Each fault is built incrementally in the copy. The unit tests of the fault's room run first,
-then those of the other rooms, then the physics, at both levels with the tests of the command that are marked so,
-then, if asked, the other tests of the command and of Python, those first that are about the room. The table has
-a row for each fault as soon as it is known.
+The tree is copied and built once, each room as a shared library. A fault seldom changes what a module offers: then
+one object is compiled and its room linked again, and every program meets the fault without being linked itself;
+else the build sees to it. The unit tests of the fault's room run first, then those of the other rooms, those whose
+tests name the module before the others, then the tests of the command that count as unit tests, the physics and
+the tests of the command that count as physics, then, if asked, the other tests of the command and of Python, those
+first that are about the room. A process may take five times the processor time that it takes without a fault. The
+table has a row for each fault as soon as it is known.
 """
 
 from __future__ import annotations
 
 import argparse
 import csv
+import filecmp
+import json
 import os
 import re
+import resource
+import shlex
 import shutil
+import signal
 import subprocess
 import sys
 import time
+from contextlib import contextmanager
 from dataclasses import dataclass, field
 from pathlib import Path
+from typing import Iterator
 
-sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "measure"))
-from faults import Fault, draw_faults  # noqa: E402
-from line_coverage import count_lines  # noqa: E402
+from faults import Fault, draw_faults
 
 PARTS = ("CMakeLists.txt", "CMakePresets.json", "cmake", "src", "tests", "post", "input", "docs", "pyproject.toml",
          "README.md", "CITATION.cff", "LICENSE", "CHANGELOG.md")
@@ -57,57 +64,125 @@ ABOUT = {
 
 @dataclass
 class Copy:
-    """A copy of the tree, and what its tests take without a fault."""
+    """A copy of the tree, what its test programs are, and what they take without a fault."""
 
     root: Path
     jobs: int
-    limit: float
-    usual: dict[str, float] = field(default_factory=dict)
-    #: Lines that hold code, by file, and whether each program has run them
-    ran: dict[str, dict[Path, dict[int, int]]] = field(default_factory=dict)
+    #: Unit programs, and the text of their tests
+    units: dict[str, str] = field(default_factory=dict)
+    #: How each object is compiled, by source
+    objects: dict[str, list[dict[str, str]]] = field(default_factory=dict)
+    #: Seconds of processor and of the clock
+    usual: dict[str, tuple[float, float]] = field(default_factory=dict)
 
     @property
     def build(self) -> Path:
         """Its build folder."""
         return self.root / "build"
 
-    def make(self, *targets: str) -> bool:
-        """Build some targets; whether they compile."""
-        command = ["cmake", "--build", str(self.build), "-j", str(self.jobs), "--target", *targets]
+    def prepare(self, source: Path, flags: str) -> None:
+        """Copy what differs from the source, and build it without a fault."""
+        for part in PARTS:
+            if (source / part).exists():
+                copy_changed(source / part, self.root / part)
+        if not (self.build / "CMakeCache.txt").exists():
+            subprocess.run(["cmake", "-S", self.root, "-B", self.build, "-G", "Ninja", "-DCMAKE_BUILD_TYPE=Release",
+                            f"-DCMAKE_Fortran_FLAGS_RELEASE={flags}", "-DVOUSSOIR_ROOMS=SHARED",
+                            "-DCMAKE_LINK_DEPENDS_NO_SHARED=ON", "-DCMAKE_EXPORT_COMPILE_COMMANDS=ON"],
+                           check=True, stdout=subprocess.DEVNULL)
+        listed = (self.root / "tests" / "CMakeLists.txt").read_text()
+        for name, files in re.findall(r"add_pfunit_ctest\((unit_\w+)\s+TEST_SOURCES([^)]*?)LINK", listed):
+            self.units[name] = "".join((self.root / "tests" / file).read_text() for file in files.split())
+        if not self.make():
+            raise SystemExit(f"{self.build}: does not build without a fault")
+        for entry in json.loads((self.build / "compile_commands.json").read_text()):
+            if "/voussoir.dir/" not in entry["command"]:
+                self.objects.setdefault(entry["file"], []).append(entry)
+
+    def make(self) -> bool:
+        """Build all that tests run; whether it compiles."""
+        command = ["cmake", "--build", str(self.build), "-j", str(self.jobs), "--target", *self.units, "physics", "dda",
+                   "_theory"]
         return subprocess.run(command, capture_output=True).returncode == 0
 
-    def reaches(self, program: str, fault: Fault) -> bool:
-        """Whether a test program runs the faulty statement, or something of a file that knows a faulty constant."""
+    @contextmanager
+    def faulty(self, fault: Fault) -> Iterator[bool]:
+        """Have every program meet a fault; whether it compiles."""
         path = self.root / fault.path
-        if "parameter" not in fault.before:
-            return runs(self.ran[program].get(path, {}), path, fault.line)
-        return any(other.suffix == ".f90" and any(counts.values())
-                   and (other == path or f"use {path.stem}," in other.read_text())
-                   for other, counts in self.ran[program].items())
+        sound, at = path.read_text(), path.stat().st_mtime_ns
+        lines = sound.splitlines(keepends=True)
+        room = self.build / "src" / f"libvoussoir_{fault.path.parts[1]}.so"
+        kept = room.with_suffix(".sound")
+        if lines[fault.line - 1].strip() != fault.before.strip():
+            yield False
+            return
+        lines[fault.line - 1] = fault.after + "\n"
+        path.write_text("".join(lines))
+        one = self.compile_alone(path)
+        if one is not None:  # the build may not see that anything was changed
+            path.write_text(sound)
+            os.utime(path, ns=(at, at))
+        try:
+            if one:
+                room.rename(kept)
+                self.link_room(room.name, *one)
+            yield bool(one) or one is None and self.make()
+        finally:
+            if one:
+                kept.replace(room)
+            elif one is None:
+                path.write_text(sound)
+                self.make()
 
-    def count(self, program: str) -> None:
-        """Keep which lines a program has run in its last run."""
-        counted = self.root / "counted"
-        for data in counted.rglob("*.gcda"):
-            notes = Path("/", *data.relative_to(counted).parts).with_suffix(".gcno")
-            shutil.copyfile(notes, data.with_suffix(".gcno"))
-        self.ran[program] = count_lines(self.root, counted) if counted.exists() else {}
-        shutil.rmtree(counted, ignore_errors=True)
+    def compile_alone(self, path: Path) -> tuple[str, Path] | None | tuple[()]:
+        """The sound object's name and the faulty object; none where others depend on the change, () on an error."""
+        entries = self.objects[str(path)]
+        if len(entries) != 1:
+            return None
+        words = shlex.split(entries[0]["command"])
+        scratch = self.root / "scratch"
+        shutil.rmtree(scratch, ignore_errors=True)
+        scratch.mkdir()
+        modules = Path(next(word[2:] for word in words if word.startswith("-J")))
+        output = words[words.index("-o") + 1]
+        words = [f"-J{scratch}" if word.startswith("-J") else word for word in words] + ["-I", str(modules), "-w"]
+        words[words.index("-o") + 1] = str(scratch / "faulty.o")
+        if subprocess.run(words, cwd=entries[0]["directory"], capture_output=True).returncode != 0:
+            return ()
+        same = all(filecmp.cmp(new, self.build / modules / new.name, shallow=False) for new in scratch.glob("*.mod"))
+        return (output, scratch / "faulty.o") if same else None
 
-    def make_programs(self, programs: list[str]) -> bool:
-        """Build test programs, for tests of the command what they call; whether they compile."""
-        called = ["dda", "_theory"] if any(program.startswith(COMMAND) for program in programs) else []
-        return self.make(*(program for program in programs if not program.startswith(COMMAND)), *called)
+    def link_room(self, name: str, output: str, faulty: Path) -> None:
+        """Link a room with one object in the place of another."""
+        steps = subprocess.run(["ninja", "-C", self.build, "-t", "commands", "-s", f"src/{name}"], check=True,
+                               capture_output=True, text=True).stdout
+        command = next(line for line in steps.splitlines() if f"-o src/{name}" in line)
+        subprocess.run(command.replace(f" {output} ", f" {faulty} "), shell=True, cwd=self.build, check=True,
+                       capture_output=True)
 
-    def run(self, program: str) -> tuple[str, float]:
-        """Run a test program: the test that failed, or nothing, and the seconds it took."""
-        shutil.rmtree(self.root / "counted", ignore_errors=True)
+    def programs(self, level: str, fault: Fault) -> list[str]:
+        """The programs of a level that hold the faulty room, the likely and the short ones first."""
+        own = f"unit_{fault.path.parts[1]}"
+        if level == "room":
+            return [own] if own in self.units else []
+        if level == "physics":
+            return [COMMAND + "unit", "physics", COMMAND + "physics"]
+        others = [name for name in self.units if name != own and self.holds(name, fault.path.parts[1])]
+        return sorted(others, key=lambda name: (f"use {fault.path.stem}," not in self.units[name], self.usual[name]))
+
+    def holds(self, program: str, room: str) -> bool:
+        """Whether a program is linked with a room."""
+        linked = subprocess.run(["ldd", self.build / "tests" / "bin" / program], capture_output=True, text=True).stdout
+        return f"libvoussoir_{room}.so" in linked
+
+    def run(self, program: str) -> str:
+        """Run a test program: the test that failed, or nothing."""
         if not program.startswith(COMMAND):
             return self.finish([str(self.build / "tests" / "bin" / program)], program, self.build / "tests")
         return self.finish(["ctest", "--test-dir", str(self.build), "--output-on-failure", "-R", f"^{program}$"],
                            program, self.root)
 
-    def run_pytest(self, room: str) -> tuple[str, float]:
+    def run_pytest(self, room: str) -> str:
         """Run tests of the command and of Python until one fails, first what is about the room."""
         tests = self.root / "tests"
         about = tuple(f"test_{word}" for word in ABOUT.get(room, "").split())
@@ -119,38 +194,33 @@ class Copy:
         command = [sys.executable, "-m", "pytest", "-x", "-q", "-p", "no:cacheprovider", *map(str, files)]
         return self.finish(command, "suite", self.root)
 
-    def finish(self, command: list[str], name: str, folder: Path) -> tuple[str, float]:
-        """Wait for a command, ten times as long as it takes without a fault at most."""
-        limit = max(20.0, 10.0 * self.usual[name]) if name in self.usual else self.limit
+    def finish(self, command: list[str], name: str, folder: Path) -> str:
+        """Wait for a command, each of its processes for a time; the test that failed, or nothing."""
+        usual = self.usual.get(name, (600.0, 3600.0))
+        limit = int(max(10.0, 5.0 * usual[0]) if not name.startswith((COMMAND, "suite")) else 60.0)
         environment = {**os.environ, "DDA": str(self.build / "bin" / "dda"), "OMP_NUM_THREADS": "1",
-                       "VOUSSOIR_BUILD": str(self.build), "PYTHONPATH": str(self.build / "python"),
-                       "GCOV_PREFIX": str(self.root / "counted")}
-        start = time.monotonic()
+                       "VOUSSOIR_BUILD": str(self.build), "PYTHONPATH": str(self.build / "python")}
+        start, used = time.monotonic(), resource.getrusage(resource.RUSAGE_CHILDREN)
+        process = subprocess.Popen(command, cwd=folder, env=environment, text=True, start_new_session=True,
+                                   stdout=subprocess.PIPE, stderr=subprocess.STDOUT, errors="replace",
+                                   preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_CPU, (limit, limit)))
         try:
-            done = subprocess.run(command, cwd=folder, env=environment, timeout=limit, text=True,
-                                  stdout=subprocess.PIPE, stderr=subprocess.STDOUT, errors="replace")
+            printed, _ = process.communicate(timeout=max(60.0, 10.0 * usual[1]))
         except subprocess.TimeoutExpired:
-            return f"{name}: time limit", time.monotonic() - start
-        taken = time.monotonic() - start
-        if done.returncode == 0:
-            return "", taken
-        failed = re.search(r"\w+_suite\.(\w+) FAILED|^FAILED (\S+)", done.stdout, re.MULTILINE)
+            os.killpg(process.pid, signal.SIGKILL)
+            process.communicate()
+            return f"{name}: time limit"
+        taken = resource.getrusage(resource.RUSAGE_CHILDREN)
+        self.usual.setdefault(name, (taken.ru_utime + taken.ru_stime - used.ru_utime - used.ru_stime,
+                                     time.monotonic() - start))
+        if process.returncode == 0:
+            return ""
+        failed = re.search(r"\w+_suite\.(\w+) FAILED|^FAILED (\S+)", printed, re.MULTILINE)
         if failed:
-            return failed.group(1) or failed.group(2), taken
-        begun = re.findall(r"_suite\.(\w+)", done.stdout)
-        return f"{begun[-1]} (crash)" if begun else f"{name} (crash)", taken
-
-
-def runs(counts: dict[int, int], path: Path, line: int) -> bool:
-    """Whether the statement of a line was run; one that is not counted, such as a default, where its file was."""
-    text = path.read_text().splitlines()
-    first = last = line
-    while first > 1 and text[first - 2].split("!", 1)[0].rstrip().endswith("&"):
-        first -= 1
-    while last < len(text) and text[last - 1].split("!", 1)[0].rstrip().endswith("&"):
-        last += 1
-    here = [counts[number] for number in range(first, last + 1) if number in counts]
-    return any(here or counts.values())
+            return failed.group(1) or failed.group(2)
+        end = "time limit" if process.returncode in (-signal.SIGXCPU, -signal.SIGKILL) else "crash"
+        begun = re.findall(r"_suite\.(\w+)", printed)
+        return f"{begun[-1]} ({end})" if begun else f"{name} ({end})"
 
 
 def copy_changed(source: Path, target: Path) -> None:
@@ -165,55 +235,20 @@ def copy_changed(source: Path, target: Path) -> None:
             shutil.copymode(path, other)
 
 
-def prepare(source: Path, copy: Copy, asked: argparse.Namespace) -> list[str]:
-    """Copy the tree and build all test programs without a fault; the names of those of units."""
-    for part in PARTS if source != copy.root else ():
-        if (source / part).exists():
-            copy_changed(source / part, copy.root / part)
-    if not (copy.build / "CMakeCache.txt").exists():
-        subprocess.run(["cmake", "-S", copy.root, "-B", copy.build, "-G", "Ninja", "-DCMAKE_BUILD_TYPE=Release",
-                        f"-DCMAKE_Fortran_FLAGS_RELEASE={asked.flags}", "-DVOUSSOIR_COVERAGE=ON"],
-                       check=True, stdout=subprocess.DEVNULL)
-    listed = (copy.root / "tests" / "CMakeLists.txt").read_text()
-    units = re.findall(r"add_pfunit_ctest\((unit_\w+)", listed)
-    if not copy.make(*units, "physics", "dda", "_theory"):
-        raise SystemExit(f"{copy.build}: does not build without a fault")
-    return units
-
-
-def programs_of(levels: list[str], units: list[str]) -> list[str]:
-    """All that is run once without a fault."""
-    programs = [*units, COMMAND + "unit"] if "unit" in levels else units
-    return programs + [name for level, names in (("physics", ["physics", COMMAND + "physics"]), ("suite", ["suite"]))
-                       if level in levels for name in names]
-
-
-def judge(fault: Fault, copy: Copy, units: list[str], asked: argparse.Namespace) -> dict[str, object]:
-    """What becomes of one fault that is in the copy."""
-    own = f"unit_{fault.path.parts[1]}"
-    start = time.monotonic()
-    levels = [("room", [own] if own in units else []),
-              ("unit", [name for name in [*units, COMMAND + "unit"] if name != own]),
-              ("physics", [COMMAND + "physics", "physics"])]
-    for level, programs in levels:
-        if level not in asked.levels:
-            continue
-        programs = [program for program in programs if copy.reaches(program, fault)]
-        if programs and not copy.make_programs(programs):
+def judge(fault: Fault, copy: Copy, levels: list[str]) -> dict[str, object]:
+    """What becomes of one fault."""
+    with copy.faulty(fault) as compiles:
+        if not compiles:
             return {"result": "does not compile"}
-        start = time.monotonic() if level == "room" else start
-        for program in programs:
-            test, _ = copy.run(program)
-            if test:
-                return {"result": "found", "level": level, "found_by": f"{program}: {test}",
-                        "seconds": round(time.monotonic() - start, 1)}
-    if "suite" in asked.levels:
-        copy.make_programs([COMMAND])
-        test, _ = copy.run_pytest(fault.path.parts[1])
-        if test:
-            return {"result": "found", "level": "suite", "found_by": test,
-                    "seconds": round(time.monotonic() - start, 1)}
-    return {"result": "survived", "seconds": round(time.monotonic() - start, 1)}
+        start = time.monotonic()
+        for level in levels:
+            programs = copy.programs(level, fault) if level != "suite" else ["suite"]
+            for program in programs:
+                test = copy.run(program) if program != "suite" else copy.run_pytest(fault.path.parts[1])
+                if test:
+                    return {"result": "found", "level": level, "found_by": f"{program}: {test}",
+                            "seconds": round(time.monotonic() - start, 1)}
+        return {"result": "survived", "seconds": round(time.monotonic() - start, 1)}
 
 
 def read_faults(path: Path) -> list[Fault]:
@@ -245,34 +280,36 @@ def arguments() -> argparse.Namespace:
     parser.add_argument("--rooms", nargs="*", help="folders of src/ [all but app and files]")
     parser.add_argument("--again", type=Path, help="a table: judge those of its faults that survived")
     parser.add_argument("--levels", nargs="*", default=LEVELS[:3], choices=LEVELS, help="what runs [all but suite]")
-    parser.add_argument("--in-place", action="store_true", help="the source is itself a copy, and built: no other one")
+    parser.add_argument("--table", type=Path, help="the table [mutants.csv in the folder of the copy]")
     parser.add_argument("--list", action="store_true", help="write the table of faults and stop")
     parser.add_argument("--jobs", type=int, default=2, help="compilers at a time [2]")
     parser.add_argument("--flags", default="-O1", help="flags of the compiler [-O1]")
     return parser.parse_args()
 
 
+def run_without_faults(copy: Copy, levels: list[str]) -> None:
+    """Run once what judges, and keep the time that it takes."""
+    names = [*copy.units, *([COMMAND + "unit", "physics", COMMAND + "physics"] if "physics" in levels else [])]
+    for name in names:
+        test = copy.run(name)
+        if test:
+            raise SystemExit(f"{name} fails without a fault: {test}")
+
+
 def main() -> int:
     """Put in, build, test, take out; write the table."""
     asked = arguments()
+    signal.signal(signal.SIGTERM, lambda *_: sys.exit(1))  # what is faulty is put back
     rooms = asked.rooms or sorted(path.name for path in (asked.source / "src").iterdir()
                                   if path.is_dir() and path.name not in ("app", "files"))
     faults = read_faults(asked.again) if asked.again else draw_faults(asked.source, rooms, asked.count, asked.seed)
     asked.work.mkdir(parents=True, exist_ok=True)
-    table = asked.work / "mutants.csv"
-    copy = Copy(asked.source if asked.in_place else (asked.work / "tree").resolve(), asked.jobs, 3600.0)
-    units: list[str] = []
+    copy = Copy((asked.work / "tree").resolve(), asked.jobs)
     if not asked.list:
-        units = prepare(asked.source, copy, asked)
-        for program in programs_of(asked.levels, units):
-            test, copy.usual[program] = copy.run_pytest("") if program == "suite" else copy.run(program)
-            if test:
-                print(f"{program} fails without a fault: {test}", file=sys.stderr)
-                return 1
-            if program != "suite":
-                copy.count(program)
+        copy.prepare(asked.source, asked.flags)
+        run_without_faults(copy, asked.levels)
     rows: list[dict[str, object]] = []
-    with table.open("w", newline="") as lines:
+    with (asked.table or asked.work / "mutants.csv").open("w", newline="") as lines:
         writer = csv.DictWriter(lines, COLUMNS, lineterminator="\n")
         writer.writeheader()
         for number, fault in enumerate(faults, 1):
@@ -280,7 +317,7 @@ def main() -> int:
                                       "line": fault.line, "kind": fault.kind, "before": fault.before.strip(),
                                       "after": fault.after.strip()}
             if not asked.list:
-                row.update(with_fault(fault, copy, units, asked))
+                row.update(judge(fault, copy, asked.levels))
                 print(f"{number:4} {row['result']:9} {fault.path}:{fault.line} {row.get('found_by', row['after'])}",
                       flush=True)
             rows.append(row)
@@ -289,23 +326,6 @@ def main() -> int:
     if not asked.list:
         print(report(rows))
     return 0
-
-
-def with_fault(fault: Fault, copy: Copy, units: list[str], asked: argparse.Namespace) -> dict[str, object]:
-    """Put one fault into the copy, judge it, and take it out again."""
-    path = copy.root / fault.path
-    sound = path.read_text()
-    lines = sound.splitlines(keepends=True)
-    place = fault.line - 1
-    indent = lines[place][:len(lines[place]) - len(lines[place].lstrip())]
-    if lines[place].strip() != fault.before.strip():
-        return {"result": "does not compile"}
-    lines[place] = indent + fault.after.strip() + "\n"
-    try:
-        path.write_text("".join(lines))
-        return judge(fault, copy, units, asked)
-    finally:
-        path.write_text(sound)
 
 
 if __name__ == "__main__":
