@@ -113,9 +113,6 @@ class Copy:
         lines = sound.splitlines(keepends=True)
         room = self.build / "src" / f"libvoussoir_{fault.path.parts[1]}.so"
         kept = room.with_suffix(".sound")
-        if lines[fault.line - 1].strip() != fault.before.strip():
-            yield False
-            return
         lines[fault.line - 1] = fault.after + "\n"
         path.write_text("".join(lines))
         one = self.compile_alone(path)
@@ -251,11 +248,19 @@ def judge(fault: Fault, copy: Copy, levels: list[str]) -> dict[str, object]:
         return {"result": "survived", "seconds": round(time.monotonic() - start, 1)}
 
 
-def read_faults(path: Path) -> list[Fault]:
-    """Faults of a table that was written before, those that were found left out."""
+def read_faults(path: Path, root: Path) -> list[Fault]:
+    """Faults of a table that was written before, those left out that were found or whose line is gone."""
+    faults = []
     with path.open(newline="") as lines:
-        return [Fault(Path(row["file"]), int(row["line"]), row["kind"], row["before"], row["after"])
-                for row in csv.DictReader(lines) if row["result"] in ("", "survived")]
+        for row in csv.DictReader(lines):
+            places = [(other.relative_to(root), number)
+                      for other in sorted((root / "src" / row["room"]).glob("*.f90"))
+                      for number, line in enumerate(other.read_text().splitlines(), 1) if line.strip() == row["before"]]
+            # lines move, and modules are joined
+            places = [place for place in places if place == (Path(row["file"]), int(row["line"]))] or places
+            if row["result"] in ("", "survived") and len(places) == 1:
+                faults.append(Fault(*places[0], row["kind"], row["before"], row["after"]))
+    return faults
 
 
 def report(rows: list[dict[str, object]]) -> str:
@@ -302,7 +307,8 @@ def main() -> int:
     signal.signal(signal.SIGTERM, lambda *_: sys.exit(1))  # what is faulty is put back
     rooms = asked.rooms or sorted(path.name for path in (asked.source / "src").iterdir()
                                   if path.is_dir() and path.name not in ("app", "files"))
-    faults = read_faults(asked.again) if asked.again else draw_faults(asked.source, rooms, asked.count, asked.seed)
+    faults = (read_faults(asked.again, asked.source) if asked.again
+              else draw_faults(asked.source, rooms, asked.count, asked.seed))
     asked.work.mkdir(parents=True, exist_ok=True)
     copy = Copy((asked.work / "tree").resolve(), asked.jobs)
     if not asked.list:
