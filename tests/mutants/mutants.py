@@ -146,7 +146,7 @@ class Copy:
         words[words.index("-o") + 1] = str(scratch / "faulty.o")
         if subprocess.run(words, cwd=entries[0]["directory"], capture_output=True).returncode != 0:
             return ()
-        same = all(filecmp.cmp(new, self.build / modules / new.name, shallow=False) for new in scratch.glob("*.mod"))
+        same = all(filecmp.cmp(new, self.build / modules / new.name, shallow=False) for new in scratch.glob("*.*mod"))
         return (output, scratch / "faulty.o") if same else None
 
     def link_room(self, name: str, output: str, faulty: Path) -> None:
