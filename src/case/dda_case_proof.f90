@@ -8,13 +8,12 @@ submodule (dda_compute_case) dda_case_proof
    use dda_joint_graph, only : joint_graph_t, keep_joints
    use dda_limit_certificate, only : check_forces, check_velocities
    use dda_limit_decision, only : decide_load, load_decision_t, load_state
-   use dda_limit_load, only : find_limit, limit_load_t, limit_state
+   use dda_limit_load, only : find_limit, find_thrust_range, limit_load_t, limit_state
    use dda_load_coefficient, only : added_loads, full_loads, with_coefficient
    use dda_load_stations, only : bears_live_load
    use dda_scene, only : searched_load
    use dda_scene_graph, only : decides_as_graph, scene_graph
    use dda_settings, only : settings_t
-   use dda_thrust_range, only : find_thrust_range
    use dda_verdict, only : verdict
    implicit none
 

@@ -10,8 +10,8 @@ module dda_worst_load
    use dda_joint_graph, only : joint_graph_t
    use dda_kinds, only : wp
    use dda_limit_decision, only : decide_load, load_decision_t, load_state
-   use dda_limit_load, only : find_limit, limit_load_t, limit_state
-   use dda_load_walk, only : begin_walk, load_walk_t, walk_to
+   use dda_limit_load, only : begin_walk, find_limit, limit_load_t, limit_state, load_walk_t, &
+      & walk_to
    implicit none
    private
 

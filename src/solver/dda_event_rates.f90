@@ -9,12 +9,35 @@ module dda_event_rates
    use dda_coulomb_law, only : coulomb_state_t, imbalance, spring_forces
    use dda_joint_graph, only : add_joint_forces
    use dda_kinds, only : wp
-   use dda_rate_law, only : break_rate, break_t, cross_break, follow_law, next_break, rate_law_t, &
-      & set_rate_law
    implicit none
    private
 
    public :: find_rates, new_rates, path_damping, pivot_to_load, rates_t, undamp_rates
+   public :: rate_law_t, set_rate_law
+
+   !> What a state leaves open
+   type :: rate_law_t
+      !> Whether each corner is weak: (2, n_joint)
+      logical, allocatable :: weak(:, :)
+      !> Limits that each joint may slide at, a positive and a negative shear force: (2, n_joint)
+      logical, allocatable :: limit(:, :)
+      !> Faces where they are given: (3, n_joint)
+      integer, allocatable :: given(:, :)
+   end type rate_law_t
+
+   !> Where the line of a motion meets a bend of the law
+   type :: break_t
+      !> How far off it is
+      real(wp) :: distance = 0.0_wp
+      !> Joint that changes, 0 if there is none
+      integer :: joint = 0
+      !> Corner 1 or 2 that opens or closes, 3 or 4 where the joint begins or ends to slide against
+      !> a positive or a negative shear force
+      integer :: part = 0
+      !> Whether what decides it rises: the pressure of the corner, or the shear force beyond the
+      !> limit
+      logical :: rises = .false.
+   end type break_t
 
    !> Rates of a state while its joints keep what they do
    type :: rates_t
@@ -38,6 +61,56 @@ module dda_event_rates
    real(wp), parameter :: path_damping = 1.0e-10_wp
    !> Passes that change all wrong faces at once; what they do not find, pivots look for
    integer, parameter :: max_pass = 6
+
+   interface
+
+      !> The law of a state
+      pure module subroutine set_rate_law(joints, state, law)
+         type(coulomb_joints_t), intent(in) :: joints
+         type(coulomb_state_t), intent(in) :: state
+         type(rate_law_t), intent(out) :: law
+      end subroutine set_rate_law
+
+      !> What joints do with rates of opening
+      pure module subroutine follow_law(joints, law, opening, faces)
+         type(coulomb_joints_t), intent(in) :: joints
+         type(rate_law_t), intent(in) :: law
+         !> Rates of opening 1, opening 2, slip: (3, n_joint)
+         real(wp), intent(in) :: opening(:, :)
+         !> What they do: (3, n_joint)
+         integer, intent(out) :: faces(:, :)
+      end subroutine follow_law
+
+      !> The first bend of the law on a line of rates of opening: without a joint if there is none
+      pure type(break_t) module function next_break(joints, law, faces, opening, change)
+         type(coulomb_joints_t), intent(in) :: joints
+         type(rate_law_t), intent(in) :: law
+         !> What the joints do: (3, n_joint)
+         integer, intent(in) :: faces(:, :)
+         !> Where the line begins: (3, n_joint)
+         real(wp), intent(in) :: opening(:, :)
+         !> Where it leads: (3, n_joint)
+         real(wp), intent(in) :: change(:, :)
+      end function next_break
+
+      !> How fast what decides a bend rises along a line
+      pure real(wp) module function break_rate(joints, break, faces, change)
+         type(coulomb_joints_t), intent(in) :: joints
+         type(break_t), intent(in) :: break
+         integer, intent(in) :: faces(:, :)
+         !> Where the line leads: (3, n_joint)
+         real(wp), intent(in) :: change(:, :)
+      end function break_rate
+
+      !> Faces of a joint beyond a bend
+      pure module subroutine cross_break(joints, break, opening, faces)
+         type(coulomb_joints_t), intent(in) :: joints
+         type(break_t), intent(in) :: break
+         real(wp), intent(in) :: opening(:, :)
+         integer, intent(inout) :: faces(:, :)
+      end subroutine cross_break
+
+   end interface
 
 contains
 

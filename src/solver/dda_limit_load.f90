@@ -6,8 +6,8 @@
 !> Equation (M6) of docs/method.md
 module dda_limit_load
    use dda_interior_point, only : solve_cones, start_by_forces, start_by_springs, worst
-   use dda_interior_state, only : interior_goal_t, interior_point_t, interior_state, &
-      & load_path_t, no_limit, set_path, size_of_load
+   use dda_interior_state, only : interior_goal_t, interior_point_t, interior_state, load_path_t, &
+      & no_limit, set_path, size_of_load
    use dda_joint_graph, only : crushes, joint_graph_t
    use dda_joint_layers, only : add_layers, bound_all, joint_layers_t, no_layers, touch_parabola
    use dda_joint_rays, only : forces_of_rays, joint_rays_t, scale_load, set_rays
@@ -20,8 +20,26 @@ module dda_limit_load
    implicit none
    private
 
-   public :: limit_load_t, limit_state
-   public :: find_limit
+   public :: limit_load_t, limit_state, find_limit, find_thrust_range, load_walk_t, begin_walk
+   public :: walk_to
+
+   !> Forces of an assembly on their way
+   type :: load_walk_t
+      private
+      !> The joints
+      type(joint_graph_t) :: graph
+      !> Their rays
+      type(joint_rays_t) :: rays
+      !> Springs that tell how far the forces are from their bounds
+      type(ray_matrix_t) :: springs
+      !> Masses, none: (3, 0:n_block)
+      real(wp), allocatable :: mass(:, :)
+      !> Forces along the rays that carry a load; unallocated where none has been carried yet:
+      !> (n_side, n_joint)
+      real(wp), allocatable :: x(:, :)
+      !> Unit of force: [N/m]
+      real(wp) :: unit = 1.0_wp
+   end type load_walk_t
 
    !> How a search for a limit load has ended
    type :: limit_state_enum
@@ -69,6 +87,42 @@ module dda_limit_load
 
    !> Two factors of joints that crush that are farther apart than this do not agree
    real(wp), parameter :: widest = 1.0e-8_wp
+
+   interface
+
+      !> The range of thrust of a joint
+      pure module subroutine find_thrust_range(graph, load, force, joint, thrust, known)
+         type(joint_graph_t), intent(in) :: graph
+         !> Loads: (3, n_block) [N/m, N/m, N]
+         real(wp), intent(in) :: load(:, :)
+         !> N1, N2, T of each joint that carry it: (3, n_joint) [N/m]
+         real(wp), intent(in) :: force(:, :)
+         !> Number of the joint
+         integer, intent(in) :: joint
+         !> Least and greatest thrust: (2) [N/m]
+         real(wp), intent(out) :: thrust(2)
+         !> Which of the two there are: one may have no bound
+         logical, intent(out) :: known(2)
+      end subroutine find_thrust_range
+
+      !> Begin with an assembly
+      pure module subroutine begin_walk(graph, load, walk)
+         type(joint_graph_t), intent(in) :: graph
+         !> A load of the size of those to come: (3, n_block) [N/m, N/m, N]
+         real(wp), intent(in) :: load(:, :)
+         type(load_walk_t), intent(out) :: walk
+      end subroutine begin_walk
+
+      !> Go on to a load
+      pure module subroutine walk_to(load, walk, state)
+         real(wp), intent(in) :: load(:, :)
+         !> The walk; its forces are those of the last load that took more than a correction
+         type(load_walk_t), intent(inout) :: walk
+         !> One of load_state
+         integer, intent(out) :: state
+      end subroutine walk_to
+
+   end interface
 
 contains
 

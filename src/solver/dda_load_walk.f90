@@ -8,37 +8,12 @@
 !>    A X X A' v = load + A x,    x - X X A' v >= 0
 !>
 !> A: arms of the rays, x: forces along them, X: their diagonal
-module dda_load_walk
-   use dda_interior_state, only : interior_point_t, size_of_load
+submodule (dda_limit_load) dda_load_walk
    use dda_interior_turn, only : lift
-   use dda_joint_graph, only : crushes, joint_graph_t
-   use dda_joint_rays, only : add_ray_forces, joint_rays_t, n_side, scale_load, set_rays
-   use dda_kinds, only : wp
-   use dda_limit_decision, only : begin_inside, decide_load, go_on_to_load, load_decision_t, &
-      & load_state, state_at_end, unit_of_force
-   use dda_ray_matrix, only : plan_matrix, ray_matrix_t, set_springs, solve_springs
+   use dda_joint_rays, only : add_ray_forces, n_side
+   use dda_limit_decision, only : begin_inside, go_on_to_load
+   use dda_ray_matrix, only : set_springs, solve_springs
    implicit none
-   private
-
-   public :: load_walk_t, begin_walk, walk_to
-
-   !> Forces of an assembly on their way
-   type :: load_walk_t
-      private
-      !> The joints
-      type(joint_graph_t) :: graph
-      !> Their rays
-      type(joint_rays_t) :: rays
-      !> Springs that tell how far the forces are from their bounds
-      type(ray_matrix_t) :: springs
-      !> Masses, none: (3, 0:n_block)
-      real(wp), allocatable :: mass(:, :)
-      !> Forces along the rays that carry a load; unallocated where none has been carried yet:
-      !> (n_side, n_joint)
-      real(wp), allocatable :: x(:, :)
-      !> Unit of force: [N/m]
-      real(wp) :: unit = 1.0_wp
-   end type load_walk_t
 
    !> Steps that draw forces away from their bounds where a load is carried, and the longest of them
    integer, parameter :: n_centring = 2
@@ -55,26 +30,17 @@ module dda_load_walk
 contains
 
    !> Begin with an assembly
-   pure subroutine begin_walk(graph, load, walk)
-      type(joint_graph_t), intent(in) :: graph
-      !> A load of the size of those to come: (3, n_block) [N/m, N/m, N]
-      real(wp), intent(in) :: load(:, :)
-      type(load_walk_t), intent(out) :: walk
+   module procedure begin_walk
 
       walk%graph = graph
       walk%unit = unit_of_force(load)
       call set_rays(graph, walk%rays)
       call plan_matrix(walk%rays, walk%springs)
       allocate (walk%mass(3, 0:graph%n_block), source=0.0_wp)
-   end subroutine begin_walk
+   end procedure begin_walk
 
    !> Go on to a load
-   pure subroutine walk_to(load, walk, state)
-      real(wp), intent(in) :: load(:, :)
-      !> The walk; its forces are those of the last load that took more than a correction
-      type(load_walk_t), intent(inout) :: walk
-      !> One of load_state
-      integer, intent(out) :: state
+   module procedure walk_to
       type(interior_point_t) :: point
       type(load_decision_t) :: decision
       real(wp) :: scaled(3, 0:walk%graph%n_block)
@@ -104,7 +70,7 @@ contains
       if (state == load_state%stands) walk%x = point%x
       if (allocated(walk%x)) call centre(merge(n_centring, 0, state == load_state%stands), &
          & size_of_load(scaled), walk)
-   end subroutine walk_to
+   end procedure walk_to
 
    !> Whether a correction carries the forces to a load
    pure subroutine try_correction(scaled, walk, carried)
@@ -161,4 +127,5 @@ contains
          end associate
       end do
    end subroutine centre
-end module dda_load_walk
+
+end submodule dda_load_walk

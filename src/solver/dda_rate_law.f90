@@ -4,38 +4,10 @@
 !> sticks. A corner without force and without gap, and a joint at its limit, are weak: they follow
 !> the rates of opening, so that the rates of the forces are a function of these, in straight
 !> pieces.
-module dda_rate_law
-   use dda_coulomb_joints, only : coulomb_joints_t, end_role, shear_role
-   use dda_coulomb_law, only : coulomb_state_t, face, shear_face
-   use dda_kinds, only : wp
+submodule (dda_event_rates) dda_rate_law
+   use dda_coulomb_joints, only : end_role, shear_role
+   use dda_coulomb_law, only : face, shear_face
    implicit none
-   private
-
-   public :: rate_law_t, break_t, set_rate_law, follow_law, next_break, cross_break, break_rate
-
-   !> What a state leaves open
-   type :: rate_law_t
-      !> Whether each corner is weak: (2, n_joint)
-      logical, allocatable :: weak(:, :)
-      !> Limits that each joint may slide at, a positive and a negative shear force: (2, n_joint)
-      logical, allocatable :: limit(:, :)
-      !> Faces where they are given: (3, n_joint)
-      integer, allocatable :: given(:, :)
-   end type rate_law_t
-
-   !> Where the line of a motion meets a bend of the law
-   type :: break_t
-      !> How far off it is
-      real(wp) :: distance = 0.0_wp
-      !> Joint that changes, 0 if there is none
-      integer :: joint = 0
-      !> Corner 1 or 2 that opens or closes, 3 or 4 where the joint begins or ends to slide against
-      !> a positive or a negative shear force
-      integer :: part = 0
-      !> Whether what decides it rises: the pressure of the corner, or the shear force beyond the
-      !> limit
-      logical :: rises = .false.
-   end type break_t
 
    !> A force below this part of a block's weight is none, a gap that it would close is none
    real(wp), parameter :: weak_force = 1.0e-9_wp
@@ -45,10 +17,7 @@ module dda_rate_law
 contains
 
    !> The law of a state
-   pure subroutine set_rate_law(joints, state, law)
-      type(coulomb_joints_t), intent(in) :: joints
-      type(coulomb_state_t), intent(in) :: state
-      type(rate_law_t), intent(out) :: law
+   module procedure set_rate_law
       real(wp) :: bound
       integer :: i, j
       logical :: pushes(2)
@@ -69,16 +38,10 @@ contains
             & bound + state%force(3, j) <= weak_force]
          if (joints%shear_role(j) /= shear_role%frictional) law%limit(:, j) = .false.
       end do
-   end subroutine set_rate_law
+   end procedure set_rate_law
 
    !> What joints do with rates of opening
-   pure subroutine follow_law(joints, law, opening, faces)
-      type(coulomb_joints_t), intent(in) :: joints
-      type(rate_law_t), intent(in) :: law
-      !> Rates of opening 1, opening 2, slip: (3, n_joint)
-      real(wp), intent(in) :: opening(:, :)
-      !> What they do: (3, n_joint)
-      integer, intent(out) :: faces(:, :)
+   module procedure follow_law
       real(wp) :: beyond(2), margin
       integer :: i, j
 
@@ -97,7 +60,7 @@ contains
             faces(3, j) = face%slides_back
          end if
       end do
-   end subroutine follow_law
+   end procedure follow_law
 
    !> How fast a joint that sticks would go beyond its limits
    pure function beyond_limit(joints, j, ends, opening) result(beyond)
@@ -117,15 +80,7 @@ contains
    end function beyond_limit
 
    !> The first bend of the law on a line of rates of opening: without a joint if there is none
-   pure type(break_t) function next_break(joints, law, faces, opening, change)
-      type(coulomb_joints_t), intent(in) :: joints
-      type(rate_law_t), intent(in) :: law
-      !> What the joints do: (3, n_joint)
-      integer, intent(in) :: faces(:, :)
-      !> Where the line begins: (3, n_joint)
-      real(wp), intent(in) :: opening(:, :)
-      !> Where it leads: (3, n_joint)
-      real(wp), intent(in) :: change(:, :)
+   module procedure next_break
       real(wp) :: beyond(2), rate(2)
       integer :: i, j
       logical :: slides
@@ -144,7 +99,7 @@ contains
             if (law%limit(i, j)) call meet(slides, beyond(i), rate(i), j, i + 2, next_break)
          end do
       end do
-   end function next_break
+   end procedure next_break
 
    !> Take a bend that comes before the others: what is positive in one piece and negative in the
    !> other falls or rises to zero
@@ -169,12 +124,7 @@ contains
    end subroutine meet
 
    !> How fast what decides a bend rises along a line
-   pure real(wp) function break_rate(joints, break, faces, change)
-      type(coulomb_joints_t), intent(in) :: joints
-      type(break_t), intent(in) :: break
-      integer, intent(in) :: faces(:, :)
-      !> Where the line leads: (3, n_joint)
-      real(wp), intent(in) :: change(:, :)
+   module procedure break_rate
       real(wp) :: rate(2)
 
       associate (j => break%joint)
@@ -185,14 +135,10 @@ contains
             break_rate = -change(break%part, j)
          end if
       end associate
-   end function break_rate
+   end procedure break_rate
 
    !> Faces of a joint beyond a bend
-   pure subroutine cross_break(joints, break, opening, faces)
-      type(coulomb_joints_t), intent(in) :: joints
-      type(break_t), intent(in) :: break
-      real(wp), intent(in) :: opening(:, :)
-      integer, intent(inout) :: faces(:, :)
+   module procedure cross_break
       integer :: j
 
       j = break%joint
@@ -207,5 +153,6 @@ contains
          if (joints%shear_role(j) /= shear_role%frictional) faces(3, j) = face%stuck
          faces(3, j) = shear_face(joints, j, faces(:2, j), faces(3, j))
       end if
-   end subroutine cross_break
-end module dda_rate_law
+   end procedure cross_break
+
+end submodule dda_rate_law

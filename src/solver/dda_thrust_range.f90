@@ -4,14 +4,9 @@
 !> weight is put between the joint and one of its blocks, tied to that block upright and against
 !> turning alone: what goes through horizontally is a pair of forces on the two, a load factor, and
 !> limit analysis finds its ends.
-module dda_thrust_range
-   use dda_joint_graph, only : joint_graph_t, joint_kind
-   use dda_kinds, only : wp
-   use dda_limit_load, only : find_limit, limit_load_t, limit_state
+submodule (dda_limit_load) dda_thrust_range
+   use dda_joint_graph, only : joint_kind
    implicit none
-   private
-
-   public :: find_thrust_range
 
    !> Relative gap of the proofs of either end
    real(wp), parameter :: tolerance = 1.0e-10_wp
@@ -21,18 +16,7 @@ module dda_thrust_range
 contains
 
    !> The range of thrust of a joint
-   pure subroutine find_thrust_range(graph, load, force, joint, thrust, known)
-      type(joint_graph_t), intent(in) :: graph
-      !> Loads: (3, n_block) [N/m, N/m, N]
-      real(wp), intent(in) :: load(:, :)
-      !> N1, N2, T of each joint that carry it: (3, n_joint) [N/m]
-      real(wp), intent(in) :: force(:, :)
-      !> Number of the joint
-      integer, intent(in) :: joint
-      !> Least and greatest thrust: (2) [N/m]
-      real(wp), intent(out) :: thrust(2)
-      !> Which of the two there are: one may have no bound
-      logical, intent(out) :: known(2)
+   module procedure find_thrust_range
       type(joint_graph_t) :: split
       type(limit_load_t) :: limit
       real(wp) :: dead(3, graph%n_block + 1), live(3, graph%n_block + 1), share(3), way, middle
@@ -58,7 +42,7 @@ contains
          if (known(k)) thrust(k) = middle &
             & + merge(-0.5_wp, 0.5_wp, k == 1)*(limit%lower + limit%upper)
       end do
-   end subroutine find_thrust_range
+   end procedure find_thrust_range
 
    !> The same joints, with a block without weight between one of them and one of its blocks
    pure subroutine split_graph(graph, joint, side, split)
@@ -87,4 +71,5 @@ contains
       split%row(2, 1, :, n + 1) = [-1.0_wp, 1.0_wp]
       split%row(3, 3, :, n + 1) = [-1.0_wp, 1.0_wp]
    end subroutine split_graph
-end module dda_thrust_range
+
+end submodule dda_thrust_range

@@ -1,30 +1,11 @@
 !> Groups of joints whose blocks hang together: each is a problem of its own
-module dda_contact_groups
-   use dda_contact_types, only : joint_springs_t
+submodule (dda_settle_in_time) dda_contact_groups
    implicit none
-   private
-
-   public :: group_joints, many, vast
-
-   !> Groups of more joints than this are swept for long before interior springs are tried
-   integer, parameter :: many = 300
-   !> In groups of more joints than this, passes by a factor take as long as a hundred sweeps: these
-   !> end wherever they are, and only the firmest springs are tried before them
-   integer, parameter :: vast = 2000
 
 contains
 
    !> Groups of joints whose blocks hang together
-   pure subroutine group_joints(springs, n_equation, n, first, joint)
-      type(joint_springs_t), intent(in) :: springs
-      !> Number of movable blocks
-      integer, intent(in) :: n_equation
-      !> Number of groups
-      integer, intent(out) :: n
-      !> First joint of each group in the list, and one beyond the last: (n_joint + 1)
-      integer, intent(out) :: first(:)
-      !> The joints, group by group, rising in each: (n_joint)
-      integer, intent(out) :: joint(:)
+   module procedure group_joints
       integer :: group(size(joint)), i, j
 
       call number_groups(springs, n_equation, n, group)
@@ -42,7 +23,7 @@ contains
          first(group(j)) = first(group(j)) - 1
          joint(first(group(j))) = j
       end do
-   end subroutine group_joints
+   end procedure group_joints
 
    !> Which group each joint is of
    pure subroutine number_groups(springs, n_equation, n, group)
@@ -85,4 +66,5 @@ contains
          end do
       end function root_of
    end subroutine number_groups
-end module dda_contact_groups
+
+end submodule dda_contact_groups

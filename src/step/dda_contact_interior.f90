@@ -10,8 +10,6 @@
 !> C + F_flow' d F; each iteration is one factorisation, with predictor and corrector (Mehrotra
 !> 1992). It begins with the forces of the step before.
 submodule (dda_settle_in_time:dda_contact_sweeps) dda_contact_interior
-   use dda_interior_problem, only : factor_springs, interior_t, pose, problem_t, respond, &
-      & see_bounds, see_lack, see_openings
    implicit none
 
    !> What slack and flow begin with at the least, over the size of a force

@@ -1,69 +1,9 @@
 !> Joints and blocks whose contact forces interior springs find, and the matrix of these springs
-module dda_interior_problem
-   use dda_block_factor, only : block_factor_t, factorise, plan_factor, substitute
-   use dda_block_matrix, only : block_matrix_t, set_pattern
-   use dda_contact_types, only : joint_springs_t, unbounded
-   use dda_contact_view, only : contact_view_t
-   use dda_kinds, only : wp
-   use dda_step_state, only : equations_t
+submodule (dda_settle_in_time) dda_interior_problem
+   use dda_block_factor, only : factorise, plan_factor, substitute
+   use dda_block_matrix, only : set_pattern
+   use dda_contact_types, only : unbounded
    implicit none
-   private
-
-   public :: factor_springs, interior_t, pose, problem_t, respond, see_bounds, see_lack
-   public :: see_openings
-
-   !> One iterate, or a step from it
-   type :: interior_t
-      !> Motion of the blocks: (n_dof, n_block) [m]
-      real(wp), allocatable :: motion(:, :)
-      !> Forces: (3, n_joint) [N/m]
-      real(wp), allocatable :: force(:, :)
-      !> Distance of the forces from each bound: (4, n_joint) [N/m]
-      real(wp), allocatable :: slack(:, :)
-      !> Opening or slip at each bound: (4, n_joint) [m]
-      real(wp), allocatable :: flow(:, :)
-   end type interior_t
-
-   !> Joints and blocks of the problem, and what an iterate leaves of its equations
-   type :: problem_t
-      !> Numbers of the joints: (n_joint)
-      integer, allocatable :: joint(:)
-      !> Equations of the blocks: (n_block)
-      integer, allocatable :: equation(:)
-      !> Blocks of each joint, 0 for one that cannot move: (2, n_joint)
-      integer, allocatable :: block(:, :)
-      !> Coupling of each joint in the matrix, or 0: (n_joint)
-      integer, allocatable :: entry(:)
-      !> Which forces there are: (3, n_joint)
-      logical, allocatable :: given(:, :)
-      !> Which bounds the forces of each joint have: (4, n_joint)
-      logical, allocatable :: bounded(:, :)
-      !> What the blocks give to each force, which measures openings: (3, n_joint) [m/(N/m)]
-      real(wp), allocatable :: unit(:, :)
-      !> Compliance of the springs: (3, n_joint) [m/(N/m)]
-      real(wp), allocatable :: soft(:, :)
-      !> Which openings follow their forces for good: (3, n_joint)
-      logical, allocatable :: follows(:, :)
-      !> Forces of the step before, or those without opening: (3, n_joint) [N/m]
-      real(wp), allocatable :: before(:, :)
-      !> Size of a force [N/m]
-      real(wp) :: size = 0.0_wp
-      !> Compliance that each bound adds to its spring: (4, n_joint) [m/(N/m)]
-      real(wp), allocatable :: yield(:, :)
-      !> Compliances that matrix and factor were made for, of springs and bounds: (7, n_joint)
-      !> [m/(N/m)]
-      real(wp), allocatable :: held(:, :)
-      !> Matrix with the springs
-      type(block_matrix_t) :: matrix
-      !> Its factor
-      type(block_factor_t) :: factor
-      !> What is left of the balance of the blocks: (n_dof, n_block) [N/m]
-      real(wp), allocatable :: balance(:, :)
-      !> Of the openings: (3, n_joint) [m]
-      real(wp), allocatable :: opening(:, :)
-      !> Change of slack times flow that a step is to bring: (4, n_joint)
-      real(wp), allocatable :: product(:, :)
-   end type problem_t
 
    !> Compliance of the springs over that of the blocks, and at the most over that of typical ones:
    !> slivers give too easily to be a measure
@@ -72,17 +12,7 @@ module dda_interior_problem
 contains
 
    !> The joints with their blocks numbered anew, and the pattern of their matrix
-   pure subroutine pose(equations, springs, view, joint, force, motion, p)
-      type(equations_t), intent(in) :: equations
-      type(joint_springs_t), intent(in) :: springs
-      type(contact_view_t), intent(in) :: view
-      !> Numbers of the joints: (n)
-      integer, intent(in) :: joint(:)
-      !> Forces of all joints: (3, n_joint) [N/m]
-      real(wp), intent(in) :: force(:, :)
-      !> Motion of all blocks: (n_dof, n_equation) [m]
-      real(wp), intent(in) :: motion(:, :)
-      type(problem_t), intent(out) :: p
+   module procedure pose
       integer :: i, k, n, n_dof, pair(2, size(joint))
 
       n = size(joint)
@@ -105,7 +35,7 @@ contains
       call plan_factor(p%matrix, p%factor)
       allocate (p%balance(n_dof, size(p%equation)))
       call pose_springs(springs, view, force, p)
-   end subroutine pose
+   end procedure pose
 
    !> Number the blocks of the joints as these come
    pure subroutine number_blocks(springs, n_equation, p)
@@ -159,21 +89,14 @@ contains
    end subroutine pose_springs
 
    !> Openings and slips after a motion, from the gaps before it
-   pure subroutine see_openings(springs, view, p, motion, opening)
-      type(joint_springs_t), intent(in) :: springs
-      type(contact_view_t), intent(in) :: view
-      type(problem_t), intent(in) :: p
-      !> The motion: (n_dof, n_block) [m]
-      real(wp), intent(in) :: motion(:, :)
-      !> The openings: (3, n_joint) [m]
-      real(wp), intent(out) :: opening(:, :)
+   module procedure see_openings
       integer :: i
 
       call move_joints(springs, p, motion, opening)
       do i = 1, size(p%joint)
          opening(:, i) = merge(opening(:, i) + view%gap(:, p%joint(i)), 0.0_wp, p%given(:, i))
       end do
-   end subroutine see_openings
+   end procedure see_openings
 
    !> What a motion of the blocks adds to openings and slips
    pure subroutine move_joints(springs, p, motion, opening)
@@ -224,13 +147,7 @@ contains
    end subroutine push_blocks
 
    !> What forces and motion lack of balance, and of openings that are closed
-   pure subroutine see_lack(equations, springs, view, x, p)
-      type(equations_t), intent(in) :: equations
-      type(joint_springs_t), intent(in) :: springs
-      type(contact_view_t), intent(in) :: view
-      type(interior_t), intent(in) :: x
-      !> The problem; balance and openings are set
-      type(problem_t), intent(inout) :: p
+   module procedure see_lack
       integer :: b, n
 
       n = size(p%balance, 1)
@@ -243,16 +160,10 @@ contains
       call push_blocks(springs, p, x%force, p%balance)
       call see_openings(springs, view, p, x%motion, p%opening)
       p%opening = merge(-p%opening - p%soft*(x%force - p%before), 0.0_wp, p%given)
-   end subroutine see_lack
+   end procedure see_lack
 
    !> Forces and motion that give what is lacking
-   pure subroutine respond(springs, p, drive, force, motion)
-      type(joint_springs_t), intent(in) :: springs
-      !> The problem, factored, with what it lacks of balance
-      type(problem_t), intent(in) :: p
-      !> By how much the springs are pressed together: (3, n_joint) [m]
-      real(wp), intent(in) :: drive(:, :)
-      real(wp), intent(out) :: force(:, :), motion(:, :)
+   module procedure respond
       real(wp) :: moved(3, size(p%joint))
       integer :: i
 
@@ -266,15 +177,10 @@ contains
       do i = 1, size(p%joint)
          force(:, i) = answer(springs, p, i, drive(:, i) - moved(:, i))
       end do
-   end subroutine respond
+   end procedure respond
 
    !> Distance of the forces from their bounds
-   pure subroutine see_bounds(springs, p, force, slack)
-      type(joint_springs_t), intent(in) :: springs
-      type(problem_t), intent(in) :: p
-      real(wp), intent(in) :: force(:, :)
-      !> The distances: (4, n_joint) [N/m]
-      real(wp), intent(out) :: slack(:, :)
+   module procedure see_bounds
       real(wp) :: bound
       integer :: i
 
@@ -286,15 +192,11 @@ contains
          slack(3, i) = bound + force(3, i)
          slack(4, i) = bound - force(3, i)
       end do
-   end subroutine see_bounds
+   end procedure see_bounds
 
    !> The matrix with the springs as their bounds yield, and its factor, of which stays what they do
    !> not change
-   pure subroutine factor_springs(equations, springs, p)
-      type(equations_t), intent(in) :: equations
-      type(joint_springs_t), intent(in) :: springs
-      !> The problem; matrix and factor are made anew
-      type(problem_t), intent(inout) :: p
+   module procedure factor_springs
       real(wp) :: wanted(7)
       logical :: changed(0:size(p%equation))
       integer :: i, n
@@ -315,7 +217,7 @@ contains
          call add_springs(springs, i, p)
       end do
       call factorise(p%matrix, p%factor, changed(1:))
-   end subroutine factor_springs
+   end procedure factor_springs
 
    !> Add the springs of one joint to the matrix
    pure subroutine add_springs(springs, i, p)
@@ -387,4 +289,5 @@ contains
             & *(force(1) + force(2)))/(p%soft(3, i) + yield(3) + yield(4))
       end associate
    end function answer
-end module dda_interior_problem
+
+end submodule dda_interior_problem

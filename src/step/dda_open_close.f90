@@ -110,10 +110,8 @@ contains
       type(joint_springs_t), intent(in) :: springs
       !> The step, for bounds and forces at its beginning
       type(step_state_t), intent(in) :: state
-      !> Where to start: (n_dof, n_equation)
-      real(wp), intent(in) :: from(:, :)
-      !> Where to go: (n_dof, n_equation)
-      real(wp), intent(in) :: direction(:, :)
+      !> Where to start, and where to go: (n_dof, n_equation)
+      real(wp), intent(in) :: from(:, :), direction(:, :)
       !> 1 is the whole way
       real(wp) :: factor
       real(wp) :: start(3, size(state%face)), rate(3, size(state%face))
@@ -163,8 +161,7 @@ contains
       pure function slope_of(way) result(slope)
          !> How far along the direction
          real(wp), intent(in) :: way
-         real(wp) :: slope
-         real(wp) :: force(3), shift(3)
+         real(wp) :: slope, force(3), shift(3)
          type(joint_face_t) :: face
          integer :: j
 

@@ -6,7 +6,10 @@
 !> which they change a little to the end counts.
 module dda_settle_in_time
    use dda_bar_springs, only : add_bars, bar_springs_t, couple_bars, judge_bars
+   use dda_block_factor, only : block_factor_t
+   use dda_block_matrix, only : block_matrix_t
    use dda_contact_types, only : joint_springs_t
+   use dda_contact_view, only : contact_view_t
    use dda_fixed_points, only : correct_fixed_forces
    use dda_friction, only : accelerate, anderson_t, coulomb_bound
    use dda_kinds, only : wp
@@ -16,7 +19,68 @@ module dda_settle_in_time
    implicit none
    private
 
-   public :: settle_in_time
+   public :: settle_in_time, group_joints, many, vast, factor_springs, interior_t, pose
+   public :: problem_t, respond, see_bounds, see_lack, see_openings
+
+   !> One iterate, or a step from it
+   type :: interior_t
+      !> Motion of the blocks: (n_dof, n_block) [m]
+      real(wp), allocatable :: motion(:, :)
+      !> Forces: (3, n_joint) [N/m]
+      real(wp), allocatable :: force(:, :)
+      !> Distance of the forces from each bound: (4, n_joint) [N/m]
+      real(wp), allocatable :: slack(:, :)
+      !> Opening or slip at each bound: (4, n_joint) [m]
+      real(wp), allocatable :: flow(:, :)
+   end type interior_t
+
+   !> Joints and blocks of the problem, and what an iterate leaves of its equations
+   type :: problem_t
+      !> Numbers of the joints: (n_joint)
+      integer, allocatable :: joint(:)
+      !> Equations of the blocks: (n_block)
+      integer, allocatable :: equation(:)
+      !> Blocks of each joint, 0 for one that cannot move: (2, n_joint)
+      integer, allocatable :: block(:, :)
+      !> Coupling of each joint in the matrix, or 0: (n_joint)
+      integer, allocatable :: entry(:)
+      !> Which forces there are: (3, n_joint)
+      logical, allocatable :: given(:, :)
+      !> Which bounds the forces of each joint have: (4, n_joint)
+      logical, allocatable :: bounded(:, :)
+      !> What the blocks give to each force, which measures openings: (3, n_joint) [m/(N/m)]
+      real(wp), allocatable :: unit(:, :)
+      !> Compliance of the springs: (3, n_joint) [m/(N/m)]
+      real(wp), allocatable :: soft(:, :)
+      !> Which openings follow their forces for good: (3, n_joint)
+      logical, allocatable :: follows(:, :)
+      !> Forces of the step before, or those without opening: (3, n_joint) [N/m]
+      real(wp), allocatable :: before(:, :)
+      !> Size of a force [N/m]
+      real(wp) :: size = 0.0_wp
+      !> Compliance that each bound adds to its spring: (4, n_joint) [m/(N/m)]
+      real(wp), allocatable :: yield(:, :)
+      !> Compliances that matrix and factor were made for, of springs and bounds: (7, n_joint)
+      !> [m/(N/m)]
+      real(wp), allocatable :: held(:, :)
+      !> Matrix with the springs
+      type(block_matrix_t) :: matrix
+      !> Its factor
+      type(block_factor_t) :: factor
+      !> What is left of the balance of the blocks: (n_dof, n_block) [N/m]
+      real(wp), allocatable :: balance(:, :)
+      !> Of the openings: (3, n_joint) [m]
+      real(wp), allocatable :: opening(:, :)
+      !> Change of slack times flow that a step is to bring: (4, n_joint)
+      real(wp), allocatable :: product(:, :)
+   end type problem_t
+
+   !> Groups of more joints than this are swept for long before interior springs are tried
+   integer, parameter :: many = 300
+
+   !> In groups of more joints than this, passes by a factor take as long as a hundred sweeps: these
+   !> end wherever they are, and only the firmest springs are tried before them
+   integer, parameter :: vast = 2000
 
    !> Most passes of the multipliers for given bounds
    integer, parameter :: max_passes = 100
@@ -60,6 +124,82 @@ module dda_settle_in_time
          !> they came
          type(step_state_t), intent(inout) :: state
       end subroutine sweep_contacts
+
+      !> Groups of joints whose blocks hang together
+      pure module subroutine group_joints(springs, n_equation, n, first, joint)
+         type(joint_springs_t), intent(in) :: springs
+         !> Number of movable blocks
+         integer, intent(in) :: n_equation
+         !> Number of groups
+         integer, intent(out) :: n
+         !> First joint of each group in the list, and one beyond the last: (n_joint + 1)
+         integer, intent(out) :: first(:)
+         !> The joints, group by group, rising in each: (n_joint)
+         integer, intent(out) :: joint(:)
+      end subroutine group_joints
+
+      !> The joints with their blocks numbered anew, and the pattern of their matrix
+      pure module subroutine pose(equations, springs, view, joint, force, motion, p)
+         type(equations_t), intent(in) :: equations
+         type(joint_springs_t), intent(in) :: springs
+         type(contact_view_t), intent(in) :: view
+         !> Numbers of the joints: (n)
+         integer, intent(in) :: joint(:)
+         !> Forces of all joints: (3, n_joint) [N/m]
+         real(wp), intent(in) :: force(:, :)
+         !> Motion of all blocks: (n_dof, n_equation) [m]
+         real(wp), intent(in) :: motion(:, :)
+         type(problem_t), intent(out) :: p
+      end subroutine pose
+
+      !> Openings and slips after a motion, from the gaps before it
+      pure module subroutine see_openings(springs, view, p, motion, opening)
+         type(joint_springs_t), intent(in) :: springs
+         type(contact_view_t), intent(in) :: view
+         type(problem_t), intent(in) :: p
+         !> The motion: (n_dof, n_block) [m]
+         real(wp), intent(in) :: motion(:, :)
+         !> The openings: (3, n_joint) [m]
+         real(wp), intent(out) :: opening(:, :)
+      end subroutine see_openings
+
+      !> What forces and motion lack of balance, and of openings that are closed
+      pure module subroutine see_lack(equations, springs, view, x, p)
+         type(equations_t), intent(in) :: equations
+         type(joint_springs_t), intent(in) :: springs
+         type(contact_view_t), intent(in) :: view
+         type(interior_t), intent(in) :: x
+         !> The problem; balance and openings are set
+         type(problem_t), intent(inout) :: p
+      end subroutine see_lack
+
+      !> Forces and motion that give what is lacking
+      pure module subroutine respond(springs, p, drive, force, motion)
+         type(joint_springs_t), intent(in) :: springs
+         !> The problem, factored, with what it lacks of balance
+         type(problem_t), intent(in) :: p
+         !> By how much the springs are pressed together: (3, n_joint) [m]
+         real(wp), intent(in) :: drive(:, :)
+         real(wp), intent(out) :: force(:, :), motion(:, :)
+      end subroutine respond
+
+      !> Distance of the forces from their bounds
+      pure module subroutine see_bounds(springs, p, force, slack)
+         type(joint_springs_t), intent(in) :: springs
+         type(problem_t), intent(in) :: p
+         real(wp), intent(in) :: force(:, :)
+         !> The distances: (4, n_joint) [N/m]
+         real(wp), intent(out) :: slack(:, :)
+      end subroutine see_bounds
+
+      !> The matrix with the springs as their bounds yield, and its factor, of which stays what they
+      !> do not change
+      pure module subroutine factor_springs(equations, springs, p)
+         type(equations_t), intent(in) :: equations
+         type(joint_springs_t), intent(in) :: springs
+         !> The problem; matrix and factor are made anew
+         type(problem_t), intent(inout) :: p
+      end subroutine factor_springs
 
    end interface
 

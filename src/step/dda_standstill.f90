@@ -2,20 +2,11 @@
 !>
 !> With every velocity zero and loads that the contact forces at hand balance, no motion is what the
 !> equations of a step ask for, and its end is its beginning.
-module dda_standstill
+submodule (dda_step) dda_standstill
    use dda_block_inertia, only : assemble_blocks
-   use dda_block_system, only : block_system_t
-   use dda_contacts, only : contacts_t
    use dda_friction_cone, only : joint_face_t
-   use dda_kinds, only : wp
-   use dda_settings, only : settings_t
    use dda_spring_products, only : add_load
-   use dda_step_context, only : march_t, step_context_t
-   use dda_step_state, only : equations_t
    implicit none
-   private
-
-   public :: balancing_time, is_slow, stand_still, stands_still
 
    !> Speed that may be noise of contact forces, over what free fall makes in a step
    real(wp), parameter :: slow = 1.0e-3_wp
@@ -28,15 +19,7 @@ contains
 
    !> Whether all blocks move so slowly that this may be what contact forces leave, or with finer
    !> forces that it was
-   pure logical function is_slow(equations, march, velocity, finer)
-      !> The equations, for the masses
-      type(equations_t), intent(in) :: equations
-      !> The march, for the length of the step and free fall
-      type(march_t), intent(in) :: march
-      !> Velocities: (n_dof, n_equation)
-      real(wp), intent(in) :: velocity(:, :)
-      !> Whether forces were finer
-      logical, intent(in) :: finer
+   module procedure is_slow
       integer :: e
 
       is_slow = .false.
@@ -46,30 +29,18 @@ contains
             & *equations%mass(1, 1, e)) return
       end do
       is_slow = .true.
-   end function is_slow
+   end procedure is_slow
 
    !> Length of a step in which rounding of gaps moves blocks less than forces that are not balanced
-   pure real(wp) function balancing_time(equations, march) result(time)
-      !> The equations, for the rounding
-      type(equations_t), intent(in) :: equations
-      !> The march, for free fall
-      type(march_t), intent(in) :: march
+   module procedure balancing_time
 
       time = 0.0_wp
       if (march%free_acceleration > 0.0_wp) &
          & time = sqrt(8.0_wp*equations%gap_noise/(balanced*march%free_acceleration))
-   end function balancing_time
+   end procedure balancing_time
 
    !> Whether no block moves and the contact forces at hand balance the loads of the coming step
-   pure subroutine stands_still(settings, system, contacts, march, equations, still)
-      type(settings_t), intent(in) :: settings
-      type(block_system_t), intent(in) :: system
-      type(contacts_t), intent(in) :: contacts
-      type(march_t), intent(in) :: march
-      !> The equations; blocks are assembled
-      type(equations_t), intent(inout) :: equations
-      !> The answer
-      logical, intent(out) :: still
+   module procedure stands_still
       real(wp) :: left(size(equations%load, 1), size(equations%load, 2))
       integer :: b, e, i, j
 
@@ -90,16 +61,10 @@ contains
          end do
       end do
       still = .true.
-   end subroutine stands_still
+   end procedure stands_still
 
    !> A step in which nothing moves: its forces are those before
-   pure subroutine stand_still(contacts, equations, march, step)
-      !> The contacts; what the last step added to gaps is none
-      type(contacts_t), intent(inout) :: contacts
-      type(equations_t), intent(in) :: equations
-      type(march_t), intent(in) :: march
-      !> The step, begun; its motion and forces are set
-      type(step_context_t), intent(inout) :: step
+   module procedure stand_still
 
       contacts%increment = 0.0_wp
       step%dt = march%dt
@@ -114,5 +79,6 @@ contains
       step%farthest = 0.0_wp
       step%acceleration = 0.0_wp
       step%whole = .true.
-   end subroutine stand_still
-end module dda_standstill
+   end procedure stand_still
+
+end submodule dda_standstill

@@ -19,7 +19,8 @@ module dda_step
    implicit none
    private
 
-   public :: advance, begin_step, check_axes, check_impact, retry, settle_joints
+   public :: advance, begin_step, check_axes, check_impact, retry, settle_joints, balancing_time
+   public :: is_slow, stand_still, stands_still
 
    !> Most cuts of one step's length
    integer, parameter :: max_retries = 40
@@ -206,6 +207,50 @@ module dda_step
          !> Whether they stand still; otherwise nothing has changed
          logical, intent(out) :: still
       end subroutine rest
+
+      !> Whether all blocks move so slowly that this may be what contact forces leave, or with finer
+      !> forces that it was
+      pure logical module function is_slow(equations, march, velocity, finer)
+         !> The equations, for the masses
+         type(equations_t), intent(in) :: equations
+         !> The march, for the length of the step and free fall
+         type(march_t), intent(in) :: march
+         !> Velocities: (n_dof, n_equation)
+         real(wp), intent(in) :: velocity(:, :)
+         !> Whether forces were finer
+         logical, intent(in) :: finer
+      end function is_slow
+
+      !> Length of a step in which rounding of gaps moves blocks less than forces that are not
+      !> balanced
+      pure real(wp) module function balancing_time(equations, march) result(time)
+         !> The equations, for the rounding
+         type(equations_t), intent(in) :: equations
+         !> The march, for free fall
+         type(march_t), intent(in) :: march
+      end function balancing_time
+
+      !> Whether no block moves and the contact forces at hand balance the loads of the coming step
+      pure module subroutine stands_still(settings, system, contacts, march, equations, still)
+         type(settings_t), intent(in) :: settings
+         type(block_system_t), intent(in) :: system
+         type(contacts_t), intent(in) :: contacts
+         type(march_t), intent(in) :: march
+         !> The equations; blocks are assembled
+         type(equations_t), intent(inout) :: equations
+         !> The answer
+         logical, intent(out) :: still
+      end subroutine stands_still
+
+      !> A step in which nothing moves: its forces are those before
+      pure module subroutine stand_still(contacts, equations, march, step)
+         !> The contacts; what the last step added to gaps is none
+         type(contacts_t), intent(inout) :: contacts
+         type(equations_t), intent(in) :: equations
+         type(march_t), intent(in) :: march
+         !> The step, begun; its motion and forces are set
+         type(step_context_t), intent(inout) :: step
+      end subroutine stand_still
 
    end interface
 

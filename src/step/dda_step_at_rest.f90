@@ -2,7 +2,6 @@
 submodule (dda_step) dda_step_at_rest
    use dda_assembly, only : renew_springs
    use dda_block_inertia, only : packed_velocity
-   use dda_standstill, only : balancing_time, is_slow, stand_still, stands_still
    implicit none
 
    !> Steps from one try to bring slow blocks to rest to the next, and most steps of such a try

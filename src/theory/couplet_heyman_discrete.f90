@@ -16,13 +16,29 @@
 !> eta they never lie above the truth, hence a few rounds suffice.
 module couplet_heyman_discrete
    use, intrinsic :: iso_fortran_env, only : wp => real64
-   use couplet_heyman_pinch, only : pinch_t, widest_gap, solve_pinch
-   use couplet_heyman_ring, only : ring_t, make_ring, limit_thrust
+   use couplet_heyman_ring, only : limit_thrust, make_ring, ring_t
    implicit none
    private
 
    public :: discrete_critical, discrete_critical_equal, equal_voussoir_joints, chords
-   public :: discrete_solution_t, discrete_status, joint_role
+   public :: discrete_solution_t, discrete_status, joint_role, pinch_t, widest_gap, solve_pinch
+
+   !> Where the gap is widest at one eta, and the joints that keep it from being wider
+   type :: pinch_t
+      !> Deficit of the thrust there
+      real(wp) :: deficit = 0.0_wp
+      !> The gap there
+      real(wp) :: gap = 0.0_wp
+      !> Whether the gap grows for ever with the thrust: a straight thrust fits in the ring
+      logical :: unbounded = .false.
+      !> Extrados and intrados joint that close the gap towards smaller deficits: (2)
+      integer :: left(2) = 0
+      !> Extrados and intrados joint that close it towards greater deficits; equal to left at a
+      !> sliding joint: (2)
+      integer :: right(2) = 0
+      !> Joint whose friction holds the deficit; 0 if none
+      integer :: sliding = 0
+   end type pinch_t
 
    !> Outcome of a critical thickness
    type :: discrete_status_enum
@@ -69,6 +85,34 @@ module couplet_heyman_discrete
       !> What each of them does, one of `joint_role`: (5)
       integer :: role(5) = 0
    end type discrete_solution_t
+
+   interface
+
+      !> Largest gap over all deficits: tangents from both sides meet at the peak of a concave
+      !> polygon
+      pure module subroutine widest_gap(ring, eta, pinch)
+         type(ring_t), intent(in) :: ring
+         !> Thickness ratio [-]
+         real(wp), intent(in) :: eta
+         !> Where the gap is widest, and the joints that make it so
+         type(pinch_t), intent(out) :: pinch
+      end subroutine widest_gap
+
+      !> Thickness ratio at which the pinching joints just let the thrust through: Newton's method
+      !> in eta and deficit
+      pure module subroutine solve_pinch(ring, start, pinch, eta, solved)
+         type(ring_t), intent(in) :: ring
+         !> Thickness ratio at which the pinch was found [-]
+         real(wp), intent(in) :: start
+         !> The joints; its deficit is carried along
+         type(pinch_t), intent(inout) :: pinch
+         !> Thickness ratio at which their gaps vanish [-]
+         real(wp), intent(out) :: eta
+         !> Whether the iteration has come to rest
+         logical, intent(out) :: solved
+      end subroutine solve_pinch
+
+   end interface
 
 contains
 
@@ -258,5 +302,4 @@ contains
       solution%joint = pack(joint, binds, spread(0, 1, 5))
       solution%role = pack(role, binds, spread(0, 1, 5))
    end function critical_state
-
 end module couplet_heyman_discrete

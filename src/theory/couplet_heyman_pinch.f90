@@ -3,40 +3,13 @@
 !>
 !> Symbols as in couplet_heyman_discrete. The gap of a pair of joints (j, k) is the room between the
 !> extrados of j and the intrados of k; the gap of the ring is that of its narrowest pair.
-module couplet_heyman_pinch
-   use, intrinsic :: iso_fortran_env, only : wp => real64
-   use couplet_heyman_ring, only : ring_t
+submodule (couplet_heyman_discrete) couplet_heyman_pinch
    implicit none
-   private
-
-   public :: pinch_t, widest_gap, solve_pinch
-
-   !> Where the gap is widest at one eta, and the joints that keep it from being wider
-   type :: pinch_t
-      !> Deficit of the thrust there
-      real(wp) :: deficit = 0.0_wp
-      !> The gap there
-      real(wp) :: gap = 0.0_wp
-      !> Whether the gap grows for ever with the thrust: a straight thrust fits in the ring
-      logical :: unbounded = .false.
-      !> Extrados and intrados joint that close the gap towards smaller deficits: (2)
-      integer :: left(2) = 0
-      !> Extrados and intrados joint that close it towards greater deficits; equal to left at a
-      !> sliding joint: (2)
-      integer :: right(2) = 0
-      !> Joint whose friction holds the deficit; 0 if none
-      integer :: sliding = 0
-   end type pinch_t
 
 contains
 
    !> Largest gap over all deficits: tangents from both sides meet at the peak of a concave polygon
-   pure subroutine widest_gap(ring, eta, pinch)
-      type(ring_t), intent(in) :: ring
-      !> Thickness ratio [-]
-      real(wp), intent(in) :: eta
-      !> Where the gap is widest, and the joints that make it so
-      type(pinch_t), intent(out) :: pinch
+   module procedure widest_gap
       integer :: pair(2), last
       real(wp) :: peak, previous_peak, slope
       logical :: too_low, too_high, rises_for_ever, falls_for_ever
@@ -72,7 +45,7 @@ contains
          if (slope > 0.0_wp) pinch%left = pair
          if (slope <= 0.0_wp) pinch%right = pair
       end do
-   end subroutine widest_gap
+   end procedure widest_gap
 
    !> The joints that leave the least room for the thrust at one deficit
    pure subroutine narrowest_pair(ring, eta, deficit, pair, gap)
@@ -162,16 +135,7 @@ contains
 
    !> Thickness ratio at which the pinching joints just let the thrust through: Newton's method in
    !> eta and deficit
-   pure subroutine solve_pinch(ring, start, pinch, eta, solved)
-      type(ring_t), intent(in) :: ring
-      !> Thickness ratio at which the pinch was found [-]
-      real(wp), intent(in) :: start
-      !> The joints; its deficit is carried along
-      type(pinch_t), intent(inout) :: pinch
-      !> Thickness ratio at which their gaps vanish [-]
-      real(wp), intent(out) :: eta
-      !> Whether the iteration has come to rest
-      logical, intent(out) :: solved
+   module procedure solve_pinch
       !> Quadratic convergence takes 3 to 8
       integer, parameter :: most_steps = 60
       !> A relative step this short leaves rounding alone to the next one
@@ -190,7 +154,7 @@ contains
          solved = abs(eta_step) <= last_but_one*abs(eta)
       end do
       solved = .false.
-   end subroutine solve_pinch
+   end procedure solve_pinch
 
    !> Step towards the vanishing of both gaps, or of one where friction holds the deficit
    pure subroutine newton_step(ring, eta, pinch, eta_step, deficit_step)
@@ -222,4 +186,4 @@ contains
       deficit_step = (gap(1)*growth(2) - gap(2)*growth(1))/determinant
    end subroutine newton_step
 
-end module couplet_heyman_pinch
+end submodule couplet_heyman_pinch
