@@ -1,11 +1,13 @@
 !> Scenes of arches of any shape, of files of blocks and of lines that were cut
 submodule (dda_deck_scene) dda_blocks_of_deck
-   use dda_arch_assembly, only : arch_assembly_t
-   use dda_arch_scene, only : material_of, settings_of, unit_weight
+   use dda_arch_assembly, only : arch_assembly_t, n_movable
+   use dda_arch_form, only : arch_form_t, form_problem_t
+   use dda_arch_scene, only : joint_angles_deg, material_of, settings_of, unit_weight
    use dda_block_scene, only : base_t, block_scene
    use dda_fill_loads, only : add_fill_weight, fill_of, fill_t, press_fill
    use dda_kinds, only : pi
-   use dda_shape_scene, only : add_lune_weights, find_crown_joint, shape_assembly
+   use dda_line_scene, only : held_blocks
+   use dda_shape_scene, only : add_lune_weights, find_crown_joint, shape_assembly, shape_form
    use dda_tie_bars, only : add_ties
    implicit none
 
@@ -55,5 +57,22 @@ contains
          end associate
       end do
    end procedure file_scene
+
+   !> Number of blocks that can move in the scene of a case
+   module procedure movable_blocks
+      type(arch_form_t) :: form
+      type(form_problem_t) :: problem
+
+      if (allocated(deck%cut)) then
+         movable_blocks = count(.not. held_blocks(deck%cut))
+      else if (deck%scene%kind%word == "blocks") then
+         movable_blocks = count(.not. deck%plan%fixed)
+      else if (scene_kind(deck) == "shape") then
+         call shape_form(deck, form, problem)
+         movable_blocks = n_movable(form)
+      else
+         movable_blocks = size(joint_angles_deg(deck)) - 1
+      end if
+   end procedure movable_blocks
 
 end submodule dda_blocks_of_deck

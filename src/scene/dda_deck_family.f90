@@ -2,7 +2,9 @@
 submodule (dda_deck_scene) dda_deck_family
    use dda_arch_assembly, only : arch_assembly_t
    use dda_arch_chain, only : arch_chain
-   use dda_arch_scene, only : arch_numbers, half_joints_deg, settings_of, unit_weight
+   use dda_arch_form, only : form_problem_t
+   use dda_arch_scene, only : arch_numbers, half_joints_deg, joint_angles_deg, settings_of, &
+      & unit_weight
    use dda_deck_keys, only : key_index
    use dda_deck_set, only : number_fits, put_number
    use dda_error, only : fatal_error

@@ -1,21 +1,18 @@
 !> From a deck of any kind to its scene
 module dda_deck_scene
-   use dda_arch_assembly, only : n_movable
    use dda_arch_chain, only : arch_numbers_t, arch_rays_t
-   use dda_arch_form, only : arch_form_t, form_problem_t
-   use dda_arch_scene, only : arch_scene, joint_angles_deg
+   use dda_arch_scene, only : arch_scene
    use dda_block_input, only : block_plan_t
    use dda_boundary, only : history_t
    use dda_chain, only : chain_t
    use dda_deck, only : deck_t, parameter_t, scene_kind
    use dda_error, only : error_t
    use dda_kinds, only : wp
-   use dda_line_scene, only : held_blocks, line_scene
+   use dda_line_scene, only : line_scene
    use dda_live_loads, only : add_live_loads
    use dda_scene, only : family_t, scene_t
    use dda_scene_plan, only : scene_plan_t
    use dda_settings, only : settings_t
-   use dda_shape_scene, only : shape_form
    implicit none
    private
 
@@ -100,6 +97,11 @@ module dda_deck_scene
          type(scene_t), intent(out) :: scene
       end subroutine file_scene
 
+      !> Number of blocks that can move in the scene of a case
+      pure integer module function movable_blocks(deck)
+         type(deck_t), intent(in) :: deck
+      end function movable_blocks
+
    end interface
 
 contains
@@ -123,22 +125,4 @@ contains
       call move_ground(deck, scene%settings%boundary%base_acceleration)
       if (scene_kind(deck) /= "shape") call add_live_loads(deck, scene)
    end subroutine deck_scene
-
-   !> Number of blocks that can move in the scene of a case
-   pure integer function movable_blocks(deck)
-      type(deck_t), intent(in) :: deck
-      type(arch_form_t) :: form
-      type(form_problem_t) :: problem
-
-      if (allocated(deck%cut)) then
-         movable_blocks = count(.not. held_blocks(deck%cut))
-      else if (deck%scene%kind%word == "blocks") then
-         movable_blocks = count(.not. deck%plan%fixed)
-      else if (scene_kind(deck) == "shape") then
-         call shape_form(deck, form, problem)
-         movable_blocks = n_movable(form)
-      else
-         movable_blocks = size(joint_angles_deg(deck)) - 1
-      end if
-   end function movable_blocks
 end module dda_deck_scene

@@ -9,7 +9,6 @@ module dda_forward
    use dda_error, only : error_t
    use dda_frames, only : album_t, keep_pictures
    use dda_kinds, only : wp
-   use dda_load_clock, only : has_path
    use dda_reactions, only : keep_reactions
    use dda_settings, only : settings_t
    use dda_step, only : advance, begin_step
@@ -17,7 +16,7 @@ module dda_forward
    use dda_step_interval, only : first_interval, measure_scales, next_interval
    use dda_step_state, only : equations_t
    use dda_verdict, only : has_collapsed, has_fallen, judge_verdict, largest_displacement, &
-      & neighbours_of, outcome_t, still_moves_away, verdict
+      & neighbours_of, outcome_t, verdict
    implicit none
    private
 
@@ -114,6 +113,17 @@ module dda_forward
          type(album_t), intent(inout) :: album
       end subroutine end_pictures
 
+      !> What the end of a run says
+      pure module subroutine conclude(settings, march, acceleration, error, outcome)
+         type(settings_t), intent(in) :: settings
+         type(march_t), intent(in) :: march
+         !> That of the last step [m/s2]
+         real(wp), intent(in) :: acceleration
+         type(error_t), allocatable, intent(in) :: error
+         !> How it ended; receives what the march counts, the verdict, and why it is undecided
+         type(outcome_t), intent(inout) :: outcome
+      end subroutine conclude
+
    end interface
 
 contains
@@ -191,60 +201,6 @@ contains
          march%drowned = is_drowned(system, contacts%joint, contacts%springs, equations)
       end if
    end subroutine begin_run
-
-   !> What the end of a run says
-   pure subroutine conclude(settings, march, acceleration, error, outcome)
-      type(settings_t), intent(in) :: settings
-      type(march_t), intent(in) :: march
-      !> That of the last step [m/s2]
-      real(wp), intent(in) :: acceleration
-      type(error_t), allocatable, intent(in) :: error
-      !> How it ended; receives what the march counts, the verdict, and why it is undecided
-      type(outcome_t), intent(inout) :: outcome
-
-      outcome%rest_tolerance = settings%rest_tolerance
-      if (march%free_acceleration > 0.0_wp) then
-         outcome%acceleration_ratio = acceleration/march%free_acceleration
-         outcome%elastic_time = sqrt(2.0_wp*march%elastic_motion/march%free_acceleration)
-      end if
-      outcome%has_path = has_path(march%clock)
-      outcome%path_time = march%clock%now
-      outcome%jumps = march%jumps
-      outcome%largest_jump = march%largest_jump
-      outcome%steps = march%steps
-      outcome%passes = march%passes
-      if (allocated(error)) then
-         outcome%verdict = verdict%undecided
-         outcome%reason = error%message
-      else if (settings%dynamic) then
-         call conclude_in_time(settings, march, outcome)
-      else if (outcome%verdict /= verdict%stable .and. march%drowned) then
-         ! rounding may throw a block, but it does not balance one
-         outcome%verdict = verdict%undecided
-         outcome%reason = "round-off of coordinates loads a small block with more than its " &
-            & //"weight; compute it apart from larger ones"
-      else if (outcome%verdict == verdict%undecided) then
-         outcome%reason = "step limit reached; neither equilibrium nor collapse established"
-      end if
-   end subroutine conclude
-
-   !> What the end of a dynamic run says
-   pure subroutine conclude_in_time(settings, march, outcome)
-      type(settings_t), intent(in) :: settings
-      type(march_t), intent(in) :: march
-      type(outcome_t), intent(inout) :: outcome
-
-      if (outcome%verdict == verdict%collapsed) return
-      if (still_moves_away(settings, march)) then
-         outcome%verdict = verdict%undecided
-         outcome%reason = "the blocks still move away at the end of the run; give a longer duration"
-      else if (march%time >= settings%duration) then
-         outcome%verdict = verdict%completed
-      else
-         outcome%verdict = verdict%undecided
-         outcome%reason = "step limit reached before the end of the run"
-      end if
-   end subroutine conclude_in_time
 
    !> One step and what it says of the blocks
    pure subroutine take_step(settings, system, contacts, equations, march, step, rest, neighbours, &

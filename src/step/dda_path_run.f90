@@ -1,6 +1,6 @@
 !> A static run along the path of its histories, and the pictures at its end
 submodule (dda_forward) dda_path_run
-   use dda_load_clock, only : goes_on_at
+   use dda_load_clock, only : goes_on_at, has_path
    implicit none
 
 contains
