@@ -10,13 +10,33 @@ module dda_compute_case
    use dda_deck_scene, only : deck_family_t, deck_scene
    use dda_error, only : error_t
    use dda_frames, only : album_t
+   use dda_interior_state, only : no_limit
+   use dda_joint_graph, only : joint_graph_t
    use dda_kinds, only : wp
    use dda_scene, only : build_once, family_t, scene_t
    use dda_search, only : critical_t, decision_t, proof_t, search_t
    implicit none
    private
 
-   public :: compute_case
+   public :: compute_case, load_arc_t, least_factor_t, seek_least_factor
+
+   !> Live loads that are quadratic in the share of the way from one place to another
+   type :: load_arc_t
+      !> The two places [m]
+      real(wp) :: from = 0.0_wp, to = 0.0_wp
+      !> Blocks with a load, by their numbers in the graph: (n)
+      integer, allocatable :: block(:)
+      !> Loads at the beginning, half way and at the end: (3, n, 3) [N/m, N/m, N]
+      real(wp), allocatable :: load(:, :, :)
+   end type load_arc_t
+
+   !> The least factor found, and where
+   type :: least_factor_t
+      !> The factor
+      real(wp) :: factor = no_limit
+      !> The place [m]
+      real(wp) :: place = 0.0_wp
+   end type least_factor_t
 
    !> The thrust of an arch of more joints than this is reported only where it is asked for
    integer, parameter :: most_thrust_joints = 2001
@@ -127,6 +147,21 @@ module dda_compute_case
          !> Receives the ways of its points, if it has some
          type(album_t), intent(inout), optional :: album
       end subroutine decide_limerick
+
+      !> Seek the least factor of the loads of all arcs: none where the dead load falls by itself
+      pure module subroutine seek_least_factor(graph, dead, arc, stands, near, least)
+         type(joint_graph_t), intent(in) :: graph
+         !> Loads at a factor of zero: (3, n_block) [N/m, N/m, N]
+         real(wp), intent(in) :: dead(:, :)
+         !> The live loads: (n)
+         type(load_arc_t), intent(in) :: arc(:)
+         !> Whether the dead load is known to stand
+         logical, intent(in) :: stands
+         !> How near the place is to be [m]
+         real(wp), intent(in) :: near
+         !> The least factor so far in, with these arcs out
+         type(least_factor_t), intent(inout) :: least
+      end subroutine seek_least_factor
 
    end interface
 

@@ -9,13 +9,12 @@ module dda_restart
    use dda_contacts, only : contacts_t
    use dda_error, only : error_t, fatal_error
    use dda_kinds, only : wp
-   use dda_number_file, only : read_numbers, write_numbers
    use dda_settings, only : settings_t
    use dda_step_context, only : march_t
    implicit none
    private
 
-   public :: check_restart, load_restart, save_restart
+   public :: check_restart, load_restart, save_restart, write_numbers, read_numbers
 
    !> First bytes of the file; another layout wants another number
    character(len=*), parameter :: title = "voussoir restart 3"
@@ -106,6 +105,30 @@ module dda_restart
          type(march_t), intent(out) :: march
          character(len=*), intent(inout) :: fault
       end subroutine take_march
+
+      !> Write a file; one of that name is replaced at once, when the new one is on the disk
+      module subroutine write_numbers(file, title, whole, number, error)
+         !> Name of the file
+         character(len=*), intent(in) :: file
+         !> Its first bytes, which tell what it holds
+         character(len=*), intent(in) :: title
+         !> Whole numbers: (:)
+         integer(int32), intent(in) :: whole(:)
+         !> Numbers: (:)
+         real(wp), intent(in) :: number(:)
+         type(error_t), allocatable, intent(out) :: error
+      end subroutine write_numbers
+
+      !> Read a file that is whole
+      module subroutine read_numbers(file, title, whole, number, error)
+         character(len=*), intent(in) :: file
+         !> What its first bytes must be
+         character(len=*), intent(in) :: title
+         integer(int32), allocatable, intent(out) :: whole(:)
+         real(wp), allocatable, intent(out) :: number(:)
+         !> Allocated if it is missing, another file, or damaged
+         type(error_t), allocatable, intent(out) :: error
+      end subroutine read_numbers
 
    end interface
 

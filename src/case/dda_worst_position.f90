@@ -19,7 +19,6 @@ submodule (dda_compute_case) dda_worst_position
    use dda_shape_scene, only : shape_assembly
    use dda_submatrices, only : point_load
    use dda_vehicle, only : axle_loads, passages, road_of, road_t, vehicle_of, vehicle_t
-   use dda_worst_load, only : least_factor_t, load_arc_t, seek_least_factor
    implicit none
 
    !> How far beside a passage an axle is on the next block, and how near the least is closed in,

@@ -7,7 +7,6 @@ submodule (dda_critical) dda_bracket
    use dda_block_system, only : block_system_t
    use dda_chain_decision, only : decide_chain
    use dda_chain_unfold, only : unfold
-   use dda_collapse_trace, only : foresee, proposal_t, trace
    use dda_contact_types, only : joint_springs_t
    use dda_decision, only : decide
    use dda_error, only : error_t

@@ -3,7 +3,7 @@
 !> What the forces of a chain lack, over the parameter, is zero where it ceases to fall; the joints
 !> that break their bounds near there are its last mechanism. No proof rests on what is foreseen:
 !> two decisions beside it tell whether it is so.
-submodule (dda_collapse_trace) dda_chain_foresight
+submodule (dda_critical:dda_collapse_trace) dda_chain_foresight
    use dda_chain, only : chain_t
    use dda_chain_balance, only : carry_forces, rounding_of_forces, sum_loads
    use dda_chain_decision, only : doubtful

@@ -2,12 +2,87 @@
 !>
 !> Each way of searching is a submodule: by any parameter, by a load coefficient, by runs in time.
 module dda_critical
-   use dda_scene, only : family_t
+   use dda_contact_types, only : joint_t
+   use dda_friction_cone, only : joint_face_t
+   use dda_kinds, only : wp
+   use dda_scene, only : family_t, scene_t
    use dda_search, only : critical_t, search_t
    implicit none
    private
 
-   public :: find_critical, find_critical_in_time
+   public :: find_critical, find_critical_in_time, proposal_t, trace, frozen_mechanism_t
+   public :: mechanism_power, foresee
+
+   !> A collapse to be traced from one value of the parameter to another
+   type :: frozen_mechanism_t
+      !> The joints: (n_joint)
+      type(joint_t), allocatable :: joint(:)
+      !> Faces of the joints in its last step: (n_joint)
+      type(joint_face_t), allocatable :: face(:)
+      !> Motion of its last step without strains: (3, n_equation)
+      real(wp), allocatable :: motion(:, :)
+      !> Length of a step long enough that elastic motion hides nothing, and short enough that
+      !> rounding leaves the power smooth [s]
+      real(wp) :: dt = 0.0_wp
+   end type frozen_mechanism_t
+
+   !> Where a frozen collapse stops
+   type :: proposal_t
+      !> Whether it stops anywhere
+      logical :: usable = .false.
+      !> The value
+      real(wp) :: value = 0.0_wp
+      !> Half the width of the bracket to close around it: of the tolerance, or of what the rounded
+      !> coordinates can tell apart
+      real(wp) :: half = 0.0_wp
+      !> How far beyond and before it to decide; more than half where the frozen joints, which know
+      !> nothing of moving blocks, only come near
+      real(wp) :: reach = 0.0_wp
+   end type proposal_t
+
+   interface
+
+      !> Power of the loads on the mechanism. The structure with faces held moves under its loads;
+      !> two more solutions with its own inertia as the load leave of that motion the mechanism
+      !> alone, which is then measured by the mechanism's motion at the value where it was found
+      pure module subroutine mechanism_power(mechanism, scene, power, noise, usable)
+         type(frozen_mechanism_t), intent(in) :: mechanism
+         !> Scene of the value wanted
+         type(scene_t), intent(in) :: scene
+         !> Power: positive where the mechanism moves by itself
+         real(wp), intent(out) :: power
+         !> What the rounding of the corners' coordinates alone makes of it
+         real(wp), intent(out) :: noise
+         !> Whether the power could be found
+         logical, intent(out) :: usable
+      end subroutine mechanism_power
+
+      !> Foresee where the collapse of a chain stops, by the secant method on what its forces lack
+      pure module subroutine foresee(family, search, critical, proposal, face)
+         class(family_t), intent(in) :: family
+         type(search_t), intent(in) :: search
+         !> New in; its chain and their forces out
+         type(critical_t), intent(inout) :: critical
+         !> Where it stops, usable if that is known
+         type(proposal_t), intent(out) :: proposal
+         !> Faces of the joints of that collapse, where it is known: (n + 1)
+         type(joint_face_t), allocatable, intent(out) :: face(:)
+      end subroutine foresee
+
+      !> Trace the last collapse to where it stops, by the secant method on the power of the loads;
+      !> from the third value on the parabola through three tells what the secant leaves
+      pure module subroutine trace(family, search, limit, critical, proposal)
+         class(family_t), intent(in) :: family
+         type(search_t), intent(in) :: search
+         !> The end of the range on the side that stands
+         real(wp), intent(in) :: limit
+         !> What was found so far; the factorisations are counted
+         type(critical_t), intent(inout) :: critical
+         !> Where the collapse stops
+         type(proposal_t), intent(out) :: proposal
+      end subroutine trace
+
+   end interface
 
    interface
 

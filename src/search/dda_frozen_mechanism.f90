@@ -1,6 +1,6 @@
 !> The power of the loads on a mechanism whose joints keep to their faces, as a smooth function of
 !> the parameter of a search: its zero is where the mechanism stops
-submodule (dda_collapse_trace) dda_frozen_mechanism
+submodule (dda_critical:dda_collapse_trace) dda_frozen_mechanism
    use dda_assembly, only : new_equations, solve_faces
    use dda_block_factor, only : substitute
    use dda_block_inertia, only : assemble_blocks

@@ -1,11 +1,10 @@
 !> Forward analysis: a run of steps to a verdict (Shi: df)
 module dda_forward
    use dda_assembly, only : new_equations
-   use dda_balance, only : is_drowned
    use dda_block_factor, only : factored_condition
    use dda_block_system, only : block_system_t
    use dda_contacts, only : contacts_t
-   use dda_energy, only : audit_step, keep_energy
+   use dda_energy, only : keep_energy
    use dda_error, only : error_t
    use dda_frames, only : album_t, keep_pictures
    use dda_kinds, only : wp
@@ -13,7 +12,7 @@ module dda_forward
    use dda_settings, only : settings_t
    use dda_step, only : advance, begin_step
    use dda_step_context, only : march_t, step_context_t
-   use dda_step_interval, only : first_interval, measure_scales, next_interval
+   use dda_step_interval, only : measure_scales, next_interval
    use dda_step_state, only : equations_t
    use dda_verdict, only : has_collapsed, has_fallen, judge_verdict, largest_displacement, &
       & neighbours_of, outcome_t, verdict
@@ -124,6 +123,19 @@ module dda_forward
          type(outcome_t), intent(inout) :: outcome
       end subroutine conclude
 
+      !> Scales and first step of a run that begins, and its energy
+      pure module subroutine begin_run(settings, system, contacts, equations, march, step, error)
+         type(settings_t), intent(in) :: settings
+         type(block_system_t), intent(in) :: system
+         !> The contacts; faces to begin with are set
+         type(contacts_t), intent(inout) :: contacts
+         type(equations_t), intent(inout) :: equations
+         type(march_t), intent(inout) :: march
+         type(step_context_t), intent(inout) :: step
+         !> Allocated if the system cannot be solved
+         type(error_t), allocatable, intent(out) :: error
+      end subroutine begin_run
+
    end interface
 
 contains
@@ -180,27 +192,6 @@ contains
       outcome%factorisations = equations%factorisations
       call conclude(settings, march, step%acceleration, error, outcome)
    end subroutine run_to_verdict
-
-   !> Scales and first step of a run that begins, and its energy
-   pure subroutine begin_run(settings, system, contacts, equations, march, step, error)
-      type(settings_t), intent(in) :: settings
-      type(block_system_t), intent(in) :: system
-      !> The contacts; faces to begin with are set
-      type(contacts_t), intent(inout) :: contacts
-      type(equations_t), intent(inout) :: equations
-      type(march_t), intent(inout) :: march
-      type(step_context_t), intent(inout) :: step
-      !> Allocated if the system cannot be solved
-      type(error_t), allocatable, intent(out) :: error
-
-      call first_interval(system, contacts%springs, settings, equations, step%state, march, error)
-      contacts%face = step%state%face
-      if (settings%dynamic) then
-         call audit_step(settings, system, equations, contacts, step, 0.0_wp, march%energy)
-      else if (settings%current .and. contacts%springs%give) then
-         march%drowned = is_drowned(system, contacts%joint, contacts%springs, equations)
-      end if
-   end subroutine begin_run
 
    !> One step and what it says of the blocks
    pure subroutine take_step(settings, system, contacts, equations, march, step, rest, neighbours, &

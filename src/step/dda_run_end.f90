@@ -1,6 +1,9 @@
-!> How a run ends, and what is told of its end
+!> How a run begins and ends, and what is told of its end
 submodule (dda_forward) dda_run_end
+   use dda_balance, only : is_drowned
+   use dda_energy, only : audit_step
    use dda_load_clock, only : has_path
+   use dda_step_interval, only : first_interval
    use dda_verdict, only : still_moves_away
    implicit none
 
@@ -52,5 +55,17 @@ contains
          outcome%reason = "step limit reached before the end of the run"
       end if
    end subroutine conclude_in_time
+
+   !> Scales and first step of a run that begins, and its energy
+   module procedure begin_run
+
+      call first_interval(system, contacts%springs, settings, equations, step%state, march, error)
+      contacts%face = step%state%face
+      if (settings%dynamic) then
+         call audit_step(settings, system, equations, contacts, step, 0.0_wp, march%energy)
+      else if (settings%current .and. contacts%springs%give) then
+         march%drowned = is_drowned(system, contacts%joint, contacts%springs, equations)
+      end if
+   end procedure begin_run
 
 end submodule dda_run_end

@@ -16,12 +16,37 @@
 !> eta they never lie above the truth, hence a few rounds suffice.
 module couplet_heyman_discrete
    use, intrinsic :: iso_fortran_env, only : wp => real64
-   use couplet_heyman_ring, only : limit_thrust, make_ring, ring_t
+   use couplet_heyman_kernels, only : versine
    implicit none
    private
 
    public :: discrete_critical, discrete_critical_equal, equal_voussoir_joints, chords
    public :: discrete_solution_t, discrete_status, joint_role, pinch_t, widest_gap, solve_pinch
+   public :: ring_t, make_ring, limit_thrust
+
+   !> One half of an arch, joint by joint; nothing here depends on eta
+   type :: ring_t
+      !> Cosine of the joint's angle: (:)
+      real(wp), allocatable :: cosine(:)
+      !> 1 - cosine: (:)
+      real(wp), allocatable :: versine(:)
+      !> z, the height of the weights' funicular over the circle, small of fourth order: (:)
+      real(wp), allocatable :: form(:)
+      !> M, moment of the weights above the joint: (:)
+      real(wp), allocatable :: moment(:)
+      !> n, normal force at the joint for H = 1: (:)
+      real(wp), allocatable :: normal(:)
+      !> Angle less weight above the joint, t - W: (:)
+      real(wp), allocatable :: lightness(:)
+      !> Deficits that friction allows: from lowest
+      real(wp) :: lowest = -huge(1.0_wp)
+      !> ... to highest
+      real(wp) :: highest = huge(1.0_wp)
+      !> Joint whose friction sets lowest; 0 if none
+      integer :: lowest_joint = 0
+      !> Joint whose friction sets highest; 0 if none
+      integer :: highest_joint = 0
+   end type ring_t
 
    !> Where the gap is widest at one eta, and the joints that keep it from being wider
    type :: pinch_t
@@ -111,6 +136,31 @@ module couplet_heyman_discrete
          !> Whether the iteration has come to rest
          logical, intent(out) :: solved
       end subroutine solve_pinch
+
+      !> Shape of the ring from its joints; see docs/theory.md for the identity behind the steps of
+      !> form
+      pure module subroutine make_ring(joint_angle, facets, ring)
+         !> Joints of one half, from the crown: (n) [rad]
+         real(wp), intent(in) :: joint_angle(:)
+         !> Equal chords of each voussoir: (n - 1), or (n) where the first straddles the crown
+         integer, intent(in) :: facets(:)
+         type(ring_t), intent(out) :: ring
+      end subroutine make_ring
+
+      !> Thrusts that friction allows: H sin(t + phi) >= W cos(t + phi) and H sin(t - phi) <= W
+      !> cos(t - phi) at each joint
+      !>
+      !> A joint at the crown carries no shear, by symmetry.
+      pure module subroutine limit_thrust(joint_angle, friction, springing_no_slip, ring)
+         !> Joints of one half, from the crown: (:) [rad]
+         real(wp), intent(in) :: joint_angle(:)
+         !> Friction angle; pi/2 or more means that no joint slides [rad]
+         real(wp), intent(in) :: friction
+         !> Whether the last joint cannot slide
+         logical, intent(in) :: springing_no_slip
+         !> The ring: its limits of the deficit are set
+         type(ring_t), intent(inout) :: ring
+      end subroutine limit_thrust
 
    end interface
 

@@ -4,48 +4,15 @@
 !> Symbols as there: d = 1 - H the deficit of the thrust, v = 1 - cos t, z = W sin t - M - v, N = n
 !> - d cos t with n = cos t + W sin t, and M the moment of the weights over 1 + eta^2/12. Only
 !> differences of z and M between joints matter, so both are counted from the first joint.
-module couplet_heyman_ring
-   use, intrinsic :: iso_fortran_env, only : wp => real64
-   use couplet_heyman_kernels, only : arc_excess, arm_excess, versine
+submodule (couplet_heyman_discrete) couplet_heyman_ring
+   use couplet_heyman_kernels, only : arc_excess, arm_excess
    implicit none
-   private
-
-   public :: ring_t, make_ring, limit_thrust
-
-   !> One half of an arch, joint by joint; nothing here depends on eta
-   type :: ring_t
-      !> Cosine of the joint's angle: (:)
-      real(wp), allocatable :: cosine(:)
-      !> 1 - cosine: (:)
-      real(wp), allocatable :: versine(:)
-      !> z, the height of the weights' funicular over the circle, small of fourth order: (:)
-      real(wp), allocatable :: form(:)
-      !> M, moment of the weights above the joint: (:)
-      real(wp), allocatable :: moment(:)
-      !> n, normal force at the joint for H = 1: (:)
-      real(wp), allocatable :: normal(:)
-      !> Angle less weight above the joint, t - W: (:)
-      real(wp), allocatable :: lightness(:)
-      !> Deficits that friction allows: from lowest
-      real(wp) :: lowest = -huge(1.0_wp)
-      !> ... to highest
-      real(wp) :: highest = huge(1.0_wp)
-      !> Joint whose friction sets lowest; 0 if none
-      integer :: lowest_joint = 0
-      !> Joint whose friction sets highest; 0 if none
-      integer :: highest_joint = 0
-   end type ring_t
 
 contains
 
    !> Shape of the ring from its joints; see docs/theory.md for the identity behind the steps of
    !> form
-   pure subroutine make_ring(joint_angle, facets, ring)
-      !> Joints of one half, from the crown: (n) [rad]
-      real(wp), intent(in) :: joint_angle(:)
-      !> Equal chords of each voussoir: (n - 1), or (n) where the first straddles the crown
-      integer, intent(in) :: facets(:)
-      type(ring_t), intent(out) :: ring
+   module procedure make_ring
       real(wp) :: span, chord, middle, half_sine, chord_loss
       real(wp) :: lightness_rise, lightness_middle, form_rise, form_carry
       integer :: n, j, above
@@ -78,7 +45,7 @@ contains
          call add_exactly(form_rise, ring%form(j - 1), form_carry, ring%form(j))
       end do
       ring%normal = ring%cosine + (joint_angle - ring%lightness)*sin(joint_angle)
-   end subroutine make_ring
+   end procedure make_ring
 
    !> One step of a compensated sum: ten thousand voussoirs lose no digit
    pure subroutine add_exactly(term, before, carry, after)
@@ -101,15 +68,7 @@ contains
    !> phi) at each joint
    !>
    !> A joint at the crown carries no shear, by symmetry.
-   pure subroutine limit_thrust(joint_angle, friction, springing_no_slip, ring)
-      !> Joints of one half, from the crown: (:) [rad]
-      real(wp), intent(in) :: joint_angle(:)
-      !> Friction angle; pi/2 or more means that no joint slides [rad]
-      real(wp), intent(in) :: friction
-      !> Whether the last joint cannot slide
-      logical, intent(in) :: springing_no_slip
-      !> The ring: its limits of the deficit are set
-      type(ring_t), intent(inout) :: ring
+   module procedure limit_thrust
       !> A quarter of a turn [rad]
       real(wp), parameter :: quarter = 0.5_wp*acos(-1.0_wp)
       integer :: j, last
@@ -122,7 +81,7 @@ contains
          call limit_deficit(joint_angle(j) + friction, ring%lightness(j) + friction, +1, j, ring)
          call limit_deficit(joint_angle(j) - friction, ring%lightness(j) - friction, -1, j, ring)
       end do
-   end subroutine limit_thrust
+   end procedure limit_thrust
 
    !> Keep the deficit where side (H sin x - W cos x) >= 0
    !>
@@ -153,4 +112,4 @@ contains
       end if
    end subroutine limit_deficit
 
-end module couplet_heyman_ring
+end submodule couplet_heyman_ring

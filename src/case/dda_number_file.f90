@@ -1,17 +1,11 @@
 !> Files of numbers in the machine's own form, whole and with a check sum at their end, by which a
 !> damaged one is known
-module dda_number_file
-   use, intrinsic :: iso_fortran_env, only : int32, int64
+submodule (dda_restart) dda_number_file
    use dda_binary_file, only : append_integers, append_length, append_reals, append_text, &
       & binary_file_t, close_binary, open_binary, sync_binary
-   use dda_error, only : error_t, fatal_error
-   use dda_kinds, only : wp
    use dda_table_file, only : part_name, rename_part
    use dda_text_file, only : read_bytes
    implicit none
-   private
-
-   public :: write_numbers, read_numbers
 
    !> The sum is a polynomial at this place, modulo this prime: any change of a half-word changes it
    integer(int64), parameter :: place = 257, prime = 2147483647
@@ -19,16 +13,7 @@ module dda_number_file
 contains
 
    !> Write a file; one of that name is replaced at once, when the new one is on the disk
-   subroutine write_numbers(file, title, whole, number, error)
-      !> Name of the file
-      character(len=*), intent(in) :: file
-      !> Its first bytes, which tell what it holds
-      character(len=*), intent(in) :: title
-      !> Whole numbers: (:)
-      integer(int32), intent(in) :: whole(:)
-      !> Numbers: (:)
-      real(wp), intent(in) :: number(:)
-      type(error_t), allocatable, intent(out) :: error
+   module procedure write_numbers
       type(error_t), allocatable :: late
       type(binary_file_t) :: opened
       integer(int32) :: n(2)
@@ -45,17 +30,10 @@ contains
       call close_binary(opened, late)
       if (allocated(late) .and. .not. allocated(error)) call move_alloc(late, error)
       if (.not. allocated(error)) call rename_part(file, error)
-   end subroutine write_numbers
+   end procedure write_numbers
 
    !> Read a file that is whole
-   subroutine read_numbers(file, title, whole, number, error)
-      character(len=*), intent(in) :: file
-      !> What its first bytes must be
-      character(len=*), intent(in) :: title
-      integer(int32), allocatable, intent(out) :: whole(:)
-      real(wp), allocatable, intent(out) :: number(:)
-      !> Allocated if it is missing, another file, or damaged
-      type(error_t), allocatable, intent(out) :: error
+   module procedure read_numbers
       character(len=:), allocatable :: bytes
       type(error_t), allocatable :: failure
       integer(int32) :: n(2)
@@ -78,7 +56,7 @@ contains
          if (.not. sound) call fatal_error(error, "expected a file as it was written, got a "// &
             & "damaged one; write it again", file, 1)
       end if
-   end subroutine read_numbers
+   end procedure read_numbers
 
    !> Read numbers and compare their check sum
    pure subroutine read_sealed(bytes, n, whole, number, sound)
@@ -129,4 +107,5 @@ contains
          sum_so_far = mod(sum_so_far*place + ibits(words(i), 16, 16), prime)
       end do
    end subroutine add_words
-end module dda_number_file
+
+end submodule dda_number_file
