@@ -71,8 +71,6 @@ submodule (dda_run) dda_run_cases
 
 contains
 
-   !> Compute cases until none is left, or none can be written; each thread runs this. Cases are
-   !> written down in the same turn in which the next ones are prepared: one wait for other threads
    module procedure run_cases
       type(case_t), allocatable :: batch(:)
       integer :: number(max_batch), i, most, n

@@ -14,7 +14,6 @@ submodule (dda_run) dda_run_start
 
 contains
 
-   !> Read a deck, and check that its scene can be run
    module procedure read_and_check
       type(scene_t) :: scene
       type(terminal_watch_t) :: watch
@@ -26,7 +25,6 @@ contains
       call end_watch(watch)
    end procedure read_and_check
 
-   !> No two decks may write into the same folder
    module procedure check_folder
       integer :: i
 
@@ -40,7 +38,6 @@ contains
       end do
    end procedure check_folder
 
-   !> Take a folder for the rest of the program; nothing of it is touched before
    module procedure lock_folder
       character(len=:), allocatable :: file
       type(binary_file_t) :: held
@@ -85,9 +82,7 @@ contains
       call remove_file(name)
    end function has_locks
 
-   !> Folder that a deck's results go to
    module procedure folder_of
-
       folder = deck_stem(name)
       if (.not. allocated(command%out)) return
       if (size(command%name) == 1) then

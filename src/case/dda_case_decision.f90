@@ -17,7 +17,6 @@ submodule (dda_compute_case) dda_case_decision
 
 contains
 
-   !> Put the vehicle where the least load factor is carried
    module procedure place_vehicle
       type(scene_t) :: scene
       type(error_t), allocatable :: error
@@ -33,8 +32,6 @@ contains
       end associate
    end procedure place_vehicle
 
-   !> Decide the scene: as a chain if it needs no more, else from its beginning or from where an
-   !> earlier run has ended
    module procedure compute_decision
       type(block_system_t) :: system
       type(contacts_t) :: contacts
@@ -66,8 +63,6 @@ contains
       end if
    end procedure compute_decision
 
-   !> Make the scene of a decision where a chain has done without it and it is wanted now: for
-   !> tables of joints, for pictures, or to follow a sliding collapse
    module procedure see_collapse
       logical :: collapsed, wanted
 
@@ -83,9 +78,7 @@ contains
          & decision%contacts%joint = this%scene%contacts%joint
    end procedure see_collapse
 
-   !> Give the assembly nearest to critical that was found to stand its joints: a chain has none
    module procedure place_joints
-
       if (.not. allocated(this%critical%standing)) return
       associate (contacts => this%critical%standing%contacts)
          if (allocated(contacts%joint)) return

@@ -10,8 +10,6 @@ submodule (dda_compute_case:dda_limerick_decision) dda_limerick_joints
 
 contains
 
-   !> Joints at the end of a run: openings and slips from the corners, forces from the contacts. The
-   !> increments are those of the whole run, for single steps of this scheme jitter
    module procedure tell_joints
       type(joint_law_t) :: law
       real(wp) :: deepest

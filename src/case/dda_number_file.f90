@@ -12,7 +12,6 @@ submodule (dda_restart) dda_number_file
 
 contains
 
-   !> Write a file; one of that name is replaced at once, when the new one is on the disk
    module procedure write_numbers
       type(error_t), allocatable :: late
       type(binary_file_t) :: opened
@@ -32,7 +31,6 @@ contains
       if (.not. allocated(error)) call rename_part(file, error)
    end procedure write_numbers
 
-   !> Read a file that is whole
    module procedure read_numbers
       character(len=:), allocatable :: bytes
       type(error_t), allocatable :: failure

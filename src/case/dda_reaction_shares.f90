@@ -14,8 +14,6 @@ submodule (dda_force_rows) dda_reaction_shares
 
 contains
 
-   !> Reactions of the points of a block: what its joints and loads leave to them, shared by the
-   !> least forces
    module procedure share_among_points
       real(wp) :: wanted(3), place(2), size_of
       real(wp), allocatable :: column(:, :), force(:)

@@ -7,7 +7,6 @@ submodule (dda_restart) dda_restart_joints
 
 contains
 
-   !> Joints as numbers
    module procedure pack_joints
       integer :: j, k
 
@@ -27,8 +26,6 @@ contains
       end do
    end procedure pack_joints
 
-   !> Joints from numbers that are finite: found ones made anew where blocks move, given ones with
-   !> the state that they had
    module procedure unpack_joints
       type(joint_t), allocatable :: joint(:)
       integer(int32), allocatable :: given(:, :)

@@ -34,7 +34,6 @@ submodule (dda_compute_case) dda_worst_load
 
 contains
 
-   !> Seek the least factor of the loads of all arcs: none where the dead load falls by itself
    module procedure seek_least_factor
       type(chase_t) :: chase
       type(load_decision_t) :: decision

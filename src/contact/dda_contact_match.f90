@@ -6,7 +6,6 @@ submodule (dda_contact_transfer) dda_contact_match
 
 contains
 
-   !> Keys of contacts
    module procedure contact_keys
       integer :: i
 
@@ -17,8 +16,6 @@ contains
       end do
    end procedure contact_keys
 
-   !> Find for each contact the one of the step before that it goes on: the same corner and edge, or
-   !> else the nearest of the same two blocks
    module procedure match_contacts
       integer(int64) :: past_key(size(past)), key(2)
       integer :: order(size(past)), j, k

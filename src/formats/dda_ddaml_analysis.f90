@@ -15,7 +15,6 @@ submodule (dda_read_limerick) dda_ddaml_analysis
 
 contains
 
-   !> Read the analysis of a tree
    module procedure read_ddaml_analysis
       integer :: part, at
 

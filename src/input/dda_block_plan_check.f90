@@ -24,7 +24,6 @@ submodule (dda_read_blocks) dda_block_plan_check
 
 contains
 
-   !> Add a block; corners given twice are merged, clockwise ones are turned
    module procedure add_plan_block
       type(area_moments_t) :: moments
       real(wp), allocatable :: vertex(:, :)
@@ -88,7 +87,6 @@ contains
       end associate
    end subroutine put_block
 
-   !> Add a law
    module procedure add_law_plan
       type(law_plan_t), allocatable :: longer(:)
 
@@ -103,9 +101,7 @@ contains
       end associate
    end procedure add_law_plan
 
-   !> Hand over the plan, its arrays as long as what they hold
    module procedure close_plan
-
       associate (from => growing%plan, n => growing%n_block)
          plan%first_vertex = from%first_vertex(:n + 1)
          plan%vertex = from%vertex(:, :growing%n_vertex)
@@ -149,7 +145,6 @@ contains
       name = "block "//to_text(growing%n_block + 1)
    end function next_name
 
-   !> Check a plan as a whole and move its origin to where coordinates keep their digits
    module procedure check_plan
       real(wp) :: extent(2), point(2)
 
@@ -219,7 +214,6 @@ contains
       end do
    end subroutine check_laws
 
-   !> Whether no two blocks overlap; two fixed ones may
    module procedure check_overlaps
       real(wp) :: size_of(size(plan%fixed)), point(2)
       integer, allocatable :: near(:)

@@ -18,7 +18,6 @@ submodule (dda_read_deck) dda_deck_check
 
 contains
 
-   !> Read all of them
    module procedure read_ground_records
       integer :: i, key, s
 
@@ -95,7 +94,6 @@ contains
          & deck%value(key_index("ground", "columns"))%place)
    end subroutine split_columns
 
-   !> Read the files of a deck whose kind is 'lines'; any other deck is left as it is
    module procedure read_lines
       character(len=:), allocatable :: file
 
@@ -120,7 +118,6 @@ contains
       call check_materials(deck%lines, deck%file_analysis, deck%warnings, error)
    end procedure read_lines
 
-   !> An error without a line speaks of a file that cannot be read: the line of the deck helps more
    module procedure name_key
       character(len=:), allocatable :: message
 
@@ -130,7 +127,6 @@ contains
       call deck_error(error, message, deck, deck%value(key_index("scene", key))%place)
    end procedure name_key
 
-   !> Check a deck and the cases of its sweeps, before anything is computed
    module procedure check_deck
       integer :: s
 

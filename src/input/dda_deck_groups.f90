@@ -14,7 +14,6 @@ submodule (dda_read_deck) dda_deck_groups
 
 contains
 
-   !> Read one group
    module procedure read_group
       character(len=:), allocatable :: name
       type(deck_place_t) :: place
@@ -109,7 +108,6 @@ contains
       end if
    end subroutine find_key
 
-   !> Put the value of a --set into the deck
    module procedure apply_setting
       character(len=:), allocatable :: group, name
       type(parameter_t) :: parameter

@@ -23,8 +23,6 @@ submodule (dda_limerick_step) dda_limerick_interval
 
 contains
 
-   !> Length of the next step from the largest acceleration (Shi: step); no step passes over a
-   !> record of a load
    module procedure choose_interval
       real(wp) :: acceleration, velocity, allowed, mass, longest, record
 
@@ -94,7 +92,6 @@ contains
       end do
    end function largest_load
 
-   !> Whether a step is accepted; if not, its length or the penalty is changed
    module procedure judge_limerick_step
       real(wp) :: shortest
       logical :: moved_too_far

@@ -39,7 +39,6 @@ submodule (dda_block_order) dda_block_dissection
 
 contains
 
-   !> Place of each block in the order of elimination
    module procedure dissected_order
       type(dissection_t) :: d
       logical :: late(n_block)

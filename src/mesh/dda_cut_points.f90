@@ -12,7 +12,6 @@ submodule (dda_cutting) dda_cut_points
 
 contains
 
-   !> Boxes around all blocks
    module procedure block_boxes
       integer :: b, n, i
 
@@ -28,8 +27,6 @@ contains
       end do
    end procedure block_boxes
 
-   !> The block that holds a point; if none does, the nearest one within the distance in which nodes
-   !> may have been moved. 0 if there is none
    module procedure block_around
       real(wp) :: nearest, here
       integer :: b, next_best
@@ -51,7 +48,6 @@ contains
       block_around = next_best
    end procedure block_around
 
-   !> Take out the blocks that hold hole points (Shi: dc11)
    module procedure remove_holes
       logical, allocatable :: keep(:)
       integer, allocatable :: number(:), first(:)
@@ -95,8 +91,6 @@ contains
       cut%pair = cut%pair(:n)
    end procedure remove_holes
 
-   !> Points and fixed lines to blocks; a fixed line holds the block on each edge that it crosses,
-   !> or else the block of its first end (Shi: dc10, dc11)
    module procedure place_points
       type(boxes_t) :: boxes
       type(block_point_t), allocatable :: point(:)
@@ -214,7 +208,6 @@ contains
       point = moments%centroid
    end function inside_point
 
-   !> Find the blocks of the bolts (Shi: dc14); an end in no block is held by the ground
    module procedure place_bolts
       type(boxes_t) :: boxes
       type(cut_bolt_t) :: bolt(model%bolt%n)
@@ -237,8 +230,6 @@ contains
       cut%bolt = bolt(:n)
    end procedure place_bolts
 
-   !> Blocks get the material of the last material line that crosses one of their edges, or that
-   !> starts in them and crosses none; the first material otherwise (Shi: dc13)
    module procedure give_materials
       type(boxes_t) :: boxes
       type(block_point_t), allocatable :: point(:)

@@ -10,7 +10,6 @@ submodule (dda_cutting) dda_loop_blocks
 
 contains
 
-   !> Blocks of the loops that run around an area; scales, points and materials are left to others
    module procedure blocks_of_loops
       ! block and edge that each half-edge is a part of
       integer, allocatable :: owner(:, :), corner(:)

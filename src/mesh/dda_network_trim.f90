@@ -9,7 +9,6 @@ submodule (dda_cutting) dda_network_trim
 
 contains
 
-   !> Drop edges that end in nothing, until none is left: trees hang on no block (Shi: dc05)
    module procedure cut_trees
       integer, allocatable :: first(:), item(:), degree(:), loose(:)
       integer :: n, node, k, e
@@ -67,8 +66,6 @@ contains
       end do
    end subroutine edges_of_nodes
 
-   !> Drop one of two edges that cross between their nodes, as happens when nodes were merged: the
-   !> one that is no boundary, else that of the later line (Shi: dc06)
    module procedure drop_crossing_edges
       type(cell_grid_t) :: grid
       real(wp), allocatable :: place(:, :)
@@ -155,7 +152,6 @@ contains
       edges_cross = edges_cross .and. all(share > rim .and. share < 1.0_wp - rim)
    end function edges_cross
 
-   !> Drop joints that pass a node of other lines closer than e00 w0 (Shi: dc06)
    module procedure drop_close_edges
       type(cell_grid_t) :: grid
       real(wp), allocatable :: place(:, :)

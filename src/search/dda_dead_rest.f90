@@ -22,8 +22,6 @@ submodule (dda_decision) dda_dead_rest
 
 contains
 
-   !> Follow the path from its dead loads; where it finds no state under them though forces
-   !> balance them, from the rest that blocks come to
    module procedure follow_from_rest
       type(coulomb_state_t), allocatable :: start
       integer :: n
@@ -42,7 +40,6 @@ contains
       proof%n_factorisation = proof%n_factorisation + n
    end procedure follow_from_rest
 
-   !> Run the blocks under their dead loads alone
    module procedure rest_under_dead_loads
       ! a rest takes about four steps
       integer, parameter :: most_steps = 20
@@ -73,9 +70,7 @@ contains
       if (size(graph%kind) == size(contacts%joint)) call take_state(graph, settled, start)
    end procedure rest_under_dead_loads
 
-   !> A path whose fall, before it has begun, counts
    module procedure fall_at_once
-
       if (.not. allocated(proof%mechanism)) return
       proof%end = path_end%collapsed
       if (allocated(proof%reason)) deallocate (proof%reason)

@@ -12,9 +12,6 @@ submodule (dda_critical:dda_collapse_trace) dda_frozen_mechanism
 
 contains
 
-   !> Power of the loads on the mechanism. The structure with faces held moves under its loads; two
-   !> more solutions with its own inertia as the load leave of that motion the mechanism alone,
-   !> which is then measured by the mechanism's motion at the value where it was found
    module procedure mechanism_power
       type(equations_t) :: equations
       type(joint_springs_t) :: springs

@@ -15,7 +15,6 @@ submodule (dda_limit_load) dda_thrust_range
 
 contains
 
-   !> The range of thrust of a joint
    module procedure find_thrust_range
       type(joint_graph_t) :: split
       type(limit_load_t) :: limit

@@ -4,7 +4,6 @@ submodule (dda_settle_in_time) dda_contact_groups
 
 contains
 
-   !> Groups of joints whose blocks hang together
    module procedure group_joints
       integer :: group(size(joint)), i, j
 

@@ -62,8 +62,6 @@ submodule (dda_settle_in_time:dda_contact_sweeps) dda_contact_interior
 
 contains
 
-   !> Forces of some joints if these keep nearly to the faces that they had: of all forces that stop
-   !> the blocks those nearest to the ones before
    module procedure keep_to_faces
       type(problem_t) :: p
       type(interior_t) :: x
@@ -80,7 +78,6 @@ contains
       if (near) call take_forces(equations, springs, view, x, p, force)
    end procedure keep_to_faces
 
-   !> Forces of some joints, wherever the search for them begins
    module procedure solve_interior
       type(problem_t) :: p
       type(interior_t) :: on_faces, x

@@ -18,8 +18,6 @@ submodule (dda_step) dda_multipliers
 
 contains
 
-   !> Settle the joints of one step: once in reference geometry, where the penalty has no influence,
-   !> and where springs give for good; until the multipliers stay the same where blocks move
    module procedure settle_joints
       integer :: pass
       logical :: agreed

@@ -5,8 +5,6 @@ submodule (dda_forward) dda_path_run
 
 contains
 
-   !> Let the clock of a static run go on where the blocks are at rest before the end of its path,
-   !> and back where they do not come to rest, or leap
    module procedure follow_path
       logical :: falls, returned
 
@@ -33,8 +31,6 @@ contains
       call leave_rest(settings, system, contacts, equations, march, rest, album)
    end procedure follow_path
 
-   !> Follow a collapse beyond its verdict as far as the album wants to see it, and keep a picture
-   !> of the end
    module procedure end_pictures
       type(error_t), allocatable :: error
 

@@ -16,15 +16,11 @@ submodule (dda_forward) dda_rest
 
 contains
 
-   !> Whether the blocks have moved in a stride by more than the stride before lets expect
    module procedure leaps
-
       leaps = settings%current .and. march%moved > max(small*march%allowed_motion, &
          & smooth*march%rate*(march%clock%now - march%clock%rested))
    end procedure leaps
 
-   !> Go on from a rest: keep it, and let the clock stride as far as the motion of the last stride
-   !> lets expect
    module procedure leave_rest
       real(wp) :: growth
 
@@ -47,8 +43,6 @@ contains
       call begin_stride(settings, march)
    end procedure leave_rest
 
-   !> Go back to the last rest, from where the blocks do not come to rest, or have moved too far,
-   !> for a shorter stride of the clock
    module procedure return_to_rest
       type(march_t) :: before
 

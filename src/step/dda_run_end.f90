@@ -1,4 +1,4 @@
-!> How a run begins and ends, and what is told of its end
+!> How a run begins and ends, and what its outcome says
 submodule (dda_forward) dda_run_end
    use dda_balance, only : is_drowned
    use dda_energy, only : audit_step
@@ -9,9 +9,7 @@ submodule (dda_forward) dda_run_end
 
 contains
 
-   !> What the end of a run says
    module procedure conclude
-
       outcome%rest_tolerance = settings%rest_tolerance
       if (march%free_acceleration > 0.0_wp) then
          outcome%acceleration_ratio = acceleration/march%free_acceleration
@@ -56,9 +54,7 @@ contains
       end if
    end subroutine conclude_in_time
 
-   !> Scales and first step of a run that begins, and its energy
    module procedure begin_run
-
       call first_interval(system, contacts%springs, settings, equations, step%state, march, error)
       contacts%face = step%state%face
       if (settings%dynamic) then

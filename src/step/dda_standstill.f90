@@ -17,8 +17,6 @@ submodule (dda_step) dda_standstill
 
 contains
 
-   !> Whether all blocks move so slowly that this may be what contact forces leave, or with finer
-   !> forces that it was
    module procedure is_slow
       integer :: e
 
@@ -31,15 +29,12 @@ contains
       is_slow = .true.
    end procedure is_slow
 
-   !> Length of a step in which rounding of gaps moves blocks less than forces that are not balanced
    module procedure balancing_time
-
       time = 0.0_wp
       if (march%free_acceleration > 0.0_wp) &
          & time = sqrt(8.0_wp*equations%gap_noise/(balanced*march%free_acceleration))
    end procedure balancing_time
 
-   !> Whether no block moves and the contact forces at hand balance the loads of the coming step
    module procedure stands_still
       real(wp) :: left(size(equations%load, 1), size(equations%load, 2))
       integer :: b, e, i, j
@@ -63,9 +58,7 @@ contains
       still = .true.
    end procedure stands_still
 
-   !> A step in which nothing moves: its forces are those before
    module procedure stand_still
-
       contacts%increment = 0.0_wp
       step%dt = march%dt
       step%state%increment = contacts%increment

@@ -19,9 +19,7 @@ submodule (dda_step) dda_step_at_rest
 
 contains
 
-   !> A step of blocks that stand still, or are found to: nothing moves in it
    module procedure rest
-
       call stands_still(settings, system, contacts, march, equations, still)
       if (.not. still .and. march%steps > 0 .and. modulo(march%steps, between_tries) == 0) then
          if (is_slow(equations, march, packed_velocity(system, settings%n_dof), .false.)) &

@@ -25,8 +25,6 @@ submodule (dda_step) dda_step_check
 
 contains
 
-   !> Check the motion of a try: settled, short enough, within its margins, without an impact
-   !> inside, by the right axes
    module procedure check_motion
       logical :: searched
 
@@ -38,18 +36,14 @@ contains
       if (outcome%accepted .and. searched) outcome = check_axes(system, contacts, march, step)
    end procedure check_motion
 
-   !> Check the velocities of a try: settled, and no corner inside a neighbour
    module procedure check_end_velocities
-
       outcome = step_outcome_t(accepted=step%has_velocity, dt=step%dt)
       if (.not. outcome%accepted) outcome = step_outcome_t(dt=step%dt/2.0_wp, was_cut=.true.)
       if (outcome%accepted .and. contacts%searched) &
          & outcome = check_penetration(settings, system, contacts, march, step)
    end procedure check_end_velocities
 
-   !> Change for the next try what the checks ask for: its length, margins, axes
    module procedure retry
-
       if (outcome%dt < step%dt) step%choices = 0
       march%dt = outcome%dt
       step%was_cut = step%was_cut .or. outcome%was_cut
@@ -60,11 +54,6 @@ contains
       step%travel = travel_by(system, step%state%motion)
    end procedure retry
 
-   !> Check the separating axes of a settled step. Where corners pass corners, which edge the one
-   !> would go in by depends on the way that both take. A line that has held off a block which turns
-   !> out to be apart was the wrong one, and so was one that has let it in: they are chosen anew by
-   !> the motion; if blocks still enter one another the step is cut, and if some are still held off
-   !> in thin air, they are
    module procedure check_axes
       real(wp) :: gap, matters
       logical :: entered, held_off
@@ -130,9 +119,6 @@ contains
       end do
    end function depth
 
-   !> Check that no open contact closes fast within the step, for the speed at that very moment
-   !> counts, and the time that is left after it; a step in which one does ends when the
-   !> two blocks, if nothing else touched them, would be near enough to count as touching
    module procedure check_impact
       real(wp) :: speed(3, size(contacts%joint)), acceleration(3, size(contacts%joint))
       real(wp) :: near, earliest, least, meeting, time

@@ -13,9 +13,7 @@ submodule (dda_step) dda_step_motion
 
 contains
 
-   !> What a step begins with: masses as the blocks have turned, and how corners are about to move
    module procedure predict
-
       contacts%remember = .not. (settings%dynamic .and. settings%current)
       step%was_cut = .false.
       step%choices = 0
@@ -28,7 +26,6 @@ contains
       if (contacts%searched) step%travel = travel_of(system, settings, march)
    end procedure predict
 
-   !> The motion of one try, measured
    module procedure find_motion
       logical :: in_time
 
@@ -49,7 +46,6 @@ contains
       if (step%state%settled) step%farthest = largest_motion(system, step%state%motion)
    end procedure find_motion
 
-   !> Contacts where the blocks are now: those that were given, or those that a search finds
    module procedure place_contacts
       integer, allocatable :: before(:, :)
 

@@ -38,10 +38,6 @@ submodule (dda_step) dda_velocity
 
 contains
 
-   !> Velocities of the blocks at the end of a settled step. Newton's restitution may bring in
-   !> energy where there is friction, or where blocks are hit in several places; then there is
-   !> less of it. What contacts have done to the energy of the motion is no part of what is allowed;
-   !> without contacts only held points change it, which turn with their blocks
    module procedure settle_velocities
       logical :: closed(2, size(contacts%joint))
       real(wp) :: part(2, size(contacts%joint)), borne(3, size(contacts%joint)), less
@@ -315,8 +311,6 @@ contains
       end function excess
    end subroutine keep_moment
 
-   !> Springs of contacts whose forces are multipliers: stiff beside inertia however short the step,
-   !> and without memory of slip, which would bring in work. What sticks has no speed to slip with
    module procedure stiffen_contacts
       integer :: j
 

@@ -8,7 +8,6 @@ submodule (couplet_heyman_discrete) couplet_heyman_pinch
 
 contains
 
-   !> Largest gap over all deficits: tangents from both sides meet at the peak of a concave polygon
    module procedure widest_gap
       integer :: pair(2), last
       real(wp) :: peak, previous_peak, slope
@@ -133,8 +132,6 @@ contains
       gap = pair_gap(ring, eta, deficit, left)
    end subroutine meet
 
-   !> Thickness ratio at which the pinching joints just let the thrust through: Newton's method in
-   !> eta and deficit
    module procedure solve_pinch
       !> Quadratic convergence takes 3 to 8
       integer, parameter :: most_steps = 60

@@ -10,8 +10,6 @@ submodule (couplet_heyman_discrete) couplet_heyman_ring
 
 contains
 
-   !> Shape of the ring from its joints; see docs/theory.md for the identity behind the steps of
-   !> form
    module procedure make_ring
       real(wp) :: span, chord, middle, half_sine, chord_loss
       real(wp) :: lightness_rise, lightness_middle, form_rise, form_carry
@@ -64,10 +62,6 @@ contains
       carry = corrected - (after - before)
    end subroutine add_exactly
 
-   !> Thrusts that friction allows: H sin(t + phi) >= W cos(t + phi) and H sin(t - phi) <= W cos(t -
-   !> phi) at each joint
-   !>
-   !> A joint at the crown carries no shear, by symmetry.
    module procedure limit_thrust
       !> A quarter of a turn [rad]
       real(wp), parameter :: quarter = 0.5_wp*acos(-1.0_wp)
