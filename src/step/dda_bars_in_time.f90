@@ -19,6 +19,7 @@ contains
       state%unseen = step%unseen
       state%rates = step%rates
       state%swept = step%swept
+      state%again = step%again
       state%patient = step%patient
       state%passes = step%passes
       state%motion = step%motion

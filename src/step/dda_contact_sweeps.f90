@@ -224,8 +224,8 @@ contains
       call sweep_group(joint, purpose, springs, view, noise, coarse_enough, force, motion, settled)
    end subroutine settle_group
 
-   !> Whether faces may tell the forces of a motion: of a group that has more forces than its blocks
-   !> can tell apart
+   !> Whether faces may tell the forces of a motion: those of a try of this step, or of a group that
+   !> has more forces than its blocks can tell apart
    pure logical function asks_faces(view, springs, joint, state)
       type(contact_view_t), intent(in) :: view
       type(joint_springs_t), intent(in) :: springs
@@ -235,7 +235,7 @@ contains
       integer :: forces, i, k
 
       asks_faces = .not. state%rates .and. .not. (state%swept .and. size(joint) > vast)
-      if (.not. asks_faces) return
+      if (.not. asks_faces .or. state%again) return
       is_there = .false.
       forces = 0
       do i = 1, size(joint)

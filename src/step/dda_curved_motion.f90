@@ -51,6 +51,7 @@ contains
          curve = step%curve
          springs = contacts%springs
          step%state%multiplier = step%state%force
+         step%state%again = .true.
          call take_turned_rows(system, last%motion, contacts, step)
          call take_springs(equations)
          call settle_in_time(settings, (equations%fixed%target), equations, contacts%springs, &

@@ -361,6 +361,7 @@ contains
       state%unsettled_work = 0.0_wp
       state%many = .false.
       state%swept = .false.
+      state%again = .false.
       state%passes = 0
    end subroutine begin_step
 end module dda_step
