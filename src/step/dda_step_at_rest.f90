@@ -4,8 +4,9 @@ submodule (dda_step) dda_step_at_rest
    use dda_block_inertia, only : packed_velocity
    implicit none
 
-   !> Steps from one try to bring slow blocks to rest to the next, and most steps of such a try
-   integer, parameter :: between_tries = 16, steps_of_try = 40
+   !> Slow blocks are tried for rest after so many steps, after twice as many, and so on until every
+   !> so many; and most steps of such a try
+   integer, parameter :: first_try = 16, every_try = 128, steps_of_try = 40
 
    !> Steps by which such a try must have taken all speed
    integer, parameter :: lively_steps = 4
@@ -21,7 +22,8 @@ contains
 
    module procedure rest
       call stands_still(settings, system, contacts, march, equations, still)
-      if (.not. still .and. march%steps > 0 .and. modulo(march%steps, between_tries) == 0) then
+      if (.not. still .and. march%steps >= first_try .and. (popcnt(march%steps) == 1 &
+         & .or. modulo(march%steps, every_try) == 0)) then
          if (is_slow(equations, march, packed_velocity(system, settings%n_dof), .false.)) &
             & call come_to_rest(settings, system, contacts, equations, march, step, still)
       end if
