@@ -19,8 +19,7 @@ module voussoir
    use dda_limit_load, only : find_limit, limit_load_t, limit_state
    use dda_read_deck, only : parse_deck, read_deck
    use dda_text, only : to_text
-   use dda_write_tables, only : told_blocks_t
-   use dda_write_results, only : joint_row_t, number_t, result_row_t
+   use dda_write_results, only : joint_row_t, number_t, result_row_t, told_blocks_t
    implicit none
    private
 

@@ -6,7 +6,7 @@ submodule (dda_run:dda_run_cases) dda_picture_files
    use dda_vtu_field, only : field_t, scalar_field, state_field, tensor_field, vector_field
    use dda_write_frames, only : frame_joint_lines, frame_joint_row_t, frame_lines, frame_stamp_t, &
       & point_lines
-   use dda_write_tables, only : energy_lines
+   use dda_write_results, only : energy_lines
    use dda_write_vtu, only : add_to_index, close_index, open_index, pvd_index_t, write_points, &
       & write_polygons
    implicit none

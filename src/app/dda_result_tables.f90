@@ -13,11 +13,10 @@ module dda_result_tables
    use dda_proof_rows, only : proof_forces_header, proof_motion_header
    use dda_text, only : to_text
    use dda_growing_text, only : add_line, growing_text_t, lines_of
-   use dda_write_tables, only : block_lines, blocks_header, told_blocks_t, energy_header, &
-      & reactions_header
+   use dda_write_results, only : block_lines, blocks_header, energy_header, joint_line, &
+      & joint_row_t, joints_header, reactions_header, result_row_t, results_header, results_line, &
+      & told_blocks_t
    use dda_write_frames, only : frame_joints_header, frames_header, points_header
-   use dda_write_results, only : joint_line, joint_row_t, joints_header, result_row_t, &
-      & results_header, results_line
    implicit none
    private
 

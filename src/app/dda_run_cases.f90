@@ -14,8 +14,7 @@ submodule (dda_run) dda_run_cases
    use dda_restart, only : save_restart
    use dda_result_tables, only : swept_fields, sync_when_due, table, write_case
    use dda_table_file, only : append_line, table_file_t
-   use dda_write_results, only : joint_row_t, result_row_t
-   use dda_write_tables, only : told_blocks_t
+   use dda_write_results, only : joint_row_t, result_row_t, told_blocks_t
    implicit none
 
    !> Most cases that a thread takes at a time

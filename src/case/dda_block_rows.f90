@@ -11,8 +11,7 @@ module dda_block_rows
    use dda_mechanism, only : largest_of, role_of_joint, slides
    use dda_scene, only : scene_t
    use dda_write_frames, only : frame_joint_row_t
-   use dda_write_results, only : joint_row_t, some_number
-   use dda_write_tables, only : told_blocks_t
+   use dda_write_results, only : joint_row_t, some_number, told_blocks_t
    implicit none
    private
 

@@ -13,8 +13,7 @@ module dda_case_rows
    use dda_search, only : critical_t, decision_t, proof_t
    use dda_text, only : to_text
    use dda_verdict, only : outcome_t, verdict
-   use dda_write_results, only : joint_row_t, result_row_t, some_number
-   use dda_write_tables, only : told_blocks_t
+   use dda_write_results, only : joint_row_t, result_row_t, some_number, told_blocks_t
    implicit none
    private
 

@@ -11,7 +11,7 @@ module dda_force_rows
    use dda_settings, only : settings_t
    use dda_text, only : to_text
    use dda_verdict, only : verdict
-   use dda_write_tables, only : reaction_lines
+   use dda_write_results, only : reaction_lines
    implicit none
    private
 

@@ -11,8 +11,7 @@ module scene_case
    use dda_restart, only : save_restart
    use dda_scene, only : scene_t
    use dda_scene_check, only : check_scene
-   use dda_write_tables, only : told_blocks_t
-   use dda_write_results, only : joint_row_t, result_row_t
+   use dda_write_results, only : joint_row_t, result_row_t, told_blocks_t
    use scene_deck, only : lines_of
    implicit none
    private
