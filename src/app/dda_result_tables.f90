@@ -8,11 +8,11 @@ module dda_result_tables
    use dda_fill_loads, only : fill_yields
    use dda_error, only : error_t
    use dda_kinds, only : wp
-   use dda_table_file, only : add_sums, append_line, close_table, length_of, open_table, &
-      & remove_file, sum_of, sync_table, table_file_t
+   use dda_table_file, only : add_sums, append_line, close_table, length_of, line_sum, &
+      & open_table, remove_file, sum_of, sync_table, table_file_t
    use dda_proof_rows, only : proof_forces_header, proof_motion_header
    use dda_text, only : to_text
-   use dda_growing_text, only : add_line, growing_text_t, lines_of
+   use dda_growing_text, only : add_line, bytes_of, growing_text_t, lines_of
    use dda_write_results, only : block_lines, blocks_header, energy_header, joint_line, &
       & joint_row_t, joints_header, reactions_header, result_row_t, results_header, results_line, &
       & told_blocks_t
@@ -21,8 +21,8 @@ module dda_result_tables
    private
 
    public :: result_tables_t, result_table_t, table, table_enum
-   public :: name_tables, open_tables, close_tables, write_case, swept_fields, left_out
-   public :: common_length, common_sum, sync_tables, sync_when_due
+   public :: name_tables, open_tables, close_tables, write_case, write_waiting, swept_fields
+   public :: left_out, common_length, common_sum, sync_tables
 
    !> Places of the tables in result_tables_t
    type :: table_enum
@@ -80,6 +80,10 @@ module dda_result_tables
       integer(int64) :: length = 0
       !> Check sum of their lines
       integer(int64) :: sum = 0
+      !> Lines of the log, the sizes and results.csv that are not written yet
+      type(growing_text_t) :: waiting(3)
+      !> Check sum of those of the log
+      integer(int64) :: waiting_sum = 0
       !> File that holds what was asked for
       character(len=:), allocatable :: record_file
       !> File that holds how much of results.csv is on the disk
@@ -315,8 +319,8 @@ contains
       end do
    end function common_sum
 
-   !> Write the rows of one case, of which pictures, points and proofs are written already: how many
-   !> bytes they are, and last that of results.csv, so that a case with a row is whole
+   !> Write the rows of one case, of which pictures, points and proofs are written already. Those of
+   !> the log, of how many bytes they are, and of results.csv wait for write_waiting
    subroutine write_case(tables, row, joint_row, blocks, remark, error)
       type(result_tables_t), intent(inout) :: tables
       type(result_row_t), intent(in) :: row
@@ -327,6 +331,7 @@ contains
       character(len=*), intent(in) :: remark
       type(error_t), allocatable, intent(inout) :: error
       type(growing_text_t) :: lines
+      character(len=:), allocatable :: log
       integer(int64) :: length, lines_sum
       integer :: j
 
@@ -341,17 +346,35 @@ contains
          call append_line(tables%at(table%blocks)%open, block_lines(row%number, blocks), error)
          if (allocated(error)) return
       end if
-      call append_line(tables%at(table%log)%open, to_text(row%number)//" " &
-         & //trim(trim(row%verdict)//" "//remark), error)
-      if (allocated(error)) return
-      length = common_length(tables)
-      lines_sum = common_sum(tables)
-      call append_line(tables%at(table%sizes)%open, to_text(row%number)//"," &
+      log = to_text(row%number)//" "//trim(trim(row%verdict)//" "//remark)
+      call add_line(tables%waiting(1), log)
+      tables%waiting_sum = add_sums(tables%waiting_sum, line_sum(log))
+      length = common_length(tables) + bytes_of(tables%waiting(1))
+      lines_sum = add_sums(common_sum(tables), tables%waiting_sum)
+      call add_line(tables%waiting(2), to_text(row%number)//"," &
          & //to_text(real(length - tables%length, wp))//"," &
-         & //to_text(real(add_sums(lines_sum, -tables%sum), wp)), error)
+         & //to_text(real(add_sums(lines_sum, -tables%sum), wp)))
       tables%length = length
       tables%sum = lines_sum
-      if (allocated(error)) return
-      call append_line(tables%at(table%results)%open, results_line(row), error)
+      call add_line(tables%waiting(3), results_line(row))
    end subroutine write_case
+
+   !> Write the rows that wait, last those of results.csv, so that a case with a row is whole
+   subroutine write_waiting(tables, error)
+      type(result_tables_t), intent(inout) :: tables
+      !> An earlier failure, or that of writing
+      type(error_t), allocatable, intent(inout) :: error
+      type(error_t), allocatable :: late
+      integer :: i, place(3)
+
+      place = [table%log, table%sizes, table%results]
+      do i = 1, size(place)
+         call append_line(tables%at(place(i))%open, lines_of(tables%waiting(i)), late)
+         if (allocated(late)) exit
+         tables%waiting(i) = growing_text_t()
+      end do
+      tables%waiting_sum = 0
+      if (allocated(late) .and. .not. allocated(error)) call move_alloc(late, error)
+      if (.not. allocated(error)) call sync_when_due(tables, error)
+   end subroutine write_waiting
 end module dda_result_tables

@@ -12,7 +12,7 @@ submodule (dda_run) dda_run_cases
    use dda_progress, only : report_progress
    use dda_proof_rows, only : proof_forces_lines, proof_motion_lines
    use dda_restart, only : save_restart
-   use dda_result_tables, only : swept_fields, sync_when_due, table, write_case
+   use dda_result_tables, only : swept_fields, table, write_case, write_waiting
    use dda_table_file, only : append_line, table_file_t
    use dda_write_results, only : joint_row_t, result_row_t, told_blocks_t
    implicit none
@@ -83,6 +83,7 @@ contains
             if (.not. allocated(error)) call write_down(command, name, deck, number(i), &
                & batch(i), tables, progress, shown, count, error)
          end do
+         if (n > 0) call write_waiting(tables, error)
          n = 0
          if (.not. allocated(error)) then
             call take_cases(chosen, min(most, 1 + (size(chosen) - next)/(4*command%jobs)), next, &
@@ -190,7 +191,6 @@ contains
       if (.not. allocated(error)) call write_proof(tables, number, this, error)
       if (.not. allocated(error)) call write_end(tables%folder, number, this, error)
       if (.not. allocated(error)) call write_case(tables, row, joint_row, blocks, remark, error)
-      if (.not. allocated(error)) call sync_when_due(tables, error)
       if (allocated(error)) return
       count(3) = count(3) + 1
       count(merge(2, 1, row%verdict == "undecided")) = &

@@ -5,7 +5,7 @@ module dda_growing_text
    implicit none
    private
 
-   public :: growing_text_t, add_line, fields, lines_of
+   public :: growing_text_t, add_line, bytes_of, fields, lines_of
 
    !> Lines put together so far
    type :: growing_text_t
@@ -45,6 +45,13 @@ contains
       text = ""
       if (lines%length > 0) text = lines%text(:lines%length - 1)
    end function lines_of
+
+   !> Bytes of the lines with their ends
+   pure integer function bytes_of(lines)
+      type(growing_text_t), intent(in) :: lines
+
+      bytes_of = lines%length
+   end function bytes_of
 
    !> Numbers with something between them
    pure function fields(value, between) result(text)
