@@ -16,6 +16,7 @@ submodule (dda_case_table) dda_case_fields
 
 contains
 
+   !> Let columns fit into a width
    module procedure fit_columns
       integer :: values(size(column)), c, least, last
 
@@ -38,6 +39,7 @@ contains
          & column(c)%width = width - sum(column(:c - 1)%width + gap)
    end procedure fit_columns
 
+   !> What a case has in a column
    module procedure field_of
       character(len=8) :: small
 
@@ -140,6 +142,7 @@ contains
       text = text(2:)
    end function shown_angles
 
+   !> A field in its column, with the gap behind it
    module procedure padded
       integer :: rest
 
@@ -151,6 +154,7 @@ contains
       end if
    end procedure padded
 
+   !> A remark in lines that are not wider than the screen, parted by line ends
    module procedure wrapped
       integer :: blank, finish, margin, start
 

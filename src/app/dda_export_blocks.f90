@@ -7,6 +7,7 @@ submodule (dda_export) dda_export_blocks
 
 contains
 
+   !> Export an arch of any shape, or blocks that were cut from lines, as a file of blocks
    module procedure export_blocks
       type(error_t), allocatable :: error
       character(len=:), allocatable :: text, losses

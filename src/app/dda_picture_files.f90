@@ -13,6 +13,7 @@ submodule (dda_run:dda_run_cases) dda_picture_files
 
 contains
 
+   !> Write all pictures of a case
    module procedure write_album
       type(pvd_index_t) :: index
       type(frame_stamp_t) :: stamp
@@ -48,6 +49,7 @@ contains
       if (.not. allocated(error) .and. vtu) call close_index(index, error)
    end procedure write_album
 
+   !> Write the ways of the measured points of a case
    module procedure write_track
       real(wp) :: place(2, size(album%point))
       integer :: i
@@ -60,6 +62,7 @@ contains
          & album%track(:, :, :album%n_track), origin, album%speed), error)
    end procedure write_track
 
+   !> Write the energies of a case
    module procedure write_energies
       real(wp) :: value(10, album%audit%n)
       integer :: i

@@ -15,6 +15,7 @@ submodule (dda_check) dda_print_plan
 
 contains
 
+   !> Print what a deck's cases are made of
    module procedure print_plan
       type(deck_t) :: first
       type(scene_plan_t) :: plan

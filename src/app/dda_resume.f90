@@ -28,6 +28,7 @@ submodule (dda_run) dda_resume
 
 contains
 
+   !> Find the cases that are finished
    module procedure find_finished
       character(len=:), allocatable :: earlier
       type(error_t), allocatable :: none_left
@@ -131,6 +132,7 @@ contains
       call close_lines(lines)
    end subroutine read_results
 
+   !> Begin all tables with what they hold of finished cases, in place of what they hold now
    module procedure reopen_tables
       integer :: i
 

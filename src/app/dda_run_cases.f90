@@ -70,6 +70,7 @@ submodule (dda_run) dda_run_cases
 
 contains
 
+   !> Compute cases until none is left, or none can be written
    module procedure run_cases
       type(case_t), allocatable :: batch(:)
       integer :: number(max_batch), i, most, n

@@ -14,6 +14,7 @@ submodule (dda_run) dda_run_start
 
 contains
 
+   !> Read a deck, and check that its scene can be run
    module procedure read_and_check
       type(scene_t) :: scene
       type(terminal_watch_t) :: watch
@@ -25,6 +26,7 @@ contains
       call end_watch(watch)
    end procedure read_and_check
 
+   !> No two decks may write into the same folder
    module procedure check_folder
       integer :: i
 
@@ -38,6 +40,7 @@ contains
       end do
    end procedure check_folder
 
+   !> Take a folder for the rest of the program
    module procedure lock_folder
       character(len=:), allocatable :: file
       type(binary_file_t) :: held
@@ -82,6 +85,7 @@ contains
       call remove_file(name)
    end function has_locks
 
+   !> Folder that a deck's results go to
    module procedure folder_of
       folder = deck_stem(name)
       if (.not. allocated(command%out)) return

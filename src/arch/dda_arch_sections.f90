@@ -11,6 +11,7 @@ submodule (dda_arch_assembly) dda_arch_sections
 
 contains
 
+   !> The sections of a form
    module procedure arch_sections
       type(curve_t) :: curve
       type(station_t) :: crown

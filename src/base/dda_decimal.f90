@@ -14,6 +14,7 @@ submodule (dda_text) dda_decimal
 
 contains
 
+   !> Product of two doubles as the sum of two (Dekker 1971)
    module procedure exact_product
       real(wp) :: x(2), y(2)
 
@@ -35,6 +36,7 @@ contains
       halves(2) = value - halves(1)
    end function halves
 
+   !> Read a decimal number of usual size, rounded to the nearest double
    module procedure read_short_decimal
       integer(int64) :: digits
       integer :: power

@@ -4,6 +4,7 @@ submodule (dda_text) dda_read_number
 
 contains
 
+   !> Read one decimal number below 1e308, and nothing else, from a text
    module procedure read_number
       character(len=:), allocatable :: mantissa
       character(len=12) :: form
@@ -47,6 +48,7 @@ contains
       if (first > 0) power_of_ten = merge(point - 1, len(digits), point > 0) - first
    end function power_of_ten
 
+   !> Read one integer, and nothing else, from a text
    module procedure read_integer
       character(len=12) :: form
       integer :: stat

@@ -17,6 +17,7 @@ submodule (dda_compute_case) dda_case_decision
 
 contains
 
+   !> Put the vehicle where the least load factor is carried
    module procedure place_vehicle
       type(scene_t) :: scene
       type(error_t), allocatable :: error
@@ -32,6 +33,7 @@ contains
       end associate
    end procedure place_vehicle
 
+   !> Decide the scene
    module procedure compute_decision
       type(block_system_t) :: system
       type(contacts_t) :: contacts
@@ -63,6 +65,7 @@ contains
       end if
    end procedure compute_decision
 
+   !> Make the scene of a decision where a chain has done without it and it is wanted now
    module procedure see_collapse
       logical :: collapsed, wanted
 
@@ -78,6 +81,7 @@ contains
          & decision%contacts%joint = this%scene%contacts%joint
    end procedure see_collapse
 
+   !> Give the assembly nearest to critical that was found to stand its joints
    module procedure place_joints
       if (.not. allocated(this%critical%standing)) return
       associate (contacts => this%critical%standing%contacts)

@@ -11,11 +11,13 @@ submodule (dda_compute_case) dda_case_pictures
 
 contains
 
+   !> Supports whose reactions a dynamic run tells
    module procedure keep_supports
       if (this%scene%settings%dynamic .and. this%family%deck%output%reactions%flag) &
          & this%album%support = supports_of(system, this%scene%settings%boundary)
    end procedure keep_supports
 
+   !> What the album of the case is to hold
    module procedure plan_album
       integer :: frames
 
@@ -31,6 +33,7 @@ contains
          & this%album%point = this%family%deck%plan%boundary%measured
    end procedure plan_album
 
+   !> Let the pictures of a static run lie evenly on the way of a collapse
    module procedure plan_fall
       type(load_clock_t) :: clock
       integer :: frames
@@ -47,6 +50,7 @@ contains
       this%album%interval = (clock%bend(size(clock%bend)) - clock%bend(1))/real(frames, wp)
    end procedure plan_fall
 
+   !> Repeat the run nearest to critical that a search has found to fall, else to stand
    module procedure take_pictures
       type(outcome_t) :: outcome
       type(settings_t) :: settings

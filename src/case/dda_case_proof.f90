@@ -22,6 +22,7 @@ submodule (dda_compute_case) dda_case_proof
 
 contains
 
+   !> Prove a decision
    module procedure prove_decision
       type(joint_graph_t) :: graph
       type(limit_load_t) :: limit
@@ -49,6 +50,7 @@ contains
       proof%limit = [limit%lower, limit%upper]
    end procedure prove_decision
 
+   !> Prove both sides of what a search has found
    module procedure prove_search
       type(joint_graph_t) :: graph
       type(proof_t) :: other

@@ -9,6 +9,7 @@ submodule (dda_case_rows) dda_case_remarks
 
 contains
 
+   !> Which blocks fall, where most of them stay
    module procedure fall_remark
       real(wp) :: way(size(system%equation))
       integer :: b, e, i, n
@@ -33,6 +34,7 @@ contains
       if (n > most_named) remark = remark//" and others"
    end procedure fall_remark
 
+   !> What the user should know of the path of a static run
    module procedure path_remark
       remark = before
       if (outcome%verdict /= verdict%stable) then
@@ -82,6 +84,7 @@ contains
       if (len(text) > 0) text = " ("//text(3:)//")"
    end function numbered
 
+   !> What a search in time has found on both sides of its bracket
    module procedure change_remark
       integer :: i
 
@@ -101,6 +104,7 @@ contains
       end if
    end procedure change_remark
 
+   !> What the user should know of jumps on the loading path
    module procedure jump_remark
       remark = before
       if (jumps == 0) return

@@ -8,6 +8,7 @@ submodule (dda_case_rows) dda_collapse_rows
 
 contains
 
+   !> Joints and blocks of the decision nearest to critical that stands, else of that which falls
    module procedure tell_nearest
       type(scene_t) :: scene
       type(joint_t), allocatable :: joint(:)
@@ -55,6 +56,7 @@ contains
       end if
    end subroutine tell_fall
 
+   !> Fill the columns of a collapse
    module procedure tell_mechanism
       type(mechanism_t) :: mechanism
 

@@ -30,6 +30,7 @@ submodule (dda_compute_case) dda_limerick_decision
 
 contains
 
+   !> Run what a deck describes under the original's scheme
    module procedure decide_limerick
       type(limerick_model_t) :: model
       type(limerick_run_t) :: run

@@ -10,6 +10,7 @@ submodule (dda_compute_case:dda_limerick_decision) dda_limerick_joints
 
 contains
 
+   !> Joints at the end of a run
    module procedure tell_joints
       type(joint_law_t) :: law
       real(wp) :: deepest

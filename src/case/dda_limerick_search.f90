@@ -13,6 +13,7 @@ submodule (dda_compute_case) dda_limerick_search
 
 contains
 
+   !> Search the critical value
    module procedure find_limerick_critical
       integer :: answer
 
@@ -36,6 +37,7 @@ contains
       critical%verdict = merge(verdict%collapsed, verdict%stable, allocated(critical%fallen))
    end procedure find_limerick_critical
 
+   !> Pictures of the run nearest to critical that was found to fall, else to stand
    module procedure repeat_with_pictures
       type(decision_t) :: decision
       type(scene_t) :: scene

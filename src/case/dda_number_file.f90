@@ -12,6 +12,7 @@ submodule (dda_restart) dda_number_file
 
 contains
 
+   !> Write a file
    module procedure write_numbers
       type(error_t), allocatable :: late
       type(binary_file_t) :: opened
@@ -31,6 +32,7 @@ contains
       if (.not. allocated(error)) call rename_part(file, error)
    end procedure write_numbers
 
+   !> Read a file that is whole
    module procedure read_numbers
       character(len=:), allocatable :: bytes
       type(error_t), allocatable :: failure

@@ -14,6 +14,7 @@ submodule (dda_force_rows) dda_reaction_shares
 
 contains
 
+   !> Reactions of the points of a block
    module procedure share_among_points
       real(wp) :: wanted(3), place(2), size_of
       real(wp), allocatable :: column(:, :), force(:)

@@ -21,6 +21,7 @@ submodule (dda_restart) dda_restart_blocks
 
 contains
 
+   !> Put the blocks where they were
    module procedure take_blocks
       real(wp) :: no_motion(settings%n_dof, maxval(system%equation)), size_of_all
       integer :: b
@@ -83,6 +84,7 @@ contains
       length = norm2(cshift(corner, 1, dim=2) - corner, dim=1)
    end function edge_lengths
 
+   !> The march of a file
    module procedure take_march
       march%steps = state%count(8)
       march%passes = state%count(9)

@@ -7,6 +7,7 @@ submodule (dda_restart) dda_restart_joints
 
 contains
 
+   !> Joints as numbers
    module procedure pack_joints
       integer :: j, k
 
@@ -26,6 +27,7 @@ contains
       end do
    end procedure pack_joints
 
+   !> Joints from numbers that are finite
    module procedure unpack_joints
       type(joint_t), allocatable :: joint(:)
       integer(int32), allocatable :: given(:, :)

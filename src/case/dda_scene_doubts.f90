@@ -10,6 +10,7 @@ submodule (dda_scene_check) dda_scene_doubts
 
 contains
 
+   !> Check that a static scene can come to rest at all
    module procedure check_support
       integer :: b
 
@@ -19,6 +20,7 @@ contains
          & geometry_file(deck), deck%plan%line(b))
    end procedure check_support
 
+   !> Check that a deck can be run in stages
    module procedure check_stages
       character(len=:), allocatable :: problem
 
@@ -45,6 +47,7 @@ contains
          & geometry_file(deck), deck%plan%boundary%change(1)%line)
    end procedure check_stages
 
+   !> Check that what may be crushed does not stand on corners, which bear nothing then
    module procedure check_widths
       integer :: j
 
@@ -60,6 +63,7 @@ contains
       end do
    end procedure check_widths
 
+   !> Warn of blocks that will fall, and of units that are no metres
    module procedure doubt_scene
       integer :: b
 

@@ -10,6 +10,7 @@ submodule (dda_scene_check) dda_start_check
 
 contains
 
+   !> Check that live loads act on blocks that move, and that the load factor has loads
    module procedure check_live_cases
       type(deck_place_t) :: place
       type(deck_t) :: work
@@ -72,6 +73,7 @@ contains
       if (deck%searched%key == key) place = place_of(deck, key_index("search", "parameter"))
    end function factor_place
 
+   !> Check the file that a run goes on from
    module procedure check_start
       character(len=:), allocatable :: name
       type(scene_t) :: scene

@@ -34,6 +34,7 @@ submodule (dda_compute_case) dda_worst_load
 
 contains
 
+   !> Seek the least factor of the loads of all arcs
    module procedure seek_least_factor
       type(chase_t) :: chase
       type(load_decision_t) :: decision

@@ -49,6 +49,7 @@ submodule (dda_compute_case) dda_worst_position
 
 contains
 
+   !> Find the worst position
    module procedure find_worst_position
       type(bridge_t) :: bridge
       type(least_factor_t) :: least

@@ -6,6 +6,7 @@ submodule (dda_contact_transfer) dda_contact_match
 
 contains
 
+   !> Keys of contacts
    module procedure contact_keys
       integer :: i
 
@@ -16,6 +17,7 @@ contains
       end do
    end procedure contact_keys
 
+   !> Find for each contact the one of the step before that it goes on
    module procedure match_contacts
       integer(int64) :: past_key(size(past)), key(2)
       integer :: order(size(past)), j, k

@@ -15,6 +15,7 @@ submodule (dda_read_limerick) dda_ddaml_analysis
 
 contains
 
+   !> Read the analysis of a tree
    module procedure read_ddaml_analysis
       integer :: part, at
 

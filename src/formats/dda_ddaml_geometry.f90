@@ -24,6 +24,7 @@ submodule (dda_read_limerick) dda_ddaml_geometry
 
 contains
 
+   !> Read the geometry of a tree
    module procedure read_ddaml_geometry
       type(entities_t) :: boundary
       integer :: part, at, i

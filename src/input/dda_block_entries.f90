@@ -16,6 +16,7 @@ submodule (dda_read_blocks:dda_block_points) dda_block_entries
 
 contains
 
+   !> Take in a bar
    module procedure take_bar
       type(bar_t) :: bar
       real(wp) :: ends(4)
@@ -84,6 +85,7 @@ contains
       end if
    end subroutine take_properties
 
+   !> Take in water
    module procedure take_water
       type(key_t), parameter :: key(2) = [key_t(name="unit_weight", at_least=0.0_wp), &
          & key_t(name="factor", at_least=0.0_wp, at_most=1.0_wp)]
@@ -137,6 +139,7 @@ contains
       call move_alloc(longer, plan%water)
    end procedure take_water
 
+   !> Take in absorb x1 y1 x2 y2 [x or y] [p_speed V] [s_speed V]
    module procedure take_absorbing
       type(key_t), parameter :: key(4) = [key_t(name="x", kind=key_kind%flag), &
          & key_t(name="y", kind=key_kind%flag), key_t(name="p_speed", unit="m/s", above=0.0_wp), &
@@ -186,6 +189,7 @@ contains
          & "expected a line along faces of blocks, got one along none", line=point%line)
    end procedure take_absorbing
 
+   !> Take in remove|add block N ... at T, or remove|add polygon at T with its corners below
    module procedure take_change
       type(stage_change_t), allocatable :: more(:)
       integer, allocatable :: block(:)
@@ -275,6 +279,7 @@ contains
          & //"block, got one around none", line=entry%head%number)
    end subroutine blocks_inside
 
+   !> Put the changes in the order of their times, and check that each is one
    module procedure close_changes
       integer :: b, i, last(size(plan%fixed))
 

@@ -24,6 +24,7 @@ submodule (dda_read_blocks) dda_block_plan_check
 
 contains
 
+   !> Add a block
    module procedure add_plan_block
       type(area_moments_t) :: moments
       real(wp), allocatable :: vertex(:, :)
@@ -87,6 +88,7 @@ contains
       end associate
    end subroutine put_block
 
+   !> Add a law
    module procedure add_law_plan
       type(law_plan_t), allocatable :: longer(:)
 
@@ -101,6 +103,7 @@ contains
       end associate
    end procedure add_law_plan
 
+   !> Hand over the plan, its arrays as long as what they hold
    module procedure close_plan
       associate (from => growing%plan, n => growing%n_block)
          plan%first_vertex = from%first_vertex(:n + 1)
@@ -145,6 +148,7 @@ contains
       name = "block "//to_text(growing%n_block + 1)
    end function next_name
 
+   !> Check a plan as a whole and move its origin to where coordinates keep their digits
    module procedure check_plan
       real(wp) :: extent(2), point(2)
 
@@ -214,6 +218,7 @@ contains
       end do
    end subroutine check_laws
 
+   !> Whether no two blocks overlap
    module procedure check_overlaps
       real(wp) :: size_of(size(plan%fixed)), point(2)
       integer, allocatable :: near(:)

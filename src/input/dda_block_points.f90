@@ -63,6 +63,7 @@ submodule (dda_read_blocks) dda_block_points
 
 contains
 
+   !> Take in points, lines that are held, and the motion of the ground, once all blocks are known
    module procedure add_points
       type(entry_t) :: entry
       integer :: i

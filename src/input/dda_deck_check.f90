@@ -18,6 +18,7 @@ submodule (dda_read_deck) dda_deck_check
 
 contains
 
+   !> Read all of them
    module procedure read_ground_records
       integer :: i, key, s
 
@@ -94,6 +95,7 @@ contains
          & deck%value(key_index("ground", "columns"))%place)
    end subroutine split_columns
 
+   !> Read the files of a deck whose kind is 'lines'; any other deck is left as it is
    module procedure read_lines
       character(len=:), allocatable :: file
 
@@ -118,6 +120,7 @@ contains
       call check_materials(deck%lines, deck%file_analysis, deck%warnings, error)
    end procedure read_lines
 
+   !> An error without a line speaks of a file that cannot be read
    module procedure name_key
       character(len=:), allocatable :: message
 
@@ -127,6 +130,7 @@ contains
       call deck_error(error, message, deck, deck%value(key_index("scene", key))%place)
    end procedure name_key
 
+   !> Check a deck and the cases of its sweeps, before anything is computed
    module procedure check_deck
       integer :: s
 

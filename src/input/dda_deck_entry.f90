@@ -12,6 +12,7 @@ submodule (dda_read_deck) dda_deck_entry
 
 contains
 
+   !> Read the values of one key
    module procedure read_values
       call check_values(scan, first, last, parameter, place, deck, error)
       if (allocated(error)) return

@@ -14,6 +14,7 @@ submodule (dda_read_deck) dda_deck_groups
 
 contains
 
+   !> Read one group
    module procedure read_group
       character(len=:), allocatable :: name
       type(deck_place_t) :: place
@@ -108,6 +109,7 @@ contains
       end if
    end subroutine find_key
 
+   !> Put the value of a --set into the deck
    module procedure apply_setting
       character(len=:), allocatable :: group, name
       type(parameter_t) :: parameter

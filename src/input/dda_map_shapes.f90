@@ -8,6 +8,7 @@ submodule (dda_read_joint_map) dda_map_shapes
 
 contains
 
+   !> The outline
    module procedure take_outline
       character(len=16), allocatable :: side(:)
       character(len=*), parameter :: sides(3) = [character(len=6) :: "left", "right", "bottom"]
@@ -101,6 +102,7 @@ contains
       if (point(1, 1) <= left) surface = surface(:, 2:)
    end subroutine take_surface
 
+   !> Points of two lists
    module procedure take_points
       real(wp), allocatable :: x(:), y(:)
 
@@ -115,6 +117,7 @@ contains
       point = transpose(reshape([x, y], [size(x), 2]))
    end procedure take_points
 
+   !> A polygon of two lists, anticlockwise whichever way it was given
    module procedure take_polygon
       type(area_moments_t) :: moments
 
@@ -146,6 +149,7 @@ contains
          & //to_text(crossing(1))//", "//to_text(crossing(2))//")", error)
    end subroutine check_polygon
 
+   !> An opening
    module procedure take_opening
       type(opening_t) :: opening
       real(wp) :: at(2), width, wall

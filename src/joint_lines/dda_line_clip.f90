@@ -10,6 +10,7 @@ submodule (dda_map_lines) dda_line_clip
 
 contains
 
+   !> Cut a line at a polygon and keep what lies inside, or outside
    module procedure clip_line
       real(wp), allocatable :: part(:, :)
       integer :: i, m
@@ -82,6 +83,7 @@ contains
       share = place(sorted_order(spread(0, 1, n), place(:n)))
    end function crossings
 
+   !> A point inside a polygon
    module procedure inner_point
       real(wp), allocatable :: share(:)
       real(wp) :: height(size(corner, 2)), line(4), low(2), high(2)
@@ -98,6 +100,7 @@ contains
       point = line(1:2) + 0.5_wp*(share(2) + share(3))*(line(3:4) - line(1:2))
    end procedure inner_point
 
+   !> Where a ray leaves a polygon for the last time
    module procedure ray_exit
       real(wp) :: reach
       real(wp), allocatable :: share(:)
@@ -107,6 +110,7 @@ contains
       point = origin + share(size(share) - 1)*reach*direction
    end procedure ray_exit
 
+   !> Whether two polygons have edges that cross, or one holds the other
    module procedure outlines_cross
       real(wp) :: at(2)
       integer :: i, k

@@ -27,12 +27,14 @@ submodule (dda_map_lines) dda_set_traces
 
 contains
 
+   !> How many joints a set has across a circle, about
    module procedure joint_count
       joint_count = 2.0_wp*radius/set%spacing%mean
       if (set%trace%mean > 0.0_wp) joint_count = joint_count*max(1.0_wp, &
          & 2.0_wp*radius/(set%trace%mean + set%bridge%mean))
    end procedure joint_count
 
+   !> Traces of a set that meet a circle
    module procedure set_traces
       type(random_t) :: random
       real(wp) :: place(2), step, reach
@@ -158,6 +160,7 @@ contains
       trace(:, n) = [axis%foot + from*axis%along, axis%foot + to*axis%along]
    end subroutine add_part
 
+   !> A length by its law
    module procedure draw_length
       real(wp) :: number
 
@@ -178,6 +181,7 @@ contains
       end select
    end procedure draw_length
 
+   !> A length that covers a given point
    module procedure draw_covering_length
       real(wp) :: more, number
 

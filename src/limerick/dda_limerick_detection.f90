@@ -10,6 +10,7 @@ submodule (dda_limerick_step) dda_limerick_detection
 
 contains
 
+   !> Directions, inner angles and lengths of all corners
    module procedure measure_corners
       real(wp) :: edge(2)
       integer :: v, n
@@ -27,10 +28,12 @@ contains
       end do
    end procedure measure_corners
 
+   !> Anticlockwise angle from one direction to another
    module procedure turn
       turn = modulo(to - from, 360.0_wp)
    end procedure turn
 
+   !> Whether two sectors overlap by more than is overlooked
    module procedure overlap
       real(wp) :: ray(3), wide
 
@@ -45,6 +48,7 @@ contains
       overlap = any(ray > least .and. ray < wide - least)
    end procedure overlap
 
+   !> The two lines that a pair of corners may cross, the steeper first
    module procedure entrance_lines
       real(wp) :: start, finish, slack, steep_i, steep_j, steep(2)
 
@@ -79,6 +83,7 @@ contains
       steepness = abs(sin(direction*degree))
    end function steepness
 
+   !> All contacts of the blocks where they are now, open, pair of blocks by pair of blocks
    module procedure find_limerick_contacts
       type(corners_t) :: corners
       real(wp) :: low(2, size(order)), high(2, size(order))

@@ -23,6 +23,7 @@ submodule (dda_limerick_step) dda_limerick_interval
 
 contains
 
+   !> Length of the next step from the largest acceleration (Shi
    module procedure choose_interval
       real(wp) :: acceleration, velocity, allowed, mass, longest, record
 
@@ -92,6 +93,7 @@ contains
       end do
    end function largest_load
 
+   !> Whether a step is accepted
    module procedure judge_limerick_step
       real(wp) :: shortest
       logical :: moved_too_far

@@ -18,6 +18,7 @@ submodule (dda_limerick_step) dda_limerick_open_close
 
 contains
 
+   !> Solve and judge until no contact opens or closes
    module procedure open_and_close
       integer :: pass, c
 

@@ -7,6 +7,7 @@ submodule (dda_limerick_step) dda_limerick_update
 
 contains
 
+   !> Corners at the end of the step, and how far the one that moves most goes (Shi
    module procedure move_vertices
       real(wp) :: farthest, step(2), turn(2)
       integer :: b, v
@@ -55,6 +56,7 @@ contains
       step(2) = motion(2) + turn(2)*x + turn(1)*y + motion(5)*y + motion(6)*x/2.0_wp
    end function displacement
 
+   !> What an accepted step leaves behind (Shi
    module procedure update
       real(wp), allocatable :: before(:, :)
       real(wp) :: step(2)

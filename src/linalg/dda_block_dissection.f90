@@ -39,6 +39,7 @@ submodule (dda_block_order) dda_block_dissection
 
 contains
 
+   !> Place of each block in the order of elimination
    module procedure dissected_order
       type(dissection_t) :: d
       logical :: late(n_block)

@@ -49,6 +49,7 @@ submodule (dda_block_order) dda_minimum_degree
 
 contains
 
+   !> Blocks in the order of elimination, those that wait at the end as they are numbered
    module procedure minimum_degree_order
       type(quotient_t) :: q
       integer :: b, n, n_early, least

@@ -12,6 +12,7 @@ submodule (dda_cutting) dda_cut_points
 
 contains
 
+   !> Boxes around all blocks
    module procedure block_boxes
       integer :: b, n, i
 
@@ -27,6 +28,7 @@ contains
       end do
    end procedure block_boxes
 
+   !> The block that holds a point
    module procedure block_around
       real(wp) :: nearest, here
       integer :: b, next_best
@@ -48,6 +50,7 @@ contains
       block_around = next_best
    end procedure block_around
 
+   !> Take out the blocks that hold hole points (Shi
    module procedure remove_holes
       logical, allocatable :: keep(:)
       integer, allocatable :: number(:), first(:)
@@ -91,6 +94,7 @@ contains
       cut%pair = cut%pair(:n)
    end procedure remove_holes
 
+   !> Points and fixed lines to blocks
    module procedure place_points
       type(boxes_t) :: boxes
       type(block_point_t), allocatable :: point(:)
@@ -208,6 +212,7 @@ contains
       point = moments%centroid
    end function inside_point
 
+   !> Find the blocks of the bolts (Shi
    module procedure place_bolts
       type(boxes_t) :: boxes
       type(cut_bolt_t) :: bolt(model%bolt%n)
@@ -230,6 +235,7 @@ contains
       cut%bolt = bolt(:n)
    end procedure place_bolts
 
+   !> Blocks get the material of the last material line that crosses one of their edges
    module procedure give_materials
       type(boxes_t) :: boxes
       type(block_point_t), allocatable :: point(:)

@@ -10,6 +10,7 @@ submodule (dda_cutting) dda_loop_blocks
 
 contains
 
+   !> Blocks of the loops that run around an area
    module procedure blocks_of_loops
       ! block and edge that each half-edge is a part of
       integer, allocatable :: owner(:, :), corner(:)

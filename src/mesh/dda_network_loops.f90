@@ -7,6 +7,7 @@ submodule (dda_cutting) dda_network_loops
 
 contains
 
+   !> Walk along all edges on both sides, at each node turning as far left as possible
    module procedure trace_loops
       integer, allocatable :: next(:)
       logical, allocatable :: seen(:)
@@ -36,6 +37,7 @@ contains
       end do
    end procedure trace_loops
 
+   !> Node where a half-edge starts
    module procedure half_edge_start
       half_edge_start = network%edge(2 - mod(half_edge, 2), (half_edge + 1)/2)
    end procedure half_edge_start

@@ -9,6 +9,7 @@ submodule (dda_cutting) dda_network_trim
 
 contains
 
+   !> Drop edges that end in nothing, until none is left
    module procedure cut_trees
       integer, allocatable :: first(:), item(:), degree(:), loose(:)
       integer :: n, node, k, e
@@ -66,6 +67,7 @@ contains
       end do
    end subroutine edges_of_nodes
 
+   !> Drop one of two edges that cross between their nodes, as happens when nodes were merged
    module procedure drop_crossing_edges
       type(cell_grid_t) :: grid
       real(wp), allocatable :: place(:, :)
@@ -152,6 +154,7 @@ contains
       edges_cross = edges_cross .and. all(share > rim .and. share < 1.0_wp - rim)
    end function edges_cross
 
+   !> Drop joints that pass a node of other lines closer than e00 w0 (Shi
    module procedure drop_close_edges
       type(cell_grid_t) :: grid
       real(wp), allocatable :: place(:, :)

@@ -13,6 +13,7 @@ submodule (dda_deck_scene) dda_blocks_of_deck
 
 contains
 
+   !> The scene of an arch of any shape
    module procedure shape_scene
       type(arch_assembly_t) :: assembly
       type(form_problem_t) :: problem
@@ -34,6 +35,7 @@ contains
       end if
    end procedure shape_scene
 
+   !> The scene of blocks as a file or an arch gives them
    module procedure file_scene
       type(base_t) :: base
       integer :: i
@@ -56,6 +58,7 @@ contains
       end do
    end procedure file_scene
 
+   !> Number of blocks that can move in the scene of a case
    module procedure movable_blocks
       type(arch_form_t) :: form
       type(form_problem_t) :: problem

@@ -18,6 +18,7 @@ submodule (dda_deck_scene) dda_deck_family
 
 contains
 
+   !> Make a deck a family, its numbers read
    module procedure new_family
       family%parameter = parameter
       if (parameter%key == key_index("load", "horizontal_coefficient")) &
@@ -39,6 +40,7 @@ contains
       end associate
    end procedure new_family
 
+   !> Make the chain of one thickness ratio
    module procedure link_arch
       linked = family%chains
       if (linked) linked = number_fits(family%parameter%key, value)
@@ -47,6 +49,7 @@ contains
       call arch_chain(family%numbers, family%rays, value, chain)
    end procedure link_arch
 
+   !> Make the scene of one value of the parameter
    module procedure build_deck_scene
       type(deck_t) :: deck
       type(arch_assembly_t) :: assembly

@@ -13,6 +13,7 @@ submodule (dda_deck_scene) dda_moving_ground
 
 contains
 
+   !> Give the ground of a scene the motion that &ground asks for
    module procedure move_ground
       if (deck%ground%pulse%given) then
          acceleration = pulse_of(deck)

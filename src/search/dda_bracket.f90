@@ -32,6 +32,7 @@ submodule (dda_critical) dda_bracket
 
 contains
 
+   !> Search the critical value of a family of scenes
    module procedure find_critical
       logical :: done
 

@@ -24,6 +24,7 @@ submodule (dda_critical:dda_collapse_trace) dda_chain_foresight
 
 contains
 
+   !> Foresee where the collapse of a chain stops, by the secant method on what its forces lack
    module procedure foresee
       type(lack_t) :: lack
       real(wp) :: before, last, next, value

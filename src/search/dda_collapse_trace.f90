@@ -37,6 +37,7 @@ submodule (dda_critical) dda_collapse_trace
 
 contains
 
+   !> Trace the last collapse to where it stops, by the secant method on the power of the loads
    module procedure trace
       type(frozen_t) :: mechanism
       real(wp) :: x(2), power(2), first_power, noise, next, slope, coarse_slope, step

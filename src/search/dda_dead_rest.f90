@@ -22,6 +22,7 @@ submodule (dda_decision) dda_dead_rest
 
 contains
 
+   !> Follow the path from its dead loads
    module procedure follow_from_rest
       type(coulomb_state_t), allocatable :: start
       integer :: n
@@ -40,6 +41,7 @@ contains
       proof%n_factorisation = proof%n_factorisation + n
    end procedure follow_from_rest
 
+   !> Run the blocks under their dead loads alone
    module procedure rest_under_dead_loads
       ! a rest takes about four steps
       integer, parameter :: most_steps = 20
@@ -70,6 +72,7 @@ contains
       if (size(graph%kind) == size(contacts%joint)) call take_state(graph, settled, start)
    end procedure rest_under_dead_loads
 
+   !> A path whose fall, before it has begun, counts
    module procedure fall_at_once
       if (.not. allocated(proof%mechanism)) return
       proof%end = path_end%collapsed

@@ -26,6 +26,7 @@ submodule (dda_decision) dda_decide
 
 contains
 
+   !> Decide a static structure, or run a dynamic one
    module procedure decide
       logical :: bare
 
@@ -129,6 +130,7 @@ contains
       if (present(album)) call show_end(settings, decision, album)
    end subroutine share_forces
 
+   !> Share out the forces of what stands as elastic blocks do
    module procedure share_elastically
       type(settings_t) :: convex
 
@@ -143,6 +145,7 @@ contains
          & shared = shared .and. .not. any(decision%contacts%face%slip /= 0)
    end procedure share_elastically
 
+   !> Blocks and contacts of what stands, as its proof has them
    module procedure record_rest
       decision%outcome%verdict = verdict%stable
       decision%flow = proof%flow
@@ -151,6 +154,7 @@ contains
       call show_state(settings, proof, decision%system, decision%contacts)
    end procedure record_rest
 
+   !> Blocks and contacts of what falls
    module procedure record_collapse
       type(settings_t) :: convex
 
@@ -188,6 +192,7 @@ contains
          & album)
    end subroutine show_end
 
+   !> Decide by steps to rest or collapse
    module procedure decide_by_steps
       type(settings_t) :: convex
 
@@ -209,6 +214,7 @@ contains
       call follow_coulomb(settings, system, contacts, decision, album)
    end procedure decide_by_steps
 
+   !> Run in time from the beginning, or from where a run has ended
    module procedure run_in_time
       type(settings_t) :: static
       type(decision_t) :: settled
@@ -244,6 +250,7 @@ contains
       if (present(onward)) onward = march
    end procedure run_in_time
 
+   !> Run a structure under Coulomb friction from its beginning
    module procedure follow_coulomb
       type(settings_t) :: coulomb
       type(outcome_t) :: before

@@ -12,6 +12,7 @@ submodule (dda_critical:dda_collapse_trace) dda_frozen_mechanism
 
 contains
 
+   !> Power of the loads on the mechanism
    module procedure mechanism_power
       type(equations_t) :: equations
       type(joint_springs_t) :: springs

@@ -57,6 +57,7 @@ submodule (dda_critical) dda_load_search
 
 contains
 
+   !> Search a family whose parameter is a load coefficient
    module procedure find_critical_load
       type(error_t), allocatable :: error
       type(joint_graph_t) :: graph

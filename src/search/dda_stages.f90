@@ -24,6 +24,7 @@ submodule (dda_decision) dda_stages
 
 contains
 
+   !> Decide a scene stage by stage, or at once where nothing is built or taken away
    module procedure decide_in_stages
       real(wp), allocatable :: time(:)
       real(wp) :: last

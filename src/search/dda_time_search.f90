@@ -37,6 +37,7 @@ submodule (dda_critical) dda_time_search
 
 contains
 
+   !> Search the critical value
    module procedure find_critical_in_time
       type(runs_t) :: runs
       real(wp) :: value

@@ -18,6 +18,7 @@ submodule (dda_loading_path) dda_coulomb_start
 
 contains
 
+   !> State under a load that is applied at once
    module procedure load_at_once
       real(wp), parameter :: damping(3) = [1.0e-5_wp, 1.0e-4_wp, 1.0e-3_wp]
       real(wp) :: largest

@@ -29,6 +29,7 @@ submodule (dda_limit_load) dda_load_walk
 
 contains
 
+   !> Begin with an assembly
    module procedure begin_walk
       walk%graph = graph
       walk%unit = unit_of_force(load)
@@ -37,6 +38,7 @@ contains
       allocate (walk%mass(3, 0:graph%n_block), source=0.0_wp)
    end procedure begin_walk
 
+   !> Go on to a load
    module procedure walk_to
       type(interior_point_t) :: point
       type(load_decision_t) :: decision

@@ -16,6 +16,7 @@ submodule (dda_event_rates) dda_rate_law
 
 contains
 
+   !> The law of a state
    module procedure set_rate_law
       real(wp) :: bound
       integer :: i, j
@@ -39,6 +40,7 @@ contains
       end do
    end procedure set_rate_law
 
+   !> What joints do with rates of opening
    module procedure follow_law
       real(wp) :: beyond(2), margin
       integer :: i, j
@@ -77,6 +79,7 @@ contains
       beyond = [push(3), -push(3)] - joints%graph%friction(j)*sum(push(:2), ends == face%closed)
    end function beyond_limit
 
+   !> The first bend of the law on a line of rates of opening
    module procedure next_break
       real(wp) :: beyond(2), rate(2)
       integer :: i, j
@@ -120,6 +123,7 @@ contains
       if (distance < first%distance) first = break_t(distance, joint, part, rate > 0.0_wp)
    end subroutine meet
 
+   !> How fast what decides a bend rises along a line
    module procedure break_rate
       real(wp) :: rate(2)
 
@@ -133,6 +137,7 @@ contains
       end associate
    end procedure break_rate
 
+   !> Faces of a joint beyond a bend
    module procedure cross_break
       integer :: j
 

@@ -15,6 +15,7 @@ submodule (dda_limit_load) dda_thrust_range
 
 contains
 
+   !> The range of thrust of a joint
    module procedure find_thrust_range
       type(joint_graph_t) :: split
       type(limit_load_t) :: limit

@@ -9,6 +9,7 @@ submodule (dda_settle_in_time) dda_bars_in_time
 
 contains
 
+   !> The joints of a step and behind them its bars
    module procedure append_bars
       integer :: i, n, more
 
@@ -100,6 +101,7 @@ contains
       end do
    end subroutine make_joint
 
+   !> Give the joints of a step back what was found beside its bars
    module procedure drop_bars
       integer :: n
 

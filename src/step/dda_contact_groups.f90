@@ -4,6 +4,7 @@ submodule (dda_settle_in_time) dda_contact_groups
 
 contains
 
+   !> Groups of joints whose blocks hang together
    module procedure group_joints
       integer :: group(size(joint)), i, j
 

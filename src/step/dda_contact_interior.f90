@@ -62,6 +62,7 @@ submodule (dda_settle_in_time:dda_contact_sweeps) dda_contact_interior
 
 contains
 
+   !> Forces of some joints if these keep nearly to the faces that they had
    module procedure keep_to_faces
       type(problem_t) :: p
       type(interior_t) :: x
@@ -78,6 +79,7 @@ contains
       if (near) call take_forces(equations, springs, view, x, p, force)
    end procedure keep_to_faces
 
+   !> Forces of some joints, wherever the search for them begins
    module procedure solve_interior
       type(problem_t) :: p
       type(interior_t) :: on_faces, x

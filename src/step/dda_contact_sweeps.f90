@@ -126,6 +126,7 @@ submodule (dda_settle_in_time) dda_contact_sweeps
 
 contains
 
+   !> Settle contact forces and motion of one step, or begin to
    module procedure sweep_contacts
       type(contact_view_t) :: view
       real(wp) :: force(3, size(springs%stiffness)), enough(2), noise

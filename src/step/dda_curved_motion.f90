@@ -26,6 +26,7 @@ submodule (dda_step) dda_curved_motion
 
 contains
 
+   !> Begin with the rows of blocks that go on as they are
    module procedure foresee_curves
       real(wp) :: motion(size(step%state%motion, 1), size(step%state%motion, 2)), error
 
@@ -36,6 +37,7 @@ contains
       call take_turned_rows(system, motion, contacts, step)
    end procedure foresee_curves
 
+   !> Settle the contacts again with rows of the motion that was found
    module procedure follow_curves
       type(step_state_t) :: last
       real(wp) :: curve(3, size(contacts%joint)), size_of, error

@@ -37,6 +37,7 @@ submodule (dda_settle_in_time:dda_contact_interior) dda_face_passes
 
 contains
 
+   !> Find forces and motion whose faces agree, from those of an iterate
    module procedure settle_faces
       type(joint_face_t) :: face(size(p%joint))
       real(wp) :: last_rest, rest
@@ -75,6 +76,7 @@ contains
       end do
    end procedure settle_faces
 
+   !> The same of many joints, which rather end than keep to the way that the loads have led them
    module procedure settle_many_faces
       type(joint_face_t) :: face(size(p%joint))
       type(interior_t) :: firmer

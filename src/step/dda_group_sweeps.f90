@@ -32,6 +32,7 @@ submodule (dda_settle_in_time:dda_contact_sweeps) dda_group_sweeps
 
 contains
 
+   !> Sweep one group until nothing changes, or until that is seen to take too long
    module procedure sweep_group
       real(wp) :: before(3, size(joint)), change(2), last, lately, square, way(3, size(joint))
       logical :: active(size(joint)), ended, hasty

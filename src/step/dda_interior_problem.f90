@@ -11,6 +11,7 @@ submodule (dda_settle_in_time) dda_interior_problem
 
 contains
 
+   !> The joints with their blocks numbered anew, and the pattern of their matrix
    module procedure pose
       integer :: i, k, n, n_dof, pair(2, size(joint))
 
@@ -87,6 +88,7 @@ contains
       where (p%follows) p%soft = view%soft(:, p%joint)
    end subroutine pose_springs
 
+   !> Openings and slips after a motion, from the gaps before it
    module procedure see_openings
       integer :: i
 
@@ -144,6 +146,7 @@ contains
       end do
    end subroutine push_blocks
 
+   !> What forces and motion lack of balance, and of openings that are closed
    module procedure see_lack
       integer :: b, n
 
@@ -159,6 +162,7 @@ contains
       p%opening = merge(-p%opening - p%soft*(x%force - p%before), 0.0_wp, p%given)
    end procedure see_lack
 
+   !> Forces and motion that give what is lacking
    module procedure respond
       real(wp) :: moved(3, size(p%joint))
       integer :: i
@@ -175,6 +179,7 @@ contains
       end do
    end procedure respond
 
+   !> Distance of the forces from their bounds
    module procedure see_bounds
       real(wp) :: bound
       integer :: i
@@ -189,6 +194,7 @@ contains
       end do
    end procedure see_bounds
 
+   !> The matrix with the springs as their bounds yield, and its factor
    module procedure factor_springs
       real(wp) :: wanted(7)
       logical :: changed(0:size(p%equation))

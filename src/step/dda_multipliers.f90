@@ -18,6 +18,7 @@ submodule (dda_step) dda_multipliers
 
 contains
 
+   !> Settle the joints of one step
    module procedure settle_joints
       integer :: pass
       logical :: agreed

@@ -5,6 +5,7 @@ submodule (dda_forward) dda_path_run
 
 contains
 
+   !> Let the clock of a static run go on where the blocks are at rest before the end of its path
    module procedure follow_path
       logical :: falls, returned
 
@@ -31,6 +32,7 @@ contains
       call leave_rest(settings, system, contacts, equations, march, rest, album)
    end procedure follow_path
 
+   !> Follow a collapse beyond its verdict as far as the album wants to see it
    module procedure end_pictures
       type(error_t), allocatable :: error
 

@@ -16,11 +16,13 @@ submodule (dda_forward) dda_rest
 
 contains
 
+   !> Whether the blocks have moved in a stride by more than the stride before lets expect
    module procedure leaps
       leaps = settings%current .and. march%moved > max(small*march%allowed_motion, &
          & smooth*march%rate*(march%clock%now - march%clock%rested))
    end procedure leaps
 
+   !> Go on from a rest
    module procedure leave_rest
       real(wp) :: growth
 
@@ -43,6 +45,7 @@ contains
       call begin_stride(settings, march)
    end procedure leave_rest
 
+   !> Go back to the last rest, from where the blocks do not come to rest, or have moved too far
    module procedure return_to_rest
       type(march_t) :: before
 

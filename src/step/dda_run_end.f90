@@ -9,6 +9,7 @@ submodule (dda_forward) dda_run_end
 
 contains
 
+   !> What the end of a run says
    module procedure conclude
       outcome%rest_tolerance = settings%rest_tolerance
       if (march%free_acceleration > 0.0_wp) then
@@ -54,6 +55,7 @@ contains
       end if
    end subroutine conclude_in_time
 
+   !> Scales and first step of a run that begins, and its energy
    module procedure begin_run
       call first_interval(system, contacts%springs, settings, equations, step%state, march, error)
       contacts%face = step%state%face

@@ -17,6 +17,7 @@ submodule (dda_step) dda_standstill
 
 contains
 
+   !> Whether all blocks move so slowly that this may be what contact forces leave
    module procedure is_slow
       integer :: e
 
@@ -29,12 +30,14 @@ contains
       is_slow = .true.
    end procedure is_slow
 
+   !> Length of a step in which rounding of gaps moves blocks less than forces that are not
    module procedure balancing_time
       time = 0.0_wp
       if (march%free_acceleration > 0.0_wp) &
          & time = sqrt(8.0_wp*equations%gap_noise/(balanced*march%free_acceleration))
    end procedure balancing_time
 
+   !> Whether no block moves and the contact forces at hand balance the loads of the coming step
    module procedure stands_still
       real(wp) :: left(size(equations%load, 1), size(equations%load, 2))
       integer :: b, e, i, j
@@ -58,6 +61,7 @@ contains
       still = .true.
    end procedure stands_still
 
+   !> A step in which nothing moves
    module procedure stand_still
       contacts%increment = 0.0_wp
       step%dt = march%dt

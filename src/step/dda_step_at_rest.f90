@@ -20,6 +20,7 @@ submodule (dda_step) dda_step_at_rest
 
 contains
 
+   !> A step of blocks that stand still, or are found to
    module procedure rest
       call stands_still(settings, system, contacts, march, equations, still)
       if (.not. still .and. march%steps >= first_try .and. (popcnt(march%steps) == 1 &

@@ -25,6 +25,7 @@ submodule (dda_step) dda_step_check
 
 contains
 
+   !> Check the motion of a try
    module procedure check_motion
       logical :: searched
 
@@ -36,6 +37,7 @@ contains
       if (outcome%accepted .and. searched) outcome = check_axes(system, contacts, march, step)
    end procedure check_motion
 
+   !> Check the velocities of a try
    module procedure check_end_velocities
       outcome = step_outcome_t(accepted=step%has_velocity, dt=step%dt)
       if (.not. outcome%accepted) outcome = step_outcome_t(dt=step%dt/2.0_wp, was_cut=.true.)
@@ -43,6 +45,7 @@ contains
          & outcome = check_penetration(settings, system, contacts, march, step)
    end procedure check_end_velocities
 
+   !> Change for the next try what the checks ask for
    module procedure retry
       if (outcome%dt < step%dt) step%choices = 0
       march%dt = outcome%dt
@@ -54,6 +57,7 @@ contains
       step%travel = travel_by(system, step%state%motion)
    end procedure retry
 
+   !> Check the separating axes of a settled step
    module procedure check_axes
       real(wp) :: gap, matters
       logical :: entered, held_off
@@ -119,6 +123,7 @@ contains
       end do
    end function depth
 
+   !> Check that no open contact closes fast within the step
    module procedure check_impact
       real(wp) :: speed(3, size(contacts%joint)), acceleration(3, size(contacts%joint))
       real(wp) :: near, earliest, least, meeting, time

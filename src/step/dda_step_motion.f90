@@ -13,6 +13,7 @@ submodule (dda_step) dda_step_motion
 
 contains
 
+   !> What a step begins with
    module procedure predict
       contacts%remember = .not. (settings%dynamic .and. settings%current)
       step%was_cut = .false.
@@ -26,6 +27,7 @@ contains
       if (contacts%searched) step%travel = travel_of(system, settings, march)
    end procedure predict
 
+   !> The motion of one try, measured
    module procedure find_motion
       logical :: in_time
 
@@ -46,6 +48,7 @@ contains
       if (step%state%settled) step%farthest = largest_motion(system, step%state%motion)
    end procedure find_motion
 
+   !> Contacts where the blocks are now
    module procedure place_contacts
       integer, allocatable :: before(:, :)
 

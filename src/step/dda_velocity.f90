@@ -38,6 +38,7 @@ submodule (dda_step) dda_velocity
 
 contains
 
+   !> Velocities of the blocks at the end of a settled step
    module procedure settle_velocities
       logical :: closed(2, size(contacts%joint))
       real(wp) :: part(2, size(contacts%joint)), borne(3, size(contacts%joint)), less
@@ -311,6 +312,7 @@ contains
       end function excess
    end subroutine keep_moment
 
+   !> Springs of contacts whose forces are multipliers
    module procedure stiffen_contacts
       integer :: j
 

@@ -8,6 +8,7 @@ submodule (couplet_heyman_discrete) couplet_heyman_pinch
 
 contains
 
+   !> Largest gap over all deficits
    module procedure widest_gap
       integer :: pair(2), last
       real(wp) :: peak, previous_peak, slope
@@ -132,6 +133,7 @@ contains
       gap = pair_gap(ring, eta, deficit, left)
    end subroutine meet
 
+   !> Thickness ratio at which the pinching joints just let the thrust through
    module procedure solve_pinch
       !> Quadratic convergence takes 3 to 8
       integer, parameter :: most_steps = 60

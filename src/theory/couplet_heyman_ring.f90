@@ -10,6 +10,7 @@ submodule (couplet_heyman_discrete) couplet_heyman_ring
 
 contains
 
+   !> Shape of the ring from its joints
    module procedure make_ring
       real(wp) :: span, chord, middle, half_sine, chord_loss
       real(wp) :: lightness_rise, lightness_middle, form_rise, form_carry
@@ -62,6 +63,7 @@ contains
       carry = corrected - (after - before)
    end subroutine add_exactly
 
+   !> Thrusts that friction allows
    module procedure limit_thrust
       !> A quarter of a turn [rad]
       real(wp), parameter :: quarter = 0.5_wp*acos(-1.0_wp)

@@ -118,7 +118,7 @@ def _of_statements(
                     yield begin.first, f"a procedure has at most {PROCEDURE_LINES} lines"
                 inner = inner + this.last - begin.first + 1 if open_procedures else 0
         elif _PROCEDURE.match(text) and not (block and text.startswith("module procedure")):
-            if not (this.documented or text.startswith("module procedure")):
+            if not this.documented:
                 yield this.first, "a procedure has its !> line"
             open_procedures.append(this)
         elif "intent(" in text.replace(" ", "") and not _IS_NAMED_TYPE.match(text):
