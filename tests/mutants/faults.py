@@ -89,7 +89,7 @@ def dropped_terms(code: str) -> Iterator[tuple[str, int, int, str]]:
                 yield "dropped", m.start(), i, ""
 
 
-def conditions(code: str) -> Iterator[tuple[str, int, int, str]]:
+def conditions(code: str, line: str) -> Iterator[tuple[str, int, int, str]]:
     """The same for conditions, negated or not asked."""
     m = re.match(r"\s*(?:else )?if \(", code)
     if not m:
@@ -97,7 +97,7 @@ def conditions(code: str) -> Iterator[tuple[str, int, int, str]]:
     end = closing(code, m.end() - 1)
     if end < 0:
         return
-    yield "negated", m.end(), end, f".not. ({code[m.end():end]})"
+    yield "negated", m.end(), end, f".not. ({line[m.end():end]})"
     behind = code[end + 1:].strip()
     if behind and behind != "then" and "&" not in behind:
         yield "skipped", len(code) - len(code.lstrip()), 9999, "continue"
@@ -115,7 +115,7 @@ def faults_of(path: Path, root: Path) -> list[Fault]:
         if is_constant:
             changes = [change for change in changes if change[0] == "ten times"]
         else:
-            changes += [*dropped_terms(code), *conditions(code)]
+            changes += [*dropped_terms(code), *conditions(code, line)]
         for kind, start, end, other in changes:
             after = line[:start] + other + line[end:]
             if len(after) <= 132:

@@ -4,10 +4,10 @@
 The tree is copied and built once, each room as a shared library. A fault seldom changes what a module offers: then
 one object is compiled and its room linked again, and every program meets the fault without being linked itself;
 else the build sees to it. The unit tests of the fault's room run first, then those of the other rooms, those whose
-tests name the module before the others, then the tests of the command that count as unit tests, the physics and
-the tests of the command that count as physics, then, if asked, the other tests of the command and of Python, those
-first that are about the room. A process may take five times the processor time that it takes without a fault. The
-table has a row for each fault as soon as it is known.
+tests name the module before the others. What survives these is judged several at a time: with all of them put in,
+the physics and what ctest counts as such run, then, if asked, all other tests; what fails is asked of each fault
+alone, until nothing fails of those that are left. A test that fails without a fault finds none. A process may
+take five times the processor time that it takes without a fault. The table is written whenever a fault is judged.
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ import time
 from contextlib import contextmanager
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Iterator
+from typing import Iterable, Iterator
 
 from faults import Fault, draw_faults
 
@@ -36,30 +36,11 @@ PARTS = ("CMakeLists.txt", "CMakePresets.json", "cmake", "src", "tests", "post",
          "README.md", "CITATION.cff", "LICENSE", "CHANGELOG.md")
 COLUMNS = ("number", "room", "file", "line", "kind", "before", "after", "result", "level", "found_by", "seconds")
 LEVELS = ("room", "unit", "physics", "suite")
-#: Tests of the command and of Python that ctest counts as unit tests or physics
-COMMAND = "command_"
-#: Files of tests/cli that are about a room, by the beginning of their names after test_
-ABOUT = {
-    "arch": "arch mechanism_roles paper_tables bad_input",
-    "base": "screen_table results check",
-    "case": "reactions joint_map told_blocks restart resume run results large_limerick limerick scene_columns",
-    "contact": "block fallen wedges pressed ties jointed_slopes",
-    "formats": "limerick cut lines fuzz_limerick large_limerick",
-    "geometry": "cut block wedges tiny_blocks extreme_blocks",
-    "input": "block_files bad_input messages check models joint_map histories bars stages water vehicle",
-    "joint_lines": "joint_map lines jointed_slopes",
-    "limerick": "limerick large_limerick",
-    "linalg": "large_blocks block",
-    "mesh": "cut lines joint_map limerick",
-    "model": "water ground block_files histories held",
-    "output": "results run cut restart",
-    "scene": "fill water vehicle live_loads arch_shapes lines line_export ties limerick_blocks",
-    "search": "stages search_in_time vehicle loading_path path_start live_loads models",
-    "solver": "loading_path residual_friction crushing proofs wedges jointed_slopes live_loads",
-    "statics": "histories pressed_blocks live_loads bars arch_exact",
-    "step": "energy ramp static_start ground absorbing reactions fallen stages displacement_factor",
-    "submatrix": "bars ties water ground energy absorbing",
-}
+#: What ctest runs at the levels that are asked of several faults at once
+PROGRAMS = {"physics": ("command_unit", "physics", "command_physics"),
+            "suite": ("every_model", "cli", "post", "fuzz_blocks", "fuzz_restart", "fuzz")}
+#: A run of `dda` may take so many seconds of processor
+MOST_SECONDS = 60
 
 
 @dataclass
@@ -74,6 +55,8 @@ class Copy:
     objects: dict[str, list[dict[str, str]]] = field(default_factory=dict)
     #: Seconds of processor and of the clock
     usual: dict[str, tuple[float, float]] = field(default_factory=dict)
+    #: What ctest runs, by name
+    commands: dict[str, list[str]] = field(default_factory=dict)
 
     @property
     def build(self) -> Path:
@@ -98,6 +81,11 @@ class Copy:
         for entry in json.loads((self.build / "compile_commands.json").read_text()):
             if "/voussoir.dir/" not in entry["command"]:
                 self.objects.setdefault(entry["file"], []).append(entry)
+        listed = subprocess.check_output(["ctest", "--test-dir", self.build, "--show-only=json-v1"], text=True)
+        self.commands = {test["name"]: test["command"] for test in json.loads(listed)["tests"] if "command" in test}
+        limited = self.root / "dda"
+        limited.write_text(f'#!/bin/sh\nulimit -t {MOST_SECONDS}\nexec "{self.build}/bin/dda" "$@"\n')
+        limited.chmod(0o755)
 
     def make(self) -> bool:
         """Build all that tests run; whether it compiles."""
@@ -106,29 +94,39 @@ class Copy:
         return subprocess.run(command, capture_output=True).returncode == 0
 
     @contextmanager
-    def faulty(self, fault: Fault) -> Iterator[bool]:
-        """Have every program meet a fault; whether it compiles."""
-        path = self.root / fault.path
-        sound, at = path.read_text(), path.stat().st_mtime_ns
-        lines = sound.splitlines(keepends=True)
-        room = self.build / "src" / f"libvoussoir_{fault.path.parts[1]}.so"
-        kept = room.with_suffix(".sound")
-        lines[fault.line - 1] = fault.after + "\n"
-        path.write_text("".join(lines))
-        one = self.compile_alone(path)
-        if one is not None:  # the build may not see that anything was changed
-            path.write_text(sound)
-            os.utime(path, ns=(at, at))
+    def faulty(self, faults: list[Fault]) -> Iterator[bool]:
+        """Have every program meet faults of different lines; whether they compile."""
+        sound = {path: (path.read_text(), path.stat().st_mtime_ns) for path in {self.root / f.path for f in faults}}
+        for path, (text, _) in sound.items():
+            lines = text.splitlines(keepends=True)
+            for fault in faults:
+                if self.root / fault.path == path:
+                    lines[fault.line - 1] = fault.after + "\n"
+            path.write_text("".join(lines))
+        objects = {path: self.compile_alone(path) for path in sound}
+        compiles = () not in objects.values()
+        others_depend = compiles and None in objects.values()
+        rooms: list[Path] = []
+        if not others_depend:  # the build may not see that anything was changed
+            for path, (text, at) in sound.items():
+                path.write_text(text)
+                os.utime(path, ns=(at, at))
         try:
-            if one:
-                room.rename(kept)
-                self.link_room(room.name, *one)
-            yield bool(one) or one is None and self.make()
+            if others_depend:
+                compiles = self.make()
+            elif compiles:
+                for name in {path.parent.name for path in sound}:
+                    room = self.build / f"src/libvoussoir_{name}.so"
+                    room.rename(room.with_suffix(".sound"))
+                    rooms.append(room)
+                    self.link_room(room.name, [objects[path] for path in sound if path.parent.name == name])
+            yield compiles
         finally:
-            if one:
-                kept.replace(room)
-            elif one is None:
-                path.write_text(sound)
+            for room in rooms:
+                room.with_suffix(".sound").replace(room)
+            if others_depend:
+                for path, (text, _) in sound.items():
+                    path.write_text(text)
                 self.make()
 
     def compile_alone(self, path: Path) -> tuple[str, Path] | None | tuple[()]:
@@ -137,9 +135,9 @@ class Copy:
         if len(entries) != 1:
             return None
         words = shlex.split(entries[0]["command"])
-        scratch = self.root / "scratch"
+        scratch = self.root / "scratch" / path.stem
         shutil.rmtree(scratch, ignore_errors=True)
-        scratch.mkdir()
+        scratch.mkdir(parents=True)
         modules = Path(next(word[2:] for word in words if word.startswith("-J")))
         output = words[words.index("-o") + 1]
         words = [f"-J{scratch}" if word.startswith("-J") else word for word in words] + ["-I", str(modules), "-w"]
@@ -149,21 +147,20 @@ class Copy:
         same = all(filecmp.cmp(new, self.build / modules / new.name, shallow=False) for new in scratch.glob("*.*mod"))
         return (output, scratch / "faulty.o") if same else None
 
-    def link_room(self, name: str, output: str, faulty: Path) -> None:
-        """Link a room with one object in the place of another."""
+    def link_room(self, name: str, objects: list[tuple[str, Path]]) -> None:
+        """Link a room with faulty objects in the place of the sound ones."""
         steps = subprocess.run(["ninja", "-C", self.build, "-t", "commands", "-s", f"src/{name}"], check=True,
                                capture_output=True, text=True).stdout
         command = next(line for line in steps.splitlines() if f"-o src/{name}" in line)
-        subprocess.run(command.replace(f" {output} ", f" {faulty} "), shell=True, cwd=self.build, check=True,
-                       capture_output=True)
+        for output, faulty in objects:
+            command = command.replace(f" {output} ", f" {faulty} ")
+        subprocess.run(command, shell=True, cwd=self.build, check=True, capture_output=True)
 
     def programs(self, level: str, fault: Fault) -> list[str]:
-        """The programs of a level that hold the faulty room, the likely and the short ones first."""
+        """The unit programs of a level that hold the faulty room, the likely and the short ones first."""
         own = f"unit_{fault.path.parts[1]}"
         if level == "room":
             return [own] if own in self.units else []
-        if level == "physics":
-            return [COMMAND + "unit", "physics", COMMAND + "physics"]
         others = [name for name in self.units if name != own and self.holds(name, fault.path.parts[1])]
         return sorted(others, key=lambda name: (f"use {fault.path.stem}," not in self.units[name], self.usual[name]))
 
@@ -172,52 +169,64 @@ class Copy:
         linked = subprocess.run(["ldd", self.build / "tests" / "bin" / program], capture_output=True, text=True).stdout
         return f"libvoussoir_{room}.so" in linked
 
-    def run(self, program: str) -> str:
-        """Run a test program: the test that failed, or nothing."""
-        if not program.startswith(COMMAND):
-            return self.finish([str(self.build / "tests" / "bin" / program)], program, self.build / "tests")
-        return self.finish(["ctest", "--test-dir", str(self.build), "--output-on-failure", "-R", f"^{program}$"],
-                           program, self.root)
+    def run(self, program: str, tests: Iterable[str] = ()) -> list[str]:
+        """Run a program, or tests of it that failed before: the tests that fail."""
+        command = self.commands.get(program) or [str(self.build / "tests" / "bin" / program)]
+        tests = [test for test in tests if not test.startswith(f"{program} (")]
+        if "pytest" in command:
+            head = command[:command.index("--basetemp") + 2]
+            words = command[len(head):]
+            if "--maxfail" in words:
+                words = words[words.index("--maxfail") + 2:]
+            command = [*head, "--maxfail", "1" if tests else "40", *(tests or words)]
+        elif tests and program == "physics":
+            command = [*command, "-f", tests[0].split()[0]]
+        return self.finish(command, program)
 
-    def run_pytest(self, room: str) -> str:
-        """Run tests of the command and of Python until one fails, first what is about the room."""
-        tests = self.root / "tests"
-        about = tuple(f"test_{word}" for word in ABOUT.get(room, "").split())
-        files = sorted(tests.glob("cli/test_*.py"), key=lambda path: not path.name.startswith(about or "-"))
-        if room == "theory":
-            files = sorted(tests.glob("post/test_theory*.py")) + files
-        else:
-            files += [tests / "post" / f"test_{name}.py" for name in ("verify", "validation", "stability", "vtu")]
-        command = [sys.executable, "-m", "pytest", "-x", "-q", "-p", "no:cacheprovider", *map(str, files)]
-        return self.finish(command, "suite", self.root)
-
-    def finish(self, command: list[str], name: str, folder: Path) -> str:
-        """Wait for a command, each of its processes for a time; the test that failed, or nothing."""
+    def finish(self, command: list[str], name: str) -> list[str]:
+        """Wait for a command, each of its processes for a time; the tests that failed."""
+        by_runner = name in self.units or name == "physics"
         usual = self.usual.get(name, (600.0, 3600.0))
-        limit = int(max(10.0, 5.0 * usual[0]) if not name.startswith((COMMAND, "suite")) else 60.0)
-        environment = {**os.environ, "DDA": str(self.build / "bin" / "dda"), "OMP_NUM_THREADS": "1",
+        limit = int(max(10.0, 5.0*usual[0])) if by_runner else 1500
+        environment = {**os.environ, "DDA": str(self.root / "dda"), "OMP_NUM_THREADS": "1",
                        "VOUSSOIR_BUILD": str(self.build), "PYTHONPATH": str(self.build / "python")}
         start, used = time.monotonic(), resource.getrusage(resource.RUSAGE_CHILDREN)
-        process = subprocess.Popen(command, cwd=folder, env=environment, text=True, start_new_session=True,
-                                   stdout=subprocess.PIPE, stderr=subprocess.STDOUT, errors="replace",
+        process = subprocess.Popen(command, cwd=self.root / "tests", env=environment, text=True,
+                                   start_new_session=True, stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
+                                   errors="replace",
                                    preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_CPU, (limit, limit)))
         try:
-            printed, _ = process.communicate(timeout=max(60.0, 10.0 * usual[1]))
+            printed, _ = process.communicate(timeout=max(60.0, 10.0*usual[1]))
         except subprocess.TimeoutExpired:
             os.killpg(process.pid, signal.SIGKILL)
             process.communicate()
-            return f"{name}: time limit"
+            return [f"{name} (time limit)"]
         taken = resource.getrusage(resource.RUSAGE_CHILDREN)
         self.usual.setdefault(name, (taken.ru_utime + taken.ru_stime - used.ru_utime - used.ru_stime,
                                      time.monotonic() - start))
         if process.returncode == 0:
-            return ""
-        failed = re.search(r"\w+_suite\.(\w+) FAILED|^FAILED (\S+)", printed, re.MULTILINE)
+            return []
+        failed = re.findall(r"\w+_suite\.(\w+) FAILED|^(?:FAILED|ERROR) (\S+\.py.*?)(?: - |$)", printed, re.MULTILINE)
         if failed:
-            return failed.group(1) or failed.group(2)
+            return list(dict.fromkeys(one or other for one, other in failed))
         end = "time limit" if process.returncode in (-signal.SIGXCPU, -signal.SIGKILL) else "crash"
         begun = re.findall(r"_suite\.(\w+)", printed)
-        return f"{begun[-1]} ({end})" if begun else f"{name} ({end})"
+        return [f"{begun[-1] if begun else name} ({end})"]
+
+    def failing(self, level: str) -> list[tuple[str, str]]:
+        """Programs and tests of a level that fail."""
+        programs = [program for program in PROGRAMS[level] if program in self.commands]
+        return [(program, test) for program in programs for test in self.run(program)]
+
+    def first_failing(self, checks: list[tuple[str, str]]) -> tuple[str, str] | None:
+        """The first of several tests that fails."""
+        for program in dict.fromkeys(program for program, _ in checks):
+            tests = [test for name, test in checks if name == program]
+            for some in [tests] if "pytest" in self.commands[program] else [[test] for test in tests]:
+                failed = self.run(program, some)
+                if failed:
+                    return program, failed[0]
+        return None
 
 
 def copy_changed(source: Path, target: Path) -> None:
@@ -233,19 +242,42 @@ def copy_changed(source: Path, target: Path) -> None:
 
 
 def judge(fault: Fault, copy: Copy, levels: list[str]) -> dict[str, object]:
-    """What becomes of one fault."""
-    with copy.faulty(fault) as compiles:
+    """What becomes of one fault by unit programs."""
+    with copy.faulty([fault]) as compiles:
         if not compiles:
             return {"result": "does not compile"}
         start = time.monotonic()
         for level in levels:
-            programs = copy.programs(level, fault) if level != "suite" else ["suite"]
-            for program in programs:
-                test = copy.run(program) if program != "suite" else copy.run_pytest(fault.path.parts[1])
+            for program in copy.programs(level, fault):
+                test = copy.run(program)
                 if test:
-                    return {"result": "found", "level": level, "found_by": f"{program}: {test}",
+                    return {"result": "found", "level": level, "found_by": f"{program}: {test[0]}",
                             "seconds": round(time.monotonic() - start, 1)}
         return {"result": "survived", "seconds": round(time.monotonic() - start, 1)}
+
+
+def judge_together(faults: list[Fault], copy: Copy, level: str) -> dict[Fault, str]:
+    """Which test of a level finds each of several faults."""
+    found: dict[Fault, str] = {}
+    excused: set[tuple[str, str]] = set()
+    left = faults
+    while left:
+        with copy.faulty(left) as compiles:
+            failing = [check for check in copy.failing(level) if check not in excused] if compiles else []
+        by: dict[Fault, tuple[str, str]] = {}
+        for fault in left if failing else []:
+            with copy.faulty([fault]):
+                check = copy.first_failing(failing)
+            if check:
+                by[fault] = check
+        unsound = {check for check in set(by.values()) if copy.first_failing([check])}
+        excused |= unsound
+        news = {fault: ": ".join(check) for fault, check in by.items() if check not in unsound}
+        if not news and not unsound:  # nothing fails, or only with several faults together
+            break
+        found |= news
+        left = [fault for fault in left if fault not in news]
+    return found
 
 
 def read_faults(path: Path, root: Path) -> list[Fault]:
@@ -286,6 +318,7 @@ def arguments() -> argparse.Namespace:
     parser.add_argument("--again", type=Path, help="a table: judge those of its faults that survived")
     parser.add_argument("--levels", nargs="*", default=LEVELS[:3], choices=LEVELS, help="what runs [all but suite]")
     parser.add_argument("--table", type=Path, help="the table [mutants.csv in the folder of the copy]")
+    parser.add_argument("--together", type=int, default=8, help="faults at a time by physics and suite [8]")
     parser.add_argument("--list", action="store_true", help="write the table of faults and stop")
     parser.add_argument("--jobs", type=int, default=2, help="compilers at a time [2]")
     parser.add_argument("--flags", default="-O1", help="flags of the compiler [-O1]")
@@ -294,8 +327,8 @@ def arguments() -> argparse.Namespace:
 
 def run_without_faults(copy: Copy, levels: list[str]) -> None:
     """Run once what judges, and keep the time that it takes."""
-    names = [*copy.units, *([COMMAND + "unit", "physics", COMMAND + "physics"] if "physics" in levels else [])]
-    for name in names:
+    units = copy.units if "room" in levels or "unit" in levels else []
+    for name in [*units, *(["physics"] if "physics" in levels else [])]:
         test = copy.run(name)
         if test:
             raise SystemExit(f"{name} fails without a fault: {test}")
@@ -311,27 +344,56 @@ def main() -> int:
               else draw_faults(asked.source, rooms, asked.count, asked.seed))
     asked.work.mkdir(parents=True, exist_ok=True)
     copy = Copy((asked.work / "tree").resolve(), asked.jobs)
+    rows: list[dict[str, object]] = [
+        {"number": number, "room": fault.path.parts[1], "file": fault.path.as_posix(), "line": fault.line,
+         "kind": fault.kind, "before": fault.before.strip(), "after": fault.after.strip()}
+        for number, fault in enumerate(faults, 1)]
+    table = asked.table or asked.work / "mutants.csv"
     if not asked.list:
         copy.prepare(asked.source, asked.flags)
         run_without_faults(copy, asked.levels)
-    rows: list[dict[str, object]] = []
-    with (asked.table or asked.work / "mutants.csv").open("w", newline="") as lines:
+        judge_all(faults, rows, copy, asked, table)
+        print(report(rows))
+    write_table(table, rows)
+    return 0
+
+
+def judge_all(faults: list[Fault], rows: list[dict[str, object]], copy: Copy, asked: argparse.Namespace,
+              table: Path) -> None:
+    """Fill the rows, first by unit programs, then by what takes longer."""
+    for fault, row in zip(faults, rows):
+        row.update(judge(fault, copy, [level for level in asked.levels if level not in PROGRAMS]))
+        tell(fault, row)
+        write_table(table, rows)
+    for level in (level for level in PROGRAMS if level in asked.levels):
+        left = [number for number, row in enumerate(rows) if row["result"] == "survived"]
+        while left:
+            lines = {(faults[number].path, faults[number].line): number for number in reversed(left)}
+            group = list(lines.values())[::-1][:asked.together]
+            left = [number for number in left if number not in group]
+            start = time.monotonic()
+            found = judge_together([faults[number] for number in group], copy, level)
+            for number in group:
+                if faults[number] in found:
+                    rows[number].update(result="found", level=level, found_by=found[faults[number]],
+                                        seconds=round((time.monotonic() - start)/len(group), 1))
+                    tell(faults[number], rows[number])
+            write_table(table, rows)
+            print(f"{level}: {len(found)} of {len(group)}, {time.monotonic() - start:.0f} s", flush=True)
+
+
+def tell(fault: Fault, row: dict[str, object]) -> None:
+    """Print a line of what became of a fault."""
+    what = row.get("found_by", row["after"])
+    print(f"{row['number']:4} {row['result']:9} {fault.path}:{fault.line} {what}", flush=True)
+
+
+def write_table(path: Path, rows: list[dict[str, object]]) -> None:
+    """Write what is known."""
+    with path.open("w", newline="") as lines:
         writer = csv.DictWriter(lines, COLUMNS, lineterminator="\n")
         writer.writeheader()
-        for number, fault in enumerate(faults, 1):
-            row: dict[str, object] = {"number": number, "room": fault.path.parts[1], "file": fault.path.as_posix(),
-                                      "line": fault.line, "kind": fault.kind, "before": fault.before.strip(),
-                                      "after": fault.after.strip()}
-            if not asked.list:
-                row.update(judge(fault, copy, asked.levels))
-                print(f"{number:4} {row['result']:9} {fault.path}:{fault.line} {row.get('found_by', row['after'])}",
-                      flush=True)
-            rows.append(row)
-            writer.writerow(row)
-            lines.flush()
-    if not asked.list:
-        print(report(rows))
-    return 0
+        writer.writerows(rows)
 
 
 if __name__ == "__main__":
