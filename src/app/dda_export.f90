@@ -41,7 +41,6 @@ contains
    !> Export all decks of the command line
    subroutine export_decks(command, status)
       type(command_t), intent(in) :: command
-      !> Exit status of the program
       integer, intent(out) :: status
       type(deck_t) :: deck
       type(error_t), allocatable :: error

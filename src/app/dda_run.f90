@@ -124,7 +124,6 @@ module dda_run
       !> Folder that a deck's results go to
       pure module function folder_of(command, name) result(folder)
          type(command_t), intent(in) :: command
-         !> Name of the deck
          character(len=*), intent(in) :: name
          !> Name of the folder
          character(len=:), allocatable :: folder
@@ -219,7 +218,6 @@ contains
       type(command_t), intent(in) :: command
       character(len=*), intent(in) :: name
       type(deck_t), intent(in) :: deck
-      !> Number of cases
       integer, intent(in) :: total
       type(result_tables_t), intent(inout) :: tables
       type(finished_t), intent(out) :: finished

@@ -137,7 +137,6 @@ contains
    !> Make one case ready to be computed
    subroutine prepare(deck, number, tables, this)
       type(deck_t), intent(in) :: deck
-      !> Number of the case
       integer, intent(in) :: number
       type(result_tables_t), intent(in) :: tables
       !> An earlier case of the deck in, if there was one: of its deck only what is swept changes
@@ -244,7 +243,6 @@ contains
 
    !> Write the end of a dynamic case, to go on from there
    subroutine write_end(folder, number, this, error)
-      !> Folder of the deck's results
       character(len=*), intent(in) :: folder
       integer, intent(in) :: number
       type(case_t), intent(in) :: this

@@ -53,7 +53,6 @@ module dda_text
 
       !> Read one decimal number below 1e308, and nothing else, from a text
       pure module subroutine read_number(text, value, ok)
-         !> Text such as -1.5e-3 or 1d3
          character(len=*), intent(in) :: text
          !> The number; 0 if the text is none
          real(wp), intent(out) :: value

@@ -115,7 +115,6 @@ contains
    pure function position_remark(position, before) result(remark)
       !> The position [m]
       real(wp), intent(in) :: position
-      !> What else there is to know
       character(len=*), intent(in) :: before
       !> All of it
       character(len=:), allocatable :: remark

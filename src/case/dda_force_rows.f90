@@ -89,7 +89,6 @@ contains
    !> Add a row a bar
    pure subroutine add_rows(number, time, bar, rows)
       integer, intent(in) :: number
-      !> The time [s]
       real(wp), intent(in) :: time
       !> The bars
       type(bar_state_t), intent(in) :: bar(:)
@@ -104,7 +103,6 @@ contains
 
    !> Rows of a case in reactions.csv; nothing of a search, and of what does not stand at rest
    pure function reaction_text(number, this) result(lines)
-      !> Number of the case
       integer, intent(in) :: number
       type(case_t), intent(in) :: this
       character(len=:), allocatable :: lines
@@ -136,7 +134,6 @@ contains
       type(case_t), intent(in) :: this
       !> Time of the loads [s]
       real(wp), intent(in) :: time
-      !> The supports: (2, n)
       integer, intent(in) :: support(:, :)
       !> Force, and moment about the origin of the blocks' coordinates: (3, n) [N/m, N/m, N]
       real(wp), allocatable, intent(out) :: reaction(:, :)

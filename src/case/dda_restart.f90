@@ -136,7 +136,6 @@ contains
 
    !> Write blocks, contacts and march at the end of a step
    subroutine save_restart(file, settings, system, contacts, march, error)
-      !> Name of the file
       character(len=*), intent(in) :: file
       type(settings_t), intent(in) :: settings
       type(block_system_t), intent(in) :: system
@@ -259,7 +258,6 @@ contains
       integer(int32), intent(in) :: whole(:)
       !> How many other numbers it has
       integer, intent(in) :: n_number
-      !> What is wrong; left as it is if nothing is
       character(len=*), intent(inout) :: fault
       logical :: same(5)
 

@@ -107,7 +107,6 @@ contains
    !> Read a Blockmaterial
    pure subroutine read_material(tree, at, gravity, material, warnings, error)
       type(xml_tree_t), intent(in) :: tree
-      !> Place of the element
       integer, intent(in) :: at
       !> Acceleration of gravity, for a weight that is not given
       real(wp), intent(in) :: gravity

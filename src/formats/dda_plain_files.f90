@@ -170,13 +170,10 @@ contains
 
    !> Read an analysis file; the constants that it cannot give are the original's own
    pure subroutine read_plain_analysis(text, file, analysis, warnings, error)
-      !> The file's text
       character(len=*), intent(in) :: text
-      !> Name of the file
       character(len=*), intent(in) :: file
       type(limerick_analysis_t), intent(out) :: analysis
       type(warnings_t), intent(inout) :: warnings
-      !> What is wrong, with its line
       type(error_t), allocatable, intent(out) :: error
       type(word_list_t) :: words
       integer :: kind, n_material, n_joint, row
@@ -223,7 +220,6 @@ contains
    !> Read the materials of the blocks
    pure subroutine read_materials(words, n, analysis, error)
       type(word_list_t), intent(inout) :: words
-      !> How many there are
       integer, intent(in) :: n
       type(limerick_analysis_t), intent(inout) :: analysis
       type(error_t), allocatable, intent(out) :: error

@@ -44,11 +44,9 @@ module dda_read_limerick
 
       !> Read the geometry of a tree
       pure module subroutine read_ddaml_geometry(tree, model, warnings, error)
-         !> The file's elements; those that are not read are marked
          type(xml_tree_t), intent(inout) :: tree
          type(line_model_t), intent(out) :: model
          type(warnings_t), intent(inout) :: warnings
-         !> What is wrong, with its line
          type(error_t), allocatable, intent(out) :: error
       end subroutine read_ddaml_geometry
 

@@ -213,7 +213,6 @@ contains
 
    !> Whether the openings of all bolts are there
    pure subroutine check_bolts(group, map, error)
-      !> All groups
       type(key_group_t), intent(in) :: group(:)
       type(joint_map_t), intent(in) :: map
       type(error_t), allocatable, intent(out) :: error

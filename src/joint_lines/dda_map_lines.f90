@@ -229,7 +229,6 @@ contains
       type(joint_map_t), intent(in) :: map
       !> Columns of ends: (4, n or more) [m]
       real(wp), allocatable, intent(inout) :: line(:, :)
-      !> Their number
       integer, intent(inout) :: n
       integer :: i
 

@@ -46,9 +46,7 @@ contains
 
    !> New place of each block such that coupled blocks lie near one another
    pure function narrow_order(n_block, pair) result(place)
-      !> Number of blocks
       integer, intent(in) :: n_block
-      !> Coupled blocks, both between 1 and n_block: (2, n_pair)
       integer, intent(in) :: pair(:, :)
       !> Place of each block in the matrix: (n_block)
       integer :: place(n_block)

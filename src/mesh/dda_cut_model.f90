@@ -227,7 +227,6 @@ contains
       integer, intent(in) :: old
       !> The place: (2) [m]
       real(wp), intent(in) :: place(2)
-      !> Number of the block
       integer, intent(in) :: block
       real(wp) :: nearest, here
       integer :: k

@@ -333,7 +333,6 @@ contains
    !> The node nearest to a point within a distance; the older of two
    pure integer function nearest_node(table, point, distance)
       type(node_table_t), intent(in) :: table
-      !> The point: (2) [m]
       real(wp), intent(in) :: point(2)
       !> How far a node may be, at most the side of the table [m]
       real(wp), intent(in) :: distance

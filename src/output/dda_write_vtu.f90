@@ -286,7 +286,6 @@ contains
 
    !> Write a row a block; lists in a field are parted by semicolons
    subroutine write_cut_table(file, cut, error)
-      !> Name of the file; one that exists is replaced
       character(len=*), intent(in) :: file
       type(cut_model_t), intent(in) :: cut
       type(error_t), allocatable, intent(out) :: error

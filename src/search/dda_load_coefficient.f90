@@ -190,7 +190,6 @@ contains
    !> A value of the range that stands, where 0 does not. Values that stand lie between two others:
    !> the mechanism of one that falls says on which side of it, and how far off at least
    pure subroutine seek_rest(load, scene, graph, low, high, value, found, n_factorisation)
-      !> One of searched_load
       integer, intent(in) :: load
       type(scene_t), intent(in) :: scene
       type(joint_graph_t), intent(in) :: graph

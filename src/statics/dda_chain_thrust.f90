@@ -164,8 +164,7 @@ contains
             normal = joint%tangent(2)*s(1) - joint%tangent(1)*s(2)
             along = joint%tangent(1)*s(1) + joint%tangent(2)*s(2)
             moment = (s(3) - joint%middle(1)*s(2) + joint%middle(2)*s(1))/joint%half
-            if (normal >= abs(moment) &
-               & .and. abs(along) <= joint%limit + joint%friction*normal) cycle
+            if (normal >= abs(moment) .and. abs(along) <= joint%limit + joint%friction*normal) cycle
          end associate
          call add_failing(chain, [(normal + moment)/2.0_wp, (normal - moment)/2.0_wp, along], j, &
             & energy, beyond)

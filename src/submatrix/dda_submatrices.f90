@@ -54,7 +54,6 @@ contains
    !> Stiffness of the strain unknowns: area * D
    pure function elastic_matrix(material, area) result(stiffness)
       type(material_t), intent(in) :: material
-      !> Area of the block [m2]
       real(wp), intent(in) :: area
       !> Symmetric matrix, zero outside rows and columns 4 to 6: (6, 6) [N/m]
       real(wp) :: stiffness(6, 6)
@@ -79,7 +78,6 @@ contains
    pure function body_load(force_per_volume, area) result(load)
       !> Force per volume: (2) [N/m3]
       real(wp), intent(in) :: force_per_volume(2)
-      !> Area of the block [m2]
       real(wp), intent(in) :: area
       !> Generalised load: (6)
       real(wp) :: load(6)

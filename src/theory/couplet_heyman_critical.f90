@@ -134,7 +134,6 @@ contains
    elemental logical function is_embraced(alpha, which)
       !> Half angle of embrace [rad]
       real(wp), intent(in) :: alpha
-      !> One of `theory`
       integer, intent(in) :: which
       type(limits_t) :: limits
 
