@@ -13,31 +13,21 @@ module dda_case_table
 
    !> Lines of a case that wait for those of an earlier one
    type :: waiting_t
-      !> Number of the case
-      integer :: number = 0
-      !> Its lines, parted by line ends
-      character(len=:), allocatable :: lines
+      integer :: number = 0                   !! Number of the case
+      character(len=:), allocatable :: lines  !! Its lines, parted by line ends
    end type waiting_t
 
    !> What a column shows; of two that do not fit beside one another the one with the smaller number
    !> stays
    type :: source_enum
-      !> Number of the case
-      integer :: case = 1
-      !> Its verdict
-      integer :: verdict = 2
-      !> What the search has found
-      integer :: searched = 3
-      !> Value of a swept parameter
-      integer :: swept = 4
-      !> Error of what was found
-      integer :: error = 5
-      !> How the blocks collapse
-      integer :: mode = 6
-      !> The exact critical value
-      integer :: exact = 7
-      !> Hinges at the intrados of an arch
-      integer :: hinges = 8
+      integer :: case = 1      !! Number of the case
+      integer :: verdict = 2   !! Its verdict
+      integer :: searched = 3  !! What the search has found
+      integer :: swept = 4     !! Value of a swept parameter
+      integer :: error = 5     !! Error of what was found
+      integer :: mode = 6      !! How the blocks collapse
+      integer :: exact = 7     !! The exact critical value
+      integer :: hinges = 8    !! Hinges at the intrados of an arch
    end type source_enum
 
    !> The sources by name
@@ -45,16 +35,11 @@ module dda_case_table
 
    !> One column
    type :: column_t
-      !> Its head
-      character(len=64) :: title = ""
-      !> One of source
-      integer :: source = 0
-      !> Widest value, then width of the column
-      integer :: width = 0
-      !> Number of the swept parameter
-      integer :: sweep = 0
-      !> Whether its values are words
-      logical :: left = .false.
+      character(len=64) :: title = ""  !! Its head
+      integer :: source = 0            !! One of source
+      integer :: width = 0             !! Widest value, then width of the column
+      integer :: sweep = 0             !! Number of the swept parameter
+      logical :: left = .false.        !! Whether its values are words
    end type column_t
 
    !> The table of a deck

@@ -11,14 +11,10 @@ module dda_process
 
    !> Exit statuses of the program
    type :: exit_status_enum
-      !> Every case reached a verdict
-      integer :: success = 0
-      !> Bad input
-      integer :: bad_input = 2
-      !> A case ended undecided or was not finished
-      integer :: undecided = 3
-      !> Results could not be written
-      integer :: not_written = 4
+      integer :: success = 0      !! Every case reached a verdict
+      integer :: bad_input = 2    !! Bad input
+      integer :: undecided = 3    !! A case ended undecided or was not finished
+      integer :: not_written = 4  !! Results could not be written
    end type exit_status_enum
 
    !> Names of the exit statuses
@@ -34,10 +30,8 @@ module dda_process
 
    !> What a terminal tells of its size, C's struct winsize
    type, bind(c) :: terminal_size_t
-      !> Lines and columns; 0 where it does not know
-      integer(c_short) :: lines = 0, columns = 0
-      !> Dots across and upright
-      integer(c_short) :: dots(2) = 0
+      integer(c_short) :: lines = 0, columns = 0  !! Lines and columns; 0 where it does not know
+      integer(c_short) :: dots(2) = 0             !! Dots across and upright
    end type terminal_size_t
 
    interface

@@ -60,14 +60,10 @@ module dda_result_tables
 
    !> One table
    type :: result_table_t
-      !> Name of the file with its folder
-      character(len=:), allocatable :: file
-      !> First line
-      character(len=:), allocatable :: header
-      !> Whether the deck wants it
-      logical :: wanted = .true.
-      !> The open file
-      type(table_file_t) :: open
+      character(len=:), allocatable :: file    !! Name of the file with its folder
+      character(len=:), allocatable :: header  !! First line
+      logical :: wanted = .true.               !! Whether the deck wants it
+      type(table_file_t) :: open               !! The open file
    end type result_table_t
 
    !> Where the results of one deck go

@@ -45,12 +45,9 @@ module dda_run
 
    !> What an earlier run has left
    type :: finished_t
-      !> Whether it ran the same deck with the same settings
-      logical :: same_deck = .false.
-      !> Whether a case is finished: (n)
-      logical, allocatable :: case(:)
-      !> How many ended with a verdict, and undecided: (2)
-      integer :: count(2) = 0
+      logical :: same_deck = .false.   !! Whether it ran the same deck with the same settings
+      logical, allocatable :: case(:)  !! Whether a case is finished: (n)
+      integer :: count(2) = 0          !! How many ended with a verdict, and undecided: (2)
    end type finished_t
 
    interface

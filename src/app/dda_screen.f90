@@ -13,8 +13,7 @@ module dda_screen
    !> Where lines for the user go
    type :: screen_t
       private
-      !> Its file
-      type(binary_file_t) :: file
+      type(binary_file_t) :: file  !! Its file
    end type screen_t
 
    !> The system's number of standard output, and the last one that has a meaning of its own

@@ -12,14 +12,10 @@ module dda_arch_assembly
 
    !> A chord of an upper face, which fill may lie on
    type :: top_chord_t
-      !> Number of the block
-      integer :: block = 0
-      !> Its left end: (2) [m]
-      real(wp) :: left(2) = 0.0_wp
-      !> Its right end: (2) [m]
-      real(wp) :: right(2) = 0.0_wp
-      !> Number of its span; 0 on a pier
-      integer :: span = 0
+      integer :: block = 0           !! Number of the block
+      real(wp) :: left(2) = 0.0_wp   !! Its left end: (2) [m]
+      real(wp) :: right(2) = 0.0_wp  !! Its right end: (2) [m]
+      integer :: span = 0            !! Number of its span; 0 on a pier
    end type top_chord_t
 
    !> The blocks of an arch
@@ -46,14 +42,10 @@ module dda_arch_assembly
 
    !> Sections of one span, from left to right
    type :: arch_sections_t
-      !> Intrados: (2, n) [m]
-      real(wp), allocatable :: intrados(:, :)
-      !> Extrados: (2, n) [m]
-      real(wp), allocatable :: extrados(:, :)
-      !> Which sections are joints: (n)
-      logical, allocatable :: is_joint(:)
-      !> Where the crown is along x [m]
-      real(wp) :: crown_x = 0.0_wp
+      real(wp), allocatable :: intrados(:, :)  !! Intrados: (2, n) [m]
+      real(wp), allocatable :: extrados(:, :)  !! Extrados: (2, n) [m]
+      logical, allocatable :: is_joint(:)      !! Which sections are joints: (n)
+      real(wp) :: crown_x = 0.0_wp             !! Where the crown is along x [m]
    end type arch_sections_t
 
    interface

@@ -10,14 +10,10 @@ module dda_arch_curve
 
    !> What a piece is
    type :: piece_form_enum
-      !> centre + (a sin u, b cos u), u rising
-      integer :: ellipse = 1
-      !> centre + (u, -u**2/(2 a))
-      integer :: parabola = 2
-      !> centre + (u, a (1 - cosh(u/a)))
-      integer :: catenary = 3
-      !> centre + (u, 0)
-      integer :: line = 4
+      integer :: ellipse = 1   !! centre + (a sin u, b cos u), u rising
+      integer :: parabola = 2  !! centre + (u, -u**2/(2 a))
+      integer :: catenary = 3  !! centre + (u, a (1 - cosh(u/a)))
+      integer :: line = 4      !! centre + (u, 0)
    end type piece_form_enum
 
    !> Names of the forms
@@ -25,16 +21,11 @@ module dda_arch_curve
 
    !> One piece
    type :: piece_t
-      !> One of piece_form
-      integer :: form = 1
-      !> Centre of an ellipse, or the highest point: (2) [m]
-      real(wp) :: centre(2) = 0.0_wp
-      !> Half axis along x, or radius of curvature at the top [m]
-      real(wp) :: a = 1.0_wp
-      !> Half axis along y [m]
-      real(wp) :: b = 1.0_wp
-      !> Parameter at the left end and at the right end: (2)
-      real(wp) :: ends(2) = 0.0_wp
+      integer :: form = 1             !! One of piece_form
+      real(wp) :: centre(2) = 0.0_wp  !! Centre of an ellipse, or the highest point: (2) [m]
+      real(wp) :: a = 1.0_wp          !! Half axis along x, or radius of curvature at the top [m]
+      real(wp) :: b = 1.0_wp          !! Half axis along y [m]
+      real(wp) :: ends(2) = 0.0_wp    !! Parameter at the left end and at the right end: (2)
    end type piece_t
 
    !> The line
@@ -51,16 +42,11 @@ module dda_arch_curve
 
    !> A place on the line
    type :: station_t
-      !> The place: (2) [m]
-      real(wp) :: point(2) = 0.0_wp
-      !> Unit vector along the line, to the right: (2)
-      real(wp) :: along(2) = 0.0_wp
-      !> Unit vector across it, outwards: (2)
-      real(wp) :: outward(2) = 0.0_wp
-      !> Rate at which the line turns to the right [rad/m]
-      real(wp) :: curvature = 0.0_wp
-      !> Number of the piece
-      integer :: piece = 0
+      real(wp) :: point(2) = 0.0_wp    !! The place: (2) [m]
+      real(wp) :: along(2) = 0.0_wp    !! Unit vector along the line, to the right: (2)
+      real(wp) :: outward(2) = 0.0_wp  !! Unit vector across it, outwards: (2)
+      real(wp) :: curvature = 0.0_wp   !! Rate at which the line turns to the right [rad/m]
+      integer :: piece = 0             !! Number of the piece
    end type station_t
 
    !> Gauss points of an interval from -1 to 1, and their weights

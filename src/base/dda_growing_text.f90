@@ -10,10 +10,8 @@ module dda_growing_text
    !> Lines put together so far
    type :: growing_text_t
       private
-      !> The lines, each with its end, and room behind them
-      character(len=:), allocatable :: text
-      !> Length of the lines
-      integer :: length = 0
+      character(len=:), allocatable :: text  !! The lines, each with its end, and room behind them
+      integer :: length = 0                  !! Length of the lines
    end type growing_text_t
 
 contains

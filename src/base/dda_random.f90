@@ -19,8 +19,7 @@ module dda_random
    !> A generator and where it is
    type :: random_t
       private
-      !> The last three numbers of both recurrences: (3, 2)
-      integer(int64) :: state(3, 2) = 1_int64
+      integer(int64) :: state(3, 2) = 1_int64  !! The last three numbers of both recurrences: (3, 2)
    end type random_t
 
 contains

@@ -9,8 +9,7 @@ module dda_warnings
 
    !> A warning, and how often it came again
    type, extends(error_t) :: warning_t
-      !> How many of the same words were given for later lines
-      integer :: repeats = 0
+      integer :: repeats = 0  !! How many of the same words were given for later lines
    end type warning_t
 
    !> A list of warnings; a file of a million faults has a short one

@@ -32,10 +32,8 @@ module dda_compute_case
 
    !> The least factor found, and where
    type :: least_factor_t
-      !> The factor
-      real(wp) :: factor = no_limit
-      !> The place [m]
-      real(wp) :: place = 0.0_wp
+      real(wp) :: factor = no_limit  !! The factor
+      real(wp) :: place = 0.0_wp     !! The place [m]
    end type least_factor_t
 
    !> The thrust of an arch of more joints than this is reported only where it is asked for

@@ -13,16 +13,11 @@ submodule (dda_compute_case) dda_worst_load
 
    !> What a search works on
    type :: chase_t
-      !> The joints
-      type(joint_graph_t) :: graph
-      !> Loads at a factor of zero: (3, n_block) [N/m, N/m, N]
-      real(wp), allocatable :: dead(:, :)
-      !> Whether they are carried
-      logical :: stands = .false.
-      !> Arcs shorter than this are not halved [m]
-      real(wp) :: near = 0.0_wp
-      !> Forces that go from load to load
-      type(load_walk_t) :: walk
+      type(joint_graph_t) :: graph         !! The joints
+      real(wp), allocatable :: dead(:, :)  !! Loads at a factor of zero: (3, n_block) [N/m, N/m, N]
+      logical :: stands = .false.          !! Whether they are carried
+      real(wp) :: near = 0.0_wp            !! Arcs shorter than this are not halved [m]
+      type(load_walk_t) :: walk            !! Forces that go from load to load
    end type chase_t
 
    !> Relative gap of a limit

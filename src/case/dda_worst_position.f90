@@ -41,10 +41,8 @@ submodule (dda_compute_case) dda_worst_position
 
    !> A part of the road
    type :: stretch_t
-      !> Where it begins and ends [m]
-      real(wp) :: from = 0.0_wp, to = 0.0_wp
-      !> Where the live load is on it, see live_side
-      integer :: side = 0
+      real(wp) :: from = 0.0_wp, to = 0.0_wp  !! Where it begins and ends [m]
+      integer :: side = 0                     !! Where the live load is on it, see live_side
    end type stretch_t
 
 contains

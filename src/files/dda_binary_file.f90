@@ -18,10 +18,8 @@ module dda_binary_file
    !> A file open for writing
    type :: binary_file_t
       private
-      !> C's handle of the file
-      type(c_ptr) :: handle = c_null_ptr
-      !> Name of the file, for messages
-      character(len=:), allocatable :: name
+      type(c_ptr) :: handle = c_null_ptr     !! C's handle of the file
+      character(len=:), allocatable :: name  !! Name of the file, for messages
    end type binary_file_t
 
    !> What a write that failed may have met

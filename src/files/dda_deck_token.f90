@@ -19,18 +19,12 @@ module dda_deck_token
 
    !> What a token is
    type :: token_kind_enum
-      !> & and the name of a group
-      integer :: group = 1
-      !> Name before an equals sign
-      integer :: key = 2
-      !> Value without quotes
-      integer :: word = 3
-      !> Value in quotes
-      integer :: quoted = 4
-      !> Nothing between two commas
-      integer :: nothing = 5
-      !> Slash that ends a group
-      integer :: close = 6
+      integer :: group = 1    !! & and the name of a group
+      integer :: key = 2      !! Name before an equals sign
+      integer :: word = 3     !! Value without quotes
+      integer :: quoted = 4   !! Value in quotes
+      integer :: nothing = 5  !! Nothing between two commas
+      integer :: close = 6    !! Slash that ends a group
    end type token_kind_enum
 
    !> The kinds of token by name
@@ -38,16 +32,11 @@ module dda_deck_token
 
    !> One token of a deck
    type :: token_t
-      !> One of token_kind
-      integer :: kind = 0
-      !> First character in the text; quotes and repeat count left out
-      integer :: first = 1
-      !> Last character in the text
-      integer :: last = 0
-      !> Line of the text, counted from 1
-      integer :: line = 0
-      !> Repeat count r of r*c
-      integer :: count = 1
+      integer :: kind = 0   !! One of token_kind
+      integer :: first = 1  !! First character in the text; quotes and repeat count left out
+      integer :: last = 0   !! Last character in the text
+      integer :: line = 0   !! Line of the text, counted from 1
+      integer :: count = 1  !! Repeat count r of r*c
    end type token_t
 
    !> A text and its tokens, and the place of the scanner while it works

@@ -25,10 +25,8 @@ module dda_table_file
    !> An open table
    type :: table_file_t
       private
-      !> Its file
-      type(binary_file_t) :: file
-      !> Check sum of the lines that were appended since it was opened
-      integer(int64) :: lines = 0
+      type(binary_file_t) :: file  !! Its file
+      integer(int64) :: lines = 0  !! Check sum of the lines that were appended since it was opened
    end type table_file_t
 
    interface
@@ -59,16 +57,11 @@ module dda_table_file
    !> A table that is read line by line
    type :: table_lines_t
       private
-      !> Fortran's unit
-      integer :: unit = 0
-      !> Whether there is a file
-      logical :: is_open = .false.
-      !> Bytes not read yet
-      integer(int64) :: left = 0
-      !> Bytes read but not handed out
-      character(len=:), allocatable :: ahead
-      !> Place of the first of them
-      integer :: first = 1
+      integer :: unit = 0                     !! Fortran's unit
+      logical :: is_open = .false.            !! Whether there is a file
+      integer(int64) :: left = 0              !! Bytes not read yet
+      character(len=:), allocatable :: ahead  !! Bytes read but not handed out
+      integer :: first = 1                    !! Place of the first of them
    end type table_lines_t
 
 contains

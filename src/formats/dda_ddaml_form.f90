@@ -12,16 +12,11 @@ module dda_ddaml_form
 
    !> Elements of one meaning inside another element
    type :: form_t
-      !> Name of the outer element
-      character(len=18) :: outer = ""
-      !> Their names, a blank before and behind each
-      character(len=34) :: names = ""
-      !> Names of their attributes, likewise
-      character(len=36) :: attributes = ""
-      !> Whether they hold numbers
-      logical :: has_numbers = .false.
-      !> Whether there may be more than one
-      logical :: repeats = .false.
+      character(len=18) :: outer = ""       !! Name of the outer element
+      character(len=34) :: names = ""       !! Their names, a blank before and behind each
+      character(len=36) :: attributes = ""  !! Names of their attributes, likewise
+      logical :: has_numbers = .false.      !! Whether they hold numbers
+      logical :: repeats = .false.          !! Whether there may be more than one
    end type form_t
 
    logical, parameter :: yes = .true., no = .false.

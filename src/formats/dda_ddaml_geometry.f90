@@ -11,12 +11,9 @@ submodule (dda_read_limerick) dda_ddaml_geometry
 
    !> What the type of an entity of a list says
    type :: type_enum
-      !> There is none
-      integer :: none = 0
-      !> Number of a material
-      integer :: material = 1
-      !> Likewise; the first material where it is left out
-      integer :: material_or_first = 2
+      integer :: none = 0               !! There is none
+      integer :: material = 1           !! Number of a material
+      integer :: material_or_first = 2  !! Likewise; the first material where it is left out
    end type type_enum
 
    !> Names of them

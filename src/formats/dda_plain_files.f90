@@ -18,22 +18,14 @@ module dda_plain_files
 
    !> How many things of each kind a file announces
    type :: counts_t
-      !> Lines, boundary lines among them
-      integer :: lines = 0
-      !> Boundary lines
-      integer :: boundary = 0
-      !> Material lines
-      integer :: material_lines = 0
-      !> Bolts
-      integer :: bolts = 0
-      !> Fixed points or lines
-      integer :: fixed = 0
-      !> Load points
-      integer :: load = 0
-      !> Measured points
-      integer :: measured = 0
-      !> Hole points
-      integer :: hole = 0
+      integer :: lines = 0           !! Lines, boundary lines among them
+      integer :: boundary = 0        !! Boundary lines
+      integer :: material_lines = 0  !! Material lines
+      integer :: bolts = 0           !! Bolts
+      integer :: fixed = 0           !! Fixed points or lines
+      integer :: load = 0            !! Load points
+      integer :: measured = 0        !! Measured points
+      integer :: hole = 0            !! Hole points
    end type counts_t
 
    !> Largest magnitude of any number of an analysis

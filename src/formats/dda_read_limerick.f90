@@ -17,14 +17,10 @@ module dda_read_limerick
 
    !> Forms that a file can have
    type :: form_enum
-      !> Numbers between blanks
-      integer :: plain = 1
-      !> XML
-      integer :: ddaml = 2
-      !> A form that the original announces and does not read either
-      integer :: extended = 3
-      !> Nothing but blanks
-      integer :: blank = 4
+      integer :: plain = 1     !! Numbers between blanks
+      integer :: ddaml = 2     !! XML
+      integer :: extended = 3  !! A form that the original announces and does not read either
+      integer :: blank = 4     !! Nothing but blanks
    end type form_enum
 
    !> Names of the forms

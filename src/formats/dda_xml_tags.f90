@@ -39,12 +39,9 @@ module dda_xml_tags
 
    !> What a tag says besides values
    type :: tag_t
-      !> Where it ends
-      integer :: last = 0
-      !> Number of its values
-      integer :: n_values = 0
-      !> A number that is the same for tags of the same names
-      integer(int64) :: key = 0
+      integer :: last = 0        !! Where it ends
+      integer :: n_values = 0    !! Number of its values
+      integer(int64) :: key = 0  !! A number that is the same for tags of the same names
    end type tag_t
 
    !> libxml2 compares each pair of attributes of an element: so many take a second

@@ -11,10 +11,8 @@ module dda_xml_tree
 
    !> An attribute of an element
    type :: xml_attribute_t
-      !> Its name without prefix
-      character(len=:), allocatable :: name
-      !> Its value
-      character(len=:), allocatable :: value
+      character(len=:), allocatable :: name   !! Its name without prefix
+      character(len=:), allocatable :: value  !! Its value
    end type xml_attribute_t
 
    !> An element
@@ -40,12 +38,9 @@ module dda_xml_tree
 
    !> Elements in the order in which they begin; the root is the first
    type :: xml_tree_t
-      !> Name of the file
-      character(len=:), allocatable :: file
-      !> How many there are
-      integer :: n = 0
-      !> The elements: (n or more)
-      type(xml_element_t), allocatable :: element(:)
+      character(len=:), allocatable :: file           !! Name of the file
+      integer :: n = 0                                !! How many there are
+      type(xml_element_t), allocatable :: element(:)  !! The elements: (n or more)
    end type xml_tree_t
 
    !> A tree, and what is open in it

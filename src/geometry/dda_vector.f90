@@ -9,12 +9,9 @@ module dda_vector
 
    !> Integrals over a polygon
    type :: area_moments_t
-      !> Area, positive for a counter-clockwise polygon [m2]
-      real(wp) :: area = 0.0_wp
-      !> Centre of gravity: (2) [m]
-      real(wp) :: centroid(2) = 0.0_wp
-      !> Sxx, Syy, Sxy about the centre of gravity: (3) [m4]
-      real(wp) :: second(3) = 0.0_wp
+      real(wp) :: area = 0.0_wp         !! Area, positive for a counter-clockwise polygon [m2]
+      real(wp) :: centroid(2) = 0.0_wp  !! Centre of gravity: (2) [m]
+      real(wp) :: second(3) = 0.0_wp    !! Sxx, Syy, Sxy about the centre of gravity: (3) [m4]
    end type area_moments_t
 
 contains

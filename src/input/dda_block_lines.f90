@@ -32,14 +32,10 @@ module dda_block_lines
 
    !> The entry that is being read
    type :: entry_t
-      !> Its first line
-      type(line_t) :: head
-      !> Rows of numbers below it: (3, n_row or more)
-      real(wp), allocatable :: row(:, :)
-      !> Number of rows
-      integer :: n_row = 0
-      !> Numbers of each row
-      integer :: n_column = 0
+      type(line_t) :: head                !! Its first line
+      real(wp), allocatable :: row(:, :)  !! Rows of numbers below it: (3, n_row or more)
+      integer :: n_row = 0                !! Number of rows
+      integer :: n_column = 0             !! Numbers of each row
    end type entry_t
 
    !> An entry that waits, in as much room as it needs

@@ -32,10 +32,8 @@ module dda_deck
 
    !> A key, or one item of its list
    type :: parameter_t
-      !> Place in the registry
-      integer :: key = 0
-      !> Item of a list, counted from 1; 0 for a single value
-      integer :: item = 0
+      integer :: key = 0   !! Place in the registry
+      integer :: item = 0  !! Item of a list, counted from 1; 0 for a single value
    end type parameter_t
 
    !> Value of one key
@@ -74,10 +72,8 @@ module dda_deck
 
    !> A record of the ground's motion that the deck names
    type :: ground_record_t
-      !> Its name in the deck
-      character(len=:), allocatable :: name
-      !> The motion as the file has it
-      type(history_t) :: motion
+      character(len=:), allocatable :: name  !! Its name in the deck
+      type(history_t) :: motion              !! The motion as the file has it
    end type ground_record_t
 
    !> A deck: what it says by name, as written in the order of the registry, and what its files hold

@@ -15,22 +15,14 @@ module dda_deck_key
 
    !> What kind of value a key takes
    type :: key_kind_enum
-      !> One real number
-      integer :: number = 1
-      !> One whole number
-      integer :: whole = 2
-      !> One of the words of the entry
-      integer :: word = 3
-      !> Any text on one line
-      integer :: text = 4
-      !> .true. or .false.
-      integer :: flag = 5
-      !> A list of real numbers
-      integer :: numbers = 6
-      !> A list of words
-      integer :: texts = 7
-      !> Known, but refused: a later version of the program reads it
-      integer :: later = 8
+      integer :: number = 1   !! One real number
+      integer :: whole = 2    !! One whole number
+      integer :: word = 3     !! One of the words of the entry
+      integer :: text = 4     !! Any text on one line
+      integer :: flag = 5     !! .true. or .false.
+      integer :: numbers = 6  !! A list of real numbers
+      integer :: texts = 7    !! A list of words
+      integer :: later = 8    !! Known, but refused: a later version of the program reads it
    end type key_kind_enum
 
    !> The kinds of value by name
@@ -76,10 +68,8 @@ module dda_deck_key
 
    !> One group of a deck
    type :: group_t
-      !> Name of the group
-      character(len=16) :: name = ""
-      !> What the group describes
-      character(len=72) :: meaning = ""
+      character(len=16) :: name = ""     !! Name of the group
+      character(len=72) :: meaning = ""  !! What the group describes
    end type group_t
 contains
 

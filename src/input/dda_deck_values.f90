@@ -15,10 +15,8 @@ module dda_deck_values
 
    !> Where a walk along the registry is
    type :: walk_t
-      !> Place of the last key that was passed
-      integer :: at = 0
-      !> The only key whose value is taken; 0 for all
-      integer :: only = 0
+      integer :: at = 0    !! Place of the last key that was passed
+      integer :: only = 0  !! The only key whose value is taken; 0 for all
    end type walk_t
 
    interface take

@@ -26,14 +26,10 @@ module dda_key_groups
 
    !> One group of the file
    type :: key_group_t
-      !> Its name
-      character(len=16) :: name
-      !> Line of the file
-      integer :: row
-      !> Keys that it may have, from the registry: (n)
-      type(key_t), allocatable :: key(:)
-      !> Their values: (n)
-      type(key_value_t), allocatable :: value(:)
+      character(len=16) :: name                   !! Its name
+      integer :: row                              !! Line of the file
+      type(key_t), allocatable :: key(:)          !! Keys that it may have, from the registry: (n)
+      type(key_value_t), allocatable :: value(:)  !! Their values: (n)
    end type key_group_t
 
 contains

@@ -21,14 +21,10 @@ module dda_model_table
 
    !> A mode with a geometry
    type :: model_t
-      !> Word of analysis%mode
-      character(len=8) :: mode = ""
-      !> Word of analysis%geometry
-      character(len=9) :: geometry = ""
-      !> Kinds of scene%kind that it runs, parted by blanks
-      character(len=24) :: kinds = ""
-      !> Why it runs no others
-      character(len=60) :: why = ""
+      character(len=8) :: mode = ""      !! Word of analysis%mode
+      character(len=9) :: geometry = ""  !! Word of analysis%geometry
+      character(len=24) :: kinds = ""    !! Kinds of scene%kind that it runs, parted by blanks
+      character(len=60) :: why = ""      !! Why it runs no others
    end type model_t
 
    !> Keys that are searched alike

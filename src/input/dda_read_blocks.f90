@@ -29,14 +29,10 @@ module dda_read_blocks
 
    !> A plan whose arrays have room for more
    type :: growing_plan_t
-      !> The plan; its arrays are longer than what they hold
-      type(block_plan_t) :: plan
-      !> Number of blocks
-      integer :: n_block = 0
-      !> Number of corners
-      integer :: n_vertex = 0
-      !> Number of laws
-      integer :: n_law = 0
+      type(block_plan_t) :: plan  !! The plan; its arrays are longer than what they hold
+      integer :: n_block = 0      !! Number of blocks
+      integer :: n_vertex = 0     !! Number of corners
+      integer :: n_law = 0        !! Number of laws
    end type growing_plan_t
 
    !> What has been read of a file

@@ -26,20 +26,13 @@ module dda_joint_map
 
    !> What a line or a point is for
    type :: map_role_enum
-      !> A joint
-      integer :: joint = 1
-      !> It gives the blocks that it crosses their material
-      integer :: material = 2
-      !> It holds the blocks that it crosses
-      integer :: fix = 3
-      !> A force acts there
-      integer :: load = 4
-      !> It is followed
-      integer :: measure = 5
-      !> Its block is taken out
-      integer :: hole = 6
-      !> A bolt
-      integer :: bolt = 7
+      integer :: joint = 1     !! A joint
+      integer :: material = 2  !! It gives the blocks that it crosses their material
+      integer :: fix = 3       !! It holds the blocks that it crosses
+      integer :: load = 4      !! A force acts there
+      integer :: measure = 5   !! It is followed
+      integer :: hole = 6      !! Its block is taken out
+      integer :: bolt = 7      !! A bolt
    end type map_role_enum
 
    !> The roles by name
@@ -47,12 +40,9 @@ module dda_joint_map
 
    !> A length that may be random
    type :: length_t
-      !> Its mean [m]
-      real(wp) :: mean = 0.0_wp
-      !> One of length_law
-      integer :: law = length_law%constant
-      !> Degree of randomness, 0 to 1
-      real(wp) :: randomness = 0.0_wp
+      real(wp) :: mean = 0.0_wp             !! Its mean [m]
+      integer :: law = length_law%constant  !! One of length_law
+      real(wp) :: randomness = 0.0_wp       !! Degree of randomness, 0 to 1
    end type length_t
 
    !> A set of joints

@@ -17,12 +17,9 @@ submodule (dda_map_lines) dda_set_traces
 
    !> The line of one joint
    type :: axis_t
-      !> Unit vector along it: (2)
-      real(wp) :: along(2) = 0.0_wp
-      !> Its point that is nearest to the anchor of the set: (2) [m]
-      real(wp) :: foot(2) = 0.0_wp
-      !> Where the circle begins and ends, from the foot: (2) [m]
-      real(wp) :: window(2) = 0.0_wp
+      real(wp) :: along(2) = 0.0_wp   !! Unit vector along it: (2)
+      real(wp) :: foot(2) = 0.0_wp    !! Its point that is nearest to the anchor of the set: (2) [m]
+      real(wp) :: window(2) = 0.0_wp  !! Where the circle begins and ends, from the foot: (2) [m]
    end type axis_t
 
 contains

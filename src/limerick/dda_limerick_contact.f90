@@ -42,10 +42,8 @@ module dda_limerick_contact
 
    !> Contacts of a step; the first n count
    type :: contact_list_t
-      !> The contacts: (at least n)
-      type(limerick_contact_t), allocatable :: item(:)
-      !> How many there are
-      integer :: n = 0
+      type(limerick_contact_t), allocatable :: item(:)  !! The contacts: (at least n)
+      integer :: n = 0                                  !! How many there are
    end type contact_list_t
 
    !> Springs of one contact at the beginning of a step: opening and slip from the unknowns

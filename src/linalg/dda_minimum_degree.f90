@@ -9,8 +9,7 @@ submodule (dda_block_order) dda_minimum_degree
 
    !> The blocks of one group
    type :: group_t
-      !> Their numbers
-      integer, allocatable :: member(:)
+      integer, allocatable :: member(:)  !! Their numbers
    end type group_t
 
    !> What is left of the graph. A group has the number of the block that was eliminated for it

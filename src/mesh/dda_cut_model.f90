@@ -15,12 +15,9 @@ module dda_cut_model
 
    !> What a point of a block is for
    type :: point_kind_enum
-      !> It is held
-      integer :: fixed = 1
-      !> A force acts there
-      integer :: load = 2
-      !> It is followed
-      integer :: measured = 3
+      integer :: fixed = 1     !! It is held
+      integer :: load = 2      !! A force acts there
+      integer :: measured = 3  !! It is followed
    end type point_kind_enum
 
    !> Names of the kinds

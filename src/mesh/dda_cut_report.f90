@@ -29,22 +29,16 @@ module dda_cut_report
 
    !> A part of a line that was dropped
    type :: cut_remark_t
-      !> Number of the line
-      integer :: line = 0
-      !> One of cut_reason
-      integer :: reason = 0
-      !> Number of the line that is in the way; 0 if none is
-      integer :: other = 0
-      !> Ends of the part, from the origin of the cut: (4) [m]
-      real(wp) :: place(4) = 0.0_wp
+      integer :: line = 0            !! Number of the line
+      integer :: reason = 0          !! One of cut_reason
+      integer :: other = 0           !! Number of the line that is in the way; 0 if none is
+      real(wp) :: place(4) = 0.0_wp  !! Ends of the part, from the origin of the cut: (4) [m]
    end type cut_remark_t
 
    !> A list of remarks
    type :: cut_remarks_t
-      !> How many there are
-      integer :: n = 0
-      !> The remarks: (n or more)
-      type(cut_remark_t), allocatable :: item(:)
+      integer :: n = 0                            !! How many there are
+      type(cut_remark_t), allocatable :: item(:)  !! The remarks: (n or more)
    end type cut_remarks_t
 
 contains

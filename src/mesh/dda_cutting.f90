@@ -30,10 +30,8 @@ module dda_cutting
 
    !> Boxes around blocks
    type :: boxes_t
-      !> Lower left corners: (2, n) [m]
-      real(wp), allocatable :: low(:, :)
-      !> Upper right corners: (2, n) [m]
-      real(wp), allocatable :: high(:, :)
+      real(wp), allocatable :: low(:, :)   !! Lower left corners: (2, n) [m]
+      real(wp), allocatable :: high(:, :)  !! Upper right corners: (2, n) [m]
    end type boxes_t
 
    interface

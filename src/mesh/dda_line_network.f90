@@ -46,16 +46,11 @@ module dda_line_network
 
    !> Nodes, and for each square a chain of those that lie in it
    type :: node_table_t
-      !> How many nodes there are
-      integer :: n = 0
-      !> Their places: (2, n or more) [m]
-      real(wp), allocatable :: point(:, :)
-      !> Side of a square [m]
-      real(wp) :: side = 1.0_wp
-      !> First node of each chain, 0 if it is empty
-      integer, allocatable :: first(:)
-      !> Next node of the chain, 0 at its end: (n or more)
-      integer, allocatable :: next(:)
+      integer :: n = 0                      !! How many nodes there are
+      real(wp), allocatable :: point(:, :)  !! Their places: (2, n or more) [m]
+      real(wp) :: side = 1.0_wp             !! Side of a square [m]
+      integer, allocatable :: first(:)      !! First node of each chain, 0 if it is empty
+      integer, allocatable :: next(:)       !! Next node of the chain, 0 at its end: (n or more)
    end type node_table_t
 
 contains

@@ -11,14 +11,10 @@ module dda_bar
 
    !> What a bar does
    type :: bar_condition_enum
-      !> Its force follows its length
-      integer :: elastic = 0
-      !> It hangs loose
-      integer :: slack = 1
-      !> It carries its strength
-      integer :: yielding = 2
-      !> It carries nothing any more
-      integer :: broken = 3
+      integer :: elastic = 0   !! Its force follows its length
+      integer :: slack = 1     !! It hangs loose
+      integer :: yielding = 2  !! It carries its strength
+      integer :: broken = 3    !! It carries nothing any more
    end type bar_condition_enum
 
    !> Names of the conditions
@@ -29,31 +25,20 @@ module dda_bar
 
    !> A bar
    type :: bar_t
-      !> Blocks of its ends, 0 for the ground: (2)
-      integer :: block(2) = 0
-      !> Its ends in the reference shape: (2, 2) [m]
-      real(wp) :: point(2, 2) = 0.0_wp
-      !> Force over elongation [N/m]
-      real(wp) :: stiffness = 0.0_wp
-      !> Largest force [N]
-      real(wp) :: strength = huge(1.0_wp)
-      !> Force at the beginning [N]
-      real(wp) :: prestress = 0.0_wp
-      !> Whether it may push where blocks move in time
-      logical :: pushes = .true.
-      !> Whether it breaks where another would yield
-      logical :: breaks = .false.
-      !> Line of the file, 0 if there is none
-      integer :: line = 0
+      integer :: block(2) = 0              !! Blocks of its ends, 0 for the ground: (2)
+      real(wp) :: point(2, 2) = 0.0_wp     !! Its ends in the reference shape: (2, 2) [m]
+      real(wp) :: stiffness = 0.0_wp       !! Force over elongation [N/m]
+      real(wp) :: strength = huge(1.0_wp)  !! Largest force [N]
+      real(wp) :: prestress = 0.0_wp       !! Force at the beginning [N]
+      logical :: pushes = .true.           !! Whether it may push where blocks move in time
+      logical :: breaks = .false.          !! Whether it breaks where another would yield
+      integer :: line = 0                  !! Line of the file, 0 if there is none
    end type bar_t
 
    !> What a bar carries from step to step
    type :: bar_state_t
-      !> Elongation that stays [m]
-      real(wp) :: plastic = 0.0_wp
-      !> Its force, positive where it pulls [N]
-      real(wp) :: force = 0.0_wp
-      !> One of bar_condition
-      integer :: condition = bar_condition%elastic
+      real(wp) :: plastic = 0.0_wp                  !! Elongation that stays [m]
+      real(wp) :: force = 0.0_wp                    !! Its force, positive where it pulls [N]
+      integer :: condition = bar_condition%elastic  !! One of bar_condition
    end type bar_state_t
 end module dda_bar

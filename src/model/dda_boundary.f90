@@ -13,24 +13,17 @@ module dda_boundary
    !> A vector given at some times, linear between them, constant before the first and after the
    !> last of them; zero if nothing is given
    type :: history_t
-      !> The times, increasing: (n) [s]
-      real(wp), allocatable :: time(:)
-      !> Components along x and y at these times: (2, n)
-      real(wp), allocatable :: value(:, :)
+      real(wp), allocatable :: time(:)      !! The times, increasing: (n) [s]
+      real(wp), allocatable :: value(:, :)  !! Components along x and y at these times: (2, n)
    end type history_t
 
    !> A point of a block that is held, or led along a path
    type :: held_point_t
-      !> Number of the block
-      integer :: block = 0
-      !> Where the point is in the reference shape: (2) [m]
-      real(wp) :: point(2) = 0.0_wp
-      !> Whether it is held along x and along y: (2)
-      logical :: along(2) = .true.
-      !> Its displacement [m]
-      type(history_t) :: path
-      !> Line of the file that holds it, 0 if there is none
-      integer :: line = 0
+      integer :: block = 0           !! Number of the block
+      real(wp) :: point(2) = 0.0_wp  !! Where the point is in the reference shape: (2) [m]
+      logical :: along(2) = .true.   !! Whether it is held along x and along y: (2)
+      type(history_t) :: path        !! Its displacement [m]
+      integer :: line = 0            !! Line of the file that holds it, 0 if there is none
    end type held_point_t
 
    !> A force on a point of a block; it goes with the point and keeps its direction
@@ -47,23 +40,17 @@ module dda_boundary
 
    !> A point of a block whose motion is told
    type :: measured_point_t
-      !> Number of the block
-      integer :: block = 0
-      !> Where the point is in the reference shape: (2) [m]
-      real(wp) :: point(2) = 0.0_wp
+      integer :: block = 0           !! Number of the block
+      real(wp) :: point(2) = 0.0_wp  !! Where the point is in the reference shape: (2) [m]
    end type measured_point_t
 
    !> A force on a point of a block that may have any value from nothing to a bound, as the pressure
    !> of fill that an arch leans against
    type :: bounded_force_t
-      !> Number of the block
-      integer :: block = 0
-      !> Where the point is in the reference shape: (2) [m]
-      real(wp) :: point(2) = 0.0_wp
-      !> Unit vector along the force: (2)
-      real(wp) :: direction(2) = 0.0_wp
-      !> Its bound; huge without [N per metre depth]
-      real(wp) :: most = huge(1.0_wp)
+      integer :: block = 0               !! Number of the block
+      real(wp) :: point(2) = 0.0_wp      !! Where the point is in the reference shape: (2) [m]
+      real(wp) :: direction(2) = 0.0_wp  !! Unit vector along the force: (2)
+      real(wp) :: most = huge(1.0_wp)    !! Its bound; huge without [N per metre depth]
    end type bounded_force_t
 
    !> A point of a face that lets waves out: a dashpot across the face and one along it
@@ -87,14 +74,10 @@ module dda_boundary
 
    !> A block that is built or taken away
    type :: stage_change_t
-      !> When [s]
-      real(wp) :: time = 0.0_wp
-      !> Number of the block
-      integer :: block = 0
-      !> Whether it is built; otherwise it is taken away
-      logical :: adds = .false.
-      !> Line of the file that says so
-      integer :: line = 0
+      real(wp) :: time = 0.0_wp  !! When [s]
+      integer :: block = 0       !! Number of the block
+      logical :: adds = .false.  !! Whether it is built; otherwise it is taken away
+      integer :: line = 0        !! Line of the file that says so
    end type stage_change_t
 
    !> All of a scene; an array that is not allocated has no points

@@ -9,14 +9,10 @@ module dda_chain
 
    !> A block of a chain
    type :: chain_block_t
-      !> Centre of gravity: (2) [m]
-      real(wp) :: centroid(2) = 0.0_wp
-      !> Mass [kg/m]
-      real(wp) :: mass = 0.0_wp
-      !> Moment of inertia about the centre [kg m]
-      real(wp) :: inertia = 0.0_wp
-      !> Load at the centre: (2) [N/m]
-      real(wp) :: weight(2) = 0.0_wp
+      real(wp) :: centroid(2) = 0.0_wp  !! Centre of gravity: (2) [m]
+      real(wp) :: mass = 0.0_wp         !! Mass [kg/m]
+      real(wp) :: inertia = 0.0_wp      !! Moment of inertia about the centre [kg m]
+      real(wp) :: weight(2) = 0.0_wp    !! Load at the centre: (2) [N/m]
    end type chain_block_t
 
    !> A joint of a chain; its force is N1 at its first corner, N2 at its second, and T along it

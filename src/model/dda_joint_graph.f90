@@ -18,18 +18,12 @@ module dda_joint_graph
 
    !> What a joint can carry
    type :: joint_kind_enum
-      !> Two corners: N1 >= 0, N2 >= 0, |T| <= friction*(N1 + N2)
-      integer :: contact = 1
-      !> Two corners that cannot slide: N1 >= 0, N2 >= 0, any T
-      integer :: no_slip = 2
-      !> One corner: N1 >= 0, |T| <= friction*N1, N2 = 0
-      integer :: corner = 3
-      !> One corner that cannot slide: N1 >= 0, any T, N2 = 0
-      integer :: corner_no_slip = 4
-      !> A held point: any N1 and any T, N2 = 0
-      integer :: pin = 5
-      !> A plane of symmetry: any N1 and N2, T = 0
-      integer :: mirror = 6
+      integer :: contact = 1         !! Two corners: N1 >= 0, N2 >= 0, |T| <= friction*(N1 + N2)
+      integer :: no_slip = 2         !! Two corners that cannot slide: N1 >= 0, N2 >= 0, any T
+      integer :: corner = 3          !! One corner: N1 >= 0, |T| <= friction*N1, N2 = 0
+      integer :: corner_no_slip = 4  !! One corner that cannot slide: N1 >= 0, any T, N2 = 0
+      integer :: pin = 5             !! A held point: any N1 and any T, N2 = 0
+      integer :: mirror = 6          !! A plane of symmetry: any N1 and N2, T = 0
    end type joint_kind_enum
 
    !> Names of the kinds

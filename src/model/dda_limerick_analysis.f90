@@ -9,38 +9,26 @@ module dda_limerick_analysis
 
    !> What blocks are made of, and their state at the beginning; any consistent units
    type :: analysis_material_t
-      !> Mass per volume
-      real(wp) :: density = 0.0_wp
-      !> Weight per volume
-      real(wp) :: unit_weight = 0.0_wp
-      !> Young's modulus
-      real(wp) :: young = 0.0_wp
-      !> Poisson's ratio
-      real(wp) :: poisson = 0.0_wp
-      !> Initial stress sx, sy, txy
-      real(wp) :: stress(3) = 0.0_wp
-      !> Change of the initial stress with y
-      real(wp) :: stress_gradient(3) = 0.0_wp
-      !> Initial velocity u, v and rotation
-      real(wp) :: velocity(3) = 0.0_wp
-      !> Initial strain ex, ey, gxy
-      real(wp) :: strain(3) = 0.0_wp
+      real(wp) :: density = 0.0_wp             !! Mass per volume
+      real(wp) :: unit_weight = 0.0_wp         !! Weight per volume
+      real(wp) :: young = 0.0_wp               !! Young's modulus
+      real(wp) :: poisson = 0.0_wp             !! Poisson's ratio
+      real(wp) :: stress(3) = 0.0_wp           !! Initial stress sx, sy, txy
+      real(wp) :: stress_gradient(3) = 0.0_wp  !! Change of the initial stress with y
+      real(wp) :: velocity(3) = 0.0_wp         !! Initial velocity u, v and rotation
+      real(wp) :: strain(3) = 0.0_wp           !! Initial strain ex, ey, gxy
    end type analysis_material_t
 
    !> Mohr-Coulomb law of a kind of joints
    type :: limerick_joint_t
-      !> Friction angle [deg]
-      real(wp) :: friction_deg = 0.0_wp
-      !> Cohesion
-      real(wp) :: cohesion = 0.0_wp
-      !> Tensile strength
-      real(wp) :: tension = 0.0_wp
+      real(wp) :: friction_deg = 0.0_wp  !! Friction angle [deg]
+      real(wp) :: cohesion = 0.0_wp      !! Cohesion
+      real(wp) :: tension = 0.0_wp       !! Tensile strength
    end type limerick_joint_t
 
    !> Force on a load point against time, straight between the records and beyond them
    type :: load_history_t
-      !> Time, force along x, force along y: (3, n_record)
-      real(wp), allocatable :: record(:, :)
+      real(wp), allocatable :: record(:, :)  !! Time, force along x, force along y: (3, n_record)
    end type load_history_t
 
    !> Constants of the scheme, with the original's defaults and letters

@@ -13,14 +13,10 @@ module dda_write_frames
 
    !> What all rows of a frame have in common
    type :: frame_stamp_t
-      !> Number of the case, from 1
-      integer :: number = 0
-      !> Number of the frame, from 0
-      integer :: frame = 0
-      !> Accepted steps before it
-      integer :: step = 0
-      !> Sum of the lengths of these steps [s]
-      real(wp) :: time = 0.0_wp
+      integer :: number = 0      !! Number of the case, from 1
+      integer :: frame = 0       !! Number of the frame, from 0
+      integer :: step = 0        !! Accepted steps before it
+      real(wp) :: time = 0.0_wp  !! Sum of the lengths of these steps [s]
    end type frame_stamp_t
 
    !> One row of frame_joints.csv without what its frame has in common

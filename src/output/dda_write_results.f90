@@ -35,10 +35,8 @@ module dda_write_results
 
    !> A number that may be unknown
    type :: number_t
-      !> Whether it is known
-      logical :: known = .false.
-      !> The number
-      real(wp) :: value = 0.0_wp
+      logical :: known = .false.  !! Whether it is known
+      real(wp) :: value = 0.0_wp  !! The number
    end type number_t
 
    !> One row of results.csv

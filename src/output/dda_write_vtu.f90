@@ -23,10 +23,8 @@ module dda_write_vtu
 
    !> VTK's numbers of the kinds of cells
    type :: cell_type_enum
-      !> A single point
-      integer :: vertex = 1
-      !> Any simple polygon
-      integer :: polygon = 7
+      integer :: vertex = 1   !! A single point
+      integer :: polygon = 7  !! Any simple polygon
    end type cell_type_enum
 
    !> Names of the kinds of cells
@@ -34,18 +32,14 @@ module dda_write_vtu
 
    !> The part of the file before its data, while it grows
    type :: header_t
-      !> Its text
-      character(len=:), allocatable :: text
-      !> Where the next array begins in the data [bytes]
-      integer(int64) :: offset = 0
+      character(len=:), allocatable :: text  !! Its text
+      integer(int64) :: offset = 0           !! Where the next array begins in the data [bytes]
    end type header_t
 
    !> An open index
    type :: pvd_index_t
-      !> Its file
-      type(binary_file_t) :: file
-      !> Where the next entry goes [bytes from the beginning]
-      integer :: place = 0
+      type(binary_file_t) :: file  !! Its file
+      integer :: place = 0         !! Where the next entry goes [bytes from the beginning]
    end type pvd_index_t
 
    !> Last line of an index

@@ -9,12 +9,9 @@ submodule (dda_critical) dda_collapse_trace
 
    !> A collapse whose joints keep to their faces
    type :: frozen_t
-      !> Whether it is that of a chain
-      logical :: linked = .false.
-      !> The mechanism of a chain
-      type(chain_mechanism_t) :: chain
-      !> The mechanism of any blocks
-      type(frozen_mechanism_t) :: blocks
+      logical :: linked = .false.         !! Whether it is that of a chain
+      type(chain_mechanism_t) :: chain    !! The mechanism of a chain
+      type(frozen_mechanism_t) :: blocks  !! The mechanism of any blocks
    end type frozen_t
 
    !> Share of the value by which moving blocks are first looked for beyond frozen ones

@@ -19,16 +19,11 @@ module dda_mechanism
 
    !> What a joint does in a mechanism
    type :: mechanism_role_enum
-      !> Both corners closed and stuck
-      integer :: locked = 0
-      !> Both corners open
-      integer :: open = 1
-      !> Slides, and does not open
-      integer :: sliding = 2
-      !> Turns about its first corner: in an arch the intrados
-      integer :: hinge_first = 3
-      !> Turns about its second corner: in an arch the extrados
-      integer :: hinge_second = 4
+      integer :: locked = 0        !! Both corners closed and stuck
+      integer :: open = 1          !! Both corners open
+      integer :: sliding = 2       !! Slides, and does not open
+      integer :: hinge_first = 3   !! Turns about its first corner: in an arch the intrados
+      integer :: hinge_second = 4  !! Turns about its second corner: in an arch the extrados
    end type mechanism_role_enum
 
    !> Names of the roles

@@ -13,14 +13,10 @@ module dda_scene
 
    !> Load coefficients that come last on the loading path
    type :: searched_load_enum
-      !> The parameter is none
-      integer :: none = 0
-      !> Horizontal coefficient
-      integer :: push = 1
-      !> Direction of gravity
-      integer :: tilt = 2
-      !> Load factor of the live loads
-      integer :: factor = 3
+      integer :: none = 0    !! The parameter is none
+      integer :: push = 1    !! Horizontal coefficient
+      integer :: tilt = 2    !! Direction of gravity
+      integer :: factor = 3  !! Load factor of the live loads
    end type searched_load_enum
 
    !> Their names
@@ -44,14 +40,10 @@ module dda_scene
 
    !> The chain of a family that was made last
    type :: link_t
-      !> Whether there is one
-      logical :: known = .false.
-      !> Its value of the parameter
-      real(wp) :: value = 0.0_wp
-      !> Settings of its run
-      type(settings_t) :: settings
-      !> The chain
-      type(chain_t) :: chain
+      logical :: known = .false.    !! Whether there is one
+      real(wp) :: value = 0.0_wp    !! Its value of the parameter
+      type(settings_t) :: settings  !! Settings of its run
+      type(chain_t) :: chain        !! The chain
    end type link_t
 
    !> Scenes that differ by the value of one parameter

@@ -20,14 +20,10 @@ module dda_chain_path
 
    !> A corner of a joint that is open
    type :: open_corner_t
-      !> Number of the joint
-      integer :: joint = 0
-      !> 1 or 2
-      integer :: corner = 0
-      !> How wide it is [m]
-      real(wp) :: gap = 0.0_wp
-      !> Its change along a leg
-      real(wp) :: rate = 0.0_wp
+      integer :: joint = 0       !! Number of the joint
+      integer :: corner = 0      !! 1 or 2
+      real(wp) :: gap = 0.0_wp   !! How wide it is [m]
+      real(wp) :: rate = 0.0_wp  !! Its change along a leg
    end type open_corner_t
 
    !> Forces and gaps of a chain on its way

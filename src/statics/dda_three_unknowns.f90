@@ -8,12 +8,9 @@ module dda_three_unknowns
 
    !> A function of the three unknowns: its value with its first and second derivatives
    type :: chain_energy_t
-      !> Value
-      real(wp) :: value = 0.0_wp
-      !> First derivatives
-      real(wp) :: slope(3) = 0.0_wp
-      !> Second derivatives
-      real(wp) :: curvature(3, 3) = 0.0_wp
+      real(wp) :: value = 0.0_wp            !! Value
+      real(wp) :: slope(3) = 0.0_wp         !! First derivatives
+      real(wp) :: curvature(3, 3) = 0.0_wp  !! Second derivatives
    end type chain_energy_t
 
    !> Share of the fall that a straight line promises which counts as a fall

@@ -67,16 +67,11 @@ module couplet_heyman_discrete
 
    !> Outcome of a critical thickness
    type :: discrete_status_enum
-      !> The critical thickness ratio lies in (0, 2)
-      integer :: found = 0
-      !> The arch stands at every thickness, however small: eta is 0
-      integer :: stands_always = 1
-      !> No thickness ratio below 2 admits equilibrium: eta is 0
-      integer :: none_admissible = 2
-      !> An argument makes no sense: nothing was computed, eta is 0
-      integer :: bad_input = 3
-      !> The rounds ran out (never seen): eta is the last proposal
-      integer :: unsettled = 4
+      integer :: found = 0            !! The critical thickness ratio lies in (0, 2)
+      integer :: stands_always = 1    !! The arch stands at every thickness, however small: eta is 0
+      integer :: none_admissible = 2  !! No thickness ratio below 2 admits equilibrium: eta is 0
+      integer :: bad_input = 3        !! An argument makes no sense: nothing was computed, eta is 0
+      integer :: unsettled = 4        !! The rounds ran out (never seen): eta is the last proposal
    end type discrete_status_enum
 
    !> The names of the outcomes
@@ -84,12 +79,9 @@ module couplet_heyman_discrete
 
    !> What a joint does at the critical thickness
    type :: joint_role_enum
-      !> The thrust passes through its intrados corner
-      integer :: intrados_hinge = 1
-      !> The thrust passes through its extrados corner
-      integer :: extrados_hinge = 2
-      !> Its friction is exhausted
-      integer :: slides = 3
+      integer :: intrados_hinge = 1  !! The thrust passes through its intrados corner
+      integer :: extrados_hinge = 2  !! The thrust passes through its extrados corner
+      integer :: slides = 3          !! Its friction is exhausted
    end type joint_role_enum
 
    !> The names of the roles
@@ -97,18 +89,12 @@ module couplet_heyman_discrete
 
    !> Critical state of a discrete arch
    type :: discrete_solution_t
-      !> One of `discrete_status`
-      integer :: status = 3
-      !> Critical thickness ratio t/r [-]
-      real(wp) :: eta = 0.0_wp
-      !> Horizontal thrust there, over gamma r^2 eta [-]
-      real(wp) :: thrust = 0.0_wp
-      !> Number of entries of `joint` and `role` that are used
-      integer :: active = 0
-      !> Joints that bind, as indices of joint_angle: (5)
-      integer :: joint(5) = 0
-      !> What each of them does, one of `joint_role`: (5)
-      integer :: role(5) = 0
+      integer :: status = 3        !! One of `discrete_status`
+      real(wp) :: eta = 0.0_wp     !! Critical thickness ratio t/r [-]
+      real(wp) :: thrust = 0.0_wp  !! Horizontal thrust there, over gamma r^2 eta [-]
+      integer :: active = 0        !! Number of entries of `joint` and `role` that are used
+      integer :: joint(5) = 0      !! Joints that bind, as indices of joint_angle: (5)
+      integer :: role(5) = 0       !! What each of them does, one of `joint_role`: (5)
    end type discrete_solution_t
 
    interface

@@ -25,22 +25,14 @@ module dda_xml_parser
 
    !> libxml2's kinds of nodes
    type :: node_enum
-      !> An element begins
-      integer :: element = 1
-      !> Text
-      integer :: text = 3
-      !> Text that may hold marks
-      integer :: cdata = 4
-      !> An instruction to a program
-      integer :: instruction = 7
-      !> A comment
-      integer :: comment = 8
-      !> Blanks between elements
-      integer :: blank = 13
-      !> Blanks that count
-      integer :: significant_blank = 14
-      !> An element ends
-      integer :: element_end = 15
+      integer :: element = 1             !! An element begins
+      integer :: text = 3                !! Text
+      integer :: cdata = 4               !! Text that may hold marks
+      integer :: instruction = 7         !! An instruction to a program
+      integer :: comment = 8             !! A comment
+      integer :: blank = 13              !! Blanks between elements
+      integer :: significant_blank = 14  !! Blanks that count
+      integer :: element_end = 15        !! An element ends
    end type node_enum
 
    !> Names of the kinds
@@ -48,18 +40,12 @@ module dda_xml_parser
 
    !> libxml2's xmlError as far as it is used here
    type, bind(c) :: xml_error_t
-      !> Part of the library
-      integer(c_int) :: domain
-      !> Number of the error
-      integer(c_int) :: code
-      !> What happened
-      type(c_ptr) :: message
-      !> How bad it is
-      integer(c_int) :: level
-      !> Name of the file
-      type(c_ptr) :: file
-      !> Line of the file
-      integer(c_int) :: line
+      integer(c_int) :: domain  !! Part of the library
+      integer(c_int) :: code    !! Number of the error
+      type(c_ptr) :: message    !! What happened
+      integer(c_int) :: level   !! How bad it is
+      type(c_ptr) :: file       !! Name of the file
+      integer(c_int) :: line    !! Line of the file
    end type xml_error_t
 
    interface
